@@ -1,0 +1,1 @@
+//! Reading of TOML documents whose keys carry units.

@@ -1,0 +1,1 @@
+//! Mass flow through an orifice of a real gas, choked or not.

@@ -1,0 +1,2 @@
+//! State layout, right-hand side, Jacobian, outputs, mass and energy ledger.
+pub mod stratified;

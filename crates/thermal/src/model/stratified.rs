@@ -1,0 +1,1 @@
+//! Stacked gas cells of common pressure.

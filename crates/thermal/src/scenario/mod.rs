@@ -1,0 +1,122 @@
+//! What happens to a cylinder: fill, surroundings, flows, events, duration.
+//!
+//! [`ScenarioSpec`] is the raw content of a scenario file; [`ScenarioSpec::build`] checks it (and reads the
+//! CSV files it names) and gives a [`Scenario`].
+pub mod presets;
+pub mod series;
+mod spec;
+
+pub use series::Series;
+pub use spec::ScenarioSpec;
+
+use crate::flow::Flow;
+
+/// A validated scenario. All values SI, time from 0.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// Name for people.
+    pub name: String,
+    /// State at time 0.
+    pub initial: Initial,
+    /// What surrounds the cylinder.
+    pub surroundings: Surroundings,
+    /// Leaks, discharges, refills.
+    pub flows: Vec<Flow>,
+    /// Pressures whose crossing (either way) is reported as an event, Pa.
+    pub pressure_limits_pa: Vec<f64>,
+    /// Surface temperature sensors of the scenario, for the simulated log.
+    pub sensors: Vec<SurfaceSensor>,
+    /// End time, s.
+    pub duration_s: f64,
+    /// Interval of the output samples, s.
+    pub sample_time_s: f64,
+}
+
+/// How much gas is inside at time 0, and how warm everything is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Initial {
+    /// What fixes the gas mass.
+    pub fill: Fill,
+    /// Temperature of wall and valve at time 0, K.
+    pub wall_temperature_k: f64,
+    /// Temperature of the gas at time 0, K.
+    pub gas_temperature_k: f64,
+}
+
+/// What fixes the gas mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fill {
+    /// Settled pressure at a settled temperature of gas and wall, as a filling station states it.
+    Settled {
+        /// Absolute pressure, Pa.
+        pressure_pa: f64,
+        /// Temperature of gas and wall, K.
+        temperature_k: f64,
+    },
+    /// Pressure at time 0 with the initial gas and wall temperatures.
+    Pressure {
+        /// Absolute pressure, Pa.
+        pressure_pa: f64,
+    },
+    /// Gas mass, kg.
+    Mass {
+        /// Mass, kg.
+        mass_kg: f64,
+    },
+}
+
+/// What surrounds the cylinder, as functions of time.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// Air temperature, K.
+    pub air_k: Series,
+    /// Outside film.
+    pub film: OutsideFilm,
+    /// Temperature that the surface radiates to, K; `None`: no separate radiation (e.g. contained in the coefficient).
+    pub radiation_k: Option<Series>,
+    /// Sun on a part of the surface.
+    pub sun: Option<Sun>,
+}
+
+/// Outside film.
+#[derive(Clone, Debug)]
+pub enum OutsideFilm {
+    /// Coefficient, W/(m² K).
+    Coefficient {
+        /// Coefficient against time, W/(m² K).
+        film_w_m2_k: Series,
+    },
+    /// Natural convection blended with cross flow, from air temperature and wind.
+    Convection {
+        /// Wind speed across the axis, m/s.
+        wind_m_s: Series,
+        /// Multiplier for calibration, 1 by default.
+        multiplier: f64,
+    },
+}
+
+/// Direct sun on a stretch of the surface. The lit cells absorb
+/// `absorptivity * irradiance * A_outer / pi` (projected area of a cylinder).
+#[derive(Clone, Debug)]
+pub struct Sun {
+    /// Irradiance normal to the rays, W/m².
+    pub irradiance_w_m2: Series,
+    /// Lower end of the lit stretch as a fraction of the outer height.
+    pub from_fraction: f64,
+    /// Upper end of the lit stretch as a fraction of the outer height.
+    pub to_fraction: f64,
+    /// Whether the valve is lit too.
+    pub valve: bool,
+}
+
+/// A temperature sensor on the outer surface, without dynamics and noise:
+/// it reads `T_surface + coupling (T_air - T_surface)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceSensor {
+    /// Name of the sensor, e.g. `shoulder`.
+    pub name: String,
+    /// Where it sits: a place name (`bottom`, `middle`, `shoulder`, `neck`, `valve`).
+    pub place: String,
+    /// Mounting coupling to the air, 0 to 1.
+    pub air_coupling: f64,
+}

@@ -1,0 +1,3 @@
+//! Raw content of a scenario file.
+/// Raw content of a scenario file.
+pub struct ScenarioSpec {}

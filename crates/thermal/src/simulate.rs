@@ -1,0 +1,1 @@
+//! Adaptive implicit simulation; the only file that names diffsol.

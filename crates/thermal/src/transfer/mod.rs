@@ -1,0 +1,1 @@
+//! Films: natural and forced convection inside and outside, radiation, sun.

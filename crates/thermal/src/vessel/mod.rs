@@ -1,0 +1,112 @@
+//! What a cylinder is: fluid, contour, wall, valve, surface and films, independent of what happens to it.
+//!
+//! [`VesselSpec`] is the raw content of a vessel file; [`VesselSpec::build`] checks it and gives a [`Vessel`].
+mod spec;
+
+pub use spec::VesselSpec;
+
+use crate::fluid::Fluid;
+use crate::wall::geometry::Geometry;
+use crate::wall::material::Material;
+
+/// A validated vessel. All values SI.
+#[derive(Clone, Debug)]
+pub struct Vessel {
+    /// Name for people.
+    pub name: String,
+    /// The gas inside, with the equation of state that describes it.
+    pub fluid: Fluid,
+    /// Contour, layers, mesh counts.
+    pub geometry: Geometry,
+    /// How the inner volume answers to temperature and pressure.
+    pub volume: InnerVolume,
+    /// The valve body on the neck, if modelled.
+    pub valve: Option<Valve>,
+    /// Radiative properties of the outer surface.
+    pub surface: Surface,
+    /// Heat transfer between wall and gas.
+    pub inside_film: InsideFilm,
+    /// How the gas is resolved.
+    pub gas: GasResolution,
+}
+
+/// Inner volume `V = V_0 [1 + a (T_wall - T_0) + b (p - p_0)]` with the heat-capacity-weighted mean wall
+/// temperature; `a = b = 0` is a rigid vessel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InnerVolume {
+    /// Volume `V_0` at the reference state, m³; the contour's own volume is scaled to it for the gas, not for the wall.
+    pub volume_m3: f64,
+    /// Relative thermal expansion `a`, 1/K (steel: 3.5e-5).
+    pub thermal_expansion_per_k: f64,
+    /// Relative expansion by pressure `b`, 1/Pa (20 L steel: 1.5e-10).
+    pub pressure_expansion_per_pa: f64,
+    /// Reference temperature `T_0`, K.
+    pub reference_temperature_k: f64,
+    /// Reference pressure `p_0`, Pa.
+    pub reference_pressure_pa: f64,
+}
+
+/// Valve body: one heat capacity on the neck (or on the topmost wall cell where there is no neck).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Valve {
+    /// What it is made of.
+    pub material: Material,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Thermal contact to the topmost wall cell, W/K.
+    pub contact_w_k: f64,
+    /// Outer area, m².
+    pub area_m2: f64,
+    /// Diameter that its outside film is computed with, m.
+    pub diameter_m: f64,
+    /// Outside film relative to the cylinder's where the latter is given as a coefficient.
+    pub film_factor: f64,
+}
+
+/// Radiative properties of the outer surface (cylinder and valve).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Long-wave emissivity, 0 to 1.
+    pub emissivity: f64,
+    /// Absorptivity for sunlight, 0 to 1.
+    pub solar_absorptivity: f64,
+}
+
+/// Film law between the inner surface and the gas, `Nu_L = c Ra_L^n`, times a multiplier; or a fixed coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InsideFilm {
+    /// Power law with properties at film temperature.
+    Rayleigh {
+        /// Factor `c`, e.g. 0.13 (McAdams) or 0.104 (Daney).
+        factor: f64,
+        /// Exponent `n`, e.g. 1/3 (length-free) or 0.352.
+        exponent: f64,
+        /// Multiplier for calibration, 1 by default.
+        multiplier: f64,
+    },
+    /// Constant coefficient, W/(m² K).
+    Coefficient {
+        /// Film coefficient, W/(m² K).
+        film_w_m2_k: f64,
+    },
+}
+
+/// How the gas is resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GasResolution {
+    /// One well-mixed node: what mean temperature and pressure need.
+    WellMixed,
+    /// Stacked cells of common pressure; the constants are uncertain (see [`crate::model::stratified`]).
+    Stratified(Stratification),
+}
+
+/// Constants of the stratified gas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stratification {
+    /// Number of gas cells, at least 2.
+    pub cells: usize,
+    /// Length over which the boundary layer gives its excess heat back to the core, in inner diameters (uncertain, about 1).
+    pub exchange_length_diameters: f64,
+    /// Core mixing `c` in `D_t = c w* D` (uncertain, 0 to 0.2).
+    pub core_mixing: f64,
+}

@@ -1,0 +1,3 @@
+//! The wall: contour, mesh, materials, conduction.
+pub mod geometry;
+pub mod material;
