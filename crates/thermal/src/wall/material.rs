@@ -26,3 +26,54 @@ pub struct Material {
     /// Where the numbers come from.
     pub source: String,
 }
+
+impl Material {
+    /// Temperature of a cell from its energy state: `x = T_ref + e / c_20`, the temperature that a constant
+    /// heat capacity would give, K.
+    pub fn temperature_k(&self, energy_state_k: f64) -> f64 {
+        let y = energy_state_k - REFERENCE_TEMPERATURE_K;
+        let root = (1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(0.0).sqrt();
+        REFERENCE_TEMPERATURE_K + 2.0 * y / (1.0 + root)
+    }
+
+    /// Derivative of [`Material::temperature_k`]: `c_20 / c(T)`.
+    pub fn temperature_slope(&self, energy_state_k: f64) -> f64 {
+        let y = energy_state_k - REFERENCE_TEMPERATURE_K;
+        1.0 / (1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(f64::MIN_POSITIVE).sqrt()
+    }
+
+    /// Energy state of a cell at a temperature, K; inverse of [`Material::temperature_k`].
+    pub fn energy_state_k(&self, temperature_k: f64) -> f64 {
+        let y = temperature_k - REFERENCE_TEMPERATURE_K;
+        REFERENCE_TEMPERATURE_K + y * (1.0 + 0.5 * self.heat_capacity_slope_per_k * y)
+    }
+
+    /// Conductivity at a temperature, W/(m K).
+    pub fn conductivity_at_w_m_k(&self, temperature_k: f64) -> f64 {
+        self.conductivity_w_m_k
+            * (1.0 + self.conductivity_slope_per_k * (temperature_k - REFERENCE_TEMPERATURE_K))
+    }
+
+    /// Volume-weighted mixture for a lumped wall: capacities add, resistances of the layers add.
+    pub fn mixture(parts: &[(&Material, f64)]) -> Material {
+        if let [(only, _)] = parts {
+            return (*only).clone();
+        }
+        let sum = |value: &dyn Fn(&Material) -> f64| parts.iter().map(|(m, t)| value(m) * t).sum::<f64>();
+        let thickness: f64 = sum(&|_| 1.0);
+        let mass = sum(&|m| m.density_kg_m3);
+        let capacity = sum(&|m| m.density_kg_m3 * m.heat_capacity_j_kg_k);
+        let resistance = sum(&|m| 1.0 / m.conductivity_w_m_k);
+        Material {
+            name: parts.iter().map(|(m, _)| m.name.as_str()).collect::<Vec<_>>().join(" + "),
+            density_kg_m3: mass / thickness,
+            heat_capacity_j_kg_k: capacity / mass,
+            heat_capacity_slope_per_k: sum(&|m| {
+                m.density_kg_m3 * m.heat_capacity_j_kg_k * m.heat_capacity_slope_per_k
+            }) / capacity,
+            conductivity_w_m_k: thickness / resistance,
+            conductivity_slope_per_k: sum(&|m| m.conductivity_slope_per_k / m.conductivity_w_m_k) / resistance,
+            source: "mixture of the layers".into(),
+        }
+    }
+}
