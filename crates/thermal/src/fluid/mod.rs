@@ -1,6 +1,7 @@
 //! stand-in
 #![allow(missing_docs, unused, clippy::all)]
 mod hedge_data;
+pub mod transport;
 use crate::ThermalError;
 use num_dual::DualNum;
 pub trait Real: num_dual::DualNum<Primitive = f64> + Copy {}
