@@ -4,7 +4,7 @@
 //! mixtures of nitrogen, argon, and oxygen from 60 to 2000 K at pressures to 2000 MPa", J. Phys. Chem. Ref. Data 29
 //! (2000) 331, doi:10.1063/1.1285884: dry air as a pseudo-pure fluid, reduced at its maxcondentherm.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, PowerTerm as P};
+use crate::fluid::data::{FluidData, PowerTerm as P};
 
 /// Dry air.
 pub static AIR: FluidData = FluidData {
