@@ -19,7 +19,9 @@ pub enum ThermalError {
         row: usize,
     },
     /// A series goes back in time.
-    #[error("row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time")]
+    #[error(
+        "row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time"
+    )]
     SeriesGoesBack {
         /// Row, from 1.
         row: usize,
@@ -48,7 +50,9 @@ pub enum ThermalError {
         known: String,
     },
     /// The temperature is outside the equation's range.
-    #[error("temperature {temperature_k} K of {fluid} must lie between {lowest_k} K and {highest_k} K, the range of its equation of state")]
+    #[error(
+        "temperature {temperature_k} K of {fluid} must lie between {lowest_k} K and {highest_k} K, the range of its equation of state"
+    )]
     TemperatureOutside {
         /// Fluid.
         fluid: &'static str,
@@ -60,7 +64,9 @@ pub enum ThermalError {
         highest_k: f64,
     },
     /// The pressure is outside the equation's range.
-    #[error("pressure {pressure_pa} Pa of {fluid} must be positive and at most {highest_pa} Pa, the range of its equation of state")]
+    #[error(
+        "pressure {pressure_pa} Pa of {fluid} must be positive and at most {highest_pa} Pa, the range of its equation of state"
+    )]
     PressureOutside {
         /// Fluid.
         fluid: &'static str,
@@ -80,7 +86,9 @@ pub enum ThermalError {
         highest_kg_m3: f64,
     },
     /// A pressure belongs to a density beyond the domain.
-    #[error("{fluid} at {pressure_pa} Pa is denser than {highest_kg_m3:.1} kg/m3, the bound of its domain: lower the pressure or raise the temperature")]
+    #[error(
+        "{fluid} at {pressure_pa} Pa is denser than {highest_kg_m3:.1} kg/m3, the bound of its domain: lower the pressure or raise the temperature"
+    )]
     TooDense {
         /// Fluid.
         fluid: &'static str,
@@ -90,7 +98,9 @@ pub enum ThermalError {
         highest_kg_m3: f64,
     },
     /// The state is between vapour and liquid.
-    #[error("{fluid} at {temperature_k:.3} K and {density_kg_m3:.3} kg/m3 is two-phase (vapour up to {vapour_kg_m3:.3}, liquid from {liquid_kg_m3:.3} kg/m3): only single-phase gas is modelled")]
+    #[error(
+        "{fluid} at {temperature_k:.3} K and {density_kg_m3:.3} kg/m3 is two-phase (vapour up to {vapour_kg_m3:.3}, liquid from {liquid_kg_m3:.3} kg/m3): only single-phase gas is modelled"
+    )]
     TwoPhase {
         /// Fluid.
         fluid: &'static str,
@@ -104,7 +114,9 @@ pub enum ThermalError {
         liquid_kg_m3: f64,
     },
     /// An enthalpy or entropy between vapour and liquid.
-    #[error("{fluid} at {pressure_pa} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled")]
+    #[error(
+        "{fluid} at {pressure_pa} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled"
+    )]
     TwoPhaseIsobar {
         /// Fluid.
         fluid: &'static str,
@@ -114,7 +126,9 @@ pub enum ThermalError {
         saturation_k: f64,
     },
     /// Pressure and temperature on the saturation line do not fix the density.
-    #[error("{fluid} at {pressure_pa} Pa and {temperature_k} K is on its saturation line ({saturation_pa} Pa): pressure and temperature do not fix the density")]
+    #[error(
+        "{fluid} at {pressure_pa} Pa and {temperature_k} K is on its saturation line ({saturation_pa} Pa): pressure and temperature do not fix the density"
+    )]
     OnSaturation {
         /// Fluid.
         fluid: &'static str,
@@ -126,7 +140,9 @@ pub enum ThermalError {
         saturation_pa: f64,
     },
     /// Too near the critical point.
-    #[error("{fluid} at {temperature_k:.3} K is within 0.5 % below its critical temperature {critical_k} K, where its phase is not resolved: stay outside")]
+    #[error(
+        "{fluid} at {temperature_k:.3} K is within 0.5 % below its critical temperature {critical_k} K, where its phase is not resolved: stay outside"
+    )]
     NearCritical {
         /// Fluid.
         fluid: &'static str,
@@ -172,7 +188,9 @@ pub enum ThermalError {
         fluid: String,
     },
     /// No temperature and volume belong to the gas's mass and energy.
-    #[error("no gas state has mass {mass_kg} kg and internal energy {energy_j} J: the vessel is empty or the step was too long")]
+    #[error(
+        "no gas state has mass {mass_kg} kg and internal energy {energy_j} J: the vessel is empty or the step was too long"
+    )]
     NoGasState {
         /// Gas mass, kg.
         mass_kg: f64,

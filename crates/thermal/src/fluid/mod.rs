@@ -111,7 +111,12 @@ impl Fluid {
             });
         };
         let prepared = &PREPARED[index];
-        Ok(Self { data: data::ALL[index], prepared, description: Description::Reference(prepared), transport })
+        Ok(Self {
+            data: data::ALL[index],
+            prepared,
+            description: Description::Reference(prepared),
+            transport,
+        })
     }
 
     /// Names that [`Fluid::named`] knows.
@@ -208,7 +213,9 @@ impl Fluid {
 
     fn density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
         match &self.description {
-            Description::Reference(equation) => equation.residual_density_slopes(density_kg_m3, temperature_k),
+            Description::Reference(equation) => {
+                equation.residual_density_slopes(density_kg_m3, temperature_k)
+            }
             Description::IdealGas(_) => (0.0, 0.0),
             Description::PengRobinson(equation) => {
                 equation.residual_density_slopes(density_kg_m3, temperature_k)
@@ -278,8 +285,8 @@ impl Fluid {
         let Some(reference_k) = self.transport.reference_temperature_k() else { return background };
         let state = self.state(density_kg_m3, temperature_k);
         let reference = self.residual(density_kg_m3, D::from(reference_k));
-        let dp_drho_reference = (reference.d * 2.0 + reference.dd + 1.0)
-            * (self.specific_gas_constant_j_kg_k() * reference_k);
+        let dp_drho_reference =
+            (reference.d * 2.0 + reference.dd + 1.0) * (self.specific_gas_constant_j_kg_k() * reference_k);
         let at = TransportState {
             temperature_k,
             density_kg_m3,

@@ -25,14 +25,17 @@ fn bracketed_newton(
         if !value.is_finite() {
             return None;
         }
-        if value > 0.0 { high = x } else { low = x }
-        let newton = x - value / slope;
-        let inside = slope > 0.0 && newton > low && newton < high;
-        let next = if inside { newton } else { 0.5 * (low + high) };
-        if (next - x).abs() <= TOLERANCE * x.abs() || value == 0.0 {
-            return Some(next);
+        if value > 0.0 {
+            high = x
+        } else {
+            low = x
         }
-        x = next;
+        let newton = x - value / slope;
+        if slope > 0.0 && (newton - x).abs() <= TOLERANCE * x.abs() {
+            return Some(newton);
+        }
+        let inside = slope > 0.0 && newton > low && newton < high;
+        x = if inside { newton } else { 0.5 * (low + high) };
     }
     (high - low <= 1e-9 * high.abs()).then_some(x)
 }
@@ -249,7 +252,8 @@ impl Fluid {
         value: &impl Fn(&State) -> (f64, f64),
     ) -> Result<Option<(f64, f64)>, ThermalError> {
         let highest_k = self.data.critical_temperature_k * (1.0 - CRITICAL_MARGIN);
-        let pressure_at = |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
+        let pressure_at =
+            |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
         let (mut low, mut high) = (lowest_k, highest_k);
         if pressure_at(high)? < pressure_pa {
             return Ok(None);

@@ -37,7 +37,11 @@ pub fn scenario(cd: f64) -> Scenario {
     s.sample_time_s = 0.25;
     s.flows.push(Flow {
         name: "outlet".into(),
-        kind: FlowKind::Orifice { diameter_m: 0.00635, discharge_coefficient: cd, back_pressure_pa: 101_300.0 },
+        kind: FlowKind::Orifice {
+            diameter_m: 0.00635,
+            discharge_coefficient: cd,
+            back_pressure_pa: 101_300.0,
+        },
         start_s: 0.0,
         stop_s: f64::INFINITY,
         opens_above_pa: None,
@@ -49,7 +53,13 @@ pub fn scenario(cd: f64) -> Scenario {
 
 fn curve(name: &str) -> Vec<(f64, f64)> {
     let text = std::fs::read_to_string(format!("../../../shared/data/n2_haque_I1_{name}.csv")).unwrap();
-    text.lines().skip(1).map(|l| { let (a, b) = l.split_once(',').unwrap(); (a.parse().unwrap(), b.parse().unwrap()) }).collect()
+    text.lines()
+        .skip(1)
+        .map(|l| {
+            let (a, b) = l.split_once(',').unwrap();
+            (a.parse().unwrap(), b.parse().unwrap())
+        })
+        .collect()
 }
 
 fn at(times: &[f64], values: &[f64], t: f64) -> f64 {
@@ -74,10 +84,18 @@ fn report(label: &str, tr: &Trajectory) {
     let wmin: Vec<f64> = tr.wall_inner_k.iter().map(|c| c.iter().copied().fold(1e9, f64::min)).collect();
     let p: Vec<f64> = tr.pressure_pa.iter().map(|p| p / 1e5).collect();
     let f = |x: (f64, f64)| format!("{:+.2}/{:.2}", x.0, x.1);
-    println!("{label}: mean {} high {} low {} whi {} wlo {} P {} steps {} E {:.1e} M {:.1e}",
-        f(score(&tr.time_s, &tr.gas_mean_k, &mid)), f(score(&tr.time_s, &max, &hi)), f(score(&tr.time_s, &min, &lo)),
-        f(score(&tr.time_s, &wmax, &curve("wall_outer"))), f(score(&tr.time_s, &wmin, &curve("wall_inner"))),
-        f(score(&tr.time_s, &p, &curve("pressure"))), tr.statistics.steps, tr.ledger.energy_residual(), tr.ledger.mass_residual());
+    println!(
+        "{label}: mean {} high {} low {} whi {} wlo {} P {} steps {} E {:.1e} M {:.1e}",
+        f(score(&tr.time_s, &tr.gas_mean_k, &mid)),
+        f(score(&tr.time_s, &max, &hi)),
+        f(score(&tr.time_s, &min, &lo)),
+        f(score(&tr.time_s, &wmax, &curve("wall_outer"))),
+        f(score(&tr.time_s, &wmin, &curve("wall_inner"))),
+        f(score(&tr.time_s, &p, &curve("pressure"))),
+        tr.statistics.steps,
+        tr.ledger.energy_residual(),
+        tr.ledger.mass_residual()
+    );
 }
 
 #[test]
@@ -90,7 +108,11 @@ fn explore() {
     println!("{:?}", tr.events);
     let daney = InsideFilm::Rayleigh { factor: 0.104, exponent: 0.352, multiplier: 1.0 };
     for (cells, c) in [(20, 0.0), (20, 0.05), (40, 0.05), (80, 0.05), (20, 0.1), (40, 0.1)] {
-        let gas = GasResolution::Stratified(Stratification { cells, exchange_length_diameters: 1.0, core_mixing: c });
+        let gas = GasResolution::Stratified(Stratification {
+            cells,
+            exchange_length_diameters: 1.0,
+            core_mixing: c,
+        });
         let start = std::time::Instant::now();
         let tr = run(&vessel(gas, daney), &scenario(0.75), 1e-5);
         println!("{:?} {:?}", start.elapsed(), tr.statistics);
