@@ -26,7 +26,8 @@ pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> 
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(unreadable)?.clone();
-    let head_line = header.position().map_or(1, |position| position.line() as usize);
+    let is_comment = |line: &str| line.starts_with('#') || line.trim().is_empty();
+    let head_line = 1 + text.lines().take_while(|line| is_comment(line)).count();
     let names = || header.iter().collect::<Vec<_>>().join(", ");
     let (_, unit) = units::split(name).ok_or_else(|| {
         let units = units::listed(dimension);

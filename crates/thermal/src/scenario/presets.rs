@@ -5,11 +5,20 @@ use super::{Scenario, read_scenario};
 use crate::ThermalError;
 use crate::document::unknown_preset;
 
-const FILES: [(&str, &str); 1] = [
+const FILES: [(&str, &str); 9] = [
     ("shock-cold", include_str!("../../presets/scenarios/shock-cold.toml")),
+    ("tunnel-winter", include_str!("../../presets/scenarios/tunnel-winter.toml")),
+    ("ramp-warm", include_str!("../../presets/scenarios/ramp-warm.toml")),
+    ("cool-down", include_str!("../../presets/scenarios/cool-down.toml")),
+    ("tunnel-step", include_str!("../../presets/scenarios/tunnel-step.toml")),
+    ("leak-after-tunnel", include_str!("../../presets/scenarios/leak-after-tunnel.toml")),
+    ("bottle-step", include_str!("../../presets/scenarios/bottle-step.toml")),
+    ("haque-i1", include_str!("../../presets/scenarios/haque-i1.toml")),
+    ("railway-week", include_str!("../../presets/scenarios/railway-week.toml")),
 ];
 
-const TABLES: [(&str, &str); 0] = [];
+const TABLES: [(&str, &str); 1] =
+    [("railway-week.csv", include_str!("../../presets/scenarios/railway-week.csv"))];
 
 /// Names of the built-in scenarios.
 pub fn names() -> impl Iterator<Item = &'static str> {
