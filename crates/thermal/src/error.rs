@@ -20,7 +20,9 @@ pub enum ThermalError {
         row: usize,
     },
     /// A series goes back in time.
-    #[error("row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time")]
+    #[error(
+        "row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time"
+    )]
     SeriesGoesBack {
         /// Row, from 1.
         row: usize,

@@ -31,12 +31,16 @@ pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> 
     let names = || header.iter().collect::<Vec<_>>().join(", ");
     let (_, unit) = units::split(name).ok_or_else(|| {
         let units = units::listed(dimension);
-        let example = units::units_of(dimension).next().map_or(name.to_owned(), |u| format!("{name}_{}", u.suffix));
+        let example =
+            units::units_of(dimension).next().map_or(name.to_owned(), |u| format!("{name}_{}", u.suffix));
         fault(head_line, Problem::NoUnit { key: name.to_owned(), example, units })
     })?;
     let unit = units::find(unit.suffix, dimension).ok_or_else(|| {
         let (unit, units) = (unit.suffix.to_owned(), units::listed(dimension));
-        fault(head_line, Problem::WrongUnit { key: name.to_owned(), unit, quantity: "this signal".into(), units })
+        fault(
+            head_line,
+            Problem::WrongUnit { key: name.to_owned(), unit, quantity: "this signal".into(), units },
+        )
     })?;
     let at = header.iter().position(|column| column == name).ok_or_else(|| {
         let nearest = super::suggestion(name, header.iter());
@@ -47,7 +51,8 @@ pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> 
         _ => None,
     });
     let (time_at, time_unit) = time.ok_or_else(|| {
-        let remedy = format!("name one of the columns time_s, time_min, time_h or time_d; there are {}", names());
+        let remedy =
+            format!("name one of the columns time_s, time_min, time_h or time_d; there are {}", names());
         fault(head_line, Problem::Missing { key: "the time column".to_owned(), remedy })
     })?;
     let mut column = Column { time_s: Vec::new(), value: Vec::new(), line: Vec::new() };

@@ -115,7 +115,11 @@ impl<'a, 't> ValueReader<'a, 't> {
     }
 
     fn wrong_type(&self, expected: &str) -> ReadError {
-        self.placed(Problem::WrongType { key: self.named(), text: self.text(), expected: expected.to_owned() })
+        self.placed(Problem::WrongType {
+            key: self.named(),
+            text: self.text(),
+            expected: expected.to_owned(),
+        })
     }
 
     /// Gives an error of a visitor its line and names.
@@ -249,7 +253,9 @@ impl<'de> Deserializer<'de> for ValueReader<'_, '_> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadError> {
-        let DeValue::String(text) = self.value.get_ref() else { return Err(self.wrong_type("text in quotes")) };
+        let DeValue::String(text) = self.value.get_ref() else {
+            return Err(self.wrong_type("text in quotes"));
+        };
         let choice: de::value::StrDeserializer<'_, ReadError> = text.as_ref().into_deserializer();
         visitor.visit_enum(choice).map_err(|error| self.place(error))
     }

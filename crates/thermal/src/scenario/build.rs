@@ -31,9 +31,9 @@ impl ScenarioSpec {
         }
         let (duration_s, sample_time_s) = self.times()?;
         let air = air(&self.ambient);
-        let air_k = air
-            .series(files)?
-            .ok_or_else(|| check::missing("ambient.air_k", "say the temperature of the air around the cylinder"))?;
+        let air_k = air.series(files)?.ok_or_else(|| {
+            check::missing("ambient.air_k", "say the temperature of the air around the cylinder")
+        })?;
         let before_k = air.first().unwrap_or_else(|| air_k.segment(-1.0, 0.0).value);
         Ok(Scenario {
             name: self.name.clone(),
@@ -56,12 +56,18 @@ impl ScenarioSpec {
     fn times(&self) -> Result<(f64, f64), ThermalError> {
         let duration_s = check::positive("duration_s", self.duration_s, "say how long the scenario lasts")?;
         let range = (0.0, DURATION_MAX_S);
-        check::within("duration_s", duration_s, range, "at most ten years", "check the unit, _min, _h or _d")?;
+        check::within(
+            "duration_s",
+            duration_s,
+            range,
+            "at most ten years",
+            "check the unit, _min, _h or _d",
+        )?;
         let sample_s = self.sample_time_s.unwrap_or(60.0_f64.min(duration_s));
         let remedy = "give the interval of the output samples, e.g. sample_time_min = 1";
         check::positive("sample_time_s", sample_s, remedy)?;
         let range = (duration_s / SAMPLES_MAX, duration_s);
-        let bound = format!("between {} s and the duration of {duration_s} s", range.0);
+        let bound = format!("between {} s and the duration of {}", range.0, check::time_text(duration_s));
         Ok((duration_s, check::within("sample_time_s", sample_s, range, &bound, remedy)?))
     }
 
@@ -88,7 +94,11 @@ impl ScenarioSpec {
                 let multiplier = spec.wind_multiplier.unwrap_or(1.0);
                 OutsideFilm::Convection {
                     wind_m_s: wind.unwrap_or_else(|| Series::constant(0.0)),
-                    multiplier: check::positive("ambient.wind_multiplier", multiplier, "1 is the law as published")?,
+                    multiplier: check::positive(
+                        "ambient.wind_multiplier",
+                        multiplier,
+                        "1 is the law as published",
+                    )?,
                 }
             }
         };
@@ -99,7 +109,9 @@ impl ScenarioSpec {
     fn sun(&self, irradiance: Option<Series>) -> Result<Option<Sun>, ThermalError> {
         let Some(irradiance_w_m2) = irradiance else {
             return match self.sun {
-                Some(_) => Err(check::missing("ambient.irradiance_w_m2", "say how strong the sun of [sun] is")),
+                Some(_) => {
+                    Err(check::missing("ambient.irradiance_w_m2", "say how strong the sun of [sun] is"))
+                }
                 None => Ok(None),
             };
         };
@@ -190,8 +202,7 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
         ("initial.pressure_pa", spec.pressure_pa),
         ("initial.mass_kg", spec.mass_kg),
     ];
-    let given: Vec<(&str, f64)> =
-        fills.iter().filter_map(|&(path, value)| Some((path, value?))).collect();
+    let given: Vec<(&str, f64)> = fills.iter().filter_map(|&(path, value)| Some((path, value?))).collect();
     if let [(first, _), (second, _), ..] = given[..] {
         let other = first.trim_start_matches("initial.");
         return Err(check::conflict(second, other, "say the fill in one way"));
@@ -221,7 +232,8 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
             return Err(check::missing("initial.fill_pressure_pa", remedy));
         }
     };
-    if let (Some(_), Some(_), Some(_)) = (spec.temperature_k, spec.wall_temperature_k, spec.gas_temperature_k) {
+    if let (Some(_), Some(_), Some(_)) = (spec.temperature_k, spec.wall_temperature_k, spec.gas_temperature_k)
+    {
         let remedy = "leave it out, wall and gas are stated";
         return Err(check::conflict("initial.temperature_k", "wall_temperature and gas_temperature", remedy));
     }
@@ -239,10 +251,15 @@ fn outflow(kind: &str, i: usize, spec: &OutflowSpec) -> Result<Flow, ThermalErro
     let path = |field: &str| format!("{kind}[{i}].{field}");
     let kind_of_flow = match (spec.flow_kg_s, spec.diameter_m) {
         (Some(_), Some(_)) => {
-            return Err(check::conflict(&path("diameter_m"), "flow", "give the mass flow or the bore of a hole"));
+            return Err(check::conflict(
+                &path("diameter_m"),
+                "flow",
+                "give the mass flow or the bore of a hole",
+            ));
         }
         (None, None) => {
-            let remedy = "give a mass flow, e.g. flow_g_h = 20, or the bore of a hole, e.g. diameter_mm = 0.1";
+            let remedy =
+                "give a mass flow, e.g. flow_g_h = 20, or the bore of a hole, e.g. diameter_mm = 0.1";
             return Err(check::missing(&path("flow_kg_s"), remedy));
         }
         (Some(flow_kg_s), None) => {
@@ -251,7 +268,11 @@ fn outflow(kind: &str, i: usize, spec: &OutflowSpec) -> Result<Flow, ThermalErro
                 ("back_pressure_pa", spec.back_pressure_pa),
             ];
             if let Some((field, _)) = orifice_only.iter().find(|(_, value)| value.is_some()) {
-                return Err(check::conflict(&path(field), "flow", "it belongs to an orifice of some diameter"));
+                return Err(check::conflict(
+                    &path(field),
+                    "flow",
+                    "it belongs to an orifice of some diameter",
+                ));
             }
             FlowKind::Leak { mass_flow_kg_s: mass_flow(&path("flow_kg_s"), flow_kg_s)? }
         }
@@ -282,19 +303,31 @@ fn outflow(kind: &str, i: usize, spec: &OutflowSpec) -> Result<Flow, ThermalErro
         return Err(check::broken(&path("closes_below_pa"), closes, &bound, "it would close as it opens"));
     }
     let name = flow_name(kind, i, spec.name.as_ref())?;
-    Ok(Flow { name, kind: kind_of_flow, start_s, stop_s, opens_above_pa, closes_below_pa, closes_above_pa: None })
+    Ok(Flow {
+        name,
+        kind: kind_of_flow,
+        start_s,
+        stop_s,
+        opens_above_pa,
+        closes_below_pa,
+        closes_above_pa: None,
+    })
 }
 
 fn refill(i: usize, spec: &RefillSpec) -> Result<Flow, ThermalError> {
     let path = |field: &str| format!("refill[{i}].{field}");
     let (start_s, stop_s) = window(&path, spec.start_s, spec.stop_s)?;
     let inlet = spec.inlet_diameter_m.map(|value| bore(&path("inlet_diameter_m"), value)).transpose()?;
-    let closes = spec.closes_above_pa.map(|value| check::pressure_pa(&path("closes_above_pa"), value)).transpose()?;
+    let closes =
+        spec.closes_above_pa.map(|value| check::pressure_pa(&path("closes_above_pa"), value)).transpose()?;
     Ok(Flow {
         name: flow_name("refill", i, spec.name.as_ref())?,
         kind: FlowKind::Refill {
             mass_flow_kg_s: mass_flow(&path("flow_kg_s"), spec.flow_kg_s)?,
-            source_temperature_k: check::temperature_k(&path("source_temperature_k"), spec.source_temperature_k)?,
+            source_temperature_k: check::temperature_k(
+                &path("source_temperature_k"),
+                spec.source_temperature_k,
+            )?,
             source_pressure_pa: check::pressure_pa(&path("source_pressure_pa"), spec.source_pressure_pa)?,
             inlet_diameter_m: inlet,
         },
@@ -328,7 +361,7 @@ fn window(
     if stop.is_finite() && stop > start {
         return Ok((start, stop));
     }
-    let bound = format!("later than the start at {start} s");
+    let bound = format!("later than the start at {}", check::time_text(start));
     Err(check::broken(&path("stop_s"), stop, &bound, "leave it out for a flow to the end"))
 }
 

@@ -2,8 +2,8 @@
 use std::f64::consts::PI;
 
 use super::spec::{
-    EndSpec, EquationChoice, GasChoice, GasSpec, InsideFilmSpec, LawChoice, NeckSpec,
-    OrientationChoice, ShapeChoice, SurfaceSpec, ValveSpec, VesselSpec, VolumeSpec,
+    EndSpec, EquationChoice, GasChoice, GasSpec, InsideFilmSpec, LawChoice, NeckSpec, OrientationChoice,
+    ShapeChoice, SurfaceSpec, ValveSpec, VesselSpec, VolumeSpec,
 };
 use super::{GasResolution, InnerVolume, InsideFilm, Stratification, Surface, Valve, Vessel};
 use crate::ThermalError;
@@ -125,7 +125,8 @@ impl VesselSpec {
 
     fn valve(&self, spec: &ValveSpec) -> Result<Valve, ThermalError> {
         let material = self.material("valve.material", spec.material.as_deref().unwrap_or("brass"))?;
-        let mass_kg = check::positive("valve.mass_kg", spec.mass_kg, "give the mass of the valve, or no [valve]")?;
+        let mass_kg =
+            check::positive("valve.mass_kg", spec.mass_kg, "give the mass of the valve, or no [valve]")?;
         let diameter_m = length("valve.diameter_m", spec.diameter_m.unwrap_or(0.05))?;
         let volume_m3 = mass_kg / material.density_kg_m3;
         let area_m2 = spec.area_m2.unwrap_or(6.0 * volume_m3 / diameter_m);
@@ -170,7 +171,8 @@ fn end(path: &str, spec: &EndSpec, radius_m: f64, wall_m: f64, cells: usize) -> 
         ShapeChoice::Hemispherical => EndShape::Dome { depth_m: radius_m },
         ShapeChoice::Ellipsoidal => {
             let depth_m = spec.depth_m.unwrap_or(0.5 * radius_m);
-            let remedy = "a dome is as deep as the inner radius at most twice over; for no dome use shape = \"flat\"";
+            let remedy =
+                "a dome is as deep as the inner radius at most twice over; for no dome use shape = \"flat\"";
             check::positive(&at("depth_m"), depth_m, remedy)?;
             let range = (0.02 * radius_m, 2.0 * radius_m);
             let bound = "between 0.02 and 2 inner radii";
@@ -243,7 +245,11 @@ fn surface(spec: &SurfaceSpec) -> Result<Surface, ThermalError> {
     let emissivity = spec.emissivity.unwrap_or(0.9);
     let absorptivity = spec.solar_absorptivity.unwrap_or(0.6);
     Ok(Surface {
-        emissivity: check::fraction("surface.emissivity", emissivity, "paint has about 0.9, bare metal 0.1 to 0.3")?,
+        emissivity: check::fraction(
+            "surface.emissivity",
+            emissivity,
+            "paint has about 0.9, bare metal 0.1 to 0.3",
+        )?,
         solar_absorptivity: check::fraction(
             "surface.solar_absorptivity",
             absorptivity,
@@ -305,7 +311,17 @@ fn gas(spec: &GasSpec) -> Result<GasResolution, ThermalError> {
     let mixing = spec.core_mixing.unwrap_or(0.05);
     Ok(GasResolution::Stratified(Stratification {
         cells: check::cells("gas.cells", spec.cells.unwrap_or(8), 2)?,
-        exchange_length_diameters: check::positive("gas.exchange_length_diameters", exchange, "about 1 is usual")?,
-        core_mixing: check::within("gas.core_mixing", mixing, (0.0, 1.0), "between 0 and 1", "0 to 0.2 are usual")?,
+        exchange_length_diameters: check::positive(
+            "gas.exchange_length_diameters",
+            exchange,
+            "about 1 is usual",
+        )?,
+        core_mixing: check::within(
+            "gas.core_mixing",
+            mixing,
+            (0.0, 1.0),
+            "between 0 and 1",
+            "0 to 0.2 are usual",
+        )?,
     }))
 }

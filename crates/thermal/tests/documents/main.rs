@@ -1,6 +1,11 @@
 //! Documents: units, messages, presets, schema, and that no text makes the reader panic.
-mod vessel_messages;
+mod forms;
+mod presets;
+mod property;
 mod scenario_messages;
+mod schema;
+mod units;
+mod vessel_messages;
 
 /// The built-in vessel with one piece of its text replaced.
 fn vessel_with(from: &str, to: &str) -> String {
