@@ -20,9 +20,7 @@ pub enum ThermalError {
         row: usize,
     },
     /// A series goes back in time.
-    #[error(
-        "row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time"
-    )]
+    #[error("row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time")]
     SeriesGoesBack {
         /// Row, from 1.
         row: usize,
@@ -45,7 +43,7 @@ pub enum ThermalError {
         /// Path of the value by field names, e.g. `layer[1].thickness_m`.
         path: String,
         /// What is wrong with it.
-        problem: Problem,
+        problem: Box<Problem>,
     },
     /// A line of a document cannot be used.
     #[error("{file}:{line}: {problem}")]
@@ -55,7 +53,7 @@ pub enum ThermalError {
         /// Line, from 1.
         line: usize,
         /// What is wrong there.
-        problem: Problem,
+        problem: Box<Problem>,
     },
     /// A name that is no built-in vessel or scenario.
     #[error("no built-in {kind} {name}{nearest}; there are {known}")]
@@ -68,5 +66,11 @@ pub enum ThermalError {
         nearest: String,
         /// The built-in names.
         known: String,
+    },
+    /// A specification that has no TOML form.
+    #[error("the specification cannot be written as TOML: {message}")]
+    Unwritable {
+        /// The writer's words.
+        message: String,
     },
 }

@@ -17,48 +17,34 @@ fn key_of(path: &str) -> String {
     with_table(path, &super::without_indices(last))
 }
 
+fn at(path: &str, problem: Problem) -> ThermalError {
+    ThermalError::Specification { path: path.to_owned(), problem: Box::new(problem) }
+}
+
 /// The error of a value at `path` that breaks `bound`.
 pub fn broken(path: &str, value: impl ToString, bound: &str, remedy: &str) -> ThermalError {
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::Value {
-            key: key_of(path),
-            text: value.to_string(),
-            bound: bound.to_owned(),
-            remedy: remedy.to_owned(),
-        },
-    }
+    let (bound, remedy) = (bound.to_owned(), remedy.to_owned());
+    at(path, Problem::Value { key: key_of(path), text: value.to_string(), bound, remedy })
 }
 
 /// The error of a key that has to be there.
 pub fn missing(path: &str, remedy: &str) -> ThermalError {
     let key = super::keys::example(&key_of(path));
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::Missing { key, remedy: remedy.to_owned() },
-    }
+    at(path, Problem::Missing { key, remedy: remedy.to_owned() })
 }
 
 /// The error of a key that cannot stand beside another.
 pub fn conflict(path: &str, other: &str, remedy: &str) -> ThermalError {
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::Conflict { key: key_of(path), other: other.to_owned(), remedy: remedy.to_owned() },
-    }
+    let (other, remedy) = (other.to_owned(), remedy.to_owned());
+    at(path, Problem::Conflict { key: key_of(path), other, remedy })
 }
 
 /// The error of a word that is none of the `known`.
 pub fn unknown<'a>(path: &str, word: &str, known: impl IntoIterator<Item = &'a str>) -> ThermalError {
     let known: Vec<&str> = known.into_iter().collect();
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::UnknownChoice {
-            key: key_of(path),
-            text: word.to_owned(),
-            nearest: suggestion(word, known.iter().copied()),
-            known: known.join(", "),
-        },
-    }
+    let nearest = suggestion(word, known.iter().copied());
+    let known = known.join(", ");
+    at(path, Problem::UnknownChoice { key: key_of(path), text: word.to_owned(), nearest, known })
 }
 
 /// A finite value above 0.

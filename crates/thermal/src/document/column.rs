@@ -18,7 +18,8 @@ pub(crate) struct Column {
 ///
 /// Lines that start with `#` are comments; a row whose cell is empty has no knot.
 pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> Result<Column, ThermalError> {
-    let fault = |line, problem| ThermalError::Document { file: file.to_owned(), line, problem };
+    let fault =
+        |line, problem| ThermalError::Document { file: file.to_owned(), line, problem: Box::new(problem) };
     let unreadable = |error: csv::Error| {
         let line = error.position().map_or(1, |position| position.line() as usize);
         fault(line, Problem::Syntax { message: error.to_string() })

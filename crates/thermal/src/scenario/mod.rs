@@ -3,6 +3,7 @@
 //! [`ScenarioSpec`] is the raw content of a scenario file; [`ScenarioSpec::build`] checks it (and reads the
 //! CSV files it names) and gives a [`Scenario`].
 mod build;
+mod flows;
 pub mod presets;
 pub mod series;
 mod signal;

@@ -128,10 +128,10 @@ impl Signal<'_> {
             return Err(check::conflict(&constant, &last(other), "say the signal in one form"));
         }
         if let Some(table) = self.table {
-            return self.from_table(&path("_table"), table).map(Some);
+            return self.series_of_table(&path("_table"), table).map(Some);
         }
         if let Some(csv) = self.csv {
-            return self.from_csv(&path("_csv"), csv, files).map(Some);
+            return self.series_of_csv(&path("_csv"), csv, files).map(Some);
         }
         let Some(value) = self.constant else {
             if self.changes.is_empty() {
@@ -140,7 +140,7 @@ impl Signal<'_> {
             return Err(check::missing(&constant, "say the value before the first change"));
         };
         self.check(&constant, value)?;
-        self.from_changes(&path("_change"), value).map(Some)
+        self.series_of_changes(&path("_change"), value).map(Some)
     }
 
     /// Value before everything that changes it.
@@ -166,7 +166,7 @@ impl Signal<'_> {
         }
     }
 
-    fn from_changes(&self, path: &str, constant: f64) -> Result<Series, ThermalError> {
+    fn series_of_changes(&self, path: &str, constant: f64) -> Result<Series, ThermalError> {
         if self.changes.is_empty() {
             return Ok(Series::constant(constant));
         }
@@ -206,7 +206,7 @@ impl Signal<'_> {
         Series::try_new(time_s, value)
     }
 
-    fn from_table(&self, path: &str, table: (&[f64], &[f64], &str)) -> Result<Series, ThermalError> {
+    fn series_of_table(&self, path: &str, table: (&[f64], &[f64], &str)) -> Result<Series, ThermalError> {
         let (time_s, value, field) = table;
         let values = format!("{path}.{field}");
         if time_s.is_empty() {
@@ -237,7 +237,7 @@ impl Signal<'_> {
         Series::try_new(time_s.to_vec(), value.to_vec())
     }
 
-    fn from_csv(&self, path: &str, csv: &CsvSpec, files: Files<'_>) -> Result<Series, ThermalError> {
+    fn series_of_csv(&self, path: &str, csv: &CsvSpec, files: Files<'_>) -> Result<Series, ThermalError> {
         let text = files(&csv.file).map_err(|error| {
             let remedy = format!("the name counts from the scenario's folder ({error})");
             check::broken(
@@ -261,7 +261,8 @@ impl Signal<'_> {
         if let Some((i, bound)) = disorder(&column.time_s) {
             let text = check::time_text(column.time_s[i]);
             let remedy = "sort the rows; the same time twice is a jump".to_owned();
-            return Err(fault(i, Problem::Value { key: "time".to_owned(), text, bound, remedy }));
+            let problem = Problem::Value { key: "time".to_owned(), text, bound, remedy };
+            return Err(fault(i, Box::new(problem)));
         }
         Series::try_new(column.time_s, column.value)
     }

@@ -1,7 +1,9 @@
 //! The forms in which a file can say the same thing, and what holds where it says nothing.
 use approx::assert_relative_eq;
 use cylwatch_thermal::scenario::{Fill, OutsideFilm};
-use cylwatch_thermal::vessel::{GasResolution, InsideFilm, VesselSpec, read_vessel, spec::GeometrySpec};
+use cylwatch_thermal::vessel::{
+    GasResolution, InsideFilm, VesselSpec, presets, read_specification, read_vessel, spec::GeometrySpec,
+};
 use cylwatch_thermal::wall::geometry::EndShape;
 
 use super::scenario_with;
@@ -29,6 +31,17 @@ fn any_unit_of_the_dimension_gives_the_same_vessel() {
     let one = read_vessel(LEAST, "x.toml").unwrap();
     let other = read_vessel(&metres, "x.toml").unwrap();
     assert_relative_eq!(one.geometry.inner_diameter_m, other.geometry.inner_diameter_m, max_relative = 1e-15);
+}
+
+#[test]
+fn a_specification_written_and_read_again_is_the_same() {
+    for name in presets::names() {
+        let (specification, vessel) = read_specification(presets::text(name).unwrap(), name).unwrap();
+        let text = specification.to_toml().unwrap();
+        let (again, same) = read_specification(&text, name).unwrap();
+        assert_eq!(again, specification, "{text}");
+        assert_eq!((same.geometry, same.volume), (vessel.geometry, vessel.volume));
+    }
 }
 
 #[test]

@@ -1,4 +1,7 @@
 //! Documents: units, messages, presets, schema, and that no text makes the reader panic.
+// The lint's exception for tests covers test functions, not what they share.
+#![allow(clippy::unwrap_used)]
+
 mod forms;
 mod presets;
 mod property;

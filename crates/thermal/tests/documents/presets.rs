@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use approx::assert_relative_eq;
 use cylwatch_thermal::scenario::{Fill, OutsideFilm};
 use cylwatch_thermal::wall::geometry::{EndShape, Geometry};
+use cylwatch_thermal::wall::mesh::Mesh;
 use cylwatch_thermal::{flow::FlowKind, scenario, vessel};
 
 #[allow(dead_code)]
@@ -59,9 +60,11 @@ fn the_20_litre_cylinder_has_its_volume_mass_and_cells() {
     assert_relative_eq!(vessel.volume.volume_m3, 0.020);
     let density = geometry.layers[0].material.density_kg_m3;
     assert_relative_eq!(density * wall_volume_m3(geometry), 22.4, max_relative = 0.01);
+    assert_relative_eq!(Mesh::new(geometry).mass_kg(), 22.4, max_relative = 0.01);
     let neck = geometry.neck.unwrap();
     let columns = geometry.bottom.cells + geometry.cylinder_cells + geometry.shoulder.cells + neck.cells;
     assert_eq!(columns * geometry.layers[0].cells, 36);
+    assert_eq!(Mesh::new(geometry).cells(), 36);
 }
 
 #[test]
