@@ -6,12 +6,16 @@ use crate::units::{self, Dimension};
 /// Knots of a column in SI, with the lines they stand in.
 #[derive(Debug)]
 pub(crate) struct Column {
+    /// Name of the time column.
+    pub time_name: String,
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Value, SI.
     pub value: Vec<f64>,
     /// Line of each knot, from 1.
     pub line: Vec<usize>,
+    /// Cells of each knot as written: time and value.
+    pub text: Vec<(String, String)>,
 }
 
 /// Reads the column `name`, whose suffix has to be a unit of `dimension`, and the column `time_<unit>`.
@@ -56,7 +60,9 @@ pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> 
             format!("name one of the columns time_s, time_min, time_h or time_d; there are {}", names());
         fault(head_line, Problem::Missing { key: "the time column".to_owned(), remedy })
     })?;
-    let mut column = Column { time_s: Vec::new(), value: Vec::new(), line: Vec::new() };
+    let time_name = header.get(time_at).unwrap_or("time").to_owned();
+    let mut column =
+        Column { time_name, time_s: Vec::new(), value: Vec::new(), line: Vec::new(), text: Vec::new() };
     for record in reader.records() {
         let record = record.map_err(unreadable)?;
         let line = record.position().map_or(1, |position| position.line() as usize);
@@ -68,9 +74,11 @@ pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> 
             }
         };
         if record.get(at).is_some_and(|cell| !cell.is_empty()) {
-            column.time_s.push(number(time_at, header.get(time_at).unwrap_or("time"), time_unit)?);
+            column.time_s.push(number(time_at, &column.time_name, time_unit)?);
             column.value.push(number(at, name, unit)?);
             column.line.push(line);
+            let cell = |i: usize| record.get(i).unwrap_or_default().to_owned();
+            column.text.push((cell(time_at), cell(at)));
         }
     }
     if column.time_s.is_empty() {

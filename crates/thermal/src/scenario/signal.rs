@@ -8,7 +8,7 @@ use crate::document::{Problem, check, column};
 use crate::units::Dimension;
 
 /// Reads a file that a scenario names; relative names count from the scenario's folder.
-pub type Files<'f> = &'f dyn Fn(&str) -> std::io::Result<String>;
+pub(super) type Files<'f> = &'f dyn Fn(&str) -> std::io::Result<String>;
 
 /// A column of a CSV file with a column `time_s`, `time_min`, `time_h` or `time_d`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -251,18 +251,22 @@ impl Signal<'_> {
         let fault = |i: usize, problem| ThermalError::Document {
             file: csv.file.clone(),
             line: column.line[i],
-            problem,
+            problem: Box::new(problem),
         };
         for (i, &value) in column.value.iter().enumerate() {
-            if let Err(ThermalError::Specification { problem, .. }) = self.check(&csv.column, value) {
-                return Err(fault(i, problem));
+            let Err(ThermalError::Specification { problem, .. }) = self.check(&csv.column, value) else {
+                continue;
+            };
+            let mut problem = *problem;
+            if let Problem::Value { text, .. } = &mut problem {
+                text.clone_from(&column.text[i].1);
             }
+            return Err(fault(i, problem));
         }
         if let Some((i, bound)) = disorder(&column.time_s) {
-            let text = check::time_text(column.time_s[i]);
             let remedy = "sort the rows; the same time twice is a jump".to_owned();
-            let problem = Problem::Value { key: "time".to_owned(), text, bound, remedy };
-            return Err(fault(i, Box::new(problem)));
+            let (key, text) = (column.time_name.clone(), column.text[i].0.clone());
+            return Err(fault(i, Problem::Value { key, text, bound, remedy }));
         }
         Series::try_new(column.time_s, column.value)
     }

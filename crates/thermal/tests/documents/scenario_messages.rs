@@ -68,7 +68,7 @@ fn each_fault_of_a_scenario_names_line_key_and_remedy() {
         (
             "air_degc = 21",
             "air_table = {time_h = [0, \n nan], air_degc = [1, 3]}",
-            "7: ambient.air_table time_h = nan must be a finite number: write a number or leave the key out",
+            "7: ambient.air_table time_h = nan must be a finite number: write a number or leave it out",
         ),
         (
             "air_degc = 21",
@@ -167,5 +167,31 @@ fn each_fault_of_a_scenario_names_line_key_and_remedy() {
         let in_table = expected.starts_with("t.csv");
         let expected = if in_table { expected.to_owned() } else { format!("scenarios/x.toml:{expected}") };
         assert_eq!(message, expected, "for {to:?}");
+    }
+}
+
+#[test]
+fn each_fault_of_a_table_names_its_file_and_line() {
+    let cases = [
+        ("word", "3: air_degc = warm must be a finite number: write a number or leave it out"),
+        (
+            "hot",
+            "3: air_degc = 9999 must be between 60 K and 1500 K (-213 degC and 1227 degC): check the unit, _degc or _k",
+        ),
+        (
+            "back",
+            "4: time_min = 60 must be at least 2 h, the time before: sort the rows; the same time twice is a jump",
+        ),
+        ("ragged", "3: the text cannot be read: CSV error: "),
+        (
+            "timeless",
+            "1: the time column is missing: name one of the columns time_s, time_min, time_h or time_d",
+        ),
+        ("empty", "1: a value of air_degc is missing: give at least one row with a time and a value"),
+    ];
+    for (file, expected) in cases {
+        let column = format!("air_csv = {{ file = '{file}.csv', column = 'air_degc' }}");
+        let message = scenario_with("air_degc = 21", &column).unwrap_err();
+        assert!(message.starts_with(&format!("{file}.csv:{expected}")), "{message}");
     }
 }

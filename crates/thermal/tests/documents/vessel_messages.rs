@@ -37,12 +37,12 @@ fn each_fault_of_a_vessel_names_line_key_and_remedy() {
         (
             "thickness_mm = 5.8",
             "thickness_mm = nan",
-            "34: layer thickness_mm = nan must be a finite number: write a number or leave the key out",
+            "34: layer thickness_mm = nan must be a finite number: write a number or leave it out",
         ),
         (
             "thickness_mm = 5.8",
             "thickness_mm = 1e400",
-            "34: layer thickness_mm = 1e400 must be a finite number: write a number or leave the key out",
+            "34: layer thickness_mm = 1e400 must be a finite number: write a number or leave it out",
         ),
         ("thickness_mm = 5.8", "thickness_mm = \"6\"", "34: layer thickness_mm = \"6\" must be a number"),
         (
