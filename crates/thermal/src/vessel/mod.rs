@@ -115,3 +115,20 @@ pub struct Stratification {
     /// Core mixing `c` in `D_t = c w* D` (uncertain, 0 to 0.2).
     pub core_mixing: f64,
 }
+
+impl InnerVolume {
+    /// Volume at a mean wall temperature and a pressure, m³.
+    pub fn volume_m3(&self, wall_k: f64, pressure_pa: f64) -> f64 {
+        self.volume_m3
+            * (1.0
+                + self.thermal_expansion_per_k * (wall_k - self.reference_temperature_k)
+                + self.pressure_expansion_per_pa * (pressure_pa - self.reference_pressure_pa))
+    }
+}
+
+impl Valve {
+    /// Heat capacity at the reference temperature, J/K.
+    pub fn capacity_j_k(&self) -> f64 {
+        self.mass_kg * self.material.heat_capacity_j_kg_k
+    }
+}
