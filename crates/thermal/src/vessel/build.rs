@@ -7,7 +7,7 @@ use super::spec::{
 use super::{GasResolution, InsideFilm, Stratification, Surface, Valve, Vessel};
 use crate::ThermalError;
 use crate::document::check;
-use crate::fluid::Fluid;
+use crate::fluid::{Equation, Fluid};
 use crate::wall::geometry::{Geometry, Layer, Orientation};
 use crate::wall::library;
 use crate::wall::material::Material;
@@ -26,7 +26,7 @@ impl VesselSpec {
         let valve = self.valve.as_ref().map(|valve| self.valve(valve)).transpose()?;
         Ok(Vessel {
             name: self.name.clone(),
-            fluid: self.fluid()?,
+            fluid: named_fluid(&self.fluid, self.equation)?,
             geometry,
             volume,
             valve,
@@ -34,10 +34,6 @@ impl VesselSpec {
             inside_film: inside_film(&self.inside_film)?,
             gas: gas(&self.gas)?,
         })
-    }
-
-    fn fluid(&self) -> Result<Fluid, ThermalError> {
-        named_fluid(&self.fluid, self.equation)
     }
 
     fn geometry(&self) -> Result<Geometry, ThermalError> {
@@ -143,11 +139,14 @@ impl VesselSpec {
 
 /// The gas by name, with its equation of state.
 fn named_fluid(name: &str, equation: EquationChoice) -> Result<Fluid, ThermalError> {
-    let _ = equation;
-    match name {
-        "nitrogen" => Ok(Fluid {}),
-        _ => Err(check::unknown("fluid", name, ["nitrogen"])),
-    }
+    let equation = match equation {
+        EquationChoice::Reference => Equation::Reference,
+        EquationChoice::IdealGas => Equation::IdealGas,
+        EquationChoice::PengRobinson => Equation::PengRobinson,
+    };
+    let fluid = Fluid::named(name)
+        .map_err(|error| check::broken("fluid", format!("{name:?}"), "a known gas", &error.to_string()))?;
+    Ok(fluid.with_equation(equation))
 }
 
 fn surface(spec: &SurfaceSpec) -> Result<Surface, ThermalError> {

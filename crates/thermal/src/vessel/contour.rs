@@ -1,6 +1,4 @@
 //! Checks of a vessel's contour: ends, neck, inner volume.
-use std::f64::consts::PI;
-
 use super::InnerVolume;
 use super::spec::{EndSpec, NeckSpec, ShapeChoice, VolumeSpec};
 use crate::ThermalError;
@@ -63,16 +61,6 @@ pub(super) fn build_neck(spec: &NeckSpec, cylinder_m: f64) -> Result<Neck, Therm
     Ok(neck)
 }
 
-/// Inner volume of the contour, m³: cylinder and half spheroids, without the neck, whose bore the valve fills.
-fn contour_volume_m3(geometry: &Geometry) -> f64 {
-    let section_m2 = PI * (0.5 * geometry.inner_diameter_m).powi(2);
-    let dome_m = |end: &End| match end.shape {
-        EndShape::Flat => 0.0,
-        EndShape::Dome { depth_m } => 2.0 / 3.0 * depth_m,
-    };
-    section_m2 * (geometry.cylinder_length_m + dome_m(&geometry.bottom) + dome_m(&geometry.shoulder))
-}
-
 pub(super) fn volume(spec: &VolumeSpec, geometry: &Geometry) -> Result<InnerVolume, ThermalError> {
     let stated = [
         ("volume.thermal_expansion_per_k", spec.thermal_expansion_per_k, 1e-3),
@@ -86,7 +74,7 @@ pub(super) fn volume(spec: &VolumeSpec, geometry: &Geometry) -> Result<InnerVolu
         let remedy = "steel expands by 3.5e-5 per K, and a 20 L cylinder of it by about 1.5e-5 per bar";
         check::within(path, value, (0.0, most), &format!("between 0 and {most} (SI)"), remedy)?;
     }
-    let contour_m3 = contour_volume_m3(geometry);
+    let contour_m3 = geometry.contour_volume_m3();
     let volume_m3 = spec.volume_m3.unwrap_or(contour_m3);
     let remedy = "check volume, diameter and lengths";
     check::positive("volume.volume_m3", volume_m3, remedy)?;

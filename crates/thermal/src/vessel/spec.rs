@@ -162,7 +162,7 @@ pub struct MaterialSpec {
 /// Inner volume.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct VolumeSpec {
-    /// Volume at the reference state; by default the contour's (cylinder and ends, without the neck).
+    /// Volume at the reference state; by default the contour's (cylinder, ends and neck).
     pub volume_m3: Option<f64>,
     /// True: the volume is constant and no expansion may be given.
     #[serde(default)]
