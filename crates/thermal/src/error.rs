@@ -1,9 +1,46 @@
 //! Everything that can be wrong with the input of this crate, and what its numerics can refuse.
+use crate::document::Problem;
 
 /// Errors of the thermal crate. Messages are fragments that name value, bound and remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ThermalError {
+    /// A value of a specification cannot be used.
+    #[error("{problem}")]
+    Specification {
+        /// Path of the value by field names, e.g. `layer[1].thickness_m`.
+        path: String,
+        /// What is wrong with it.
+        problem: Box<Problem>,
+    },
+    /// A line of a document cannot be used.
+    #[error("{file}:{line}: {problem}")]
+    Document {
+        /// File as the caller named it.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there.
+        problem: Box<Problem>,
+    },
+    /// A name that is no built-in vessel or scenario.
+    #[error("no built-in {kind} {name}{nearest}; there are {known}")]
+    UnknownPreset {
+        /// `vessel` or `scenario`.
+        kind: &'static str,
+        /// Name as given.
+        name: String,
+        /// Suggestion, empty or `, did you mean ...?`.
+        nearest: String,
+        /// The built-in names.
+        known: String,
+    },
+    /// A specification that has no TOML form.
+    #[error("the specification cannot be written as TOML: {message}")]
+    Unwritable {
+        /// The writer's words.
+        message: String,
+    },
     /// Times and values of a series differ in number, or there are none.
     #[error("a series needs as many times as values and at least one, not {times} times and {values} values")]
     SeriesLengths {

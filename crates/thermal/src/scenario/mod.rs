@@ -2,10 +2,16 @@
 //!
 //! [`ScenarioSpec`] is the raw content of a scenario file; [`ScenarioSpec::build`] checks it (and reads the
 //! CSV files it names) and gives a [`Scenario`].
+mod build;
+mod flows;
 pub mod presets;
+mod read;
 pub mod series;
-mod spec;
+mod signal;
+pub mod spec;
 
+pub use build::PLACES;
+pub use read::{read_scenario, schema};
 pub use series::Series;
 pub use spec::ScenarioSpec;
 

@@ -1,8 +1,13 @@
 //! What a cylinder is: fluid, contour, wall, valve, surface and films, independent of what happens to it.
 //!
 //! [`VesselSpec`] is the raw content of a vessel file; [`VesselSpec::build`] checks it and gives a [`Vessel`].
-mod spec;
+mod build;
+mod contour;
+pub mod presets;
+mod read;
+pub mod spec;
 
+pub use read::{read_specification, read_vessel, schema};
 pub use spec::VesselSpec;
 
 use crate::fluid::Fluid;

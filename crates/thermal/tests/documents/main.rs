@@ -1,0 +1,55 @@
+//! Documents: units, messages, presets, schema, and that no text makes the reader panic.
+// The lint's exception for tests covers test functions, not what they share.
+#![allow(clippy::unwrap_used)]
+
+mod forms;
+mod presets;
+mod property;
+mod scenario_messages;
+mod schema;
+mod units;
+mod vessel_messages;
+
+/// The built-in vessel with one piece of its text replaced.
+fn vessel_with(from: &str, to: &str) -> String {
+    let text = cylwatch_thermal::vessel::presets::text("nitrogen-20l").unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{from:?} has to stand once in the vessel");
+    text.replace(from, to)
+}
+
+/// The message that reading the vessel gives.
+fn vessel_message(text: &str) -> String {
+    cylwatch_thermal::vessel::read_vessel(text, "vessels/x.toml").unwrap_err().to_string()
+}
+
+/// A CSV table that scenario tests name as `t.csv`.
+const TABLE: &str = "# made up\ntime_min,air_degc,wind_m_s\n0,10,1\n30,,2\n60,20,\n";
+
+fn files(name: &str) -> std::io::Result<String> {
+    match name {
+        "t.csv" => Ok(TABLE.to_owned()),
+        "word.csv" => Ok("time_s,air_degc\n0,10\n60,warm\n".to_owned()),
+        "hot.csv" => Ok("time_s,air_degc\n0,10\n60,9999\n".to_owned()),
+        "back.csv" => Ok("time_min,air_degc\n0,10\n120,11\n60,12\n".to_owned()),
+        "ragged.csv" => Ok("time_s,air_degc\n0,10\n60\n".to_owned()),
+        "timeless.csv" => Ok("t,air_degc\n0,10\n".to_owned()),
+        "empty.csv" => Ok("time_s,air_degc\n".to_owned()),
+        _ => Err(std::io::Error::from(std::io::ErrorKind::NotFound)),
+    }
+}
+
+const SCENARIO: &str = r#"name = "x"
+duration_h = 2
+[initial]
+pressure_bar = 100
+[ambient]
+air_degc = 21
+film_w_m2_k = 8
+"#;
+
+/// Reads [`SCENARIO`] with one piece of its text replaced.
+fn scenario_with(from: &str, to: &str) -> Result<cylwatch_thermal::scenario::Scenario, String> {
+    assert_eq!(SCENARIO.matches(from).count(), 1, "{from:?} has to stand once in the scenario");
+    let text = SCENARIO.replace(from, to);
+    cylwatch_thermal::scenario::read_scenario(&text, "scenarios/x.toml", &files).map_err(|e| e.to_string())
+}
