@@ -10,8 +10,8 @@
 //! square root: the value is continuous there, its derivative is not bounded. 1 K under the reference temperature
 //! it is at most 0.3 % of the conductivity of nitrogen, argon and air up to 500 bar, 20 K under it 1.4 %.
 //!
-//! Source: Olchowy and Sengers, Int. J. Thermophys. 10 (1989) 417, doi 10.1007/BF01133538, in the notation of
-//! Lemmon and Jacobsen 2004, eqs. 7 to 10.
+//! Source: Olchowy and Sengers, Int. J. Thermophys. 10 (1989) 417, doi 10.1007/BF01133538, as simplified by
+//! Lemmon and Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3.
 use std::f64::consts::PI;
 
 use super::TransportState;

@@ -2,23 +2,23 @@
 //!
 //! With `tau = Tc/T`, `delta = rho/rhoc`, `T* = T k/epsilon`:
 //!
-//! - `eta_0 = 0.0266958 sqrt(M T) / (sigma² Omega)`, µPa s, `ln Omega = sum_i b_i (ln T*)^i` (eqs. 2, 3);
-//! - `lambda_0 = N_1 eta_0 + sum_i N_i tau^(t_i)`, mW/(m K) (eq. 5);
+//! - `eta_0 = 0.0266958 sqrt(M T) / (sigma² Omega)`, µPa s, `ln Omega = sum_i b_i (ln T*)^i`;
+//! - `lambda_0 = N_1 eta_0 + sum_i N_i tau^(t_i)`, mW/(m K);
 //! - both residuals `sum_i N_i tau^(t_i) delta^(d_i) exp(-gamma_i delta^(l_i))`, `gamma_i = 1` if `l_i > 0`
-//!   else 0 (eqs. 4, 6).
+//!   else 0.
 //!
 //! # Validity
 //!
-//! Triple point to 2000 K and 2200 MPa for nitrogen, similar for argon and air; the source states 0.5 to 2 % in
-//! the viscosity and 1 to 2 % in the conductivity of the gas up to about 100 MPa, 5 % outside.
+//! All liquid and vapour states. The source states an uncertainty generally within 2 % for nitrogen and argon
+//! and within 5 % for air, more in the critical region.
 //!
 //! # References
 //!
-//! Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3, tables I to V.
+//! Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3.
 use super::OlchowySengers;
 use crate::fluid::Real;
 
-/// Coefficients `b_i` of the collision integral, shared by the three fluids (table II).
+/// Coefficients `b_i` of the collision integral, shared by the three fluids.
 const COLLISION: [f64; 5] = [0.431, -0.4623, 0.08406, 0.005341, -0.00331];
 /// Chapman-Enskog constant, µPa s nm² / sqrt(K kg/kmol).
 const CHAPMAN_ENSKOG: f64 = 0.026_695_8;

@@ -10,12 +10,12 @@
 //! Conductivity, W/(m K), with `rho` in kg/m³, `s = T^(1/3)`:
 //! `lambda_0 = 2.7870034e-3 T^0.7034007057 exp(sum_i C_i T^(-i))`,
 //! `lambda_r = (n_0 + n_1 T + n_2 s + n_3 s²) rho + (n_4 + n_5 s + n_6 s²) rho³`
-//! `  + (n_7 + n_8 s + n_9 s² + n_10/T) rho² ln(rho/68)` (eqs. 3, 17).
+//! `  + (n_7 + n_8 s + n_9 s² + n_10/T) rho² ln(rho/68)` (eqs. 3 and 17 there).
 //!
 //! # Validity
 //!
-//! Viscosity 3.5 to 1500 K, the dense part measured up to 300 K, about 2 to 5 %. Conductivity 2 K to 1500 K,
-//! dilute part about 1 %.
+//! Viscosity from 3.5 K on, up to 1500 K after the title of the source; the dense part knows temperature only up
+//! to 300 K. Conductivity from 3.5 K on as given here. Tested from 5.3 to 400 K and to 500 bar.
 //!
 //! # References
 //!

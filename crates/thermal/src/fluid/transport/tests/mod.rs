@@ -52,6 +52,33 @@ mod published {
         assert!(deviations(named("nitrogen"), &coolprop::NITROGEN).iter().all(|d| *d < 1e-6));
     }
 
+    /// The project's table of nitrogen, 150 to 500 K and 1 to 500 bar, where it lies beside the repository.
+    #[test]
+    fn nitrogen_agrees_with_the_shared_table() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/nitrogen_reference.csv");
+        let Ok(mut reader) = csv::Reader::from_path(path) else {
+            println!("skipped: {path} is absent");
+            return;
+        };
+        let fluid = named("nitrogen");
+        let mut rows = 0;
+        for record in reader.deserialize::<std::collections::HashMap<String, f64>>() {
+            let record = record.unwrap();
+            let (rho, t) = (record["density_kg_m3"], record["temperature_k"]);
+            let viscosity = fluid.viscosity_pa_s(rho, t);
+            assert!((viscosity / record["viscosity_pa_s"] - 1.0).abs() < 1e-6, "{t} K, {rho} kg/m3");
+            if Some(t) >= fluid.reference_temperature_k() {
+                let conductivity = fluid.background_conductivity_w_m_k(rho, t);
+                assert!(
+                    (conductivity / record["conductivity_w_m_k"] - 1.0).abs() < 1e-6,
+                    "{t} K, {rho} kg/m3"
+                );
+            }
+            rows += 1;
+        }
+        assert!(rows > 80);
+    }
+
     #[test]
     fn argon_agrees_with_coolprop() {
         assert!(deviations(named("argon"), &coolprop::ARGON).iter().all(|d| *d < 1e-6));
