@@ -8,7 +8,7 @@
 //! digits CoolProp 8.0.0 distributes (TRANSPORT section of its fluid files).
 use super::{LemmonJacobsenData, OlchowySengers, Term};
 
-const fn term(n: f64, t: f64, d: i32, l: i32) -> Term {
+const fn term(n: f64, t: f64, d: u32, l: usize) -> Term {
     Term { n, t, d, l }
 }
 

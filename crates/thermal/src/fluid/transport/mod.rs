@@ -12,7 +12,6 @@
 //!
 //! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
 //! CoolProp 8.0.0; each module names its range of validity and the deviations.
-//!
 mod critical;
 mod data;
 mod helium;
