@@ -1,0 +1,2 @@
+//! Tests of the program and of what it writes, by kind.
+mod report;
