@@ -1,5 +1,10 @@
 //! Figures and tables as files.
+use cylwatch::report::Provenance;
 use cylwatch::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+
+fn provenance() -> Provenance {
+    Provenance { command: "cylwatch simulate 'a & b' --plot x.svg".into(), inputs: vec![], seed: None }
+}
 
 fn example() -> Figure {
     let x: Vec<f64> = (0..=600).map(|k| f64::from(k) * 18.0).collect();
@@ -29,7 +34,7 @@ fn example() -> Figure {
 
 #[test]
 fn a_figure_becomes_a_png_of_twice_its_size() {
-    let bytes = example().to_png().unwrap();
+    let bytes = example().to_png(&provenance()).unwrap();
     assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
     let width = u32::from_be_bytes(bytes[16..20].try_into().unwrap());
     assert_eq!(width, 2 * style::WIDTH as u32);
@@ -40,7 +45,7 @@ fn a_figure_becomes_a_png_of_twice_its_size() {
 
 #[test]
 fn a_figure_becomes_an_svg_with_every_name_and_unit() {
-    let text = example().to_svg().unwrap();
+    let text = example().to_svg(&provenance()).unwrap();
     assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
     for words in ["temperature in °C", "pressure in bar", "time in min", "limit 160 bar", "gas, mean", "leak opens"] {
         assert!(text.contains(words), "{words} is missing");

@@ -1,7 +1,7 @@
 //! A figure as SVG text or PNG bytes.
 use super::canvas::{Canvas, FINE, FONT};
 use super::{Figure, panel, style};
-use crate::report::ReportError;
+use crate::report::{Provenance, ReportError};
 use plotters::backend::{BitMapBackend, SVGBackend};
 use plotters::drawing::IntoDrawingArea;
 use plotters::style::{FontStyle, register_font};
@@ -37,7 +37,7 @@ impl Figure {
     ///
     /// # Errors
     /// The embedded font cannot be used, or the drawing library fails.
-    pub fn to_svg(&self) -> Result<String, ReportError> {
+    pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
         fonts()?;
         let size = self.fine_size();
         let mut text = String::new();
@@ -49,14 +49,15 @@ impl Figure {
         // The fine grid stays in the view box; the picture opens at its natural size.
         let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
         let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
-        Ok(text.replacen(&fine, &shown, 1))
+        let about = format!(">\n<title>{}</title>\n<desc>{}</desc>", escaped(&self.title), escaped(&provenance.lines()));
+        Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
     }
 
     /// The figure as the bytes of a PNG file.
     ///
     /// # Errors
     /// The embedded font cannot be used, or the drawing library or the encoder fails.
-    pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
+    pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
         fonts()?;
         let over = FINE as usize / PNG_PER_UNIT;
         let (width, height) = self.fine_size();
@@ -67,8 +68,13 @@ impl Figure {
             area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
         }
         let (columns, rows) = (width as usize / over, height as usize / over);
-        encode(&shrink(&fine, width as usize, (columns, rows), over), columns as u32, rows as u32)
+        let pixels = shrink(&fine, width as usize, (columns, rows), over);
+        encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
     }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// Mean of every square of `over` by `over` pixels: what makes edges smooth.
@@ -88,12 +94,13 @@ fn shrink(fine: &[u8], width: usize, (columns, rows): (usize, usize), over: usiz
     out
 }
 
-fn encode(pixels: &[u8], width: u32, height: u32) -> Result<Vec<u8>, ReportError> {
+fn encode(pixels: &[u8], (width, height): (u32, u32), description: &str) -> Result<Vec<u8>, ReportError> {
     let failed = |error: png::EncodingError| ReportError::Drawing { reason: error.to_string() };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.add_itxt_chunk("Description".into(), description.into()).map_err(failed)?;
     let mut writer = encoder.write_header().map_err(failed)?;
     writer.write_image_data(pixels).map_err(failed)?;
     writer.finish().map_err(failed)?;
