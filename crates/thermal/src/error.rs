@@ -1,4 +1,5 @@
 //! Everything that can be wrong with the input of this crate, and what its numerics can refuse.
+use crate::document::Problem;
 
 /// Errors of the thermal crate. Messages are fragments that name value, bound and remedy.
 #[derive(Debug, thiserror::Error)]
@@ -35,5 +36,35 @@ pub enum ThermalError {
         row: usize,
         /// Time, s.
         time_s: f64,
+    },
+    /// A value of a specification cannot be used.
+    #[error("{problem}")]
+    Specification {
+        /// Path of the value by field names, e.g. `layer[1].thickness_m`.
+        path: String,
+        /// What is wrong with it.
+        problem: Problem,
+    },
+    /// A line of a document cannot be used.
+    #[error("{file}:{line}: {problem}")]
+    Document {
+        /// File as the caller named it.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there.
+        problem: Problem,
+    },
+    /// A name that is no built-in vessel or scenario.
+    #[error("no built-in {kind} {name}{nearest}; there are {known}")]
+    UnknownPreset {
+        /// `vessel` or `scenario`.
+        kind: &'static str,
+        /// Name as given.
+        name: String,
+        /// Suggestion, empty or `, did you mean ...?`.
+        nearest: String,
+        /// The built-in names.
+        known: String,
     },
 }

@@ -1,9 +1,14 @@
 //! What a cylinder is: fluid, contour, wall, valve, surface and films, independent of what happens to it.
 //!
 //! [`VesselSpec`] is the raw content of a vessel file; [`VesselSpec::build`] checks it and gives a [`Vessel`].
-mod spec;
+mod build;
+pub mod presets;
+pub mod spec;
 
 pub use spec::VesselSpec;
+
+use crate::ThermalError;
+use crate::document;
 
 use crate::fluid::Fluid;
 use crate::wall::geometry::Geometry;
@@ -109,4 +114,18 @@ pub struct Stratification {
     pub exchange_length_diameters: f64,
     /// Core mixing `c` in `D_t = c w* D` (uncertain, 0 to 0.2).
     pub core_mixing: f64,
+}
+
+/// Reads a vessel file; `source` is its name in messages.
+///
+/// # Errors
+/// [`ThermalError::Document`] with file, line, value and remedy for whatever is wrong with the text.
+pub fn read_vessel(text: &str, source: &str) -> Result<Vessel, ThermalError> {
+    let (specification, places) = document::read::<VesselSpec>(text, source)?;
+    specification.build().map_err(|error| places.locate(error))
+}
+
+/// JSON schema of vessel files.
+pub fn schema() -> serde_json::Value {
+    document::schema::of::<VesselSpec>("cylwatch vessel")
 }

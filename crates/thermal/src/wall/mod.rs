@@ -1,5 +1,6 @@
 //! The wall: contour, mesh, materials, conduction.
 pub mod conduction;
 pub mod geometry;
+pub mod library;
 pub mod material;
 pub mod mesh;

@@ -1,1 +1,0 @@
-//! Reading of TOML documents whose keys carry units.

@@ -1,0 +1,41 @@
+//! Documents: units, messages, presets, schema, and that no text makes the reader panic.
+mod vessel_messages;
+mod scenario_messages;
+
+/// The built-in vessel with one piece of its text replaced.
+fn vessel_with(from: &str, to: &str) -> String {
+    let text = cylwatch_thermal::vessel::presets::text("nitrogen-20l").unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{from:?} has to stand once in the vessel");
+    text.replace(from, to)
+}
+
+/// The message that reading the vessel gives.
+fn vessel_message(text: &str) -> String {
+    cylwatch_thermal::vessel::read_vessel(text, "vessels/x.toml").unwrap_err().to_string()
+}
+
+/// A CSV table that scenario tests name as `t.csv`.
+const TABLE: &str = "# made up\ntime_min,air_degc,wind_m_s\n0,10,1\n30,,2\n60,20,\n";
+
+fn files(name: &str) -> std::io::Result<String> {
+    match name {
+        "t.csv" => Ok(TABLE.to_owned()),
+        _ => Err(std::io::Error::from(std::io::ErrorKind::NotFound)),
+    }
+}
+
+const SCENARIO: &str = r#"name = "x"
+duration_h = 2
+[initial]
+pressure_bar = 100
+[ambient]
+air_degc = 21
+film_w_m2_k = 8
+"#;
+
+/// Reads [`SCENARIO`] with one piece of its text replaced.
+fn scenario_with(from: &str, to: &str) -> Result<cylwatch_thermal::scenario::Scenario, String> {
+    assert_eq!(SCENARIO.matches(from).count(), 1, "{from:?} has to stand once in the scenario");
+    let text = SCENARIO.replace(from, to);
+    cylwatch_thermal::scenario::read_scenario(&text, "scenarios/x.toml", &files).map_err(|e| e.to_string())
+}
