@@ -76,7 +76,7 @@ pub fn event_name(event: &Event) -> String {
 
 /// Title of a run: what happened to what.
 pub fn title(run: &Trajectory) -> String {
-    format!("{} on {}", run.scenario.name, run.vessel.name)
+    format!("{} \u{2013} {}", run.scenario.name, run.vessel.name).replace("degC", "°C")
 }
 
 /// Temperatures above, pressure below, gas mass under both where it changes.
