@@ -11,7 +11,7 @@ pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
     /// Say nothing but errors.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, display_order = 900)]
     pub quiet: bool,
 }
 
@@ -89,8 +89,9 @@ pub struct SimulateArguments {
 }
 
 const SIMULATE_EXAMPLES: &str = "\
-Columns: time_s, ambient_degc, gas_mean_degc, gas_<k>_degc (k = 1 at the bottom), wall_<name>_degc, shoulder_degc,
-valve_degc, pressure_bar (absolute), mass_kg, outflow_g_h, heat_to_gas_w, measured_<sensor>_degc.
+Columns: time_s, ambient_degc, gas_mean_degc, gas_<k>_degc (k = 1 at the bottom),
+wall_<name>_degc, shoulder_degc, valve_degc, pressure_bar (absolute), mass_kg, outflow_g_h,
+heat_to_gas_w, measured_<sensor>_degc.
 
 Examples:
   cylwatch simulate --list

@@ -32,7 +32,7 @@ struct Options {
 /// Simulates and writes, or lists the built-in vessels and scenarios.
 pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<()> {
     if arguments.list {
-        return Target::Stdout.write(list().as_bytes());
+        return Target::Stdout.write(list()?.as_bytes());
     }
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
@@ -108,15 +108,14 @@ fn draw(figure: &Figure, kind: Picture, provenance: &Provenance) -> anyhow::Resu
     })
 }
 
-/// The built-in vessels and scenarios with the first words of their files.
-fn list() -> String {
-    let about = |text: Option<&str>| {
-        let first = text.and_then(|text| text.lines().find(|line| line.starts_with('#')));
-        first.map_or(String::new(), |line| line.trim_start_matches(['#', ' ']).to_owned())
-    };
-    let vessels = vessel::presets::names().map(|name| ("vessel", name, about(vessel::presets::text(name))));
-    let scenarios = scenario::presets::names().map(|name| ("scenario", name, about(scenario::presets::text(name))));
-    let rows: Vec<Vec<String>> =
-        vessels.chain(scenarios).map(|(kind, name, about)| vec![kind.into(), name.into(), about]).collect();
-    aligned(&["kind", "name", "what"], &rows)
+/// The built-in vessels and scenarios with the names that their files give them.
+fn list() -> anyhow::Result<String> {
+    let mut rows = Vec::new();
+    for name in vessel::presets::names() {
+        rows.push(vec!["vessel".to_owned(), name.to_owned(), vessel::presets::load(name)?.name]);
+    }
+    for name in scenario::presets::names() {
+        rows.push(vec!["scenario".to_owned(), name.to_owned(), scenario::presets::load(name)?.name]);
+    }
+    Ok(aligned(&["kind", "name", "what"], &rows))
 }

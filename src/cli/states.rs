@@ -44,11 +44,6 @@ impl Quantity {
 }
 
 impl GivenQuantities {
-    /// Whether none was given.
-    pub fn is_empty(&self) -> bool {
-        self.given.is_empty()
-    }
-
     /// The state that exactly two quantities fix.
     pub fn state(&self) -> anyhow::Result<Given> {
         let names: Vec<&str> = self.given.iter().map(|q| q.name.as_str()).collect();

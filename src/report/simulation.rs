@@ -2,6 +2,7 @@
 use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
 use super::table::{Table, number};
 use super::{Provenance, aligned};
+use crate::thermal::scenario::SurfaceSensor;
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use serde_json::{Value, json};
 
@@ -45,18 +46,19 @@ pub fn table(run: &Trajectory) -> Table {
     table.push("mass_kg", run.mass_kg.iter().copied());
     table.push("outflow_g_h", run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
     table.push("heat_to_gas_w", run.heat_to_gas_w.iter().copied());
-    for (name, reading_k) in readings(run) {
-        table.push(format!("measured_{name}_degc"), celsius(&reading_k));
+    for (sensor, reading_k) in readings(run) {
+        table.push(format!("measured_{}_degc", sensor.name), celsius(&reading_k));
     }
     table
 }
 
 /// What the scenario's sensors read, K: `T_surface + coupling (T_air - T_surface)`.
-pub fn readings(run: &Trajectory) -> Vec<(String, Vec<f64>)> {
-    let reading = |sensor: &crate::thermal::scenario::SurfaceSensor| {
+pub fn readings(run: &Trajectory) -> Vec<(&SurfaceSensor, Vec<f64>)> {
+    let reading = |sensor| {
+        let sensor: &SurfaceSensor = sensor;
         let surface = run.surface_k(&sensor.place)?;
         let values = surface.iter().zip(&run.ambient_k).map(|(t, air)| t + sensor.air_coupling * (air - t));
-        Some((sensor.name.clone(), values.collect()))
+        Some((sensor, values.collect()))
     };
     run.scenario.sensors.iter().filter_map(reading).collect()
 }
@@ -76,7 +78,7 @@ pub fn event_name(event: &Event) -> String {
 
 /// Title of a run: what happened to what.
 pub fn title(run: &Trajectory) -> String {
-    format!("{} \u{2013} {}", run.scenario.name, run.vessel.name).replace("degC", "°C")
+    format!("{} \u{2013} {}", run.scenario.name, run.vessel.name).replace("degC", "°C").replace(" -", " \u{2212}")
 }
 
 /// Temperatures above, pressure below, gas mass under both where it changes.
@@ -115,8 +117,9 @@ fn temperatures(run: &Trajectory) -> Vec<Item> {
             items.push(Item::line(name, time, celsius(&surface), stroke));
         }
     }
-    for ((name, reading_k), stroke) in readings(run).iter().zip(style::SENSORS) {
-        items.push(Item::line(format!("sensor {name}"), time, celsius(reading_k), stroke));
+    for (number, (sensor, reading_k)) in readings(run).into_iter().enumerate() {
+        let stroke = style::sensor(&sensor.place, number);
+        items.push(Item::line(format!("sensor {}", sensor.name), time, celsius(&reading_k), stroke));
     }
     let cells = run.gas_cells_k.first().map_or(0, Vec::len);
     if cells > 1 {

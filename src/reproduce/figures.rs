@@ -38,6 +38,10 @@ pub fn blowdown(study: &Blowdown) -> Figure {
         stroke: style::MEASURED,
     });
     let mut gas_items = band("measured, coldest\nto warmest", &measured.gas_low_k, &measured.gas_high_k);
+    if let Some(Item::Band { x, low, high, .. }) = gas_items.first() {
+        let middle = low.iter().zip(high).map(|(low, high)| 0.5 * (low + high));
+        gas_items.push(Item::line("its middle", &x.clone(), middle.collect::<Vec<_>>(), style::MIDDLE));
+    }
     gas_items.extend(models(study, "mean, ", &gas));
     let mut wall_items = band("measured, lowest\nto highest", &measured.wall_low_k, &measured.wall_high_k);
     wall_items.extend(models(study, "mid height, ", &wall));

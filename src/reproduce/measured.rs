@@ -43,7 +43,7 @@ impl Measured {
 
 impl Curve {
     fn of(text: &str) -> Self {
-        let numbers = |line: &str| {
+        let numbers = |line: &str| -> Option<(f64, f64)> {
             let (time, value) = line.split_once(',')?;
             Some((time.trim().parse().ok()?, value.trim().parse().ok()?))
         };

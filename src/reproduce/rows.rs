@@ -69,9 +69,9 @@ impl Row {
     }
 }
 
-/// Five digits, an exponent only for the very small.
+/// Five digits, or two and an exponent for the very small.
 fn short(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 { format!("{value:.1e}") } else { crate::report::number(value, 5) }
+    if value != 0.0 && value.abs() < 1e-4 { format!("{value:.1e}") } else { crate::report::number(value, 5) }
 }
 
 /// The rows as an aligned table.

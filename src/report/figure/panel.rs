@@ -1,6 +1,6 @@
 //! Draws the panels of a figure: axes, curves, limits, marks, legend.
 use super::canvas::{Canvas, Side, Text};
-use super::path::{Point, thin, unbroken};
+use super::path::{Point, simplified, unbroken};
 use super::style::{self, Rgb, Stroke};
 use super::ticks::{Ticks, label, ticks, time_unit};
 use super::{Figure, Horizontal, Item, Mark, Panel};
@@ -81,7 +81,7 @@ fn abscissa(figure: &Figure) -> Abscissa {
             Abscissa { scale, unit: unit.seconds, ticks, name: format!("time in {}", unit.symbol) }
         }
         Horizontal::Quantity(name) => {
-            let ticks = ticks(values.0, values.1, 8, &[1.0, 2.0, 5.0, 10.0]);
+            let ticks = ticks(values.0, values.1, 8, &[]);
             Abscissa { scale, unit: 1.0, ticks, name: name.clone() }
         }
     }
@@ -138,7 +138,7 @@ fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -
         canvas.line(&[(at, bottom), (at, bottom + 4.0)], &axis)?;
     }
     let wanted = ((bottom - top) / 42.0) as usize;
-    let ticks = ticks(frame.y.values.0, frame.y.values.1, wanted.max(2), &[1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
+    let ticks = ticks(frame.y.values.0, frame.y.values.1, wanted.max(2), &[]);
     let number = Text { side: Side::Right, ..PLAIN };
     for &value in &ticks.values {
         let at = frame.y.at(value);
@@ -170,7 +170,7 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
     match item {
         Item::Line { x, y, stroke, .. } => {
             for piece in unbroken(x.iter().zip(y).map(place)) {
-                canvas.line(&thin(&piece, 0.5), stroke)?;
+                canvas.line(&simplified(&piece), stroke)?;
             }
         }
         Item::Points { x, y, stroke, .. } => {

@@ -21,7 +21,7 @@ pub(super) fn unbroken(points: impl Iterator<Item = Point>) -> Vec<Vec<Point>> {
 
 /// Keeps of every column of width `column` the first, lowest, highest and last point: the drawn line is the same, and
 /// a day at one sample a second does not become 86 400 corners.
-pub(super) fn thin(points: &[Point], column: f64) -> Vec<Point> {
+fn thin(points: &[Point], column: f64) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     let mut start = 0;
     while start < points.len() {
@@ -43,6 +43,41 @@ pub(super) fn thin(points: &[Point], column: f64) -> Vec<Point> {
         start += count;
     }
     out
+}
+
+/// How far a drawn curve may pass from its points, in figure units: less than a printer's dot.
+const TOLERANCE: f64 = 0.12;
+
+/// The curve with as few corners as the eye allows: many short pieces would each be rounded to pixels and wobble.
+pub(super) fn simplified(points: &[Point]) -> Vec<Point> {
+    let points = thin(points, 0.5);
+    let mut keep = vec![false; points.len()];
+    let mut stretches = vec![(0, points.len().saturating_sub(1))];
+    // Douglas and Peucker (1973): keep the farthest point of a stretch while it is too far from its chord.
+    while let Some((from, to)) = stretches.pop() {
+        if points.is_empty() {
+            break;
+        }
+        (keep[from], keep[to]) = (true, true);
+        let farthest = (from + 1..to)
+            .map(|k| (distance(points[k], points[from], points[to]), k))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(distance, _)| *distance > TOLERANCE);
+        if let Some((_, k)) = farthest {
+            stretches.extend([(from, k), (k, to)]);
+        }
+    }
+    points.into_iter().zip(keep).filter_map(|(point, keep)| keep.then_some(point)).collect()
+}
+
+/// Distance of `p` from the line through `a` and `b`.
+fn distance(p: Point, a: Point, b: Point) -> f64 {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let length = dx.hypot(dy);
+    if length == 0.0 {
+        return (p.0 - a.0).hypot(p.1 - a.1);
+    }
+    ((p.0 - a.0) * dy - (p.1 - a.1) * dx).abs() / length
 }
 
 /// Cuts a polyline into the drawn stretches of a dash pattern; an empty pattern leaves it whole.
@@ -98,6 +133,15 @@ mod tests {
         assert!(thinned.len() <= 4);
         assert_eq!((thinned[0], thinned[thinned.len() - 1]), (spike[0], spike[999]));
         assert!(thinned.iter().any(|p| p.1 == 9.0));
+    }
+
+    #[test]
+    fn a_straight_line_keeps_two_corners_and_a_step_keeps_four() {
+        let line: Vec<Point> = (0..500).map(|k| (f64::from(k), 2.0 * f64::from(k))).collect();
+        assert_eq!(simplified(&line), vec![line[0], line[499]]);
+        let step: Vec<Point> = (0..500).map(|k| (f64::from(k), if k < 250 { 0.0 } else { 90.0 })).collect();
+        assert_eq!(simplified(&step).len(), 4);
+        assert!(simplified(&[]).is_empty());
     }
 
     #[test]

@@ -70,20 +70,28 @@ pub const LIMIT: Stroke = stroke(Rgb::VERMILLION, 1.3, &[6.0, 3.0]);
 /// An event.
 pub const EVENT: Stroke = stroke(Rgb::GREY, 1.0, &[2.0, 2.0]);
 /// First curve of a comparison.
-pub const FIRST: Stroke = stroke(Rgb::VERMILLION, 1.8, &[7.0, 3.0]);
+pub const FIRST: Stroke = stroke(Rgb::ORANGE, 2.2, &[7.0, 3.0]);
 /// Second curve of a comparison.
 pub const SECOND: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
 /// Third curve of a comparison.
 pub const THIRD: Stroke = stroke(Rgb::GREEN, 1.8, &[2.0, 2.2]);
+/// Middle of a measured band.
+pub const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
 /// Measured points.
 pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
-/// Strokes for sensors, in the order in which a scenario lists them.
-pub const SENSORS: [Stroke; 3] = [
-    stroke(Rgb::ORANGE, 2.0, &[2.0, 2.0]),
-    stroke(Rgb::GREEN, 1.4, &[10.0, 3.0]),
-    stroke(Rgb::PURPLE, 1.4, &[6.0, 2.0, 1.5, 2.0, 1.5, 2.0]),
-];
+/// Stroke of a sensor: thin, in the colour of the place where it sits, with a dash of its own by its number.
+pub fn sensor(place: &str, number: usize) -> Stroke {
+    const DASHES: [&[f64]; 3] = [&[1.2, 3.2], &[12.0, 2.5], &[6.0, 2.0, 1.2, 2.0, 1.2, 2.0]];
+    let color = match place {
+        "shoulder" => SHOULDER.color,
+        "valve" => VALVE.color,
+        "middle" => WALL_MIDDLE.color,
+        "bottom" => WALL_BOTTOM.color,
+        _ => Rgb::ORANGE,
+    };
+    Stroke { color, width: 1.3, dash: DASHES[number % DASHES.len()] }
+}
 
 /// Width of a figure; an SVG opens at this many pixels.
 pub const WIDTH: f64 = 860.0;

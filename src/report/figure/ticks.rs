@@ -9,8 +9,8 @@ pub(super) struct Ticks {
     pub step: f64,
 }
 
-/// Multiples of a round step inside `[low, high]`, at most `wanted + 1` of them. `steps` are the round numbers of one
-/// decade, e.g. 1, 2, 5; where none fits, its multiples by powers of ten are tried.
+/// Multiples of a round step inside `[low, high]`, about `wanted` of them. `steps` are the round numbers of the axis;
+/// far from all of them, 1, 2 and 5 times a power of ten serve.
 pub(super) fn ticks(low: f64, high: f64, wanted: usize, steps: &[f64]) -> Ticks {
     let span = high - low;
     let step = round_step(span / wanted as f64, steps);
@@ -19,23 +19,14 @@ pub(super) fn ticks(low: f64, high: f64, wanted: usize, steps: &[f64]) -> Ticks 
     Ticks { values: (first..=last).map(|k| k as f64 * step).collect(), step }
 }
 
-fn round_step(least: f64, steps: &[f64]) -> f64 {
-    let decimal = [1.0, 2.0, 5.0];
-    if let Some(step) = steps.iter().copied().find(|&step| step >= least * (1.0 - 1e-9)) {
-        // A step of the list is only right near its own size.
-        if steps[0] <= least * 10.0 {
-            return step;
-        }
-    }
-    let mut decade = 10f64.powf(least.log10().floor());
-    loop {
-        for round in decimal {
-            if round * decade >= least * (1.0 - 1e-9) {
-                return round * decade;
-            }
-        }
-        decade *= 10.0;
-    }
+fn round_step(ideal: f64, steps: &[f64]) -> f64 {
+    let decade = 10f64.powf(ideal.log10().floor());
+    let decimal = [1.0, 2.0, 5.0, 10.0].map(|round| round * decade);
+    let covered = steps.first().is_some_and(|first| *first <= 1.5 * ideal)
+        && steps.last().is_some_and(|last| *last >= ideal / 1.5);
+    let candidates = if covered { steps } else { &decimal };
+    let distance = |step: &f64| (step / ideal).ln().abs();
+    candidates.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(ideal)
 }
 
 /// A number with as many decimals as the step of its axis needs, with a real minus sign.
@@ -60,12 +51,13 @@ pub(super) struct TimeUnit {
 
 /// Seconds up to three minutes, minutes up to three hours, hours up to three days, then days.
 pub(super) fn time_unit(duration_s: f64) -> TimeUnit {
-    const CLOCK: &[f64] = &[1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0];
+    const SECONDS: &[f64] = &[1.0, 2.0, 5.0, 10.0, 20.0, 30.0];
+    const MINUTES: &[f64] = &[1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
     const HOURS: &[f64] = &[0.5, 1.0, 2.0, 3.0, 6.0, 12.0, 24.0];
     const DAYS: &[f64] = &[0.5, 1.0, 2.0, 5.0, 7.0, 14.0, 28.0];
     match duration_s {
-        d if d <= 180.0 => TimeUnit { symbol: "s", seconds: 1.0, steps: CLOCK },
-        d if d <= 3.0 * 3600.0 => TimeUnit { symbol: "min", seconds: 60.0, steps: CLOCK },
+        d if d <= 180.0 => TimeUnit { symbol: "s", seconds: 1.0, steps: SECONDS },
+        d if d <= 3.0 * 3600.0 => TimeUnit { symbol: "min", seconds: 60.0, steps: MINUTES },
         d if d <= 3.0 * 86400.0 => TimeUnit { symbol: "h", seconds: 3600.0, steps: HOURS },
         _ => TimeUnit { symbol: "d", seconds: 86400.0, steps: DAYS },
     }
@@ -75,13 +67,14 @@ pub(super) fn time_unit(duration_s: f64) -> TimeUnit {
 mod tests {
     use super::*;
 
-    const DECIMAL: &[f64] = &[1.0, 2.0, 5.0];
+    const DECIMAL: &[f64] = &[];
 
     #[test]
     fn ticks_are_round_and_inside_the_range() {
         assert_eq!(ticks(-27.0, 23.0, 6, DECIMAL).values, vec![-20.0, -10.0, 0.0, 10.0, 20.0]);
         assert_eq!(ticks(0.0, 0.5, 5, DECIMAL).values.len(), 6);
-        assert_eq!(ticks(0.0, 5.0, 6, time_unit(18000.0).steps).step, 1.0);
+        assert_eq!(ticks(0.0, 5.0, 8, time_unit(18000.0).steps).step, 0.5);
+        assert_eq!(ticks(0.0, 100.0, 8, time_unit(100.0).steps).step, 10.0);
         assert_eq!(ticks(0.0, 1.0e7, 5, DECIMAL).step, 2.0e6);
         assert_eq!(ticks(0.0, 0.01, 5, time_unit(0.01).steps).step, 0.002);
     }
