@@ -5,6 +5,42 @@ use crate::document::Problem;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ThermalError {
+    /// A value of a specification cannot be used.
+    #[error("{problem}")]
+    Specification {
+        /// Path of the value by field names, e.g. `layer[1].thickness_m`.
+        path: String,
+        /// What is wrong with it.
+        problem: Box<Problem>,
+    },
+    /// A line of a document cannot be used.
+    #[error("{file}:{line}: {problem}")]
+    Document {
+        /// File as the caller named it.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there.
+        problem: Box<Problem>,
+    },
+    /// A name that is no built-in vessel or scenario.
+    #[error("no built-in {kind} {name}{nearest}; there are {known}")]
+    UnknownPreset {
+        /// `vessel` or `scenario`.
+        kind: &'static str,
+        /// Name as given.
+        name: String,
+        /// Suggestion, empty or `, did you mean ...?`.
+        nearest: String,
+        /// The built-in names.
+        known: String,
+    },
+    /// A specification that has no TOML form.
+    #[error("the specification cannot be written as TOML: {message}")]
+    Unwritable {
+        /// The writer's words.
+        message: String,
+    },
     /// Times and values of a series differ in number, or there are none.
     #[error("a series needs as many times as values and at least one, not {times} times and {values} values")]
     SeriesLengths {
@@ -37,34 +73,78 @@ pub enum ThermalError {
         /// Time, s.
         time_s: f64,
     },
-    /// A value of a specification cannot be used.
-    #[error("{problem}")]
-    Specification {
-        /// Path of the value by field names, e.g. `layer[1].thickness_m`.
-        path: String,
-        /// What is wrong with it.
-        problem: Problem,
+    // --- flow and simulation ---
+    /// The throat of an orifice has no single-phase state.
+    #[error(
+        "no critical flow of {fluid} from {pressure_pa:.0} Pa and {temperature_k:.2} K: \
+         the throat leaves the fluid's domain; warm the gas or end the flow earlier"
+    )]
+    NoThroat {
+        /// Stagnation pressure, Pa.
+        pressure_pa: f64,
+        /// Stagnation temperature, K.
+        temperature_k: f64,
+        /// Fluid.
+        fluid: String,
     },
-    /// A line of a document cannot be used.
-    #[error("{file}:{line}: {problem}")]
-    Document {
-        /// File as the caller named it.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// What is wrong there.
-        problem: Problem,
+    /// No temperature and volume belong to the gas's mass and energy.
+    #[error("no gas state has mass {mass_kg} kg and internal energy {energy_j} J: the vessel is empty or the step was too long")]
+    NoGasState {
+        /// Gas mass, kg.
+        mass_kg: f64,
+        /// Internal energy, J.
+        energy_j: f64,
     },
-    /// A name that is no built-in vessel or scenario.
-    #[error("no built-in {kind} {name}{nearest}; there are {known}")]
-    UnknownPreset {
-        /// `vessel` or `scenario`.
-        kind: &'static str,
-        /// Name as given.
-        name: String,
-        /// Suggestion, empty or `, did you mean ...?`.
-        nearest: String,
-        /// The built-in names.
-        known: String,
+    /// A setting of the simulation is out of range.
+    #[error("setting {setting} = {value} must lie between {low} and {high}")]
+    Setting {
+        /// Name.
+        setting: &'static str,
+        /// Value given.
+        value: f64,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
     },
+    /// The solver refused the problem.
+    #[error("the solver cannot start: {reason}")]
+    SolverSetup {
+        /// What it said.
+        reason: String,
+    },
+    /// The solver cannot go on.
+    #[error(
+        "the integration stops at {time_s:.3} s (gas {gas_k:.2} K, {pressure_pa:.0} Pa): {reason}; \
+         try a larger relative tolerance or a scenario with milder rates"
+    )]
+    Integration {
+        /// Time, s.
+        time_s: f64,
+        /// Mean gas temperature, K.
+        gas_k: f64,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// What the solver said.
+        reason: String,
+    },
+    /// Something else went wrong at a time of a run.
+    #[error("at {time_s:.3} s of the scenario: {source}")]
+    AtTime {
+        /// Time, s.
+        time_s: f64,
+        /// What went wrong.
+        #[source]
+        source: Box<ThermalError>,
+    },
+}
+
+impl ThermalError {
+    /// The same error with the time of the run at which it happened.
+    pub fn at_time(self, time_s: f64) -> Self {
+        match self {
+            Self::AtTime { .. } => self,
+            source => Self::AtTime { time_s, source: Box::new(source) },
+        }
+    }
 }

@@ -1,7 +1,6 @@
 //! Bounds of specification values, reported with the path of the value.
 use super::{Problem, suggestion, with_table};
 use crate::ThermalError;
-use crate::units;
 
 /// Temperatures a specification may state, K: what the fluids cover, and narrow enough to notice that °C were
 /// written as K.
@@ -18,52 +17,34 @@ fn key_of(path: &str) -> String {
     with_table(path, &super::without_indices(last))
 }
 
+fn at(path: &str, problem: Problem) -> ThermalError {
+    ThermalError::Specification { path: path.to_owned(), problem: Box::new(problem) }
+}
+
 /// The error of a value at `path` that breaks `bound`.
 pub fn broken(path: &str, value: impl ToString, bound: &str, remedy: &str) -> ThermalError {
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::Value {
-            key: key_of(path),
-            text: value.to_string(),
-            bound: bound.to_owned(),
-            remedy: remedy.to_owned(),
-        },
-    }
+    let (bound, remedy) = (bound.to_owned(), remedy.to_owned());
+    at(path, Problem::Value { key: key_of(path), text: value.to_string(), bound, remedy })
 }
 
 /// The error of a key that has to be there.
 pub fn missing(path: &str, remedy: &str) -> ThermalError {
     let key = super::keys::example(&key_of(path));
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::Missing { key, remedy: remedy.to_owned() },
-    }
+    at(path, Problem::Missing { key, remedy: remedy.to_owned() })
 }
 
 /// The error of a key that cannot stand beside another.
 pub fn conflict(path: &str, other: &str, remedy: &str) -> ThermalError {
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::Conflict {
-            key: key_of(path),
-            other: other.to_owned(),
-            remedy: remedy.to_owned(),
-        },
-    }
+    let (other, remedy) = (other.to_owned(), remedy.to_owned());
+    at(path, Problem::Conflict { key: key_of(path), other, remedy })
 }
 
 /// The error of a word that is none of the `known`.
 pub fn unknown<'a>(path: &str, word: &str, known: impl IntoIterator<Item = &'a str>) -> ThermalError {
     let known: Vec<&str> = known.into_iter().collect();
-    ThermalError::Specification {
-        path: path.to_owned(),
-        problem: Problem::UnknownChoice {
-            key: key_of(path),
-            text: word.to_owned(),
-            nearest: suggestion(word, known.iter().copied()),
-            known: known.join(", "),
-        },
-    }
+    let nearest = suggestion(word, known.iter().copied());
+    let known = known.join(", ");
+    at(path, Problem::UnknownChoice { key: key_of(path), text: word.to_owned(), nearest, known })
 }
 
 /// A finite value above 0.
@@ -86,7 +67,13 @@ pub fn not_negative(path: &str, value: f64, remedy: &str) -> Result<f64, Thermal
 ///
 /// # Errors
 /// Any other value.
-pub fn within(path: &str, value: f64, range: (f64, f64), bound: &str, remedy: &str) -> Result<f64, ThermalError> {
+pub fn within(
+    path: &str,
+    value: f64,
+    range: (f64, f64),
+    bound: &str,
+    remedy: &str,
+) -> Result<f64, ThermalError> {
     if (range.0..=range.1).contains(&value) { Ok(value) } else { Err(broken(path, value, bound, remedy)) }
 }
 
@@ -113,7 +100,13 @@ pub fn temperature_k(path: &str, value: f64) -> Result<f64, ThermalError> {
 /// Any other value.
 pub fn pressure_pa(path: &str, value: f64) -> Result<f64, ThermalError> {
     let bound = "between 1 Pa and 2000 bar absolute";
-    within(path, value, PRESSURE_RANGE_PA, bound, "check the unit, _bar is absolute and _barg above the atmosphere")
+    within(
+        path,
+        value,
+        PRESSURE_RANGE_PA,
+        bound,
+        "check the unit, _bar is absolute and _barg above the atmosphere",
+    )
 }
 
 /// A count of cells, `least` to [`CELLS_MAX`].
@@ -127,7 +120,11 @@ pub fn cells(path: &str, value: usize, least: usize) -> Result<usize, ThermalErr
     Err(broken(path, value, &format!("between {least} and {CELLS_MAX}"), "3 to 10 cells are usual"))
 }
 
-/// SI value with its SI suffix, for bounds in messages: `7200 s`.
-pub fn with_unit(value: f64, dimension: units::Dimension) -> String {
-    format!("{value} {}", units::si_suffix(dimension).replace('_', "/"))
+/// A time for bounds in messages, in the largest unit that leaves it whole: `2 h`, `90 min`, `5 s`.
+pub fn time_text(time_s: f64) -> String {
+    match time_s {
+        t if t != 0.0 && t % 3_600.0 == 0.0 => format!("{} h", t / 3_600.0),
+        t if t != 0.0 && t % 60.0 == 0.0 => format!("{} min", t / 60.0),
+        t => format!("{t} s"),
+    }
 }

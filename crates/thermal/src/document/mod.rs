@@ -9,6 +9,7 @@ pub mod check;
 pub(crate) mod column;
 mod keys;
 mod problem;
+mod read_error;
 pub mod schema;
 mod value;
 
@@ -23,7 +24,8 @@ use toml::de::{DeTable, DeValue};
 use crate::ThermalError;
 pub use problem::Problem;
 pub(crate) use problem::{suggestion, with_table, without_indices};
-use value::{ReadError, ValueReader};
+use read_error::ReadError;
+use value::ValueReader;
 
 /// Where a value stands and how it was written.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +61,7 @@ impl Places {
     /// Turns an error about a path into one about a line of the file; other errors pass.
     pub fn locate(&self, error: ThermalError) -> ThermalError {
         let ThermalError::Specification { path, problem } = error else { return error };
+        let problem = *problem;
         let nearest = self.nearest(&path);
         let line = nearest.map_or(1, |(_, place)| place.line);
         let problem = match (problem, nearest) {
@@ -75,7 +78,7 @@ impl Places {
             }
             (problem, _) => problem,
         };
-        ThermalError::Document { file: self.file.clone(), line, problem }
+        ThermalError::Document { file: self.file.clone(), line, problem: Box::new(problem) }
     }
 }
 
@@ -110,7 +113,8 @@ impl Context<'_> {
 pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<(T, Places), ThermalError> {
     let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1));
     let context = Context { text, line_starts: starts.collect(), places: RefCell::default() };
-    let document = |line, problem| ThermalError::Document { file: file.to_owned(), line, problem };
+    let document =
+        |line, problem| ThermalError::Document { file: file.to_owned(), line, problem: Box::new(problem) };
     let table = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| context.line(span.start));
         document(line, Problem::Syntax { message: error.message().replace('\n', ", ") })

@@ -63,7 +63,7 @@ pub enum Problem {
         expected: String,
     },
     /// NaN, an infinity, or a number too large for floating point.
-    #[error("{key} = {text} must be a finite number: write a number or leave the key out")]
+    #[error("{key} = {text} must be a finite number: write a number or leave it out")]
     NotFinite {
         /// Key as written, with its table.
         key: String,

@@ -55,7 +55,8 @@ fn open_object(object: &mut Map<String, Value>) {
     };
     let (quantities, names): (Vec<Value>, Vec<Value>) =
         required.into_iter().partition(|name| name.as_str().is_some_and(|name| units::split(name).is_some()));
-    let one_unit_each: Vec<Value> = quantities.iter().filter_map(Value::as_str).filter_map(any_unit).collect();
+    let one_unit_each: Vec<Value> =
+        quantities.iter().filter_map(Value::as_str).filter_map(any_unit).collect();
     object.insert("properties".to_owned(), Value::Object(plain));
     if !patterns.is_empty() {
         object.insert("patternProperties".to_owned(), Value::Object(patterns));
@@ -76,7 +77,9 @@ fn suffixes(dimension: units::Dimension) -> Vec<&'static str> {
 /// Exactly one unit of the quantity has to be there.
 fn any_unit(name: &str) -> Option<Value> {
     let (base, unit) = units::split(name)?;
-    let keys: Vec<Value> =
-        suffixes(unit.dimension).iter().map(|suffix| json!({ "required": [format!("{base}_{suffix}")] })).collect();
+    let keys: Vec<Value> = suffixes(unit.dimension)
+        .iter()
+        .map(|suffix| json!({ "required": [format!("{base}_{suffix}")] }))
+        .collect();
     Some(json!({ "oneOf": keys }))
 }

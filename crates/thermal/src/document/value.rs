@@ -1,80 +1,16 @@
 //! A serde `Deserializer` over toml's tree with spans that converts units on the way.
-use std::fmt;
 use std::vec;
 
-use serde::de::{self, DeserializeSeed, Deserializer, Expected, IntoDeserializer, Unexpected, Visitor};
+use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{example, match_key};
 use super::problem::{Problem, suggestion, with_table, without_indices};
+use super::read_error::ReadError;
 use super::{Context, Place, field_name};
 use crate::units::Unit;
-
-/// A problem on its way up, first without and then with its line.
-#[derive(Debug)]
-pub(super) enum ReadError {
-    /// The value has another type.
-    Type { expected: String },
-    /// A table lacks a field.
-    Missing { field: &'static str },
-    /// A word is none of the choices.
-    Choice { known: &'static [&'static str] },
-    /// Anything else that serde says.
-    Other(String),
-    /// With its line.
-    Placed(Box<(usize, Problem)>),
-}
-
-impl fmt::Display for ReadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Type { expected } => write!(f, "expected {expected}"),
-            Self::Missing { field } => write!(f, "missing {field}"),
-            Self::Choice { known } => write!(f, "expected one of {}", known.join(", ")),
-            Self::Other(message) => f.write_str(message),
-            Self::Placed(placed) => write!(f, "line {}: {}", placed.0, placed.1),
-        }
-    }
-}
-
-impl std::error::Error for ReadError {}
-
-impl de::Error for ReadError {
-    fn custom<T: fmt::Display>(message: T) -> Self {
-        Self::Other(message.to_string())
-    }
-
-    fn invalid_type(_: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::Type { expected: in_words(&expected.to_string()) }
-    }
-
-    fn invalid_value(_: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::Type { expected: in_words(&expected.to_string()) }
-    }
-
-    fn missing_field(field: &'static str) -> Self {
-        Self::Missing { field }
-    }
-
-    fn unknown_variant(_: &str, expected: &'static [&'static str]) -> Self {
-        Self::Choice { known: expected }
-    }
-}
-
-/// Rust's words for a type in the words of a file's author.
-fn in_words(expected: &str) -> String {
-    match expected {
-        "usize" | "u64" | "u32" => "a whole number of at least 0".to_owned(),
-        "f64" => "a number".to_owned(),
-        "a string" => "text in quotes".to_owned(),
-        "a boolean" => "true or false".to_owned(),
-        "a sequence" => "a list".to_owned(),
-        other if other.starts_with("struct ") => "a table".to_owned(),
-        other => other.to_owned(),
-    }
-}
 
 /// Reader of one value.
 pub(super) struct ValueReader<'a, 't> {
@@ -115,7 +51,11 @@ impl<'a, 't> ValueReader<'a, 't> {
     }
 
     fn wrong_type(&self, expected: &str) -> ReadError {
-        self.placed(Problem::WrongType { key: self.named(), text: self.text(), expected: expected.to_owned() })
+        self.placed(Problem::WrongType {
+            key: self.named(),
+            text: self.text(),
+            expected: expected.to_owned(),
+        })
     }
 
     /// Gives an error of a visitor its line and names.
@@ -249,7 +189,9 @@ impl<'de> Deserializer<'de> for ValueReader<'_, '_> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadError> {
-        let DeValue::String(text) = self.value.get_ref() else { return Err(self.wrong_type("text in quotes")) };
+        let DeValue::String(text) = self.value.get_ref() else {
+            return Err(self.wrong_type("text in quotes"));
+        };
         let choice: de::value::StrDeserializer<'_, ReadError> = text.as_ref().into_deserializer();
         visitor.visit_enum(choice).map_err(|error| self.place(error))
     }

@@ -1,1 +1,189 @@
-//! Mass flow through an orifice of a real gas, choked or not.
+//! Mass flux of a real gas through an orifice, choked or not.
+//!
+//! Isentropic nozzle from stagnation to throat: `G = rho sqrt(2 (h_0 - h))` along `s = s_0`.
+//! Choked: the throat speed is the speed of sound, `2 (h_0 - h) = w^2`, which maximises `G`.
+//! Subsonic: the throat has the back pressure. Near equal pressures `sqrt` is replaced by a smooth root that
+//! stays differentiable, so that the flow ends without a singular derivative. Flow back into the cylinder does not occur.
+//! Assumptions: the throat stays single-phase (a metastable state is accepted: condensation is slower than
+//! the passage), one discharge coefficient for both regimes.
+//! Real-gas critical flow is 4-6 % above the ideal gas at 65-150 bar nitrogen.
+use nalgebra::{Const, U1};
+use num_dual::{DualNum, DualSVec64};
+
+use crate::ThermalError;
+use crate::fluid::{Fluid, Real, State};
+
+/// Relative enthalpy drop, as a fraction of `p_0 / rho_0`, below which the velocity becomes linear in it.
+const SMOOTH_BELOW: f64 = 1e-4;
+const MAX_ITERATIONS: usize = 60;
+
+/// Mass flux and regime of an orifice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrificeFlux<D = f64> {
+    /// Mass flux through the vena contracta, kg/(m² s).
+    pub mass_flux_kg_m2_s: D,
+    /// Throat pressure at critical flow, Pa.
+    pub critical_pressure_pa: f64,
+    /// Whether the flow is choked.
+    pub choked: bool,
+}
+
+/// Density and temperature of a throat.
+type Throat = [f64; 2];
+
+/// Mass flux from a stagnation state to a back pressure.
+///
+/// # Errors
+/// No throat state was found (stagnation state outside the fluid's domain).
+pub fn mass_flux<D: Real>(
+    fluid: &Fluid,
+    stagnation: &State<D>,
+    back_pressure_pa: f64,
+) -> Result<OrificeFlux<D>, ThermalError> {
+    let real = Stagnation::of(stagnation);
+    let critical = throat(fluid, &real, Condition::Sonic)?;
+    let critical_pressure_pa = fluid.pressure_pa(critical[0], critical[1]);
+    let choked = critical_pressure_pa >= back_pressure_pa;
+    if real.pressure_pa <= back_pressure_pa {
+        return Ok(OrificeFlux { mass_flux_kg_m2_s: D::from(0.0), critical_pressure_pa, choked: false });
+    }
+    let condition = if choked { Condition::Sonic } else { Condition::Pressure(back_pressure_pa) };
+    let at = if choked { critical } else { throat(fluid, &real, condition)? };
+    let state = lifted_throat(fluid, stagnation, condition, at);
+    let drop = stagnation.enthalpy_j_kg - state.enthalpy_j_kg;
+    let floor = SMOOTH_BELOW * real.pressure_pa / real.density_kg_m3;
+    // sqrt(x) for x >> floor, x / sqrt(floor) for x << floor.
+    let smooth_root = drop / (drop * drop + floor * floor).sqrt().sqrt();
+    Ok(OrificeFlux {
+        mass_flux_kg_m2_s: state.density_kg_m3 * smooth_root * std::f64::consts::SQRT_2,
+        critical_pressure_pa,
+        choked,
+    })
+}
+
+/// What fixes the throat beside its entropy.
+#[derive(Clone, Copy, Debug)]
+enum Condition {
+    Sonic,
+    Pressure(f64),
+}
+
+/// Real parts of the stagnation state.
+struct Stagnation {
+    pressure_pa: f64,
+    temperature_k: f64,
+    density_kg_m3: f64,
+    enthalpy_j_kg: f64,
+    entropy_j_kg_k: f64,
+    gamma: f64,
+}
+
+impl Stagnation {
+    fn of<D: Real>(state: &State<D>) -> Self {
+        Self {
+            pressure_pa: state.pressure_pa.re(),
+            temperature_k: state.temperature_k.re(),
+            density_kg_m3: state.density_kg_m3.re(),
+            enthalpy_j_kg: state.enthalpy_j_kg.re(),
+            entropy_j_kg_k: state.entropy_j_kg_k.re(),
+            gamma: (state.cp_j_kg_k.re() / state.cv_j_kg_k.re()).clamp(1.05, 1.7),
+        }
+    }
+}
+
+/// The two throat equations, scaled by the gas constant and by `R T`.
+fn residual<D: Real>(
+    condition: Condition,
+    throat: &State<D>,
+    enthalpy_0: D,
+    entropy_0: D,
+    scale: (f64, f64),
+) -> [D; 2] {
+    let second = match condition {
+        Condition::Sonic => {
+            (enthalpy_0 - throat.enthalpy_j_kg - throat.sound_speed_m_s * throat.sound_speed_m_s * 0.5)
+                / scale.1
+        }
+        Condition::Pressure(p) => (throat.pressure_pa - p) / p,
+    };
+    [(throat.entropy_j_kg_k - entropy_0) / scale.0, second]
+}
+
+type Dual2 = DualSVec64<2>;
+
+/// Residual and its Jacobian over (ln rho, ln T) at a throat.
+fn linearised(
+    fluid: &Fluid,
+    at: Throat,
+    condition: Condition,
+    enthalpy_0: f64,
+    entropy_0: f64,
+    scale: (f64, f64),
+) -> ([f64; 2], [[f64; 2]; 2]) {
+    let rho: Dual2 = Dual2::from(at[0].ln()).derivative(0).exp();
+    let t: Dual2 = Dual2::from(at[1].ln()).derivative(1).exp();
+    let f = residual(condition, &fluid.state(rho, t), enthalpy_0.into(), entropy_0.into(), scale);
+    let gradient = |x: Dual2| {
+        let g = x.eps.unwrap_generic(Const::<2>, U1);
+        [g[0], g[1]]
+    };
+    ([f[0].re, f[1].re], [gradient(f[0]), gradient(f[1])])
+}
+
+fn solve_2x2<D: Real>(j: [[f64; 2]; 2], f: [D; 2]) -> [D; 2] {
+    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+    [(f[0] * j[1][1] - f[1] * j[0][1]) / det, (f[1] * j[0][0] - f[0] * j[1][0]) / det]
+}
+
+fn scales(fluid: &Fluid, temperature_k: f64) -> (f64, f64) {
+    let r = fluid.specific_gas_constant_j_kg_k();
+    (r, r * temperature_k)
+}
+
+/// Newton's method in the logarithms of density and temperature, started at the ideal gas.
+fn throat(fluid: &Fluid, stagnation: &Stagnation, condition: Condition) -> Result<Throat, ThermalError> {
+    let g = stagnation.gamma;
+    let temperature_ratio = match condition {
+        Condition::Sonic => 2.0 / (g + 1.0),
+        Condition::Pressure(p) => (p / stagnation.pressure_pa).powf((g - 1.0) / g),
+    };
+    let mut at = [
+        stagnation.density_kg_m3 * temperature_ratio.powf(1.0 / (g - 1.0)),
+        stagnation.temperature_k * temperature_ratio,
+    ];
+    let scale = scales(fluid, stagnation.temperature_k);
+    for _ in 0..MAX_ITERATIONS {
+        let (f, j) =
+            linearised(fluid, at, condition, stagnation.enthalpy_j_kg, stagnation.entropy_j_kg_k, scale);
+        let step = solve_2x2(j, f);
+        if !(step[0].is_finite() && step[1].is_finite()) {
+            break;
+        }
+        let longest = step[0].abs().max(step[1].abs());
+        let damping = (0.2 / longest).min(1.0);
+        at = [at[0] * (-damping * step[0]).exp(), at[1] * (-damping * step[1]).exp()];
+        if longest < 1e-12 {
+            return Ok(at);
+        }
+    }
+    Err(ThermalError::NoThroat {
+        pressure_pa: stagnation.pressure_pa,
+        temperature_k: stagnation.temperature_k,
+        fluid: fluid.name().to_owned(),
+    })
+}
+
+/// Throat state with the derivatives of the stagnation state: one more Newton step, in dual numbers.
+fn lifted_throat<D: Real>(
+    fluid: &Fluid,
+    stagnation: &State<D>,
+    condition: Condition,
+    at: Throat,
+) -> State<D> {
+    let (h0, s0) = (stagnation.enthalpy_j_kg, stagnation.entropy_j_kg_k);
+    let scale = scales(fluid, stagnation.temperature_k.re());
+    let (_, j) = linearised(fluid, at, condition, h0.re(), s0.re(), scale);
+    let fixed = fluid.state(D::from(at[0]), D::from(at[1]));
+    let step = solve_2x2(j, residual(condition, &fixed, h0, s0, scale));
+    fluid.state((-step[0]).exp() * at[0], (-step[1]).exp() * at[1])
+}

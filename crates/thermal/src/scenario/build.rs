@@ -1,11 +1,11 @@
 //! From the raw content of a scenario file to a checked [`Scenario`].
+use super::flows;
 use super::signal::{Files, Signal};
-use super::spec::{AmbientSpec, InitialSpec, OutflowSpec, RefillSpec, ScenarioSpec, SensorSpec};
+use super::spec::{AmbientSpec, InitialSpec, ScenarioSpec, SensorSpec};
 use super::{Fill, Initial, OutsideFilm, Scenario, Series, Sun, SurfaceSensor, Surroundings};
 use crate::ThermalError;
 use crate::document::check;
-use crate::flow::{Flow, FlowKind};
-use crate::units::{ATMOSPHERE_PA, Dimension, ZERO_CELSIUS_K};
+use crate::units::{Dimension, ZERO_CELSIUS_K};
 
 /// Places that a surface sensor can sit at.
 pub const PLACES: [&str; 5] = ["bottom", "middle", "shoulder", "neck", "valve"];
@@ -15,9 +15,6 @@ const DURATION_MAX_S: f64 = 3.2e8;
 
 /// Most output samples of a scenario.
 const SAMPLES_MAX: f64 = 2e7;
-
-/// Largest mass flow, kg/s.
-const MASS_FLOW_MAX_KG_S: f64 = 100.0;
 
 impl ScenarioSpec {
     /// Checks the specification, reads the files it names and fills in its defaults.
@@ -31,15 +28,15 @@ impl ScenarioSpec {
         }
         let (duration_s, sample_time_s) = self.times()?;
         let air = air(&self.ambient);
-        let air_k = air
-            .series(files)?
-            .ok_or_else(|| check::missing("ambient.air_k", "say the temperature of the air around the cylinder"))?;
+        let air_k = air.series(files)?.ok_or_else(|| {
+            check::missing("ambient.air_k", "say the temperature of the air around the cylinder")
+        })?;
         let before_k = air.first().unwrap_or_else(|| air_k.segment(-1.0, 0.0).value);
         Ok(Scenario {
             name: self.name.clone(),
             initial: initial(&self.initial, before_k)?,
             surroundings: self.surroundings(air_k, files)?,
-            flows: self.flows()?,
+            flows: flows::build(self)?,
             pressure_limits_pa: self
                 .limits
                 .pressure_pa
@@ -56,12 +53,18 @@ impl ScenarioSpec {
     fn times(&self) -> Result<(f64, f64), ThermalError> {
         let duration_s = check::positive("duration_s", self.duration_s, "say how long the scenario lasts")?;
         let range = (0.0, DURATION_MAX_S);
-        check::within("duration_s", duration_s, range, "at most ten years", "check the unit, _min, _h or _d")?;
+        check::within(
+            "duration_s",
+            duration_s,
+            range,
+            "at most ten years",
+            "check the unit, _min, _h or _d",
+        )?;
         let sample_s = self.sample_time_s.unwrap_or(60.0_f64.min(duration_s));
         let remedy = "give the interval of the output samples, e.g. sample_time_min = 1";
         check::positive("sample_time_s", sample_s, remedy)?;
         let range = (duration_s / SAMPLES_MAX, duration_s);
-        let bound = format!("between {} s and the duration of {duration_s} s", range.0);
+        let bound = format!("between {} s and the duration of {}", range.0, check::time_text(duration_s));
         Ok((duration_s, check::within("sample_time_s", sample_s, range, &bound, remedy)?))
     }
 
@@ -88,7 +91,11 @@ impl ScenarioSpec {
                 let multiplier = spec.wind_multiplier.unwrap_or(1.0);
                 OutsideFilm::Convection {
                     wind_m_s: wind.unwrap_or_else(|| Series::constant(0.0)),
-                    multiplier: check::positive("ambient.wind_multiplier", multiplier, "1 is the law as published")?,
+                    multiplier: check::positive(
+                        "ambient.wind_multiplier",
+                        multiplier,
+                        "1 is the law as published",
+                    )?,
                 }
             }
         };
@@ -99,7 +106,9 @@ impl ScenarioSpec {
     fn sun(&self, irradiance: Option<Series>) -> Result<Option<Sun>, ThermalError> {
         let Some(irradiance_w_m2) = irradiance else {
             return match self.sun {
-                Some(_) => Err(check::missing("ambient.irradiance_w_m2", "say how strong the sun of [sun] is")),
+                Some(_) => {
+                    Err(check::missing("ambient.irradiance_w_m2", "say how strong the sun of [sun] is"))
+                }
                 None => Ok(None),
             };
         };
@@ -112,20 +121,6 @@ impl ScenarioSpec {
             return Err(check::broken("sun.to_fraction", to_fraction, &bound, remedy));
         }
         Ok(Some(Sun { irradiance_w_m2, from_fraction, to_fraction, valve: spec.valve.unwrap_or(true) }))
-    }
-
-    fn flows(&self) -> Result<Vec<Flow>, ThermalError> {
-        let mut flows: Vec<Flow> = Vec::new();
-        let outflows = [("leak", &self.leak), ("discharge", &self.discharge)];
-        for (kind, specs) in outflows {
-            for (i, spec) in specs.iter().enumerate() {
-                push(&mut flows, outflow(kind, i, spec)?, &format!("{kind}[{i}]"))?;
-            }
-        }
-        for (i, spec) in self.refill.iter().enumerate() {
-            push(&mut flows, refill(i, spec)?, &format!("refill[{i}]"))?;
-        }
-        Ok(flows)
     }
 }
 
@@ -190,8 +185,7 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
         ("initial.pressure_pa", spec.pressure_pa),
         ("initial.mass_kg", spec.mass_kg),
     ];
-    let given: Vec<(&str, f64)> =
-        fills.iter().filter_map(|&(path, value)| Some((path, value?))).collect();
+    let given: Vec<(&str, f64)> = fills.iter().filter_map(|&(path, value)| Some((path, value?))).collect();
     if let [(first, _), (second, _), ..] = given[..] {
         let other = first.trim_start_matches("initial.");
         return Err(check::conflict(second, other, "say the fill in one way"));
@@ -221,7 +215,8 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
             return Err(check::missing("initial.fill_pressure_pa", remedy));
         }
     };
-    if let (Some(_), Some(_), Some(_)) = (spec.temperature_k, spec.wall_temperature_k, spec.gas_temperature_k) {
+    if let (Some(_), Some(_), Some(_)) = (spec.temperature_k, spec.wall_temperature_k, spec.gas_temperature_k)
+    {
         let remedy = "leave it out, wall and gas are stated";
         return Err(check::conflict("initial.temperature_k", "wall_temperature and gas_temperature", remedy));
     }
@@ -233,125 +228,6 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
         wall_temperature_k: check::temperature_k("initial.wall_temperature_k", wall_k)?,
         gas_temperature_k: check::temperature_k("initial.gas_temperature_k", gas_k)?,
     })
-}
-
-fn outflow(kind: &str, i: usize, spec: &OutflowSpec) -> Result<Flow, ThermalError> {
-    let path = |field: &str| format!("{kind}[{i}].{field}");
-    let kind_of_flow = match (spec.flow_kg_s, spec.diameter_m) {
-        (Some(_), Some(_)) => {
-            return Err(check::conflict(&path("diameter_m"), "flow", "give the mass flow or the bore of a hole"));
-        }
-        (None, None) => {
-            let remedy = "give a mass flow, e.g. flow_g_h = 20, or the bore of a hole, e.g. diameter_mm = 0.1";
-            return Err(check::missing(&path("flow_kg_s"), remedy));
-        }
-        (Some(flow_kg_s), None) => {
-            let orifice_only = [
-                ("discharge_coefficient", spec.discharge_coefficient),
-                ("back_pressure_pa", spec.back_pressure_pa),
-            ];
-            if let Some((field, _)) = orifice_only.iter().find(|(_, value)| value.is_some()) {
-                return Err(check::conflict(&path(field), "flow", "it belongs to an orifice of some diameter"));
-            }
-            FlowKind::Leak { mass_flow_kg_s: mass_flow(&path("flow_kg_s"), flow_kg_s)? }
-        }
-        (None, Some(diameter_m)) => FlowKind::Orifice {
-            diameter_m: bore(&path("diameter_m"), diameter_m)?,
-            discharge_coefficient: {
-                let coefficient = spec.discharge_coefficient.unwrap_or(0.8);
-                let remedy = "0.6 to 0.9 are usual";
-                check::positive(&path("discharge_coefficient"), coefficient, remedy)?;
-                check::fraction(&path("discharge_coefficient"), coefficient, remedy)?
-            },
-            back_pressure_pa: {
-                let pressure_pa = spec.back_pressure_pa.unwrap_or(ATMOSPHERE_PA);
-                check::pressure_pa(&path("back_pressure_pa"), pressure_pa)?
-            },
-        },
-    };
-    let (start_s, stop_s) = window(&path, spec.start_s, spec.stop_s)?;
-    let pressure = |field: &str, value: Option<f64>| {
-        value.map(|value| check::pressure_pa(&path(field), value)).transpose()
-    };
-    let opens_above_pa = pressure("opens_above_pa", spec.opens_above_pa)?;
-    let closes_below_pa = pressure("closes_below_pa", spec.closes_below_pa)?;
-    if let (Some(opens), Some(closes)) = (opens_above_pa, closes_below_pa)
-        && closes >= opens
-    {
-        let bound = format!("below opens_above = {opens} Pa");
-        return Err(check::broken(&path("closes_below_pa"), closes, &bound, "it would close as it opens"));
-    }
-    let name = flow_name(kind, i, spec.name.as_ref())?;
-    Ok(Flow { name, kind: kind_of_flow, start_s, stop_s, opens_above_pa, closes_below_pa, closes_above_pa: None })
-}
-
-fn refill(i: usize, spec: &RefillSpec) -> Result<Flow, ThermalError> {
-    let path = |field: &str| format!("refill[{i}].{field}");
-    let (start_s, stop_s) = window(&path, spec.start_s, spec.stop_s)?;
-    let inlet = spec.inlet_diameter_m.map(|value| bore(&path("inlet_diameter_m"), value)).transpose()?;
-    let closes = spec.closes_above_pa.map(|value| check::pressure_pa(&path("closes_above_pa"), value)).transpose()?;
-    Ok(Flow {
-        name: flow_name("refill", i, spec.name.as_ref())?,
-        kind: FlowKind::Refill {
-            mass_flow_kg_s: mass_flow(&path("flow_kg_s"), spec.flow_kg_s)?,
-            source_temperature_k: check::temperature_k(&path("source_temperature_k"), spec.source_temperature_k)?,
-            source_pressure_pa: check::pressure_pa(&path("source_pressure_pa"), spec.source_pressure_pa)?,
-            inlet_diameter_m: inlet,
-        },
-        start_s,
-        stop_s,
-        opens_above_pa: None,
-        closes_below_pa: None,
-        closes_above_pa: closes,
-    })
-}
-
-fn mass_flow(path: &str, value: f64) -> Result<f64, ThermalError> {
-    let remedy = "the direction is clear from [[leak]], [[discharge]] or [[refill]]";
-    check::positive(path, value, remedy)?;
-    check::within(path, value, (0.0, MASS_FLOW_MAX_KG_S), "at most 100 kg/s", "check the unit, _g_h or _kg_s")
-}
-
-fn bore(path: &str, value: f64) -> Result<f64, ThermalError> {
-    let remedy = "give the diameter of the hole, check the unit";
-    check::within(path, check::positive(path, value, remedy)?, (0.0, 1.0), "at most 1 m", remedy)
-}
-
-fn window(
-    path: &dyn Fn(&str) -> String,
-    start_s: Option<f64>,
-    stop_s: Option<f64>,
-) -> Result<(f64, f64), ThermalError> {
-    let start = start_s.unwrap_or(0.0);
-    check::not_negative(&path("start_s"), start, "time counts from the start of the scenario")?;
-    let Some(stop) = stop_s else { return Ok((start, f64::INFINITY)) };
-    if stop.is_finite() && stop > start {
-        return Ok((start, stop));
-    }
-    let bound = format!("later than the start at {start} s");
-    Err(check::broken(&path("stop_s"), stop, &bound, "leave it out for a flow to the end"))
-}
-
-fn flow_name(kind: &str, i: usize, name: Option<&String>) -> Result<String, ThermalError> {
-    match name {
-        Some(name) if name.trim().is_empty() => {
-            let remedy = "leave it out for the default name";
-            Err(check::broken(&format!("{kind}[{i}].name"), "\"\"", "a name", remedy))
-        }
-        Some(name) => Ok(name.clone()),
-        None if i == 0 => Ok(kind.to_owned()),
-        None => Ok(format!("{kind}{}", i + 1)),
-    }
-}
-
-fn push(flows: &mut Vec<Flow>, flow: Flow, path: &str) -> Result<(), ThermalError> {
-    if flows.iter().any(|other| other.name == flow.name) {
-        let text = format!("{:?}", flow.name);
-        let remedy = "events tell flows apart by their names";
-        return Err(check::broken(&format!("{path}.name"), text, "a name that no other flow has", remedy));
-    }
-    flows.push(flow);
-    Ok(())
 }
 
 fn sensors(specs: &[SensorSpec]) -> Result<Vec<SurfaceSensor>, ThermalError> {

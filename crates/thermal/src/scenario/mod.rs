@@ -3,17 +3,18 @@
 //! [`ScenarioSpec`] is the raw content of a scenario file; [`ScenarioSpec::build`] checks it (and reads the
 //! CSV files it names) and gives a [`Scenario`].
 mod build;
+mod flows;
 pub mod presets;
+mod read;
 pub mod series;
 mod signal;
 pub mod spec;
 
 pub use build::PLACES;
+pub use read::{read_scenario, schema};
 pub use series::Series;
 pub use spec::ScenarioSpec;
 
-use crate::ThermalError;
-use crate::document;
 use crate::flow::Flow;
 
 /// A validated scenario. All values SI, time from 0.
@@ -124,22 +125,4 @@ pub struct SurfaceSensor {
     pub place: String,
     /// Mounting coupling to the air, 0 to 1.
     pub air_coupling: f64,
-}
-
-/// Reads a scenario file; `source` is its name in messages, `files` reads the CSV files that it names.
-///
-/// # Errors
-/// [`ThermalError::Document`] with file, line, value and remedy for whatever is wrong with the text or a table.
-pub fn read_scenario(
-    text: &str,
-    source: &str,
-    files: &dyn Fn(&str) -> std::io::Result<String>,
-) -> Result<Scenario, ThermalError> {
-    let (specification, places) = document::read::<ScenarioSpec>(text, source)?;
-    specification.build(files).map_err(|error| places.locate(error))
-}
-
-/// JSON schema of scenario files.
-pub fn schema() -> serde_json::Value {
-    document::schema::of::<ScenarioSpec>("cylwatch scenario")
 }

@@ -36,9 +36,9 @@ pub fn text(name: &str) -> Option<&'static str> {
 /// [`io::ErrorKind::NotFound`] for any other name.
 pub fn table(file: &str) -> io::Result<String> {
     let found = TABLES.iter().find(|(known, _)| *known == file);
-    found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| {
-        io::Error::new(io::ErrorKind::NotFound, "the built-in scenarios have no such table")
-    })
+    found
+        .map(|(_, text)| (*text).to_owned())
+        .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "the built-in scenarios have no such table"))
 }
 
 /// A built-in scenario.

@@ -8,7 +8,7 @@ use crate::document::{Problem, check, column};
 use crate::units::Dimension;
 
 /// Reads a file that a scenario names; relative names count from the scenario's folder.
-pub type Files<'f> = &'f dyn Fn(&str) -> std::io::Result<String>;
+pub(super) type Files<'f> = &'f dyn Fn(&str) -> std::io::Result<String>;
 
 /// A column of a CSV file with a column `time_s`, `time_min`, `time_h` or `time_d`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -128,10 +128,10 @@ impl Signal<'_> {
             return Err(check::conflict(&constant, &last(other), "say the signal in one form"));
         }
         if let Some(table) = self.table {
-            return self.from_table(&path("_table"), table).map(Some);
+            return self.series_of_table(&path("_table"), table).map(Some);
         }
         if let Some(csv) = self.csv {
-            return self.from_csv(&path("_csv"), csv, files).map(Some);
+            return self.series_of_csv(&path("_csv"), csv, files).map(Some);
         }
         let Some(value) = self.constant else {
             if self.changes.is_empty() {
@@ -140,7 +140,7 @@ impl Signal<'_> {
             return Err(check::missing(&constant, "say the value before the first change"));
         };
         self.check(&constant, value)?;
-        self.from_changes(&path("_change"), value).map(Some)
+        self.series_of_changes(&path("_change"), value).map(Some)
     }
 
     /// Value before everything that changes it.
@@ -166,7 +166,7 @@ impl Signal<'_> {
         }
     }
 
-    fn from_changes(&self, path: &str, constant: f64) -> Result<Series, ThermalError> {
+    fn series_of_changes(&self, path: &str, constant: f64) -> Result<Series, ThermalError> {
         if self.changes.is_empty() {
             return Ok(Series::constant(constant));
         }
@@ -178,13 +178,18 @@ impl Signal<'_> {
             self.check(&path(change.to_field), change.to)?;
             check::not_negative(&path("at_s"), change.at_s, "time counts from the start of the scenario")?;
             let over_s = change.over_s.unwrap_or(0.0);
-            check::not_negative(&path("over_s"), over_s, "say how long the ramp takes, or leave it out for a step")?;
+            check::not_negative(
+                &path("over_s"),
+                over_s,
+                "say how long the ramp takes, or leave it out for a step",
+            )?;
             if change.at_s < free_s {
-                let bound = format!("at least {free_s} s, the end of the change before");
+                let bound = format!("at least {}, the end of the change before", check::time_text(free_s));
                 return Err(check::broken(&path("at_s"), change.at_s, &bound, "sort the changes by time"));
             }
             if over_s == 0.0 && change.at_s == last_step_s {
-                let bound = format!("later than {last_step_s} s, the time of the step before");
+                let bound =
+                    format!("later than {}, the time of the step before", check::time_text(last_step_s));
                 return Err(check::broken(&path("at_s"), change.at_s, &bound, "merge the two steps"));
             }
             if time_s.last() != Some(&change.at_s) {
@@ -201,11 +206,16 @@ impl Signal<'_> {
         Series::try_new(time_s, value)
     }
 
-    fn from_table(&self, path: &str, table: (&[f64], &[f64], &str)) -> Result<Series, ThermalError> {
+    fn series_of_table(&self, path: &str, table: (&[f64], &[f64], &str)) -> Result<Series, ThermalError> {
         let (time_s, value, field) = table;
         let values = format!("{path}.{field}");
         if time_s.is_empty() {
-            return Err(check::broken(&format!("{path}.time_s"), "[]", "a list with at least one time", "add rows"));
+            return Err(check::broken(
+                &format!("{path}.time_s"),
+                "[]",
+                "a list with at least one time",
+                "add rows",
+            ));
         }
         if time_s.len() != value.len() {
             let bound = format!("a list of {} values, one for each time", time_s.len());
@@ -217,31 +227,46 @@ impl Signal<'_> {
         }
         if let Some((i, bound)) = disorder(time_s) {
             let time = format!("{path}.time_s[{i}]");
-            return Err(check::broken(&time, time_s[i], &bound, "sort the rows; the same time twice is a jump"));
+            return Err(check::broken(
+                &time,
+                time_s[i],
+                &bound,
+                "sort the rows; the same time twice is a jump",
+            ));
         }
         Series::try_new(time_s.to_vec(), value.to_vec())
     }
 
-    fn from_csv(&self, path: &str, csv: &CsvSpec, files: Files<'_>) -> Result<Series, ThermalError> {
+    fn series_of_csv(&self, path: &str, csv: &CsvSpec, files: Files<'_>) -> Result<Series, ThermalError> {
         let text = files(&csv.file).map_err(|error| {
             let remedy = format!("the name counts from the scenario's folder ({error})");
-            check::broken(&format!("{path}.file"), format!("{:?}", csv.file), "a file that can be read", &remedy)
+            check::broken(
+                &format!("{path}.file"),
+                format!("{:?}", csv.file),
+                "a file that can be read",
+                &remedy,
+            )
         })?;
         let column = column::read(&text, &csv.file, &csv.column, self.dimension)?;
         let fault = |i: usize, problem| ThermalError::Document {
             file: csv.file.clone(),
             line: column.line[i],
-            problem,
+            problem: Box::new(problem),
         };
         for (i, &value) in column.value.iter().enumerate() {
-            if let Err(ThermalError::Specification { problem, .. }) = self.check(&csv.column, value) {
-                return Err(fault(i, problem));
+            let Err(ThermalError::Specification { problem, .. }) = self.check(&csv.column, value) else {
+                continue;
+            };
+            let mut problem = *problem;
+            if let Problem::Value { text, .. } = &mut problem {
+                text.clone_from(&column.text[i].1);
             }
+            return Err(fault(i, problem));
         }
         if let Some((i, bound)) = disorder(&column.time_s) {
-            let text = format!("{} s", column.time_s[i]);
             let remedy = "sort the rows; the same time twice is a jump".to_owned();
-            return Err(fault(i, Problem::Value { key: "time".to_owned(), text, bound, remedy }));
+            let (key, text) = (column.time_name.clone(), column.text[i].0.clone());
+            return Err(fault(i, Problem::Value { key, text, bound, remedy }));
         }
         Series::try_new(column.time_s, column.value)
     }
@@ -250,12 +275,12 @@ impl Signal<'_> {
 /// The first row that is out of order, and what it would have to be.
 fn disorder(time_s: &[f64]) -> Option<(usize, String)> {
     (1..time_s.len()).find_map(|i| {
-        let before = time_s[i - 1];
-        if time_s[i] < before {
-            return Some((i, format!("at least {before} s, the time before")));
+        let before = check::time_text(time_s[i - 1]);
+        if time_s[i] < time_s[i - 1] {
+            return Some((i, format!("at least {before}, the time before")));
         }
         let third = i > 1 && time_s[i] == time_s[i - 2];
-        third.then(|| (i, format!("later than {before} s: a jump takes two rows, before and after")))
+        third.then(|| (i, format!("later than {before}, the time of the two rows before")))
     })
 }
 

@@ -1,1 +1,6 @@
 //! Films: natural and forced convection inside and outside, radiation, sun.
+pub mod inside;
+pub mod outside;
+mod surface;
+
+pub use surface::{HalfCell, SurfaceBalance, solve_surface};

@@ -1,21 +1,16 @@
 //! From the raw content of a vessel file to a checked [`Vessel`].
-use std::f64::consts::PI;
-
+use super::contour::{build_neck, end, length, volume};
 use super::spec::{
-    EndSpec, EquationChoice, GasChoice, GasSpec, InsideFilmSpec, LawChoice, NeckSpec,
-    OrientationChoice, ShapeChoice, SurfaceSpec, ValveSpec, VesselSpec, VolumeSpec,
+    EquationChoice, GasChoice, GasSpec, InsideFilmSpec, LawChoice, OrientationChoice, SurfaceSpec, ValveSpec,
+    VesselSpec,
 };
-use super::{GasResolution, InnerVolume, InsideFilm, Stratification, Surface, Valve, Vessel};
+use super::{GasResolution, InsideFilm, Stratification, Surface, Valve, Vessel};
 use crate::ThermalError;
 use crate::document::check;
-use crate::fluid::Fluid;
-use crate::units::{ATMOSPHERE_PA, ZERO_CELSIUS_K};
-use crate::wall::geometry::{End, EndShape, Geometry, Layer, Neck, Orientation};
+use crate::fluid::{Equation, Fluid};
+use crate::wall::geometry::{Geometry, Layer, Orientation};
 use crate::wall::library;
 use crate::wall::material::Material;
-
-/// Longest length a vessel file may state, m: catches millimetres written as metres.
-const LENGTH_MAX_M: f64 = 50.0;
 
 impl VesselSpec {
     /// Checks the specification and fills in its defaults.
@@ -31,7 +26,7 @@ impl VesselSpec {
         let valve = self.valve.as_ref().map(|valve| self.valve(valve)).transpose()?;
         Ok(Vessel {
             name: self.name.clone(),
-            fluid: self.fluid()?,
+            fluid: named_fluid(&self.fluid, self.equation)?,
             geometry,
             volume,
             valve,
@@ -39,10 +34,6 @@ impl VesselSpec {
             inside_film: inside_film(&self.inside_film)?,
             gas: gas(&self.gas)?,
         })
-    }
-
-    fn fluid(&self) -> Result<Fluid, ThermalError> {
-        named_fluid(&self.fluid, self.equation)
     }
 
     fn geometry(&self) -> Result<Geometry, ThermalError> {
@@ -125,7 +116,8 @@ impl VesselSpec {
 
     fn valve(&self, spec: &ValveSpec) -> Result<Valve, ThermalError> {
         let material = self.material("valve.material", spec.material.as_deref().unwrap_or("brass"))?;
-        let mass_kg = check::positive("valve.mass_kg", spec.mass_kg, "give the mass of the valve, or no [valve]")?;
+        let mass_kg =
+            check::positive("valve.mass_kg", spec.mass_kg, "give the mass of the valve, or no [valve]")?;
         let diameter_m = length("valve.diameter_m", spec.diameter_m.unwrap_or(0.05))?;
         let volume_m3 = mass_kg / material.density_kg_m3;
         let area_m2 = spec.area_m2.unwrap_or(6.0 * volume_m3 / diameter_m);
@@ -147,103 +139,25 @@ impl VesselSpec {
 
 /// The gas by name, with its equation of state.
 fn named_fluid(name: &str, equation: EquationChoice) -> Result<Fluid, ThermalError> {
-    let _ = equation;
-    match name {
-        "nitrogen" => Ok(Fluid {}),
-        _ => Err(check::unknown("fluid", name, ["nitrogen"])),
-    }
-}
-
-fn length(path: &str, value: f64) -> Result<f64, ThermalError> {
-    let remedy = "check the unit, _mm or _m";
-    check::within(path, check::positive(path, value, remedy)?, (0.0, LENGTH_MAX_M), "at most 50 m", remedy)
-}
-
-fn end(path: &str, spec: &EndSpec, radius_m: f64, wall_m: f64, cells: usize) -> Result<End, ThermalError> {
-    let at = |field: &str| format!("{path}.{field}");
-    if spec.shape != ShapeChoice::Ellipsoidal && spec.depth_m.is_some() {
-        let remedy = "leave the depth out, or use shape = \"ellipsoidal\"";
-        return Err(check::conflict(&at("depth_m"), "this shape", remedy));
-    }
-    let shape = match spec.shape {
-        ShapeChoice::Flat => EndShape::Flat,
-        ShapeChoice::Hemispherical => EndShape::Dome { depth_m: radius_m },
-        ShapeChoice::Ellipsoidal => {
-            let depth_m = spec.depth_m.unwrap_or(0.5 * radius_m);
-            let remedy = "a dome is as deep as the inner radius at most twice over; for no dome use shape = \"flat\"";
-            check::positive(&at("depth_m"), depth_m, remedy)?;
-            let range = (0.02 * radius_m, 2.0 * radius_m);
-            let bound = "between 0.02 and 2 inner radii";
-            EndShape::Dome { depth_m: check::within(&at("depth_m"), depth_m, range, bound, remedy)? }
-        }
+    let equation = match equation {
+        EquationChoice::Reference => Equation::Reference,
+        EquationChoice::IdealGas => Equation::IdealGas,
+        EquationChoice::PengRobinson => Equation::PengRobinson,
     };
-    let remedy = "give the wall thickness of this end, or leave it out for that of the cylinder";
-    let thickness_m = check::positive(&at("thickness_m"), spec.thickness_m.unwrap_or(wall_m), remedy)?;
-    check::within(&at("thickness_m"), thickness_m, (0.0, LENGTH_MAX_M), "at most 50 m", remedy)?;
-    let cells = check::cells(&at("cells"), spec.cells.unwrap_or(cells), 1)?;
-    Ok(End { shape, thickness_m, cells })
-}
-
-fn build_neck(spec: &NeckSpec, cylinder_m: f64) -> Result<Neck, ThermalError> {
-    let at = |field: &str| format!("geometry.neck.{field}");
-    let neck = Neck {
-        inner_diameter_m: length(&at("inner_diameter_m"), spec.inner_diameter_m)?,
-        thickness_m: length(&at("thickness_m"), spec.thickness_m)?,
-        length_m: length(&at("length_m"), spec.length_m)?,
-        cells: check::cells(&at("cells"), spec.cells.unwrap_or(1), 1)?,
-    };
-    if neck.inner_diameter_m + 2.0 * neck.thickness_m >= cylinder_m {
-        let remedy = "the neck's outer diameter has to fit into the cylinder's inner diameter";
-        return Err(check::broken(&at("inner_diameter_m"), spec.inner_diameter_m, "smaller", remedy));
-    }
-    Ok(neck)
-}
-
-/// Inner volume of the contour, m³: cylinder and half spheroids, without the neck, whose bore the valve fills.
-pub(super) fn contour_volume_m3(geometry: &Geometry) -> f64 {
-    let section_m2 = PI * (0.5 * geometry.inner_diameter_m).powi(2);
-    let dome_m = |end: &End| match end.shape {
-        EndShape::Flat => 0.0,
-        EndShape::Dome { depth_m } => 2.0 / 3.0 * depth_m,
-    };
-    section_m2 * (geometry.cylinder_length_m + dome_m(&geometry.bottom) + dome_m(&geometry.shoulder))
-}
-
-fn volume(spec: &VolumeSpec, geometry: &Geometry) -> Result<InnerVolume, ThermalError> {
-    let stated = [
-        ("volume.thermal_expansion_per_k", spec.thermal_expansion_per_k, 1e-3),
-        ("volume.pressure_expansion_per_pa", spec.pressure_expansion_per_pa, 1e-8),
-    ];
-    for (path, value, most) in stated {
-        let Some(value) = value else { continue };
-        if spec.rigid && value != 0.0 {
-            return Err(check::conflict(path, "rigid = true", "keep one of them"));
-        }
-        let remedy = "steel expands by 3.5e-5 per K, and a 20 L cylinder of it by about 1.5e-5 per bar";
-        check::within(path, value, (0.0, most), &format!("between 0 and {most} (SI)"), remedy)?;
-    }
-    let contour_m3 = contour_volume_m3(geometry);
-    let volume_m3 = spec.volume_m3.unwrap_or(contour_m3);
-    let remedy = "check volume, diameter and lengths";
-    check::positive("volume.volume_m3", volume_m3, remedy)?;
-    let bound = format!("within 30 % of the contour's {:.4} l", 1e3 * contour_m3);
-    check::within("volume.volume_m3", volume_m3, (0.7 * contour_m3, 1.3 * contour_m3), &bound, remedy)?;
-    let reference_k = spec.reference_temperature_k.unwrap_or(ZERO_CELSIUS_K + 15.0);
-    let reference_pa = spec.reference_pressure_pa.unwrap_or(ATMOSPHERE_PA);
-    Ok(InnerVolume {
-        volume_m3,
-        thermal_expansion_per_k: spec.thermal_expansion_per_k.unwrap_or(0.0),
-        pressure_expansion_per_pa: spec.pressure_expansion_per_pa.unwrap_or(0.0),
-        reference_temperature_k: check::temperature_k("volume.reference_temperature_k", reference_k)?,
-        reference_pressure_pa: check::pressure_pa("volume.reference_pressure_pa", reference_pa)?,
-    })
+    let fluid = Fluid::named(name)
+        .map_err(|error| check::broken("fluid", format!("{name:?}"), "a known gas", &error.to_string()))?;
+    Ok(fluid.with_equation(equation))
 }
 
 fn surface(spec: &SurfaceSpec) -> Result<Surface, ThermalError> {
     let emissivity = spec.emissivity.unwrap_or(0.9);
     let absorptivity = spec.solar_absorptivity.unwrap_or(0.6);
     Ok(Surface {
-        emissivity: check::fraction("surface.emissivity", emissivity, "paint has about 0.9, bare metal 0.1 to 0.3")?,
+        emissivity: check::fraction(
+            "surface.emissivity",
+            emissivity,
+            "paint has about 0.9, bare metal 0.1 to 0.3",
+        )?,
         solar_absorptivity: check::fraction(
             "surface.solar_absorptivity",
             absorptivity,
@@ -305,7 +219,17 @@ fn gas(spec: &GasSpec) -> Result<GasResolution, ThermalError> {
     let mixing = spec.core_mixing.unwrap_or(0.05);
     Ok(GasResolution::Stratified(Stratification {
         cells: check::cells("gas.cells", spec.cells.unwrap_or(8), 2)?,
-        exchange_length_diameters: check::positive("gas.exchange_length_diameters", exchange, "about 1 is usual")?,
-        core_mixing: check::within("gas.core_mixing", mixing, (0.0, 1.0), "between 0 and 1", "0 to 0.2 are usual")?,
+        exchange_length_diameters: check::positive(
+            "gas.exchange_length_diameters",
+            exchange,
+            "about 1 is usual",
+        )?,
+        core_mixing: check::within(
+            "gas.core_mixing",
+            mixing,
+            (0.0, 1.0),
+            "between 0 and 1",
+            "0 to 0.2 are usual",
+        )?,
     }))
 }

@@ -2,13 +2,13 @@
 //!
 //! [`VesselSpec`] is the raw content of a vessel file; [`VesselSpec::build`] checks it and gives a [`Vessel`].
 mod build;
+mod contour;
 pub mod presets;
+mod read;
 pub mod spec;
 
+pub use read::{read_specification, read_vessel, schema};
 pub use spec::VesselSpec;
-
-use crate::ThermalError;
-use crate::document;
 
 use crate::fluid::Fluid;
 use crate::wall::geometry::Geometry;
@@ -116,16 +116,19 @@ pub struct Stratification {
     pub core_mixing: f64,
 }
 
-/// Reads a vessel file; `source` is its name in messages.
-///
-/// # Errors
-/// [`ThermalError::Document`] with file, line, value and remedy for whatever is wrong with the text.
-pub fn read_vessel(text: &str, source: &str) -> Result<Vessel, ThermalError> {
-    let (specification, places) = document::read::<VesselSpec>(text, source)?;
-    specification.build().map_err(|error| places.locate(error))
+impl InnerVolume {
+    /// Volume at a mean wall temperature and a pressure, m³.
+    pub fn volume_m3(&self, wall_k: f64, pressure_pa: f64) -> f64 {
+        self.volume_m3
+            * (1.0
+                + self.thermal_expansion_per_k * (wall_k - self.reference_temperature_k)
+                + self.pressure_expansion_per_pa * (pressure_pa - self.reference_pressure_pa))
+    }
 }
 
-/// JSON schema of vessel files.
-pub fn schema() -> serde_json::Value {
-    document::schema::of::<VesselSpec>("cylwatch vessel")
+impl Valve {
+    /// Heat capacity at the reference temperature, J/K.
+    pub fn capacity_j_k(&self) -> f64 {
+        self.mass_kg * self.material.heat_capacity_j_kg_k
+    }
 }

@@ -2,10 +2,10 @@
 //!
 //! Every field is SI here; the file may use any unit of the field's dimension (see [`crate::document`]).
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Raw content of a vessel file.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct VesselSpec {
     /// Name for people.
     pub name: String,
@@ -42,7 +42,7 @@ pub struct VesselSpec {
 }
 
 /// Equation of state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum EquationChoice {
     /// The fluid's reference equation.
@@ -55,7 +55,7 @@ pub enum EquationChoice {
 }
 
 /// How the axis lies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrientationChoice {
     /// Valve at the top.
@@ -66,7 +66,7 @@ pub enum OrientationChoice {
 }
 
 /// Inner contour: bottom, cylinder, shoulder, neck.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct GeometrySpec {
     /// Inner diameter of the cylinder.
     pub inner_diameter_m: f64,
@@ -88,7 +88,7 @@ pub struct GeometrySpec {
 }
 
 /// A closing end.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct EndSpec {
     /// Shape of the inner contour, ellipsoidal by default.
     #[serde(default)]
@@ -102,7 +102,7 @@ pub struct EndSpec {
 }
 
 /// Shape of a closing end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShapeChoice {
     /// A disc.
@@ -115,7 +115,7 @@ pub enum ShapeChoice {
 }
 
 /// The neck.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct NeckSpec {
     /// Bore.
     pub inner_diameter_m: f64,
@@ -128,7 +128,7 @@ pub struct NeckSpec {
 }
 
 /// A layer of the cylindrical wall.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct LayerSpec {
     /// Name of a material of the library or of this file.
     pub material: String,
@@ -139,7 +139,7 @@ pub struct LayerSpec {
 }
 
 /// A material of the file's own.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct MaterialSpec {
     /// Name that layers and the valve use.
     pub name: String,
@@ -160,9 +160,9 @@ pub struct MaterialSpec {
 }
 
 /// Inner volume.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct VolumeSpec {
-    /// Volume at the reference state; by default the contour's (cylinder and ends, without the neck).
+    /// Volume at the reference state; by default the contour's (cylinder, ends and neck).
     pub volume_m3: Option<f64>,
     /// True: the volume is constant and no expansion may be given.
     #[serde(default)]
@@ -178,7 +178,7 @@ pub struct VolumeSpec {
 }
 
 /// Valve body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct ValveSpec {
     /// Name of a material of the library or of this file; brass by default.
     pub material: Option<String>,
@@ -195,7 +195,7 @@ pub struct ValveSpec {
 }
 
 /// Radiative properties of the outer surface.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct SurfaceSpec {
     /// Long-wave emissivity, 0.9 by default (paint).
     pub emissivity: Option<f64>,
@@ -204,7 +204,7 @@ pub struct SurfaceSpec {
 }
 
 /// Film law inside.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct InsideFilmSpec {
     /// Law, McAdams's by default.
     #[serde(default)]
@@ -220,7 +220,7 @@ pub struct InsideFilmSpec {
 }
 
 /// Film law inside.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LawChoice {
     /// `Nu = 0.13 Ra^(1/3)`.
@@ -235,7 +235,7 @@ pub enum LawChoice {
 }
 
 /// How the gas is resolved.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct GasSpec {
     /// Model, well mixed by default.
     #[serde(default)]
@@ -249,7 +249,7 @@ pub struct GasSpec {
 }
 
 /// How the gas is resolved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum GasChoice {
     /// One node.

@@ -91,3 +91,73 @@ impl Geometry {
         self.layers.iter().map(|layer| layer.thickness_m).sum()
     }
 }
+
+impl Geometry {
+    /// Height of the inner contour along the axis, m.
+    pub fn inner_height_m(&self) -> f64 {
+        let radius = 0.5 * self.inner_diameter_m;
+        let bottom = match self.bottom.shape {
+            EndShape::Flat => 0.0,
+            EndShape::Dome { depth_m } => depth_m,
+        };
+        bottom + self.cylinder_length_m + self.shoulder_height_m(radius) + self.neck.map_or(0.0, |n| n.length_m)
+    }
+
+    /// Height of the outer contour along the axis, without the valve, m.
+    pub fn outer_height_m(&self) -> f64 {
+        let top = if self.neck.is_some() { 0.0 } else { self.shoulder.thickness_m };
+        self.bottom.thickness_m + self.inner_height_m() + top
+    }
+
+    /// Volume inside the contour, m³.
+    pub fn contour_volume_m3(&self) -> f64 {
+        let radius = 0.5 * self.inner_diameter_m;
+        let area = std::f64::consts::PI * radius * radius;
+        let bottom = match self.bottom.shape {
+            EndShape::Flat => 0.0,
+            EndShape::Dome { depth_m } => 2.0 / 3.0 * area * depth_m,
+        };
+        let shoulder = match self.shoulder.shape {
+            EndShape::Flat => 0.0,
+            EndShape::Dome { depth_m } => {
+                // Zone of the spheroid up to the opening: pi a² (z - z³/(3 b²)).
+                let z = self.shoulder_height_m(radius);
+                area * (z - z.powi(3) / (3.0 * depth_m * depth_m))
+            }
+        };
+        let neck = self.neck.map_or(0.0, |neck| {
+            0.25 * std::f64::consts::PI * neck.inner_diameter_m.powi(2) * neck.length_m
+        });
+        bottom + area * self.cylinder_length_m + shoulder + neck
+    }
+
+    fn shoulder_height_m(&self, radius: f64) -> f64 {
+        match self.shoulder.shape {
+            EndShape::Flat => 0.0,
+            EndShape::Dome { depth_m } => {
+                let opening = self.neck.map_or(0.0, |neck| 0.5 * neck.inner_diameter_m) / radius;
+                depth_m * (1.0 - opening * opening).sqrt()
+            }
+        }
+    }
+}
+
+impl Geometry {
+    /// Inner radius at a height above the inner bottom of the standing vessel, m.
+    pub fn inner_radius_at_m(&self, height_m: f64) -> f64 {
+        let radius = 0.5 * self.inner_diameter_m;
+        let dome = |depth: f64, distance: f64| radius * (1.0 - (distance / depth).powi(2)).max(0.0).sqrt();
+        let bottom = match self.bottom.shape {
+            EndShape::Flat => 0.0,
+            EndShape::Dome { depth_m } => depth_m,
+        };
+        let shoulder = bottom + self.cylinder_length_m;
+        let opening = self.neck.map_or(0.0, |neck| 0.5 * neck.inner_diameter_m);
+        match (self.bottom.shape, self.shoulder.shape) {
+            (EndShape::Dome { depth_m }, _) if height_m < bottom => dome(depth_m, bottom - height_m),
+            (_, EndShape::Dome { depth_m }) if height_m > shoulder => dome(depth_m, height_m - shoulder).max(opening),
+            (_, EndShape::Flat) if height_m > shoulder => opening,
+            _ => radius,
+        }
+    }
+}

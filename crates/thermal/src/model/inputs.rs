@@ -1,0 +1,91 @@
+//! What acts on the cylinder at one instant, and its linear pieces between two edges of the scenario.
+use crate::scenario::series::LinearPiece;
+use crate::scenario::{OutsideFilm, Scenario};
+
+/// Outside film at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FilmInput {
+    /// Coefficient, W/(m² K).
+    Coefficient(f64),
+    /// Wind across the axis, m/s, and the multiplier on the film.
+    Convection {
+        /// Wind, m/s.
+        wind_m_s: f64,
+        /// Multiplier on the film.
+        multiplier: f64,
+    },
+}
+
+/// Surroundings at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs {
+    /// Air temperature, K.
+    pub air_k: f64,
+    /// Outside film.
+    pub film: FilmInput,
+    /// Temperature that the surface radiates to, K.
+    pub radiation_k: Option<f64>,
+    /// Solar irradiance, W/m².
+    pub irradiance_w_m2: f64,
+}
+
+/// The surroundings between two edges, every signal linear in time.
+#[derive(Clone, Copy, Debug)]
+pub struct InputPieces {
+    air: LinearPiece,
+    film: LinearPiece,
+    multiplier: Option<f64>,
+    radiation: Option<LinearPiece>,
+    irradiance: Option<LinearPiece>,
+}
+
+impl InputPieces {
+    /// The pieces on an interval without an edge in its inside.
+    pub fn new(scenario: &Scenario, from_s: f64, to_s: f64) -> Self {
+        let surroundings = &scenario.surroundings;
+        let (film, multiplier) = match &surroundings.film {
+            OutsideFilm::Coefficient { film_w_m2_k } => (film_w_m2_k, None),
+            OutsideFilm::Convection { wind_m_s, multiplier } => (wind_m_s, Some(*multiplier)),
+        };
+        Self {
+            air: surroundings.air_k.segment(from_s, to_s),
+            film: film.segment(from_s, to_s),
+            multiplier,
+            radiation: surroundings.radiation_k.as_ref().map(|s| s.segment(from_s, to_s)),
+            irradiance: surroundings.sun.as_ref().map(|sun| sun.irradiance_w_m2.segment(from_s, to_s)),
+        }
+    }
+
+    /// Surroundings at a time in the interval, s.
+    pub fn at(&self, t_s: f64) -> Inputs {
+        let film = self.film.at(t_s);
+        Inputs {
+            air_k: self.air.at(t_s),
+            film: match self.multiplier {
+                None => FilmInput::Coefficient(film),
+                Some(multiplier) => FilmInput::Convection { wind_m_s: film, multiplier },
+            },
+            radiation_k: self.radiation.map(|piece| piece.at(t_s)),
+            irradiance_w_m2: self.irradiance.map_or(0.0, |piece| piece.at(t_s)),
+        }
+    }
+}
+
+/// Times at which an input jumps or bends, or a flow may start or stop, s: increasing, inside `(0, duration)`,
+/// with the duration as the last.
+pub fn edges_s(scenario: &Scenario) -> Vec<f64> {
+    let surroundings = &scenario.surroundings;
+    let film = match &surroundings.film {
+        OutsideFilm::Coefficient { film_w_m2_k } => film_w_m2_k,
+        OutsideFilm::Convection { wind_m_s, .. } => wind_m_s,
+    };
+    let mut edges: Vec<f64> = surroundings.air_k.edges_s().chain(film.edges_s()).collect();
+    edges.extend(surroundings.radiation_k.iter().flat_map(|s| s.edges_s()));
+    edges.extend(surroundings.sun.iter().flat_map(|sun| sun.irradiance_w_m2.edges_s()));
+    edges.extend(scenario.flows.iter().flat_map(|flow| [flow.start_s, flow.stop_s]));
+    edges.retain(|&t| t > 0.0 && t < scenario.duration_s);
+    edges.push(scenario.duration_s);
+    edges.sort_by(f64::total_cmp);
+    edges.dedup();
+    edges
+}

@@ -1,0 +1,300 @@
+//! Exact Jacobian of the model as a fixed sequence of entries.
+//!
+//! Wall, films and surfaces are differentiated by hand; the gas by dual numbers in its own inputs ([`GasBlock`]),
+//! chained with the derivatives of those inputs. The sequence of `(row, column)` pairs depends on mesh and
+//! layout alone, never on the state, so that a sparsity pattern taken once holds for the whole run; a pair may
+//! occur more than once, and its values add.
+use nalgebra::{Const, DMatrix, U1};
+use num_dual::DualSVec64;
+
+use super::inputs::Inputs;
+use super::well_mixed::jet_film;
+use super::{Gas, GasPoint, Model, WallAction};
+use crate::ThermalError;
+use crate::wall::conduction::link_flow;
+use crate::wall::mesh::Facing;
+
+/// Receiver of `(row, column, value)` entries that add.
+pub type Assembly<'a> = dyn FnMut(usize, usize, f64) + 'a;
+
+/// Derivatives of the gas of `n` cells.
+///
+/// # Shapes
+/// `matrix`: (2n + 3, 5n + 2). Rows: mass rates, energy rates, mass in, enthalpy in, work out. Columns: masses,
+/// energies, mean wall state, its rate, side heats, plate heats, side surface temperatures.
+#[derive(Debug)]
+pub struct GasBlock {
+    /// The matrix.
+    pub matrix: DMatrix<f64>,
+    /// Temperature and pressure of each cell with its (mass, energy, mean wall).
+    pub cells: Vec<([f64; 3], [f64; 3])>,
+    /// Film of the jet with the (mass, energy, mean wall) of the outlet's cell.
+    pub jet: [f64; 3],
+}
+
+type Dual5 = DualSVec64<5>;
+type Dual3 = DualSVec64<3>;
+
+fn gradient<const N: usize>(value: DualSVec64<N>) -> [f64; N] {
+    value.eps.unwrap_generic(Const::<N>, U1).into()
+}
+
+/// Local columns of the gas's chain rule: gas states first, then inner cells, outer cells, valve.
+struct LocalColumns {
+    /// State index of each local column.
+    state: Vec<usize>,
+    inner: usize,
+    outer: usize,
+    valve: usize,
+}
+
+impl Model {
+    fn gas_block(
+        &self,
+        x: &[f64],
+        open: &[bool],
+        wall: &WallAction<f64>,
+        wall_rate: f64,
+    ) -> Result<GasBlock, ThermalError> {
+        let layout = &self.layout;
+        let boundary = self.boundary(open);
+        let (mass, rest) = x[layout.mass..].split_at(layout.gas);
+        let (energy, mean) = (&rest[..layout.gas], x[layout.mean_wall]);
+        let outlet = self.grid.outlet;
+        let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
+        let jet_of = |gas: &super::WellMixed| -> Result<[f64; 3], ThermalError> {
+            let node = gas.node(seed(mass[outlet], 0), seed(energy[outlet], 1), seed(mean, 2))?;
+            Ok(gradient(jet_film(&self.fluid, &node, &self.flows, open, self.inner_diameter_m)))
+        };
+        match &self.gas {
+            Gas::WellMixed(gas) => {
+                let seed = |value: f64, index: usize| Dual5::from(value).derivative(index);
+                let node = gas.node(seed(mass[0], 0), seed(energy[0], 1), seed(mean, 2))?;
+                let rates =
+                    gas.rates(&node, &boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
+                let mut matrix = DMatrix::zeros(5, 7);
+                let rows =
+                    [rates.mass_kg_s, rates.energy_w, rates.mass_kg_s, rates.enthalpy_w, rates.work_w];
+                for (row, value) in rows.into_iter().enumerate() {
+                    for (column, derivative) in gradient(value).into_iter().enumerate() {
+                        matrix[(row, column)] = derivative;
+                    }
+                }
+                let three = |value: Dual5| {
+                    let g = gradient(value);
+                    [g[0], g[1], g[2]]
+                };
+                let cells = vec![(three(node.state.temperature_k), three(node.state.pressure_pa))];
+                Ok(GasBlock { matrix, cells, jet: jet_of(gas)? })
+            }
+            Gas::Stratified(gas) => {
+                let (matrix, cells) = gas.jacobian(mass, energy, mean, &boundary, wall, wall_rate)?;
+                Ok(GasBlock { matrix, cells, jet: jet_of(gas.outlet_node())? })
+            }
+        }
+    }
+
+    fn local_columns(&self) -> LocalColumns {
+        let layout = &self.layout;
+        let columns = self.mesh.columns.len();
+        let mut state: Vec<usize> = (layout.mass..layout.mass + 2 * layout.gas).collect();
+        state.push(layout.mean_wall);
+        let inner = state.len();
+        state.extend((0..columns).map(|j| self.mesh.inner_cell(j)));
+        let outer = state.len();
+        state.extend((0..columns).map(|j| self.mesh.outer_cell(j)));
+        let valve = state.len();
+        state.extend(layout.valve);
+        LocalColumns { state, inner, outer, valve }
+    }
+
+    /// Emit every entry of `d(dx/dt)/dx`.
+    ///
+    /// # Errors
+    /// As [`Model::rate`]. Nothing has been emitted then.
+    pub fn jacobian(
+        &self,
+        x: &[f64],
+        inputs: &Inputs,
+        open: &[bool],
+        emit: &mut Assembly<'_>,
+    ) -> Result<(), ThermalError> {
+        let layout = &self.layout;
+        let mut rate = vec![0.0; layout.states];
+        self.rate(x, inputs, open, &mut rate)?;
+        let nodes = self.gas_nodes(x)?;
+        let jet = self.jet_w_m2_k(&nodes, open);
+        let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
+        let wall = self.scratch.borrow().wall.clone();
+        let gas = self.gas_block(x, open, &wall, rate[layout.mean_wall])?;
+        let mut temperature_k = Vec::with_capacity(layout.wall);
+        self.node_temperatures(x, &mut temperature_k);
+        let slope: Vec<f64> = (0..layout.wall)
+            .map(|cell| self.mesh.materials[self.mesh.material[cell]].temperature_slope(x[cell]))
+            .collect();
+
+        self.emit_conduction(&temperature_k, &slope, emit);
+        let local = self.local_columns();
+        // Derivatives of the gas's inputs with the local columns.
+        let mut chain = DMatrix::zeros(5 * layout.gas + 2, local.state.len());
+        for i in 0..=2 * layout.gas {
+            chain[(i, i)] = 1.0;
+        }
+        let mut wall_heat = vec![0.0; local.state.len()];
+        for column in 0..self.mesh.columns.len() {
+            let point = FacePoint { temperature_k: &temperature_k, points: &points, jet, slope: &slope };
+            self.chain_inner_face(column, &point, &gas, &local, &mut chain, &mut wall_heat, emit);
+            let cell = self.mesh.outer_cell(column);
+            let by_cell = self.outer_face(column, &temperature_k, inputs).heat_per_node_k * slope[cell];
+            emit(cell, cell, -by_cell / self.capacity_j_k[cell]);
+            emit(layout.heat_in, cell, -by_cell);
+            wall_heat[local.outer + column] -= by_cell;
+        }
+        self.chain_valve(x, inputs, &slope, &local, &mut wall_heat, emit);
+        let rate_row = 2 * layout.gas + 1;
+        for (index, (&state, heat)) in local.state.iter().zip(&wall_heat).enumerate() {
+            chain[(rate_row, index)] = heat / self.wall_capacity_j_k;
+            emit(layout.mean_wall, state, chain[(rate_row, index)]);
+        }
+        let product = &gas.matrix * &chain;
+        let rows = (layout.mass..layout.mass + 2 * layout.gas).chain([
+            layout.mass_in,
+            layout.enthalpy_in,
+            layout.work_out,
+        ]);
+        for (row, state_row) in rows.enumerate() {
+            for (index, &state) in local.state.iter().enumerate() {
+                emit(state_row, state, product[(row, index)]);
+            }
+        }
+        Ok(())
+    }
+
+    fn emit_conduction(&self, temperature_k: &[f64], slope: &[f64], emit: &mut Assembly<'_>) {
+        let c = &self.capacity_j_k;
+        for link in &self.mesh.links {
+            let flow = link_flow(&self.mesh, link, temperature_k);
+            let (by_a, by_b) = (flow.per_a_k * slope[link.a], flow.per_b_k * slope[link.b]);
+            emit(link.a, link.a, -by_a / c[link.a]);
+            emit(link.a, link.b, -by_b / c[link.a]);
+            emit(link.b, link.a, by_a / c[link.b]);
+            emit(link.b, link.b, by_b / c[link.b]);
+        }
+    }
+
+    /// Derivatives of one inner face: of its heat flows to each contact and of its surface temperature, with its
+    /// wall cell and with the states of the gas cells it touches.
+    #[allow(clippy::too_many_arguments)]
+    fn chain_inner_face(
+        &self,
+        column: usize,
+        at: &FacePoint<'_>,
+        gas: &GasBlock,
+        local: &LocalColumns,
+        chain: &mut DMatrix<f64>,
+        wall_heat: &mut [f64],
+        emit: &mut Assembly<'_>,
+    ) {
+        let n = self.layout.gas;
+        let cell = self.mesh.inner_cell(column);
+        let capacity = self.capacity_j_k[cell];
+        let contacts = &self.grid.contacts[column];
+        let balance = self.inner_face(column, at.temperature_k, at.points, at.jet);
+        let half = self.half_cell(cell, self.mesh.columns[column].inner_shape_m, at.temperature_k[cell]);
+        let fluxes: Vec<_> = contacts
+            .iter()
+            .map(|contact| self.contact_flux(contact, balance.surface_k, at.points, at.jet))
+            .collect();
+        let film: f64 = contacts.iter().zip(&fluxes).map(|(c, f)| c.area_m2 * f.per_surface_k).sum();
+        let total = half.conductance_w_k + film;
+        let surface_by_cell = (half.conductance_w_k
+            + half.conductance_slope_w_k2 * (half.node_k - balance.surface_k))
+            / total
+            * at.slope[cell];
+        // Direct derivative of contact `k`'s heat with the three states behind gas cell `contact.cell`.
+        let direct = |k: usize| -> [f64; 3] {
+            let (contact, flux) = (&contacts[k], &fluxes[k]);
+            let (temperature, pressure) = &gas.cells[contact.cell];
+            std::array::from_fn(|i| {
+                contact.area_m2 * (flux.per_gas_k * temperature[i] + flux.per_pressure * pressure[i])
+            })
+        };
+        let jet_area: f64 = contacts
+            .iter()
+            .map(|c| c.area_m2 * (balance.surface_k - at.points[c.cell].temperature_k))
+            .sum();
+        let state_columns = |gas_cell: usize| [gas_cell, n + gas_cell, 2 * n];
+        // (local column, derivative of the surface temperature, contact and derivative of its own heat)
+        let mut entries: Vec<(usize, f64, Option<(usize, f64)>)> =
+            vec![(local.inner + column, surface_by_cell, None)];
+        for (k, contact) in contacts.iter().enumerate() {
+            for (state, value) in state_columns(contact.cell).into_iter().zip(direct(k)) {
+                entries.push((state, -value / total, Some((k, value))));
+            }
+        }
+        for (i, state) in state_columns(self.grid.outlet).into_iter().enumerate() {
+            entries.push((state, -jet_area * gas.jet[i] / total, None));
+            for (k, contact) in contacts.iter().enumerate() {
+                let own = contact.area_m2
+                    * (balance.surface_k - at.points[contact.cell].temperature_k)
+                    * gas.jet[i];
+                entries.push((state, 0.0, Some((k, own))));
+            }
+        }
+        for (index, surface, own) in entries {
+            let mut heat = 0.0;
+            for (k, (contact, flux)) in contacts.iter().zip(&fluxes).enumerate() {
+                let mut by = contact.area_m2 * flux.per_surface_k * surface;
+                if let Some((_, value)) = own.filter(|&(of, _)| of == k) {
+                    by += value;
+                }
+                heat += by;
+                let side = contact.facing == Facing::Side;
+                let input = 2 * n + 2 + if side { contact.cell } else { n + contact.cell };
+                chain[(input, index)] += by;
+                if side {
+                    let weight = contact.area_m2 / self.grid.cells[contact.cell].side_m2;
+                    chain[(4 * n + 2 + contact.cell, index)] += weight * surface;
+                }
+            }
+            wall_heat[index] -= heat;
+            emit(cell, local.state[index], -heat / capacity);
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn chain_valve(
+        &self,
+        x: &[f64],
+        inputs: &Inputs,
+        slope: &[f64],
+        local: &LocalColumns,
+        wall_heat: &mut [f64],
+        emit: &mut Assembly<'_>,
+    ) {
+        let layout = &self.layout;
+        let (Some(index), Some(valve)) = (layout.valve, &self.valve) else { return };
+        let contact = self.contact_cell();
+        let valve_slope = valve.material.temperature_slope(x[index]);
+        let valve_k = valve.material.temperature_k(x[index]);
+        let by_valve = valve.contact_w_k * valve_slope;
+        let by_contact = -valve.contact_w_k * slope[contact];
+        let loss = self.valve_loss(valve, valve_k, inputs).1 * valve_slope;
+        let c = self.capacity_j_k[contact];
+        emit(contact, index, by_valve / c);
+        emit(contact, contact, by_contact / c);
+        emit(index, index, (-loss - by_valve) / valve.capacity_j_k());
+        emit(index, contact, -by_contact / valve.capacity_j_k());
+        emit(layout.heat_in, index, -loss);
+        wall_heat[local.valve] += by_valve;
+        wall_heat[local.outer + self.mesh.columns.len() - 1] += by_contact;
+    }
+}
+
+/// Where a face is differentiated.
+struct FacePoint<'a> {
+    temperature_k: &'a [f64],
+    points: &'a [GasPoint],
+    jet: f64,
+    slope: &'a [f64],
+}

@@ -1,0 +1,57 @@
+//! Where each quantity stands in the state vector.
+//!
+//! `[wall cells | valve | mean wall | gas masses | gas energies | heat in | enthalpy in | mass in | work out]`
+//!
+//! Wall and valve carry energy as the temperature `x = T_ref + e / c_20` (see [`crate::wall::material`]); `mean wall` is
+//! their capacity-weighted mean without the valve, kept as a state so that the inner volume needs no dense coupling.
+//! The last four are the ledger: time integrals of what crosses the boundary.
+
+/// Indices into the state vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Number of wall cells; they come first.
+    pub wall: usize,
+    /// The valve's state, if there is a valve.
+    pub valve: Option<usize>,
+    /// Number of gas cells.
+    pub gas: usize,
+    /// Mean wall state.
+    pub mean_wall: usize,
+    /// First gas mass, kg.
+    pub mass: usize,
+    /// First gas energy, J.
+    pub energy: usize,
+    /// Heat received from outside, J.
+    pub heat_in: usize,
+    /// Enthalpy received with gas, J.
+    pub enthalpy_in: usize,
+    /// Gas received, kg.
+    pub mass_in: usize,
+    /// Work done on the expanding vessel, J.
+    pub work_out: usize,
+    /// Number of states.
+    pub states: usize,
+}
+
+impl Layout {
+    /// Layout for so many wall and gas cells.
+    pub fn new(wall: usize, valve: bool, gas: usize) -> Self {
+        let mean_wall = wall + usize::from(valve);
+        let mass = mean_wall + 1;
+        let energy = mass + gas;
+        let heat_in = energy + gas;
+        Self {
+            wall,
+            valve: valve.then_some(wall),
+            gas,
+            mean_wall,
+            mass,
+            energy,
+            heat_in,
+            enthalpy_in: heat_in + 1,
+            mass_in: heat_in + 2,
+            work_out: heat_in + 3,
+            states: heat_in + 4,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What a state vector means: temperatures, pressure, flows, balances.
+use super::{GasPoint, Model};
+use super::inputs::Inputs;
+use crate::ThermalError;
+use crate::flow::{FlowKind, orifice};
+
+/// Everything that is reported of one instant. SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Mass-weighted mean gas temperature, K.
+    pub gas_mean_k: f64,
+    /// Temperature of each gas cell, K.
+    pub gas_cells_k: Vec<f64>,
+    /// Outer surface temperature of each column, K.
+    pub wall_outer_k: Vec<f64>,
+    /// Inner surface temperature of each column, K.
+    pub wall_inner_k: Vec<f64>,
+    /// Mean wall temperature, weighted by heat capacity, K.
+    pub wall_mean_k: f64,
+    /// Valve temperature, K.
+    pub valve_k: Option<f64>,
+    /// Gas pressure, Pa.
+    pub pressure_pa: f64,
+    /// Gas mass, kg.
+    pub mass_kg: f64,
+    /// Net mass flow out, kg/s.
+    pub outflow_kg_s: f64,
+    /// Heat flow from wall to gas, W.
+    pub heat_to_gas_w: f64,
+}
+
+impl Model {
+    /// Evaluate everything at a state.
+    ///
+    /// # Errors
+    /// As [`Model::rate`].
+    pub fn output(&self, x: &[f64], inputs: &Inputs, open: &[bool]) -> Result<Output, ThermalError> {
+        let layout = &self.layout;
+        let nodes = self.gas_nodes(x)?;
+        let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
+        let outlet = &nodes.as_slice()[self.grid.outlet];
+        let (gas_mean_k, pressure_pa) = self.mean_state(x, &points);
+        let mut temperature_k = Vec::new();
+        self.node_temperatures(x, &mut temperature_k);
+        let jet = self.jet_w_m2_k(&nodes, open);
+        let columns = self.mesh.columns.len();
+        let inner: Vec<_> =
+            (0..columns).map(|j| self.inner_face(j, &temperature_k, &points, jet)).collect();
+        Ok(Output {
+            gas_mean_k,
+            gas_cells_k: points.iter().map(|point| point.temperature_k).collect(),
+            wall_outer_k: (0..columns)
+                .map(|j| self.outer_face(j, &temperature_k, inputs).surface_k)
+                .collect(),
+            wall_inner_k: inner.iter().map(|face| face.surface_k).collect(),
+            wall_mean_k: temperature_k.iter().zip(&self.capacity_j_k).map(|(t, c)| t * c).sum::<f64>()
+                / self.wall_capacity_j_k,
+            valve_k: layout
+                .valve
+                .zip(self.valve.as_ref())
+                .map(|(index, valve)| valve.material.temperature_k(x[index])),
+            pressure_pa,
+            mass_kg: self.mass_kg(x),
+            outflow_kg_s: -self.boundary(open).exchange(&self.fluid, &outlet.state)?.mass_kg_s,
+            heat_to_gas_w: inner.iter().map(|face| face.heat_w).sum(),
+        })
+    }
+
+    /// Mean gas temperature, K, and gas pressure, Pa, of a state.
+    ///
+    /// # Errors
+    /// As [`Model::rate`].
+    pub fn gas_state(&self, x: &[f64]) -> Result<(f64, f64), ThermalError> {
+        let nodes = self.gas_nodes(x)?;
+        let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
+        Ok(self.mean_state(x, &points))
+    }
+
+    /// Mass-weighted temperature, K, and volume-weighted pressure, Pa.
+    fn mean_state(&self, x: &[f64], points: &[GasPoint]) -> (f64, f64) {
+        let masses = &x[self.layout.mass..];
+        let temperature: f64 = points.iter().zip(masses).map(|(p, m)| p.temperature_k * m).sum();
+        let pressure =
+            points.iter().zip(&self.grid.cells).map(|(p, cell)| p.pressure_pa * cell.volume_fraction).sum();
+        (temperature / self.mass_kg(x), pressure)
+    }
+
+    /// Heat capacity of the wall at the reference temperature, J/K.
+    pub fn wall_capacity_j_k(&self) -> f64 {
+        self.wall_capacity_j_k
+    }
+
+    /// Excess of the critical throat pressure over the back pressure of an orifice flow, Pa: positive while
+    /// choked; `None` for other flows.
+    ///
+    /// # Errors
+    /// As [`Model::rate`].
+    pub fn choking_margin_pa(&self, x: &[f64], flow: usize) -> Result<Option<f64>, ThermalError> {
+        let FlowKind::Orifice { back_pressure_pa, .. } = self.flows[flow].kind else { return Ok(None) };
+        let nodes = self.gas_nodes(x)?;
+        let outlet = &nodes.as_slice()[self.grid.outlet];
+        let flux = orifice::mass_flux(&self.fluid, &outlet.state, back_pressure_pa)?;
+        Ok(Some(flux.critical_pressure_pa - back_pressure_pa))
+    }
+
+    /// Energy of gas, wall and valve, J, up to a constant.
+    pub fn energy_j(&self, x: &[f64]) -> f64 {
+        let layout = &self.layout;
+        let wall: f64 = x[..layout.wall].iter().zip(&self.capacity_j_k).map(|(x, c)| x * c).sum();
+        let valve = layout.valve.zip(self.valve.as_ref()).map_or(0.0, |(i, v)| x[i] * v.capacity_j_k());
+        wall + valve + x[layout.energy..layout.energy + layout.gas].iter().sum::<f64>()
+    }
+
+    /// Gas mass, kg.
+    pub fn mass_kg(&self, x: &[f64]) -> f64 {
+        x[self.layout.mass..self.layout.mass + self.layout.gas].iter().sum()
+    }
+
+    /// The domain check of the gas state.
+    ///
+    /// # Errors
+    /// The gas is two-phase or outside the range of its equation of state.
+    pub fn check_gas(&self, x: &[f64]) -> Result<(), ThermalError> {
+        let nodes = self.gas_nodes(x)?;
+        nodes
+            .as_slice()
+            .iter()
+            .try_for_each(|node| self.fluid.check(node.state.density_kg_m3, node.state.temperature_k))
+    }
+}

@@ -1,0 +1,278 @@
+//! The gas as one well-mixed node of mass `m` and internal energy `U` in the elastic volume
+//! `V = V_0 [1 + a (T_w - T_0) + b (p - p_0)]`.
+//!
+//! `dm/dt = sum m_in - sum m_out`, `dU/dt = Q + sum m_in h_in - sum m_out h - p dV/dt`. Temperature and volume follow
+//! from `u(m/V, T) = U/m` and the volume law by Newton's method in two unknowns; one more Newton step in
+//! dual numbers gives all derivatives exactly. With `dV = V_m dm + V_U dU + V_T dT_w` the energy balance is explicit:
+//! `dU/dt = [Q + H - p (V_m dm/dt + V_T dT_w/dt)] / (1 + p V_U)`.
+use std::cell::Cell;
+
+use crate::ThermalError;
+use crate::flow::orifice;
+use crate::flow::{Flow, FlowKind};
+use crate::fluid::{Fluid, Real, State};
+use crate::transfer::inside::jet_film_w_m2_k;
+use crate::vessel::InnerVolume;
+
+const MAX_ITERATIONS: usize = 60;
+
+/// State of the node with the derivatives of its volume.
+#[derive(Clone, Copy, Debug)]
+pub struct Node<D> {
+    /// Thermodynamic state.
+    pub state: State<D>,
+    /// Volume, m³.
+    pub volume_m3: D,
+    /// `dV/dm` at constant energy and wall temperature, m³/kg.
+    volume_per_mass: D,
+    /// `dV/dU`, m³/J.
+    volume_per_energy: D,
+    /// `dV/dT_w`, m³/K.
+    volume_per_wall: D,
+}
+
+/// Everything that flows, and what it does to the node.
+#[derive(Clone, Copy, Debug)]
+pub struct Rates<D> {
+    /// Net mass flow in, kg/s.
+    pub mass_kg_s: D,
+    /// Change of the gas energy, W.
+    pub energy_w: D,
+    /// Net enthalpy flow in, W.
+    pub enthalpy_w: D,
+    /// Work on the vessel, W.
+    pub work_w: D,
+}
+
+/// The well-mixed gas of one vessel.
+#[derive(Debug)]
+pub struct WellMixed {
+    fluid: Fluid,
+    volume: InnerVolume,
+    /// Last solution (V, T): where Newton starts, without influence on where it ends.
+    guess: Cell<(f64, f64)>,
+}
+
+impl WellMixed {
+    /// A node of a fluid in a volume, started near a temperature.
+    pub fn new(fluid: Fluid, volume: InnerVolume, temperature_k: f64) -> Self {
+        Self { fluid, volume, guess: Cell::new((volume.volume_m3, temperature_k)) }
+    }
+
+    /// The fluid.
+    pub fn fluid(&self) -> &Fluid {
+        &self.fluid
+    }
+
+    /// State from mass, energy and mean wall temperature, with derivatives where `D` is a dual number.
+    ///
+    /// # Errors
+    /// No temperature gives this energy at this density.
+    pub fn node<D: Real>(&self, mass_kg: D, energy_j: D, wall_k: D) -> Result<Node<D>, ThermalError> {
+        let (v, t) = self.solve(mass_kg.re(), energy_j.re(), wall_k.re())?;
+        self.guess.set((v, t));
+        // One Newton step from the solution carries the derivatives; for plain numbers it is the last polish.
+        let at = self.linearise(mass_kg, energy_j, wall_k, D::from(v), D::from(t));
+        let [dv, dt] = at.newton_step();
+        let (volume, temperature) = (D::from(v) - dv, D::from(t) - dt);
+        let at = self.linearise(mass_kg, energy_j, wall_k, volume, temperature);
+        let (v0, a, b) = self.coefficients();
+        let s = at.state;
+        let energy_per_mass = s.internal_energy_j_kg + s.density_kg_m3 * at.u_rho;
+        let pressure_per_mass = s.dp_drho_pa_m3_kg / volume;
+        // Implicit function theorem on (F1, F2), rows as in `linearise`.
+        let solve_v =
+            |f1: D, f2: D| -(f1 * at.jacobian[1][1] - f2 * at.jacobian[0][1]) / at.determinant();
+        Ok(Node {
+            state: s,
+            volume_m3: volume,
+            volume_per_mass: solve_v(energy_per_mass, pressure_per_mass * (-v0 * b)),
+            volume_per_energy: solve_v(D::from(-1.0), D::from(0.0)),
+            volume_per_wall: solve_v(D::from(0.0), D::from(-v0 * a)),
+        })
+    }
+
+    fn coefficients(&self) -> (f64, f64, f64) {
+        let v = &self.volume;
+        (v.volume_m3, v.thermal_expansion_per_k, v.pressure_expansion_per_pa)
+    }
+
+    fn linearise<D: Real>(&self, m: D, energy: D, wall_k: D, v: D, t: D) -> Linearised<D> {
+        let (v0, a, b) = self.coefficients();
+        let state = self.fluid.state(m / v, t);
+        let rho = state.density_kg_m3;
+        let u_rho = (state.pressure_pa - t * state.dp_dt_pa_k) / (rho * rho);
+        let stretch = (wall_k - self.volume.reference_temperature_k) * a
+            + (state.pressure_pa - self.volume.reference_pressure_pa) * b
+            + 1.0;
+        Linearised {
+            residual: [m * state.internal_energy_j_kg - energy, v - stretch * v0],
+            jacobian: [
+                [-(u_rho * rho * rho), m * state.cv_j_kg_k],
+                [state.dp_drho_pa_m3_kg * rho / v * (v0 * b) + 1.0, state.dp_dt_pa_k * (-v0 * b)],
+            ],
+            state,
+            u_rho,
+        }
+    }
+
+    fn solve(&self, m: f64, energy: f64, wall_k: f64) -> Result<(f64, f64), ThermalError> {
+        let (mut v, mut t) = self.guess.get();
+        if m > 0.0 && m.is_finite() && energy.is_finite() {
+            for _ in 0..MAX_ITERATIONS {
+                let [dv, dt] = self.linearise(m, energy, wall_k, v, t).newton_step();
+                // Never leave the positive quadrant, never jump by more than a third.
+                v -= dv.clamp(-0.3 * v, 0.3 * v);
+                t -= dt.clamp(-0.3 * t, 0.3 * t);
+                if !(v.is_finite() && t.is_finite()) {
+                    break;
+                }
+                if dv.abs() <= 1e-13 * v && dt.abs() <= 1e-12 * t {
+                    return Ok((v, t));
+                }
+            }
+        }
+        Err(ThermalError::NoGasState { mass_kg: m, energy_j: energy })
+    }
+
+    /// Rates of change for a heat flow from the wall and a rate of change of the mean wall temperature.
+    ///
+    /// # Errors
+    /// An orifice without a throat state.
+    pub fn rates<D: Real>(
+        &self,
+        node: &Node<D>,
+        boundary: &Boundary<'_>,
+        heat_w: D,
+        wall_rate_k_s: D,
+    ) -> Result<Rates<D>, ThermalError> {
+        let exchange = boundary.exchange(&self.fluid, &node.state)?;
+        Ok(node.balance(exchange.mass_kg_s, exchange.enthalpy_w, heat_w, wall_rate_k_s))
+    }
+}
+
+impl<D: Real> Node<D> {
+    /// Rates of the node for its net mass, enthalpy and heat inflow and the rate of the mean wall temperature.
+    pub fn balance(&self, mass_kg_s: D, enthalpy_w: D, heat_w: D, wall_rate_k_s: D) -> Rates<D> {
+        let p = self.state.pressure_pa;
+        let volume_rate_without_energy =
+            self.volume_per_mass * mass_kg_s + self.volume_per_wall * wall_rate_k_s;
+        let supplied = heat_w + enthalpy_w;
+        let energy_w = (supplied - p * volume_rate_without_energy) / (p * self.volume_per_energy + 1.0);
+        Rates { mass_kg_s, energy_w, enthalpy_w, work_w: supplied - energy_w }
+    }
+
+    /// The same node in other numbers, e.g. with other derivatives.
+    pub fn map<E: Real>(&self, f: impl Fn(D) -> E) -> Node<E> {
+        let s = &self.state;
+        Node {
+            state: State {
+                temperature_k: f(s.temperature_k),
+                density_kg_m3: f(s.density_kg_m3),
+                pressure_pa: f(s.pressure_pa),
+                internal_energy_j_kg: f(s.internal_energy_j_kg),
+                enthalpy_j_kg: f(s.enthalpy_j_kg),
+                entropy_j_kg_k: f(s.entropy_j_kg_k),
+                cv_j_kg_k: f(s.cv_j_kg_k),
+                cp_j_kg_k: f(s.cp_j_kg_k),
+                sound_speed_m_s: f(s.sound_speed_m_s),
+                dp_dt_pa_k: f(s.dp_dt_pa_k),
+                dp_drho_pa_m3_kg: f(s.dp_drho_pa_m3_kg),
+                compressibility: f(s.compressibility),
+                expansion_per_k: f(s.expansion_per_k),
+            },
+            volume_m3: f(self.volume_m3),
+            volume_per_mass: f(self.volume_per_mass),
+            volume_per_energy: f(self.volume_per_energy),
+            volume_per_wall: f(self.volume_per_wall),
+        }
+    }
+}
+
+/// Film of the jets of open refills, W/(m² K); 0 without one.
+pub fn jet_film<D: Real>(
+    fluid: &Fluid,
+    node: &Node<D>,
+    flows: &[Flow],
+    open: &[bool],
+    vessel_diameter_m: f64,
+) -> D {
+    let mut sum = D::from(0.0);
+    for flow in flows.iter().zip(open).filter_map(|(flow, &open)| open.then_some(flow)) {
+        if let FlowKind::Refill { mass_flow_kg_s, inlet_diameter_m: Some(inlet), .. } = flow.kind {
+            let (rho, t) = (node.state.density_kg_m3, node.state.temperature_k);
+            let k = fluid.conductivity_w_m_k(rho, t);
+            let mu = fluid.viscosity_pa_s(rho, t);
+            sum += jet_film_w_m2_k(k, mu, mass_flow_kg_s, inlet, vessel_diameter_m);
+        }
+    }
+    sum
+}
+
+/// The two node equations and their derivatives at a trial point.
+struct Linearised<D> {
+    residual: [D; 2],
+    /// Rows: energy, volume; columns: V, T.
+    jacobian: [[D; 2]; 2],
+    state: State<D>,
+    /// `du/drho` at constant temperature, J m³/kg².
+    u_rho: D,
+}
+
+impl<D: Real> Linearised<D> {
+    fn determinant(&self) -> D {
+        let j = &self.jacobian;
+        j[0][0] * j[1][1] - j[0][1] * j[1][0]
+    }
+
+    fn newton_step(&self) -> [D; 2] {
+        let (j, f, det) = (&self.jacobian, &self.residual, self.determinant());
+        [(f[0] * j[1][1] - f[1] * j[0][1]) / det, (f[1] * j[0][0] - f[0] * j[1][0]) / det]
+    }
+}
+
+/// The flows of a scenario as they are open now.
+#[derive(Clone, Copy, Debug)]
+pub struct Boundary<'a> {
+    /// Flows of the scenario.
+    pub flows: &'a [Flow],
+    /// Which are open; same length.
+    pub open: &'a [bool],
+    /// Enthalpy of each refill's source, J/kg; 0 for flows out; same length.
+    pub source_enthalpy_j_kg: &'a [f64],
+}
+
+/// Gas and enthalpy that cross the boundary, both positive inwards.
+#[derive(Clone, Copy, Debug)]
+pub struct Exchange<D> {
+    /// Net mass flow in, kg/s.
+    pub mass_kg_s: D,
+    /// Net enthalpy flow in, W.
+    pub enthalpy_w: D,
+}
+
+impl Boundary<'_> {
+    /// Sum over the open flows; gas leaves with the enthalpy of `outlet`.
+    ///
+    /// # Errors
+    /// An orifice without a throat state.
+    pub fn exchange<D: Real>(&self, fluid: &Fluid, outlet: &State<D>) -> Result<Exchange<D>, ThermalError> {
+        let mut sum = Exchange { mass_kg_s: D::from(0.0), enthalpy_w: D::from(0.0) };
+        for (index, flow) in self.flows.iter().enumerate().filter(|&(index, _)| self.open[index]) {
+            let (mass, enthalpy) = match flow.kind {
+                FlowKind::Leak { mass_flow_kg_s } => (D::from(-mass_flow_kg_s), outlet.enthalpy_j_kg),
+                FlowKind::Orifice { diameter_m, discharge_coefficient, back_pressure_pa } => {
+                    let flux = orifice::mass_flux(fluid, outlet, back_pressure_pa)?.mass_flux_kg_m2_s;
+                    let area = 0.25 * std::f64::consts::PI * diameter_m * diameter_m;
+                    (flux * (-discharge_coefficient * area), outlet.enthalpy_j_kg)
+                }
+                FlowKind::Refill { mass_flow_kg_s, .. } => {
+                    (D::from(mass_flow_kg_s), D::from(self.source_enthalpy_j_kg[index]))
+                }
+            };
+            sum.mass_kg_s += mass;
+            sum.enthalpy_w += mass * enthalpy;
+        }
+        Ok(sum)
+    }
+}

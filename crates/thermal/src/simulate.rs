@@ -1,1 +1,0 @@
-//! Adaptive implicit simulation; the only file that names diffsol.

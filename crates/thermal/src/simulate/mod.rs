@@ -1,0 +1,403 @@
+//! Adaptive implicit simulation of a vessel through a scenario.
+//!
+//! The run is cut at every edge of an input and at every event that opens or closes a flow; between two cuts all
+//! inputs are linear in time and the solver ([`solver`]) runs free. Samples come from its dense output; a
+//! sample on a cut belongs to the interval that begins there. Events are located on the dense output by bisection.
+mod events;
+mod solver;
+
+use std::cell::{Cell, RefCell};
+
+use crate::ThermalError;
+use crate::model::inputs::{InputPieces, edges_s};
+use crate::model::{Model, Output};
+use crate::scenario::Scenario;
+use crate::trajectory::{Event, EventKind, Ledger, Place, SolverStatistics, Trajectory};
+use crate::vessel::Vessel;
+use events::{FlowStates, Monitors};
+use solver::{Drive, Step, Stepper, with_stepper};
+
+/// Integration method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// BDF where inputs have few edges, TR-BDF2 where they have many.
+    #[default]
+    Automatic,
+    /// Backward differentiation, order 1 to 5: best for smooth inputs.
+    Bdf,
+    /// One-step, order 2: best where the run is cut often.
+    TrBdf2,
+    /// One-step, order 3 to 4.
+    Esdirk34,
+}
+
+/// Settings of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimulationSettings {
+    /// Relative tolerance of every state, 1e-13 to 1e-2; the error of temperatures is 20 to 100 times the absolute one.
+    pub relative_tolerance: f64,
+    /// Absolute tolerance of temperatures, K; by default 100 K times the relative tolerance.
+    pub absolute_tolerance_k: Option<f64>,
+    /// Integration method.
+    pub method: Method,
+    /// First step after a start or a jump, s.
+    pub first_step_s: f64,
+    /// Steps after which a run is given up.
+    pub maximum_steps: usize,
+}
+
+impl Default for SimulationSettings {
+    fn default() -> Self {
+        Self {
+            relative_tolerance: 1e-6,
+            absolute_tolerance_k: None,
+            method: Method::Automatic,
+            first_step_s: 0.1,
+            maximum_steps: 20_000_000,
+        }
+    }
+}
+
+/// Edges above which one-step methods are cheaper (they need no history after a cut).
+const MANY_EDGES: usize = 60;
+/// Mean wall temperature that scales the ledger's tolerance, K.
+const LEDGER_SCALE_K: f64 = 300.0;
+
+impl SimulationSettings {
+    /// Check the settings.
+    ///
+    /// # Errors
+    /// A value is outside its range.
+    pub fn validate(&self) -> Result<(), ThermalError> {
+        let check = |setting: &'static str, value: f64, low: f64, high: f64| {
+            if value >= low && value <= high {
+                Ok(())
+            } else {
+                Err(ThermalError::Setting { setting, value, low, high })
+            }
+        };
+        check("relative_tolerance", self.relative_tolerance, 1e-13, 1e-2)?;
+        check("absolute_tolerance_k", self.absolute_tolerance_k.unwrap_or(1e-4), 1e-12, 1.0)?;
+        check("first_step_s", self.first_step_s, 1e-9, 1e4)
+    }
+
+    fn method_for(&self, edges: usize) -> Method {
+        match self.method {
+            Method::Automatic if edges > MANY_EDGES => Method::TrBdf2,
+            Method::Automatic => Method::Bdf,
+            chosen => chosen,
+        }
+    }
+}
+
+/// Run a scenario.
+///
+/// `progress` is called now and then with the fraction that is done, 0 to 1.
+///
+/// # Errors
+/// Settings out of range; an initial or later gas state that is two-phase or outside the equation of
+/// state, with the time and state at which it happened; a solver that cannot go on.
+pub fn simulate(
+    vessel: &Vessel,
+    scenario: &Scenario,
+    settings: &SimulationSettings,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Trajectory, ThermalError> {
+    settings.validate()?;
+    let model = Model::new(vessel, scenario)?;
+    let x0 = model.initial_state(vessel, &scenario.initial)?;
+    let edges = edges_s(scenario);
+    let drive = Drive {
+        pieces: Cell::new(InputPieces::new(scenario, 0.0, edges[0])),
+        open: RefCell::new(vec![false; scenario.flows.len()]),
+        failure: RefCell::new(None),
+    };
+    let absolute = absolute_tolerances(&model, vessel, &x0, settings);
+    let method = settings.method_for(edges.len());
+    let mut run = Run {
+        model: &model,
+        scenario,
+        drive: &drive,
+        settings,
+        flows: FlowStates::new(&scenario.flows),
+        monitors: Monitors::new(scenario),
+        samples: Samples::new(scenario),
+        events: Vec::new(),
+        segments: 0,
+        x: x0.clone(),
+        progress,
+    };
+    let statistics = with_stepper(&model, &drive, x0.clone(), absolute, settings, method, |stepper| {
+        run.all_segments(stepper, &edges)?;
+        Ok(SolverStatistics { segments: run.segments, ..stepper.statistics() })
+    })?;
+    let end = run.x.clone();
+    let ledger = ledger(&model, &x0, &end);
+    Ok(run.into_trajectory(vessel, ledger, statistics))
+}
+
+/// Tolerances in the states' own units: kelvin for the wall, the same error in kelvin for the gas energy.
+fn absolute_tolerances(model: &Model, vessel: &Vessel, x0: &[f64], settings: &SimulationSettings) -> Vec<f64> {
+    let layout = model.layout();
+    let kelvin = settings.absolute_tolerance_k.unwrap_or(100.0 * settings.relative_tolerance);
+    let heat = settings.relative_tolerance * model.wall_capacity_j_k() * LEDGER_SCALE_K;
+    let mass: f64 = model.mass_kg(x0);
+    let mut absolute = vec![kelvin; layout.states];
+    let cv = 2.5 * vessel.fluid.specific_gas_constant_j_kg_k();
+    for cell in 0..layout.gas {
+        absolute[layout.mass + cell] = settings.relative_tolerance * x0[layout.mass + cell];
+        absolute[layout.energy + cell] = kelvin * cv * x0[layout.mass + cell];
+    }
+    absolute[layout.heat_in] = heat;
+    absolute[layout.enthalpy_in] = heat;
+    absolute[layout.work_out] = heat;
+    absolute[layout.mass_in] = settings.relative_tolerance * mass;
+    absolute
+}
+
+fn ledger(model: &Model, start: &[f64], end: &[f64]) -> Ledger {
+    let layout = model.layout();
+    let gained = |index: usize| end[index] - start[index];
+    Ledger {
+        mass_start_kg: model.mass_kg(start),
+        mass_end_kg: model.mass_kg(end),
+        mass_in_kg: gained(layout.mass_in),
+        energy_start_j: model.energy_j(start),
+        energy_end_j: model.energy_j(end),
+        heat_in_j: gained(layout.heat_in),
+        enthalpy_in_j: gained(layout.enthalpy_in),
+        work_out_j: gained(layout.work_out),
+        energy_scale_j: gained(layout.heat_in).abs()
+            + gained(layout.enthalpy_in).abs()
+            + gained(layout.work_out).abs()
+            + (model.energy_j(end) - model.energy_j(start)).abs(),
+    }
+}
+
+/// A run in progress.
+struct Run<'a> {
+    model: &'a Model,
+    scenario: &'a Scenario,
+    drive: &'a Drive,
+    settings: &'a SimulationSettings,
+    flows: FlowStates<'a>,
+    monitors: Monitors,
+    samples: Samples,
+    events: Vec<Event>,
+    segments: usize,
+    /// Current state.
+    x: Vec<f64>,
+    progress: &'a mut dyn FnMut(f64),
+}
+
+impl Run<'_> {
+    fn all_segments(&mut self, stepper: &mut dyn Stepper, edges: &[f64]) -> Result<(), ThermalError> {
+        let mut from = 0.0;
+        for &to in edges {
+            let jumped = self.begin_segment(from, to)?;
+            if jumped || from == 0.0 {
+                stepper.restart(from, self.settings.first_step_s.min(to - from));
+            }
+            self.segment(stepper, to)?;
+            from = to;
+            (self.progress)(to / self.scenario.duration_s);
+        }
+        self.sample_until(stepper, self.scenario.duration_s, true)
+    }
+
+    /// Set the inputs of `[from, to]`, open and close flows by the clock; true if anything jumped.
+    fn begin_segment(&mut self, from: f64, to: f64) -> Result<bool, ThermalError> {
+        self.segments += 1;
+        let before = self.drive.pieces.get().at(from);
+        self.drive.pieces.set(InputPieces::new(self.scenario, from, to));
+        let jumped = before != self.drive.pieces.get().at(from);
+        let changed = self.flows.at_time(from, self.pressure(from)?);
+        Ok(self.record_flows(from, changed)? || jumped)
+    }
+
+    /// Integrate to `to` with the inputs as they are; flow events restart the solver in between.
+    fn segment(&mut self, stepper: &mut dyn Stepper, to: f64) -> Result<(), ThermalError> {
+        self.arm(stepper.time_s(), stepper, to)?;
+        loop {
+            let before = stepper.time_s();
+            let step = match stepper.step() {
+                Ok(step) => step,
+                Err(reason) => return Err(self.cannot_go_on(before, reason)),
+            };
+            stepper.state(&mut self.x);
+            let now = if step == Step::Stop { to } else { stepper.time_s() };
+            self.check(now, stepper.statistics().steps)?;
+            if let Some(at) = self.locate_events(stepper, before, now)? {
+                self.sample_until(stepper, at, false)?;
+                stepper.back_to(at).map_err(|reason| self.cannot_go_on(at, reason))?;
+                stepper.state(&mut self.x);
+                let changed = self.flows.at_pressure(at, &self.monitors.take_fired());
+                self.record_flows(at, changed)?;
+                stepper.restart(at, self.settings.first_step_s.min(to - at).max(1e-9));
+                if at >= to {
+                    return Ok(());
+                }
+                self.arm(at, stepper, to)?;
+                continue;
+            }
+            self.sample_until(stepper, now, false)?;
+            if step == Step::Stop {
+                return Ok(());
+            }
+        }
+    }
+
+    fn arm(&mut self, now: f64, stepper: &mut dyn Stepper, to: f64) -> Result<(), ThermalError> {
+        stepper.set_stop(to).map_err(|reason| self.cannot_go_on(now, reason))?;
+        self.monitors.reset(self.model, &self.flows, &self.x).map_err(|error| error.at_time(now))
+    }
+
+    /// Record what was crossed in the last step; returns the time of the first crossing that acts on a flow.
+    fn locate_events(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        before: f64,
+        now: f64,
+    ) -> Result<Option<f64>, ThermalError> {
+        let mut x = self.x.clone();
+        let mut interpolate = |t: f64, x: &mut [f64]| stepper.interpolate(t, x);
+        let located = self
+            .monitors
+            .crossed(self.model, &self.flows, &self.x, before, now, &mut x, &mut interpolate)
+            .map_err(|error| error.at_time(now))?;
+        for (time_s, kind) in located.reports {
+            interpolate(time_s, &mut x).map_err(|reason| self.cannot_go_on(time_s, reason))?;
+            let event = self.event(time_s, kind, &x)?;
+            self.events.push(event);
+        }
+        Ok(located.acts_at_s)
+    }
+
+    fn record_flows(&mut self, time_s: f64, changed: Vec<EventKind>) -> Result<bool, ThermalError> {
+        let any = !changed.is_empty();
+        for kind in changed {
+            let event = self.event(time_s, kind, &self.x)?;
+            self.events.push(event);
+        }
+        self.drive.open.borrow_mut().clone_from(&self.flows.open());
+        Ok(any)
+    }
+
+    fn event(&self, time_s: f64, kind: EventKind, x: &[f64]) -> Result<Event, ThermalError> {
+        let (gas_mean_k, pressure_pa) = self.model.gas_state(x).map_err(|error| error.at_time(time_s))?;
+        Ok(Event { time_s, kind, pressure_pa, gas_mean_k })
+    }
+
+    fn pressure(&self, time_s: f64) -> Result<f64, ThermalError> {
+        Ok(self.model.gas_state(&self.x).map_err(|error| error.at_time(time_s))?.1)
+    }
+
+    /// Emit the samples before `until` (the one at `until` too when `inclusive`).
+    fn sample_until(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        until: f64,
+        inclusive: bool,
+    ) -> Result<(), ThermalError> {
+        while let Some(t) = self.samples.next_time(until, inclusive) {
+            let mut x = self.x.clone();
+            if t < stepper.time_s() {
+                stepper.interpolate(t, &mut x).map_err(|reason| self.cannot_go_on(t, reason))?;
+            }
+            let inputs = self.drive.pieces.get().at(t);
+            let open = self.drive.open.borrow();
+            let output = self.model.output(&x, &inputs, &open).map_err(|error| error.at_time(t))?;
+            drop(open);
+            self.samples.push(t, inputs.air_k, output);
+        }
+        Ok(())
+    }
+
+    /// An accepted state must be finite and its gas inside the domain.
+    fn check(&self, time_s: f64, steps: usize) -> Result<(), ThermalError> {
+        if self.x.iter().any(|value| !value.is_finite()) {
+            return Err(self.cannot_go_on(time_s, "the state is not finite".into()));
+        }
+        if steps > self.settings.maximum_steps {
+            return Err(self.cannot_go_on(time_s, format!("more than {steps} steps")));
+        }
+        self.model.check_gas(&self.x).map_err(|error| error.at_time(time_s))
+    }
+
+    fn cannot_go_on(&self, time_s: f64, reason: String) -> ThermalError {
+        if let Some(cause) = self.drive.failure.borrow_mut().take() {
+            return cause.at_time(time_s);
+        }
+        let (gas_k, pressure_pa) = self.model.gas_state(&self.x).unwrap_or((f64::NAN, f64::NAN));
+        ThermalError::Integration { time_s, gas_k, pressure_pa, reason }
+    }
+
+    fn into_trajectory(self, vessel: &Vessel, ledger: Ledger, statistics: SolverStatistics) -> Trajectory {
+        let Samples { time_s, ambient_k, outputs, .. } = self.samples;
+        let pick = |value: fn(&Output) -> f64| outputs.iter().map(value).collect::<Vec<f64>>();
+        let mesh = self.model.mesh();
+        let places = ["bottom", "middle", "shoulder", "neck"]
+            .into_iter()
+            .filter_map(|name| Some(Place { name, axial_cell: mesh.column_of(name)? }))
+            .collect();
+        Trajectory {
+            vessel: vessel.clone(),
+            scenario: self.scenario.clone(),
+            gas_mean_k: pick(|o| o.gas_mean_k),
+            wall_mean_k: pick(|o| o.wall_mean_k),
+            valve_k: outputs.iter().map(|o| o.valve_k).collect(),
+            pressure_pa: pick(|o| o.pressure_pa),
+            mass_kg: pick(|o| o.mass_kg),
+            outflow_kg_s: pick(|o| o.outflow_kg_s),
+            heat_to_gas_w: pick(|o| o.heat_to_gas_w),
+            gas_cells_k: outputs.iter().map(|o| o.gas_cells_k.clone()).collect(),
+            wall_outer_k: outputs.iter().map(|o| o.wall_outer_k.clone()).collect(),
+            wall_inner_k: outputs.into_iter().map(|o| o.wall_inner_k).collect(),
+            time_s,
+            ambient_k,
+            places,
+            events: self.events,
+            ledger,
+            statistics,
+        }
+    }
+}
+
+/// The samples taken so far.
+struct Samples {
+    interval_s: f64,
+    duration_s: f64,
+    time_s: Vec<f64>,
+    ambient_k: Vec<f64>,
+    outputs: Vec<Output>,
+}
+
+impl Samples {
+    fn new(scenario: &Scenario) -> Self {
+        Self {
+            interval_s: scenario.sample_time_s,
+            duration_s: scenario.duration_s,
+            time_s: Vec::new(),
+            ambient_k: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+
+    /// Time of the next sample if it lies before `until` (or at it when `inclusive`), s. The end is always a sample.
+    fn next_time(&self, until: f64, inclusive: bool) -> Option<f64> {
+        if self.time_s.last().is_some_and(|&last| last >= self.duration_s) {
+            return None;
+        }
+        let t = (self.time_s.len() as f64 * self.interval_s).min(self.duration_s);
+        (t < until || (inclusive && t <= until)).then_some(t)
+    }
+
+    fn push(&mut self, time_s: f64, ambient_k: f64, output: Output) {
+        self.time_s.push(time_s);
+        self.ambient_k.push(ambient_k);
+        self.outputs.push(output);
+    }
+}
+
+#[cfg(test)]
+mod tests;

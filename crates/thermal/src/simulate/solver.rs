@@ -1,0 +1,363 @@
+//! The bridge to diffsol, and the only file that names it.
+//!
+//! [`with_stepper`] builds the solver for a [`Model`] and hands out a [`Stepper`], which hides its types. What the bridge takes care of:
+//! * The Jacobian's pattern is given explicitly, from the model's fixed sequence of entries; nothing is probed.
+//! * After a jump of an input the derivative is refreshed, the step reset and the order lowered: dense
+//!   output over a jump with the old step can be wrong by tens of kelvin without any error.
+//! * The stop time is snapped, since one-step methods may end one rounding below it.
+//! * A failing right-hand side yields NaN, so that the step is rejected; a NaN that slips into an accepted
+//!   state is caught by the driver.
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+
+use diffsol::matrix::sparsity::MatrixSparsity;
+use diffsol::{
+    ConstantOp, FaerContext, FaerSparseLU, FaerSparseMat, FaerVec, Matrix, NonLinearOp, NonLinearOpJacobian,
+    OdeBuilder, OdeEquations, OdeEquationsRef, OdeSolverMethod, OdeSolverStopReason, Op, ParameterisedOp,
+    UnitCallable, Vector,
+};
+
+use super::{Method, SimulationSettings};
+use crate::ThermalError;
+use crate::model::Model;
+use crate::model::inputs::InputPieces;
+use crate::trajectory::SolverStatistics;
+
+type M = FaerSparseMat<f64>;
+type V = FaerVec<f64>;
+type LS = FaerSparseLU<f64>;
+
+/// What drives the model now; changed between segments while the solver holds the equations.
+pub struct Drive {
+    /// Surroundings of the segment.
+    pub pieces: Cell<InputPieces>,
+    /// Which flows are open.
+    pub open: RefCell<Vec<bool>>,
+    /// Why the last evaluation failed, if it did.
+    pub failure: RefCell<Option<ThermalError>>,
+}
+
+/// Why a step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The solver chose its end.
+    Internal,
+    /// The stop time is reached.
+    Stop,
+}
+
+/// A solver in the middle of a run.
+pub trait Stepper {
+    /// Current time, s.
+    fn time_s(&self) -> f64;
+    /// Copy the current state.
+    fn state(&self, out: &mut [f64]);
+    /// One step, not past the stop time.
+    fn step(&mut self) -> Result<Step, String>;
+    /// Set the time that must not be passed, s.
+    fn set_stop(&mut self, t_s: f64) -> Result<(), String>;
+    /// State at a time within the last step.
+    fn interpolate(&mut self, t_s: f64, out: &mut [f64]) -> Result<(), String>;
+    /// Move the state back to a time within the last step.
+    fn back_to(&mut self, t_s: f64) -> Result<(), String>;
+    /// Begin anew from the current state at exactly `t_s` after a jump of the inputs, with a first step, s.
+    fn restart(&mut self, t_s: f64, first_step_s: f64);
+    /// What the solver did so far.
+    fn statistics(&self) -> SolverStatistics;
+}
+
+struct Rhs<'m> {
+    model: &'m Model,
+    drive: &'m Drive,
+    context: FaerContext,
+    /// Pattern in column-major order.
+    pattern: Vec<(usize, usize)>,
+    /// Position in the value array of each emitted entry.
+    slots: Vec<usize>,
+    values: RefCell<Vec<f64>>,
+}
+
+impl<'m> Rhs<'m> {
+    fn new(model: &'m Model, drive: &'m Drive, x0: &[f64]) -> Result<Self, ThermalError> {
+        let mut sequence = Vec::new();
+        model.jacobian(x0, &drive.pieces.get().at(0.0), &drive.open.borrow(), &mut |row, column, _| {
+            sequence.push((column, row));
+        })?;
+        // The diagonal belongs to the pattern of `M - c J` in any case.
+        let mut index: BTreeMap<(usize, usize), usize> = (0..x0.len()).map(|i| ((i, i), 0)).collect();
+        index.extend(sequence.iter().map(|&entry| (entry, 0)));
+        for (position, value) in index.values_mut().enumerate() {
+            *value = position;
+        }
+        let slots = sequence.iter().map(|entry| index[entry]).collect();
+        let pattern: Vec<_> = index.keys().map(|&(column, row)| (row, column)).collect();
+        Ok(Self {
+            model,
+            drive,
+            context: FaerContext::default(),
+            values: RefCell::new(vec![0.0; pattern.len()]),
+            pattern,
+            slots,
+        })
+    }
+
+    fn evaluate(&self, x: &[f64], t: f64, rate: &mut [f64]) {
+        let inputs = self.drive.pieces.get().at(t);
+        if let Err(error) = self.model.rate(x, &inputs, &self.drive.open.borrow(), rate) {
+            *self.drive.failure.borrow_mut() = Some(error);
+            rate.fill(f64::NAN);
+        }
+    }
+}
+
+impl Op for &Rhs<'_> {
+    type T = f64;
+    type V = V;
+    type M = M;
+    type C = FaerContext;
+    fn context(&self) -> &FaerContext {
+        &self.context
+    }
+    fn nstates(&self) -> usize {
+        self.model.layout().states
+    }
+    fn nout(&self) -> usize {
+        self.model.layout().states
+    }
+    fn nparams(&self) -> usize {
+        0
+    }
+}
+
+impl NonLinearOp for &Rhs<'_> {
+    fn call_inplace(&self, x: &V, t: f64, y: &mut V) {
+        y.for_each_batch_host([x], |y, [x], _| self.evaluate(x, t, y));
+    }
+}
+
+impl NonLinearOpJacobian for &Rhs<'_> {
+    fn jac_mul_inplace(&self, x: &V, t: f64, v: &V, y: &mut V) {
+        let inputs = self.drive.pieces.get().at(t);
+        y.for_each_batch_host([x, v], |y, [x, v], _| {
+            y.fill(0.0);
+            let product = self.model.jacobian(x, &inputs, &self.drive.open.borrow(), &mut |i, j, value| {
+                y[i] += value * v[j];
+            });
+            if let Err(error) = product {
+                *self.drive.failure.borrow_mut() = Some(error);
+            }
+        });
+    }
+
+    fn jacobian_sparsity(&self) -> Option<<M as Matrix>::Sparsity> {
+        let n = self.model.layout().states;
+        <<M as Matrix>::Sparsity as MatrixSparsity<M>>::try_from_indices(n, n, self.pattern.clone()).ok()
+    }
+
+    fn jacobian_inplace(&self, x: &V, t: f64, y: &mut M) {
+        let inputs = self.drive.pieces.get().at(t);
+        let mut values = self.values.borrow_mut();
+        values.fill(0.0);
+        let mut slots = self.slots.iter();
+        let x: Vec<f64> = (0..x.len()).map(|i| x.get_index(i)).collect();
+        let emitted = self.model.jacobian(&x, &inputs, &self.drive.open.borrow(), &mut |_, _, value| {
+            if let Some(&slot) = slots.next() {
+                values[slot] += value;
+            }
+        });
+        if let Err(error) = emitted {
+            *self.drive.failure.borrow_mut() = Some(error);
+            values.fill(0.0);
+        }
+        // A NaN would stop the factorisation with a panic; without coupling Newton merely fails.
+        if values.iter().any(|value| !value.is_finite()) {
+            values.fill(0.0);
+        }
+        y.inner_mut()[0].val_mut().copy_from_slice(&values);
+    }
+}
+
+struct Init {
+    x0: Vec<f64>,
+    context: FaerContext,
+}
+
+impl Op for &Init {
+    type T = f64;
+    type V = V;
+    type M = M;
+    type C = FaerContext;
+    fn context(&self) -> &FaerContext {
+        &self.context
+    }
+    fn nstates(&self) -> usize {
+        self.x0.len()
+    }
+    fn nout(&self) -> usize {
+        self.x0.len()
+    }
+    fn nparams(&self) -> usize {
+        0
+    }
+}
+
+impl ConstantOp for &Init {
+    fn call_inplace(&self, _t: f64, y: &mut V) {
+        y.for_each_batch_host([], |y, [], _| y.copy_from_slice(&self.x0));
+    }
+}
+
+struct Equations<'m> {
+    rhs: Rhs<'m>,
+    init: Init,
+}
+
+impl Op for Equations<'_> {
+    type T = f64;
+    type V = V;
+    type M = M;
+    type C = FaerContext;
+    fn context(&self) -> &FaerContext {
+        &self.rhs.context
+    }
+    fn nstates(&self) -> usize {
+        self.init.x0.len()
+    }
+    fn nout(&self) -> usize {
+        self.init.x0.len()
+    }
+    fn nparams(&self) -> usize {
+        0
+    }
+}
+
+impl<'a, 'm> OdeEquationsRef<'a> for Equations<'m> {
+    type Mass = ParameterisedOp<'a, UnitCallable<M>>;
+    type Rhs = &'a Rhs<'m>;
+    type Root = ParameterisedOp<'a, UnitCallable<M>>;
+    type Init = &'a Init;
+    type Out = ParameterisedOp<'a, UnitCallable<M>>;
+    type Reset = ParameterisedOp<'a, UnitCallable<M>>;
+}
+
+impl OdeEquations for Equations<'_> {
+    fn rhs(&self) -> <Self as OdeEquationsRef<'_>>::Rhs {
+        &self.rhs
+    }
+    fn mass(&self) -> Option<<Self as OdeEquationsRef<'_>>::Mass> {
+        None
+    }
+    fn init(&self) -> <Self as OdeEquationsRef<'_>>::Init {
+        &self.init
+    }
+    fn set_params(&mut self, _p: &V) {}
+    fn get_params(&self, _p: &mut V) {}
+}
+
+struct Wrapper<'a, 'm, S> {
+    solver: S,
+    equations: &'a Equations<'m>,
+    buffer: V,
+    rate: V,
+}
+
+impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 'm, S> {
+    fn time_s(&self) -> f64 {
+        self.solver.state().t
+    }
+
+    fn state(&self, out: &mut [f64]) {
+        let state = self.solver.state();
+        for (i, value) in out.iter_mut().enumerate() {
+            *value = state.y.get_index(i);
+        }
+    }
+
+    fn step(&mut self) -> Result<Step, String> {
+        match self.solver.step().map_err(|error| error.to_string())? {
+            OdeSolverStopReason::TstopReached => Ok(Step::Stop),
+            _ => Ok(Step::Internal),
+        }
+    }
+
+    fn set_stop(&mut self, t_s: f64) -> Result<(), String> {
+        self.solver.set_stop_time(t_s).map_err(|error| error.to_string())
+    }
+
+    fn interpolate(&mut self, t_s: f64, out: &mut [f64]) -> Result<(), String> {
+        let t = t_s.min(self.solver.state().t);
+        self.solver.interpolate_inplace(t, &mut self.buffer).map_err(|error| error.to_string())?;
+        for (i, value) in out.iter_mut().enumerate() {
+            *value = self.buffer.get_index(i);
+        }
+        Ok(())
+    }
+
+    fn back_to(&mut self, t_s: f64) -> Result<(), String> {
+        self.solver.state_mut_back(t_s).map_err(|error| error.to_string())
+    }
+
+    fn restart(&mut self, t_s: f64, first_step_s: f64) {
+        (&self.equations.rhs).call_inplace(self.solver.state().y, t_s, &mut self.rate);
+        let state = self.solver.state_mut();
+        state.dy.copy_from(&self.rate);
+        *state.t = t_s;
+        *state.h = first_step_s;
+    }
+
+    fn statistics(&self) -> SolverStatistics {
+        let s = self.solver.get_statistics();
+        SolverStatistics {
+            steps: s.number_of_steps,
+            error_test_failures: s.number_of_error_test_failures,
+            newton_iterations: s.number_of_nonlinear_solver_iterations,
+            newton_failures: s.number_of_nonlinear_solver_fails,
+            linear_solver_setups: s.number_of_linear_solver_setups,
+            segments: 0,
+            states: self.equations.init.x0.len(),
+        }
+    }
+}
+
+/// Build the solver and run `work` with it.
+///
+/// # Errors
+/// The first evaluation fails, or `work` does.
+pub fn with_stepper<R>(
+    model: &Model,
+    drive: &Drive,
+    x0: Vec<f64>,
+    absolute_tolerance: Vec<f64>,
+    settings: &SimulationSettings,
+    method: Method,
+    work: impl FnOnce(&mut dyn Stepper) -> Result<R, ThermalError>,
+) -> Result<R, ThermalError> {
+    let n = x0.len();
+    let rhs = Rhs::new(model, drive, &x0)?;
+    let init = Init { x0, context: rhs.context };
+    let context = rhs.context;
+    let failed = |error: diffsol::error::DiffsolError| ThermalError::SolverSetup { reason: error.to_string() };
+    let mut problem = OdeBuilder::<M>::new()
+        .rtol(settings.relative_tolerance)
+        .atol(absolute_tolerance)
+        .h0(settings.first_step_s)
+        .build_from_eqn(Equations { rhs, init })
+        .map_err(failed)?;
+    problem.ode_options.max_nonlinear_solver_failures = 500;
+    let (buffer, rate) = (V::zeros(n, context), V::zeros(n, context));
+    let equations = &problem.eqn;
+    match method {
+        Method::TrBdf2 => {
+            let solver = problem.tr_bdf2::<LS>().map_err(failed)?;
+            work(&mut Wrapper { solver, equations, buffer, rate })
+        }
+        Method::Esdirk34 => {
+            let solver = problem.esdirk34::<LS>().map_err(failed)?;
+            work(&mut Wrapper { solver, equations, buffer, rate })
+        }
+        Method::Automatic | Method::Bdf => {
+            let solver = problem.bdf::<LS>().map_err(failed)?;
+            work(&mut Wrapper { solver, equations, buffer, rate })
+        }
+    }
+}

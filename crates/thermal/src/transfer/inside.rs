@@ -1,0 +1,253 @@
+//! Film between the inner surface and the gas: natural convection `Nu_L = c Ra_L^n` with properties at the
+//! film temperature, in a form that keeps the derivative finite where wall and gas are equally warm:
+//!
+//! `q = c k L^(3n-1) R^n (theta^2 + theta_0^2)^(n/2) theta`, `theta = T_s - T_g`, `R = g beta rho^2 c_p / (mu k)`.
+//!
+//! With `n = 1/3` the length cancels and the law is local. The two property groups `ln k` and `ln R` are
+//! functions of film temperature and pressure; evaluating them costs a density solve and two transport
+//! correlations (about 1.3 µs), so they are interpolated on a grid that is filled only where a run goes.
+//! Interpolation is bicubic (Catmull-Rom) and continuously differentiable, its error below 1e-5 of the film.
+//!
+//! Sources: McAdams, Heat Transmission (1954), 0.13 Ra^(1/3); Daney, Cryogenics 16 (1976) 345, 0.104 Ra^0.352
+//! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / D.
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use crate::ThermalError;
+use crate::fluid::{Fluid, Real};
+use crate::vessel::InsideFilm;
+use crate::wall::mesh::Facing;
+
+/// Standard gravity, m/s².
+pub const GRAVITY_M_S2: f64 = 9.806_65;
+/// Temperature difference below which the film coefficient becomes constant, K.
+const FLAT_BELOW_K: f64 = 0.01;
+/// Factor and exponent of a plate that stirs the gas (hot floor, cold ceiling) and of one that does not, length D/4.
+const PLATE_STIRRED: (f64, f64) = (0.15, 1.0 / 3.0);
+const PLATE_RESTING: (f64, f64) = (0.27, 0.25);
+/// Spacing of the grid in temperature, K.
+const STEP_K: f64 = 4.0;
+/// Spacing of the grid in the logarithm of the pressure.
+const STEP_LN_P: f64 = 0.05;
+
+/// `ln k` and `ln R` with their derivatives along temperature and logarithm of pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmGroups {
+    /// `[ln k, d/dT, d/d ln p]`, k in W/(m K).
+    pub ln_k: [f64; 3],
+    /// `[ln R, d/dT, d/d ln p]`, R in 1/(m³ K).
+    pub ln_r: [f64; 3],
+}
+
+/// Exact property groups at a temperature and pressure, without the grid.
+///
+/// # Errors
+/// The state is outside the fluid's domain.
+pub fn film_groups_exact(
+    fluid: &Fluid,
+    temperature_k: f64,
+    pressure_pa: f64,
+) -> Result<(f64, f64), ThermalError> {
+    let rho = fluid.density_from_pressure_temperature(pressure_pa, temperature_k)?;
+    let state = fluid.state(rho, temperature_k);
+    let k = fluid.conductivity_w_m_k(rho, temperature_k);
+    let mu = fluid.viscosity_pa_s(rho, temperature_k);
+    let r = GRAVITY_M_S2 * state.expansion_per_k * rho * rho * state.cp_j_kg_k / (mu * k);
+    Ok((k.ln(), r.ln()))
+}
+
+/// Weights of the four-point Catmull-Rom interpolation and of its derivative at `u` in [0, 1].
+fn catmull_rom(u: f64) -> ([f64; 4], [f64; 4]) {
+    let (u2, u3) = (u * u, u * u * u);
+    (
+        [
+            -0.5 * u3 + u2 - 0.5 * u,
+            1.5 * u3 - 2.5 * u2 + 1.0,
+            -1.5 * u3 + 2.0 * u2 + 0.5 * u,
+            0.5 * (u3 - u2),
+        ],
+        [
+            -1.5 * u2 + 2.0 * u - 0.5,
+            4.5 * u2 - 5.0 * u,
+            -4.5 * u2 + 4.0 * u + 0.5,
+            1.5 * u2 - u,
+        ],
+    )
+}
+
+type GridIndex = (i32, i32);
+/// `[group][temperature][pressure]`
+type Patch = [[[f64; 4]; 4]; 2];
+
+/// The lazily filled grid of film property groups of one fluid.
+#[derive(Debug)]
+pub struct FilmGrid {
+    fluid: Fluid,
+    nodes: RefCell<HashMap<GridIndex, [f64; 2]>>,
+    patches: RefCell<HashMap<GridIndex, Patch>>,
+    last: RefCell<Option<(GridIndex, Patch)>>,
+}
+
+impl FilmGrid {
+    /// An empty grid.
+    pub fn new(fluid: Fluid) -> Self {
+        Self { fluid, nodes: RefCell::default(), patches: RefCell::default(), last: RefCell::new(None) }
+    }
+
+    /// Interpolated property groups. NaN where the fluid has no single phase within 40 K above the state.
+    pub fn groups(&self, temperature_k: f64, pressure_pa: f64) -> FilmGroups {
+        let (x, y) = (temperature_k / STEP_K, pressure_pa.ln() / STEP_LN_P);
+        let (i, j) = (x.floor(), y.floor());
+        let ((wt, dt), (wp, dp)) = (catmull_rom(x - i), catmull_rom(y - j));
+        let index = (i as i32, j as i32);
+        if self.last.borrow().as_ref().is_none_or(|(known, _)| *known != index) {
+            let patch = *self.patches.borrow_mut().entry(index).or_insert_with(|| self.patch(index));
+            *self.last.borrow_mut() = Some((index, patch));
+        }
+        let last = self.last.borrow();
+        let Some((_, patch)) = last.as_ref() else { unreachable!("the last patch was just set") };
+        let interpolate = |values: &[[f64; 4]; 4]| {
+            let mut sum = [0.0; 3];
+            for (a, row) in values.iter().enumerate() {
+                let along: f64 = row.iter().zip(&wp).map(|(v, w)| v * w).sum();
+                let slope: f64 = row.iter().zip(&dp).map(|(v, w)| v * w).sum();
+                sum[0] += wt[a] * along;
+                sum[1] += dt[a] * along / STEP_K;
+                sum[2] += wt[a] * slope / STEP_LN_P;
+            }
+            sum
+        };
+        FilmGroups { ln_k: interpolate(&patch[0]), ln_r: interpolate(&patch[1]) }
+    }
+
+    fn patch(&self, (i, j): GridIndex) -> Patch {
+        let mut patch = [[[0.0; 4]; 4]; 2];
+        for a in 0..4 {
+            for b in 0..4 {
+                let values = self.node((i + a as i32 - 1, j + b as i32 - 1));
+                patch[0][a][b] = values[0];
+                patch[1][a][b] = values[1];
+            }
+        }
+        patch
+    }
+
+    fn node(&self, index: GridIndex) -> [f64; 2] {
+        *self.nodes.borrow_mut().entry(index).or_insert_with(|| {
+            let pressure = (f64::from(index.1) * STEP_LN_P).exp();
+            // Beside the saturation line a stencil reaches into the liquid: take the nearest warmer gas.
+            (0..10)
+                .find_map(|up| {
+                    let temperature = f64::from(index.0 + up) * STEP_K;
+                    film_groups_exact(&self.fluid, temperature, pressure).ok()
+                })
+                .map_or([f64::NAN; 2], |(ln_k, ln_r)| [ln_k, ln_r])
+        })
+    }
+}
+
+/// Heat flux into the gas with its partial derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InsideFlux {
+    /// Heat flux from the surface to the gas, W/m².
+    pub flux_w_m2: f64,
+    /// Derivative with the surface temperature, W/(m² K).
+    pub per_surface_k: f64,
+    /// Derivative with the gas temperature, W/(m² K).
+    pub per_gas_k: f64,
+    /// Derivative with the pressure, W/(m² Pa).
+    pub per_pressure: f64,
+}
+
+/// A film law bound to a length and to the property grid of a gas.
+#[derive(Debug)]
+pub struct InsideConvection {
+    law: InsideFilm,
+    length_m: f64,
+    grid: FilmGrid,
+}
+
+impl InsideConvection {
+    /// Film law `law` of a vessel of characteristic length `length_m` (its inner diameter; irrelevant for n = 1/3).
+    pub fn new(law: InsideFilm, length_m: f64, fluid: Fluid) -> Self {
+        Self { law, length_m, grid: FilmGrid::new(fluid) }
+    }
+
+    /// Heat flux from a surface at `surface_k` to gas at `gas_k` and `pressure_pa`, with `jet_w_m2_k` added for
+    /// forced convection. A floor or ceiling has its own law: it stirs the gas or lets it rest.
+    pub fn flux(
+        &self,
+        facing: Facing,
+        surface_k: f64,
+        gas_k: f64,
+        pressure_pa: f64,
+        jet_w_m2_k: f64,
+    ) -> InsideFlux {
+        let theta = surface_k - gas_k;
+        let natural = match (self.law, facing) {
+            (InsideFilm::Coefficient { film_w_m2_k }, _) => InsideFlux {
+                flux_w_m2: film_w_m2_k * theta,
+                per_surface_k: film_w_m2_k,
+                per_gas_k: -film_w_m2_k,
+                per_pressure: 0.0,
+            },
+            (InsideFilm::Rayleigh { factor, exponent, multiplier }, Facing::Side) => {
+                self.natural(multiplier * factor, exponent, self.length_m, theta, surface_k, pressure_pa)
+            }
+            (InsideFilm::Rayleigh { multiplier, .. }, plate) => {
+                let stirs = (theta > 0.0) == (plate == Facing::Floor);
+                let (factor, exponent) = if stirs { PLATE_STIRRED } else { PLATE_RESTING };
+                let length = 0.25 * self.length_m;
+                self.natural(multiplier * factor, exponent, length, theta, surface_k, pressure_pa)
+            }
+        };
+        InsideFlux {
+            flux_w_m2: natural.flux_w_m2 + jet_w_m2_k * theta,
+            per_surface_k: natural.per_surface_k + jet_w_m2_k,
+            per_gas_k: natural.per_gas_k - jet_w_m2_k,
+            per_pressure: natural.per_pressure,
+        }
+    }
+
+    /// `c k L^(3n-1) R^n (theta^2 + theta_0^2)^(n/2) theta` and its derivatives.
+    fn natural(
+        &self,
+        factor: f64,
+        n: f64,
+        length_m: f64,
+        theta: f64,
+        surface_k: f64,
+        pressure_pa: f64,
+    ) -> InsideFlux {
+        let groups = self.grid.groups(surface_k - 0.5 * theta, pressure_pa);
+        let ln_length = (3.0 * n - 1.0) * length_m.ln();
+        let b = factor * (groups.ln_k[0] + n * groups.ln_r[0] + ln_length).exp();
+        let square = theta * theta + FLAT_BELOW_K * FLAT_BELOW_K;
+        let s = square.powf(0.5 * n);
+        let flux_w_m2 = b * s * theta;
+        let per_theta = b * s * (1.0 + n * theta * theta / square);
+        let per_film_k = flux_w_m2 * (groups.ln_k[1] + n * groups.ln_r[1]);
+        InsideFlux {
+            flux_w_m2,
+            per_surface_k: per_theta + 0.5 * per_film_k,
+            per_gas_k: -per_theta + 0.5 * per_film_k,
+            per_pressure: flux_w_m2 * (groups.ln_k[2] + n * groups.ln_r[2]) / pressure_pa,
+        }
+    }
+}
+
+/// Forced convection of an inlet jet, `h = 0.56 k / D Re_in^0.67` with `Re_in = 4 m / (pi d mu)`, W/(m² K).
+///
+/// # References
+/// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon.
+pub fn jet_film_w_m2_k<D: Real>(
+    conductivity_w_m_k: D,
+    viscosity_pa_s: D,
+    mass_flow_kg_s: f64,
+    inlet_diameter_m: f64,
+    vessel_diameter_m: f64,
+) -> D {
+    let reynolds =
+        viscosity_pa_s.recip() * (4.0 * mass_flow_kg_s / (std::f64::consts::PI * inlet_diameter_m));
+    reynolds.powf(0.67) * conductivity_w_m_k * (0.56 / vessel_diameter_m)
+}

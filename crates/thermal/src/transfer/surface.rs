@@ -1,0 +1,81 @@
+//! Temperature of a surface between a wall node and its film.
+//!
+//! The surface stores no heat, so the flow through the half cell equals the flow into the film:
+//! `G (T_node - T_s) = Q(T_s)`. `Q` increases with `T_s` for every film here, so the root is unique and
+//! Newton's method from the node's side converges; the half cell dominates in metal, the film in plastic liners.
+
+/// Iterations after which the surface temperature counts as found; metal takes two, plastic five.
+const MAX_ITERATIONS: usize = 40;
+
+/// A surface in balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceBalance {
+    /// Surface temperature, K.
+    pub surface_k: f64,
+    /// Heat flow from the node through the surface, W.
+    pub heat_w: f64,
+    /// Derivative of the heat flow with the node's temperature, W/K.
+    pub heat_per_node_k: f64,
+    /// Factor `G / (G + dQ/dT_s)` by which a partial derivative of the film's heat flow at fixed surface
+    /// temperature becomes one at fixed node temperature.
+    pub film_factor: f64,
+}
+
+/// A half cell between a wall node and its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfCell {
+    /// Temperature of the node, K.
+    pub node_k: f64,
+    /// Conductance at that temperature, W/K.
+    pub conductance_w_k: f64,
+    /// Change of the conductance with the node's temperature, W/K².
+    pub conductance_slope_w_k2: f64,
+}
+
+/// Solve the balance of a half cell and a film whose heat flow and its derivative with the surface temperature
+/// are given by `film` (W, W/K).
+pub fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> SurfaceBalance {
+    let HalfCell { node_k, conductance_w_k, conductance_slope_w_k2 } = *half;
+    let mut surface_k = node_k;
+    let (mut heat_w, mut slope) = film(surface_k);
+    for _ in 0..MAX_ITERATIONS {
+        let step = (conductance_w_k * (node_k - surface_k) - heat_w) / (conductance_w_k + slope);
+        surface_k += step;
+        (heat_w, slope) = film(surface_k);
+        if step.abs() <= 1e-12 * surface_k.abs() {
+            break;
+        }
+    }
+    let film_factor = conductance_w_k / (conductance_w_k + slope);
+    let node_factor = conductance_w_k + conductance_slope_w_k2 * (node_k - surface_k);
+    let heat_per_node_k = slope / (conductance_w_k + slope) * node_factor;
+    SurfaceBalance { surface_k, heat_w, heat_per_node_k, film_factor }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn half(conductance_w_k: f64, node_k: f64) -> HalfCell {
+        HalfCell { node_k, conductance_w_k, conductance_slope_w_k2: 0.0 }
+    }
+
+    #[test]
+    fn linear_film_gives_the_series_conductance() {
+        let balance = solve_surface(&half(3.0, 300.0), |t| (2.0 * (t - 290.0), 2.0));
+        approx::assert_relative_eq!(balance.heat_w, 10.0 / (1.0 / 3.0 + 1.0 / 2.0), max_relative = 1e-12);
+        approx::assert_relative_eq!(balance.surface_k, 296.0, max_relative = 1e-12);
+        approx::assert_relative_eq!(balance.heat_per_node_k, 1.2, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn stiff_natural_convection_converges_behind_a_poor_conductor() {
+        let film = |t: f64| {
+            let theta = t - 250.0;
+            let s = (theta * theta + 1e-4).powf(1.0 / 6.0);
+            (200.0 * s * theta, 200.0 * s * (1.0 + theta * theta / (3.0 * (theta * theta + 1e-4))))
+        };
+        let balance = solve_surface(&half(0.5, 320.0), film);
+        approx::assert_relative_eq!(balance.heat_w, 0.5 * (320.0 - balance.surface_k), max_relative = 1e-9);
+    }
+}

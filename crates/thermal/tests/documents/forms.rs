@@ -1,0 +1,156 @@
+//! The forms in which a file can say the same thing, and what holds where it says nothing.
+use approx::assert_relative_eq;
+use cylwatch_thermal::scenario::{Fill, OutsideFilm};
+use cylwatch_thermal::vessel::{
+    GasResolution, InsideFilm, VesselSpec, presets, read_specification, read_vessel, spec::GeometrySpec,
+};
+use cylwatch_thermal::wall::geometry::EndShape;
+
+use super::scenario_with;
+
+const LEAST: &str = "name = 'x'\nfluid = 'nitrogen'\n[geometry]\ninner_diameter_cm = 20\ncylinder_length_m = 0.5\n\
+                     [[layer]]\nmaterial = 'aluminium-6061'\nthickness_mm = 8\n";
+
+#[test]
+fn the_least_vessel_gets_the_documented_defaults() {
+    let vessel = read_vessel(LEAST, "x.toml").unwrap();
+    let geometry = &vessel.geometry;
+    assert_eq!((geometry.bottom.cells, geometry.cylinder_cells, geometry.shoulder.cells), (2, 6, 3));
+    assert_eq!(geometry.shoulder.shape, EndShape::Dome { depth_m: 0.05 });
+    assert_relative_eq!(geometry.bottom.thickness_m, 0.008);
+    assert_relative_eq!(vessel.volume.volume_m3, 0.017_802_358_370_342_16, max_relative = 1e-12);
+    assert!(vessel.valve.is_none() && geometry.neck.is_none());
+    assert_eq!(vessel.gas, GasResolution::WellMixed);
+    let InsideFilm::Rayleigh { factor, multiplier, .. } = vessel.inside_film else { panic!("a power law") };
+    assert_eq!((factor, multiplier), (0.13, 1.0));
+}
+
+#[test]
+fn any_unit_of_the_dimension_gives_the_same_vessel() {
+    let metres = LEAST.replace("inner_diameter_cm = 20", "inner_diameter_mm = 200.0");
+    let one = read_vessel(LEAST, "x.toml").unwrap();
+    let other = read_vessel(&metres, "x.toml").unwrap();
+    assert_relative_eq!(one.geometry.inner_diameter_m, other.geometry.inner_diameter_m, max_relative = 1e-15);
+}
+
+#[test]
+fn a_specification_written_and_read_again_is_the_same() {
+    for name in presets::names() {
+        let (specification, vessel) = read_specification(presets::text(name).unwrap(), name).unwrap();
+        let text = specification.to_toml().unwrap();
+        let (again, same) = read_specification(&text, name).unwrap();
+        assert_eq!(again, specification, "{text}");
+        assert_eq!((same.geometry, same.volume), (vessel.geometry, vessel.volume));
+    }
+}
+
+#[test]
+fn a_material_of_the_file_hides_the_library() {
+    let own = "[[material]]\nname = 'aluminium-6061'\ndensity_kg_m3 = 2600\nheat_capacity_j_kg_k = 900\n\
+               conductivity_w_m_k = 150\n";
+    let vessel = read_vessel(&format!("{LEAST}{own}"), "x.toml").unwrap();
+    assert_eq!(vessel.geometry.layers[0].material.density_kg_m3, 2600.0);
+}
+
+#[test]
+fn a_specification_without_a_file_names_the_path() {
+    let geometry = GeometrySpec {
+        inner_diameter_m: -0.2,
+        cylinder_length_m: 0.5,
+        cylinder_cells: None,
+        lumped: false,
+        bottom: Default::default(),
+        shoulder: Default::default(),
+        neck: None,
+    };
+    let layer = vec![cylwatch_thermal::vessel::spec::LayerSpec {
+        material: "brass".into(),
+        thickness_m: 0.01,
+        cells: None,
+    }];
+    let specification = VesselSpec {
+        name: "x".into(),
+        fluid: "nitrogen".into(),
+        equation: Default::default(),
+        orientation: Default::default(),
+        geometry,
+        layer,
+        material: Vec::new(),
+        volume: Default::default(),
+        valve: None,
+        surface: Default::default(),
+        inside_film: Default::default(),
+        gas: Default::default(),
+    };
+    let message = specification.build().unwrap_err().to_string();
+    assert_eq!(message, "geometry inner_diameter_m = -0.2 must be positive: check the unit, _mm or _m");
+}
+
+#[test]
+fn changes_table_and_column_give_the_same_air() {
+    let film = "\nfilm_w_m2_k = 8";
+    let forms = [
+        "air_degc = 10\n[[ambient.air_change]]\nat_s = 0\nover_h = 1\nto_degc = 20\n[ambient.film_table]\ntime_s = [0]\nfilm_w_m2_k = [8]",
+        "air_table = { time_min = [0, 60], air_degc = [10, 20] }",
+        "air_table = { time_h = [0, 1], air_k = [283.15, 293.15] }",
+        "air_csv = { file = 't.csv', column = 'air_degc' }",
+    ];
+    for form in forms {
+        let text = if form.contains("film") { form.to_owned() } else { format!("{form}{film}") };
+        let scenario = scenario_with("air_degc = 21\nfilm_w_m2_k = 8", &text).unwrap();
+        let air = &scenario.surroundings.air_k;
+        for (t_s, degc) in [(0.0, 10.0), (1_800.0, 15.0), (3_600.0, 20.0), (9_000.0, 20.0)] {
+            assert_relative_eq!(air.at(t_s), 273.15 + degc, max_relative = 1e-12);
+        }
+        assert_relative_eq!(scenario.initial.gas_temperature_k, 283.15, max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn steps_after_ramps_and_on_their_end_are_exact_jumps() {
+    let changes = "air_degc = 0\nfilm_w_m2_k = 8\n[[ambient.air_change]]\nat_h = 1\nover_h = 1\nto_degc = 10\n\
+                   [[ambient.air_change]]\nat_h = 2\nto_degc = 30\n[[ambient.air_change]]\nat_h = 3\nover_min = 10\nto_degc = 0";
+    let scenario = scenario_with("air_degc = 21\nfilm_w_m2_k = 8", changes).unwrap();
+    let air = &scenario.surroundings.air_k;
+    let expected = [(0.0, 0.0), (1.0, 0.0), (1.5, 5.0), (2.0, 30.0), (3.0, 30.0), (3.25, 0.0)];
+    for (t_h, degc) in expected {
+        assert_relative_eq!(air.at(t_h * 3_600.0), 273.15 + degc, max_relative = 1e-12);
+    }
+    assert_relative_eq!(air.segment(3_600.0, 7_200.0).at(7_200.0), 283.15, max_relative = 1e-12);
+}
+
+#[test]
+fn a_computed_film_brings_radiation_to_the_air_and_a_coefficient_none() {
+    let coefficient = scenario_with("film_w_m2_k = 8", "film_w_m2_k = 9").unwrap();
+    assert!(coefficient.surroundings.radiation_k.is_none());
+    let still = scenario_with("film_w_m2_k = 8", "").unwrap();
+    let OutsideFilm::Convection { wind_m_s, multiplier } = &still.surroundings.film else {
+        panic!("convection")
+    };
+    assert_eq!((wind_m_s.at(0.0), *multiplier), (0.0, 1.0));
+    assert_eq!(still.surroundings.radiation_k, Some(still.surroundings.air_k.clone()));
+    let shaded = scenario_with("film_w_m2_k = 8", "wind_km_h = 36\nradiation_degc = 5").unwrap();
+    assert_relative_eq!(shaded.surroundings.radiation_k.unwrap().at(0.0), 278.15);
+}
+
+#[test]
+fn fills_and_pressures_are_read_in_all_their_ways() {
+    let fill = |text: &str| scenario_with("pressure_bar = 100", text).unwrap().initial.fill;
+    assert_eq!(fill("mass_g = 4500"), Fill::Mass { mass_kg: 4.5 });
+    let settled = fill("fill_pressure_barg = 199");
+    assert_eq!(settled, Fill::Settled { pressure_pa: 1.99e7 + 101_325.0, temperature_k: 288.15 });
+    assert_eq!(fill("pressure_mpa = 10"), Fill::Pressure { pressure_pa: 1e7 });
+}
+
+#[test]
+fn a_refill_and_a_relief_device_are_read() {
+    let flows = "film_w_m2_k = 8\n[[refill]]\nflow_g_s = 2\nsource_temperature_degc = 20\nsource_pressure_bar = 300\n\
+                 inlet_diameter_mm = 4\ncloses_above_bar = 220\n[[discharge]]\ndiameter_mm = 2\nopens_above_bar = 250\n\
+                 closes_below_bar = 230\n[[leak]]\nflow_g_h = 3.6\nstart_min = 1\nstop_min = 2\n[[leak]]\nflow_g_h = 1\n";
+    let scenario = scenario_with("film_w_m2_k = 8", flows).unwrap();
+    let names: Vec<&str> = scenario.flows.iter().map(|flow| flow.name.as_str()).collect();
+    assert_eq!(names, ["leak", "leak2", "discharge", "refill"]);
+    assert_relative_eq!(scenario.flows[2].opens_above_pa.unwrap(), 2.5e7);
+    assert_relative_eq!(scenario.flows[3].closes_above_pa.unwrap(), 2.2e7);
+    assert_eq!((scenario.flows[0].start_s, scenario.flows[0].stop_s), (60.0, 120.0));
+}

@@ -1,0 +1,140 @@
+//! Runs whose answer is known in closed form or from an independent program.
+use approx::assert_relative_eq;
+use cylwatch_thermal::flow::{Flow, FlowKind};
+use cylwatch_thermal::fluid::{Equation, Fluid};
+use cylwatch_thermal::scenario::{Fill, Series};
+use cylwatch_thermal::trajectory::EventKind;
+use cylwatch_thermal::vessel::{InsideFilm, Vessel};
+
+use crate::support::{closed_bottle, run, still};
+
+/// Reference: HydDown 0.50 on the same bottle (project reference "peers", section 3): end pressure 219.71 bar,
+/// 63 % of the gas's temperature rise after 3942 s.
+#[test]
+fn closed_bottle_after_an_ambient_step_agrees_with_hyddown() {
+    let trajectory = run(&closed_bottle(), &still(308.15, 288.15, 8.0, 6.0), 1e-8);
+    assert_relative_eq!(trajectory.mass_kg[0], 4.462, epsilon = 5e-4);
+    assert_relative_eq!(*trajectory.pressure_pa.last().unwrap(), 219.71e5, epsilon = 0.05e5);
+    let target = 288.15 + (1.0 - (-1.0_f64).exp()) * 20.0;
+    let k = trajectory.gas_mean_k.iter().position(|&t| t >= target).unwrap();
+    let (a, b) = (trajectory.gas_mean_k[k - 1], trajectory.gas_mean_k[k]);
+    let t63 = trajectory.time_s[k - 1] + (target - a) / (b - a) * 60.0;
+    println!("t63 = {t63:.0} s");
+    assert_relative_eq!(t63, 3942.0, max_relative = 0.01);
+}
+
+/// Reference: CoolProp 8.0 (project facts): a tight cylinder of 200 bar at 15 °C reads 160.09 bar at -25 °C.
+#[test]
+fn tight_full_cylinder_at_minus_25_degc_reads_160_bar() {
+    let trajectory = run(&closed_bottle(), &still(248.15, 248.15, 10.0, 1.0), 1e-8);
+    for &p in &trajectory.pressure_pa {
+        assert_relative_eq!(p, 160.09e5, epsilon = 0.02e5);
+    }
+}
+
+fn insulated(fluid: Fluid) -> Vessel {
+    Vessel {
+        fluid,
+        inside_film: InsideFilm::Coefficient { film_w_m2_k: 1e-9 },
+        ..closed_bottle()
+    }
+}
+
+#[test]
+fn wall_without_gas_contact_cools_exponentially() {
+    let vessel = insulated(Fluid::named("nitrogen").unwrap());
+    let trajectory = run(&vessel, &still(253.15, 293.15, 12.0, 4.0), 1e-9);
+    let (d, l) = (0.1907 + 2.0 * 0.0067_f64, 0.70 + 2.0 * 0.0067_f64);
+    let area = std::f64::consts::PI * d * (l + 0.5 * d);
+    let solid = 0.25 * std::f64::consts::PI * (d * d * l - 0.1907_f64.powi(2) * 0.70);
+    let capacity = solid * 7850.0 * 470.0;
+    // Half the wall is in series with the film: 0.0067/2/45 m²K/W over the mean area, 0.06 % of 1/12.
+    for (t, wall) in trajectory.time_s.iter().zip(&trajectory.wall_mean_k) {
+        let ideal = 253.15 + 40.0 * (-12.0 * area * t / capacity).exp();
+        assert_relative_eq!(*wall, ideal, epsilon = 40.0 * 1e-3);
+    }
+}
+
+/// Choked adiabatic blowdown of an ideal monatomic gas: `T/T_0 = (1 + (g-1)/2 B t)^-2` with
+/// `B = Cd A / V sqrt(g R T_0) (2/(g+1))^((g+1)/(2(g-1)))`.
+#[test]
+fn adiabatic_blowdown_of_ideal_argon_follows_the_closed_form() {
+    let fluid = Fluid::named("argon").unwrap().with_equation(Equation::IdealGas);
+    let r = fluid.specific_gas_constant_j_kg_k();
+    let vessel = insulated(fluid);
+    let mut scenario = still(288.15, 288.15, 1e-9, 30.0 / 3600.0);
+    scenario.sample_time_s = 1.0;
+    scenario.initial.fill = Fill::Pressure { pressure_pa: 150e5 };
+    scenario.flows.push(Flow {
+        name: "nozzle".into(),
+        kind: FlowKind::Orifice { diameter_m: 0.004, discharge_coefficient: 0.8, back_pressure_pa: 1e5 },
+        start_s: 0.0,
+        stop_s: f64::INFINITY,
+        opens_above_pa: None,
+        closes_below_pa: None,
+        closes_above_pa: None,
+    });
+    let trajectory = run(&vessel, &scenario, 1e-9);
+    let g: f64 = 5.0 / 3.0;
+    let area = 0.25 * std::f64::consts::PI * 0.004_f64.powi(2) * 0.8;
+    let b = area / vessel.volume.volume_m3
+        * (g * r * 288.15).sqrt()
+        * (2.0 / (g + 1.0)).powf((g + 1.0) / (2.0 * (g - 1.0)));
+    for (t, gas) in trajectory.time_s.iter().zip(&trajectory.gas_mean_k) {
+        let base = 1.0 + 0.5 * (g - 1.0) * b * t;
+        assert_relative_eq!(*gas, 288.15 * base.powi(-2), max_relative = 1e-6);
+    }
+}
+
+#[test]
+fn pressure_limit_is_reported_when_the_cylinder_cools_through_it() {
+    let mut scenario = still(248.15 - 10.0, 288.15, 20.0, 6.0);
+    scenario.pressure_limits_pa.push(160e5);
+    let trajectory = run(&closed_bottle(), &scenario, 1e-6);
+    assert_eq!(trajectory.events.len(), 1);
+    let event = &trajectory.events[0];
+    assert_eq!(event.kind, EventKind::PressureLimit { limit_pa: 160e5, falling: true });
+    assert_relative_eq!(event.pressure_pa, 160e5, epsilon = 1.0);
+    assert_relative_eq!(event.gas_mean_k, 248.0, epsilon = 0.2);
+}
+
+#[test]
+fn leak_stops_at_its_pressure_and_takes_what_it_should() {
+    let mut scenario = still(288.15, 288.15, 20.0, 10.0);
+    scenario.flows.push(Flow {
+        name: "leak".into(),
+        kind: FlowKind::Leak { mass_flow_kg_s: 1e-4 },
+        start_s: 1800.0,
+        stop_s: f64::INFINITY,
+        opens_above_pa: None,
+        closes_below_pa: Some(190e5),
+        closes_above_pa: None,
+    });
+    let trajectory = run(&closed_bottle(), &scenario, 1e-8);
+    let kinds: Vec<_> = trajectory.events.iter().map(|e| e.kind.clone()).collect();
+    assert_eq!(
+        kinds,
+        [EventKind::FlowOpened { flow: "leak".into() }, EventKind::FlowClosed { flow: "leak".into() }]
+    );
+    assert_relative_eq!(trajectory.events[0].time_s, 1800.0, epsilon = 1e-9);
+    assert_relative_eq!(trajectory.events[1].pressure_pa, 190e5, epsilon = 10.0);
+    let lost = trajectory.mass_kg[0] - trajectory.mass_kg.last().unwrap();
+    assert_relative_eq!(lost, 1e-4 * (trajectory.events[1].time_s - 1800.0), max_relative = 1e-7);
+}
+
+/// A 30 s, 40 K pulse in a quiet run: a solver that steps over it would miss 0.6 K.
+#[test]
+fn short_pulse_is_not_missed() {
+    let mut scenario = still(288.15, 288.15, 20.0, 8.0);
+    scenario.surroundings.air_k = Series::try_new(
+        vec![0.0, 14_000.0, 14_000.0, 14_030.0, 14_030.0],
+        vec![288.15, 288.15, 328.15, 328.15, 288.15],
+    )
+    .unwrap();
+    let pulsed = run(&closed_bottle(), &scenario, 1e-6);
+    let highest = pulsed.wall_mean_k.iter().copied().fold(0.0, f64::max);
+    // 0.523 m² x 20 W/m²K x 40 K x 30 s over 12.35 kJ/K, less what the gas has taken up by the next sample.
+    assert_relative_eq!(highest - 288.15, 0.523 * 20.0 * 40.0 * 30.0 / 12_350.0, max_relative = 0.1);
+    let at_jump = pulsed.time_s.iter().position(|&t| t == 14_040.0).unwrap();
+    assert!(pulsed.wall_mean_k[at_jump] > 288.8, "dense output after the jump");
+}

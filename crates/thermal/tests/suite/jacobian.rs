@@ -1,0 +1,169 @@
+//! The exact Jacobian against central differences, in every regime.
+use cylwatch_thermal::flow::{Flow, FlowKind};
+use cylwatch_thermal::model::Model;
+use cylwatch_thermal::model::inputs::{FilmInput, Inputs};
+use cylwatch_thermal::scenario::Scenario;
+use cylwatch_thermal::vessel::{InnerVolume, Surface, Valve, Vessel};
+use cylwatch_thermal::wall::geometry::{End, EndShape, Geometry, Layer, Neck};
+use cylwatch_thermal::wall::material::Material;
+use proptest::prelude::*;
+
+use crate::support::{closed_bottle, solid, still};
+
+/// Everything switched on: domes, neck, two layers, temperature-dependent steel, elastic volume, valve, radiation.
+fn full() -> Vessel {
+    let base = closed_bottle();
+    let end = End { shape: EndShape::Dome { depth_m: 0.07 }, thickness_m: 0.008, cells: 2 };
+    let steel = Material {
+        heat_capacity_slope_per_k: 7e-4,
+        conductivity_slope_per_k: -4e-4,
+        ..solid(7850.0, 460.0, 42.0)
+    };
+    Vessel {
+        volume: InnerVolume {
+            thermal_expansion_per_k: 3.5e-5,
+            pressure_expansion_per_pa: 1.5e-10,
+            ..base.volume
+        },
+        valve: Some(Valve {
+            material: solid(8400.0, 380.0, 115.0),
+            mass_kg: 1.2,
+            contact_w_k: 2.0,
+            area_m2: 0.02,
+            diameter_m: 0.06,
+            film_factor: 1.25,
+        }),
+        surface: Surface { emissivity: 0.9, solar_absorptivity: 0.5 },
+        geometry: Geometry {
+            cylinder_cells: 3,
+            bottom: end,
+            shoulder: end,
+            neck: Some(Neck { inner_diameter_m: 0.025, thickness_m: 0.012, length_m: 0.03, cells: 1 }),
+            layers: vec![
+                Layer { material: solid(950.0, 1900.0, 0.4), thickness_m: 0.003, cells: 2 },
+                Layer { material: steel, thickness_m: 0.006, cells: 2 },
+            ],
+            lumped: false,
+            ..base.geometry
+        },
+        ..base
+    }
+}
+
+fn flow(kind: FlowKind) -> Flow {
+    Flow {
+        name: "flow".into(),
+        kind,
+        start_s: 0.0,
+        stop_s: f64::INFINITY,
+        opens_above_pa: None,
+        closes_below_pa: None,
+        closes_above_pa: None,
+    }
+}
+
+fn with_flows(kinds: Vec<FlowKind>) -> Scenario {
+    let mut scenario = still(280.0, 288.15, 10.0, 1.0);
+    scenario.flows = kinds.into_iter().map(flow).collect();
+    scenario
+}
+
+fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f64) {
+    let model = Model::new(vessel, scenario).unwrap();
+    let mut initial = scenario.initial;
+    initial.gas_temperature_k += gas_offset_k;
+    let mut x = model.initial_state(vessel, &initial).unwrap();
+    let layout = *model.layout();
+    for (cell, value) in x[..layout.mean_wall].iter_mut().enumerate() {
+        *value += 3.0 * ((cell * 7 % 11) as f64 / 11.0 - 0.4);
+    }
+    let open = vec![true; scenario.flows.len()];
+    let n = layout.states;
+    let mut jacobian = vec![vec![0.0; n]; n];
+    model.jacobian(&x, inputs, &open, &mut |i, j, v| jacobian[i][j] += v).unwrap();
+    let capacity = |row: usize| if row <= layout.mean_wall { 1.0 } else { 1e-3 };
+    for column in 0..n {
+        let step = match column {
+            c if c == layout.mass => 1e-5,
+            c if c == layout.energy => 0.5,
+            c if c <= layout.mean_wall => 1e-4,
+            _ => 1.0,
+        };
+        let mut rates = [vec![0.0; n], vec![0.0; n]];
+        for (side, rate) in [1.0, -1.0].into_iter().zip(&mut rates) {
+            let mut moved = x.clone();
+            moved[column] += side * step;
+            model.rate(&moved, inputs, &open, rate).unwrap();
+        }
+        for row in 0..n {
+            let difference = (rates[0][row] - rates[1][row]) / (2.0 * step);
+            let scale = (rates[0][row].abs() / x[column].abs().max(1.0) + difference.abs()) * capacity(row)
+                + 1e-7;
+            let error = (jacobian[row][column] - difference).abs();
+            assert!(
+                error < 2e-4 * scale.max(difference.abs()),
+                "row {row} column {column}: {} against {difference}",
+                jacobian[row][column]
+            );
+        }
+    }
+}
+
+const STILL: Inputs = Inputs {
+    air_k: 275.0,
+    film: FilmInput::Coefficient(12.0),
+    radiation_k: None,
+    irradiance_w_m2: 0.0,
+};
+
+#[test]
+fn jacobian_is_the_derivative_in_a_closed_cylinder() {
+    check(&full(), &with_flows(vec![]), &STILL, 1.0);
+}
+
+#[test]
+fn jacobian_is_the_derivative_in_wind_and_radiation() {
+    let inputs = Inputs {
+        film: FilmInput::Convection { wind_m_s: 7.0, multiplier: 1.1 },
+        radiation_k: Some(270.0),
+        irradiance_w_m2: 500.0,
+        ..STILL
+    };
+    check(&full(), &with_flows(vec![]), &inputs, -2.0);
+    let calm = Inputs { film: FilmInput::Convection { wind_m_s: 0.0, multiplier: 1.0 }, ..inputs };
+    check(&full(), &with_flows(vec![]), &calm, 3.0);
+}
+
+#[test]
+fn jacobian_is_the_derivative_in_a_blowdown_and_a_refill() {
+    let orifice = |back_pressure_pa| FlowKind::Orifice {
+        diameter_m: 0.003,
+        discharge_coefficient: 0.8,
+        back_pressure_pa,
+    };
+    check(&full(), &with_flows(vec![orifice(1e5)]), &STILL, -8.0);
+    check(&full(), &with_flows(vec![orifice(150e5)]), &STILL, -8.0);
+    check(
+        &full(),
+        &with_flows(vec![
+            FlowKind::Leak { mass_flow_kg_s: 1e-5 },
+            FlowKind::Refill {
+                mass_flow_kg_s: 5e-3,
+                source_temperature_k: 300.0,
+                source_pressure_pa: 250e5,
+                inlet_diameter_m: Some(0.004),
+            },
+        ]),
+        &STILL,
+        6.0,
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #[test]
+    fn jacobian_is_the_derivative_everywhere(air in 230.0..330.0f64, film in 1.0..80.0f64, offset in -15.0..15.0f64) {
+        let inputs = Inputs { air_k: air, film: FilmInput::Coefficient(film), ..STILL };
+        check(&full(), &with_flows(vec![FlowKind::Leak { mass_flow_kg_s: 1e-5 }]), &inputs, offset);
+    }
+}
