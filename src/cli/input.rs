@@ -55,7 +55,12 @@ impl Inputs {
         let document =
             self.document("scenario", name, scenario::presets::text, scenario::presets::names().collect())?;
         if document.built_in {
-            return Ok(scenario::read_scenario(&document.text, &document.shown, &scenario::presets::table)?);
+            let table = |file: &str| {
+                let text = scenario::presets::table(file)?;
+                self.records.borrow_mut().push(Input::of(format!("preset {file}"), text.as_bytes()));
+                Ok(text)
+            };
+            return Ok(scenario::read_scenario(&document.text, &document.shown, &table)?);
         }
         let folder = Path::new(name).parent().unwrap_or(Path::new("")).to_path_buf();
         let table = |file: &str| {

@@ -81,7 +81,7 @@ pub fn title(run: &Trajectory) -> String {
     format!("{} \u{2013} {}", run.scenario.name, run.vessel.name).replace("degC", "°C").replace(" -", " \u{2212}")
 }
 
-/// Temperatures above, pressure below, gas mass under both where it changes.
+/// Temperatures, how they differ from the gas, pressure, and the gas mass where it changes.
 pub fn figure(run: &Trajectory) -> Figure {
     let time = &run.time_s;
     let limit = |&limit_pa: &f64| Item::Limit {
@@ -90,8 +90,11 @@ pub fn figure(run: &Trajectory) -> Figure {
     };
     let mut pressure: Vec<Item> = run.scenario.pressure_limits_pa.iter().map(limit).collect();
     pressure.push(Item::line("pressure", time, bar(&run.pressure_pa), style::PRESSURE));
+    let temperatures = temperatures(run);
+    let differences = differences(&temperatures);
     let mut panels = vec![
-        Panel { quantity: "temperature in °C".into(), items: temperatures(run), height: 1.25 },
+        Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
+        Panel { quantity: "minus gas mean, in K".into(), items: differences, height: 0.7 },
         Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
     ];
     let change = run.mass_kg.iter().map(|m| (m - run.mass_kg[0]).abs()).fold(0.0, f64::max);
@@ -129,6 +132,17 @@ fn temperatures(run: &Trajectory) -> Vec<Item> {
     }
     items.push(Item::line("gas, mean", time, celsius(&run.gas_mean_k), style::GAS_MEAN));
     items
+}
+
+/// The curves of walls, valve, sensors and gas cells minus the last one, the mean gas: what a sensor on the wall
+/// gets wrong about the gas. The air, which is first, is left out: it would set the scale alone.
+fn differences(temperatures: &[Item]) -> Vec<Item> {
+    let Some((Item::Line { y: mean, .. }, others)) = temperatures.split_last() else { return Vec::new() };
+    let difference = |item: &Item| match item {
+        Item::Line { x, y, stroke, .. } => Some(Item::line("", x, y.iter().zip(mean).map(|(t, gas)| t - gas), *stroke)),
+        _ => None,
+    };
+    others.iter().skip(1).filter_map(difference).collect()
 }
 
 /// Events and balances as comment lines of a CSV file.

@@ -1,5 +1,5 @@
 //! Paper to draw on: figure units in, plotters' integer pixels out.
-use super::path::Point;
+use super::path::{Point, dashes, smooth_pieces};
 use super::style::{Rgb, Stroke};
 use crate::report::ReportError;
 use plotters::coord::Shift;
@@ -36,8 +36,8 @@ pub(super) struct Text {
 /// A drawing area with lengths in figure units.
 pub(super) struct Canvas<'a, DB: DrawingBackend> {
     area: &'a DrawingArea<DB, Shift>,
-    /// How far texts are moved down, in their size.
-    text_drop: f64,
+    /// Whether it is made of pixels.
+    raster: bool,
 }
 
 fn color(rgb: Rgb) -> RGBColor {
@@ -51,12 +51,12 @@ fn pixel(point: Point) -> (i32, i32) {
 impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
     /// Paper of a vector picture, where the viewer sets the text.
     pub fn vector(area: &'a DrawingArea<DB, Shift>) -> Self {
-        Self { area, text_drop: 0.0 }
+        Self { area, raster: false }
     }
 
-    /// Paper of pixels: plotters centres the box above the baseline there, which looks too high by this much.
+    /// Paper of pixels.
     pub fn raster(area: &'a DrawingArea<DB, Shift>) -> Self {
-        Self { area, text_drop: 0.17 }
+        Self { area, raster: true }
     }
 
     fn draw<E>(&self, element: &E) -> Result<(), ReportError>
@@ -74,11 +74,19 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
     /// A polyline, dashed as its stroke says.
     pub fn line(&self, points: &[Point], stroke: &Stroke) -> Result<(), ReportError> {
         let style = color(stroke.color).stroke_width((stroke.width * FINE).round() as u32);
-        for piece in super::path::dashes(points, stroke.dash) {
-            let mut pixels: Vec<(i32, i32)> = piece.into_iter().map(pixel).collect();
-            pixels.dedup();
-            if pixels.len() > 1 {
-                self.draw(&PathElement::new(pixels, style))?;
+        for dash in dashes(points, stroke.dash) {
+            // plotters' pixels run out into long spikes at sharp corners: there a new piece begins, under a dot.
+            let pieces = if self.raster { smooth_pieces(dash) } else { vec![dash] };
+            for (number, piece) in pieces.iter().enumerate() {
+                if number > 0 && stroke.width > 1.0 {
+                    let radius = (0.5 * stroke.width * FINE) as i32;
+                    self.draw(&Circle::new(pixel(piece[0]), radius, color(stroke.color).filled()))?;
+                }
+                let mut pixels: Vec<(i32, i32)> = piece.iter().copied().map(pixel).collect();
+                pixels.dedup();
+                if pixels.len() > 1 {
+                    self.draw(&PathElement::new(pixels, style))?;
+                }
             }
         }
         Ok(())
@@ -115,7 +123,8 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         let font = if text.upwards { font.transform(FontTransform::Rotate270) } else { font };
         let ink = color(text.color);
         let style = TextStyle::from(font).color(&ink).pos(Pos::new(h_pos, VPos::Center));
-        let drop = self.text_drop * text.size;
+        // Among pixels plotters centres the box above the baseline, which looks too high by a sixth.
+        let drop = if self.raster { text.size / 6.0 } else { 0.0 };
         let at = if text.upwards { (at.0 + drop, at.1) } else { (at.0, at.1 + drop) };
         self.draw(&plotters::element::Text::new(words.to_owned(), pixel(at), style))
     }

@@ -44,7 +44,8 @@ pub struct Panel {
     pub height: f64,
 }
 
-/// Something drawn in a panel. Horizontal values are seconds on a time axis; NaN leaves a gap.
+/// Something drawn in a panel. Horizontal values are seconds on a time axis; NaN leaves a gap; an empty name keeps it
+/// out of the legend.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// A curve.
@@ -99,6 +100,13 @@ pub struct Mark {
 }
 
 impl Item {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Line { name, .. } | Self::Points { name, .. } | Self::Band { name, .. } | Self::Limit { name, .. } => name,
+        }
+    }
+
     /// A curve.
     pub fn line(name: impl Into<String>, x: &[f64], y: impl IntoIterator<Item = f64>, stroke: Stroke) -> Self {
         Self::Line { name: name.into(), x: x.to_vec(), y: y.into_iter().collect(), stroke }

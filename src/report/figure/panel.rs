@@ -224,7 +224,7 @@ fn mark_names<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, marks: &[M
 fn legend<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, top: f64) -> Result<(), ReportError> {
     let left = style::WIDTH - style::RIGHT + 14.0;
     let mut at = top + 0.5 * style::LEGEND_LINE;
-    for item in &panel.items {
+    for item in panel.items.iter().filter(|item| !item.name().is_empty()) {
         let sample = [(left, at), (left + style::LEGEND_SAMPLE, at)];
         let name = match item {
             Item::Line { name, stroke, .. } => {

@@ -46,7 +46,7 @@ fn thin(points: &[Point], column: f64) -> Vec<Point> {
 }
 
 /// How far a drawn curve may pass from its points, in figure units: less than a printer's dot.
-const TOLERANCE: f64 = 0.12;
+const TOLERANCE: f64 = 0.04;
 
 /// The curve with as few corners as the eye allows: many short pieces would each be rounded to pixels and wobble.
 pub(super) fn simplified(points: &[Point]) -> Vec<Point> {
@@ -68,6 +68,24 @@ pub(super) fn simplified(points: &[Point]) -> Vec<Point> {
         }
     }
     points.into_iter().zip(keep).filter_map(|(point, keep)| keep.then_some(point)).collect()
+}
+
+/// Cuts a polyline at its sharp corners, which stay in both pieces.
+pub(super) fn smooth_pieces(points: Vec<Point>) -> Vec<Vec<Point>> {
+    /// Cosine of the turn above which a corner is smooth.
+    const SMOOTH: f64 = 0.7;
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    for k in 1..points.len().saturating_sub(1) {
+        let (a, b, c) = (points[k - 1], points[k], points[k + 1]);
+        let (u, v) = ((b.0 - a.0, b.1 - a.1), (c.0 - b.0, c.1 - b.1));
+        if u.0 * v.0 + u.1 * v.1 < SMOOTH * u.0.hypot(u.1) * v.0.hypot(v.1) {
+            pieces.push(points[start..=k].to_vec());
+            start = k;
+        }
+    }
+    pieces.push(points[start..].to_vec());
+    pieces
 }
 
 /// Distance of `p` from the line through `a` and `b`.
@@ -142,6 +160,12 @@ mod tests {
         let step: Vec<Point> = (0..500).map(|k| (f64::from(k), if k < 250 { 0.0 } else { 90.0 })).collect();
         assert_eq!(simplified(&step).len(), 4);
         assert!(simplified(&[]).is_empty());
+    }
+
+    #[test]
+    fn a_polyline_is_cut_at_its_sharp_corners_only() {
+        let pieces = smooth_pieces(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 0.1), (2.0, 9.0)]);
+        assert_eq!(pieces, vec![vec![(0.0, 0.0), (1.0, 0.0), (2.0, 0.1)], vec![(2.0, 0.1), (2.0, 9.0)]]);
     }
 
     #[test]
