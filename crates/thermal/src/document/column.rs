@@ -1,7 +1,9 @@
 //! One column of a CSV file against its time column.
-use super::Problem;
+use csv::StringRecord;
+
+use super::{Problem, check};
 use crate::ThermalError;
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, Unit};
 
 /// Knots of a column in SI, with the lines they stand in.
 #[derive(Debug)]
@@ -18,72 +20,105 @@ pub(crate) struct Column {
     pub text: Vec<(String, String)>,
 }
 
-/// Reads the column `name`, whose suffix has to be a unit of `dimension`, and the column `time_<unit>`.
-///
-/// Lines that start with `#` are comments; a row whose cell is empty has no knot.
-pub(crate) fn read(text: &str, file: &str, name: &str, dimension: Dimension) -> Result<Column, ThermalError> {
-    let fault =
-        |line, problem| ThermalError::Document { file: file.to_owned(), line, problem: Box::new(problem) };
-    let unreadable = |error: csv::Error| {
+/// Which column of which file to read, as a specification says it.
+pub(crate) struct Source<'a> {
+    /// Path of the column's name in the specification.
+    pub path: &'a str,
+    /// Name of the column.
+    pub name: &'a str,
+    /// File.
+    pub file: &'a str,
+    /// What the column's suffix has to measure.
+    pub dimension: Dimension,
+}
+
+impl Source<'_> {
+    fn fault(&self, line: usize, problem: Problem) -> ThermalError {
+        ThermalError::Document { file: self.file.to_owned(), line, problem: Box::new(problem) }
+    }
+
+    fn unreadable(&self, error: csv::Error) -> ThermalError {
         let line = error.position().map_or(1, |position| position.line() as usize);
-        fault(line, Problem::Syntax { message: error.to_string() })
-    };
-    let mut reader =
-        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(unreadable)?.clone();
-    let is_comment = |line: &str| line.starts_with('#') || line.trim().is_empty();
-    let head_line = 1 + text.lines().take_while(|line| is_comment(line)).count();
-    let names = || header.iter().collect::<Vec<_>>().join(", ");
-    let (_, unit) = units::split(name).ok_or_else(|| {
-        let units = units::listed(dimension);
-        let example =
-            units::units_of(dimension).next().map_or(name.to_owned(), |u| format!("{name}_{}", u.suffix));
-        fault(head_line, Problem::NoUnit { key: name.to_owned(), example, units })
-    })?;
-    let unit = units::find(unit.suffix, dimension).ok_or_else(|| {
-        let (unit, units) = (unit.suffix.to_owned(), units::listed(dimension));
-        fault(
-            head_line,
-            Problem::WrongUnit { key: name.to_owned(), unit, quantity: "this signal".into(), units },
-        )
-    })?;
-    let at = header.iter().position(|column| column == name).ok_or_else(|| {
-        let nearest = super::suggestion(name, header.iter());
-        fault(head_line, Problem::UnknownKey { key: name.to_owned(), nearest, known: names() })
-    })?;
-    let time = header.iter().enumerate().find_map(|(i, column)| match units::split(column) {
+        self.fault(line, Problem::Syntax { message: error.to_string() })
+    }
+
+    fn unit(&self) -> Result<&'static Unit, ThermalError> {
+        let unit = units::split(self.name).and_then(|(_, unit)| units::find(unit.suffix, self.dimension));
+        unit.ok_or_else(|| {
+            let bound =
+                format!("a column in a unit of this signal, one of {}", units::listed(self.dimension));
+            check::broken(
+                self.path,
+                format!("{:?}", self.name),
+                &bound,
+                "the end of a column's name is its unit",
+            )
+        })
+    }
+
+    fn missing(&self, line: usize, key: String, remedy: String) -> ThermalError {
+        self.fault(line, Problem::Missing { key, remedy })
+    }
+
+    fn number(&self, record: &StringRecord, i: usize, key: &str, unit: &Unit) -> Result<f64, ThermalError> {
+        let text = record.get(i).unwrap_or_default();
+        match text.parse::<f64>().map(|number| unit.to_si(number)) {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(self
+                .fault(line_of(record), Problem::NotFinite { key: key.to_owned(), text: text.to_owned() })),
+        }
+    }
+}
+
+fn line_of(record: &StringRecord) -> usize {
+    record.position().map_or(1, |position| position.line() as usize)
+}
+
+/// The position and unit of the column `time_<unit>`.
+fn time_column(header: &StringRecord) -> Option<(usize, &'static Unit)> {
+    header.iter().enumerate().find_map(|(i, column)| match units::split(column) {
         Some(("time", unit)) if unit.dimension == Dimension::Time => Some((i, unit)),
         _ => None,
-    });
-    let (time_at, time_unit) = time.ok_or_else(|| {
-        let remedy =
-            format!("name one of the columns time_s, time_min, time_h or time_d; there are {}", names());
-        fault(head_line, Problem::Missing { key: "the time column".to_owned(), remedy })
+    })
+}
+
+/// Reads a column against the column `time_<unit>`.
+///
+/// Lines that start with `#` are comments; a row whose cell is empty has no knot.
+pub(crate) fn read(text: &str, source: &Source<'_>) -> Result<Column, ThermalError> {
+    let unit = source.unit()?;
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| source.unreadable(error))?.clone();
+    let is_comment = |line: &str| line.starts_with('#') || line.trim().is_empty();
+    let head_line = 1 + text.lines().take_while(|line| is_comment(line)).count();
+    let at = header
+        .iter()
+        .position(|column| column == source.name)
+        .ok_or_else(|| check::unknown(source.path, source.name, header.iter()))?;
+    let (time_at, time_unit) = time_column(&header).ok_or_else(|| {
+        let columns: Vec<&str> = header.iter().collect();
+        let there = columns.join(", ");
+        let remedy = format!("name one of the columns time_s, time_min, time_h or time_d; there are {there}");
+        source.missing(head_line, "the time column".to_owned(), remedy)
     })?;
     let time_name = header.get(time_at).unwrap_or("time").to_owned();
     let mut column =
         Column { time_name, time_s: Vec::new(), value: Vec::new(), line: Vec::new(), text: Vec::new() };
     for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(1, |position| position.line() as usize);
-        let number = |i: usize, key: &str, unit: &units::Unit| {
-            let text = record.get(i).unwrap_or_default();
-            match text.parse::<f64>().map(|number| unit.to_si(number)) {
-                Ok(number) if number.is_finite() => Ok(number),
-                _ => Err(fault(line, Problem::NotFinite { key: key.to_owned(), text: text.to_owned() })),
-            }
-        };
-        if record.get(at).is_some_and(|cell| !cell.is_empty()) {
-            column.time_s.push(number(time_at, &column.time_name, time_unit)?);
-            column.value.push(number(at, name, unit)?);
-            column.line.push(line);
-            let cell = |i: usize| record.get(i).unwrap_or_default().to_owned();
-            column.text.push((cell(time_at), cell(at)));
+        let record = record.map_err(|error| source.unreadable(error))?;
+        if record.get(at).is_none_or(str::is_empty) {
+            continue;
         }
+        column.time_s.push(source.number(&record, time_at, &column.time_name, time_unit)?);
+        column.value.push(source.number(&record, at, source.name, unit)?);
+        column.line.push(line_of(&record));
+        let cell = |i: usize| record.get(i).unwrap_or_default().to_owned();
+        column.text.push((cell(time_at), cell(at)));
     }
     if column.time_s.is_empty() {
         let remedy = "give at least one row with a time and a value".to_owned();
-        return Err(fault(head_line, Problem::Missing { key: format!("a value of {name}"), remedy }));
+        return Err(source.missing(head_line, format!("a value of {}", source.name), remedy));
     }
     Ok(column)
 }

@@ -22,11 +22,41 @@ fn open_units(value: &mut Value) {
         Value::Array(list) => list.iter_mut().for_each(open_units),
         Value::Object(object) => {
             object.values_mut().for_each(open_units);
+            without_null(object);
             if object.get("properties").is_some_and(Value::is_object) {
                 open_object(object);
             }
         }
         _ => {}
+    }
+}
+
+/// TOML has no null: an optional key is left out instead.
+fn without_null(schema: &mut Map<String, Value>) {
+    if let Some(Value::Array(types)) = schema.get_mut("type") {
+        types.retain(|name| name != "null");
+        if let [only] = &types[..] {
+            let only = only.clone();
+            schema.insert("type".to_owned(), only);
+        }
+    }
+    if let Some(Value::Array(mut choices)) = schema.remove("anyOf") {
+        choices.retain(|choice| choice != &json!({ "type": "null" }));
+        match choices.pop() {
+            Some(Value::Object(only)) if choices.is_empty() => schema.extend(only),
+            Some(last) => {
+                choices.push(last);
+                schema.insert("anyOf".to_owned(), Value::Array(choices));
+            }
+            None => {}
+        }
+    }
+    // A derived default of a table spells out nulls and SI fields.
+    if schema.get("default").is_some_and(|default| default.is_object() || default.is_null()) {
+        schema.remove("default");
+    }
+    if schema.get("format") == Some(&json!("double")) {
+        schema.remove("format");
     }
 }
 
@@ -43,7 +73,6 @@ fn open_object(object: &mut Map<String, Value>) {
                 if let Some(property) = property.as_object_mut() {
                     // The derived default is in SI, whatever unit the document uses.
                     property.remove("default");
-                    property.remove("format");
                 }
                 patterns.insert(format!("^{base}_({})$", suffixes(unit.dimension).join("|")), property);
             }

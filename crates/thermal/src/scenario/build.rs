@@ -179,7 +179,8 @@ fn irradiance(spec: &AmbientSpec) -> Signal<'_> {
     }
 }
 
-fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
+/// What fixes the gas mass: exactly one of settled fill, pressure and mass.
+fn fill(spec: &InitialSpec) -> Result<Fill, ThermalError> {
     let fills = [
         ("initial.fill_pressure_pa", spec.fill_pressure_pa),
         ("initial.pressure_pa", spec.pressure_pa),
@@ -194,27 +195,31 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
         let remedy = "it belongs to fill_pressure; for other fills give temperature";
         return Err(check::conflict("initial.fill_temperature_k", "a fill without fill_pressure", remedy));
     }
-    let fill = match given[..] {
+    match given[..] {
         [(path @ "initial.mass_kg", mass_kg), ..] => {
             let remedy = "give the mass of the gas inside";
             check::positive(path, mass_kg, remedy)?;
-            Fill::Mass { mass_kg: check::within(path, mass_kg, (0.0, 1e5), "at most 100 t", remedy)? }
+            Ok(Fill::Mass { mass_kg: check::within(path, mass_kg, (0.0, 1e5), "at most 100 t", remedy)? })
         }
         [(path @ "initial.pressure_pa", pressure_pa), ..] => {
-            Fill::Pressure { pressure_pa: check::pressure_pa(path, pressure_pa)? }
+            Ok(Fill::Pressure { pressure_pa: check::pressure_pa(path, pressure_pa)? })
         }
         [(path, pressure_pa), ..] => {
             let temperature_k = spec.fill_temperature_k.unwrap_or(ZERO_CELSIUS_K + 15.0);
-            Fill::Settled {
+            Ok(Fill::Settled {
                 pressure_pa: check::pressure_pa(path, pressure_pa)?,
                 temperature_k: check::temperature_k("initial.fill_temperature_k", temperature_k)?,
-            }
+            })
         }
         [] => {
             let remedy = "say how full the cylinder is: fill_pressure_bar at fill_temperature_degc, pressure_bar or mass_kg";
-            return Err(check::missing("initial.fill_pressure_pa", remedy));
+            Err(check::missing("initial.fill_pressure_pa", remedy))
         }
-    };
+    }
+}
+
+fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
+    let fill = fill(spec)?;
     if let (Some(_), Some(_), Some(_)) = (spec.temperature_k, spec.wall_temperature_k, spec.gas_temperature_k)
     {
         let remedy = "leave it out, wall and gas are stated";

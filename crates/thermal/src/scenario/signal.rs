@@ -247,7 +247,9 @@ impl Signal<'_> {
                 &remedy,
             )
         })?;
-        let column = column::read(&text, &csv.file, &csv.column, self.dimension)?;
+        let name_path = format!("{path}.column");
+        let (file, name, dimension) = (csv.file.as_str(), csv.column.as_str(), self.dimension);
+        let column = column::read(&text, &column::Source { path: &name_path, name, file, dimension })?;
         let fault = |i: usize, problem| ThermalError::Document {
             file: csv.file.clone(),
             line: column.line[i],

@@ -3,8 +3,9 @@ use super::{Vessel, read_vessel};
 use crate::ThermalError;
 use crate::document::unknown_preset;
 
-const FILES: [(&str, &str); 3] = [
+const FILES: [(&str, &str); 4] = [
     ("nitrogen-20l", include_str!("../../presets/vessels/nitrogen-20l.toml")),
+    ("nitrogen-20l-paper", include_str!("../../presets/vessels/nitrogen-20l-paper.toml")),
     ("closed-bottle", include_str!("../../presets/vessels/closed-bottle.toml")),
     ("haque-i1", include_str!("../../presets/vessels/haque-i1.toml")),
 ];

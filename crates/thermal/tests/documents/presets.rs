@@ -68,6 +68,16 @@ fn the_20_litre_cylinder_has_its_volume_mass_and_cells() {
 }
 
 #[test]
+fn the_vessel_of_the_paper_is_the_20_litre_cylinder_made_rigid() {
+    let vessel = vessel::presets::load("nitrogen-20l").unwrap();
+    let mut paper = vessel::presets::load("nitrogen-20l-paper").unwrap();
+    assert_eq!((paper.volume.volume_m3, paper.volume.pressure_expansion_per_pa), (0.020, 0.0));
+    assert_eq!(paper.geometry.layers[0].material.heat_capacity_j_kg_k, 460.0);
+    paper.geometry.layers = vessel.geometry.layers.clone();
+    assert_eq!((paper.geometry, paper.valve, paper.surface), (vessel.geometry, vessel.valve, vessel.surface));
+}
+
+#[test]
 fn published_vessels_have_their_volumes() {
     let haque = vessel::presets::load("haque-i1").unwrap();
     assert_relative_eq!(haque.volume.volume_m3, 0.0892, max_relative = 1e-3);

@@ -2,13 +2,10 @@
 use cylwatch_thermal::{scenario, vessel};
 use serde_json::Value;
 
-/// Follows `$ref` and the `anyOf [X, null]` of optional fields.
+/// Follows `$ref`.
 fn resolved<'s>(schema: &'s Value, root: &'s Value) -> &'s Value {
-    if let Some(reference) = schema.get("$ref").and_then(Value::as_str) {
-        return resolved(root.pointer(reference.trim_start_matches('#')).unwrap(), root);
-    }
-    match schema.get("anyOf").and_then(Value::as_array) {
-        Some(choices) => resolved(&choices[0], root),
+    match schema.get("$ref").and_then(Value::as_str) {
+        Some(reference) => root.pointer(reference.trim_start_matches('#')).unwrap(),
         None => schema,
     }
 }
@@ -70,4 +67,13 @@ fn a_quantity_takes_every_unit_of_its_dimension_and_no_other() {
     assert!(of_key(layer, "thickness_bar").is_none() && of_key(layer, "thickness").is_none());
     assert_eq!(layer["required"], serde_json::json!(["material"]));
     assert_eq!(layer["allOf"][0]["oneOf"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn schemas_know_no_null_and_no_default_in_si() {
+    for schema in [vessel::schema(), scenario::schema()] {
+        let text = schema.to_string();
+        assert!(!text.contains("null") && !text.contains("\"format\":\"double\""), "{text}");
+        assert_eq!(schema["additionalProperties"], Value::Bool(false));
+    }
 }
