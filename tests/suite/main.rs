@@ -1,2 +1,7 @@
 //! Tests of the program and of what it writes, by kind.
+mod files;
+mod properties;
 mod report;
+mod reproduce;
+mod simulate;
+mod support;
