@@ -66,7 +66,9 @@ const PROPERTIES: [Property; 14] = [
     ("cp_j_kg_k", "heat capacity at constant pressure", "J/(kg K)", |p| p.state.cp_j_kg_k),
     ("sound_speed_m_s", "speed of sound", "m/s", |p| p.state.sound_speed_m_s),
     ("dp_dt_at_density_pa_k", "dp/dT at constant density", "Pa/K", |p| p.state.dp_dt_pa_k),
-    ("dp_drho_at_temperature_pa_m3_kg", "dp/dρ at constant temperature", "Pa m³/kg", |p| p.state.dp_drho_pa_m3_kg),
+    ("dp_drho_at_temperature_pa_m3_kg", "dp/dρ at constant temperature", "Pa m³/kg", |p| {
+        p.state.dp_drho_pa_m3_kg
+    }),
     ("viscosity_pa_s", "viscosity", "Pa s", |p| p.viscosity_pa_s),
     ("conductivity_w_m_k", "thermal conductivity", "W/(m K)", |p| p.conductivity_w_m_k),
 ];
@@ -90,27 +92,33 @@ pub fn evaluate(fluid: &Fluid, given: Given) -> Result<Properties, PropertyError
 
 /// Temperature from pressure and density, K.
 ///
-/// At constant density the pressure rises with temperature, nearly along a straight line: Newton's method from the
-/// nearest of a few hundred temperatures that the equation of state admits.
+/// At constant density the pressure of a single phase rises with temperature, nearly along a straight line: Newton's
+/// method from the nearest of a few hundred temperatures that the equation of state admits. They are tried from the
+/// hottest down and end with the first that is refused or breaks the rise, below which is no gas.
 fn temperature_k(fluid: &Fluid, pressure_pa: f64, density_kg_m3: f64) -> Result<f64, PropertyError> {
     const STEPS: i32 = 300;
     let missing = || PropertyError::NoTemperature { pressure_pa, density_kg_m3 };
-    let admitted = (0..=STEPS).filter_map(|k| {
-        let t = LOWEST_K * (HIGHEST_K / LOWEST_K).powf(f64::from(k) / f64::from(STEPS));
-        let state = fluid.checked_state(density_kg_m3, t).ok()?;
-        Some((t, (state.pressure_pa - pressure_pa).abs()))
-    });
-    let (mut t, _) = admitted.min_by(|a, b| a.1.total_cmp(&b.1)).ok_or_else(missing)?;
+    let mut last = f64::INFINITY;
+    let gas = (0..=STEPS)
+        .map(|k| HIGHEST_K * (LOWEST_K / HIGHEST_K).powf(f64::from(k) / f64::from(STEPS)))
+        .map(|t| (t, fluid.checked_state(density_kg_m3, t).ok()))
+        .skip_while(|(_, state)| state.is_none())
+        .map_while(|(t, state)| Some((t, state?.pressure_pa)))
+        .take_while(|(_, p)| *p < std::mem::replace(&mut last, *p));
+    let nearest = gas.min_by(|a, b| (a.1 - pressure_pa).abs().total_cmp(&(b.1 - pressure_pa).abs()));
+    let (mut t, _) = nearest.ok_or_else(missing)?;
     for _ in 0..50 {
         let state = fluid.checked_state(density_kg_m3, t).map_err(|_| missing())?;
         let step = (pressure_pa - state.pressure_pa) / state.dp_dt_pa_k;
         t += step;
-        if step.abs() <= 1e-13 * t {
+        if !(LOWEST_K..=HIGHEST_K).contains(&t) {
+            return Err(missing());
+        }
+        if step.abs() <= 1e-12 * t {
             return Ok(t);
         }
     }
-    let error = (fluid.checked_state(density_kg_m3, t)?.pressure_pa - pressure_pa).abs();
-    if error <= 1e-10 * pressure_pa { Ok(t) } else { Err(missing()) }
+    Err(missing())
 }
 
 /// The states as columns.

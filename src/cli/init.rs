@@ -17,7 +17,10 @@ pub fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> 
     for (name, _) in &files {
         let path = folder.join(name);
         if path.symlink_metadata().is_ok() {
-            bail!("{} is there already and stays as it is: name another folder, or move it away", path.display());
+            bail!(
+                "{} is there already and stays as it is: name another folder, or move it away",
+                path.display()
+            );
         }
     }
     output::make_folder(folder)?;
@@ -25,6 +28,8 @@ pub fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> 
         output::write_new_file(&folder.join(name), text.as_bytes())?;
     }
     let [vessel, scenario] = files.map(|(name, _)| folder.join(name).display().to_string());
-    messages.say(&format!("wrote {vessel} and {scenario}; try: cylwatch simulate {vessel} {scenario} --plot run.svg -o run.csv"));
+    messages.say(&format!(
+        "wrote {vessel} and {scenario}; try: cylwatch simulate {vessel} {scenario} --plot run.svg -o run.csv"
+    ));
     Ok(())
 }

@@ -46,7 +46,8 @@ impl Inputs {
 
     /// A vessel by file name, by built-in name, or from stdin.
     pub fn vessel(&self, name: &str) -> anyhow::Result<Vessel> {
-        let document = self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
+        let document =
+            self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
         Ok(vessel::read_vessel(&document.text, &document.shown)?)
     }
 

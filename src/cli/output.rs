@@ -74,7 +74,11 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// Writes a file that is not there yet, complete or not at all.
 pub fn write_new_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let failed = || format!("{} cannot be written", path.display());
-    complete(path, bytes).with_context(failed)?.persist_noclobber(path).map_err(|e| e.error).with_context(failed)?;
+    complete(path, bytes)
+        .with_context(failed)?
+        .persist_noclobber(path)
+        .map_err(|e| e.error)
+        .with_context(failed)?;
     Ok(())
 }
 
@@ -84,10 +88,12 @@ pub fn make_folder(folder: &Path) -> anyhow::Result<()> {
     if folder.exists() && !folder.is_dir() {
         bail!("{shown} is a file where the output folder should be: choose another folder");
     }
-    std::fs::create_dir_all(folder)
-        .map_err(|error| anyhow!("the output folder {shown} cannot be made: {error}; choose another with --out"))?;
-    temporary(folder)
-        .map_err(|error| anyhow!("the output folder {shown} cannot be written: {error}; choose another with --out"))?;
+    std::fs::create_dir_all(folder).map_err(|error| {
+        anyhow!("the output folder {shown} cannot be made: {error}; choose another with --out")
+    })?;
+    temporary(folder).map_err(|error| {
+        anyhow!("the output folder {shown} cannot be written: {error}; choose another with --out")
+    })?;
     Ok(())
 }
 

@@ -12,7 +12,8 @@ pub struct Progress {
 impl Progress {
     /// A bar on stderr; nothing where stderr is no terminal or nothing is to be said.
     pub fn new(messages: &Messages) -> Self {
-        let target = if messages.quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let target =
+            if messages.quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(PARTS), target);
         if let Ok(style) = ProgressStyle::with_template("{msg:24} [{bar:40}] {percent:>3} %  {eta} left") {
             bar.set_style(style.progress_chars("=> "));

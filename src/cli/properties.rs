@@ -35,15 +35,20 @@ pub fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Resul
     target.write(text.as_bytes())
 }
 
-fn of_file(fluid: &Fluid, file: &str, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Vec<Properties>> {
+fn of_file(
+    fluid: &Fluid,
+    file: &str,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<Vec<Properties>> {
     if file.is_empty() {
         bail!("--states has an empty name: write a file name or `-` for stdin");
     }
     let text = inputs.read(file)?;
     let shown = if file == "-" { "stdin" } else { file };
-    let evaluated = states::read(&text, shown, messages)?.into_iter().map(|row| {
-        properties::evaluate(fluid, row.given).with_context(|| format!("{shown}:{}", row.line))
-    });
+    let evaluated = states::read(&text, shown, messages)?
+        .into_iter()
+        .map(|row| properties::evaluate(fluid, row.given).with_context(|| format!("{shown}:{}", row.line)));
     evaluated.collect()
 }
 

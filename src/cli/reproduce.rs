@@ -1,9 +1,9 @@
 //! `cylwatch reproduce`: the paper's scenarios and a measured blowdown, as files and as a table.
 use super::arguments::ReproduceArguments;
+use super::command_line;
 use super::message::Messages;
 use super::output::{self, Target};
 use super::progress::Progress;
-use super::command_line;
 use cylwatch::report::Provenance;
 use cylwatch::reproduce::{self, rows};
 use cylwatch::thermal::simulate::SimulationSettings;

@@ -39,7 +39,8 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     let vessel = inputs.vessel(&options.vessel)?;
     let scenario = inputs.scenario(&options.scenario)?;
     let progress = Progress::new(messages);
-    let run = simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;
+    let run =
+        simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;
     drop(progress);
     let provenance = inputs.provenance();
     // Everything is made before anything is written.

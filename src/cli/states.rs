@@ -149,7 +149,8 @@ struct Known {
 /// Names the file, the line, the value, the bound and the remedy.
 pub fn read(text: &str, file: &str, messages: &Messages) -> anyhow::Result<Vec<Row>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().with_context(|| format!("{file}: the header cannot be read"))?.clone();
     let header_line = header.position().map_or(1, csv::Position::line);
     let columns = columns(&header, messages, file).with_context(|| format!("{file}:{header_line}"))?;
@@ -189,7 +190,10 @@ fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyho
             continue;
         };
         let unit = unit.and_then(|unit| units::find(unit.suffix, dimension)).ok_or_else(|| {
-            anyhow!("column {name} has no unit of {base}: end its name in one of {}", units::listed(dimension))
+            anyhow!(
+                "column {name} has no unit of {base}: end its name in one of {}",
+                units::listed(dimension)
+            )
         })?;
         if let Some(first) = known.iter().find(|column| column.dimension == dimension) {
             bail!("column {name} says again what column {} says: keep one of them", first.name);
@@ -221,7 +225,8 @@ fn row(record: &csv::StringRecord, columns: &[Known]) -> anyhow::Result<Given> {
             continue;
         }
         let name = &column.name;
-        let value = text.parse().map_err(|_| anyhow!("{name} = {text} must be a number, with a decimal point"))?;
+        let value =
+            text.parse().map_err(|_| anyhow!("{name} = {text} must be a number, with a decimal point"))?;
         given.push(Quantity { name: name.clone(), unit: column.unit, dimension: column.dimension, value });
     }
     from_quantities(&given)?.ok_or_else(|| {

@@ -78,7 +78,9 @@ pub fn event_name(event: &Event) -> String {
 
 /// Title of a run: what happened to what.
 pub fn title(run: &Trajectory) -> String {
-    format!("{} \u{2013} {}", run.scenario.name, run.vessel.name).replace("degC", "°C").replace(" -", " \u{2212}")
+    format!("{} \u{2013} {}", run.scenario.name, run.vessel.name)
+        .replace("degC", "°C")
+        .replace(" -", " \u{2212}")
 }
 
 /// Temperatures, how they differ from the gas, pressure, and the gas mass where it changes.
@@ -139,7 +141,9 @@ fn temperatures(run: &Trajectory) -> Vec<Item> {
 fn differences(temperatures: &[Item]) -> Vec<Item> {
     let Some((Item::Line { y: mean, .. }, others)) = temperatures.split_last() else { return Vec::new() };
     let difference = |item: &Item| match item {
-        Item::Line { x, y, stroke, .. } => Some(Item::line("", x, y.iter().zip(mean).map(|(t, gas)| t - gas), *stroke)),
+        Item::Line { x, y, stroke, .. } => {
+            Some(Item::line("", x, y.iter().zip(mean).map(|(t, gas)| t - gas), *stroke))
+        }
         _ => None,
     };
     others.iter().skip(1).filter_map(difference).collect()
@@ -214,10 +218,14 @@ pub fn summary(run: &Trajectory) -> String {
     let (Some(&first), Some(&last)) = (run.pressure_pa.first(), run.pressure_pa.last()) else {
         return String::new();
     };
-    let extremes = run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
+    let extremes =
+        run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
     let row = |what: &str, value: String| vec![what.to_owned(), value];
     let mut rows = vec![
-        row("pressure, start and end", format!("{:.2} and {:.2} bar", first / PASCAL_PER_BAR, last / PASCAL_PER_BAR)),
+        row(
+            "pressure, start and end",
+            format!("{:.2} and {:.2} bar", first / PASCAL_PER_BAR, last / PASCAL_PER_BAR),
+        ),
         row(
             "gas mean, lowest and highest",
             format!("{:.2} and {:.2} °C", extremes.0 - ZERO_CELSIUS_K, extremes.1 - ZERO_CELSIUS_K),

@@ -81,7 +81,11 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
 pub fn number(value: f64, digits: usize) -> String {
     // Adding zero turns a negative zero into a positive one.
     let value = rounded(value, digits) + 0.0;
-    if value != 0.0 && !(1e-4..1e15).contains(&value.abs()) { format!("{value:e}") } else { format!("{value}") }
+    if value != 0.0 && !(1e-4..1e15).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
 }
 
 /// Rows of words, aligned; a column whose cells all begin like numbers stands to the right.
@@ -140,7 +144,8 @@ mod tests {
 
     #[test]
     fn numbers_stand_to_the_right_and_words_to_the_left() {
-        let text = aligned(&["what", "value"], &[vec!["a".into(), "10".into()], vec!["bcd".into(), "-1.5".into()]]);
+        let text =
+            aligned(&["what", "value"], &[vec!["a".into(), "10".into()], vec!["bcd".into(), "-1.5".into()]]);
         assert_eq!(text, "what  value\n----  -----\na        10\nbcd    -1.5\n");
     }
 }

@@ -78,7 +78,10 @@ pub fn times_s() -> impl Iterator<Item = f64> {
 ///
 /// # Errors
 /// The first error of a simulation.
-pub fn study(settings: &SimulationSettings, progress: &mut dyn FnMut(usize)) -> Result<Blowdown, ReproduceError> {
+pub fn study(
+    settings: &SimulationSettings,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Blowdown, ReproduceError> {
     let vessel = vessel::presets::load("haque-i1")?;
     let scenario = scenario::presets::load("haque-i1")?;
     let measured = Measured::embedded();

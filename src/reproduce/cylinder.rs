@@ -81,7 +81,8 @@ pub const SLOPE_OF_PAPER_BAR_K: f64 = 0.8457;
 pub fn tight() -> Result<TightCylinder, ReproduceError> {
     let real = Fluid::named("nitrogen")?;
     let ideal = real.clone().with_equation(Equation::IdealGas);
-    let density = |fluid: &Fluid| fluid.density_from_pressure_temperature(FILL_PRESSURE_PA, FILL_TEMPERATURE_K);
+    let density =
+        |fluid: &Fluid| fluid.density_from_pressure_temperature(FILL_PRESSURE_PA, FILL_TEMPERATURE_K);
     let (rho, rho_ideal) = (density(&real)?, density(&ideal)?);
     let temperature_degc: Vec<f64> = (-40..=65).map(f64::from).collect();
     let curve = |fluid: &Fluid, rho: f64| -> Result<Vec<f64>, ThermalError> {

@@ -68,7 +68,8 @@ fn models(study: &Blowdown, what: &str, values: &dyn Fn(&Variant) -> Vec<f64>) -
 
 /// Band between two curves at the times of both, °C.
 fn band(name: &str, low_k: &Curve, high_k: &Curve) -> Vec<Item> {
-    let milliseconds = |curve: &Curve| curve.time_s.iter().map(|t| (t * 1e3) as i64).collect::<BTreeSet<i64>>();
+    let milliseconds =
+        |curve: &Curve| curve.time_s.iter().map(|t| (t * 1e3) as i64).collect::<BTreeSet<i64>>();
     let times: BTreeSet<i64> = milliseconds(low_k).union(&milliseconds(high_k)).copied().collect();
     let x: Vec<f64> = times.into_iter().map(|ms| ms as f64 * 1e-3).collect();
     let low = x.iter().map(|&t| low_k.at(t) - 273.15).collect();

@@ -36,7 +36,8 @@ pub const FILES: [(&str, &str); 5] = [
 impl Measured {
     /// The curves as they were digitised.
     pub fn embedded() -> Self {
-        let [pressure_bar, gas_high_k, gas_low_k, wall_high_k, wall_low_k] = FILES.map(|(_, text)| Curve::of(text));
+        let [pressure_bar, gas_high_k, gas_low_k, wall_high_k, wall_low_k] =
+            FILES.map(|(_, text)| Curve::of(text));
         Self { pressure_bar, gas_high_k, gas_low_k, wall_high_k, wall_low_k }
     }
 }
@@ -90,7 +91,9 @@ mod tests {
         // Within the first points' spacing the digitised edges touch.
         for second in 6..100 {
             let t = f64::from(second);
-            assert!(all.gas_high_k.at(t) > all.gas_low_k.at(t) && all.wall_high_k.at(t) > all.wall_low_k.at(t));
+            assert!(
+                all.gas_high_k.at(t) > all.gas_low_k.at(t) && all.wall_high_k.at(t) > all.wall_low_k.at(t)
+            );
         }
     }
 }

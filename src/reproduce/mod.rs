@@ -71,13 +71,15 @@ pub fn run(
 
 /// Records of everything that is embedded and read by [`run`].
 pub fn inputs() -> Vec<Input> {
-    let vessels = [VESSEL, "closed-bottle", "haque-i1"].map(|name| ("vessel", name, vessel::presets::text(name)));
+    let vessels =
+        [VESSEL, "closed-bottle", "haque-i1"].map(|name| ("vessel", name, vessel::presets::text(name)));
     let mut names = SCENARIOS.to_vec();
     names.extend(["bottle-step", "haque-i1"]);
     let scenarios = names.into_iter().map(|name| ("scenario", name, scenario::presets::text(name)));
-    let presets = vessels.into_iter().chain(scenarios).filter_map(|(kind, name, text)| {
-        Some(Input::of(format!("preset {kind} {name}"), text?.as_bytes()))
-    });
+    let presets = vessels
+        .into_iter()
+        .chain(scenarios)
+        .filter_map(|(kind, name, text)| Some(Input::of(format!("preset {kind} {name}"), text?.as_bytes())));
     presets.chain(measured::FILES.iter().map(|(name, text)| Input::of(*name, text.as_bytes()))).collect()
 }
 
@@ -90,7 +92,8 @@ impl Reproduction {
         let mut files = Vec::new();
         for scenario in self.scenarios.iter().chain([&self.closed]) {
             files.extend(drawn(scenario.name, &simulation::figure(&scenario.run), provenance)?);
-            let csv = simulation::table(&scenario.run).to_csv(provenance, &simulation::remarks(&scenario.run));
+            let csv =
+                simulation::table(&scenario.run).to_csv(provenance, &simulation::remarks(&scenario.run));
             files.push((format!("{}.csv", scenario.name), csv.into_bytes()));
         }
         files.extend(drawn("tight-cylinder", &figures::tight(&self.tight), provenance)?);
@@ -107,7 +110,8 @@ impl Reproduction {
         let times: Vec<f64> = blowdown::times_s().collect();
         let mut table = Table::new(7);
         table.push("time_s", times.iter().copied());
-        let mut push = |name: &str, value: &dyn Fn(f64) -> f64| table.push(name, times.iter().map(|&t| value(t)));
+        let mut push =
+            |name: &str, value: &dyn Fn(f64) -> f64| table.push(name, times.iter().map(|&t| value(t)));
         push("measured_pressure_bar", &|t| measured.pressure_bar.at(t));
         push("measured_gas_low_degc", &|t| measured.gas_low_k.at(t) - 273.15);
         push("measured_gas_high_degc", &|t| measured.gas_high_k.at(t) - 273.15);
@@ -117,7 +121,9 @@ impl Reproduction {
             let run = &variant.run;
             let wall_k = blowdown::wall_middle_k(run);
             push(&format!("{name}_pressure_bar"), &|t| interpolated(&run.time_s, &run.pressure_pa, t) / 1e5);
-            push(&format!("{name}_gas_mean_degc"), &|t| interpolated(&run.time_s, &run.gas_mean_k, t) - 273.15);
+            push(&format!("{name}_gas_mean_degc"), &|t| {
+                interpolated(&run.time_s, &run.gas_mean_k, t) - 273.15
+            });
             push(&format!("{name}_wall_inner_degc"), &|t| interpolated(&run.time_s, &wall_k, t) - 273.15);
         }
         table

@@ -57,8 +57,10 @@ impl Row {
     }
 
     fn cells(&self) -> Vec<String> {
-        let with_unit = |text: String| if self.unit.is_empty() { text } else { format!("{text} {}", self.unit) };
-        let reference = self.reference.map_or(String::new(), |value| format!("{} ({})", short(value), self.source));
+        let with_unit =
+            |text: String| if self.unit.is_empty() { text } else { format!("{text} {}", self.unit) };
+        let reference =
+            self.reference.map_or(String::new(), |value| format!("{} ({})", short(value), self.source));
         let bar = match self.bar {
             Bar::Within(most) => format!("± {}", short(most)),
             Bar::AtMost(most) => format!("≤ {}", short(most)),
@@ -99,7 +101,8 @@ pub fn scenarios_text(results: &Reproduction) -> String {
             ]
         })
         .collect();
-    let header = ["scenario", "gas end/°C", "p end/bar", "states", "steps", "ms", "mass residual", "energy residual"];
+    let header =
+        ["scenario", "gas end/°C", "p end/bar", "states", "steps", "ms", "mass residual", "energy residual"];
     aligned(&header, &rows)
 }
 
@@ -133,10 +136,24 @@ fn tight_rows(results: &Reproduction) -> Vec<Row> {
     };
     vec![
         row("full cylinder at -25 °C", tight.pressure_cold_bar, "bar", 160.09, CHECKED, Bar::Within(0.01)),
-        row("slope at 200 bar, 15 °C, real gas", tight.slope_bar_k, "bar/K", 0.992, CHECKED, Bar::Within(5e-4)),
+        row(
+            "slope at 200 bar, 15 °C, real gas",
+            tight.slope_bar_k,
+            "bar/K",
+            0.992,
+            CHECKED,
+            Bar::Within(5e-4),
+        ),
         row("the same against the paper", tight.slope_bar_k, "bar/K", 0.8457, "paper", Bar::Shown),
         row("the same, ideal gas", tight.slope_ideal_bar_k, "bar/K", 0.694, CHECKED, Bar::Within(5e-4)),
-        row("fill with the paper's slope", tight.fill_of_paper_bar, "bar", 175.25, CHECKED, Bar::Within(0.05)),
+        row(
+            "fill with the paper's slope",
+            tight.fill_of_paper_bar,
+            "bar",
+            175.25,
+            CHECKED,
+            Bar::Within(0.05),
+        ),
         row("gas mass, real gas", tight.mass_kg, "kg", 4.4637, CHECKED, Bar::Within(5e-4)),
         row("the same against the paper", tight.mass_kg, "kg", 4.6, "paper", Bar::Shown),
         row("gas mass, ideal gas", tight.mass_ideal_kg, "kg", 4.6, "paper", Bar::Shown),
@@ -150,14 +167,35 @@ fn closed_rows(results: &Reproduction) -> Vec<Row> {
     let worst = |residual: fn(&crate::thermal::trajectory::Ledger) -> f64| {
         results.scenarios.iter().map(|scenario| residual(&scenario.run.ledger).abs()).fold(0.0, f64::max)
     };
-    let row = |what: &str, here, unit, reference, source, bar| Row { what: what.into(), here, unit, reference, source, bar };
+    let row = |what: &str, here, unit, reference, source, bar| Row {
+        what: what.into(),
+        here,
+        unit,
+        reference,
+        source,
+        bar,
+    };
     let end_bar = run.pressure_pa.last().map_or(f64::NAN, |p| p / 1e5);
     let time_s = time_63_s(run, air_k).unwrap_or(f64::NAN);
     vec![
         row("closed bottle, 6 h after a 20 K step", end_bar, "bar", Some(219.71), HYDDOWN, Bar::Within(0.1)),
         row("closed bottle, 63 % of the step", time_s, "s", Some(3942.0), HYDDOWN, Bar::Within(80.0)),
-        row("largest mass residual, scenarios", worst(|l| l.mass_residual()), "", None, "", Bar::AtMost(1e-6)),
-        row("largest energy residual, scenarios", worst(|l| l.energy_residual()), "", None, "", Bar::AtMost(1e-6)),
+        row(
+            "largest mass residual, scenarios",
+            worst(|l| l.mass_residual()),
+            "",
+            None,
+            "",
+            Bar::AtMost(1e-6),
+        ),
+        row(
+            "largest energy residual, scenarios",
+            worst(|l| l.energy_residual()),
+            "",
+            None,
+            "",
+            Bar::AtMost(1e-6),
+        ),
     ]
 }
 
@@ -170,7 +208,8 @@ fn variant_rows(variant: &Variant, name: &str) -> Vec<Row> {
         source: "HydDown",
         bar: Bar::AtMost(reference),
     };
-    let bias = |what: &str, here, unit, reference| Row { bar: Bar::Shown, ..row(what, here, unit, reference) };
+    let bias =
+        |what: &str, here, unit, reference| Row { bar: Bar::Shown, ..row(what, here, unit, reference) };
     vec![
         row("gas mean rms", variant.gas.rms, "K", 4.1),
         bias("gas mean bias", variant.gas.bias, "K", -2.8),

@@ -8,7 +8,9 @@ fn provenance() -> Provenance {
 
 fn example() -> Figure {
     let x: Vec<f64> = (0..=600).map(|k| f64::from(k) * 18.0).collect();
-    let toward = |from: f64, to: f64, tau: f64| x.iter().map(move |t| to + (from - to) * (-t / tau).exp()).collect::<Vec<f64>>();
+    let toward = |from: f64, to: f64, tau: f64| {
+        x.iter().map(move |t| to + (from - to) * (-t / tau).exp()).collect::<Vec<f64>>()
+    };
     let temperatures = vec![
         Item::line("air", &x, x.iter().map(|&t| if t < 600.0 { 21.0 } else { -25.0 }), style::AIR),
         Item::line("shoulder", &x, toward(21.0, -25.0, 1500.0), style::SHOULDER),
@@ -28,7 +30,10 @@ fn example() -> Figure {
             Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.2 },
             Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
         ],
-        marks: vec![Mark { at: 3600.0, name: "leak opens".into() }, Mark { at: 9000.0, name: "below 160 bar".into() }],
+        marks: vec![
+            Mark { at: 3600.0, name: "leak opens".into() },
+            Mark { at: 9000.0, name: "below 160 bar".into() },
+        ],
     }
 }
 
@@ -47,7 +52,9 @@ fn a_figure_becomes_a_png_of_twice_its_size() {
 fn a_figure_becomes_an_svg_with_every_name_and_unit() {
     let text = example().to_svg(&provenance()).unwrap();
     assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
-    for words in ["temperature in °C", "pressure in bar", "time in min", "limit 160 bar", "gas, mean", "leak opens"] {
+    for words in
+        ["temperature in °C", "pressure in bar", "time in min", "limit 160 bar", "gas, mean", "leak opens"]
+    {
         assert!(text.contains(words), "{words} is missing");
     }
     assert_eq!(text.matches("<svg").count(), 1);

@@ -11,7 +11,10 @@ fn the_paper_is_reproduced_with_figures_tables_and_provenance() {
     let found = files(&out);
     for scenario in ["shock-cold", "tunnel-winter", "ramp-warm", "cool-down", "bottle-step", "blowdown-i1"] {
         for ending in ["svg", "png", "csv"] {
-            assert!(found.contains(&format!("{scenario}.{ending}")), "{scenario}.{ending} is missing in {found:?}");
+            assert!(
+                found.contains(&format!("{scenario}.{ending}")),
+                "{scenario}.{ending} is missing in {found:?}"
+            );
         }
     }
     assert!(found.iter().all(|name| !name.contains("part")), "{found:?}");
@@ -41,5 +44,9 @@ fn an_output_folder_that_cannot_be_made_is_found_before_the_run() {
     let folder = tempdir().unwrap();
     std::fs::write(folder.path().join("file"), "").unwrap();
     refused(folder.path(), &["reproduce", "--out", "file"], &["file", "choose another folder"]);
-    refused(folder.path(), &["reproduce", "--out", "file/deeper"], &["file/deeper", "cannot be made", "--out"]);
+    refused(
+        folder.path(),
+        &["reproduce", "--out", "file/deeper"],
+        &["file/deeper", "cannot be made", "--out"],
+    );
 }

@@ -82,7 +82,10 @@ fn every_output_states_version_command_and_the_hashes_of_its_inputs() {
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
     let provenance = &document["provenance"];
     assert_eq!(provenance["version"], env!("CARGO_PKG_VERSION"));
-    assert_eq!(provenance["command"], r"cylwatch simulate nitrogen-20l 'it'\''s short.toml' -o run.json --plot run.svg");
+    assert_eq!(
+        provenance["command"],
+        r"cylwatch simulate nitrogen-20l 'it'\''s short.toml' -o run.json --plot run.svg"
+    );
     assert_eq!(provenance["inputs"][1]["sha256"], hash.as_str());
     assert_eq!(document["columns"]["time_s"].as_array().unwrap().len(), 5);
     let csv = run(folder.path(), &["simulate", "nitrogen-20l", "it's short.toml"]).stdout;
@@ -120,9 +123,14 @@ fn the_vessel_or_the_scenario_comes_from_stdin_but_not_both() {
 #[test]
 fn a_name_that_is_neither_file_nor_preset_is_told_both_possibilities_and_the_nearest() {
     let folder = tempdir().unwrap();
-    let words = ["nitrogen-20", "neither a vessel file nor a built-in vessel", "nearest is nitrogen-20l", "--list"];
+    let words =
+        ["nitrogen-20", "neither a vessel file nor a built-in vessel", "nearest is nitrogen-20l", "--list"];
     refused(folder.path(), &["simulate", "nitrogen-20", "shock-cold"], &words);
-    refused(folder.path(), &["simulate", "nitrogen-20l", "shock-kold"], &["scenario", "nearest is shock-cold"]);
+    refused(
+        folder.path(),
+        &["simulate", "nitrogen-20l", "shock-kold"],
+        &["scenario", "nearest is shock-cold"],
+    );
     let list = run(folder.path(), &["simulate", "--list"]);
     assert!(list.stdout.contains("nitrogen-20l") && list.stdout.contains("shock-cold"));
 }
@@ -134,7 +142,7 @@ fn a_fault_in_a_file_names_file_line_value_and_remedy() {
         ("fill_pressure_bar = 200", "fill_pressure_bar = -200", ["s.toml:5", "-200"]),
         ("air_degc = 20", "air_bar = 20", ["s.toml:8", "air_bar"]),
         ("duration_min = 2", "duration = 2", ["s.toml:2", "duration"]),
-        ("[ambient]", "[ambient", ["s.toml:7", "ambient"]),
+        ("[ambient]", "[ambient", ["s.toml:7", "unclosed"]),
     ];
     for (good, bad, words) in faults {
         std::fs::write(folder.path().join("s.toml"), SHORT.replace(good, bad)).unwrap();
@@ -166,7 +174,7 @@ fn outputs_that_cannot_be_written_are_found_before_the_run() {
     with("-o", "missing/run.csv", &["missing/run.csv", "no folder", "make it first"]);
     with("-o", "file/run.csv", &["file/run.csv"]);
     with("-o", "folder", &["folder", "name a file in it"]);
-    with("-o", "", &["empty name"]);
+    with("-o", "", &["--output"]);
     with("--plot", "run.pdf", &["run.pdf", ".svg or .png"]);
     with("--plot", "missing/run.svg", &["missing/run.svg", "no folder"]);
     refused(folder.path(), &["simulate", "nitrogen-20l", "s.toml", "-o", "./s.toml"], &["is an input"]);
@@ -178,9 +186,17 @@ fn a_tolerance_out_of_range_is_refused_with_its_bounds() {
     let folder = tempdir().unwrap();
     for bad in ["0", "-1", "1", "nan", "inf"] {
         let argument = format!("--relative-tolerance={bad}");
-        refused(folder.path(), &["simulate", "nitrogen-20l", "shock-cold", &argument], &["tolerance", "between"]);
+        refused(
+            folder.path(),
+            &["simulate", "nitrogen-20l", "shock-cold", &argument],
+            &["tolerance", "between"],
+        );
     }
-    refused(folder.path(), &["simulate", "nitrogen-20l", "shock-cold", "--relative-tolerance", "fine"], &["fine"]);
+    refused(
+        folder.path(),
+        &["simulate", "nitrogen-20l", "shock-cold", "--relative-tolerance", "fine"],
+        &["fine"],
+    );
 }
 
 #[test]

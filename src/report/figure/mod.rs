@@ -103,12 +103,20 @@ impl Item {
     /// Its name.
     pub fn name(&self) -> &str {
         match self {
-            Self::Line { name, .. } | Self::Points { name, .. } | Self::Band { name, .. } | Self::Limit { name, .. } => name,
+            Self::Line { name, .. }
+            | Self::Points { name, .. }
+            | Self::Band { name, .. }
+            | Self::Limit { name, .. } => name,
         }
     }
 
     /// A curve.
-    pub fn line(name: impl Into<String>, x: &[f64], y: impl IntoIterator<Item = f64>, stroke: Stroke) -> Self {
+    pub fn line(
+        name: impl Into<String>,
+        x: &[f64],
+        y: impl IntoIterator<Item = f64>,
+        stroke: Stroke,
+    ) -> Self {
         Self::Line { name: name.into(), x: x.to_vec(), y: y.into_iter().collect(), stroke }
     }
 }

@@ -17,7 +17,8 @@ const PNG_PER_UNIT: usize = 2;
 fn fonts() -> Result<(), ReportError> {
     static REGISTERED: OnceLock<bool> = OnceLock::new();
     let good = REGISTERED.get_or_init(|| {
-        register_font(FONT, FontStyle::Normal, SANS).is_ok() && register_font(FONT, FontStyle::Bold, SANS_BOLD).is_ok()
+        register_font(FONT, FontStyle::Normal, SANS).is_ok()
+            && register_font(FONT, FontStyle::Bold, SANS_BOLD).is_ok()
     });
     if *good { Ok(()) } else { Err(ReportError::Font) }
 }
@@ -49,7 +50,11 @@ impl Figure {
         // The fine grid stays in the view box; the picture opens at its natural size.
         let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
         let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
-        let about = format!(">\n<title>{}</title>\n<desc>{}</desc>", escaped(&self.title), escaped(&provenance.lines()));
+        let about = format!(
+            ">\n<title>{}</title>\n<desc>{}</desc>",
+            escaped(&self.title),
+            escaped(&provenance.lines())
+        );
         Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
     }
 

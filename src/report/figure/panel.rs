@@ -190,7 +190,12 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
 }
 
 /// A limit as a dashed line with its name on it; out of sight it is named at the edge where it lies.
-fn limit<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, name: &str, value: f64) -> Result<(), ReportError> {
+fn limit<DB: DrawingBackend>(
+    canvas: &Canvas<DB>,
+    frame: &Frame,
+    name: &str,
+    value: f64,
+) -> Result<(), ReportError> {
     let (left, right) = frame.x.scale.paper;
     let (bottom, top) = frame.y.paper;
     let text = Text { side: Side::Right, color: style::LIMIT.color, ..PLAIN };
@@ -207,7 +212,11 @@ fn limit<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, name: &str, val
 }
 
 /// Names of marks beside their lines, in up to three rows so that near ones do not cover each other.
-fn mark_names<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, marks: &[Mark]) -> Result<(), ReportError> {
+fn mark_names<DB: DrawingBackend>(
+    canvas: &Canvas<DB>,
+    frame: &Frame,
+    marks: &[Mark],
+) -> Result<(), ReportError> {
     let (left, right) = frame.x.scale.paper;
     let (_, top) = frame.y.paper;
     for (index, mark) in marks.iter().enumerate() {

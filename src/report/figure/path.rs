@@ -146,7 +146,8 @@ mod tests {
 
     #[test]
     fn thinning_keeps_ends_and_extremes() {
-        let spike: Vec<Point> = (0..1000).map(|k| (f64::from(k) * 1e-3, if k == 500 { 9.0 } else { 0.0 })).collect();
+        let spike: Vec<Point> =
+            (0..1000).map(|k| (f64::from(k) * 1e-3, if k == 500 { 9.0 } else { 0.0 })).collect();
         let thinned = thin(&spike, 1.0);
         assert!(thinned.len() <= 4);
         assert_eq!((thinned[0], thinned[thinned.len() - 1]), (spike[0], spike[999]));

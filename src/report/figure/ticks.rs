@@ -33,7 +33,8 @@ fn round_step(ideal: f64, steps: &[f64]) -> f64 {
 pub(super) fn label(value: f64, step: f64) -> String {
     let decimals = (-(step * (1.0 + 1e-9)).log10().floor()).clamp(0.0, 9.0) as usize;
     // A step of 2.5 has one decimal more than its magnitude says.
-    let decimals = if (step * 10f64.powi(decimals as i32)).fract().abs() > 1e-6 { decimals + 1 } else { decimals };
+    let decimals =
+        if (step * 10f64.powi(decimals as i32)).fract().abs() > 1e-6 { decimals + 1 } else { decimals };
     let value = if value.abs() < step * 1e-6 { 0.0 } else { value };
     format!("{value:.decimals$}").replace('-', "\u{2212}")
 }
