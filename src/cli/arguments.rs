@@ -1,7 +1,7 @@
 //! The raw arguments: they mirror the command line and decide nothing.
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Tells a leaking gas cylinder from a cold one: thermal model of a pressure cylinder.
 #[derive(Debug, Parser)]
@@ -48,6 +48,14 @@ pub enum Format {
     Csv,
     /// One JSON document with a provenance object.
     Json,
+}
+
+impl Format {
+    /// The format that an output's name asks for: JSON for `.json`, CSV for all others and for stdout.
+    pub fn of(output: Option<&Path>) -> Self {
+        let ending = output.and_then(Path::extension);
+        if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json")) { Self::Json } else { Self::Csv }
+    }
 }
 
 /// Arguments of `reproduce`.
@@ -124,7 +132,7 @@ pub struct PropertiesArguments {
     /// Equation of state.
     #[arg(long, value_enum, default_value = "reference")]
     pub equation: EquationName,
-    /// Format [default: a table for people for one state, csv for --states].
+    /// Format [default: a table for people for one state on stdout, else json for a file that ends in .json, else csv].
     #[arg(long, value_enum)]
     pub format: Option<Format>,
     /// File for the data; - is stdout [default: stdout].

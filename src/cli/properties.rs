@@ -27,10 +27,11 @@ pub fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Resul
         None => vec![properties::evaluate(&fluid, arguments.given.state()?)?],
     };
     let provenance = inputs.provenance();
-    let text = match arguments.format {
-        None if !many => properties::text(&states[0]),
-        None | Some(Format::Csv) => properties::table(&states).to_csv(&provenance, &[]),
-        Some(Format::Json) => document(&arguments, &states, &provenance)?,
+    let for_people = arguments.format.is_none() && !many && matches!(target, Target::Stdout);
+    let text = match arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref())) {
+        _ if for_people => properties::text(&states[0]),
+        Format::Csv => properties::table(&states).to_csv(&provenance, &[]),
+        Format::Json => document(&arguments, &states, &provenance)?,
     };
     target.write(text.as_bytes())
 }

@@ -10,7 +10,7 @@ use cylwatch::report::{Provenance, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Picture format of a plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,14 +71,9 @@ impl Options {
             settings.relative_tolerance = tolerance;
         }
         settings.validate()?;
-        let format = arguments.format.unwrap_or_else(|| format_of(arguments.output.as_ref()));
+        let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
         Ok(Self { vessel, scenario, data, format, plot, settings })
     }
-}
-
-fn format_of(output: Option<&PathBuf>) -> Format {
-    let ending = output.and_then(|path| path.extension());
-    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json")) { Format::Json } else { Format::Csv }
 }
 
 fn checked_plot(path: &Path, inputs: &[&Path], data: &Target) -> anyhow::Result<(Target, Picture)> {

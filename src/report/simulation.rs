@@ -78,9 +78,9 @@ pub fn event_name(event: &Event) -> String {
 
 /// Title of a run: what happened to what.
 pub fn title(run: &Trajectory) -> String {
-    format!("{} \u{2013} {}", run.scenario.name, run.vessel.name)
-        .replace("degC", "°C")
-        .replace(" -", " \u{2212}")
+    let (scenario, vessel) = (&run.scenario.name, &run.vessel.name);
+    let title = if scenario == vessel { scenario.clone() } else { format!("{scenario} \u{2013} {vessel}") };
+    title.replace("degC", "°C").replace(" -", " \u{2212}")
 }
 
 /// Temperatures, how they differ from the gas, pressure, and the gas mass where it changes.
@@ -96,7 +96,7 @@ pub fn figure(run: &Trajectory) -> Figure {
     let differences = differences(&temperatures);
     let mut panels = vec![
         Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
-        Panel { quantity: "minus gas mean, in K".into(), items: differences, height: 0.7 },
+        Panel { quantity: "minus gas mean in K".into(), items: differences, height: 0.7 },
         Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
     ];
     let change = run.mass_kg.iter().map(|m| (m - run.mass_kg[0]).abs()).fold(0.0, f64::max);
@@ -111,13 +111,15 @@ pub fn figure(run: &Trajectory) -> Figure {
 fn temperatures(run: &Trajectory) -> Vec<Item> {
     let time = &run.time_s;
     let mut items = vec![Item::line("air", time, celsius(&run.ambient_k), style::AIR)];
-    let places = [
+    let resolved: &[(&str, &str, style::Stroke)] = &[
         ("valve", "valve", style::VALVE),
         ("shoulder", "shoulder", style::SHOULDER),
         ("middle", "wall, middle", style::WALL_MIDDLE),
         ("bottom", "wall, bottom", style::WALL_BOTTOM),
     ];
-    for (place, name, stroke) in places {
+    let lumped = &[("valve", "valve", style::VALVE), ("middle", "wall", style::WALL_MIDDLE)];
+    let places = if run.vessel.geometry.lumped { lumped } else { resolved };
+    for &(place, name, stroke) in places {
         if let Some(surface) = run.surface_k(place) {
             items.push(Item::line(name, time, celsius(&surface), stroke));
         }

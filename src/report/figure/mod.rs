@@ -45,7 +45,7 @@ pub struct Panel {
 }
 
 /// Something drawn in a panel. Horizontal values are seconds on a time axis; NaN leaves a gap; an empty name keeps it
-/// out of the legend.
+/// out of the legend (where all are empty, the legend refers to the panel above).
 #[derive(Clone, Debug)]
 pub enum Item {
     /// A curve.

@@ -233,6 +233,9 @@ fn mark_names<DB: DrawingBackend>(
 fn legend<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, top: f64) -> Result<(), ReportError> {
     let left = style::WIDTH - style::RIGHT + 14.0;
     let mut at = top + 0.5 * style::LEGEND_LINE;
+    if panel.items.iter().all(|item| item.name().is_empty()) {
+        return canvas.text("curves as above", (left, at), PLAIN);
+    }
     for item in panel.items.iter().filter(|item| !item.name().is_empty()) {
         let sample = [(left, at), (left + style::LEGEND_SAMPLE, at)];
         let name = match item {
