@@ -56,7 +56,9 @@ pub enum ThermalError {
         row: usize,
     },
     /// A series goes back in time.
-    #[error("row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time")]
+    #[error(
+        "row {row} of the series goes back in time, from {previous_s} s to {time_s} s: sort the rows by time"
+    )]
     SeriesGoesBack {
         /// Row, from 1.
         row: usize,
@@ -73,6 +75,141 @@ pub enum ThermalError {
         /// Time, s.
         time_s: f64,
     },
+    // --- fluid ---
+    /// The fluid is not known.
+    #[error("fluid {name} is not known: did you mean {nearest}? known are {known}")]
+    UnknownFluid {
+        /// Name given.
+        name: String,
+        /// The nearest known name.
+        nearest: &'static str,
+        /// All names.
+        known: String,
+    },
+    /// The temperature is outside the equation's range.
+    #[error(
+        "temperature {temperature_k} K of {fluid} must lie between {lowest_k} K and {highest_k} K, the range of its equation of state"
+    )]
+    TemperatureOutside {
+        /// Fluid.
+        fluid: &'static str,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Lower bound, K.
+        lowest_k: f64,
+        /// Upper bound, K.
+        highest_k: f64,
+    },
+    /// The pressure is outside the equation's range.
+    #[error(
+        "pressure {pressure_pa} Pa of {fluid} must be positive and at most {highest_pa} Pa, the range of its equation of state"
+    )]
+    PressureOutside {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Upper bound, Pa.
+        highest_pa: f64,
+    },
+    /// The density is outside the equation's range.
+    #[error("density {density_kg_m3} kg/m3 of {fluid} must be positive and at most {highest_kg_m3:.1} kg/m3")]
+    DensityOutside {
+        /// Fluid.
+        fluid: &'static str,
+        /// Density, kg/m³.
+        density_kg_m3: f64,
+        /// Upper bound, kg/m³.
+        highest_kg_m3: f64,
+    },
+    /// A pressure belongs to a density beyond the domain.
+    #[error(
+        "{fluid} at {pressure_pa} Pa is denser than {highest_kg_m3:.1} kg/m3, the bound of its domain: lower the pressure or raise the temperature"
+    )]
+    TooDense {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Upper bound of the density, kg/m³.
+        highest_kg_m3: f64,
+    },
+    /// The state is between vapour and liquid.
+    #[error(
+        "{fluid} at {temperature_k:.3} K and {density_kg_m3:.3} kg/m3 is two-phase (vapour up to {vapour_kg_m3:.3}, liquid from {liquid_kg_m3:.3} kg/m3): only single-phase gas is modelled"
+    )]
+    TwoPhase {
+        /// Fluid.
+        fluid: &'static str,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Density, kg/m³.
+        density_kg_m3: f64,
+        /// Density of the saturated vapour, kg/m³.
+        vapour_kg_m3: f64,
+        /// Density of the saturated liquid, kg/m³.
+        liquid_kg_m3: f64,
+    },
+    /// An enthalpy or entropy between vapour and liquid.
+    #[error(
+        "{fluid} at {pressure_pa} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled"
+    )]
+    TwoPhaseIsobar {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Saturation temperature, K.
+        saturation_k: f64,
+    },
+    /// Pressure and temperature on the saturation line do not fix the density.
+    #[error(
+        "{fluid} at {pressure_pa} Pa and {temperature_k} K is on its saturation line ({saturation_pa} Pa): pressure and temperature do not fix the density"
+    )]
+    OnSaturation {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Saturation pressure, Pa.
+        saturation_pa: f64,
+    },
+    /// Too near the critical point.
+    #[error(
+        "{fluid} at {temperature_k:.3} K is within 0.5 % below its critical temperature {critical_k} K, where its phase is not resolved: stay outside"
+    )]
+    NearCritical {
+        /// Fluid.
+        fluid: &'static str,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Critical temperature, K.
+        critical_k: f64,
+    },
+    /// No temperature has the energy.
+    #[error("no temperature gives {fluid} at {density_kg_m3} kg/m3 the internal energy {energy_j_kg} J/kg")]
+    NoTemperature {
+        /// Fluid.
+        fluid: &'static str,
+        /// Density, kg/m³.
+        density_kg_m3: f64,
+        /// Internal energy, J/kg.
+        energy_j_kg: f64,
+    },
+    /// No state on an isobar.
+    #[error("no state of {fluid} at {pressure_pa} Pa inside the domain has the {property} {target} (SI)")]
+    NoState {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Which property.
+        property: &'static str,
+        /// Its value, SI.
+        target: f64,
+    },
     // --- flow and simulation ---
     /// The throat of an orifice has no single-phase state.
     #[error(
@@ -88,7 +225,9 @@ pub enum ThermalError {
         fluid: String,
     },
     /// No temperature and volume belong to the gas's mass and energy.
-    #[error("no gas state has mass {mass_kg} kg and internal energy {energy_j} J: the vessel is empty or the step was too long")]
+    #[error(
+        "no gas state has mass {mass_kg} kg and internal energy {energy_j} J: the vessel is empty or the step was too long"
+    )]
     NoGasState {
         /// Gas mass, kg.
         mass_kg: f64,

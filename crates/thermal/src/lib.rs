@@ -7,8 +7,8 @@
 //! [`trajectory::Trajectory`]. All signatures are SI, with the unit in the name.
 pub mod document;
 pub mod error;
-pub mod fluid;
 pub mod flow;
+pub mod fluid;
 pub mod model;
 pub mod scenario;
 pub mod simulate;

@@ -1,58 +1,300 @@
-//! stand-in
-#![allow(missing_docs, unused, clippy::all)]
-mod hedge_data;
+//! Equations of state and transport properties of gases.
+//!
+//! A [`Fluid`] is a gas with the equation that describes it: the fluid's reference equation ([`helmholtz`]), the
+//! ideal gas, or Peng-Robinson ([`peng_robinson`]), all behind [`helmholtz::HelmholtzEnergy`] and all with
+//! the ideal part (heat capacity) of the reference equation. Every property of a [`State`] follows from one Helmholtz
+//! energy, so no two of them can disagree. Numbers are generic over [`Real`]: with dual numbers every property comes with exact derivatives.
+//!
+//! # Validity
+//! [`Fluid::domain`]. Evaluation without check ([`Fluid::state`]) is smooth everywhere, metastable states included;
+//! the checked functions refuse what is outside the domain or two-phase. Near the critical point (within 0.5 %
+//! of the critical temperature below it) phases are not told apart, and states in question are refused.
+mod data;
+pub mod helmholtz;
+mod ideal_gas;
+mod peng_robinson;
+mod saturation;
+mod solve;
+mod state;
+pub mod transport;
+
+pub use saturation::Saturation;
+pub use state::State;
+
 use crate::ThermalError;
-use num_dual::DualNum;
+use data::FluidData;
+use helmholtz::{HelmholtzEnergy, Multiparameter, PREPARED, Reduced, ideal};
+use ideal_gas::IdealGas;
+use peng_robinson::PengRobinson;
+use transport::{Transport, TransportState};
+
+/// `f64` or a dual number of num-dual.
 pub trait Real: num_dual::DualNum<Primitive = f64> + Copy {}
 impl<T: num_dual::DualNum<Primitive = f64> + Copy> Real for T {}
-#[derive(Debug)]
-pub struct Data { r: f64, tc: f64, rc: f64, m: f64, power: &'static [[f64;4]], gauss: &'static [[f64;7]], a0: [f64;3], a0p: &'static [[f64;2]], pe: &'static [[f64;2]], ek: f64, sg: f64, va: &'static [[f64;5]], ca: &'static [f64], ce: &'static [[f64;4]], cd: &'static [[f64;2]] }
+
+/// Which equation describes the fluid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Equation {
+    /// The fluid's multiparameter reference equation.
+    #[default]
+    Reference,
+    /// `p = rho R T`.
+    IdealGas,
+    /// The cubic equation of Peng and Robinson.
+    PengRobinson,
+}
+
+/// The equation with what it needs.
 #[derive(Clone, Copy, Debug)]
-pub struct State<D = f64> { pub temperature_k: D, pub density_kg_m3: D, pub pressure_pa: D, pub internal_energy_j_kg: D, pub enthalpy_j_kg: D, pub entropy_j_kg_k: D, pub cv_j_kg_k: D, pub cp_j_kg_k: D, pub sound_speed_m_s: D, pub dp_dt_pa_k: D, pub dp_drho_pa_m3_kg: D, pub compressibility: D, pub expansion_per_k: D }
+enum Description {
+    Reference(&'static Multiparameter),
+    IdealGas(IdealGas),
+    PengRobinson(PengRobinson),
+}
+
+/// A gas with its equation of state. Cheap to clone.
 #[derive(Clone, Debug)]
-pub struct Fluid { d: &'static Data, ideal: bool, name: &'static str }
-#[derive(Clone,Copy,Debug,PartialEq)]
-pub enum Equation {Reference, IdealGas, PengRobinson}
+pub struct Fluid {
+    data: &'static FluidData,
+    prepared: &'static Multiparameter,
+    description: Description,
+    transport: Transport,
+}
+
+/// Where a fluid's equation may be used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Lowest temperature, K.
+    pub lowest_temperature_k: f64,
+    /// Highest temperature, K.
+    pub highest_temperature_k: f64,
+    /// Highest pressure, Pa.
+    pub highest_pressure_pa: f64,
+    /// Highest density, kg/m³.
+    pub highest_density_kg_m3: f64,
+    /// Critical temperature, K; above it there is one phase.
+    pub critical_temperature_k: f64,
+}
+
+/// Pressure with its two derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressureDerivatives {
+    /// Pressure, Pa.
+    pub pressure_pa: f64,
+    /// `(dp/dT)_rho`, Pa/K.
+    pub dp_dt_pa_k: f64,
+    /// `(dp/drho)_T`, Pa m³/kg.
+    pub dp_drho_pa_m3_kg: f64,
+}
+
+/// Densest state considered, relative to the liquid at the triple point.
+const DENSEST: f64 = 1.35;
+/// Densest state of a cubic equation, relative to its covolume limit.
+const DENSEST_CUBIC: f64 = 0.98;
+
 impl Fluid {
-  pub fn named(name:&str)->Result<Fluid,ThermalError>{Ok(if name=="argon"{Fluid{d:&hedge_data::ARGON,ideal:false,name:"argon"}}else{Fluid{d:&hedge_data::NITROGEN,ideal:false,name:"nitrogen"}})}
-  pub fn with_equation(mut self,e:Equation)->Fluid{self.ideal=e==Equation::IdealGas;self}
-  pub fn name(&self) -> &str {self.name}
-  pub fn specific_gas_constant_j_kg_k(&self) -> f64 {self.d.r}
-  pub fn state<D: Real>(&self, rho: D, t: D) -> State<D> {
-    let d=self.d; let delta=rho/d.rc; let tau=t.recip()*d.tc; let (ld,lt)=(delta.ln(),tau.ln());
-    let z=D::from(0.0);
-    let (mut a,mut ad,mut at,mut add,mut adt,mut att)=(z,z,z,z,z,z);
-    if !self.ideal {
-    for p in d.power { let [n,dd,tt,l]=*p;
-      let (e,x,y)= if l>0.0 { let dl=(ld*l).exp(); (((ld*dd+lt*tt)-dl).exp()*n, -dl*l+dd, -dl*l*l) } else { ((ld*dd+lt*tt).exp()*n, D::from(dd), z) };
-      a+=e; ad+=e*x; at+=e*tt; add+=e*(x*x-x+y); adt+=e*x*tt; att+=e*(tt*(tt-1.0)); }
-    for g in d.gauss { let [n,dd,tt,eta,ep,be,ga]=*g;
-      let u=delta-ep; let v=tau-ga; let e=(ld*dd+lt*tt-u*u*eta-v*v*be).exp()*n;
-      let x=delta*u*(-2.0*eta)+dd; let y=tau*v*(-2.0*be)+tt;
-      a+=e; ad+=e*x; at+=e*y; add+=e*(x*x-delta*delta*(2.0*eta)-delta*u*0.0-D::from(dd)-delta*u*(-2.0*eta)*0.0 + (delta*(ep)* (-2.0*eta)*0.0)) ; adt+=e*x*y; att+=e*(y*y-tau*tau*(2.0*be)-D::from(tt)); }
+    /// A fluid with its reference equation.
+    ///
+    /// # Errors
+    /// The name is not known; the message lists those that are.
+    pub fn named(name: &str) -> Result<Self, ThermalError> {
+        let wanted = name.to_ascii_lowercase();
+        let index = data::ALL.iter().position(|data| data.name == wanted);
+        let (Some(index), Some(transport)) = (index, Transport::for_fluid(&wanted)) else {
+            let nearest = Self::names()
+                .iter()
+                .max_by(|a, b| strsim::jaro_winkler(a, &wanted).total_cmp(&strsim::jaro_winkler(b, &wanted)));
+            return Err(ThermalError::UnknownFluid {
+                name: name.to_owned(),
+                nearest: nearest.copied().unwrap_or_default(),
+                known: Self::names().join(", "),
+            });
+        };
+        let prepared = &PREPARED[index];
+        Ok(Self {
+            data: data::ALL[index],
+            prepared,
+            description: Description::Reference(prepared),
+            transport,
+        })
     }
-    let (mut i,mut it,mut itt)=(ld+d.a0[0]+tau*d.a0[1]+lt*d.a0[2], tau*d.a0[1]+d.a0[2], D::from(-d.a0[2]));
-    for p in d.a0p { let e=tau.powf(p[1])*p[0]; i+=e; it+=e*p[1]; itt+=e*(p[1]*(p[1]-1.0)); }
-    for p in d.pe { let x=tau*p[1]; let em=(-x).exp(); i+=(-em+1.0).ln()*p[0]; it+=x*em/(-em+1.0)*p[0]; itt-=x*x*em/((-em+1.0)*(-em+1.0))*p[0]; }
-    let r=d.r; let p=rho*t*r*(ad+1.0); let dpdrho=t*r*(ad*2.0+add+1.0); let dpdt=rho*r*(ad-adt+1.0);
-    let cv=-(itt+att)*r; let cp=cv+t*dpdt*dpdt/(rho*rho*dpdrho); let u=t*r*(it+at);
-    State{temperature_k:t,density_kg_m3:rho,pressure_pa:p,internal_energy_j_kg:u,enthalpy_j_kg:u+p/rho,entropy_j_kg_k:(it+at-i-a)*r,cv_j_kg_k:cv,cp_j_kg_k:cp,sound_speed_m_s:(dpdrho*cp/cv).sqrt(),dp_dt_pa_k:dpdt,dp_drho_pa_m3_kg:dpdrho,compressibility:ad+1.0,expansion_per_k:dpdt/(rho*dpdrho)}
-  }
-  pub fn checked_state(&self, rho: f64, t: f64) -> Result<State, ThermalError> {Ok(self.state(rho,t))}
-  pub fn check(&self, rho: f64, t: f64) -> Result<(), ThermalError> {Ok(())}
-  pub fn pressure_pa(&self, rho: f64, t: f64) -> f64 {self.state(rho,t).pressure_pa}
-  pub fn density_from_pressure_temperature(&self, p: f64, t: f64) -> Result<f64, ThermalError> {
-    let mut rho=p/self.d.r/t; for _ in 0..100 { let s=self.state(rho,t); let dr=(s.pressure_pa-p)/s.dp_drho_pa_m3_kg; rho-=dr.clamp(-0.5*rho,0.5*rho); if dr.abs()<1e-13*rho {break;} } Ok(rho)}
-  pub fn viscosity_pa_s<D: Real>(&self, rho: D, t: D) -> D {
-    let d=self.d; let ts=(t/d.ek).ln(); let a=[0.431,-0.4623,0.08406,0.005341,-0.00331];
-    let om=(a.iter().rev().fold(D::from(0.0),|s,&c| s*ts+c)).exp();
-    let eta0=(t*d.m).sqrt()/om*(0.0266958e-6/(d.sg*d.sg));
-    let (delta,tau)=(rho/d.rc,t.recip()*d.tc); let mut s=eta0;
-    for v in d.va { let mut e=delta.powf(v[1])*tau.powf(v[2])*v[0]; if v[3]!=0.0 { e=e*(-(delta.powf(v[4]))).exp(); } s+=e; } s }
-  pub fn conductivity_w_m_k<D: Real>(&self, rho: D, t: D) -> D {
-    let d=self.d; let ts=(t/d.ek).ln(); let a=[0.431,-0.4623,0.08406,0.005341,-0.00331];
-    let om=(a.iter().rev().fold(D::from(0.0),|s,&c| s*ts+c)).exp();
-    let eta0=(t*d.m).sqrt()/om*(0.0266958e-6/(d.sg*d.sg))*1e6;
-    let (delta,tau)=(rho/d.rc,t.recip()*d.tc); let mut s=eta0*d.cd[0][0]; for c in &d.cd[1..] { s+=tau.powf(-c[1])*c[0]; }
-    for (c,e) in d.ca.iter().zip(d.ce) { let mut x=delta.powf(e[0])*tau.powf(e[1])*(*c); if e[2]!=0.0 { x=x*(-(delta.powf(e[3]))).exp(); } s+=x; } s }
+
+    /// Names that [`Fluid::named`] knows.
+    pub fn names() -> &'static [&'static str] {
+        &["nitrogen", "argon", "air", "hydrogen", "helium"]
+    }
+
+    /// The same gas with another equation.
+    #[must_use]
+    pub fn with_equation(self, equation: Equation) -> Self {
+        let description = match equation {
+            Equation::Reference => Description::Reference(self.prepared),
+            Equation::IdealGas => Description::IdealGas(IdealGas),
+            Equation::PengRobinson => Description::PengRobinson(PengRobinson::new(self.data)),
+        };
+        Self { description, ..self }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        self.data.name
+    }
+
+    /// The equation in use.
+    pub fn equation(&self) -> Equation {
+        match self.description {
+            Description::Reference(_) => Equation::Reference,
+            Description::IdealGas(_) => Equation::IdealGas,
+            Description::PengRobinson(_) => Equation::PengRobinson,
+        }
+    }
+
+    /// Source of the reference equation.
+    pub fn reference(&self) -> &'static str {
+        self.data.reference
+    }
+
+    /// Molar mass, kg/mol.
+    pub fn molar_mass_kg_mol(&self) -> f64 {
+        self.data.molar_mass_kg_mol
+    }
+
+    /// Specific gas constant of the equation, J/(kg K).
+    pub fn specific_gas_constant_j_kg_k(&self) -> f64 {
+        self.data.gas_constant_j_mol_k / self.data.molar_mass_kg_mol
+    }
+
+    /// Where the equation may be used.
+    pub fn domain(&self) -> Domain {
+        let liquid = self.data.triple_liquid_density_mol_m3 * self.data.molar_mass_kg_mol * DENSEST;
+        let highest_density_kg_m3 = match self.description {
+            Description::PengRobinson(cubic) => (DENSEST_CUBIC * cubic.densest_kg_m3()).min(liquid),
+            _ => liquid,
+        };
+        Domain {
+            lowest_temperature_k: self.data.lowest_temperature_k,
+            highest_temperature_k: self.data.highest_temperature_k,
+            highest_pressure_pa: self.data.highest_pressure_pa,
+            highest_density_kg_m3,
+            critical_temperature_k: self.data.critical_temperature_k,
+        }
+    }
+
+    fn residual<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> Reduced<D> {
+        match &self.description {
+            Description::Reference(equation) => equation.residual(density_kg_m3, temperature_k),
+            Description::IdealGas(equation) => equation.residual(density_kg_m3, temperature_k),
+            Description::PengRobinson(equation) => equation.residual(density_kg_m3, temperature_k),
+        }
+    }
+
+    /// All properties at a density, kg/m³, and temperature, K. No check: smooth, metastable states included.
+    pub fn state<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> State<D> {
+        let ideal = ideal(self.data, density_kg_m3, temperature_k);
+        let residual = self.residual(density_kg_m3, temperature_k);
+        let r = self.specific_gas_constant_j_kg_k();
+        State::from_reduced(r, density_kg_m3, temperature_k, &ideal, &residual)
+    }
+
+    /// All properties, after [`Fluid::check`].
+    ///
+    /// # Errors
+    /// As [`Fluid::check`].
+    pub fn checked_state(&self, density_kg_m3: f64, temperature_k: f64) -> Result<State, ThermalError> {
+        self.check(density_kg_m3, temperature_k)?;
+        Ok(self.state(density_kg_m3, temperature_k))
+    }
+
+    /// Pressure, Pa, without check.
+    pub fn pressure_pa(&self, density_kg_m3: f64, temperature_k: f64) -> f64 {
+        let (slope, _) = self.density_slopes(density_kg_m3, temperature_k);
+        density_kg_m3 * self.specific_gas_constant_j_kg_k() * temperature_k * (1.0 + slope)
+    }
+
+    fn density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
+        match &self.description {
+            Description::Reference(equation) => {
+                equation.residual_density_slopes(density_kg_m3, temperature_k)
+            }
+            Description::IdealGas(_) => (0.0, 0.0),
+            Description::PengRobinson(equation) => {
+                equation.residual_density_slopes(density_kg_m3, temperature_k)
+            }
+        }
+    }
+
+    /// Pressure and both its derivatives, without check.
+    pub fn pressure_with_derivatives(&self, density_kg_m3: f64, temperature_k: f64) -> PressureDerivatives {
+        let residual = self.residual(density_kg_m3, temperature_k);
+        let r = self.specific_gas_constant_j_kg_k();
+        PressureDerivatives {
+            pressure_pa: density_kg_m3 * r * temperature_k * (1.0 + residual.d),
+            dp_dt_pa_k: density_kg_m3 * r * (1.0 + residual.d - residual.dt),
+            dp_drho_pa_m3_kg: r * temperature_k * (1.0 + 2.0 * residual.d + residual.dd),
+        }
+    }
+
+    /// Whether a state is inside the domain and single-phase.
+    ///
+    /// # Errors
+    /// Names the value that is outside, the bound, and what to do.
+    pub fn check(&self, density_kg_m3: f64, temperature_k: f64) -> Result<(), ThermalError> {
+        let domain = self.domain();
+        self.check_temperature(temperature_k)?;
+        if !(density_kg_m3 > 0.0 && density_kg_m3 <= domain.highest_density_kg_m3) {
+            return Err(ThermalError::DensityOutside {
+                fluid: self.name(),
+                density_kg_m3,
+                highest_kg_m3: domain.highest_density_kg_m3,
+            });
+        }
+        let pressure_pa = self.pressure_pa(density_kg_m3, temperature_k);
+        self.check_pressure(pressure_pa)?;
+        self.check_phase(density_kg_m3, temperature_k)
+    }
+
+    fn check_temperature(&self, temperature_k: f64) -> Result<(), ThermalError> {
+        let domain = self.domain();
+        if temperature_k >= domain.lowest_temperature_k && temperature_k <= domain.highest_temperature_k {
+            return Ok(());
+        }
+        Err(ThermalError::TemperatureOutside {
+            fluid: self.name(),
+            temperature_k,
+            lowest_k: domain.lowest_temperature_k,
+            highest_k: domain.highest_temperature_k,
+        })
+    }
+
+    fn check_pressure(&self, pressure_pa: f64) -> Result<(), ThermalError> {
+        let highest_pa = self.domain().highest_pressure_pa;
+        if pressure_pa > 0.0 && pressure_pa <= highest_pa {
+            return Ok(());
+        }
+        Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa })
+    }
+
+    /// Viscosity, Pa s.
+    pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
+        self.transport.viscosity_pa_s(density_kg_m3, temperature_k)
+    }
+
+    /// Thermal conductivity, W/(m K), with its enhancement near the critical point.
+    pub fn conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
+        let background = self.transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
+        let Some(reference_k) = self.transport.reference_temperature_k() else { return background };
+        let state = self.state(density_kg_m3, temperature_k);
+        let reference = self.residual(density_kg_m3, D::from(reference_k));
+        let dp_drho_reference =
+            (reference.d * 2.0 + reference.dd + 1.0) * (self.specific_gas_constant_j_kg_k() * reference_k);
+        let at = TransportState {
+            temperature_k,
+            density_kg_m3,
+            dp_drho_pa_m3_kg: state.dp_drho_pa_m3_kg,
+            cp_j_kg_k: state.cp_j_kg_k,
+            cv_j_kg_k: state.cv_j_kg_k,
+        };
+        let viscosity = self.viscosity_pa_s(density_kg_m3, temperature_k);
+        background + self.transport.critical_enhancement_w_m_k(&at, viscosity, dp_drho_reference)
+    }
 }

@@ -119,7 +119,8 @@ fn contacts_of(
         let total: f64 = volume.iter().sum();
         return (0..count)
             .map(|i| {
-                let arc = (angle((i + 1) as f64 * height_m) - angle(i as f64 * height_m)) / std::f64::consts::PI;
+                let arc =
+                    (angle((i + 1) as f64 * height_m) - angle(i as f64 * height_m)) / std::f64::consts::PI;
                 let disc = volume[i] / total;
                 side(i, if column.facing == Facing::Side { arc } else { disc })
             })

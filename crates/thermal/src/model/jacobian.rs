@@ -70,11 +70,9 @@ impl Model {
             Gas::WellMixed(gas) => {
                 let seed = |value: f64, index: usize| Dual5::from(value).derivative(index);
                 let node = gas.node(seed(mass[0], 0), seed(energy[0], 1), seed(mean, 2))?;
-                let rates =
-                    gas.rates(&node, &boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
+                let rates = gas.rates(&node, &boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
                 let mut matrix = DMatrix::zeros(5, 7);
-                let rows =
-                    [rates.mass_kg_s, rates.energy_w, rates.mass_kg_s, rates.enthalpy_w, rates.work_w];
+                let rows = [rates.mass_kg_s, rates.energy_w, rates.mass_kg_s, rates.enthalpy_w, rates.work_w];
                 for (row, value) in rows.into_iter().enumerate() {
                     for (column, derivative) in gradient(value).into_iter().enumerate() {
                         matrix[(row, column)] = derivative;
@@ -207,10 +205,9 @@ impl Model {
             .collect();
         let film: f64 = contacts.iter().zip(&fluxes).map(|(c, f)| c.area_m2 * f.per_surface_k).sum();
         let total = half.conductance_w_k + film;
-        let surface_by_cell = (half.conductance_w_k
-            + half.conductance_slope_w_k2 * (half.node_k - balance.surface_k))
-            / total
-            * at.slope[cell];
+        let surface_by_cell =
+            (half.conductance_w_k + half.conductance_slope_w_k2 * (half.node_k - balance.surface_k)) / total
+                * at.slope[cell];
         // Direct derivative of contact `k`'s heat with the three states behind gas cell `contact.cell`.
         let direct = |k: usize| -> [f64; 3] {
             let (contact, flux) = (&contacts[k], &fluxes[k]);
@@ -219,10 +216,8 @@ impl Model {
                 contact.area_m2 * (flux.per_gas_k * temperature[i] + flux.per_pressure * pressure[i])
             })
         };
-        let jet_area: f64 = contacts
-            .iter()
-            .map(|c| c.area_m2 * (balance.surface_k - at.points[c.cell].temperature_k))
-            .sum();
+        let jet_area: f64 =
+            contacts.iter().map(|c| c.area_m2 * (balance.surface_k - at.points[c.cell].temperature_k)).sum();
         let state_columns = |gas_cell: usize| [gas_cell, n + gas_cell, 2 * n];
         // (local column, derivative of the surface temperature, contact and derivative of its own heat)
         let mut entries: Vec<(usize, f64, Option<(usize, f64)>)> =

@@ -407,9 +407,7 @@ impl Model {
         HalfCell {
             node_k,
             conductance_w_k: shape_m * material.conductivity_at_w_m_k(node_k),
-            conductance_slope_w_k2: shape_m
-                * material.conductivity_w_m_k
-                * material.conductivity_slope_per_k,
+            conductance_slope_w_k2: shape_m * material.conductivity_w_m_k * material.conductivity_slope_per_k,
         }
     }
 

@@ -1,6 +1,6 @@
 //! What a state vector means: temperatures, pressure, flows, balances.
-use super::{GasPoint, Model};
 use super::inputs::Inputs;
+use super::{GasPoint, Model};
 use crate::ThermalError;
 use crate::flow::{FlowKind, orifice};
 
@@ -44,8 +44,7 @@ impl Model {
         self.node_temperatures(x, &mut temperature_k);
         let jet = self.jet_w_m2_k(&nodes, open);
         let columns = self.mesh.columns.len();
-        let inner: Vec<_> =
-            (0..columns).map(|j| self.inner_face(j, &temperature_k, &points, jet)).collect();
+        let inner: Vec<_> = (0..columns).map(|j| self.inner_face(j, &temperature_k, &points, jet)).collect();
         Ok(Output {
             gas_mean_k,
             gas_cells_k: points.iter().map(|point| point.temperature_k).collect(),

@@ -154,7 +154,12 @@ impl Stratified {
     ///
     /// # Errors
     /// A cell has no state.
-    pub fn nodes(&self, mass_kg: &[f64], energy_j: &[f64], wall_k: f64) -> Result<Vec<Node<f64>>, ThermalError> {
+    pub fn nodes(
+        &self,
+        mass_kg: &[f64],
+        energy_j: &[f64],
+        wall_k: f64,
+    ) -> Result<Vec<Node<f64>>, ThermalError> {
         self.nodes
             .iter()
             .zip(mass_kg.iter().zip(energy_j))
@@ -228,8 +233,7 @@ impl Stratified {
                 * (a.expansion * inverted * (GRAVITY_M_S2 / dz)).sqrt()
                 * (area * (0.5 * self.diameter_m).powi(2) / dz);
             let molecular = (a.conductivity + b.conductivity) * 0.5 * (a.temperature_k - b.temperature_k);
-            let heat = overturn * difference
-                + (density * mixing * difference + molecular) * (area / dz);
+            let heat = overturn * difference + (density * mixing * difference + molecular) * (area / dz);
             flows.mass_kg_s[low] -= core;
             flows.mass_kg_s[low + 1] += core;
             flows.enthalpy_w[low] -= carried + heat;
@@ -260,9 +264,8 @@ impl Stratified {
     ) {
         let n = cores.len();
         let sign = if upwards { 1.0 } else { -1.0 };
-        let kept = (-self.cells[0].height_m
-            / (self.constants.exchange_length_diameters * self.diameter_m))
-            .exp();
+        let kept =
+            (-self.cells[0].height_m / (self.constants.exchange_length_diameters * self.diameter_m)).exp();
         let zero = D::from(0.0);
         let (mut mass, mut enthalpy, mut run) = (zero, zero, zero);
         for step in 0..n - 1 {
@@ -375,7 +378,8 @@ impl Stratified {
             write(2 * n + 1, enthalpy_in);
             write(2 * n + 2, work);
         }
-        let cells = cores.iter().map(|core| (gradient3(core.temperature_k), gradient3(core.pressure_pa))).collect();
+        let cells =
+            cores.iter().map(|core| (gradient3(core.temperature_k), gradient3(core.pressure_pa))).collect();
         Ok((matrix, cells))
     }
 }

@@ -81,8 +81,7 @@ impl WellMixed {
         let energy_per_mass = s.internal_energy_j_kg + s.density_kg_m3 * at.u_rho;
         let pressure_per_mass = s.dp_drho_pa_m3_kg / volume;
         // Implicit function theorem on (F1, F2), rows as in `linearise`.
-        let solve_v =
-            |f1: D, f2: D| -(f1 * at.jacobian[1][1] - f2 * at.jacobian[0][1]) / at.determinant();
+        let solve_v = |f1: D, f2: D| -(f1 * at.jacobian[1][1] - f2 * at.jacobian[0][1]) / at.determinant();
         Ok(Node {
             state: s,
             volume_m3: volume,

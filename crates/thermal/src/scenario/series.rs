@@ -50,7 +50,11 @@ impl Series {
                 return Err(ThermalError::SeriesNotFinite { row: row + 1 });
             }
             if row > 0 && t < time_s[row - 1] {
-                return Err(ThermalError::SeriesGoesBack { row: row + 1, time_s: t, previous_s: time_s[row - 1] });
+                return Err(ThermalError::SeriesGoesBack {
+                    row: row + 1,
+                    time_s: t,
+                    previous_s: time_s[row - 1],
+                });
             }
             if row > 1 && t == time_s[row - 2] {
                 return Err(ThermalError::SeriesTripleTime { row: row + 1, time_s: t });

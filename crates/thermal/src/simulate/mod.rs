@@ -137,7 +137,12 @@ pub fn simulate(
 }
 
 /// Tolerances in the states' own units: kelvin for the wall, the same error in kelvin for the gas energy.
-fn absolute_tolerances(model: &Model, vessel: &Vessel, x0: &[f64], settings: &SimulationSettings) -> Vec<f64> {
+fn absolute_tolerances(
+    model: &Model,
+    vessel: &Vessel,
+    x0: &[f64],
+    settings: &SimulationSettings,
+) -> Vec<f64> {
     let layout = model.layout();
     let kelvin = settings.absolute_tolerance_k.unwrap_or(100.0 * settings.relative_tolerance);
     let heat = settings.relative_tolerance * model.wall_capacity_j_k() * LEDGER_SCALE_K;

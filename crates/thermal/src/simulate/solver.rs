@@ -336,7 +336,8 @@ pub fn with_stepper<R>(
     let rhs = Rhs::new(model, drive, &x0)?;
     let init = Init { x0, context: rhs.context };
     let context = rhs.context;
-    let failed = |error: diffsol::error::DiffsolError| ThermalError::SolverSetup { reason: error.to_string() };
+    let failed =
+        |error: diffsol::error::DiffsolError| ThermalError::SolverSetup { reason: error.to_string() };
     let mut problem = OdeBuilder::<M>::new()
         .rtol(settings.relative_tolerance)
         .atol(absolute_tolerance)

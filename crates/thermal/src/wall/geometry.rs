@@ -100,7 +100,10 @@ impl Geometry {
             EndShape::Flat => 0.0,
             EndShape::Dome { depth_m } => depth_m,
         };
-        bottom + self.cylinder_length_m + self.shoulder_height_m(radius) + self.neck.map_or(0.0, |n| n.length_m)
+        bottom
+            + self.cylinder_length_m
+            + self.shoulder_height_m(radius)
+            + self.neck.map_or(0.0, |n| n.length_m)
     }
 
     /// Height of the outer contour along the axis, without the valve, m.
@@ -125,9 +128,9 @@ impl Geometry {
                 area * (z - z.powi(3) / (3.0 * depth_m * depth_m))
             }
         };
-        let neck = self.neck.map_or(0.0, |neck| {
-            0.25 * std::f64::consts::PI * neck.inner_diameter_m.powi(2) * neck.length_m
-        });
+        let neck = self
+            .neck
+            .map_or(0.0, |neck| 0.25 * std::f64::consts::PI * neck.inner_diameter_m.powi(2) * neck.length_m);
         bottom + area * self.cylinder_length_m + shoulder + neck
     }
 
@@ -155,7 +158,9 @@ impl Geometry {
         let opening = self.neck.map_or(0.0, |neck| 0.5 * neck.inner_diameter_m);
         match (self.bottom.shape, self.shoulder.shape) {
             (EndShape::Dome { depth_m }, _) if height_m < bottom => dome(depth_m, bottom - height_m),
-            (_, EndShape::Dome { depth_m }) if height_m > shoulder => dome(depth_m, height_m - shoulder).max(opening),
+            (_, EndShape::Dome { depth_m }) if height_m > shoulder => {
+                dome(depth_m, height_m - shoulder).max(opening)
+            }
             (_, EndShape::Flat) if height_m > shoulder => opening,
             _ => radius,
         }

@@ -72,7 +72,8 @@ impl Material {
                 m.density_kg_m3 * m.heat_capacity_j_kg_k * m.heat_capacity_slope_per_k
             }) / capacity,
             conductivity_w_m_k: thickness / resistance,
-            conductivity_slope_per_k: sum(&|m| m.conductivity_slope_per_k / m.conductivity_w_m_k) / resistance,
+            conductivity_slope_per_k: sum(&|m| m.conductivity_slope_per_k / m.conductivity_w_m_k)
+                / resistance,
             source: "mixture of the layers".into(),
         }
     }

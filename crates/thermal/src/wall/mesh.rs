@@ -169,9 +169,11 @@ impl Stretch {
         let t = s * self.thickness_m;
         match self.shape {
             StretchShape::Shell { length_m, .. } => length_m,
-            StretchShape::Zone { radius_m, depth_m, phi } => integrate(phi.0.min(phi.1), phi.0.max(phi.1), |phi| {
-                (((radius_m + t) * phi.sin()).powi(2) + ((depth_m + t) * phi.cos()).powi(2)).sqrt()
-            }),
+            StretchShape::Zone { radius_m, depth_m, phi } => {
+                integrate(phi.0.min(phi.1), phi.0.max(phi.1), |phi| {
+                    (((radius_m + t) * phi.sin()).powi(2) + ((depth_m + t) * phi.cos()).powi(2)).sqrt()
+                })
+            }
             StretchShape::Ring { radii_m: (r0, r1), .. } => r1 - r0,
         }
     }
@@ -311,11 +313,8 @@ impl Mesh {
         let parts: Vec<(&Material, f64)> =
             geometry.layers.iter().map(|layer| (&layer.material, layer.thickness_m)).collect();
         let mixture = Material::mixture(&parts);
-        let layer = super::geometry::Layer {
-            material: mixture,
-            thickness_m: geometry.thickness_m(),
-            cells: 1,
-        };
+        let layer =
+            super::geometry::Layer { material: mixture, thickness_m: geometry.thickness_m(), cells: 1 };
         let fine = Self::resolved(&Geometry { layers: vec![layer], lumped: false, ..geometry.clone() });
         let sum = |value: fn(&Column) -> f64| fine.columns.iter().map(value).sum::<f64>();
         let height = fine.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
@@ -374,7 +373,14 @@ fn stretches(geometry: &Geometry) -> Vec<Stretch> {
 }
 
 /// Columns of an end in the order from the bottom up; `height` is the inner height reached so far, m.
-fn push_end(out: &mut Vec<Stretch>, end: &End, radius: f64, opening: f64, section: Section, height: &mut f64) {
+fn push_end(
+    out: &mut Vec<Stretch>,
+    end: &End,
+    radius: f64,
+    opening: f64,
+    section: Section,
+    height: &mut f64,
+) {
     let bottom = section == Section::Bottom;
     let n = end.cells as f64;
     // A bottom starts at the axis, a shoulder at the cylinder.

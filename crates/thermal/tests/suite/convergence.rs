@@ -58,7 +58,8 @@ impl Wall {
     /// Nodes at time `t` after the outer face has jumped from 1 to 0.
     fn after_step(&self, t: f64) -> DVector<f64> {
         let root = self.volume_m3.map(f64::sqrt);
-        let scaled = DMatrix::from_fn(root.len(), root.len(), |i, j| self.stiffness[(i, j)] / (root[i] * root[j]));
+        let scaled =
+            DMatrix::from_fn(root.len(), root.len(), |i, j| self.stiffness[(i, j)] / (root[i] * root[j]));
         let eigen = SymmetricEigen::new(scaled);
         let start = eigen.eigenvectors.transpose() * &root;
         let decayed = start.zip_map(&eigen.eigenvalues, |s, l| s * (-l * t).exp());
@@ -129,7 +130,8 @@ fn bessel(z: C) -> (C, C, C, C) {
     const GAMMA: f64 = 0.577_215_664_901_532_9;
     let quarter = z * z * 0.25;
     let log = (z * 0.5).ln();
-    let (mut i0, mut i1, mut k0, mut k1) = (C::new(0.0, 0.0), C::new(0.0, 0.0), C::new(0.0, 0.0), C::new(0.0, 0.0));
+    let (mut i0, mut i1, mut k0, mut k1) =
+        (C::new(0.0, 0.0), C::new(0.0, 0.0), C::new(0.0, 0.0), C::new(0.0, 0.0));
     let (mut term, mut harmonic) = (C::new(1.0, 0.0), 0.0);
     for k in 0..80 {
         let kf = f64::from(k);

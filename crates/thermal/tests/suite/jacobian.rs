@@ -97,8 +97,8 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
         }
         for row in 0..n {
             let difference = (rates[0][row] - rates[1][row]) / (2.0 * step);
-            let scale = (rates[0][row].abs() / x[column].abs().max(1.0) + difference.abs()) * capacity(row)
-                + 1e-7;
+            let scale =
+                (rates[0][row].abs() / x[column].abs().max(1.0) + difference.abs()) * capacity(row) + 1e-7;
             let error = (jacobian[row][column] - difference).abs();
             assert!(
                 error < 2e-4 * scale.max(difference.abs()),
@@ -109,12 +109,8 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
     }
 }
 
-const STILL: Inputs = Inputs {
-    air_k: 275.0,
-    film: FilmInput::Coefficient(12.0),
-    radiation_k: None,
-    irradiance_w_m2: 0.0,
-};
+const STILL: Inputs =
+    Inputs { air_k: 275.0, film: FilmInput::Coefficient(12.0), radiation_k: None, irradiance_w_m2: 0.0 };
 
 #[test]
 fn jacobian_is_the_derivative_in_a_closed_cylinder() {

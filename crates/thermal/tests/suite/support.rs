@@ -7,8 +7,7 @@ use cylwatch_thermal::vessel::{GasResolution, InnerVolume, InsideFilm, Surface, 
 use cylwatch_thermal::wall::geometry::{End, EndShape, Geometry, Layer, Orientation};
 use cylwatch_thermal::wall::material::Material;
 
-pub const MCADAMS: InsideFilm =
-    InsideFilm::Rayleigh { factor: 0.13, exponent: 1.0 / 3.0, multiplier: 1.0 };
+pub const MCADAMS: InsideFilm = InsideFilm::Rayleigh { factor: 0.13, exponent: 1.0 / 3.0, multiplier: 1.0 };
 
 pub fn solid(density: f64, heat_capacity: f64, conductivity: f64) -> Material {
     Material {

@@ -49,7 +49,11 @@ fn sum(mesh: &Mesh, section: Section, value: fn(&Column) -> f64) -> f64 {
 fn hemispheres_have_the_areas_and_volumes_of_spheres() {
     let mesh = Mesh::new(&domed(0.1, None));
     let (r, t) = (0.1_f64, 0.006_f64);
-    assert_relative_eq!(sum(&mesh, Section::Bottom, |c| c.inner_area_m2), 2.0 * PI * r * r, max_relative = 1e-10);
+    assert_relative_eq!(
+        sum(&mesh, Section::Bottom, |c| c.inner_area_m2),
+        2.0 * PI * r * r,
+        max_relative = 1e-10
+    );
     assert_relative_eq!(
         sum(&mesh, Section::Bottom, |c| c.outer_area_m2),
         2.0 * PI * (r + t).powi(2),

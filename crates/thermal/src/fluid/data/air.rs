@@ -1,0 +1,59 @@
+//! Dry air: coefficients of the equation of state.
+//!
+//! Equation of state: E. W. Lemmon, R. T Jacobsen, S. G. Penoncello, D. G. Friend, "Thermodynamic properties of air and
+//! mixtures of nitrogen, argon, and oxygen from 60 to 2000 K at pressures to 2000 MPa", J. Phys. Chem. Ref. Data 29
+//! (2000) 331, doi:10.1063/1.1285884: dry air as a pseudo-pure fluid, reduced at its maxcondentherm.
+//! Transport: see [`crate::fluid::transport`].
+use crate::fluid::data::{FluidData, PowerTerm as P};
+
+/// Dry air.
+pub static AIR: FluidData = FluidData {
+    name: "air",
+    reference: "Lemmon et al., J. Phys. Chem. Ref. Data 29 (2000) 331",
+    gas_constant_j_mol_k: 8.31451,
+    molar_mass_kg_mol: 0.02896546,
+    reducing_temperature_k: 132.6312,
+    reducing_density_mol_m3: 10447.7,
+    critical_temperature_k: 132.5306,
+    critical_pressure_pa: 3786000.0,
+    acentric_factor: 0.0335,
+    lowest_temperature_k: 59.75,
+    highest_temperature_k: 2000.0,
+    highest_pressure_pa: 2000000000.0,
+    triple_liquid_density_mol_m3: 33066.642,
+    power: &[
+        P { n: 0.118160747229, d: 1, t: 0.0, l: 0 },
+        P { n: 0.713116392079, d: 1, t: 0.33, l: 0 },
+        P { n: -1.61824192067, d: 1, t: 1.01, l: 0 },
+        P { n: 0.0714140178971, d: 2, t: 0.0, l: 0 },
+        P { n: -0.0865421396646, d: 3, t: 0.0, l: 0 },
+        P { n: 0.134211176704, d: 3, t: 0.15, l: 0 },
+        P { n: 0.0112626704218, d: 4, t: 0.0, l: 0 },
+        P { n: -0.0420533228842, d: 4, t: 0.2, l: 0 },
+        P { n: 0.0349008431982, d: 4, t: 0.35, l: 0 },
+        P { n: 0.000164957183186, d: 6, t: 1.35, l: 0 },
+        P { n: -0.101365037912, d: 1, t: 1.6, l: 1 },
+        P { n: -0.17381369097, d: 3, t: 0.8, l: 1 },
+        P { n: -0.0472103183731, d: 5, t: 0.95, l: 1 },
+        P { n: -0.0122523554253, d: 6, t: 1.25, l: 1 },
+        P { n: -0.146629609713, d: 1, t: 3.6, l: 2 },
+        P { n: -0.0316055879821, d: 3, t: 6.0, l: 2 },
+        P { n: 0.000233594806142, d: 11, t: 3.25, l: 2 },
+        P { n: 0.0148287891978, d: 1, t: 3.5, l: 3 },
+        P { n: -0.00938782884667, d: 3, t: 15.0, l: 3 },
+    ],
+    gaussian: &[],
+    ideal_constant: 10.3753039487406,
+    ideal_tau: 3.31112445645577,
+    ideal_ln_tau: 2.490888032,
+    ideal_power: &[
+        (6.057194e-08, -3.0),
+        (-2.10274769e-05, -2.0),
+        (-0.000158860716, -1.0),
+        (-13.841928076, 0.0),
+        (17.275266575, 1.0),
+        (-0.00019536342, 1.5),
+    ],
+    ideal_einstein: &[(0.791309509, 25.36365), (0.212236768, 16.90741)],
+    ideal_general: &[(-0.197938904, 87.31279, 0.6666666666666666, 1.0)],
+};

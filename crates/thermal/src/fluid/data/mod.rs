@@ -1,0 +1,89 @@
+//! Coefficients of the fluids, one file each. A further fluid is a further file and a line in [`ALL`].
+mod air;
+mod argon;
+mod helium;
+mod hydrogen;
+mod nitrogen;
+
+/// All fluids.
+pub static ALL: [&FluidData; 5] =
+    [&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM];
+
+/// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
+#[derive(Clone, Copy, Debug)]
+pub struct PowerTerm {
+    /// Coefficient.
+    pub n: f64,
+    /// Exponent of the reduced density.
+    pub d: u8,
+    /// Exponent of the inverse reduced temperature.
+    pub t: f64,
+    /// Exponent inside the exponential.
+    pub l: u8,
+}
+
+/// Term `n delta^d tau^t exp(-eta (delta - epsilon)^2 - beta (tau - gamma)^2)`.
+#[derive(Clone, Copy, Debug)]
+pub struct GaussianTerm {
+    /// Coefficient.
+    pub n: f64,
+    /// Exponent of the reduced density.
+    pub d: u8,
+    /// Exponent of the inverse reduced temperature.
+    pub t: f64,
+    /// Width in density.
+    pub eta: f64,
+    /// Width in inverse temperature.
+    pub beta: f64,
+    /// Centre in inverse temperature.
+    pub gamma: f64,
+    /// Centre in density.
+    pub epsilon: f64,
+}
+
+/// A fundamental equation `a / (R T) = alpha0 + alphar` and its range of validity.
+#[derive(Debug)]
+pub struct FluidData {
+    /// Name as files spell it.
+    pub name: &'static str,
+    /// Source in short.
+    pub reference: &'static str,
+    /// Gas constant that the equation was fitted with, J/(mol K).
+    pub gas_constant_j_mol_k: f64,
+    /// Molar mass, kg/mol.
+    pub molar_mass_kg_mol: f64,
+    /// Reducing temperature, K.
+    pub reducing_temperature_k: f64,
+    /// Reducing density, mol/m³.
+    pub reducing_density_mol_m3: f64,
+    /// Critical temperature, K; above it there is one phase.
+    pub critical_temperature_k: f64,
+    /// Critical pressure, Pa.
+    pub critical_pressure_pa: f64,
+    /// Acentric factor (for Peng-Robinson).
+    pub acentric_factor: f64,
+    /// Lowest temperature, K.
+    pub lowest_temperature_k: f64,
+    /// Highest temperature, K.
+    pub highest_temperature_k: f64,
+    /// Highest pressure, Pa.
+    pub highest_pressure_pa: f64,
+    /// Density of the liquid at the triple point, mol/m³: where a search from the dense side starts.
+    pub triple_liquid_density_mol_m3: f64,
+    /// Polynomial and exponential terms of the residual part.
+    pub power: &'static [PowerTerm],
+    /// Gaussian terms of the residual part.
+    pub gaussian: &'static [GaussianTerm],
+    /// Constant of the ideal part.
+    pub ideal_constant: f64,
+    /// Coefficient of `tau` in the ideal part.
+    pub ideal_tau: f64,
+    /// Coefficient of `ln tau` in the ideal part.
+    pub ideal_ln_tau: f64,
+    /// Terms `n tau^t` of the ideal part as (n, t).
+    pub ideal_power: &'static [(f64, f64)],
+    /// Terms `n ln(1 - exp(-t tau))` of the ideal part as (n, t).
+    pub ideal_einstein: &'static [(f64, f64)],
+    /// Terms `n ln(c + d exp(t tau))` of the ideal part as (n, t, c, d).
+    pub ideal_general: &'static [(f64, f64, f64, f64)],
+}

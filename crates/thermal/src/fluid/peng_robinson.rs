@@ -1,0 +1,71 @@
+//! Peng-Robinson (1976), the cubic equation that an engineer would otherwise take, as a reduced Helmholtz energy.
+//!
+//! `p = R T / (v - b) - a(T) / (v^2 + 2 b v - b^2)` integrates to `alphar = -ln(1 - b rho) - A F(b rho)` with `A = a(T) / (b R T)`,
+//! `F(B) = ln[(1 + (1+sqrt 2) B) / (1 + (1-sqrt 2) B)] / (2 sqrt 2)`; `a(T) = a_c [1 + kappa (1 - sqrt(T/T_c))]^2`.
+//! Its ideal part is the reference equation's. Source: Peng and Robinson, Ind. Eng. Chem. Fundam. 15 (1976) 59.
+use std::f64::consts::SQRT_2;
+
+use super::Real;
+use super::data::FluidData;
+use super::helmholtz::{HelmholtzEnergy, Reduced};
+
+/// The Peng-Robinson equation of one fluid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PengRobinson {
+    critical_temperature_k: f64,
+    kappa: f64,
+    /// Covolume, m³/kg.
+    covolume_m3_kg: f64,
+    /// `a_c / (b R)`, K.
+    strength_k: f64,
+}
+
+impl PengRobinson {
+    /// From critical point and acentric factor.
+    pub fn new(data: &FluidData) -> Self {
+        let w = data.acentric_factor;
+        let b = 0.077_796_073_903_888_46 * data.gas_constant_j_mol_k * data.critical_temperature_k
+            / data.critical_pressure_pa;
+        Self {
+            critical_temperature_k: data.critical_temperature_k,
+            kappa: 0.374_64 + 1.542_26 * w - 0.269_92 * w * w,
+            covolume_m3_kg: b / data.molar_mass_kg_mol,
+            strength_k: 0.457_235_528_921_382_2 / 0.077_796_073_903_888_46 * data.critical_temperature_k,
+        }
+    }
+
+    /// Density that the equation cannot exceed, kg/m³.
+    pub fn densest_kg_m3(&self) -> f64 {
+        1.0 / self.covolume_m3_kg
+    }
+}
+
+impl HelmholtzEnergy for PengRobinson {
+    fn residual<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> Reduced<D> {
+        let b = density_kg_m3 * self.covolume_m3_kg;
+        let free = -b + 1.0;
+        let quadratic = -(b * b) + b * 2.0 + 1.0;
+        let f = ((b * (1.0 + SQRT_2) + 1.0) / (b * (1.0 - SQRT_2) + 1.0)).ln() / (2.0 * SQRT_2);
+        let (f1, f2) = (b / quadratic, -(b * b) * (-b * 2.0 + 2.0) / (quadratic * quadratic));
+        // alpha(T) and T d/dT, (T d/dT)^2 of it; then the same of A = strength alpha / T.
+        let s = (temperature_k / self.critical_temperature_k).sqrt();
+        let k = self.kappa;
+        let root = s * (-k) + (1.0 + k);
+        let alpha = root * root;
+        let alpha1 = s * root * (-k);
+        let alpha2 = s * (s * (2.0 * k * k) - k * (1.0 + k)) * 0.5;
+        let strength = temperature_k.recip() * self.strength_k;
+        let a0 = strength * alpha;
+        let a1 = strength * (alpha1 - alpha);
+        let a2 = strength * (alpha2 - alpha1 * 2.0 + alpha);
+        let ratio = b / free;
+        Reduced {
+            a: -(free.ln()) - a0 * f,
+            d: ratio - a0 * f1,
+            t: a1 * f,
+            dd: ratio * ratio - a0 * f2,
+            dt: a1 * f1,
+            tt: -(a2 + a1) * f,
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! States from other pairs than density and temperature.
+//!
+//! Every solve is Newton's method inside a bracket that shrinks with each evaluation; where Newton leaves
+//! the bracket it is halved. The functions are monotone on their brackets (`dp/drho > 0` on a stable branch, `cv > 0`,
+//! `cp > 0`), so the root is unique. Solves that carry derivatives converge in plain numbers first; one more
+//! Newton step in dual numbers then gives the exact derivatives.
+use super::saturation::CRITICAL_MARGIN;
+use super::{Description, Fluid, Real, State};
+use crate::ThermalError;
+
+const MAX_ITERATIONS: usize = 200;
+/// Relative tolerance of all roots.
+const TOLERANCE: f64 = 1e-13;
+
+/// Newton in a bracket for an increasing function given with its slope; `None` if it does not converge.
+fn bracketed_newton(
+    mut low: f64,
+    mut high: f64,
+    start: f64,
+    mut f: impl FnMut(f64) -> (f64, f64),
+) -> Option<f64> {
+    let mut x = start.clamp(low, high);
+    for _ in 0..MAX_ITERATIONS {
+        let (value, slope) = f(x);
+        if !value.is_finite() {
+            return None;
+        }
+        if value > 0.0 {
+            high = x
+        } else {
+            low = x
+        }
+        let newton = x - value / slope;
+        if slope > 0.0 && (newton - x).abs() <= TOLERANCE * x.abs() {
+            return Some(newton);
+        }
+        let inside = slope > 0.0 && newton > low && newton < high;
+        x = if inside { newton } else { 0.5 * (low + high) };
+    }
+    (high - low <= 1e-9 * high.abs()).then_some(x)
+}
+
+impl Fluid {
+    /// Density, kg/m³, at a pressure, Pa, and temperature, K.
+    ///
+    /// # Errors
+    /// Outside the domain; on the saturation line; too near the critical point to tell the phase.
+    pub fn density_from_pressure_temperature(
+        &self,
+        pressure_pa: f64,
+        temperature_k: f64,
+    ) -> Result<f64, ThermalError> {
+        self.check_temperature(temperature_k)?;
+        self.check_pressure(pressure_pa)?;
+        let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
+        let ideal = pressure_pa / rt;
+        if let Description::IdealGas(_) = self.description {
+            return self.dense_enough(ideal, pressure_pa);
+        }
+        let densest = self.domain().highest_density_kg_m3;
+        let (mut low, mut high) = (0.0, densest);
+        let critical_k = self.data.critical_temperature_k;
+        if temperature_k < critical_k && pressure_pa > 0.2 * self.data.critical_pressure_pa
+            || temperature_k < 0.8 * critical_k
+        {
+            // Near and above saturation the branch must be known.
+            let Some(saturation) = self.saturation(temperature_k)? else {
+                return Err(ThermalError::NearCritical { fluid: self.name(), temperature_k, critical_k });
+            };
+            let distance = pressure_pa / saturation.pressure_pa - 1.0;
+            if distance.abs() < 1e-9 {
+                return Err(ThermalError::OnSaturation {
+                    fluid: self.name(),
+                    pressure_pa,
+                    temperature_k,
+                    saturation_pa: saturation.pressure_pa,
+                });
+            }
+            if distance < 0.0 { high = saturation.vapour_kg_m3 } else { low = saturation.liquid_kg_m3 }
+        } else if temperature_k < critical_k {
+            // Thin gas below the critical temperature: stay on the vapour branch.
+            high = 0.5 * self.data.reducing_density_mol_m3 * self.data.molar_mass_kg_mol;
+        }
+        let start = if low > 0.0 { low } else { ideal.min(0.5 * densest) };
+        let found = match &self.description {
+            Description::Reference(equation) => {
+                let isotherm = equation.isotherm(temperature_k);
+                bracketed_newton(low, high, start, |rho| {
+                    let (d, dd) = isotherm.slopes(rho);
+                    (rho * rt * (1.0 + d) - pressure_pa, rt * (1.0 + 2.0 * d + dd))
+                })
+            }
+            _ => bracketed_newton(low, high, start, |rho| {
+                let (d, dd) = self.density_slopes(rho, temperature_k);
+                (rho * rt * (1.0 + d) - pressure_pa, rt * (1.0 + 2.0 * d + dd))
+            }),
+        };
+        match found {
+            Some(rho) if rho < densest * (1.0 - 1e-9) => Ok(rho),
+            _ => self.dense_enough(f64::INFINITY, pressure_pa),
+        }
+    }
+
+    /// The density if the domain holds it.
+    fn dense_enough(&self, density_kg_m3: f64, pressure_pa: f64) -> Result<f64, ThermalError> {
+        let highest_kg_m3 = self.domain().highest_density_kg_m3;
+        if density_kg_m3 <= highest_kg_m3 {
+            return Ok(density_kg_m3);
+        }
+        Err(ThermalError::TooDense { fluid: self.name(), pressure_pa, highest_kg_m3 })
+    }
+
+    /// The same with derivatives.
+    ///
+    /// # Errors
+    /// As [`Fluid::density_from_pressure_temperature`].
+    pub fn density_from_pressure_temperature_lifted<D: Real>(
+        &self,
+        pressure_pa: D,
+        temperature_k: D,
+    ) -> Result<D, ThermalError> {
+        let rho = self.density_from_pressure_temperature(pressure_pa.re(), temperature_k.re())?;
+        let fixed = self.state(D::from(rho), temperature_k);
+        Ok(-(fixed.pressure_pa - pressure_pa) / fixed.dp_drho_pa_m3_kg.re() + rho)
+    }
+
+    /// Temperature, K, at a density, kg/m³, and internal energy, J/kg; `guess_k` speeds it up and has no other effect.
+    /// The phase is not checked.
+    ///
+    /// # Errors
+    /// No temperature between half the lowest and twice the highest of the domain has this energy.
+    pub fn temperature_from_density_energy(
+        &self,
+        density_kg_m3: f64,
+        energy_j_kg: f64,
+        guess_k: Option<f64>,
+    ) -> Result<f64, ThermalError> {
+        let domain = self.domain();
+        let (low, high) = (0.5 * domain.lowest_temperature_k, 2.0 * domain.highest_temperature_k);
+        let none = ThermalError::NoTemperature { fluid: self.name(), density_kg_m3, energy_j_kg };
+        if !(density_kg_m3 > 0.0 && density_kg_m3.is_finite() && energy_j_kg.is_finite()) {
+            return Err(none);
+        }
+        let energy = |t: f64| {
+            let state = self.state(density_kg_m3, t);
+            (state.internal_energy_j_kg - energy_j_kg, state.cv_j_kg_k)
+        };
+        let start = guess_k.filter(|guess| guess.is_finite()).unwrap_or(300.0);
+        match bracketed_newton(low, high, start, energy) {
+            Some(t) if t > low * 1.000_001 && t < high * 0.999_999 => Ok(t),
+            _ => Err(none),
+        }
+    }
+
+    /// State from density and internal energy, with derivatives.
+    ///
+    /// # Errors
+    /// As [`Fluid::temperature_from_density_energy`].
+    pub fn state_from_density_energy<D: Real>(
+        &self,
+        density_kg_m3: D,
+        energy_j_kg: D,
+        guess_k: Option<f64>,
+    ) -> Result<State<D>, ThermalError> {
+        let t = self.temperature_from_density_energy(density_kg_m3.re(), energy_j_kg.re(), guess_k)?;
+        let fixed = self.state(density_kg_m3, D::from(t));
+        let step = (fixed.internal_energy_j_kg - energy_j_kg) / fixed.cv_j_kg_k.re();
+        Ok(self.state(density_kg_m3, -step + t))
+    }
+
+    /// State at a pressure, Pa, and specific enthalpy, J/kg.
+    ///
+    /// # Errors
+    /// Outside the domain, or two-phase.
+    pub fn state_from_pressure_enthalpy(
+        &self,
+        pressure_pa: f64,
+        enthalpy_j_kg: f64,
+    ) -> Result<State, ThermalError> {
+        self.state_along_isobar(pressure_pa, enthalpy_j_kg, "enthalpy", |s| (s.enthalpy_j_kg, s.cp_j_kg_k))
+    }
+
+    /// State at a pressure, Pa, and specific entropy, J/(kg K).
+    ///
+    /// # Errors
+    /// Outside the domain, or two-phase.
+    pub fn state_from_pressure_entropy(
+        &self,
+        pressure_pa: f64,
+        entropy_j_kg_k: f64,
+    ) -> Result<State, ThermalError> {
+        self.state_along_isobar(pressure_pa, entropy_j_kg_k, "entropy", |s| {
+            (s.entropy_j_kg_k, s.cp_j_kg_k / s.temperature_k)
+        })
+    }
+
+    /// Temperature on an isobar where an increasing property (with its slope in temperature) has a value.
+    fn state_along_isobar(
+        &self,
+        pressure_pa: f64,
+        target: f64,
+        property: &'static str,
+        value: impl Fn(&State) -> (f64, f64),
+    ) -> Result<State, ThermalError> {
+        self.check_pressure(pressure_pa)?;
+        let none = || ThermalError::NoState { fluid: self.name(), pressure_pa, property, target };
+        if !target.is_finite() {
+            return Err(none());
+        }
+        let at = |t: f64| -> Result<State, ThermalError> {
+            Ok(self.state(self.density_from_pressure_temperature(pressure_pa, t)?, t))
+        };
+        let domain = self.domain();
+        let critical_k = domain.critical_temperature_k;
+        let mut low = domain.lowest_temperature_k * (1.0 + 1e-12);
+        let mut high = domain.highest_temperature_k;
+        let two_phases = !matches!(self.description, Description::IdealGas(_));
+        if two_phases && value(&at(critical_k)?).0 <= target {
+            low = critical_k;
+        } else if two_phases && pressure_pa < self.data.critical_pressure_pa {
+            (low, high) = self.side_of_saturation(pressure_pa, target, low, &value)?.ok_or_else(none)?;
+        } else if two_phases {
+            high = critical_k;
+        }
+        // The liquid below its melting line is not in the domain: raise the lower end until it is.
+        while at(low).is_err() && low < high {
+            low += 0.02 * (high - low) + 1e-6;
+        }
+        let start = if (low..high).contains(&300.0) { 300.0 } else { 0.5 * (low + high) };
+        let t = bracketed_newton(low, high, start, |t| {
+            at(t).map_or((f64::NAN, f64::NAN), |state| {
+                let (value, slope) = value(&state);
+                (value - target, slope)
+            })
+        })
+        .ok_or_else(none)?;
+        let state = at(t)?;
+        // At an end of the bracket the target is not reached.
+        let (reached, slope) = value(&state);
+        if (reached - target).abs() > 1e-8 * (slope * t).abs() {
+            return Err(none());
+        }
+        Ok(state)
+    }
+
+    /// Part of an isobar below the critical pressure on which a property below its value at the critical temperature lies.
+    fn side_of_saturation(
+        &self,
+        pressure_pa: f64,
+        target: f64,
+        lowest_k: f64,
+        value: &impl Fn(&State) -> (f64, f64),
+    ) -> Result<Option<(f64, f64)>, ThermalError> {
+        let highest_k = self.data.critical_temperature_k * (1.0 - CRITICAL_MARGIN);
+        let pressure_at =
+            |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
+        let (mut low, mut high) = (lowest_k, highest_k);
+        if pressure_at(high)? < pressure_pa {
+            return Ok(None);
+        }
+        if pressure_at(low)? > pressure_pa {
+            return Ok(Some((lowest_k, self.data.critical_temperature_k)));
+        }
+        for _ in 0..45 {
+            let middle = 0.5 * (low + high);
+            if pressure_at(middle)? < pressure_pa { low = middle } else { high = middle }
+        }
+        let saturation_k = 0.5 * (low + high);
+        let Some(saturation) = self.saturation(saturation_k)? else { return Ok(None) };
+        let vapour = value(&self.state(saturation.vapour_kg_m3, saturation_k)).0;
+        let liquid = value(&self.state(saturation.liquid_kg_m3, saturation_k)).0;
+        if target >= vapour {
+            return Ok(Some((saturation_k * (1.0 + 1e-9), self.data.critical_temperature_k)));
+        }
+        if target <= liquid {
+            return Ok(Some((lowest_k, saturation_k * (1.0 - 1e-9))));
+        }
+        Err(ThermalError::TwoPhaseIsobar { fluid: self.name(), pressure_pa, saturation_k })
+    }
+}

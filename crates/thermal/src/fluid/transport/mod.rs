@@ -1,0 +1,98 @@
+//! Viscosity and thermal conductivity of the fluids, as functions of density and temperature.
+//!
+//! `eta = eta_0(T) + eta_r(rho, T)` and `lambda = lambda_0(T) + lambda_r(rho, T) + lambda_c`, where the
+//! critical enhancement `lambda_c` alone needs derivatives of the equation of state. It is zero above the
+//! reference temperature (about twice the critical one), so most states of a cylinder never pay for it.
+//!
+//! | fluid | viscosity | conductivity |
+//! |---|---|---|
+//! | nitrogen, argon, air | Lemmon and Jacobsen 2004 | the same |
+//!
+//! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
+//! CoolProp 8.0.0; each module names its range of validity and the deviations.
+//!
+//! Source: Lemmon and Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3.
+mod critical;
+mod data;
+mod lemmon_jacobsen;
+#[cfg(test)]
+mod tests;
+
+pub use critical::OlchowySengers;
+pub use lemmon_jacobsen::{LemmonJacobsenData, Term};
+
+use crate::fluid::Real;
+
+/// What the critical enhancement needs of the equation of state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransportState<D> {
+    /// Temperature, K.
+    pub temperature_k: D,
+    /// Density, kg/m³.
+    pub density_kg_m3: D,
+    /// `(dp/drho)_T`, Pa m³/kg.
+    pub dp_drho_pa_m3_kg: D,
+    /// Isobaric heat capacity, J/(kg K).
+    pub cp_j_kg_k: D,
+    /// Isochoric heat capacity, J/(kg K).
+    pub cv_j_kg_k: D,
+}
+
+/// Transport correlations of one fluid.
+#[derive(Clone, Copy, Debug)]
+pub enum Transport {
+    /// Lemmon and Jacobsen 2004: nitrogen, argon, air.
+    LemmonJacobsen(&'static LemmonJacobsenData),
+}
+
+impl Transport {
+    /// Correlations of a fluid by its lower-case name; `None` if there are none for it.
+    pub fn for_fluid(name: &str) -> Option<Transport> {
+        match name {
+            "nitrogen" => Some(Transport::LemmonJacobsen(&data::NITROGEN)),
+            "argon" => Some(Transport::LemmonJacobsen(&data::ARGON)),
+            "air" => Some(Transport::LemmonJacobsen(&data::AIR)),
+            _ => None,
+        }
+    }
+
+    /// Viscosity, Pa s. The critical enhancement of the viscosity, below 1 % except within 1 % of the
+    /// critical temperature, is left out, as in the sources.
+    pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
+        match self {
+            Transport::LemmonJacobsen(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
+        }
+    }
+
+    /// Thermal conductivity without the critical enhancement, W/(m K).
+    pub fn background_conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
+        match self {
+            Transport::LemmonJacobsen(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
+        }
+    }
+
+    /// Critical enhancement of the thermal conductivity, W/(m K), zero far from the critical point.
+    ///
+    /// `viscosity` is that of the state, Pa s; `dp_drho_reference` is `(dp/drho)_T`, Pa m³/kg, at the same
+    /// density and [`Self::reference_temperature_k`].
+    pub fn critical_enhancement_w_m_k<D: Real>(
+        &self,
+        state: &TransportState<D>,
+        viscosity: D,
+        dp_drho_reference: D,
+    ) -> D {
+        match self {
+            Transport::LemmonJacobsen(data) => {
+                data.critical.conductivity_w_m_k(state, viscosity, dp_drho_reference)
+            }
+        }
+    }
+
+    /// Temperature from which on the critical enhancement is zero, K, and at which its reference derivative
+    /// is to be taken.
+    pub fn reference_temperature_k(&self) -> Option<f64> {
+        match self {
+            Transport::LemmonJacobsen(data) => Some(data.critical.reference_temperature_k),
+        }
+    }
+}

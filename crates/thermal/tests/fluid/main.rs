@@ -1,0 +1,2 @@
+//! Tests of the fluid properties, modules by kind.
+mod published;
