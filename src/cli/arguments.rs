@@ -64,7 +64,7 @@ pub struct ReproduceArguments {
     /// Folder for figures (SVG and PNG), CSV files and results.json; it is made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
     pub out: PathBuf,
-    /// Relative tolerance of the solver, without unit.
+    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
     #[arg(long, value_name = "NUMBER")]
     pub relative_tolerance: Option<f64>,
 }
@@ -88,7 +88,7 @@ pub struct SimulateArguments {
     /// Format of the data [default: json for a file that ends in .json, else csv].
     #[arg(long, value_enum)]
     pub format: Option<Format>,
-    /// Relative tolerance of the solver, without unit, above 0 and below 0.1 [default: 1e-6].
+    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
     #[arg(long, value_name = "NUMBER")]
     pub relative_tolerance: Option<f64>,
     /// List the built-in vessels and scenarios and stop.

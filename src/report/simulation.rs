@@ -99,8 +99,8 @@ pub fn figure(run: &Trajectory) -> Figure {
         Panel { quantity: "minus gas mean in K".into(), items: differences, height: 0.7 },
         Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
     ];
-    let change = run.mass_kg.iter().map(|m| (m - run.mass_kg[0]).abs()).fold(0.0, f64::max);
-    if change > 1e-6 * run.mass_kg[0] {
+    let (least, most) = run.mass_kg.iter().fold((f64::INFINITY, 0.0), |r, &m| (m.min(r.0), m.max(r.1)));
+    if most - least > 1e-6 * most {
         let mass = Item::line("gas mass", time, run.mass_kg.iter().copied(), style::PRESSURE);
         panels.push(Panel { quantity: "gas mass in kg".into(), items: vec![mass], height: 0.55 });
     }

@@ -186,7 +186,7 @@ fn closed_rows(results: &Reproduction) -> Vec<Row> {
             "",
             None,
             "",
-            Bar::AtMost(1e-6),
+            Bar::AtMost(1e-9),
         ),
         row(
             "largest energy residual, scenarios",
@@ -194,7 +194,7 @@ fn closed_rows(results: &Reproduction) -> Vec<Row> {
             "",
             None,
             "",
-            Bar::AtMost(1e-6),
+            Bar::AtMost(1e-9),
         ),
     ]
 }
