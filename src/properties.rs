@@ -23,7 +23,7 @@ pub enum PropertyError {
     Fluid(#[from] ThermalError),
     /// No temperature belongs to pressure and density.
     #[error(
-        "no temperature between {LOWEST_K} K and {HIGHEST_K} K has pressure {pressure_pa} Pa at density {density_kg_m3} kg/m³ \
+        "no temperature between {LOWEST_K} K and {HIGHEST_K} K has pressure {pressure_pa:e} Pa at density {density_kg_m3:e} kg/m³ \
          in the range of the equation of state: check both numbers and their units"
     )]
     NoTemperature {
