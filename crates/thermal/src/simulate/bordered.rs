@@ -9,9 +9,7 @@
 use diffsol_la::error::LaError;
 use diffsol_la::linear_solver::LinearSolver;
 use diffsol_la::matrix::sparsity::{MatrixSparsity, MatrixSparsityRef};
-use diffsol_la::{
-    FaerContext, FaerSparseLU, FaerSparseMat, FaerVec, LinearOp, Matrix, MatrixCommon, Vector,
-};
+use diffsol_la::{FaerContext, FaerSparseLU, FaerSparseMat, FaerVec, LinearOp, Matrix, MatrixCommon, Vector};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 type M = FaerSparseMat<f64>;

@@ -14,8 +14,7 @@ use diffsol::matrix::sparsity::MatrixSparsity;
 use diffsol::{
     Bdf, ConstantOp, FaerContext, FaerSparseMat, FaerVec, Matrix, NonLinearOp, NonLinearOpJacobian,
     OdeBuilder, OdeEquations, OdeEquationsRef, OdeSolverMethod, OdeSolverStopReason, Op, ParameterisedOp,
-    Sdirk, Tableau,
-    UnitCallable, Vector,
+    Sdirk, Tableau, UnitCallable, Vector,
 };
 
 use super::bordered::BorderedLu;
@@ -346,7 +345,8 @@ pub fn with_stepper<R>(
         .h0(settings.first_step_s)
         .build_from_eqn(Equations { rhs, init })
         .map_err(failed)?;
-    problem.ode_options.max_nonlinear_solver_failures = 500;
+    // Counted over the whole run by diffsol: a long run may have many, a stuck one ends at the smallest step.
+    problem.ode_options.max_nonlinear_solver_failures = settings.maximum_steps;
     let (buffer, rate) = (V::zeros(n, context), V::zeros(n, context));
     let equations = &problem.eqn;
     let border = n - model.layout().mean_wall;
@@ -365,7 +365,8 @@ pub fn with_stepper<R>(
         }
         Method::Automatic | Method::Bdf => {
             let state = problem.bdf_state::<LS>().map_err(failed)?;
-            let solver: Bdf<'_, _, LS> = Bdf::new(&problem, state, BorderedLu::new(border)).map_err(failed)?;
+            let solver: Bdf<'_, _, LS> =
+                Bdf::new(&problem, state, BorderedLu::new(border)).map_err(failed)?;
             work(&mut Wrapper { solver, equations, buffer, rate })
         }
     }

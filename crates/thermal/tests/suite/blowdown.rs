@@ -84,7 +84,10 @@ fn wall_high_score(run: &Trajectory) -> f64 {
 fn one_node_at_the_carriers_discharge_coefficient() {
     let run = run(0.8, GasResolution::WellMixed, MCADAMS);
     let scores = [gas_score(&run), pressure_score(&run), wall_high_score(&run)];
-    println!("I1, one node, Cd 0.8: gas {:.3} K, pressure {:.3} bar, wall high edge {:.3} K", scores[0], scores[1], scores[2]);
+    println!(
+        "I1, one node, Cd 0.8: gas {:.3} K, pressure {:.3} bar, wall high edge {:.3} K",
+        scores[0], scores[1], scores[2]
+    );
     assert!(scores[0] <= 4.7 && scores[1] <= 3.0 && scores[2] <= 1.0, "{scores:?}");
 }
 
@@ -97,7 +100,10 @@ fn one_node_at_the_discharge_coefficient_that_fits_the_pressure() {
         .min_by(|a, b| pressure_score(&a.1).total_cmp(&pressure_score(&b.1)))
         .unwrap();
     let scores = [gas_score(&best.1), pressure_score(&best.1), wall_high_score(&best.1)];
-    println!("I1, one node, Cd {:.3}: gas {:.2} K, pressure {:.2} bar, wall high edge {:.2} K", best.0, scores[0], scores[1], scores[2]);
+    println!(
+        "I1, one node, Cd {:.3}: gas {:.2} K, pressure {:.2} bar, wall high edge {:.2} K",
+        best.0, scores[0], scores[1], scores[2]
+    );
     assert!((0.70..=0.76).contains(&best.0), "Cd {}", best.0);
     assert!(scores[0] <= 2.7 && scores[1] <= 1.6 && scores[2] <= 1.0, "{scores:?}");
 }
@@ -114,7 +120,10 @@ fn stratified_gas_reaches_both_edges_of_the_band_at_a_converged_cell_count() {
             score(&run.time_s, &high, &measured!("gas_high")),
             score(&run.time_s, &low, &measured!("gas_low")),
         );
-        println!("I1, {cells} gas cells: high {:+.2}/{:.2} K, low {:+.2}/{:.2} K", scores.0.0, scores.0.1, scores.1.0, scores.1.1);
+        println!(
+            "I1, {cells} gas cells: high {:+.2}/{:.2} K, low {:+.2}/{:.2} K",
+            scores.0.0, scores.0.1, scores.1.0, scores.1.1
+        );
         assert!(run.ledger.energy_residual().abs() < 1e-9 && run.ledger.mass_residual().abs() < 1e-9);
         scores
     };

@@ -1,8 +1,8 @@
 //! Tests of the thermal crate, modules by kind.
 mod analytic;
-mod convergence;
 mod blowdown;
 mod conservation;
-mod preset_runs;
+mod convergence;
 mod jacobian;
+mod preset_runs;
 mod support;

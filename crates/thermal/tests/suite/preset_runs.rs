@@ -19,7 +19,8 @@ fn fit_at_pole(a: f64, runs: &[(Vec<f64>, Vec<f64>)], dt: f64) -> (f64, f64) {
     let g1 = 1.0 / a - (1.0 - decay) / (a * a * dt);
     let g0 = (1.0 - decay) / a - g1;
     let n = 1 + runs.len();
-    let (mut normal, mut right, mut square) = (nalgebra::DMatrix::zeros(n, n), nalgebra::DVector::zeros(n), 0.0);
+    let (mut normal, mut right, mut square) =
+        (nalgebra::DMatrix::zeros(n, n), nalgebra::DVector::zeros(n), 0.0);
     for (index, (input, output)) in runs.iter().enumerate() {
         let (mut response, mut free) = (0.0, 1.0);
         for k in 0..output.len() {
@@ -65,7 +66,11 @@ fn shoulder_to_gas_has_nearly_the_published_pole() {
         .min_by(|x, y| x.1.0.total_cmp(&y.1.0))
         .unwrap();
     let (pole, (error, b)) = best;
-    println!("pole {pole:.6} 1/s, gain {:.4}, MSE {:.3} K², {samples} samples", b / pole, error / samples as f64);
+    println!(
+        "pole {pole:.6} 1/s, gain {:.4}, MSE {:.3} K², {samples} samples",
+        b / pole,
+        error / samples as f64
+    );
     assert!((pole / 0.003_021 - 1.0).abs() < 0.15, "pole {pole}");
     assert!((b / pole - 1.0).abs() < 0.01, "gain {}", b / pole);
     assert!((385..=391).contains(&samples), "{samples} samples");
