@@ -10,3 +10,8 @@ pub use cylwatch_thermal as thermal;
 pub mod properties;
 pub mod report;
 pub mod reproduce;
+
+/// The code of the README, so that it is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

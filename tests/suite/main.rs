@@ -2,7 +2,9 @@
 // Helpers outside of test functions fail a test by panicking, too.
 #![allow(clippy::unwrap_used)]
 
+mod examples;
 mod files;
+mod pages;
 mod properties;
 mod report;
 mod reproduce;

@@ -10,6 +10,7 @@
 //!
 //! Sources: McAdams, Heat Transmission (1954), 0.13 Ra^(1/3); Daney, Cryogenics 16 (1976) 345, 0.104 Ra^0.352
 //! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / D.
+use std::array::from_fn;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -116,15 +117,9 @@ impl FilmGrid {
     }
 
     fn patch(&self, (i, j): GridIndex) -> Patch {
-        let mut patch = [[[0.0; 4]; 4]; 2];
-        for a in 0..4 {
-            for b in 0..4 {
-                let values = self.node((i + a as i32 - 1, j + b as i32 - 1));
-                patch[0][a][b] = values[0];
-                patch[1][a][b] = values[1];
-            }
-        }
-        patch
+        let nodes: [[[f64; 2]; 4]; 4] =
+            from_fn(|a| from_fn(|b| self.node((i + a as i32 - 1, j + b as i32 - 1))));
+        [0, 1].map(|group| nodes.map(|row| row.map(|node| node[group])))
     }
 
     fn node(&self, index: GridIndex) -> [f64; 2] {

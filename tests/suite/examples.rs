@@ -1,0 +1,95 @@
+//! What the examples claim.
+#[allow(dead_code)]
+#[path = "../../examples/leak.rs"]
+mod leak;
+#[allow(dead_code)]
+#[path = "../../examples/scenario_1.rs"]
+mod scenario_1;
+#[allow(dead_code)]
+#[path = "../../examples/scenario_2.rs"]
+mod scenario_2;
+#[allow(dead_code)]
+#[path = "../../examples/scenario_3.rs"]
+mod scenario_3;
+#[allow(dead_code)]
+#[path = "../../examples/scenario_4.rs"]
+mod scenario_4;
+#[allow(dead_code)]
+#[path = "../../examples/tunnel_passage.rs"]
+mod tunnel_passage;
+
+use approx::assert_abs_diff_eq;
+
+#[test]
+fn a_tight_cylinder_stays_above_160_bar_at_minus_25_degrees_and_alarms_when_it_is_colder() {
+    let [paper, colder, coldest] = &scenario_1::run().unwrap()[..] else { panic!("three steps") };
+    // A rigid tight cylinder reads 160.09 bar at -25 °C (CoolProp); the steel's shrinking adds 0.3 to 0.4 bar.
+    assert_abs_diff_eq!(paper.pressure_bar[1], 160.45, epsilon = 0.15);
+    assert_eq!(paper.limit_min, None);
+    let [late, early] = [colder, coldest].map(|fall| fall.limit_min.unwrap());
+    assert!(20.0 < early && early < late && late < 90.0, "{early} {late}");
+    assert!(coldest.pressure_bar[1] < colder.pressure_bar[1] && colder.pressure_bar[1] < 157.0);
+}
+
+#[test]
+fn the_gas_lags_a_minute_or_two_behind_the_wall_and_more_behind_valve_and_sensors() {
+    let lags = scenario_2::run().unwrap();
+    let of = |place: &str| lags.iter().find(|lag| lag.place == place).unwrap();
+    for place in ["bottom", "middle", "shoulder"] {
+        assert!((50.0..130.0).contains(&of(place).lag_s), "{place}: {} s", of(place).lag_s);
+        assert!((2.0..4.0).contains(&of(place).largest_k), "{place}: {} K", of(place).largest_k);
+    }
+    assert!((180.0..300.0).contains(&of("valve").lag_s));
+    for place in ["shoulder", "valve"] {
+        let sensor = of(&format!("{place} sensor"));
+        assert!(sensor.lag_s > of(place).lag_s + 120.0, "{place}: {} s", sensor.lag_s);
+    }
+}
+
+#[test]
+fn the_shoulder_follows_a_slow_ramp_within_half_a_kelvin_and_its_sensor_within_one_bar() {
+    let moments = scenario_3::run().unwrap();
+    assert_eq!(moments.len(), 6);
+    for moment in &moments[1..] {
+        assert!((0.3..0.5).contains(&moment.ahead_k[0]), "{} h: {} K", moment.time_h, moment.ahead_k[0]);
+        assert!((0.9..1.1).contains(&moment.ahead_k[1]), "{} h: {} K", moment.time_h, moment.ahead_k[1]);
+        assert!(
+            (0.8..1.1).contains(&moment.pressure_bar),
+            "{} h: {} bar",
+            moment.time_h,
+            moment.pressure_bar
+        );
+    }
+}
+
+#[test]
+fn the_ideal_gas_explains_seven_tenths_of_the_fall_of_a_cooling_cylinder() {
+    let [real, ideal] = scenario_4::run().unwrap();
+    let fall = |cooling: &scenario_4::Cooling| cooling.pressure_bar[0] - cooling.pressure_bar[1];
+    assert_abs_diff_eq!(fall(&ideal) / fall(&real), 0.70, epsilon = 0.02);
+    // 0.992 and 0.694 bar/K for a rigid volume (CoolProp); the expansion of the steel takes 0.01 to 0.03.
+    assert_abs_diff_eq!(real.slope_bar_k, 0.97, epsilon = 0.02);
+    assert_abs_diff_eq!(ideal.slope_bar_k, 0.685, epsilon = 0.02);
+    assert!(ideal.mass_kg > real.mass_kg);
+}
+
+#[test]
+fn a_tunnel_silences_the_switch_of_a_tight_and_of_a_leaky_cylinder_alike() {
+    let [tight, leaky] = tunnel_passage::run().unwrap();
+    for passage in [&tight, &leaky] {
+        assert!(passage.alarm_at_start, "{}", passage.cylinder);
+        let [silent, alarm] = passage.changes_min[..] else { panic!("{}", passage.cylinder) };
+        assert!(30.0 < silent && silent < 60.0 && 60.0 < alarm, "{}", passage.cylinder);
+    }
+    assert!(tight.pressure_bar[1] > leaky.pressure_bar[1] + 20.0);
+}
+
+#[test]
+fn a_cold_and_a_leaking_cylinder_show_the_same_pressure_and_differ_by_their_mass() {
+    let [cold, leaking] = leak::run().unwrap();
+    // A minute of 60 g/h is 0.05 bar.
+    assert_abs_diff_eq!(cold.pressure_bar, leaking.pressure_bar, epsilon = 0.06);
+    assert_abs_diff_eq!(cold.lost_g, 0.0, epsilon = 0.01);
+    assert_abs_diff_eq!(leaking.lost_g, 60.0 * leaking.time_h, epsilon = 0.01);
+    assert!(leaking.lost_g > 500.0 && leaking.gas_degc > cold.gas_degc + 29.0);
+}
