@@ -4,11 +4,11 @@
 //! makes them kg/m³ is that of the equation of state, which for air (28.965 46 g/mol) differs from the one
 //! within the dilute viscosity (28.958 6 g/mol).
 //!
-//! Source: Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3, tables I, III, IV, V, in the
+//! Source: Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3, in the
 //! digits CoolProp 8.0.0 distributes (TRANSPORT section of its fluid files).
 use super::{LemmonJacobsenData, OlchowySengers, Term};
 
-const fn term(n: f64, t: f64, d: i32, l: i32) -> Term {
+const fn term(n: f64, t: f64, d: u32, l: usize) -> Term {
     Term { n, t, d, l }
 }
 

@@ -7,13 +7,15 @@
 //! | fluid | viscosity | conductivity |
 //! |---|---|---|
 //! | nitrogen, argon, air | Lemmon and Jacobsen 2004 | the same |
+//! | hydrogen (normal) | Muzny, Huber and Kazakov 2013 | Assael et al. 2011 |
+//! | helium | Arp, McCarty and Friend 1998 | Hands and Arp 1981 |
 //!
 //! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
 //! CoolProp 8.0.0; each module names its range of validity and the deviations.
-//!
-//! Source: Lemmon and Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3.
 mod critical;
 mod data;
+mod helium;
+mod hydrogen;
 mod lemmon_jacobsen;
 #[cfg(test)]
 mod tests;
@@ -43,6 +45,10 @@ pub struct TransportState<D> {
 pub enum Transport {
     /// Lemmon and Jacobsen 2004: nitrogen, argon, air.
     LemmonJacobsen(&'static LemmonJacobsenData),
+    /// Normal hydrogen: Muzny et al. 2013, Assael et al. 2011.
+    Hydrogen,
+    /// Helium-4: Arp et al. 1998, Hands and Arp 1981.
+    Helium,
 }
 
 impl Transport {
@@ -52,6 +58,8 @@ impl Transport {
             "nitrogen" => Some(Transport::LemmonJacobsen(&data::NITROGEN)),
             "argon" => Some(Transport::LemmonJacobsen(&data::ARGON)),
             "air" => Some(Transport::LemmonJacobsen(&data::AIR)),
+            "hydrogen" => Some(Transport::Hydrogen),
+            "helium" => Some(Transport::Helium),
             _ => None,
         }
     }
@@ -61,6 +69,8 @@ impl Transport {
     pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
+            Transport::Hydrogen => hydrogen::viscosity_pa_s(density_kg_m3, temperature_k),
+            Transport::Helium => helium::viscosity_pa_s(density_kg_m3, temperature_k),
         }
     }
 
@@ -68,13 +78,15 @@ impl Transport {
     pub fn background_conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
+            Transport::Hydrogen => hydrogen::conductivity_w_m_k(density_kg_m3, temperature_k),
+            Transport::Helium => helium::conductivity_w_m_k(density_kg_m3, temperature_k),
         }
     }
 
     /// Critical enhancement of the thermal conductivity, W/(m K), zero far from the critical point.
     ///
     /// `viscosity` is that of the state, Pa s; `dp_drho_reference` is `(dp/drho)_T`, Pa m³/kg, at the same
-    /// density and [`Self::reference_temperature_k`].
+    /// density and [`Self::reference_temperature_k`], ignored where that is `None`.
     pub fn critical_enhancement_w_m_k<D: Real>(
         &self,
         state: &TransportState<D>,
@@ -85,14 +97,19 @@ impl Transport {
             Transport::LemmonJacobsen(data) => {
                 data.critical.conductivity_w_m_k(state, viscosity, dp_drho_reference)
             }
+            Transport::Hydrogen => hydrogen::CRITICAL.conductivity_w_m_k(state, viscosity, dp_drho_reference),
+            Transport::Helium => helium::critical::conductivity_w_m_k(state, viscosity),
         }
     }
 
     /// Temperature from which on the critical enhancement is zero, K, and at which its reference derivative
-    /// is to be taken.
+    /// is to be taken. `None`: there is no such derivative; the enhancement of helium, zero from 12 K on,
+    /// ignores it.
     pub fn reference_temperature_k(&self) -> Option<f64> {
         match self {
             Transport::LemmonJacobsen(data) => Some(data.critical.reference_temperature_k),
+            Transport::Hydrogen => Some(hydrogen::CRITICAL.reference_temperature_k),
+            Transport::Helium => None,
         }
     }
 }
