@@ -282,11 +282,15 @@ impl Fluid {
     /// Thermal conductivity, W/(m K), with its enhancement near the critical point.
     pub fn conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         let background = self.transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
-        let Some(reference_k) = self.transport.reference_temperature_k() else { return background };
+        let reference_k = self.transport.reference_temperature_k();
+        if reference_k.is_some_and(|reference_k| temperature_k.re() >= reference_k) {
+            return background;
+        }
         let state = self.state(density_kg_m3, temperature_k);
-        let reference = self.residual(density_kg_m3, D::from(reference_k));
-        let dp_drho_reference =
-            (reference.d * 2.0 + reference.dd + 1.0) * (self.specific_gas_constant_j_kg_k() * reference_k);
+        let dp_drho_reference = reference_k.map_or(D::from(0.0), |reference_k| {
+            let reference = self.residual(density_kg_m3, D::from(reference_k));
+            (reference.d * 2.0 + reference.dd + 1.0) * (self.specific_gas_constant_j_kg_k() * reference_k)
+        });
         let at = TransportState {
             temperature_k,
             density_kg_m3,

@@ -9,8 +9,8 @@ use super::{Description, Fluid, Real, State};
 use crate::ThermalError;
 
 const MAX_ITERATIONS: usize = 200;
-/// Relative tolerance of all roots.
-const TOLERANCE: f64 = 1e-13;
+/// Relative length of the last Newton step of all roots; the error after it is about its square.
+const TOLERANCE: f64 = 1e-9;
 
 /// Newton in a bracket for an increasing function given with its slope; `None` if it does not converge.
 fn bracketed_newton(
