@@ -16,6 +16,8 @@ mod peng_robinson;
 mod saturation;
 mod solve;
 mod state;
+#[cfg(test)]
+mod tests;
 pub mod transport;
 
 pub use saturation::Saturation;
