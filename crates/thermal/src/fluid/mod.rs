@@ -170,7 +170,8 @@ impl Fluid {
     pub fn domain(&self) -> Domain {
         let liquid = self.data.triple_liquid_density_mol_m3 * self.data.molar_mass_kg_mol * DENSEST;
         let highest_density_kg_m3 = match self.description {
-            Description::PengRobinson(cubic) => (DENSEST_CUBIC * cubic.densest_kg_m3()).min(liquid),
+            // Its liquids differ from the measured ones: that of helium is denser.
+            Description::PengRobinson(cubic) => DENSEST_CUBIC * cubic.densest_kg_m3(),
             _ => liquid,
         };
         Domain {

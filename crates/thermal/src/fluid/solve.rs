@@ -9,6 +9,8 @@ use super::{Description, Fluid, Real, State};
 use crate::ThermalError;
 
 const MAX_ITERATIONS: usize = 200;
+/// Up to this part of the critical pressure a gas above 0.8 critical temperatures is not near its saturation line.
+const THIN: f64 = 0.2;
 /// Relative length of the last Newton step of all roots; the error after it is about its square.
 const TOLERANCE: f64 = 1e-9;
 
@@ -60,7 +62,7 @@ impl Fluid {
         let densest = self.domain().highest_density_kg_m3;
         let (mut low, mut high) = (0.0, densest);
         let critical_k = self.data.critical_temperature_k;
-        if temperature_k < critical_k && pressure_pa > 0.2 * self.data.critical_pressure_pa
+        if temperature_k < critical_k && pressure_pa > THIN * self.data.critical_pressure_pa
             || temperature_k < 0.8 * critical_k
         {
             // Near and above saturation the branch must be known.
@@ -214,17 +216,22 @@ impl Fluid {
         let critical_k = domain.critical_temperature_k;
         let mut low = domain.lowest_temperature_k * (1.0 + 1e-12);
         let mut high = domain.highest_temperature_k;
-        let two_phases = !matches!(self.description, Description::IdealGas(_));
-        if two_phases && value(&at(critical_k)?).0 <= target {
-            low = critical_k;
-        } else if two_phases && pressure_pa < self.data.critical_pressure_pa {
-            (low, high) = self.side_of_saturation(pressure_pa, target, low, &value)?.ok_or_else(none)?;
-        } else if two_phases {
-            high = critical_k;
+        if !matches!(self.description, Description::IdealGas(_)) {
+            // Too dense at the critical temperature: the states are above it.
+            if at(critical_k).map_or(true, |state| value(&state).0 <= target) {
+                low = critical_k;
+            } else {
+                (low, high) = self.below_critical(pressure_pa, target, low, &value)?;
+            }
         }
-        // The liquid below its melting line is not in the domain: raise the lower end until it is.
-        while at(low).is_err() && low < high {
-            low += 0.02 * (high - low) + 1e-6;
+        // The liquid below its melting line and what is too dense are not in the domain: raise the lower end until they are not in it.
+        if at(low).is_err() && at(high).is_ok() {
+            let mut outside = low;
+            low = high;
+            for _ in 0..50 {
+                let middle = 0.5 * (outside + low);
+                if at(middle).is_ok() { low = middle } else { outside = middle }
+            }
         }
         let start = if (low..high).contains(&300.0) { 300.0 } else { 0.5 * (low + high) };
         let t = bracketed_newton(low, high, start, |t| {
@@ -243,37 +250,52 @@ impl Fluid {
         Ok(state)
     }
 
-    /// Part of an isobar below the critical pressure on which a property below its value at the critical temperature lies.
-    fn side_of_saturation(
+    /// Part of an isobar below the critical temperature on which a property's value lies, given that it is below that at
+    /// the critical temperature.
+    fn below_critical(
         &self,
         pressure_pa: f64,
         target: f64,
         lowest_k: f64,
         value: &impl Fn(&State) -> (f64, f64),
-    ) -> Result<Option<(f64, f64)>, ThermalError> {
-        let highest_k = self.data.critical_temperature_k * (1.0 - CRITICAL_MARGIN);
+    ) -> Result<(f64, f64), ThermalError> {
+        let critical_k = self.data.critical_temperature_k;
+        // The equation of air, a mixture taken as one substance, has its own critical point a little lower.
+        let mut highest_k = critical_k * (1.0 - CRITICAL_MARGIN) * (1.0 - 1e-12);
+        while self.saturation(highest_k).is_err() && highest_k > 0.95 * critical_k {
+            highest_k *= 1.0 - CRITICAL_MARGIN;
+        }
+        let near_critical = || ThermalError::NearCritical {
+            fluid: self.name(),
+            temperature_k: 0.5 * (highest_k + critical_k),
+            critical_k,
+        };
         let pressure_at =
             |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
+        // Up to where the phase is told apart; thin gas is never in doubt.
+        let end = |density: Result<f64, ThermalError>| match density {
+            _ if pressure_pa <= THIN * self.data.critical_pressure_pa => Ok(critical_k),
+            Ok(density) if value(&self.state(density, highest_k)).0 < target => Err(near_critical()),
+            _ => Ok(highest_k),
+        };
         let (mut low, mut high) = (lowest_k, highest_k);
-        if pressure_at(high)? < pressure_pa {
-            return Ok(None);
-        }
-        if pressure_at(low)? > pressure_pa {
-            return Ok(Some((lowest_k, self.data.critical_temperature_k)));
+        if pressure_at(high)? < pressure_pa || pressure_at(low)? > pressure_pa {
+            return Ok((lowest_k, end(self.density_from_pressure_temperature(pressure_pa, highest_k))?));
         }
         for _ in 0..45 {
             let middle = 0.5 * (low + high);
             if pressure_at(middle)? < pressure_pa { low = middle } else { high = middle }
         }
         let saturation_k = 0.5 * (low + high);
-        let Some(saturation) = self.saturation(saturation_k)? else { return Ok(None) };
+        let Some(saturation) = self.saturation(saturation_k)? else { return Err(near_critical()) };
         let vapour = value(&self.state(saturation.vapour_kg_m3, saturation_k)).0;
         let liquid = value(&self.state(saturation.liquid_kg_m3, saturation_k)).0;
         if target >= vapour {
-            return Ok(Some((saturation_k * (1.0 + 1e-9), self.data.critical_temperature_k)));
+            let end = end(self.density_from_pressure_temperature(pressure_pa, highest_k))?;
+            return Ok(((saturation_k * (1.0 + 1e-9)).min(end), end));
         }
         if target <= liquid {
-            return Ok(Some((lowest_k, saturation_k * (1.0 - 1e-9))));
+            return Ok((lowest_k, saturation_k * (1.0 - 1e-9)));
         }
         Err(ThermalError::TwoPhaseIsobar { fluid: self.name(), pressure_pa, saturation_k })
     }

@@ -101,7 +101,7 @@ proptest! {
 fn room() -> Vec<(Fluid, f64, f64)> {
     let mut found = Vec::new();
     for fluid in all() {
-        for t in [150.0, 230.0, 290.0, 330.0] {
+        for t in [165.0, 230.0, 290.0, 330.0] {
             for p in [1e5, 5e6, 2e7, 4e7] {
                 found.push((fluid.clone(), p, t));
             }
