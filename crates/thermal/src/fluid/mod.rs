@@ -94,6 +94,9 @@ const DENSEST: f64 = 1.35;
 /// Densest state of a cubic equation, relative to its covolume limit.
 const DENSEST_CUBIC: f64 = 0.98;
 
+/// Pressures, Pa, and densities, kg/m³, below this lose their digits in products; they count as not positive.
+const THINNEST: f64 = 1e-200;
+
 impl Fluid {
     /// A fluid with its reference equation.
     ///
@@ -244,16 +247,16 @@ impl Fluid {
     pub fn check(&self, density_kg_m3: f64, temperature_k: f64) -> Result<(), ThermalError> {
         let domain = self.domain();
         self.check_temperature(temperature_k)?;
-        if !(density_kg_m3 > 0.0 && density_kg_m3 <= domain.highest_density_kg_m3) {
+        if !(density_kg_m3 > THINNEST && density_kg_m3 <= domain.highest_density_kg_m3) {
             return Err(ThermalError::DensityOutside {
                 fluid: self.name(),
                 density_kg_m3,
                 highest_kg_m3: domain.highest_density_kg_m3,
             });
         }
-        let pressure_pa = self.pressure_pa(density_kg_m3, temperature_k);
-        self.check_pressure(pressure_pa)?;
-        self.check_phase(density_kg_m3, temperature_k)
+        // Between the phases the pressure may be anything, even negative: the phase comes first.
+        self.check_phase(density_kg_m3, temperature_k)?;
+        self.check_pressure(self.pressure_pa(density_kg_m3, temperature_k))
     }
 
     fn check_temperature(&self, temperature_k: f64) -> Result<(), ThermalError> {
@@ -271,7 +274,7 @@ impl Fluid {
 
     fn check_pressure(&self, pressure_pa: f64) -> Result<(), ThermalError> {
         let highest_pa = self.domain().highest_pressure_pa;
-        if pressure_pa > 0.0 && pressure_pa <= highest_pa {
+        if pressure_pa > THINNEST && pressure_pa <= highest_pa {
             return Ok(());
         }
         Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa })

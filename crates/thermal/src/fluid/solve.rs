@@ -15,7 +15,7 @@ const THIN: f64 = 0.2;
 const TOLERANCE: f64 = 1e-9;
 
 /// Newton in a bracket for an increasing function given with its slope; `None` if it does not converge.
-fn bracketed_newton(
+pub(super) fn bracketed_newton(
     mut low: f64,
     mut high: f64,
     start: f64,
@@ -84,22 +84,31 @@ impl Fluid {
             high = 0.5 * self.data.reducing_density_mol_m3 * self.data.molar_mass_kg_mol;
         }
         let start = if low > 0.0 { low } else { ideal.min(0.5 * densest) };
-        let found = match &self.description {
-            Description::Reference(equation) => {
-                let isotherm = equation.isotherm(temperature_k);
-                bracketed_newton(low, high, start, |rho| {
-                    let (d, dd) = isotherm.slopes(rho);
-                    (rho * rt * (1.0 + d) - pressure_pa, rt * (1.0 + 2.0 * d + dd))
-                })
-            }
-            _ => bracketed_newton(low, high, start, |rho| {
-                let (d, dd) = self.density_slopes(rho, temperature_k);
-                (rho * rt * (1.0 + d) - pressure_pa, rt * (1.0 + 2.0 * d + dd))
-            }),
-        };
+        let isotherm = self.pressure_along_isotherm(temperature_k);
+        let found = bracketed_newton(low, high, start, |rho| {
+            let (pressure, slope) = isotherm(rho);
+            (pressure - pressure_pa, slope)
+        });
         match found {
             Some(rho) if rho < densest * (1.0 - 1e-9) => Ok(rho),
             _ => self.dense_enough(f64::INFINITY, pressure_pa),
+        }
+    }
+
+    /// Pressure, Pa, and its slope in density as functions of the density, the equation prepared for the temperature.
+    #[inline]
+    pub(super) fn pressure_along_isotherm(&self, temperature_k: f64) -> impl Fn(f64) -> (f64, f64) {
+        let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
+        let prepared = match &self.description {
+            Description::Reference(equation) => Some(equation.isotherm(temperature_k)),
+            _ => None,
+        };
+        move |rho| {
+            let (d, dd) = match &prepared {
+                Some(isotherm) => isotherm.slopes(rho),
+                None => self.density_slopes(rho, temperature_k),
+            };
+            (rho * rt * (1.0 + d), rt * (1.0 + 2.0 * d + dd))
         }
     }
 
