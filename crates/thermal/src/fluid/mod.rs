@@ -245,15 +245,8 @@ impl Fluid {
     /// # Errors
     /// Names the value that is outside, the bound, and what to do.
     pub fn check(&self, density_kg_m3: f64, temperature_k: f64) -> Result<(), ThermalError> {
-        let domain = self.domain();
         self.check_temperature(temperature_k)?;
-        if !(density_kg_m3 > THINNEST && density_kg_m3 <= domain.highest_density_kg_m3) {
-            return Err(ThermalError::DensityOutside {
-                fluid: self.name(),
-                density_kg_m3,
-                highest_kg_m3: domain.highest_density_kg_m3,
-            });
-        }
+        self.check_density(density_kg_m3)?;
         // Between the phases the pressure may be anything, even negative: the phase comes first.
         self.check_phase(density_kg_m3, temperature_k)?;
         self.check_pressure(self.pressure_pa(density_kg_m3, temperature_k))
@@ -270,6 +263,14 @@ impl Fluid {
             lowest_k: domain.lowest_temperature_k,
             highest_k: domain.highest_temperature_k,
         })
+    }
+
+    fn check_density(&self, density_kg_m3: f64) -> Result<(), ThermalError> {
+        let highest_kg_m3 = self.domain().highest_density_kg_m3;
+        if density_kg_m3 > THINNEST && density_kg_m3 <= highest_kg_m3 {
+            return Ok(());
+        }
+        Err(ThermalError::DensityOutside { fluid: self.name(), density_kg_m3, highest_kg_m3 })
     }
 
     fn check_pressure(&self, pressure_pa: f64) -> Result<(), ThermalError> {

@@ -139,7 +139,7 @@ impl Fluid {
     /// The phase is not checked.
     ///
     /// # Errors
-    /// No temperature between half the lowest and twice the highest of the domain has this energy.
+    /// The density is outside the domain, or no temperature between half the lowest and twice the highest of the domain has this energy.
     pub fn temperature_from_density_energy(
         &self,
         density_kg_m3: f64,
@@ -149,7 +149,8 @@ impl Fluid {
         let domain = self.domain();
         let (low, high) = (0.5 * domain.lowest_temperature_k, 2.0 * domain.highest_temperature_k);
         let none = ThermalError::NoTemperature { fluid: self.name(), density_kg_m3, energy_j_kg };
-        if !(density_kg_m3 > 0.0 && density_kg_m3.is_finite() && energy_j_kg.is_finite()) {
+        self.check_density(density_kg_m3)?;
+        if !energy_j_kg.is_finite() {
             return Err(none);
         }
         let energy = |t: f64| {

@@ -42,7 +42,7 @@ fn case(fluid: &Fluid, s: &State) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, max_global_rejects: 3000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1000, max_global_rejects: 30000, ..ProptestConfig::default() })]
 
     /// The pressure of the solved density, as the relative deviation of the density that would make it.
     #[test]
@@ -76,8 +76,8 @@ proptest! {
 }
 
 proptest! {
-    // Below the critical temperature each step of these solves may need the saturation line (1 ms): fewer cases.
-    #![proptest_config(ProptestConfig { cases: 60, max_global_rejects: 3000, ..ProptestConfig::default() })]
+    // Below the critical temperature each step of these solves may need the saturation line: fewer cases.
+    #![proptest_config(ProptestConfig { cases: 300, max_global_rejects: 30000, ..ProptestConfig::default() })]
 
     #[test]
     fn state_comes_back_from_pressure_and_enthalpy((fluid, s) in states()) {
