@@ -186,7 +186,7 @@ impl Multiparameter {
     }
 
     /// The distinct powers of `tau`.
-    #[inline]
+    #[inline(always)]
     fn tau_powers<D: Real>(&self, tau: D) -> [D; MAX_TAU] {
         let one = D::from(1.0);
         let whole: [D; 33] = powers(tau, self.highest_whole);
@@ -213,26 +213,87 @@ impl Multiparameter {
         let powers = self.tau_powers(tau);
         let mut coefficients = [0.0; MAX_SLOTS];
         for (coefficient, slot) in coefficients.iter_mut().zip(&self.slots) {
-            let mut sum = 0.0;
-            for term in &self.terms[slot.terms.clone()] {
-                sum += term.n * powers[term.tau];
-            }
-            *coefficient = sum;
+            *coefficient = self.collapsed(slot, &powers);
         }
         let mut gaussian = [0.0; MAX_GAUSSIAN];
-        for (coefficient, (g, tau_power)) in gaussian.iter_mut().zip(&self.gaussian) {
-            let v = tau - g.gamma;
-            let exponent = -g.beta * v * v;
-            if exponent > NEGLIGIBLE {
-                *coefficient = g.n * powers[*tau_power] * exponent.exp();
-            }
+        for (i, factor) in gaussian.iter_mut().enumerate().take(self.gaussian.len()) {
+            *factor = self.gaussian_factor(i, tau, &powers);
         }
         Isotherm { equation: self, coefficients, gaussian }
+    }
+
+    /// Sum of `n tau^t` of a slot.
+    #[inline(always)]
+    fn collapsed(&self, slot: &Slot, tau_powers: &[f64; MAX_TAU]) -> f64 {
+        let mut sum = 0.0;
+        for term in &self.terms[slot.terms.clone()] {
+            sum += term.n * tau_powers[term.tau];
+        }
+        sum
+    }
+
+    /// The part of a Gaussian term that depends on temperature; zero if negligible.
+    #[inline(always)]
+    fn gaussian_factor(&self, index: usize, tau: f64, tau_powers: &[f64; MAX_TAU]) -> f64 {
+        let (g, power) = &self.gaussian[index];
+        let v = tau - g.gamma;
+        let exponent = -g.beta * v * v;
+        if exponent > NEGLIGIBLE { g.n * tau_powers[*power] * exponent.exp() } else { 0.0 }
+    }
+
+    /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`, given the slots' coefficients and the factors of the
+    /// Gaussian terms by index.
+    #[inline(always)]
+    fn slopes(
+        &self,
+        density_kg_m3: f64,
+        coefficient: impl Fn(usize) -> f64,
+        gaussian: impl Fn(usize) -> f64,
+    ) -> (f64, f64) {
+        let delta = density_kg_m3 / self.reducing_density_kg_m3;
+        let powers: [f64; MAX_D + 1] = powers(delta, self.highest_d);
+        let (mut first, mut second) = (0.0, 0.0);
+        for group in &self.groups {
+            let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
+            for i in group.slots.clone() {
+                let degree = self.slots[i].d;
+                let d = degree as f64;
+                let c = coefficient(i) * powers[degree];
+                let c1 = c * d;
+                s0 += c;
+                s1 += c1;
+                s2 += c1 * (d - 1.0);
+            }
+            if group.l == 0 {
+                first += s1;
+                second += s2;
+                continue;
+            }
+            let power = powers[group.l];
+            let decay = (-power).exp();
+            let l = group.l as f64;
+            let shift = l * power;
+            first += decay * (s1 - shift * s0);
+            second += decay * (s2 + shift * ((shift + (1.0 - l)) * s0 - 2.0 * s1));
+        }
+        for (i, (g, _)) in self.gaussian.iter().enumerate() {
+            let factor = gaussian(i);
+            if factor == 0.0 {
+                continue;
+            }
+            let u = delta - g.epsilon;
+            let d = f64::from(g.d);
+            let c = factor * powers[usize::from(g.d)] * (-g.eta * u * u).exp();
+            let x = d - 2.0 * g.eta * delta * u;
+            first += c * x;
+            second += c * (x * x - 2.0 * g.eta * delta * delta - d);
+        }
+        (first, second)
     }
 }
 
 /// `1, x, x^2, ...` up to an exponent, by halves: a chain of products would wait for each before the next.
-#[inline]
+#[inline(always)]
 fn powers<D: Real, const N: usize>(x: D, highest: usize) -> [D; N] {
     let mut powers = [D::from(1.0); N];
     powers[1] = x;
@@ -310,7 +371,13 @@ impl HelmholtzEnergy for Multiparameter {
     }
 
     fn residual_density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
-        self.isotherm(temperature_k).slopes(density_kg_m3)
+        let tau = self.data.reducing_temperature_k / temperature_k;
+        let powers = self.tau_powers(tau);
+        self.slopes(
+            density_kg_m3,
+            |i| self.collapsed(&self.slots[i], &powers),
+            |i| self.gaussian_factor(i, tau, &powers),
+        )
     }
 }
 
@@ -327,45 +394,7 @@ impl Isotherm<'_> {
     /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`.
     #[inline]
     pub fn slopes(&self, density_kg_m3: f64) -> (f64, f64) {
-        let equation = self.equation;
-        let delta = density_kg_m3 / equation.reducing_density_kg_m3;
-        let powers: [f64; MAX_D + 1] = powers(delta, equation.highest_d);
-        let (mut first, mut second) = (0.0, 0.0);
-        for group in &equation.groups {
-            let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
-            let slots = group.slots.clone();
-            for (slot, coefficient) in equation.slots[slots.clone()].iter().zip(&self.coefficients[slots]) {
-                let d = slot.d as f64;
-                let c = coefficient * powers[slot.d];
-                let c1 = c * d;
-                s0 += c;
-                s1 += c1;
-                s2 += c1 * (d - 1.0);
-            }
-            if group.l == 0 {
-                first += s1;
-                second += s2;
-                continue;
-            }
-            let power = powers[group.l];
-            let decay = (-power).exp();
-            let l = group.l as f64;
-            let shift = l * power;
-            first += decay * (s1 - shift * s0);
-            second += decay * (s2 + shift * ((shift + (1.0 - l)) * s0 - 2.0 * s1));
-        }
-        for (coefficient, (g, _)) in self.gaussian.iter().zip(&equation.gaussian) {
-            if *coefficient == 0.0 {
-                continue;
-            }
-            let u = delta - g.epsilon;
-            let d = f64::from(g.d);
-            let c = coefficient * powers[usize::from(g.d)] * (-g.eta * u * u).exp();
-            let x = d - 2.0 * g.eta * delta * u;
-            first += c * x;
-            second += c * (x * x - 2.0 * g.eta * delta * delta - d);
-        }
-        (first, second)
+        self.equation.slopes(density_kg_m3, |i| self.coefficients[i], |i| self.gaussian[i])
     }
 }
 

@@ -1,6 +1,8 @@
 //! Tests of the thermal crate, modules by kind.
 mod analytic;
 mod convergence;
-mod i1;
+mod blowdown;
+mod conservation;
+mod preset_runs;
 mod jacobian;
 mod support;

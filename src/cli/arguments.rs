@@ -1,0 +1,186 @@
+//! The raw arguments: they mirror the command line and decide nothing.
+use super::states::GivenQuantities;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
+
+/// Tells a leaking gas cylinder from a cold one: thermal model of a pressure cylinder.
+#[derive(Debug, Parser)]
+#[command(name = "cylwatch", version, max_term_width = 110, after_help = EXAMPLES)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Say nothing but errors.
+    #[arg(long, short, global = true, display_order = 900)]
+    pub quiet: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  cylwatch simulate nitrogen-20l shock-cold -o run.csv --plot run.svg
+  cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
+  cylwatch init my-cylinder
+  cylwatch reproduce --out out/reproduce
+
+Exit codes: 0 done, 2 error. Data goes to stdout, words to stderr; NO_COLOR is respected.";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compute the paper's scenarios and a measured blowdown, with plots and a table of what was reached.
+    Reproduce(ReproduceArguments),
+    /// Simulate a vessel in a scenario: temperatures, pressure, mass and sensor readings against time.
+    Simulate(SimulateArguments),
+    /// Print the properties of a gas, at one state or for every row of a file.
+    Properties(PropertiesArguments),
+    /// Write start files vessel.toml and scenario.toml, with comments, to edit.
+    Init(InitArguments),
+    /// Print the JSON schema of vessel and scenario files, for editors.
+    Schema(SchemaArguments),
+    /// Print a completion script for a shell.
+    Completions(CompletionsArguments),
+}
+
+/// Format of data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Comma-separated columns; lines that begin with # say where they come from.
+    Csv,
+    /// One JSON document with a provenance object.
+    Json,
+}
+
+impl Format {
+    /// The format that an output's name asks for: JSON for `.json`, CSV for all others and for stdout.
+    pub fn of(output: Option<&Path>) -> Self {
+        let ending = output.and_then(Path::extension);
+        if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json")) { Self::Json } else { Self::Csv }
+    }
+}
+
+/// Arguments of `reproduce`.
+#[derive(Debug, Args)]
+pub struct ReproduceArguments {
+    /// Folder for figures (SVG and PNG), CSV files and results.json; it is made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
+    pub out: PathBuf,
+    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
+    #[arg(long, value_name = "NUMBER")]
+    pub relative_tolerance: Option<f64>,
+}
+
+/// Arguments of `simulate`.
+#[derive(Debug, Args)]
+#[command(after_help = SIMULATE_EXAMPLES)]
+pub struct SimulateArguments {
+    /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
+    #[arg(required_unless_present = "list")]
+    pub vessel: Option<String>,
+    /// Scenario: a TOML file, the name of a built-in one, or - for stdin.
+    #[arg(required_unless_present = "list")]
+    pub scenario: Option<String>,
+    /// File for the data; - is stdout [default: stdout].
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Figure of temperatures and pressure; the ending .svg or .png decides the format.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// Format of the data [default: json for a file that ends in .json, else csv].
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
+    #[arg(long, value_name = "NUMBER")]
+    pub relative_tolerance: Option<f64>,
+    /// List the built-in vessels and scenarios and stop.
+    #[arg(long)]
+    pub list: bool,
+}
+
+const SIMULATE_EXAMPLES: &str = "\
+Columns: time_s, ambient_degc, gas_mean_degc, gas_<k>_degc (k = 1 at the bottom),
+wall_<name>_degc, shoulder_degc, valve_degc, pressure_bar (absolute), mass_kg, outflow_g_h,
+heat_to_gas_w, measured_<sensor>_degc.
+
+Examples:
+  cylwatch simulate --list
+  cylwatch simulate nitrogen-20l shock-cold --plot shock.svg -o shock.csv
+  cylwatch simulate vessel.toml scenario.toml --format json | jq .events";
+
+/// Equation of state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EquationName {
+    /// Reference equation of the gas (nitrogen: Span et al. 2000).
+    Reference,
+    /// Ideal gas with the reference equation's heat capacity.
+    IdealGas,
+    /// Cubic equation of Peng and Robinson.
+    PengRobinson,
+}
+
+/// Arguments of `properties`.
+#[derive(Debug, Args)]
+#[command(after_help = PROPERTIES_EXAMPLES)]
+pub struct PropertiesArguments {
+    /// Gas, e.g. nitrogen.
+    pub fluid: String,
+    /// The two quantities that fix the state.
+    #[command(flatten)]
+    pub given: GivenQuantities,
+    /// CSV file with a state a row, or - for stdin: any two of temperature, pressure, density with unit suffixes.
+    #[arg(long, value_name = "FILE")]
+    pub states: Option<PathBuf>,
+    /// Equation of state.
+    #[arg(long, value_enum, default_value = "reference")]
+    pub equation: EquationName,
+    /// Format [default: a table for people for one state on stdout, else json for a file that ends in .json, else csv].
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// File for the data; - is stdout [default: stdout].
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+const PROPERTIES_EXAMPLES: &str = "\
+Examples:
+  cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
+  cylwatch properties nitrogen --density-kg-m3 223.2 --temperature-degc -25 --format json
+  printf 'temperature_degc,pressure_barg\\n15,199\\n' | cylwatch properties nitrogen --states -";
+
+/// Arguments of `init`.
+#[derive(Debug, Args)]
+pub struct InitArguments {
+    /// Folder for the files; it is made if it is not there. Files that are there are not overwritten.
+    #[arg(value_name = "DIR", default_value = ".")]
+    pub folder: PathBuf,
+    /// Built-in vessel to start from.
+    #[arg(long, default_value = "nitrogen-20l")]
+    pub vessel: String,
+    /// Built-in scenario to start from.
+    #[arg(long, default_value = "shock-cold")]
+    pub scenario: String,
+}
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Document {
+    /// Vessel files.
+    Vessel,
+    /// Scenario files.
+    Scenario,
+}
+
+/// Arguments of `schema`.
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// Which schema [default: both, as one object].
+    #[arg(value_enum)]
+    pub document: Option<Document>,
+}
+
+/// Arguments of `completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// Shell.
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}

@@ -1,0 +1,50 @@
+//! Words for people, on stderr.
+use std::io::{IsTerminal, Write};
+
+/// Where words go.
+#[derive(Clone, Copy, Debug)]
+pub struct Messages {
+    quiet: bool,
+    color: bool,
+}
+
+impl Messages {
+    /// Words on stderr; `quiet` keeps all but errors to itself. Colour on a terminal without `NO_COLOR`.
+    pub fn new(quiet: bool) -> Self {
+        let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        Self { quiet, color: std::io::stderr().is_terminal() && !forbidden }
+    }
+
+    /// Whether only errors are wanted.
+    pub fn quiet(&self) -> bool {
+        self.quiet
+    }
+
+    /// Says something.
+    pub fn say(&self, words: &str) {
+        if !self.quiet {
+            self.write(words.trim_end());
+        }
+    }
+
+    /// Says what was done otherwise than one might think.
+    pub fn caution(&self, words: &str) {
+        if !self.quiet {
+            self.write(&format!("{} {words}", self.label("caution:", "33")));
+        }
+    }
+
+    /// Says what went wrong, with its causes, in one line.
+    pub fn error(&self, error: &anyhow::Error) {
+        self.write(&format!("{} {error:#}", self.label("error:", "31")));
+    }
+
+    fn label(&self, word: &str, code: &str) -> String {
+        if self.color { format!("\u{1b}[1;{code}m{word}\u{1b}[0m") } else { word.to_owned() }
+    }
+
+    fn write(&self, words: &str) {
+        // Nobody is left to be told that stderr is closed.
+        let _ = writeln!(std::io::stderr(), "{words}");
+    }
+}

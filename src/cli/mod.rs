@@ -1,0 +1,74 @@
+//! The command line: raw arguments ([`arguments`]), validated options (the start of every command), the run, the output.
+//!
+//! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error.
+mod arguments;
+mod completions;
+mod init;
+mod input;
+mod message;
+mod output;
+mod progress;
+mod properties;
+mod reproduce;
+mod schema;
+mod simulate;
+mod states;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use message::Messages;
+use std::process::ExitCode;
+
+/// Exit code of an error.
+const ERROR: u8 = 2;
+
+/// Reads the arguments, runs the command, and turns its outcome into an exit code.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let messages = Messages::new(arguments.quiet);
+    match run(arguments.command, &messages) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            messages.error(&error);
+            ExitCode::from(ERROR)
+        }
+    }
+}
+
+fn run(command: Command, messages: &Messages) -> anyhow::Result<()> {
+    match command {
+        Command::Reproduce(arguments) => reproduce::run(arguments, messages),
+        Command::Simulate(arguments) => simulate::run(arguments, messages),
+        Command::Properties(arguments) => properties::run(arguments, messages),
+        Command::Init(arguments) => init::run(arguments, messages),
+        Command::Schema(arguments) => schema::run(arguments),
+        Command::Completions(arguments) => completions::run(arguments),
+    }
+}
+
+/// Whether the reader of our output has gone, as `head` does when it has seen enough: that is success.
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error
+        .chain()
+        .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
+        .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe)
+}
+
+/// The command line as it was typed, quoted so that a shell runs it again.
+fn command_line() -> String {
+    let words = std::env::args_os().enumerate().map(|(k, word)| {
+        let word = word.to_string_lossy().into_owned();
+        if k == 0 { "cylwatch".to_owned() } else { quoted(&word) }
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}

@@ -1,0 +1,123 @@
+//! Where results go: stdout or files that appear complete or not at all.
+//!
+//! A [`Target`] is checked before the run. A file is written beside its place under another name and then renamed,
+//! so that a reader never meets half of it and an older file stays until the new one is there.
+use anyhow::{Context, anyhow, bail};
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// A checked place for one result.
+#[derive(Debug)]
+pub enum Target {
+    /// Standard output.
+    Stdout,
+    /// A file that is or will be a regular one.
+    File(PathBuf),
+    /// Something that cannot be replaced, as a terminal or a pipe with a name.
+    Device(PathBuf),
+}
+
+impl Target {
+    /// Checks that a result can be written to `path`; none or `-` is stdout. `inputs` must not be overwritten.
+    pub fn checked(path: Option<&Path>, inputs: &[&Path]) -> anyhow::Result<Self> {
+        let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(Self::Stdout) };
+        let shown = path.display();
+        if path.as_os_str().is_empty() {
+            bail!("the output has an empty name: write a file name or `-` for stdout");
+        }
+        // A link stays and its file is replaced.
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == path)) {
+            bail!("{shown} is an input of this run and would be overwritten: choose another output");
+        }
+        match path.metadata() {
+            Ok(found) if found.is_dir() => bail!("{shown} is a folder: name a file in it"),
+            Ok(found) if !found.is_file() => return Ok(Self::Device(path)),
+            Ok(found) if found.permissions().readonly() => {
+                bail!("{shown} is write-protected: allow writing or choose another output")
+            }
+            _ => {}
+        }
+        let folder = folder_of(&path);
+        if !folder.is_dir() {
+            bail!("{shown} cannot be written: there is no folder {}, make it first", folder.display());
+        }
+        temporary(folder).with_context(|| format!("{shown} cannot be written"))?;
+        Ok(Self::File(path))
+    }
+
+    /// Writes the result.
+    pub fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
+        match self {
+            Self::Stdout => {
+                let mut stdout = std::io::stdout().lock();
+                stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout cannot be written")
+            }
+            Self::File(path) => write_file(path, bytes),
+            Self::Device(path) => {
+                let write = File::options().write(true).open(path).and_then(|mut file| file.write_all(bytes));
+                write.with_context(|| format!("{} cannot be written", path.display()))
+            }
+        }
+    }
+}
+
+/// Writes a file so that it appears complete or not at all.
+pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let failed = || format!("{} cannot be written", path.display());
+    complete(path, bytes).with_context(failed)?.persist(path).map_err(|e| e.error).with_context(failed)?;
+    Ok(())
+}
+
+/// Writes a file that is not there yet, complete or not at all.
+pub fn write_new_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let failed = || format!("{} cannot be written", path.display());
+    complete(path, bytes)
+        .with_context(failed)?
+        .persist_noclobber(path)
+        .map_err(|e| e.error)
+        .with_context(failed)?;
+    Ok(())
+}
+
+/// Makes a folder for results and finds out whether it can be written.
+pub fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    let shown = folder.display();
+    if folder.exists() && !folder.is_dir() {
+        bail!("{shown} is a file where the output folder should be: choose another folder");
+    }
+    std::fs::create_dir_all(folder).map_err(|error| {
+        anyhow!("the output folder {shown} cannot be made: {error}; choose another with --out")
+    })?;
+    temporary(folder).map_err(|error| {
+        anyhow!("the output folder {shown} cannot be written: {error}; choose another with --out")
+    })?;
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn complete(path: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
+    let mut file = temporary(folder_of(path))?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    Ok(file)
+}
+
+/// A file under a name of its own in `folder`; it goes when it is dropped.
+fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".cylwatch-").suffix(".part");
+    #[cfg(unix)]
+    {
+        // What any new file gets: the user's mask applies.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666)).tempfile_in(folder)
+    }
+    #[cfg(not(unix))]
+    builder.tempfile_in(folder)
+}

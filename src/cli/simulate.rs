@@ -1,0 +1,117 @@
+//! `cylwatch simulate`: a vessel in a scenario.
+use super::arguments::{Format, SimulateArguments};
+use super::input::Inputs;
+use super::message::Messages;
+use super::output::Target;
+use super::progress::Progress;
+use anyhow::bail;
+use cylwatch::report::figure::Figure;
+use cylwatch::report::{Provenance, aligned, simulation};
+use cylwatch::thermal::simulate::{SimulationSettings, simulate};
+use cylwatch::thermal::trajectory::Trajectory;
+use cylwatch::thermal::{scenario, vessel};
+use std::path::Path;
+
+/// Picture format of a plot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Picture {
+    Svg,
+    Png,
+}
+
+/// Validated options.
+struct Options {
+    vessel: String,
+    scenario: String,
+    data: Target,
+    format: Format,
+    plot: Option<(Target, Picture)>,
+    settings: SimulationSettings,
+}
+
+/// Simulates and writes, or lists the built-in vessels and scenarios.
+pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<()> {
+    if arguments.list {
+        return Target::Stdout.write(list()?.as_bytes());
+    }
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let vessel = inputs.vessel(&options.vessel)?;
+    let scenario = inputs.scenario(&options.scenario)?;
+    let progress = Progress::new(messages);
+    let run =
+        simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;
+    drop(progress);
+    let provenance = inputs.provenance();
+    // Everything is made before anything is written.
+    let data = data(&run, options.format, &provenance)?;
+    let picture = options.plot.as_ref().map(|(_, kind)| draw(&simulation::figure(&run), *kind, &provenance));
+    let picture = picture.transpose()?;
+    if let (Some((target, _)), Some(bytes)) = (&options.plot, picture) {
+        target.write(&bytes)?;
+    }
+    options.data.write(data.as_bytes())?;
+    messages.say(&simulation::summary(&run));
+    Ok(())
+}
+
+impl Options {
+    fn checked(arguments: SimulateArguments) -> anyhow::Result<Self> {
+        let (Some(vessel), Some(scenario)) = (arguments.vessel, arguments.scenario) else {
+            bail!("a simulation takes a vessel and a scenario");
+        };
+        if vessel == "-" && scenario == "-" {
+            bail!("stdin can be the vessel or the scenario, not both: give the other one as a file");
+        }
+        let inputs = [Path::new(&vessel), Path::new(&scenario)];
+        let data = Target::checked(arguments.output.as_deref(), &inputs)?;
+        let plot = arguments.plot.as_deref().map(|path| checked_plot(path, &inputs, &data)).transpose()?;
+        let mut settings = SimulationSettings::default();
+        if let Some(tolerance) = arguments.relative_tolerance {
+            settings.relative_tolerance = tolerance;
+        }
+        settings.validate()?;
+        let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
+        Ok(Self { vessel, scenario, data, format, plot, settings })
+    }
+}
+
+fn checked_plot(path: &Path, inputs: &[&Path], data: &Target) -> anyhow::Result<(Target, Picture)> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let picture = match ending.as_deref() {
+        Some("svg") => Picture::Svg,
+        Some("png") => Picture::Png,
+        _ => bail!("--plot {}: the ending must be .svg or .png", path.display()),
+    };
+    let target = Target::checked(Some(path), inputs)?;
+    if matches!((&target, data), (Target::File(plot), Target::File(data)) if plot == data) {
+        bail!("--plot and --output name the same file {}: choose two", path.display());
+    }
+    Ok((target, picture))
+}
+
+fn data(run: &Trajectory, format: Format, provenance: &Provenance) -> anyhow::Result<String> {
+    Ok(match format {
+        Format::Csv => simulation::table(run).to_csv(provenance, &simulation::remarks(run)),
+        Format::Json => serde_json::to_string(&simulation::document(run, provenance))? + "\n",
+    })
+}
+
+fn draw(figure: &Figure, kind: Picture, provenance: &Provenance) -> anyhow::Result<Vec<u8>> {
+    Ok(match kind {
+        Picture::Svg => figure.to_svg(provenance)?.into_bytes(),
+        Picture::Png => figure.to_png(provenance)?,
+    })
+}
+
+/// The built-in vessels and scenarios with the names that their files give them.
+fn list() -> anyhow::Result<String> {
+    let mut rows = Vec::new();
+    for name in vessel::presets::names() {
+        rows.push(vec!["vessel".to_owned(), name.to_owned(), vessel::presets::load(name)?.name]);
+    }
+    for name in scenario::presets::names() {
+        rows.push(vec!["scenario".to_owned(), name.to_owned(), scenario::presets::load(name)?.name]);
+    }
+    Ok(aligned(&["kind", "name", "what"], &rows))
+}

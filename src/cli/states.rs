@@ -1,0 +1,236 @@
+//! Quantities that fix a state, from options (`--pressure-bar 200`) or from the columns of a CSV file.
+use super::message::Messages;
+use anyhow::{Context, anyhow, bail};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use cylwatch::properties::Given;
+use cylwatch::thermal::units::{self, Dimension, Unit};
+
+/// Quantities that can be given, with what they measure.
+const QUANTITIES: [(&str, Dimension); 3] = [
+    ("temperature", Dimension::Temperature),
+    ("pressure", Dimension::Pressure),
+    ("density", Dimension::Density),
+];
+
+/// The quantities given as options, each in any unit of its dimension.
+#[derive(Clone, Debug, Default)]
+pub struct GivenQuantities {
+    given: Vec<Quantity>,
+}
+
+/// A quantity with the name it was given by.
+#[derive(Clone, Debug)]
+struct Quantity {
+    name: String,
+    unit: &'static Unit,
+    dimension: Dimension,
+    value: f64,
+}
+
+impl Quantity {
+    /// SI value; above zero, as an absolute temperature, pressure or density is.
+    fn si(&self) -> anyhow::Result<f64> {
+        let (name, value, unit) = (&self.name, self.value, self.unit);
+        if !value.is_finite() {
+            bail!("{name} = {value} must be a finite number");
+        }
+        let si = unit.to_si(value);
+        if si <= 0.0 {
+            bail!("{name} = {value} must be above {}: check the number and its unit", unit.from_si(0.0));
+        }
+        Ok(si)
+    }
+}
+
+impl GivenQuantities {
+    /// The state that exactly two quantities fix.
+    pub fn state(&self) -> anyhow::Result<Given> {
+        let names: Vec<&str> = self.given.iter().map(|q| q.name.as_str()).collect();
+        if self.given.len() != 2 || self.given[0].dimension == self.given[1].dimension {
+            let found = if names.is_empty() { "none".to_owned() } else { names.join(" and ") };
+            bail!(
+                "a state takes two of temperature, pressure and density, and {found} was given: \
+                 write e.g. --temperature-degc 15 --pressure-bar 200, or --states FILE"
+            );
+        }
+        from_quantities(&self.given)?.ok_or_else(|| anyhow!("two quantities fix a state"))
+    }
+}
+
+/// The state of two or three quantities; temperature and pressure go before density. `None`: fewer than two.
+fn from_quantities(given: &[Quantity]) -> anyhow::Result<Option<Given>> {
+    let si = |dimension| given.iter().find(|q| q.dimension == dimension).map(Quantity::si).transpose();
+    let found = (si(Dimension::Temperature)?, si(Dimension::Pressure)?, si(Dimension::Density)?);
+    Ok(match found {
+        (Some(t), Some(p), _) => Some(Given::TemperaturePressure(t, p)),
+        (Some(t), None, Some(rho)) => Some(Given::TemperatureDensity(t, rho)),
+        (None, Some(p), Some(rho)) => Some(Given::PressureDensity(p, rho)),
+        _ => None,
+    })
+}
+
+/// Every option: its name, quantity, unit, and whether it is the first of its quantity.
+fn options() -> impl Iterator<Item = (String, &'static str, Dimension, &'static Unit, bool)> {
+    QUANTITIES.iter().flat_map(|&(quantity, dimension)| {
+        units::units_of(dimension).enumerate().map(move |(k, unit)| {
+            (format!("{quantity}-{}", unit.suffix.replace('_', "-")), quantity, dimension, unit, k == 0)
+        })
+    })
+}
+
+impl Args for GivenQuantities {
+    fn augment_args(command: Command) -> Command {
+        options().fold(command, |command, (name, quantity, dimension, unit, first)| {
+            let others: Vec<&str> = units::units_of(dimension).skip(1).map(|unit| unit.suffix).collect();
+            let absolute = if quantity == "pressure" { "absolute; " } else { "" };
+            let help = match others.len() {
+                0 => format!("{quantity} in kg/m³"),
+                _ => format!("{quantity} in {} ({absolute}other units: {})", unit.suffix, others.join(", ")),
+            };
+            let mut letters = help.chars();
+            let help = letters.next().map(|c| c.to_uppercase().collect::<String>() + letters.as_str());
+            let arg = Arg::new(name.clone())
+                .long(name)
+                .value_name("NUMBER")
+                .value_parser(value_parser!(f64))
+                .allow_negative_numbers(true)
+                .conflicts_with("states")
+                .hide(!first)
+                .help(help.unwrap_or_default());
+            command.arg(arg)
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for GivenQuantities {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut all = Self::default();
+        all.update_from_arg_matches(matches)?;
+        Ok(all)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        for (name, _, dimension, unit, _) in options() {
+            if matches.value_source(&name) == Some(ValueSource::CommandLine)
+                && let Some(&value) = matches.get_one::<f64>(&name)
+            {
+                self.given.push(Quantity { name: format!("--{name}"), unit, dimension, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A state of a file with the line it stands in.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Line, from 1.
+    pub line: u64,
+    /// What it says.
+    pub given: Given,
+}
+
+/// A column of the file that says something about the state.
+struct Known {
+    index: usize,
+    name: String,
+    unit: &'static Unit,
+    dimension: Dimension,
+}
+
+/// Reads the states of a CSV file.
+///
+/// # Errors
+/// Names the file, the line, the value, the bound and the remedy.
+pub fn read(text: &str, file: &str, messages: &Messages) -> anyhow::Result<Vec<Row>> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().with_context(|| format!("{file}: the header cannot be read"))?.clone();
+    let header_line = header.position().map_or(1, csv::Position::line);
+    let columns = columns(&header, messages, file).with_context(|| format!("{file}:{header_line}"))?;
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| unreadable(file, &error))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.iter().all(str::is_empty) {
+            continue;
+        }
+        let given = row(&record, &columns).with_context(|| format!("{file}:{line}"))?;
+        rows.push(Row { line, given });
+    }
+    if rows.is_empty() {
+        bail!("{file}: there is no state below the header: write a row of numbers for each");
+    }
+    Ok(rows)
+}
+
+fn unreadable(file: &str, error: &csv::Error) -> anyhow::Error {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            anyhow!("{file}:{line}: the row has {len} cells where the header has {expected_len}: complete it")
+        }
+        _ => anyhow!("{file}: {error}"),
+    }
+}
+
+fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyhow::Result<Vec<Known>> {
+    let mut known: Vec<Known> = Vec::new();
+    let mut ignored = Vec::new();
+    for (index, name) in header.iter().enumerate() {
+        let (base, unit) = units::split(name).map_or((name, None), |(base, unit)| (base, Some(unit)));
+        let Some(&(_, dimension)) = QUANTITIES.iter().find(|(quantity, _)| *quantity == base) else {
+            ignored.push(name);
+            continue;
+        };
+        let unit = unit.and_then(|unit| units::find(unit.suffix, dimension)).ok_or_else(|| {
+            anyhow!(
+                "column {name} has no unit of {base}: end its name in one of {}",
+                units::listed(dimension)
+            )
+        })?;
+        if let Some(first) = known.iter().find(|column| column.dimension == dimension) {
+            bail!("column {name} says again what column {} says: keep one of them", first.name);
+        }
+        known.push(Known { index, name: name.to_owned(), unit, dimension });
+    }
+    if known.len() < 2 {
+        let found: Vec<&str> = header.iter().collect();
+        bail!(
+            "a state takes two of temperature, pressure and density with units, as temperature_degc,pressure_bar; \
+             the columns are {}",
+            found.join(", ")
+        );
+    }
+    if !ignored.is_empty() {
+        messages.caution(&format!("{file}: ignored columns {}", ignored.join(", ")));
+    }
+    if known.len() == 3 {
+        messages.caution(&format!("{file}: density is used only in rows without temperature or pressure"));
+    }
+    Ok(known)
+}
+
+fn row(record: &csv::StringRecord, columns: &[Known]) -> anyhow::Result<Given> {
+    let mut given = Vec::new();
+    for column in columns {
+        let text = record.get(column.index).unwrap_or_default();
+        if text.is_empty() {
+            continue;
+        }
+        let name = &column.name;
+        let value =
+            text.parse().map_err(|_| anyhow!("{name} = {text} must be a number, with a decimal point"))?;
+        given.push(Quantity { name: name.clone(), unit: column.unit, dimension: column.dimension, value });
+    }
+    from_quantities(&given)?.ok_or_else(|| {
+        let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+        anyhow!("fewer than two of {} have a value: complete the row or leave it out", names.join(", "))
+    })
+}

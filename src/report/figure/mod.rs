@@ -1,0 +1,122 @@
+//! Figures: panels above one another that share the horizontal axis, drawn as SVG or PNG.
+//!
+//! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. plotters is named in this folder only.
+//! Looks are decided in [`style`] alone.
+mod canvas;
+mod output;
+mod panel;
+mod path;
+pub mod style;
+mod ticks;
+
+use style::Stroke;
+
+/// A figure of panels above one another.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Title.
+    pub title: String,
+    /// The horizontal axis of all panels.
+    pub horizontal: Horizontal,
+    /// Panels from the top down.
+    pub panels: Vec<Panel>,
+    /// Instants (or values of the horizontal axis) marked in all panels, named in the first.
+    pub marks: Vec<Mark>,
+}
+
+/// The horizontal axis.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Horizontal {
+    /// Time in seconds, shown in the unit that fits.
+    Time,
+    /// A quantity with its name and unit.
+    Quantity(String),
+}
+
+/// One panel.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// Name and unit of the vertical axis.
+    pub quantity: String,
+    /// What is drawn, from the back to the front.
+    pub items: Vec<Item>,
+    /// Height relative to a standard panel.
+    pub height: f64,
+}
+
+/// Something drawn in a panel. Horizontal values are seconds on a time axis; NaN leaves a gap; an empty name keeps it
+/// out of the legend (where all are empty, the legend refers to the panel above).
+#[derive(Clone, Debug)]
+pub enum Item {
+    /// A curve.
+    Line {
+        /// Name in the legend.
+        name: String,
+        /// Horizontal values.
+        x: Vec<f64>,
+        /// Vertical values.
+        y: Vec<f64>,
+        /// Looks.
+        stroke: Stroke,
+    },
+    /// Measured points.
+    Points {
+        /// Name in the legend.
+        name: String,
+        /// Horizontal values.
+        x: Vec<f64>,
+        /// Vertical values.
+        y: Vec<f64>,
+        /// Looks.
+        stroke: Stroke,
+    },
+    /// A filled band.
+    Band {
+        /// Name in the legend.
+        name: String,
+        /// Horizontal values.
+        x: Vec<f64>,
+        /// Lower edge.
+        low: Vec<f64>,
+        /// Upper edge.
+        high: Vec<f64>,
+    },
+    /// A horizontal limit, named in the panel.
+    Limit {
+        /// Name.
+        name: String,
+        /// Value.
+        value: f64,
+    },
+}
+
+/// A marked instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Where on the horizontal axis.
+    pub at: f64,
+    /// Name.
+    pub name: String,
+}
+
+impl Item {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Line { name, .. }
+            | Self::Points { name, .. }
+            | Self::Band { name, .. }
+            | Self::Limit { name, .. } => name,
+        }
+    }
+
+    /// A curve.
+    pub fn line(
+        name: impl Into<String>,
+        x: &[f64],
+        y: impl IntoIterator<Item = f64>,
+        stroke: Stroke,
+    ) -> Self {
+        Self::Line { name: name.into(), x: x.to_vec(), y: y.into_iter().collect(), stroke }
+    }
+}

@@ -1,0 +1,113 @@
+//! A figure as SVG text or PNG bytes.
+use super::canvas::{Canvas, FINE, FONT};
+use super::{Figure, panel, style};
+use crate::report::{Provenance, ReportError};
+use plotters::backend::{BitMapBackend, SVGBackend};
+use plotters::drawing::IntoDrawingArea;
+use plotters::style::{FontStyle, register_font};
+use std::sync::OnceLock;
+
+static SANS: &[u8] = include_bytes!("../../../assets/DejaVuSans-subset.ttf");
+static SANS_BOLD: &[u8] = include_bytes!("../../../assets/DejaVuSans-Bold-subset.ttf");
+
+/// Pixels of a PNG per figure unit: two, as a printed page or a dense screen needs.
+const PNG_PER_UNIT: usize = 2;
+
+/// Registers the embedded fonts, once.
+fn fonts() -> Result<(), ReportError> {
+    static REGISTERED: OnceLock<bool> = OnceLock::new();
+    let good = REGISTERED.get_or_init(|| {
+        register_font(FONT, FontStyle::Normal, SANS).is_ok()
+            && register_font(FONT, FontStyle::Bold, SANS_BOLD).is_ok()
+    });
+    if *good { Ok(()) } else { Err(ReportError::Font) }
+}
+
+impl Figure {
+    /// Height in figure units.
+    fn height(&self) -> f64 {
+        let panels: f64 = self.panels.iter().map(|panel| panel.height * style::PANEL_HEIGHT).sum();
+        style::TOP + panels + style::GAP * (self.panels.len().max(1) - 1) as f64 + style::BOTTOM
+    }
+
+    fn fine_size(&self) -> (u32, u32) {
+        ((style::WIDTH * FINE) as u32, (self.height() * FINE).ceil() as u32)
+    }
+
+    /// The figure as the text of an SVG file.
+    ///
+    /// # Errors
+    /// The embedded font cannot be used, or the drawing library fails.
+    pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
+        fonts()?;
+        let size = self.fine_size();
+        let mut text = String::new();
+        {
+            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+            panel::draw(self, &Canvas::vector(&area))?;
+            area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
+        }
+        // The fine grid stays in the view box; the picture opens at its natural size.
+        let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+        let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
+        let about = format!(
+            ">\n<title>{}</title>\n<desc>{}</desc>",
+            escaped(&self.title),
+            escaped(&provenance.lines())
+        );
+        Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
+    }
+
+    /// The figure as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// The embedded font cannot be used, or the drawing library or the encoder fails.
+    pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
+        fonts()?;
+        let over = FINE as usize / PNG_PER_UNIT;
+        let (width, height) = self.fine_size();
+        let mut fine = vec![255; width as usize * height as usize * 3];
+        {
+            let area = BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area();
+            panel::draw(self, &Canvas::raster(&area))?;
+            area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
+        }
+        let (columns, rows) = (width as usize / over, height as usize / over);
+        let pixels = shrink(&fine, width as usize, (columns, rows), over);
+        encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Mean of every square of `over` by `over` pixels: what makes edges smooth.
+fn shrink(fine: &[u8], width: usize, (columns, rows): (usize, usize), over: usize) -> Vec<u8> {
+    let mut out = Vec::with_capacity(columns * rows * 3);
+    for row in 0..rows {
+        for column in 0..columns {
+            for channel in 0..3 {
+                let pixels = (0..over * over).map(|k| {
+                    let (y, x) = (row * over + k / over, column * over + k % over);
+                    u32::from(fine[(y * width + x) * 3 + channel])
+                });
+                out.push((pixels.sum::<u32>() / (over * over) as u32) as u8);
+            }
+        }
+    }
+    out
+}
+
+fn encode(pixels: &[u8], (width, height): (u32, u32), description: &str) -> Result<Vec<u8>, ReportError> {
+    let failed = |error: png::EncodingError| ReportError::Drawing { reason: error.to_string() };
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.add_itxt_chunk("Description".into(), description.into()).map_err(failed)?;
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(pixels).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}

@@ -1,0 +1,119 @@
+//! The one place that decides how every figure looks: colours, strokes, sizes.
+//!
+//! Colours are the colour-blind-safe set of Okabe and Ito (2008). Curves that meet in one panel differ in dash or
+//! width too, so that a figure stays legible when it is printed in grey.
+
+/// A colour, red, green, blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rgb(pub u8, pub u8, pub u8);
+
+impl Rgb {
+    /// Black.
+    pub const BLACK: Self = Self(0, 0, 0);
+    /// Orange of Okabe and Ito.
+    pub const ORANGE: Self = Self(230, 159, 0);
+    /// Sky blue of Okabe and Ito.
+    pub const SKY: Self = Self(86, 180, 233);
+    /// Bluish green of Okabe and Ito.
+    pub const GREEN: Self = Self(0, 158, 115);
+    /// Blue of Okabe and Ito.
+    pub const BLUE: Self = Self(0, 114, 178);
+    /// Vermillion of Okabe and Ito.
+    pub const VERMILLION: Self = Self(213, 94, 0);
+    /// Reddish purple of Okabe and Ito.
+    pub const PURPLE: Self = Self(204, 121, 167);
+    /// Middle grey for what stands behind the curves.
+    pub const GREY: Self = Self(120, 120, 120);
+    /// Light grey of the grid.
+    pub const GRID: Self = Self(222, 222, 222);
+    /// Fill of a measured band.
+    pub const BAND: Self = Self(205, 222, 236);
+    /// Paper.
+    pub const WHITE: Self = Self(255, 255, 255);
+}
+
+/// How a line is drawn. Lengths in figure units (a figure is [`WIDTH`] of them wide).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// Colour.
+    pub color: Rgb,
+    /// Width.
+    pub width: f64,
+    /// Lengths drawn and left out in turn; empty: a full line.
+    pub dash: &'static [f64],
+}
+
+const fn stroke(color: Rgb, width: f64, dash: &'static [f64]) -> Stroke {
+    Stroke { color, width, dash }
+}
+
+/// Mean gas temperature: the quantity that everything is about.
+pub const GAS_MEAN: Stroke = stroke(Rgb::BLACK, 2.4, &[]);
+/// Topmost gas cell.
+pub const GAS_TOP: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 2.5]);
+/// Lowest gas cell.
+pub const GAS_BOTTOM: Stroke = stroke(Rgb::BLACK, 1.2, &[1.5, 2.5]);
+/// Air around the cylinder.
+pub const AIR: Stroke = stroke(Rgb::SKY, 1.3, &[]);
+/// Shoulder.
+pub const SHOULDER: Stroke = stroke(Rgb::VERMILLION, 1.8, &[8.0, 3.0]);
+/// Middle of the wall.
+pub const WALL_MIDDLE: Stroke = stroke(Rgb::BLUE, 1.8, &[8.0, 2.5, 1.8, 2.5]);
+/// Bottom of the wall.
+pub const WALL_BOTTOM: Stroke = stroke(Rgb::GREEN, 1.8, &[3.5, 2.5]);
+/// Valve body.
+pub const VALVE: Stroke = stroke(Rgb::PURPLE, 1.8, &[1.8, 2.2]);
+/// Pressure.
+pub const PRESSURE: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
+/// A limit.
+pub const LIMIT: Stroke = stroke(Rgb::VERMILLION, 1.3, &[6.0, 3.0]);
+/// An event.
+pub const EVENT: Stroke = stroke(Rgb::GREY, 1.0, &[2.0, 2.0]);
+/// First curve of a comparison.
+pub const FIRST: Stroke = stroke(Rgb::ORANGE, 2.2, &[7.0, 3.0]);
+/// Second curve of a comparison.
+pub const SECOND: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
+/// Third curve of a comparison.
+pub const THIRD: Stroke = stroke(Rgb::GREEN, 1.8, &[2.0, 2.2]);
+/// Middle of a measured band.
+pub const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
+/// Measured points.
+pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
+
+/// Stroke of a sensor: thin, in the colour of the place where it sits, with a dash of its own by its number.
+pub fn sensor(place: &str, number: usize) -> Stroke {
+    const DASHES: [&[f64]; 3] = [&[1.2, 3.2], &[12.0, 2.5], &[6.0, 2.0, 1.2, 2.0, 1.2, 2.0]];
+    let color = match place {
+        "shoulder" => SHOULDER.color,
+        "valve" => VALVE.color,
+        "middle" => WALL_MIDDLE.color,
+        "bottom" => WALL_BOTTOM.color,
+        _ => Rgb::ORANGE,
+    };
+    Stroke { color, width: 1.3, dash: DASHES[number % DASHES.len()] }
+}
+
+/// Width of a figure; an SVG opens at this many pixels.
+pub const WIDTH: f64 = 860.0;
+/// Height of a panel of weight 1.
+pub const PANEL_HEIGHT: f64 = 250.0;
+/// Room on the left for tick labels and the axis name.
+pub const LEFT: f64 = 72.0;
+/// Room on the right for the legend.
+pub const RIGHT: f64 = 182.0;
+/// Room above the first panel for the title.
+pub const TOP: f64 = 42.0;
+/// Room below the last panel for tick labels and the axis name.
+pub const BOTTOM: f64 = 50.0;
+/// Distance between panels.
+pub const GAP: f64 = 20.0;
+/// Size of tick labels, legends and remarks.
+pub const SMALL: f64 = 12.0;
+/// Size of axis names.
+pub const NORMAL: f64 = 13.0;
+/// Size of the title.
+pub const LARGE: f64 = 15.0;
+/// Height of a legend line.
+pub const LEGEND_LINE: f64 = 19.0;
+/// Length of the sample in a legend.
+pub const LEGEND_SAMPLE: f64 = 34.0;

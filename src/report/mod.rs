@@ -1,0 +1,23 @@
+//! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal. Pure functions; nothing here reads or writes.
+pub mod figure;
+mod provenance;
+pub mod simulation;
+mod table;
+
+pub use provenance::{Input, Provenance};
+pub use table::{Column, Table, aligned, number, rounded};
+
+/// What can go wrong while results become text or pictures.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The embedded font is damaged.
+    #[error("the embedded font cannot be read: the program is damaged, install it again")]
+    Font,
+    /// The drawing library failed.
+    #[error("the figure cannot be drawn: {reason}")]
+    Drawing {
+        /// What the library says.
+        reason: String,
+    },
+}

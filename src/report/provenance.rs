@@ -1,0 +1,90 @@
+//! Where an output comes from: program version, command, inputs with their SHA-256, seed.
+use serde::Serialize;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+/// Provenance of an output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Provenance {
+    /// The command line, quoted so that a shell runs it again.
+    pub command: String,
+    /// What was read.
+    pub inputs: Vec<Input>,
+    /// Seed of everything random; `None`: nothing is random.
+    pub seed: Option<u64>,
+}
+
+/// Something that was read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Input {
+    /// Path, `-`, or `preset NAME`.
+    pub name: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+impl Input {
+    /// The record of an input with this content.
+    pub fn of(name: impl Into<String>, content: &[u8]) -> Self {
+        let sha256 = Sha256::digest(content).iter().map(|byte| format!("{byte:02x}")).collect();
+        Self { name: name.into(), sha256 }
+    }
+}
+
+impl Provenance {
+    /// Version of the program.
+    pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    /// As comment lines for the top of a CSV file, each with its line feed.
+    pub fn comment_lines(&self) -> String {
+        let mut text = format!("# cylwatch {}\n# command: {}\n", Self::VERSION, one_line(&self.command));
+        for input in &self.inputs {
+            text.push_str(&format!("# input: {} sha256 {}\n", one_line(&input.name), input.sha256));
+        }
+        match self.seed {
+            Some(seed) => text.push_str(&format!("# seed: {seed}\n")),
+            None => text.push_str("# seed: none, nothing is random\n"),
+        }
+        text
+    }
+
+    /// As the `provenance` object of a JSON file.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "program": "cylwatch",
+            "version": Self::VERSION,
+            "command": self.command,
+            "inputs": self.inputs,
+            "seed": self.seed,
+        })
+    }
+
+    /// As lines without marks, for the description of a picture.
+    pub fn lines(&self) -> String {
+        self.comment_lines().lines().map(|line| line.trim_start_matches("# ")).collect::<Vec<_>>().join("\n")
+    }
+}
+
+/// A line feed in a file's name must not end a comment.
+fn one_line(text: &str) -> String {
+    text.replace(['\n', '\r'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_the_published_one_of_abc() {
+        let input = Input::of("x", b"abc");
+        assert_eq!(input.sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn a_line_feed_in_a_name_does_not_end_the_comment() {
+        let provenance =
+            Provenance { command: "cylwatch x".into(), inputs: vec![Input::of("a\nb", b"")], seed: Some(3) };
+        assert!(provenance.comment_lines().lines().all(|line| line.starts_with('#')));
+        assert!(provenance.comment_lines().ends_with("# seed: 3\n"));
+    }
+}

@@ -1,0 +1,253 @@
+//! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
+use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use super::table::{Table, number};
+use super::{Provenance, aligned};
+use crate::thermal::scenario::SurfaceSensor;
+use crate::thermal::trajectory::{Event, EventKind, Trajectory};
+use serde_json::{Value, json};
+
+const ZERO_CELSIUS_K: f64 = 273.15;
+const PASCAL_PER_BAR: f64 = 1e5;
+const GRAM_PER_HOUR: f64 = 3.6e6;
+
+/// Significant digits of a simulated number: beyond what the solver's tolerance carries, short enough to read.
+const DIGITS: usize = 10;
+
+fn celsius(values_k: &[f64]) -> impl Iterator<Item = f64> + '_ {
+    values_k.iter().map(|t| t - ZERO_CELSIUS_K)
+}
+
+fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
+    values_pa.iter().map(|p| p / PASCAL_PER_BAR)
+}
+
+/// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
+pub fn table(run: &Trajectory) -> Table {
+    let mut table = Table::new(DIGITS);
+    table.push("time_s", run.time_s.iter().copied());
+    table.push("ambient_degc", celsius(&run.ambient_k));
+    table.push("gas_mean_degc", celsius(&run.gas_mean_k));
+    let cells = run.gas_cells_k.first().map_or(0, Vec::len);
+    for cell in 0..cells {
+        let values = run.gas_cells_k.iter().map(|sample| sample[cell] - ZERO_CELSIUS_K);
+        table.push(format!("gas_{}_degc", cell + 1), values);
+    }
+    for place in run.places.iter().filter(|place| place.name != "shoulder") {
+        if let Some(surface) = run.surface_k(place.name) {
+            table.push(format!("wall_{}_degc", place.name), celsius(&surface));
+        }
+    }
+    for name in ["shoulder", "valve"] {
+        if let Some(surface) = run.surface_k(name) {
+            table.push(format!("{name}_degc"), celsius(&surface));
+        }
+    }
+    table.push("pressure_bar", bar(&run.pressure_pa));
+    table.push("mass_kg", run.mass_kg.iter().copied());
+    table.push("outflow_g_h", run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
+    table.push("heat_to_gas_w", run.heat_to_gas_w.iter().copied());
+    for (sensor, reading_k) in readings(run) {
+        table.push(format!("measured_{}_degc", sensor.name), celsius(&reading_k));
+    }
+    table
+}
+
+/// What the scenario's sensors read, K: `T_surface + coupling (T_air - T_surface)`.
+pub fn readings(run: &Trajectory) -> Vec<(&SurfaceSensor, Vec<f64>)> {
+    let reading = |sensor| {
+        let sensor: &SurfaceSensor = sensor;
+        let surface = run.surface_k(&sensor.place)?;
+        let values = surface.iter().zip(&run.ambient_k).map(|(t, air)| t + sensor.air_coupling * (air - t));
+        Some((sensor, values.collect()))
+    };
+    run.scenario.sensors.iter().filter_map(reading).collect()
+}
+
+/// An event in words.
+pub fn event_name(event: &Event) -> String {
+    match &event.kind {
+        EventKind::PressureLimit { limit_pa, falling } => {
+            let side = if *falling { "below" } else { "above" };
+            format!("{side} {} bar", number(limit_pa / PASCAL_PER_BAR, 6))
+        }
+        EventKind::FlowOpened { flow } => format!("{flow} opens"),
+        EventKind::FlowClosed { flow } => format!("{flow} closes"),
+        EventKind::Unchoked { flow } => format!("{flow} unchoked"),
+    }
+}
+
+/// Title of a run: what happened to what.
+pub fn title(run: &Trajectory) -> String {
+    let (scenario, vessel) = (&run.scenario.name, &run.vessel.name);
+    let title = if scenario == vessel { scenario.clone() } else { format!("{scenario} \u{2013} {vessel}") };
+    title.replace("degC", "°C").replace(" -", " \u{2212}")
+}
+
+/// Temperatures, how they differ from the gas, pressure, and the gas mass where it changes.
+pub fn figure(run: &Trajectory) -> Figure {
+    let time = &run.time_s;
+    let limit = |&limit_pa: &f64| Item::Limit {
+        name: format!("limit {} bar", number(limit_pa / PASCAL_PER_BAR, 6)),
+        value: limit_pa / PASCAL_PER_BAR,
+    };
+    let mut pressure: Vec<Item> = run.scenario.pressure_limits_pa.iter().map(limit).collect();
+    pressure.push(Item::line("pressure", time, bar(&run.pressure_pa), style::PRESSURE));
+    let temperatures = temperatures(run);
+    let differences = differences(&temperatures);
+    let mut panels = vec![
+        Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
+        Panel { quantity: "minus gas mean in K".into(), items: differences, height: 0.7 },
+        Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
+    ];
+    let (least, most) = run.mass_kg.iter().fold((f64::INFINITY, 0.0), |r, &m| (m.min(r.0), m.max(r.1)));
+    if most - least > 1e-6 * most {
+        let mass = Item::line("gas mass", time, run.mass_kg.iter().copied(), style::PRESSURE);
+        panels.push(Panel { quantity: "gas mass in kg".into(), items: vec![mass], height: 0.55 });
+    }
+    let marks = run.events.iter().map(|event| Mark { at: event.time_s, name: event_name(event) }).collect();
+    Figure { title: title(run), horizontal: Horizontal::Time, panels, marks }
+}
+
+fn temperatures(run: &Trajectory) -> Vec<Item> {
+    let time = &run.time_s;
+    let mut items = vec![Item::line("air", time, celsius(&run.ambient_k), style::AIR)];
+    let resolved: &[(&str, &str, style::Stroke)] = &[
+        ("valve", "valve", style::VALVE),
+        ("shoulder", "shoulder", style::SHOULDER),
+        ("middle", "wall, middle", style::WALL_MIDDLE),
+        ("bottom", "wall, bottom", style::WALL_BOTTOM),
+    ];
+    let lumped = &[("valve", "valve", style::VALVE), ("middle", "wall", style::WALL_MIDDLE)];
+    let places = if run.vessel.geometry.lumped { lumped } else { resolved };
+    for &(place, name, stroke) in places {
+        if let Some(surface) = run.surface_k(place) {
+            items.push(Item::line(name, time, celsius(&surface), stroke));
+        }
+    }
+    for (number, (sensor, reading_k)) in readings(run).into_iter().enumerate() {
+        let stroke = style::sensor(&sensor.place, number);
+        items.push(Item::line(format!("sensor {}", sensor.name), time, celsius(&reading_k), stroke));
+    }
+    let cells = run.gas_cells_k.first().map_or(0, Vec::len);
+    if cells > 1 {
+        let cell = |k: usize| run.gas_cells_k.iter().map(move |sample| sample[k] - ZERO_CELSIUS_K);
+        items.push(Item::line("gas, top", time, cell(cells - 1), style::GAS_TOP));
+        items.push(Item::line("gas, bottom", time, cell(0), style::GAS_BOTTOM));
+    }
+    items.push(Item::line("gas, mean", time, celsius(&run.gas_mean_k), style::GAS_MEAN));
+    items
+}
+
+/// The curves of walls, valve, sensors and gas cells minus the last one, the mean gas: what a sensor on the wall
+/// gets wrong about the gas. The air, which is first, is left out: it would set the scale alone.
+fn differences(temperatures: &[Item]) -> Vec<Item> {
+    let Some((Item::Line { y: mean, .. }, others)) = temperatures.split_last() else { return Vec::new() };
+    let difference = |item: &Item| match item {
+        Item::Line { x, y, stroke, .. } => {
+            Some(Item::line("", x, y.iter().zip(mean).map(|(t, gas)| t - gas), *stroke))
+        }
+        _ => None,
+    };
+    others.iter().skip(1).filter_map(difference).collect()
+}
+
+/// Events and balances as comment lines of a CSV file.
+pub fn remarks(run: &Trajectory) -> Vec<String> {
+    let event = |event: &Event| format!("event at {} s: {}", number(event.time_s, 7), event_name(event));
+    let mut lines: Vec<String> = run.events.iter().map(event).collect();
+    lines.push(format!(
+        "balance: mass residual {:.1e} of the fill, energy residual {:.1e} of the turnover",
+        run.ledger.mass_residual(),
+        run.ledger.energy_residual()
+    ));
+    lines
+}
+
+/// The run as a JSON document: provenance, columns, events, ledger, what the solver did.
+pub fn document(run: &Trajectory, provenance: &Provenance) -> Value {
+    let event = |event: &Event| {
+        json!({
+            "time_s": event.time_s,
+            "event": event_name(event),
+            "pressure_bar": event.pressure_pa / PASCAL_PER_BAR,
+            "gas_mean_degc": event.gas_mean_k - ZERO_CELSIUS_K,
+        })
+    };
+    json!({
+        "provenance": provenance.to_json(),
+        "vessel": run.vessel.name,
+        "scenario": run.scenario.name,
+        "events": run.events.iter().map(event).collect::<Vec<_>>(),
+        "ledger": ledger(run),
+        "solver": statistics(run),
+        "columns": table(run).to_json(),
+    })
+}
+
+/// Mass and energy balance as JSON.
+pub fn ledger(run: &Trajectory) -> Value {
+    let ledger = &run.ledger;
+    json!({
+        "mass_start_kg": ledger.mass_start_kg,
+        "mass_end_kg": ledger.mass_end_kg,
+        "mass_in_kg": ledger.mass_in_kg,
+        "mass_residual": ledger.mass_residual(),
+        "energy_start_j": ledger.energy_start_j,
+        "energy_end_j": ledger.energy_end_j,
+        "heat_in_j": ledger.heat_in_j,
+        "enthalpy_in_j": ledger.enthalpy_in_j,
+        "work_out_j": ledger.work_out_j,
+        "energy_residual": ledger.energy_residual(),
+    })
+}
+
+/// Counters of the solver as JSON.
+pub fn statistics(run: &Trajectory) -> Value {
+    let s = &run.statistics;
+    json!({
+        "states": s.states,
+        "segments": s.segments,
+        "steps": s.steps,
+        "error_test_failures": s.error_test_failures,
+        "newton_iterations": s.newton_iterations,
+        "newton_failures": s.newton_failures,
+        "linear_solver_setups": s.linear_solver_setups,
+    })
+}
+
+/// The run in a few lines for people.
+pub fn summary(run: &Trajectory) -> String {
+    let (Some(&first), Some(&last)) = (run.pressure_pa.first(), run.pressure_pa.last()) else {
+        return String::new();
+    };
+    let extremes =
+        run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
+    let row = |what: &str, value: String| vec![what.to_owned(), value];
+    let mut rows = vec![
+        row(
+            "pressure, start and end",
+            format!("{:.2} and {:.2} bar", first / PASCAL_PER_BAR, last / PASCAL_PER_BAR),
+        ),
+        row(
+            "gas mean, lowest and highest",
+            format!("{:.2} and {:.2} °C", extremes.0 - ZERO_CELSIUS_K, extremes.1 - ZERO_CELSIUS_K),
+        ),
+        row(
+            "gas mass, start and end",
+            format!("{:.4} and {:.4} kg", run.ledger.mass_start_kg, run.ledger.mass_end_kg),
+        ),
+        row(
+            "balance",
+            format!(
+                "mass within {:.1e}, energy within {:.1e}",
+                run.ledger.mass_residual().abs(),
+                run.ledger.energy_residual().abs()
+            ),
+        ),
+        row("solver", format!("{} steps with {} states", run.statistics.steps, run.statistics.states)),
+    ];
+    for event in &run.events {
+        rows.push(row(&format!("event at {:.0} s", event.time_s), event_name(event)));
+    }
+    format!("{}\n{}", title(run), aligned(&[], &rows))
+}

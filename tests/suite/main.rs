@@ -1,0 +1,10 @@
+//! Tests of the program and of what it writes, by kind.
+// Helpers outside of test functions fail a test by panicking, too.
+#![allow(clippy::unwrap_used)]
+
+mod files;
+mod properties;
+mod report;
+mod reproduce;
+mod simulate;
+mod support;

@@ -1,0 +1,230 @@
+//! `cylwatch simulate`.
+use crate::support::{column, files, program, refusal, refused, rows, run, run_with_stdin};
+use sha2::{Digest, Sha256};
+use std::io::Read;
+use std::process::Stdio;
+use tempfile::tempdir;
+
+const SHORT: &str = "\
+name = \"short\"
+duration_min = 2
+sample_time_s = 30
+[initial]
+fill_pressure_bar = 200
+temperature_degc = 15
+[ambient]
+air_degc = 20
+film_w_m2_k = 8
+[[leak]]
+flow_g_h = 360
+start_s = 60
+[[sensor]]
+name = \"shoulder\"
+air_coupling = 0.2
+";
+
+#[test]
+fn data_goes_to_stdout_and_words_to_stderr() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &["simulate", "nitrogen-20l", "shock-cold"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let (header, rows) = rows(&outcome.stdout);
+    assert_eq!((header[0], rows.len()), ("time_s", 181));
+    assert!(outcome.stderr.contains("pressure, start and end"));
+    assert!(!outcome.stderr.contains('\u{1b}'), "colour without a terminal");
+    assert!(files(folder.path()).is_empty());
+    let quiet = run(folder.path(), &["--quiet", "simulate", "nitrogen-20l", "shock-cold"]);
+    assert_eq!(quiet.stderr, "");
+}
+
+#[test]
+fn the_columns_are_those_of_the_contract() {
+    let folder = tempdir().unwrap();
+    let csv = run(folder.path(), &["simulate", "nitrogen-20l", "shock-cold"]).stdout;
+    let (header, _) = rows(&csv);
+    assert_eq!(
+        header.join(","),
+        "time_s,ambient_degc,gas_mean_degc,gas_1_degc,wall_bottom_degc,wall_middle_degc,wall_neck_degc,shoulder_degc,\
+         valve_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc"
+    );
+}
+
+#[test]
+fn a_sensor_reads_between_its_surface_and_the_air() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), SHORT).unwrap();
+    let csv = run(folder.path(), &["simulate", "nitrogen-20l", "s.toml"]).stdout;
+    let (surface, air) = (column(&csv, "shoulder_degc"), column(&csv, "ambient_degc"));
+    for (k, reading) in column(&csv, "measured_shoulder_degc").into_iter().enumerate() {
+        assert!((reading - (0.8 * surface[k] + 0.2 * air[k])).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_leak_is_taken_from_the_mass_at_its_rate() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), SHORT).unwrap();
+    let csv = run(folder.path(), &["simulate", "nitrogen-20l", "s.toml"]).stdout;
+    let mass = column(&csv, "mass_kg");
+    // 360 g/h for the last of two minutes.
+    assert!((mass[0] - mass[4] - 6e-3).abs() < 1e-8);
+    assert!(csv.contains("# event at 60 s: leak opens"));
+}
+
+#[test]
+fn every_output_states_version_command_and_the_hashes_of_its_inputs() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("it's short.toml"), SHORT).unwrap();
+    let hash: String = Sha256::digest(SHORT).iter().map(|byte| format!("{byte:02x}")).collect();
+    let arguments = ["simulate", "nitrogen-20l", "it's short.toml", "-o", "run.json", "--plot", "run.svg"];
+    assert_eq!(run(folder.path(), &arguments).code, Some(0));
+    let text = std::fs::read_to_string(folder.path().join("run.json")).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let provenance = &document["provenance"];
+    assert_eq!(provenance["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(
+        provenance["command"],
+        r"cylwatch simulate nitrogen-20l 'it'\''s short.toml' -o run.json --plot run.svg"
+    );
+    assert_eq!(provenance["inputs"][1]["sha256"], hash.as_str());
+    assert_eq!(document["columns"]["time_s"].as_array().unwrap().len(), 5);
+    let csv = run(folder.path(), &["simulate", "nitrogen-20l", "it's short.toml"]).stdout;
+    assert!(csv.lines().any(|line| line == format!("# input: it's short.toml sha256 {hash}")));
+    assert!(std::fs::read_to_string(folder.path().join("run.svg")).unwrap().contains(&hash));
+}
+
+#[test]
+fn plots_are_well_formed() {
+    let folder = tempdir().unwrap();
+    for name in ["run.svg", "run.png"] {
+        let arguments = ["simulate", "nitrogen-20l", "shock-cold", "--plot", name, "-o", "run.csv"];
+        assert_eq!(run(folder.path(), &arguments).code, Some(0));
+    }
+    let svg = std::fs::read_to_string(folder.path().join("run.svg")).unwrap();
+    for words in ["temperature in °C", "pressure in bar", "time in min", "gas, mean", "limit 160 bar"] {
+        assert!(svg.contains(words), "{words} is missing");
+    }
+    let picture = std::fs::File::open(folder.path().join("run.png")).unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(picture)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    assert!(pixels.iter().any(|&value| value < 50), "the picture is empty");
+}
+
+#[test]
+fn the_vessel_or_the_scenario_comes_from_stdin_but_not_both() {
+    let folder = tempdir().unwrap();
+    let outcome = run_with_stdin(folder.path(), &["simulate", "nitrogen-20l", "-"], SHORT);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(outcome.stdout.contains("# input: - sha256"));
+    refused(folder.path(), &["simulate", "-", "-"], &["stdin", "not both"]);
+}
+
+#[test]
+fn a_name_that_is_neither_file_nor_preset_is_told_both_possibilities_and_the_nearest() {
+    let folder = tempdir().unwrap();
+    let words =
+        ["nitrogen-20", "neither a vessel file nor a built-in vessel", "nearest is nitrogen-20l", "--list"];
+    refused(folder.path(), &["simulate", "nitrogen-20", "shock-cold"], &words);
+    refused(
+        folder.path(),
+        &["simulate", "nitrogen-20l", "shock-kold"],
+        &["scenario", "nearest is shock-cold"],
+    );
+    let list = run(folder.path(), &["simulate", "--list"]);
+    assert!(list.stdout.contains("nitrogen-20l") && list.stdout.contains("shock-cold"));
+}
+
+#[test]
+fn a_fault_in_a_file_names_file_line_value_and_remedy() {
+    let folder = tempdir().unwrap();
+    let faults = [
+        ("fill_pressure_bar = 200", "fill_pressure_bar = -200", ["s.toml:5", "-200"]),
+        ("air_degc = 20", "air_bar = 20", ["s.toml:8", "air_bar"]),
+        ("duration_min = 2", "duration = 2", ["s.toml:2", "duration"]),
+        ("[ambient]", "[ambient", ["s.toml:7", "unclosed"]),
+    ];
+    for (good, bad, words) in faults {
+        std::fs::write(folder.path().join("s.toml"), SHORT.replace(good, bad)).unwrap();
+        refused(folder.path(), &["simulate", "nitrogen-20l", "s.toml"], &words);
+    }
+}
+
+#[test]
+fn a_refused_run_leaves_the_older_output_as_it_was_and_nothing_beside_it() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("run.csv"), "older").unwrap();
+    std::fs::write(folder.path().join("s.toml"), SHORT.replace("film_w_m2_k", "film_bar")).unwrap();
+    let arguments = ["simulate", "nitrogen-20l", "s.toml", "-o", "run.csv", "--plot", "run.svg"];
+    refused(folder.path(), &arguments, &["film_bar"]);
+    assert_eq!(std::fs::read_to_string(folder.path().join("run.csv")).unwrap(), "older");
+    assert_eq!(files(folder.path()), ["run.csv", "s.toml"]);
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_found_before_the_run() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    std::fs::create_dir(folder.path().join("folder")).unwrap();
+    std::fs::write(folder.path().join("s.toml"), SHORT).unwrap();
+    // The scenario does not exist: a complaint about the output shows that it was checked first.
+    let with = |option: &str, output: &str, words: &[&str]| {
+        refused(folder.path(), &["simulate", "nitrogen-20l", "none.toml", option, output], words);
+    };
+    with("-o", "missing/run.csv", &["missing/run.csv", "no folder", "make it first"]);
+    with("-o", "file/run.csv", &["file/run.csv"]);
+    with("-o", "folder", &["folder", "name a file in it"]);
+    with("-o", "", &["--output"]);
+    with("--plot", "run.pdf", &["run.pdf", ".svg or .png"]);
+    with("--plot", "missing/run.svg", &["missing/run.svg", "no folder"]);
+    refused(folder.path(), &["simulate", "nitrogen-20l", "s.toml", "-o", "./s.toml"], &["is an input"]);
+    assert_eq!(std::fs::read_to_string(folder.path().join("s.toml")).unwrap(), SHORT);
+}
+
+#[test]
+fn a_tolerance_out_of_range_is_refused_with_its_bounds() {
+    let folder = tempdir().unwrap();
+    for bad in ["0", "-1", "1", "nan", "inf"] {
+        let argument = format!("--relative-tolerance={bad}");
+        refused(
+            folder.path(),
+            &["simulate", "nitrogen-20l", "shock-cold", &argument],
+            &["tolerance", "between"],
+        );
+    }
+    refused(
+        folder.path(),
+        &["simulate", "nitrogen-20l", "shock-cold", "--relative-tolerance", "fine"],
+        &["fine"],
+    );
+}
+
+#[test]
+fn a_file_that_is_no_text_is_refused() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    refused(folder.path(), &["simulate", "nitrogen-20l", "s.toml"], &["s.toml", "UTF-8"]);
+    refusal(run_with_stdin(folder.path(), &["simulate", "nitrogen-20l", "-"], ""), &["stdin"]);
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let folder = tempdir().unwrap();
+    let mut command = program(folder.path(), &["simulate", "nitrogen-20l", "cool-down", "--format", "csv"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let mut words = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut words).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(0), "{words}");
+    assert!(!words.contains("error"), "{words}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_is_written_and_not_replaced() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &["simulate", "nitrogen-20l", "shock-cold", "-o", "/dev/null"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    use std::os::unix::fs::FileTypeExt;
+    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+}

@@ -1,0 +1,78 @@
+//! Running the program.
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// The program with arguments, in a folder.
+pub fn program(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cylwatch"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::null()).env_remove("NO_COLOR");
+    command
+}
+
+/// What the program did.
+pub struct Outcome {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl From<Output> for Outcome {
+    fn from(output: Output) -> Self {
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+}
+
+/// Runs the program in a folder.
+pub fn run(folder: &Path, arguments: &[&str]) -> Outcome {
+    program(folder, arguments).output().unwrap().into()
+}
+
+/// Runs the program with a text on stdin.
+pub fn run_with_stdin(folder: &Path, arguments: &[&str], text: &str) -> Outcome {
+    let mut command = program(folder, arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    child.wait_with_output().unwrap().into()
+}
+
+/// Runs the program, which must refuse with exit code 2, one message that names all of `words`, and no data.
+pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
+    refusal(run(folder, arguments), words);
+}
+
+/// Asserts a refusal.
+pub fn refusal(outcome: Outcome, words: &[&str]) {
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert_eq!(outcome.stdout, "");
+    assert!(!outcome.stderr.contains("panicked"), "{}", outcome.stderr);
+    for word in words {
+        assert!(outcome.stderr.contains(word), "`{word}` is missing in: {}", outcome.stderr);
+    }
+}
+
+/// Names of the files in a folder.
+pub fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Lines of a CSV text below its comments: header and rows.
+pub fn rows(csv: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
+    let header = lines.next().unwrap().split(',').collect();
+    (header, lines.map(|line| line.split(',').collect()).collect())
+}
+
+/// A column of a CSV text as numbers.
+pub fn column(csv: &str, name: &str) -> Vec<f64> {
+    let (header, rows) = rows(csv);
+    let index = header.iter().position(|found| *found == name).unwrap_or_else(|| panic!("no column {name}"));
+    rows.iter().map(|row| row[index].parse().unwrap()).collect()
+}
