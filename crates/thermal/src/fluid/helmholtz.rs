@@ -370,6 +370,8 @@ impl HelmholtzEnergy for Multiparameter {
         sum
     }
 
+    // Inlined so that the pressure alone does not pay for the second slope.
+    #[inline(always)]
     fn residual_density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
         let tau = self.data.reducing_temperature_k / temperature_k;
         let powers = self.tau_powers(tau);

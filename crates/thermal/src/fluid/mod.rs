@@ -217,6 +217,7 @@ impl Fluid {
         density_kg_m3 * self.specific_gas_constant_j_kg_k() * temperature_k * (1.0 + slope)
     }
 
+    #[inline(always)]
     fn density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
         match &self.description {
             Description::Reference(equation) => {
