@@ -63,15 +63,6 @@ const MAX_SLOTS: usize = 40;
 const MAX_TAU: usize = 32;
 const MAX_GAUSSIAN: usize = 16;
 
-/// How a power of `tau` is found.
-#[derive(Clone, Copy, Debug)]
-enum TauPower {
-    /// `tau^whole * tau^(eighth/8)`.
-    Table { whole: usize, eighth: usize },
-    /// `exp(t ln tau)`.
-    Other(f64),
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Term {
     n: f64,
@@ -104,10 +95,10 @@ pub struct Multiparameter {
     slots: Vec<Slot>,
     /// Terms with the index of their power of `tau`.
     gaussian: Vec<(GaussianTerm, usize)>,
-    /// Distinct powers of `tau`.
-    tau: Vec<TauPower>,
-    /// Whether any of them is not in the table.
-    has_others: bool,
+    /// Distinct powers of `tau` as `tau^whole tau^(eighth/8)`, (whole, eighth).
+    tau: Vec<(usize, usize)>,
+    /// Those that are no such product: index among them and exponent.
+    tau_others: Vec<(usize, f64)>,
     /// Largest whole exponent of `tau` and exponent of `delta`.
     highest_whole: usize,
     highest_d: usize,
@@ -148,22 +139,12 @@ impl Multiparameter {
             }
         }
         let gaussian: Vec<_> = data.gaussian.iter().map(|&term| (term, tau_index(term.t))).collect();
-        let tau: Vec<TauPower> = exponents
-            .iter()
-            .map(|&t| {
-                if (8.0 * t).fract() == 0.0 && (0.0..=32.0).contains(&t) {
-                    return TauPower::Table { whole: t as usize, eighth: (8.0 * t) as usize % 8 };
-                }
-                TauPower::Other(t)
-            })
-            .collect();
-        let highest_whole = tau.iter().map(|power| match power {
-            TauPower::Table { whole, .. } => *whole,
-            TauPower::Other(_) => 0,
-        });
+        let in_table = |t: f64| (8.0 * t).fract() == 0.0 && (0.0..=32.0).contains(&t);
+        let product = |&t: &f64| if in_table(t) { (t as usize, (8.0 * t) as usize % 8) } else { (0, 0) };
+        let tau: Vec<(usize, usize)> = exponents.iter().map(product).collect();
+        let tau_others = exponents.iter().copied().enumerate().filter(|&(_, t)| !in_table(t)).collect();
         Self {
-            highest_whole: highest_whole.max().unwrap_or(0),
-            has_others: tau.iter().any(|power| matches!(power, TauPower::Other(_))),
+            highest_whole: tau.iter().map(|&(whole, _)| whole).max().unwrap_or(0),
             highest_d: sorted
                 .iter()
                 .map(|term| term.d.max(term.l))
@@ -176,6 +157,7 @@ impl Multiparameter {
             slots,
             gaussian,
             tau,
+            tau_others,
             data,
         }
     }
@@ -195,13 +177,15 @@ impl Multiparameter {
         let root = quarter.sqrt();
         let low = quarter * root;
         let eighth = [one, root, quarter, low, half, half * root, half * quarter, half * low];
-        let ln_tau = if self.has_others { tau.ln() } else { one };
         let mut found = [one; MAX_TAU];
-        for (power, recipe) in found.iter_mut().zip(&self.tau) {
-            *power = match *recipe {
-                TauPower::Table { whole: i, eighth: j } => whole[i] * eighth[j],
-                TauPower::Other(t) => (ln_tau * t).exp(),
-            };
+        for (power, &(i, j)) in found.iter_mut().zip(&self.tau) {
+            *power = whole[i] * eighth[j];
+        }
+        if !self.tau_others.is_empty() {
+            let ln_tau = tau.ln();
+            for &(i, t) in &self.tau_others {
+                found[i] = (ln_tau * t).exp();
+            }
         }
         found
     }
