@@ -1,13 +1,13 @@
 //! The measured blowdown I1 beside the model, at the carrier's discharge coefficient and at the one that the
 //! pressure record alone asks for. Temperatures are not fitted.
 use super::ReproduceError;
-use super::measured::{Measured, interpolated};
+use super::measured::{Curve, Measured, interpolated};
 use super::minimum::{evaluations, golden_section};
 use crate::thermal::flow::FlowKind;
 use crate::thermal::scenario::{self, Scenario};
 use crate::thermal::simulate::{SimulationSettings, simulate};
 use crate::thermal::trajectory::Trajectory;
-use crate::thermal::vessel::{self, Vessel};
+use crate::thermal::vessel::{self, GasResolution, InsideFilm, Stratification, Vessel};
 
 /// Discharge coefficient that HydDown's validation uses.
 pub const CARRIER_COEFFICIENT: f64 = 0.8;
@@ -15,12 +15,14 @@ pub const CARRIER_COEFFICIENT: f64 = 0.8;
 const COEFFICIENTS: (f64, f64) = (0.55, 0.95);
 /// How finely it is found: a tenth of what 0.1 bar of pressure means.
 const COEFFICIENT_WIDTH: f64 = 5e-4;
-/// Last of the times at which model and measurement are compared, s; the first is 1 s, the step 1 s.
-const LAST_TIME_S: i32 = 99;
+/// End of the run, s: the last digitised point lies at 100.11 s.
+const DURATION_S: f64 = 100.5;
+/// Sample time of the run, s: fine enough to interpolate the model, never the measurement.
+const SAMPLE_S: f64 = 0.05;
 
 /// Simulations that [`study`] runs.
 pub fn runs() -> usize {
-    2 + evaluations(COEFFICIENTS, COEFFICIENT_WIDTH)
+    3 + evaluations(COEFFICIENTS, COEFFICIENT_WIDTH)
 }
 
 /// Deviation of the model from a measurement.
@@ -54,11 +56,29 @@ pub struct Variant {
     pub gas: Score,
     /// Pressure, bar.
     pub pressure: Score,
-    /// Inner wall at mid height against the upper edge of the measured wall temperatures, K.
+    /// Warmest inner wall against the upper edge of the measured wall temperatures, K.
     pub wall_high: Score,
 }
 
-/// Both variants beside the measurement.
+/// The stratified gas; its constants, film and discharge coefficient were fitted to this very run.
+#[derive(Clone, Debug)]
+pub struct Stacked {
+    /// The run.
+    pub run: Trajectory,
+    /// Number of gas cells.
+    pub cells: usize,
+    /// Warmest cell against the warmest thermocouple, K.
+    pub high: Score,
+    /// Coldest cell against the coldest thermocouple, K.
+    pub low: Score,
+}
+
+/// Gas cells of the stratified run: from here on the edges of the band move by less than 1 K with the count.
+const STACKED_CELLS: usize = 40;
+/// Discharge coefficient of the stratified run.
+pub const STACKED_COEFFICIENT: f64 = 0.75;
+
+/// Both variants and the stratified gas beside the measurement.
 #[derive(Clone, Debug)]
 pub struct Blowdown {
     /// What was measured.
@@ -67,11 +87,13 @@ pub struct Blowdown {
     pub carrier: Variant,
     /// At the coefficient of least pressure deviation.
     pub fitted: Variant,
+    /// The stratified gas.
+    pub stacked: Stacked,
 }
 
-/// Times of comparison, s.
+/// Times of the table of curves, s.
 pub fn times_s() -> impl Iterator<Item = f64> {
-    (1..=LAST_TIME_S).map(f64::from)
+    (0..=100).map(f64::from)
 }
 
 /// Runs the study; `progress` is called before every simulation with its number from 0.
@@ -83,7 +105,8 @@ pub fn study(
     progress: &mut dyn FnMut(usize),
 ) -> Result<Blowdown, ReproduceError> {
     let vessel = vessel::presets::load("haque-i1")?;
-    let scenario = scenario::presets::load("haque-i1")?;
+    let mut scenario = scenario::presets::load("haque-i1")?;
+    (scenario.duration_s, scenario.sample_time_s) = (DURATION_S, SAMPLE_S);
     let measured = Measured::embedded();
     let mut count = 0;
     let mut variant = |coefficient: f64| {
@@ -96,7 +119,41 @@ pub fn study(
     let carrier = variant(CARRIER_COEFFICIENT)?;
     let best = golden_section(COEFFICIENTS, COEFFICIENT_WIDTH, |c| variant(c).map(|v| v.pressure.rms))?;
     let fitted = variant(best)?;
-    Ok(Blowdown { measured, carrier, fitted })
+    progress(count);
+    let stacked = stacked(&vessel, &scenario, settings, &measured)?;
+    Ok(Blowdown { measured, carrier, fitted, stacked })
+}
+
+fn stacked(
+    vessel: &Vessel,
+    scenario: &Scenario,
+    settings: &SimulationSettings,
+    measured: &Measured,
+) -> Result<Stacked, ReproduceError> {
+    let constants =
+        Stratification { cells: STACKED_CELLS, exchange_length_diameters: 1.0, core_mixing: 0.05 };
+    let vessel = Vessel {
+        gas: GasResolution::Stratified(constants),
+        inside_film: InsideFilm::Rayleigh { factor: 0.104, exponent: 0.352, multiplier: 1.0 },
+        ..vessel.clone()
+    };
+    let run = simulated(&vessel, &with_coefficient(scenario, STACKED_COEFFICIENT), settings)?;
+    let edge = |pick: fn(f64, f64) -> f64, truth: &Curve| {
+        score(&run.time_s, &extreme(&run.gas_cells_k, pick), truth)
+    };
+    let (high, low) = (edge(f64::max, &measured.gas_high_k), edge(f64::min, &measured.gas_low_k));
+    Ok(Stacked { high, low, cells: STACKED_CELLS, run })
+}
+
+/// Largest or smallest of the cells at each time, K.
+pub fn extreme(cells_k: &[Vec<f64>], pick: fn(f64, f64) -> f64) -> Vec<f64> {
+    cells_k.iter().map(|sample| sample.iter().copied().reduce(pick).unwrap_or(f64::NAN)).collect()
+}
+
+/// Score at the measured points themselves, so that nothing is interpolated but the model.
+fn score(times_s: &[f64], model: &[f64], truth: &Curve) -> Score {
+    let points = truth.time_s.iter().zip(&truth.value);
+    Score::of(points.map(|(&t, &value)| (interpolated(times_s, model, t), value)))
 }
 
 fn simulated(
@@ -124,13 +181,11 @@ pub fn wall_middle_k(run: &Trajectory) -> Vec<f64> {
 }
 
 fn scored(coefficient: f64, run: Trajectory, measured: &Measured) -> Variant {
-    let score = |model: &[f64], truth: &dyn Fn(f64) -> f64| {
-        Score::of(times_s().map(|t| (interpolated(&run.time_s, model, t), truth(t))))
-    };
     let pressure_bar: Vec<f64> = run.pressure_pa.iter().map(|p| p / 1e5).collect();
-    let gas = score(&run.gas_mean_k, &|t| 0.5 * (measured.gas_high_k.at(t) + measured.gas_low_k.at(t)));
-    let pressure = score(&pressure_bar, &|t| measured.pressure_bar.at(t));
-    let wall_high = score(&wall_middle_k(&run), &|t| measured.wall_high_k.at(t));
+    let gas = score(&run.time_s, &run.gas_mean_k, &measured.gas_middle_k());
+    let pressure = score(&run.time_s, &pressure_bar, &measured.pressure_bar);
+    let wall_k = extreme(&run.wall_inner_k, f64::max);
+    let wall_high = score(&run.time_s, &wall_k, &measured.wall_high_k);
     Variant { coefficient, gas, pressure, wall_high, run }
 }
 

@@ -1,5 +1,5 @@
 //! Figures of the reproduction.
-use super::blowdown::{Blowdown, Variant, wall_middle_k};
+use super::blowdown::{Blowdown, Variant, extreme, wall_middle_k};
 use super::cylinder::{FILL_TEMPERATURE_K, SLOPE_OF_PAPER_BAR_K, TightCylinder};
 use super::measured::Curve;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
@@ -43,6 +43,13 @@ pub fn blowdown(study: &Blowdown) -> Figure {
         gas_items.push(Item::line("its middle", &x.clone(), middle.collect::<Vec<_>>(), style::MIDDLE));
     }
     gas_items.extend(models(study, "mean, ", &gas));
+    let stacked = &study.stacked.run;
+    for (name, pick) in
+        [("warmest of 40 cells,\nfitted", f64::max as fn(f64, f64) -> f64), ("coldest of them", f64::min)]
+    {
+        let edge = extreme(&stacked.gas_cells_k, pick).into_iter().map(|t| t - 273.15).collect::<Vec<_>>();
+        gas_items.push(Item::line(name, &stacked.time_s, edge, style::THIRD));
+    }
     let mut wall_items = band("measured, lowest\nto highest", &measured.wall_low_k, &measured.wall_high_k);
     wall_items.extend(models(study, "mid height, ", &wall));
     Figure {

@@ -40,6 +40,15 @@ impl Measured {
             FILES.map(|(_, text)| Curve::of(text));
         Self { pressure_bar, gas_high_k, gas_low_k, wall_high_k, wall_low_k }
     }
+
+    /// Middle of the gas band: the paired points of its edges, which are at most 0.4 s apart.
+    pub fn gas_middle_k(&self) -> Curve {
+        let mean = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
+        Curve {
+            time_s: mean(&self.gas_high_k.time_s, &self.gas_low_k.time_s),
+            value: mean(&self.gas_high_k.value, &self.gas_low_k.value),
+        }
+    }
 }
 
 impl Curve {

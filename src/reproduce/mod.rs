@@ -106,7 +106,7 @@ impl Reproduction {
 
     /// The blowdown's measured and computed values at common times.
     fn comparison(&self) -> Table {
-        let Blowdown { measured, carrier, fitted } = &self.blowdown;
+        let Blowdown { measured, carrier, fitted, .. } = &self.blowdown;
         let times: Vec<f64> = blowdown::times_s().collect();
         let mut table = Table::new(7);
         table.push("time_s", times.iter().copied());

@@ -1,6 +1,6 @@
 //! What was reached: one row per number, beside its reference and the bar it has to meet.
 use super::Reproduction;
-use super::blowdown::Variant;
+use super::blowdown::{Score, Stacked, Variant};
 use super::cylinder::time_63_s;
 use crate::report::aligned;
 use serde_json::{Value, json};
@@ -110,7 +110,11 @@ pub fn scenarios_text(results: &Reproduction) -> String {
 pub fn rows(results: &Reproduction) -> Vec<Row> {
     let mut rows = tight_rows(results);
     rows.extend(closed_rows(results));
-    rows.extend(variant_rows(&results.blowdown.carrier, "Cd 0.8"));
+    rows.extend(variant_rows(
+        &results.blowdown.carrier,
+        "Cd 0.8",
+        &VariantBars { gas_k: 4.7, pressure_bar: 3.0 },
+    ));
     rows.push(Row {
         what: "I1, Cd fitted to the pressure".into(),
         here: results.blowdown.fitted.coefficient,
@@ -119,7 +123,12 @@ pub fn rows(results: &Reproduction) -> Vec<Row> {
         source: "HydDown's choice",
         bar: Bar::Shown,
     });
-    rows.extend(variant_rows(&results.blowdown.fitted, "Cd fitted"));
+    rows.extend(variant_rows(
+        &results.blowdown.fitted,
+        "Cd fitted",
+        &VariantBars { gas_k: 2.7, pressure_bar: 1.6 },
+    ));
+    rows.extend(stacked_rows(&results.blowdown.stacked));
     rows
 }
 
@@ -135,7 +144,7 @@ fn tight_rows(results: &Reproduction) -> Vec<Row> {
         bar,
     };
     vec![
-        row("full cylinder at -25 °C", tight.pressure_cold_bar, "bar", 160.09, CHECKED, Bar::Within(0.01)),
+        row("full cylinder at -25 °C", tight.pressure_cold_bar, "bar", 160.09, CHECKED, Bar::Within(0.02)),
         row(
             "slope at 200 bar, 15 °C, real gas",
             tight.slope_bar_k,
@@ -178,8 +187,8 @@ fn closed_rows(results: &Reproduction) -> Vec<Row> {
     let end_bar = run.pressure_pa.last().map_or(f64::NAN, |p| p / 1e5);
     let time_s = time_63_s(run, air_k).unwrap_or(f64::NAN);
     vec![
-        row("closed bottle, 6 h after a 20 K step", end_bar, "bar", Some(219.71), HYDDOWN, Bar::Within(0.1)),
-        row("closed bottle, 63 % of the step", time_s, "s", Some(3942.0), HYDDOWN, Bar::Within(80.0)),
+        row("closed bottle, 6 h after a 20 K step", end_bar, "bar", Some(219.71), HYDDOWN, Bar::Within(0.05)),
+        row("closed bottle, 63 % of the step", time_s, "s", Some(3942.0), HYDDOWN, Bar::Within(39.4)),
         row(
             "largest mass residual, scenarios",
             worst(|l| l.mass_residual()),
@@ -199,23 +208,42 @@ fn closed_rows(results: &Reproduction) -> Vec<Row> {
     ]
 }
 
-fn variant_rows(variant: &Variant, name: &str) -> Vec<Row> {
-    let row = |what: &str, here, unit, reference| Row {
+/// Bars of a one-node run: gas and pressure.
+struct VariantBars {
+    gas_k: f64,
+    pressure_bar: f64,
+}
+
+/// HydDown 0.50 on the same points.
+const HYDDOWN_SCORES: &str = "HydDown";
+
+fn variant_rows(variant: &Variant, name: &str, bars: &VariantBars) -> Vec<Row> {
+    let row = |what: &str, here, unit, reference, bar| Row {
         what: format!("I1, {what}, {name}"),
         here,
         unit,
         reference: Some(reference),
-        source: "HydDown",
-        bar: Bar::AtMost(reference),
+        source: HYDDOWN_SCORES,
+        bar,
     };
-    let bias =
-        |what: &str, here, unit, reference| Row { bar: Bar::Shown, ..row(what, here, unit, reference) };
     vec![
-        row("gas mean rms", variant.gas.rms, "K", 4.1),
-        bias("gas mean bias", variant.gas.bias, "K", -2.8),
-        row("pressure rms", variant.pressure.rms, "bar", 2.4),
-        bias("pressure bias", variant.pressure.bias, "bar", -2.1),
-        row("wall, high edge rms", variant.wall_high.rms, "K", 1.0),
-        bias("wall, high edge bias", variant.wall_high.bias, "K", 0.3),
+        row("gas mean rms", variant.gas.rms, "K", 3.9, Bar::AtMost(bars.gas_k)),
+        row("gas mean bias", variant.gas.bias, "K", -2.2, Bar::Shown),
+        row("pressure rms", variant.pressure.rms, "bar", 2.4, Bar::AtMost(bars.pressure_bar)),
+        row("pressure bias", variant.pressure.bias, "bar", -2.1, Bar::Shown),
+        row("wall, high edge rms", variant.wall_high.rms, "K", 1.0, Bar::AtMost(1.0)),
     ]
+}
+
+/// The stratified gas: its constants were fitted to this run, no peer predicts either edge.
+fn stacked_rows(stacked: &Stacked) -> Vec<Row> {
+    let row = |what: &str, score: &Score| Row {
+        what: format!("I1, {what} rms, {} gas cells (fitted)", stacked.cells),
+        here: score.rms,
+        unit: "K",
+        reference: None,
+        source: "",
+        bar: Bar::AtMost(4.0),
+    };
+    vec![row("gas high", &stacked.high), row("gas low", &stacked.low)]
 }

@@ -5,9 +5,11 @@
 //! `delta d/d(delta) = rho d/d(rho)`, `tau d/d(tau) = -T d/dT`, which does not depend on the reducing values,
 //! so that every equation of state speaks the same language ([`HelmholtzEnergy`]).
 //!
-//! Speed: terms are grouped by `l`, so that each exponential is taken once; powers of `delta` and of
-//! `tau` come from tables where the exponents allow it (multiples of 1/8 from three square roots); Gaussian terms
-//! that are negligible are skipped. At a given temperature the power terms collapse into polynomials in `delta` ([`Isotherm`]).
+//! Speed: terms are grouped by `l`, so that each exponential is taken once; each distinct power of `tau` is taken once,
+//! from tables where the exponent allows it (multiples of 1/8 from three square roots); Gaussian terms that are
+//! negligible are skipped. At a given temperature the power terms collapse into polynomials in `delta` ([`Isotherm`]).
+//! Arrays have a fixed size: nothing is allocated.
+use std::ops::Range;
 use std::sync::LazyLock;
 
 use super::Real;
@@ -56,28 +58,31 @@ const MAX_D: usize = 16;
 /// Below this exponent a Gaussian term is below 1e-26 and left out.
 const NEGLIGIBLE: f64 = -60.0;
 
-/// How the power of `tau` of a term is found.
-#[derive(Clone, Copy, Debug)]
-enum TauPower {
-    /// `tau^whole * tau^(eighth/8)`.
-    Table { whole: u8, eighth: u8 },
-    /// Index into the list of other exponents.
-    Listed(u8),
-}
+/// Most pairs of (`l`, `d`), distinct exponents of `tau` and Gaussian terms of any equation.
+const MAX_SLOTS: usize = 40;
+const MAX_TAU: usize = 32;
+const MAX_GAUSSIAN: usize = 16;
 
 #[derive(Clone, Copy, Debug)]
 struct Term {
     n: f64,
-    d: u8,
     t: f64,
-    tau: TauPower,
+    /// Index of `tau^t` among the distinct powers of `tau`.
+    tau: usize,
 }
 
-/// Terms with the same `l`.
+/// Terms with the same `l` and `d`.
+#[derive(Clone, Debug)]
+struct Slot {
+    d: usize,
+    terms: Range<usize>,
+}
+
+/// Slots with the same `l`.
 #[derive(Clone, Debug)]
 struct Group {
-    l: u8,
-    terms: Vec<Term>,
+    l: usize,
+    slots: Range<usize>,
 }
 
 /// A multiparameter equation of state, prepared for evaluation.
@@ -85,11 +90,18 @@ struct Group {
 pub struct Multiparameter {
     data: &'static FluidData,
     groups: Vec<Group>,
-    gaussian: Vec<(GaussianTerm, TauPower)>,
-    /// Exponents of `tau` that are no multiples of 1/8.
-    listed: Vec<f64>,
-    /// Largest whole exponent of `tau`.
-    wholes: usize,
+    /// Sorted by `l`, then `d`, as the groups and slots refer to them.
+    terms: Vec<Term>,
+    slots: Vec<Slot>,
+    /// Terms with the index of their power of `tau`.
+    gaussian: Vec<(GaussianTerm, usize)>,
+    /// Distinct powers of `tau` as `tau^whole tau^(eighth/8)`, (whole, eighth).
+    tau: Vec<(usize, usize)>,
+    /// Those that are no such product: index among them and exponent.
+    tau_others: Vec<(usize, f64)>,
+    /// Largest whole exponent of `tau` and exponent of `delta`.
+    highest_whole: usize,
+    highest_d: usize,
     reducing_density_kg_m3: f64,
 }
 
@@ -97,46 +109,56 @@ pub struct Multiparameter {
 pub static PREPARED: LazyLock<Vec<Multiparameter>> =
     LazyLock::new(|| ALL.iter().map(|data| Multiparameter::new(data)).collect());
 
-/// Powers of `delta` and `tau` that the terms share.
-struct Powers<D> {
-    delta: [D; MAX_D + 1],
-    whole: [D; 33],
-    eighth: [D; 8],
-    listed: [D; 32],
-}
-
 impl Multiparameter {
-    fn new(data: &'static FluidData) -> Self {
-        let mut listed: Vec<f64> = Vec::new();
-        let mut wholes = 0;
-        let mut classify = |t: f64| {
-            let eighths = 8.0 * t;
-            if eighths.fract() == 0.0 && t <= 32.0 {
-                wholes = wholes.max(t as usize);
-                return TauPower::Table { whole: t as u8, eighth: (eighths as usize % 8) as u8 };
-            }
-            let index = listed.iter().position(|&known| known == t).unwrap_or_else(|| {
-                listed.push(t);
-                listed.len() - 1
-            });
-            TauPower::Listed(index as u8)
+    pub(super) fn new(data: &'static FluidData) -> Self {
+        let mut exponents: Vec<f64> = Vec::new();
+        let mut tau_index = |t: f64| {
+            exponents.iter().position(|&known| known == t).unwrap_or_else(|| {
+                exponents.push(t);
+                exponents.len() - 1
+            })
         };
-        let mut groups: Vec<Group> = Vec::new();
-        for &PowerTerm { n, d, t, l } in data.power {
-            let term = Term { n, d, t, tau: classify(t) };
-            match groups.iter_mut().find(|group| group.l == l) {
-                Some(group) => group.terms.push(term),
-                None => groups.push(Group { l, terms: vec![term] }),
+        let mut sorted: Vec<PowerTerm> = data.power.to_vec();
+        sorted.sort_by_key(|term| (term.l, term.d));
+        let (mut groups, mut slots, mut terms): (Vec<Group>, Vec<Slot>, Vec<Term>) = Default::default();
+        for &PowerTerm { n, d, t, l } in &sorted {
+            let (l, d, i) = (usize::from(l), usize::from(d), terms.len());
+            terms.push(Term { n, t, tau: tau_index(t) });
+            match groups.last_mut() {
+                Some(group) if group.l == l => match slots.last_mut() {
+                    Some(slot) if slot.d == d => slot.terms.end = i + 1,
+                    _ => {
+                        slots.push(Slot { d, terms: i..i + 1 });
+                        group.slots.end = slots.len();
+                    }
+                },
+                _ => {
+                    slots.push(Slot { d, terms: i..i + 1 });
+                    groups.push(Group { l, slots: slots.len() - 1..slots.len() });
+                }
             }
         }
-        let gaussian = data.gaussian.iter().map(|&term| (term, classify(term.t))).collect();
+        let gaussian: Vec<_> = data.gaussian.iter().map(|&term| (term, tau_index(term.t))).collect();
+        let in_table = |t: f64| (8.0 * t).fract() == 0.0 && (0.0..=32.0).contains(&t);
+        let product = |&t: &f64| if in_table(t) { (t as usize, (8.0 * t) as usize % 8) } else { (0, 0) };
+        let tau: Vec<(usize, usize)> = exponents.iter().map(product).collect();
+        let tau_others = exponents.iter().copied().enumerate().filter(|&(_, t)| !in_table(t)).collect();
         Self {
-            groups,
-            gaussian,
-            wholes,
-            listed,
-            data,
+            highest_whole: tau.iter().map(|&(whole, _)| whole).max().unwrap_or(0),
+            highest_d: sorted
+                .iter()
+                .map(|term| term.d.max(term.l))
+                .chain(data.gaussian.iter().map(|term| term.d))
+                .max()
+                .map_or(0, usize::from),
             reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
+            groups,
+            terms,
+            slots,
+            gaussian,
+            tau,
+            tau_others,
+            data,
         }
     }
 
@@ -145,89 +167,152 @@ impl Multiparameter {
         self.data
     }
 
-    fn tau_powers<D: Real>(&self, tau: D) -> Powers<D> {
+    /// The distinct powers of `tau`.
+    #[inline(always)]
+    fn tau_powers<D: Real>(&self, tau: D) -> [D; MAX_TAU] {
         let one = D::from(1.0);
-        let mut p = Powers { delta: [one; MAX_D + 1], whole: [one; 33], eighth: [one; 8], listed: [one; 32] };
-        for i in 1..=self.wholes {
-            p.whole[i] = p.whole[i - 1] * tau;
+        let whole: [D; 33] = powers(tau, self.highest_whole);
+        let half = tau.sqrt();
+        let quarter = half.sqrt();
+        let root = quarter.sqrt();
+        let low = quarter * root;
+        let eighth = [one, root, quarter, low, half, half * root, half * quarter, half * low];
+        let mut found = [one; MAX_TAU];
+        for (power, &(i, j)) in found.iter_mut().zip(&self.tau) {
+            *power = whole[i] * eighth[j];
         }
-        let root = tau.sqrt().sqrt().sqrt();
-        for i in 1..8 {
-            p.eighth[i] = p.eighth[i - 1] * root;
-        }
-        if !self.listed.is_empty() {
+        if !self.tau_others.is_empty() {
             let ln_tau = tau.ln();
-            for (power, &t) in p.listed.iter_mut().zip(&self.listed) {
-                *power = (ln_tau * t).exp();
+            for &(i, t) in &self.tau_others {
+                found[i] = (ln_tau * t).exp();
             }
         }
-        p
-    }
-
-    fn delta_powers<D: Real>(delta: D, powers: &mut [D; MAX_D + 1]) {
-        for i in 1..=MAX_D {
-            powers[i] = powers[i - 1] * delta;
-        }
+        found
     }
 
     /// Collapse the power terms at a temperature.
+    #[inline]
     pub fn isotherm(&self, temperature_k: f64) -> Isotherm<'_> {
         let tau = self.data.reducing_temperature_k / temperature_k;
         let powers = self.tau_powers(tau);
-        let groups = self
-            .groups
-            .iter()
-            .map(|group| {
-                let mut coefficients = [0.0; MAX_D + 1];
-                for term in &group.terms {
-                    coefficients[usize::from(term.d)] += term.n * powers.tau(term.tau);
-                }
-                let degree = group.terms.iter().map(|term| usize::from(term.d)).max().unwrap_or(0);
-                (group.l, degree, coefficients)
-            })
-            .collect();
-        let gaussian = self
-            .gaussian
-            .iter()
-            .filter_map(|(g, tau_power)| {
-                let exponent = -g.beta * (tau - g.gamma).powi(2);
-                (exponent > NEGLIGIBLE).then(|| (*g, g.n * powers.tau(*tau_power) * exponent.exp()))
-            })
-            .collect();
-        Isotherm { equation: self, groups, gaussian }
+        let mut coefficients = [0.0; MAX_SLOTS];
+        for (coefficient, slot) in coefficients.iter_mut().zip(&self.slots) {
+            *coefficient = self.collapsed(slot, &powers);
+        }
+        let mut gaussian = [0.0; MAX_GAUSSIAN];
+        for (i, factor) in gaussian.iter_mut().enumerate().take(self.gaussian.len()) {
+            *factor = self.gaussian_factor(i, tau, &powers);
+        }
+        Isotherm { equation: self, coefficients, gaussian }
+    }
+
+    /// Sum of `n tau^t` of a slot.
+    #[inline(always)]
+    fn collapsed(&self, slot: &Slot, tau_powers: &[f64; MAX_TAU]) -> f64 {
+        let mut sum = 0.0;
+        for term in &self.terms[slot.terms.clone()] {
+            sum += term.n * tau_powers[term.tau];
+        }
+        sum
+    }
+
+    /// The part of a Gaussian term that depends on temperature; zero if negligible.
+    #[inline(always)]
+    fn gaussian_factor(&self, index: usize, tau: f64, tau_powers: &[f64; MAX_TAU]) -> f64 {
+        let (g, power) = &self.gaussian[index];
+        let v = tau - g.gamma;
+        let exponent = -g.beta * v * v;
+        if exponent > NEGLIGIBLE { g.n * tau_powers[*power] * exponent.exp() } else { 0.0 }
+    }
+
+    /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`, given the slots' coefficients and the factors of the
+    /// Gaussian terms by index.
+    #[inline(always)]
+    fn slopes(
+        &self,
+        density_kg_m3: f64,
+        coefficient: impl Fn(usize) -> f64,
+        gaussian: impl Fn(usize) -> f64,
+    ) -> (f64, f64) {
+        let delta = density_kg_m3 / self.reducing_density_kg_m3;
+        let powers: [f64; MAX_D + 1] = powers(delta, self.highest_d);
+        let (mut first, mut second) = (0.0, 0.0);
+        for group in &self.groups {
+            let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
+            for i in group.slots.clone() {
+                let degree = self.slots[i].d;
+                let d = degree as f64;
+                let c = coefficient(i) * powers[degree];
+                let c1 = c * d;
+                s0 += c;
+                s1 += c1;
+                s2 += c1 * (d - 1.0);
+            }
+            if group.l == 0 {
+                first += s1;
+                second += s2;
+                continue;
+            }
+            let power = powers[group.l];
+            let decay = (-power).exp();
+            let l = group.l as f64;
+            let shift = l * power;
+            first += decay * (s1 - shift * s0);
+            second += decay * (s2 + shift * ((shift + (1.0 - l)) * s0 - 2.0 * s1));
+        }
+        for (i, (g, _)) in self.gaussian.iter().enumerate() {
+            let factor = gaussian(i);
+            if factor == 0.0 {
+                continue;
+            }
+            let u = delta - g.epsilon;
+            let d = f64::from(g.d);
+            let c = factor * powers[usize::from(g.d)] * (-g.eta * u * u).exp();
+            let x = d - 2.0 * g.eta * delta * u;
+            first += c * x;
+            second += c * (x * x - 2.0 * g.eta * delta * delta - d);
+        }
+        (first, second)
     }
 }
 
-impl<D: Real> Powers<D> {
-    fn tau(&self, power: TauPower) -> D {
-        match power {
-            TauPower::Table { whole, eighth: 0 } => self.whole[usize::from(whole)],
-            TauPower::Table { whole, eighth } => {
-                self.whole[usize::from(whole)] * self.eighth[usize::from(eighth)]
-            }
-            TauPower::Listed(index) => self.listed[usize::from(index)],
-        }
+/// `1, x, x^2, ...` up to an exponent, by halves: a chain of products would wait for each before the next.
+#[inline(always)]
+fn powers<D: Real, const N: usize>(x: D, highest: usize) -> [D; N] {
+    let mut powers = [D::from(1.0); N];
+    powers[1] = x;
+    for i in 2..=highest {
+        powers[i] = powers[i / 2] * powers[i - i / 2];
     }
+    powers
 }
 
 impl HelmholtzEnergy for Multiparameter {
     fn residual<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> Reduced<D> {
         let delta = density_kg_m3 / self.reducing_density_kg_m3;
         let tau = temperature_k.recip() * self.data.reducing_temperature_k;
-        let mut powers = self.tau_powers(tau);
-        Self::delta_powers(delta, &mut powers.delta);
+        let tau_powers = self.tau_powers(tau);
+        let delta_powers: [D; MAX_D + 1] = powers(delta, self.highest_d);
         let mut sum = Reduced::zero();
         for group in &self.groups {
             let mut s = Reduced::<D>::zero();
-            for term in &group.terms {
-                let (d, t) = (f64::from(term.d), term.t);
-                let c = powers.delta[usize::from(term.d)] * powers.tau(term.tau) * term.n;
+            for slot in &self.slots[group.slots.clone()] {
+                let (mut c0, mut c1, mut c2) = (D::from(0.0), D::from(0.0), D::from(0.0));
+                for term in &self.terms[slot.terms.clone()] {
+                    let c = tau_powers[term.tau] * term.n;
+                    let ct = c * term.t;
+                    c0 += c;
+                    c1 += ct;
+                    c2 += ct * (term.t - 1.0);
+                }
+                let (power, d) = (delta_powers[slot.d], slot.d as f64);
+                let (c, ct) = (c0 * power, c1 * power);
                 s.a += c;
                 s.d += c * d;
-                s.t += c * t;
+                s.t += ct;
                 s.dd += c * (d * d);
-                s.dt += c * (d * t);
-                s.tt += c * (t * t - t);
+                s.dt += ct * d;
+                s.tt += c2 * power;
             }
             if group.l == 0 {
                 sum.a += s.a;
@@ -238,8 +323,8 @@ impl HelmholtzEnergy for Multiparameter {
                 sum.tt += s.tt;
                 continue;
             }
-            let l = f64::from(group.l);
-            let power = powers.delta[usize::from(group.l)];
+            let l = group.l as f64;
+            let power = delta_powers[group.l];
             let decay = (-power).exp();
             // delta d/d(delta) of delta^d exp(-delta^l) multiplies by d - l delta^l.
             let shift = power * l;
@@ -256,7 +341,7 @@ impl HelmholtzEnergy for Multiparameter {
             if exponent.re() < NEGLIGIBLE {
                 continue;
             }
-            let c = powers.delta[usize::from(g.d)] * powers.tau(*tau_power) * exponent.exp() * g.n;
+            let c = delta_powers[usize::from(g.d)] * tau_powers[*tau_power] * exponent.exp() * g.n;
             let x = delta * u * (-2.0 * g.eta) + f64::from(g.d);
             let y = tau * v * (-2.0 * g.beta) + g.t;
             sum.a += c;
@@ -269,53 +354,33 @@ impl HelmholtzEnergy for Multiparameter {
         sum
     }
 
+    // Inlined so that the pressure alone does not pay for the second slope.
+    #[inline(always)]
     fn residual_density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
-        self.isotherm(temperature_k).slopes(density_kg_m3)
+        let tau = self.data.reducing_temperature_k / temperature_k;
+        let powers = self.tau_powers(tau);
+        self.slopes(
+            density_kg_m3,
+            |i| self.collapsed(&self.slots[i], &powers),
+            |i| self.gaussian_factor(i, tau, &powers),
+        )
     }
 }
 
 /// The equation at one temperature: polynomials in density times exponentials.
 pub struct Isotherm<'a> {
     equation: &'a Multiparameter,
-    /// Exponent, degree and coefficients of each group.
-    groups: Vec<(u8, usize, [f64; MAX_D + 1])>,
-    gaussian: Vec<(GaussianTerm, f64)>,
+    /// Coefficient of each pair of `l` and `d`.
+    coefficients: [f64; MAX_SLOTS],
+    /// Factor of each Gaussian term; zero for those left out.
+    gaussian: [f64; MAX_GAUSSIAN],
 }
 
 impl Isotherm<'_> {
     /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`.
+    #[inline]
     pub fn slopes(&self, density_kg_m3: f64) -> (f64, f64) {
-        let delta = density_kg_m3 / self.equation.reducing_density_kg_m3;
-        let (mut first, mut second) = (0.0, 0.0);
-        for (l, degree, coefficients) in &self.groups {
-            // Horner for sum c, sum d c, sum d (d-1) c.
-            let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
-            for d in (0..=*degree).rev() {
-                s2 = s2 * delta + 2.0 * s1;
-                s1 = s1 * delta + s0;
-                s0 = s0 * delta + coefficients[d];
-            }
-            let (s1, s2) = (s1 * delta, s2 * delta * delta);
-            if *l == 0 {
-                first += s1;
-                second += s2;
-                continue;
-            }
-            let power = delta.powi(i32::from(*l));
-            let decay = (-power).exp();
-            let l = f64::from(*l);
-            let shift = l * power;
-            first += decay * (s1 - shift * s0);
-            second += decay * (s2 + shift * ((shift + (1.0 - l)) * s0 - 2.0 * s1));
-        }
-        for (g, coefficient) in &self.gaussian {
-            let u = delta - g.epsilon;
-            let c = coefficient * delta.powi(i32::from(g.d)) * (-g.eta * u * u).exp();
-            let x = f64::from(g.d) - 2.0 * g.eta * delta * u;
-            first += c * x;
-            second += c * (x * x - 2.0 * g.eta * delta * delta - f64::from(g.d));
-        }
-        (first, second)
+        self.equation.slopes(density_kg_m3, |i| self.coefficients[i], |i| self.gaussian[i])
     }
 }
 

@@ -16,6 +16,8 @@ mod peng_robinson;
 mod saturation;
 mod solve;
 mod state;
+#[cfg(test)]
+mod tests;
 pub mod transport;
 
 pub use saturation::Saturation;
@@ -91,6 +93,9 @@ pub struct PressureDerivatives {
 const DENSEST: f64 = 1.35;
 /// Densest state of a cubic equation, relative to its covolume limit.
 const DENSEST_CUBIC: f64 = 0.98;
+
+/// Pressures, Pa, and densities, kg/m³, below this lose their digits in products; they count as not positive.
+const THINNEST: f64 = 1e-200;
 
 impl Fluid {
     /// A fluid with its reference equation.
@@ -168,7 +173,8 @@ impl Fluid {
     pub fn domain(&self) -> Domain {
         let liquid = self.data.triple_liquid_density_mol_m3 * self.data.molar_mass_kg_mol * DENSEST;
         let highest_density_kg_m3 = match self.description {
-            Description::PengRobinson(cubic) => (DENSEST_CUBIC * cubic.densest_kg_m3()).min(liquid),
+            // Its liquids differ from the measured ones: that of helium is denser.
+            Description::PengRobinson(cubic) => DENSEST_CUBIC * cubic.densest_kg_m3(),
             _ => liquid,
         };
         Domain {
@@ -211,6 +217,7 @@ impl Fluid {
         density_kg_m3 * self.specific_gas_constant_j_kg_k() * temperature_k * (1.0 + slope)
     }
 
+    #[inline(always)]
     fn density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
         match &self.description {
             Description::Reference(equation) => {
@@ -239,18 +246,11 @@ impl Fluid {
     /// # Errors
     /// Names the value that is outside, the bound, and what to do.
     pub fn check(&self, density_kg_m3: f64, temperature_k: f64) -> Result<(), ThermalError> {
-        let domain = self.domain();
         self.check_temperature(temperature_k)?;
-        if !(density_kg_m3 > 0.0 && density_kg_m3 <= domain.highest_density_kg_m3) {
-            return Err(ThermalError::DensityOutside {
-                fluid: self.name(),
-                density_kg_m3,
-                highest_kg_m3: domain.highest_density_kg_m3,
-            });
-        }
-        let pressure_pa = self.pressure_pa(density_kg_m3, temperature_k);
-        self.check_pressure(pressure_pa)?;
-        self.check_phase(density_kg_m3, temperature_k)
+        self.check_density(density_kg_m3)?;
+        // Between the phases the pressure may be anything, even negative: the phase comes first.
+        self.check_phase(density_kg_m3, temperature_k)?;
+        self.check_pressure(self.pressure_pa(density_kg_m3, temperature_k))
     }
 
     fn check_temperature(&self, temperature_k: f64) -> Result<(), ThermalError> {
@@ -266,9 +266,17 @@ impl Fluid {
         })
     }
 
+    fn check_density(&self, density_kg_m3: f64) -> Result<(), ThermalError> {
+        let highest_kg_m3 = self.domain().highest_density_kg_m3;
+        if density_kg_m3 > THINNEST && density_kg_m3 <= highest_kg_m3 {
+            return Ok(());
+        }
+        Err(ThermalError::DensityOutside { fluid: self.name(), density_kg_m3, highest_kg_m3 })
+    }
+
     fn check_pressure(&self, pressure_pa: f64) -> Result<(), ThermalError> {
         let highest_pa = self.domain().highest_pressure_pa;
-        if pressure_pa > 0.0 && pressure_pa <= highest_pa {
+        if pressure_pa > THINNEST && pressure_pa <= highest_pa {
             return Ok(());
         }
         Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa })
@@ -282,11 +290,15 @@ impl Fluid {
     /// Thermal conductivity, W/(m K), with its enhancement near the critical point.
     pub fn conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         let background = self.transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
-        let Some(reference_k) = self.transport.reference_temperature_k() else { return background };
+        let reference_k = self.transport.reference_temperature_k();
+        if reference_k.is_some_and(|reference_k| temperature_k.re() >= reference_k) {
+            return background;
+        }
         let state = self.state(density_kg_m3, temperature_k);
-        let reference = self.residual(density_kg_m3, D::from(reference_k));
-        let dp_drho_reference =
-            (reference.d * 2.0 + reference.dd + 1.0) * (self.specific_gas_constant_j_kg_k() * reference_k);
+        let dp_drho_reference = reference_k.map_or(D::from(0.0), |reference_k| {
+            let reference = self.residual(density_kg_m3, D::from(reference_k));
+            (reference.d * 2.0 + reference.dd + 1.0) * (self.specific_gas_constant_j_kg_k() * reference_k)
+        });
         let at = TransportState {
             temperature_k,
             density_kg_m3,

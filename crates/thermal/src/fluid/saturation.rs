@@ -3,7 +3,9 @@
 //! Below the critical temperature the isotherm has a vapour branch that ends at its first maximum (spinodal) and a
 //! liquid branch that begins at its last minimum. Both are found by scanning from outside, so that the
 //! unphysical loops of multiparameter equations in between do no harm. The saturation pressure is where the Gibbs
-//! energies of the branches agree, by bisection: slow (about 1 ms) and safe. No ancillary equation is needed.
+//! energies of the branches agree; their slopes in pressure are the volumes, so that Newton's method finds it, inside a
+//! bracket. No ancillary equation is needed.
+use super::solve::bracketed_newton;
 use super::{Description, Fluid};
 use crate::ThermalError;
 
@@ -22,44 +24,50 @@ pub struct Saturation {
 pub(super) const CRITICAL_MARGIN: f64 = 0.005;
 /// Steps of the scans for the spinodals.
 const SCAN: usize = 400;
-const BISECTIONS: usize = 80;
 
 impl Fluid {
     /// Vapour-liquid equilibrium at a temperature; `None` at or above the critical temperature and for the ideal gas.
     ///
     /// # Errors
-    /// Within 0.5 % below the critical temperature, or where the equation has no coexisting branches.
+    /// Below the domain, within 0.5 % below the critical temperature, or where the equation has no coexisting branches.
     pub fn saturation(&self, temperature_k: f64) -> Result<Option<Saturation>, ThermalError> {
         let critical_k = self.data.critical_temperature_k;
         if temperature_k >= critical_k || matches!(self.description, Description::IdealGas(_)) {
             return Ok(None);
         }
+        self.check_temperature(temperature_k)?;
         let undecided = || ThermalError::NearCritical { fluid: self.name(), temperature_k, critical_k };
         if temperature_k > critical_k * (1.0 - CRITICAL_MARGIN) {
             return Err(undecided());
         }
         let densest = self.domain().highest_density_kg_m3;
-        let slope = |rho: f64| {
-            let (d, dd) = self.density_slopes(rho, temperature_k);
-            1.0 + 2.0 * d + dd
-        };
+        let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
+        let isotherm = self.pressure_along_isotherm(temperature_k);
+        let slope = |rho: f64| isotherm(rho).1;
         let vapour_end = first_sign_change(slope, densest * 1e-6, densest).ok_or_else(undecided)?;
         let liquid_end = first_sign_change(slope, densest, vapour_end).ok_or_else(undecided)?;
-        let pressure = |rho: f64| self.pressure_pa(rho, temperature_k);
+        let density = |p: f64, low: f64, high: f64, start: f64| {
+            bracketed_newton(low, high, start, |rho| {
+                let (pressure, slope) = isotherm(rho);
+                (pressure - p, slope)
+            })
+            .unwrap_or(f64::NAN)
+        };
         let gibbs = |rho: f64| {
             let state = self.state(rho, temperature_k);
             state.enthalpy_j_kg - temperature_k * state.entropy_j_kg_k
         };
-        let mut low = pressure(liquid_end).max(0.0);
-        let mut high = pressure(vapour_end);
-        let (mut vapour, mut liquid) = (vapour_end, liquid_end);
-        for _ in 0..BISECTIONS {
-            let p = 0.5 * (low + high);
-            vapour = branch_density(pressure, p, 0.0, vapour_end);
-            liquid = branch_density(pressure, p, liquid_end, densest);
-            if gibbs(vapour) < gibbs(liquid) { low = p } else { high = p }
-        }
-        Ok(Some(Saturation { pressure_pa: 0.5 * (low + high), vapour_kg_m3: vapour, liquid_kg_m3: liquid }))
+        // From outside the curvature of each branch lets Newton's method approach without leaving it.
+        let branches =
+            |p: f64| (density(p, 0.0, vapour_end, p / rt), density(p, liquid_end, densest, densest));
+        let (low, high) = (isotherm(liquid_end).0.max(0.0), isotherm(vapour_end).0);
+        let pressure_pa = bracketed_newton(low, high, 0.5 * (low + high), |p| {
+            let (vapour, liquid) = branches(p);
+            (gibbs(vapour) - gibbs(liquid), 1.0 / vapour - 1.0 / liquid)
+        })
+        .ok_or_else(undecided)?;
+        let (vapour_kg_m3, liquid_kg_m3) = branches(pressure_pa);
+        Ok(Some(Saturation { pressure_pa, vapour_kg_m3, liquid_kg_m3 }))
     }
 
     /// Refuse a two-phase state.
@@ -104,14 +112,4 @@ fn first_sign_change(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> 
         before = after;
     }
     None
-}
-
-/// Density on a branch where the pressure increases.
-fn branch_density(pressure: impl Fn(f64) -> f64, p: f64, low: f64, high: f64) -> f64 {
-    let (mut low, mut high) = (low, high);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if pressure(middle) < p { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
 }

@@ -9,11 +9,13 @@ use super::{Description, Fluid, Real, State};
 use crate::ThermalError;
 
 const MAX_ITERATIONS: usize = 200;
-/// Relative tolerance of all roots.
-const TOLERANCE: f64 = 1e-13;
+/// Up to this part of the critical pressure a gas above 0.8 critical temperatures is not near its saturation line.
+const THIN: f64 = 0.2;
+/// Relative length of the last Newton step of all roots; the error after it is about its square.
+const TOLERANCE: f64 = 1e-9;
 
 /// Newton in a bracket for an increasing function given with its slope; `None` if it does not converge.
-fn bracketed_newton(
+pub(super) fn bracketed_newton(
     mut low: f64,
     mut high: f64,
     start: f64,
@@ -60,7 +62,7 @@ impl Fluid {
         let densest = self.domain().highest_density_kg_m3;
         let (mut low, mut high) = (0.0, densest);
         let critical_k = self.data.critical_temperature_k;
-        if temperature_k < critical_k && pressure_pa > 0.2 * self.data.critical_pressure_pa
+        if temperature_k < critical_k && pressure_pa > THIN * self.data.critical_pressure_pa
             || temperature_k < 0.8 * critical_k
         {
             // Near and above saturation the branch must be known.
@@ -82,22 +84,31 @@ impl Fluid {
             high = 0.5 * self.data.reducing_density_mol_m3 * self.data.molar_mass_kg_mol;
         }
         let start = if low > 0.0 { low } else { ideal.min(0.5 * densest) };
-        let found = match &self.description {
-            Description::Reference(equation) => {
-                let isotherm = equation.isotherm(temperature_k);
-                bracketed_newton(low, high, start, |rho| {
-                    let (d, dd) = isotherm.slopes(rho);
-                    (rho * rt * (1.0 + d) - pressure_pa, rt * (1.0 + 2.0 * d + dd))
-                })
-            }
-            _ => bracketed_newton(low, high, start, |rho| {
-                let (d, dd) = self.density_slopes(rho, temperature_k);
-                (rho * rt * (1.0 + d) - pressure_pa, rt * (1.0 + 2.0 * d + dd))
-            }),
-        };
+        let isotherm = self.pressure_along_isotherm(temperature_k);
+        let found = bracketed_newton(low, high, start, |rho| {
+            let (pressure, slope) = isotherm(rho);
+            (pressure - pressure_pa, slope)
+        });
         match found {
             Some(rho) if rho < densest * (1.0 - 1e-9) => Ok(rho),
             _ => self.dense_enough(f64::INFINITY, pressure_pa),
+        }
+    }
+
+    /// Pressure, Pa, and its slope in density as functions of the density, the equation prepared for the temperature.
+    #[inline]
+    pub(super) fn pressure_along_isotherm(&self, temperature_k: f64) -> impl Fn(f64) -> (f64, f64) {
+        let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
+        let prepared = match &self.description {
+            Description::Reference(equation) => Some(equation.isotherm(temperature_k)),
+            _ => None,
+        };
+        move |rho| {
+            let (d, dd) = match &prepared {
+                Some(isotherm) => isotherm.slopes(rho),
+                None => self.density_slopes(rho, temperature_k),
+            };
+            (rho * rt * (1.0 + d), rt * (1.0 + 2.0 * d + dd))
         }
     }
 
@@ -128,7 +139,7 @@ impl Fluid {
     /// The phase is not checked.
     ///
     /// # Errors
-    /// No temperature between half the lowest and twice the highest of the domain has this energy.
+    /// The density is outside the domain, or no temperature between half the lowest and twice the highest of the domain has this energy.
     pub fn temperature_from_density_energy(
         &self,
         density_kg_m3: f64,
@@ -138,7 +149,8 @@ impl Fluid {
         let domain = self.domain();
         let (low, high) = (0.5 * domain.lowest_temperature_k, 2.0 * domain.highest_temperature_k);
         let none = ThermalError::NoTemperature { fluid: self.name(), density_kg_m3, energy_j_kg };
-        if !(density_kg_m3 > 0.0 && density_kg_m3.is_finite() && energy_j_kg.is_finite()) {
+        self.check_density(density_kg_m3)?;
+        if !energy_j_kg.is_finite() {
             return Err(none);
         }
         let energy = |t: f64| {
@@ -214,17 +226,22 @@ impl Fluid {
         let critical_k = domain.critical_temperature_k;
         let mut low = domain.lowest_temperature_k * (1.0 + 1e-12);
         let mut high = domain.highest_temperature_k;
-        let two_phases = !matches!(self.description, Description::IdealGas(_));
-        if two_phases && value(&at(critical_k)?).0 <= target {
-            low = critical_k;
-        } else if two_phases && pressure_pa < self.data.critical_pressure_pa {
-            (low, high) = self.side_of_saturation(pressure_pa, target, low, &value)?.ok_or_else(none)?;
-        } else if two_phases {
-            high = critical_k;
+        if !matches!(self.description, Description::IdealGas(_)) {
+            // Too dense at the critical temperature: the states are above it.
+            if at(critical_k).map_or(true, |state| value(&state).0 <= target) {
+                low = critical_k;
+            } else {
+                (low, high) = self.below_critical(pressure_pa, target, low, &value)?;
+            }
         }
-        // The liquid below its melting line is not in the domain: raise the lower end until it is.
-        while at(low).is_err() && low < high {
-            low += 0.02 * (high - low) + 1e-6;
+        // The liquid below its melting line and what is too dense are not in the domain: raise the lower end until they are not in it.
+        if at(low).is_err() && at(high).is_ok() {
+            let mut outside = low;
+            low = high;
+            for _ in 0..50 {
+                let middle = 0.5 * (outside + low);
+                if at(middle).is_ok() { low = middle } else { outside = middle }
+            }
         }
         let start = if (low..high).contains(&300.0) { 300.0 } else { 0.5 * (low + high) };
         let t = bracketed_newton(low, high, start, |t| {
@@ -243,37 +260,52 @@ impl Fluid {
         Ok(state)
     }
 
-    /// Part of an isobar below the critical pressure on which a property below its value at the critical temperature lies.
-    fn side_of_saturation(
+    /// Part of an isobar below the critical temperature on which a property's value lies, given that it is below that at
+    /// the critical temperature.
+    fn below_critical(
         &self,
         pressure_pa: f64,
         target: f64,
         lowest_k: f64,
         value: &impl Fn(&State) -> (f64, f64),
-    ) -> Result<Option<(f64, f64)>, ThermalError> {
-        let highest_k = self.data.critical_temperature_k * (1.0 - CRITICAL_MARGIN);
+    ) -> Result<(f64, f64), ThermalError> {
+        let critical_k = self.data.critical_temperature_k;
+        // The equation of air, a mixture taken as one substance, has its own critical point a little lower.
+        let mut highest_k = critical_k * (1.0 - CRITICAL_MARGIN) * (1.0 - 1e-12);
+        while self.saturation(highest_k).is_err() && highest_k > 0.95 * critical_k {
+            highest_k *= 1.0 - CRITICAL_MARGIN;
+        }
+        let near_critical = || ThermalError::NearCritical {
+            fluid: self.name(),
+            temperature_k: 0.5 * (highest_k + critical_k),
+            critical_k,
+        };
         let pressure_at =
             |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
+        // Up to where the phase is told apart; thin gas is never in doubt.
+        let end = |density: Result<f64, ThermalError>| match density {
+            _ if pressure_pa <= THIN * self.data.critical_pressure_pa => Ok(critical_k),
+            Ok(density) if value(&self.state(density, highest_k)).0 < target => Err(near_critical()),
+            _ => Ok(highest_k),
+        };
         let (mut low, mut high) = (lowest_k, highest_k);
-        if pressure_at(high)? < pressure_pa {
-            return Ok(None);
-        }
-        if pressure_at(low)? > pressure_pa {
-            return Ok(Some((lowest_k, self.data.critical_temperature_k)));
+        if pressure_at(high)? < pressure_pa || pressure_at(low)? > pressure_pa {
+            return Ok((lowest_k, end(self.density_from_pressure_temperature(pressure_pa, highest_k))?));
         }
         for _ in 0..45 {
             let middle = 0.5 * (low + high);
             if pressure_at(middle)? < pressure_pa { low = middle } else { high = middle }
         }
         let saturation_k = 0.5 * (low + high);
-        let Some(saturation) = self.saturation(saturation_k)? else { return Ok(None) };
+        let Some(saturation) = self.saturation(saturation_k)? else { return Err(near_critical()) };
         let vapour = value(&self.state(saturation.vapour_kg_m3, saturation_k)).0;
         let liquid = value(&self.state(saturation.liquid_kg_m3, saturation_k)).0;
         if target >= vapour {
-            return Ok(Some((saturation_k * (1.0 + 1e-9), self.data.critical_temperature_k)));
+            let end = end(self.density_from_pressure_temperature(pressure_pa, highest_k))?;
+            return Ok(((saturation_k * (1.0 + 1e-9)).min(end), end));
         }
         if target <= liquid {
-            return Ok(Some((lowest_k, saturation_k * (1.0 - 1e-9))));
+            return Ok((lowest_k, saturation_k * (1.0 - 1e-9)));
         }
         Err(ThermalError::TwoPhaseIsobar { fluid: self.name(), pressure_pa, saturation_k })
     }

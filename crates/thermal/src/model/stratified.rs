@@ -33,8 +33,8 @@ use crate::vessel::{InnerVolume, Stratification, Vessel};
 const EQUALISATION_S: f64 = 1e-5;
 const SOUND_M_S: f64 = 350.0;
 /// Smoothing of sign changes: heat flow W, temperature difference K, enthalpy J/kg, mass flow kg/s.
-const SMOOTH_W: f64 = 1e-3;
-const SMOOTH_K: f64 = 1e-2;
+const SMOOTH_W: f64 = 0.05;
+const SMOOTH_K: f64 = 2e-2;
 const SMOOTH_J_KG: f64 = 1.0;
 const SMOOTH_KG_S: f64 = 1e-8;
 
@@ -43,8 +43,10 @@ fn positive<D: Real>(x: D, width: f64) -> D {
     (x + (x * x + width * width).sqrt()) * 0.5
 }
 
+/// Smooth minimum of two positive numbers, `(a^-4 + b^-4)^(-1/4)`: 16 % below the smaller one where they are equal.
 fn smaller<D: Real>(a: D, b: D) -> D {
-    if a.re() < b.re() { a } else { b }
+    let (low, high) = if a.re() < b.re() { (a, b) } else { (b, a) };
+    low * ((low / high).powi(4) + 1.0).powf(-0.25)
 }
 
 /// What the flow network needs of a cell.
@@ -228,7 +230,7 @@ impl Stratified {
             let difference = a.enthalpy - b.enthalpy;
             let carried = core * (a.enthalpy + b.enthalpy) * 0.5 + magnitude * difference * 0.5;
             let density = (a.density + b.density) * 0.5;
-            let inverted = positive(a.temperature_k - b.temperature_k, 0.1 * SMOOTH_K);
+            let inverted = positive(a.temperature_k - b.temperature_k, 0.25 * SMOOTH_K);
             let overturn = density
                 * (a.expansion * inverted * (GRAVITY_M_S2 / dz)).sqrt()
                 * (area * (0.5 * self.diameter_m).powi(2) / dz);

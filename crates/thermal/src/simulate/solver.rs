@@ -12,11 +12,12 @@ use std::collections::BTreeMap;
 
 use diffsol::matrix::sparsity::MatrixSparsity;
 use diffsol::{
-    ConstantOp, FaerContext, FaerSparseLU, FaerSparseMat, FaerVec, Matrix, NonLinearOp, NonLinearOpJacobian,
+    Bdf, ConstantOp, FaerContext, FaerSparseMat, FaerVec, Matrix, NonLinearOp, NonLinearOpJacobian,
     OdeBuilder, OdeEquations, OdeEquationsRef, OdeSolverMethod, OdeSolverStopReason, Op, ParameterisedOp,
-    UnitCallable, Vector,
+    Sdirk, Tableau, UnitCallable, Vector,
 };
 
+use super::bordered::BorderedLu;
 use super::{Method, SimulationSettings};
 use crate::ThermalError;
 use crate::model::Model;
@@ -25,7 +26,7 @@ use crate::trajectory::SolverStatistics;
 
 type M = FaerSparseMat<f64>;
 type V = FaerVec<f64>;
-type LS = FaerSparseLU<f64>;
+type LS = BorderedLu;
 
 /// What drives the model now; changed between segments while the solver holds the equations.
 pub struct Drive {
@@ -344,20 +345,28 @@ pub fn with_stepper<R>(
         .h0(settings.first_step_s)
         .build_from_eqn(Equations { rhs, init })
         .map_err(failed)?;
-    problem.ode_options.max_nonlinear_solver_failures = 500;
+    // Counted over the whole run by diffsol: a long run may have many, a stuck one ends at the smallest step.
+    problem.ode_options.max_nonlinear_solver_failures = settings.maximum_steps;
     let (buffer, rate) = (V::zeros(n, context), V::zeros(n, context));
     let equations = &problem.eqn;
+    let border = n - model.layout().mean_wall;
+    let one_step = |tableau: Tableau<f64>| -> Result<Sdirk<'_, _, LS>, diffsol::DiffsolError> {
+        let state = problem.rk_state_and_consistent::<LS>(&tableau)?;
+        Sdirk::new(&problem, state, tableau, BorderedLu::new(border))
+    };
     match method {
         Method::TrBdf2 => {
-            let solver = problem.tr_bdf2::<LS>().map_err(failed)?;
+            let solver = one_step(Tableau::tr_bdf2()).map_err(failed)?;
             work(&mut Wrapper { solver, equations, buffer, rate })
         }
         Method::Esdirk34 => {
-            let solver = problem.esdirk34::<LS>().map_err(failed)?;
+            let solver = one_step(Tableau::esdirk34()).map_err(failed)?;
             work(&mut Wrapper { solver, equations, buffer, rate })
         }
         Method::Automatic | Method::Bdf => {
-            let solver = problem.bdf::<LS>().map_err(failed)?;
+            let state = problem.bdf_state::<LS>().map_err(failed)?;
+            let solver: Bdf<'_, _, LS> =
+                Bdf::new(&problem, state, BorderedLu::new(border)).map_err(failed)?;
             work(&mut Wrapper { solver, equations, buffer, rate })
         }
     }

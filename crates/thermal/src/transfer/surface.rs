@@ -6,6 +6,8 @@
 
 /// Iterations after which the surface temperature counts as found; metal takes two, plastic five.
 const MAX_ITERATIONS: usize = 40;
+/// A step below which the film is taken as linear, K: its curvature then changes the heat by less than 1e-10.
+const LAST_STEP_K: f64 = 1e-6;
 
 /// A surface in balance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,10 +43,11 @@ pub fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> Surfa
     for _ in 0..MAX_ITERATIONS {
         let step = (conductance_w_k * (node_k - surface_k) - heat_w) / (conductance_w_k + slope);
         surface_k += step;
-        (heat_w, slope) = film(surface_k);
-        if step.abs() <= 1e-12 * surface_k.abs() {
+        if step.abs() <= LAST_STEP_K {
+            heat_w += slope * step;
             break;
         }
+        (heat_w, slope) = film(surface_k);
     }
     let film_factor = conductance_w_k / (conductance_w_k + slope);
     let node_factor = conductance_w_k + conductance_slope_w_k2 * (node_k - surface_k);

@@ -1,6 +1,8 @@
 //! Tests of the thermal crate, modules by kind.
 mod analytic;
+mod blowdown;
+mod conservation;
 mod convergence;
-mod i1;
 mod jacobian;
+mod preset_runs;
 mod support;
