@@ -4,17 +4,22 @@ use super::message::Messages;
 use super::output;
 use anyhow::bail;
 use cylwatch::thermal::{scenario, vessel};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
-/// Writes `vessel.toml` and `scenario.toml`; files that are there stay as they are.
+/// Writes `vessel.toml`, `scenario.toml` and the tables it names; files that are there stay as they are.
 pub fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> {
     let folder = &arguments.folder;
     // Loading says which name is unknown, and which would be right.
     vessel::presets::load(&arguments.vessel)?;
     scenario::presets::load(&arguments.scenario)?;
-    let vessel = vessel::presets::text(&arguments.vessel).unwrap_or_default();
-    let scenario = scenario::presets::text(&arguments.scenario).unwrap_or_default();
-    let files = [("vessel.toml", vessel), ("scenario.toml", scenario)];
-    for (name, _) in &files {
+    let text = |text: Option<&str>| text.unwrap_or_default().to_owned();
+    let vessel = text(vessel::presets::text(&arguments.vessel));
+    let scenario = text(scenario::presets::text(&arguments.scenario));
+    let mut files = tables(&scenario)?;
+    files.insert("vessel.toml".into(), vessel);
+    files.insert("scenario.toml".into(), scenario);
+    for name in files.keys() {
         let path = folder.join(name);
         if path.symlink_metadata().is_ok() {
             bail!(
@@ -27,9 +32,25 @@ pub fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> 
     for (name, text) in &files {
         output::write_new_file(&folder.join(name), text.as_bytes())?;
     }
-    let [vessel, scenario] = files.map(|(name, _)| folder.join(name).display().to_string());
+    let path = |name: &str| folder.join(name).display().to_string();
+    let written: Vec<String> = files.keys().map(|name| path(name)).collect();
     messages.say(&format!(
-        "wrote {vessel} and {scenario}; try: cylwatch simulate {vessel} {scenario} --plot run.svg -o run.csv"
+        "wrote {}; try: cylwatch simulate {} {} --plot run.svg -o run.csv",
+        written.join(", "),
+        path("vessel.toml"),
+        path("scenario.toml")
     ));
     Ok(())
+}
+
+/// The tables that a built-in scenario names, by file name.
+fn tables(scenario: &str) -> anyhow::Result<BTreeMap<String, String>> {
+    let read = RefCell::new(BTreeMap::new());
+    let table = |file: &str| {
+        let text = scenario::presets::table(file)?;
+        read.borrow_mut().insert(file.to_owned(), text.clone());
+        Ok(text)
+    };
+    scenario::read_scenario(scenario, "scenario.toml", &table)?;
+    Ok(read.into_inner())
 }

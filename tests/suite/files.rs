@@ -20,6 +20,16 @@ fn start_files_are_written_once_and_run_as_they_are() {
 }
 
 #[test]
+fn start_files_bring_the_tables_that_the_scenario_names() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &["init", "--scenario", "railway-week"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert_eq!(files(folder.path()), ["railway-week.csv", "scenario.toml", "vessel.toml"]);
+    let run = run(folder.path(), &["simulate", "vessel.toml", "scenario.toml", "-q"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+}
+
+#[test]
 fn an_unknown_start_preset_writes_nothing() {
     let folder = tempdir().unwrap();
     refused(folder.path(), &["init", "--vessel", "nitrogen-20"], &["nitrogen-20", "nitrogen-20l"]);
