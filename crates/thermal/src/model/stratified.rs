@@ -364,8 +364,8 @@ impl Stratified {
                     matrix[(row, first + lane)] = g[lane];
                 }
             };
-            for i in 0..n {
-                let node = nodes[i].map(|value| lift(value, i));
+            for (i, node) in nodes.iter().enumerate() {
+                let node = node.map(|value| lift(value, i));
                 let (mut mass, mut enthalpy) = (network.mass_kg_s[i], network.enthalpy_w[i]);
                 if i == self.outlet {
                     mass += mass_in;

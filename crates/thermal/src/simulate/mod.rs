@@ -405,5 +405,3 @@ impl Samples {
     }
 }
 
-#[cfg(test)]
-mod tests;
