@@ -238,7 +238,8 @@ impl Model {
         let jet_area: f64 =
             contacts.iter().map(|c| c.area_m2 * (balance.surface_k - at.points[c.cell].temperature_k)).sum();
         let state_columns = |gas_cell: usize| [gas_cell, n + gas_cell, 2 * n];
-        let mut entries = vec![FaceEntry { column: local.inner + column, surface: surface_by_cell, own: None }];
+        let mut entries =
+            vec![FaceEntry { column: local.inner + column, surface: surface_by_cell, own: None }];
         for (k, contact) in contacts.iter().enumerate() {
             for (state, value) in state_columns(contact.cell).into_iter().zip(direct(k)) {
                 entries.push(FaceEntry { column: state, surface: -value / total, own: Some((k, value)) });

@@ -299,7 +299,7 @@ impl Stratified {
     }
 
     /// Exact derivatives of [`Stratified::rates`], by dual numbers: once per cell for the equation of state, in
-    /// passes of eight columns for the flow network. Shapes as in [`super::jacobian::GasBlock`].
+    /// passes of eight columns for the flow network. Shapes as in `GasBlock`.
     ///
     /// # Errors
     /// As [`Stratified::rates`].
