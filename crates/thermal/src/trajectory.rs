@@ -21,7 +21,7 @@ pub struct Trajectory {
     pub wall_outer_k: Vec<Vec<f64>>,
     /// Inner surface temperature of each axial wall cell, K; `wall_inner_k[sample][axial]`.
     pub wall_inner_k: Vec<Vec<f64>>,
-    /// Mean wall temperature, weighted by heat capacity, K.
+    /// Mean wall temperature, K: that of a uniform wall of the same energy.
     pub wall_mean_k: Vec<f64>,
     /// Valve temperature, K, if the vessel has a valve.
     pub valve_k: Option<Vec<f64>>,

@@ -187,3 +187,94 @@ fn lifted_throat<D: Real>(
     let step = solve_2x2(j, residual(condition, &fixed, h0, s0, scale));
     fluid.state((-step[0]).exp() * at[0], (-step[1]).exp() * at[1])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fluid::Equation;
+    use num_dual::Dual64;
+
+    fn flux(fluid: &Fluid, bar: f64, temperature_k: f64, back_pa: f64) -> OrificeFlux {
+        let rho = fluid.density_from_pressure_temperature(bar * 1e5, temperature_k).unwrap();
+        mass_flux(fluid, &fluid.state(rho, temperature_k), back_pa).unwrap()
+    }
+
+    /// Ratio of the real-gas critical flux of nitrogen to the ideal gas's (k = 1.4) along run I1, found by maximising
+    /// over the throat pressure with CoolProp (project study of the stratified gas, section 2).
+    #[test]
+    fn real_gas_passes_four_to_six_percent_more() {
+        let nitrogen = Fluid::named("nitrogen").unwrap();
+        let r = nitrogen.specific_gas_constant_j_kg_k();
+        for (bar, t, ratio) in [
+            (150.0, 289.0, 1.05),
+            (66.0, 234.0, 1.06),
+            (39.0, 209.0, 1.05),
+            (26.0, 199.0, 1.04),
+            (5.0, 190.0, 1.01),
+        ] {
+            let ideal = bar * 1e5 * (1.4 / (r * t)).sqrt() * (2.0_f64 / 2.4).powf(3.0);
+            let here = flux(&nitrogen, bar, t, 1e5).mass_flux_kg_m2_s / ideal;
+            assert!((here - ratio).abs() < 0.008, "{bar} bar {t} K: {here}");
+        }
+    }
+
+    #[test]
+    fn ideal_monatomic_gas_has_the_textbook_critical_flux_and_pressure() {
+        let argon = Fluid::named("argon").unwrap().with_equation(Equation::IdealGas);
+        let g: f64 = 5.0 / 3.0;
+        let r = argon.specific_gas_constant_j_kg_k();
+        let here = flux(&argon, 100.0, 300.0, 1e5);
+        let factor = (2.0 / (g + 1.0)).powf((g + 1.0) / (2.0 * (g - 1.0)));
+        approx::assert_relative_eq!(
+            here.mass_flux_kg_m2_s,
+            1e7 * (g / (r * 300.0)).sqrt() * factor,
+            max_relative = 1e-7
+        );
+        approx::assert_relative_eq!(
+            here.critical_pressure_pa,
+            1e7 * (2.0 / (g + 1.0)).powf(g / (g - 1.0)),
+            max_relative = 1e-9
+        );
+        assert!(here.choked);
+    }
+
+    #[test]
+    fn flux_is_continuous_where_it_unchokes_and_ends_at_equal_pressures() {
+        let nitrogen = Fluid::named("nitrogen").unwrap();
+        let critical = flux(&nitrogen, 10.0, 288.0, 1e5).critical_pressure_pa;
+        let (below, above) =
+            (flux(&nitrogen, 10.0, 288.0, critical * 0.999), flux(&nitrogen, 10.0, 288.0, critical * 1.001));
+        assert!(below.choked && !above.choked);
+        approx::assert_relative_eq!(below.mass_flux_kg_m2_s, above.mass_flux_kg_m2_s, max_relative = 1e-5);
+        assert!(flux(&nitrogen, 10.0, 288.0, 9.999_999e5).mass_flux_kg_m2_s < 0.1 * above.mass_flux_kg_m2_s);
+        assert_eq!(flux(&nitrogen, 10.0, 288.0, 2e6).mass_flux_kg_m2_s, 0.0);
+    }
+
+    /// The critical flux is the largest along the isentrope: throats at nearby pressures pass less.
+    #[test]
+    fn critical_flux_is_the_maximum_over_throat_pressures() {
+        let nitrogen = Fluid::named("nitrogen").unwrap();
+        let choked = flux(&nitrogen, 150.0, 288.0, 1e5);
+        for factor in [1.02, 1.1, 1.3] {
+            let subsonic = flux(&nitrogen, 150.0, 288.0, choked.critical_pressure_pa * factor);
+            assert!(subsonic.mass_flux_kg_m2_s < choked.mass_flux_kg_m2_s);
+        }
+    }
+
+    #[test]
+    fn dual_derivative_is_the_difference_quotient() {
+        let nitrogen = Fluid::named("nitrogen").unwrap();
+        for back in [1e5, 1.2e7] {
+            let at =
+                |rho: f64| mass_flux(&nitrogen, &nitrogen.state(rho, 288.0), back).unwrap().mass_flux_kg_m2_s;
+            let dual = mass_flux(
+                &nitrogen,
+                &nitrogen.state(Dual64::from(170.0).derivative(), Dual64::from(288.0)),
+                back,
+            )
+            .unwrap();
+            let difference = (at(170.001) - at(169.999)) / 0.002;
+            approx::assert_relative_eq!(dual.mass_flux_kg_m2_s.eps, difference, max_relative = 1e-6);
+        }
+    }
+}

@@ -105,7 +105,7 @@ pub struct Multiparameter {
     reducing_density_kg_m3: f64,
 }
 
-/// Prepared equations, in the order of [`ALL`].
+/// Prepared equations, in the order of the data.
 pub static PREPARED: LazyLock<Vec<Multiparameter>> =
     LazyLock::new(|| ALL.iter().map(|data| Multiparameter::new(data)).collect());
 

@@ -32,6 +32,19 @@ pub struct GasBlock {
     pub jet: [f64; 3],
 }
 
+impl GasBlock {
+    /// From derivatives with the mean wall temperature to derivatives with its state.
+    fn scale_mean_wall(&mut self, slope: f64) {
+        for (temperature, pressure) in &mut self.cells {
+            temperature[2] *= slope;
+            pressure[2] *= slope;
+        }
+        self.jet[2] *= slope;
+        let mut column = self.matrix.column_mut(2 * self.cells.len());
+        column *= slope;
+    }
+}
+
 type Dual5 = DualSVec64<5>;
 type Dual3 = DualSVec64<3>;
 
@@ -59,7 +72,7 @@ impl Model {
         let layout = &self.layout;
         let boundary = self.boundary(open);
         let (mass, rest) = x[layout.mass..].split_at(layout.gas);
-        let (energy, mean) = (&rest[..layout.gas], x[layout.mean_wall]);
+        let (energy, mean) = (&rest[..layout.gas], self.mean_wall_k(x));
         let outlet = self.grid.outlet;
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
         let jet_of = |gas: &super::WellMixed| -> Result<[f64; 3], ThermalError> {
@@ -124,7 +137,11 @@ impl Model {
         let jet = self.jet_w_m2_k(&nodes, open);
         let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
         let wall = self.scratch.borrow().wall.clone();
-        let gas = self.gas_block(x, open, &wall, rate[layout.mean_wall])?;
+        // The gas sees the wall's mean temperature; the state behind it is an energy.
+        let mean_slope = self.mean_material.temperature_slope(x[layout.mean_wall]);
+        let mean_rate = rate[layout.mean_wall];
+        let mut gas = self.gas_block(x, open, &wall, mean_slope * mean_rate)?;
+        gas.scale_mean_wall(mean_slope);
         let mut temperature_k = Vec::with_capacity(layout.wall);
         self.node_temperatures(x, &mut temperature_k);
         let slope: Vec<f64> = (0..layout.wall)
@@ -151,9 +168,11 @@ impl Model {
         self.chain_valve(x, inputs, &slope, &local, &mut wall_heat, emit);
         let rate_row = 2 * layout.gas + 1;
         for (index, (&state, heat)) in local.state.iter().zip(&wall_heat).enumerate() {
-            chain[(rate_row, index)] = heat / self.wall_capacity_j_k;
-            emit(layout.mean_wall, state, chain[(rate_row, index)]);
+            emit(layout.mean_wall, state, heat / self.wall_capacity_j_k);
+            chain[(rate_row, index)] = mean_slope * heat / self.wall_capacity_j_k;
         }
+        let curvature = -self.mean_material.heat_capacity_slope_per_k * mean_slope.powi(3);
+        chain[(rate_row, 2 * layout.gas)] += curvature * mean_rate;
         let product = &gas.matrix * &chain;
         let rows = (layout.mass..layout.mass + 2 * layout.gas).chain([
             layout.mass_in,
@@ -219,24 +238,23 @@ impl Model {
         let jet_area: f64 =
             contacts.iter().map(|c| c.area_m2 * (balance.surface_k - at.points[c.cell].temperature_k)).sum();
         let state_columns = |gas_cell: usize| [gas_cell, n + gas_cell, 2 * n];
-        // (local column, derivative of the surface temperature, contact and derivative of its own heat)
-        let mut entries: Vec<(usize, f64, Option<(usize, f64)>)> =
-            vec![(local.inner + column, surface_by_cell, None)];
+        let mut entries =
+            vec![FaceEntry { column: local.inner + column, surface: surface_by_cell, own: None }];
         for (k, contact) in contacts.iter().enumerate() {
             for (state, value) in state_columns(contact.cell).into_iter().zip(direct(k)) {
-                entries.push((state, -value / total, Some((k, value))));
+                entries.push(FaceEntry { column: state, surface: -value / total, own: Some((k, value)) });
             }
         }
         for (i, state) in state_columns(self.grid.outlet).into_iter().enumerate() {
-            entries.push((state, -jet_area * gas.jet[i] / total, None));
+            entries.push(FaceEntry { column: state, surface: -jet_area * gas.jet[i] / total, own: None });
             for (k, contact) in contacts.iter().enumerate() {
                 let own = contact.area_m2
                     * (balance.surface_k - at.points[contact.cell].temperature_k)
                     * gas.jet[i];
-                entries.push((state, 0.0, Some((k, own))));
+                entries.push(FaceEntry { column: state, surface: 0.0, own: Some((k, own)) });
             }
         }
-        for (index, surface, own) in entries {
+        for FaceEntry { column: index, surface, own } in entries {
             let mut heat = 0.0;
             for (k, (contact, flux)) in contacts.iter().zip(&fluxes).enumerate() {
                 let mut by = contact.area_m2 * flux.per_surface_k * surface;
@@ -284,6 +302,16 @@ impl Model {
         wall_heat[local.valve] += by_valve;
         wall_heat[local.outer + self.mesh.columns.len() - 1] += by_contact;
     }
+}
+
+/// What one local column does to an inner face.
+struct FaceEntry {
+    /// Local column.
+    column: usize,
+    /// Derivative of the surface temperature.
+    surface: f64,
+    /// Contact whose heat depends on the column directly, and by how much.
+    own: Option<(usize, f64)>,
 }
 
 /// Where a face is differentiated.

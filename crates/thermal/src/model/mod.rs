@@ -28,6 +28,7 @@ use crate::transfer::outside::{Body, convection_w_m2_k, radiation_w_m2};
 use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
 use crate::vessel::{GasResolution, Surface, Valve, Vessel};
 use crate::wall::conduction::link_flow;
+use crate::wall::material::Material;
 use crate::wall::mesh::{Facing, Mesh};
 use grid::{Contact, GasGrid};
 use inputs::{FilmInput, Inputs};
@@ -46,6 +47,8 @@ pub struct Model {
     /// Heat capacity of each wall cell at the reference temperature, J/K.
     capacity_j_k: Vec<f64>,
     wall_capacity_j_k: f64,
+    /// Mixture of the wall's materials by capacity: turns the mean wall state into a temperature.
+    mean_material: Material,
     valve: Option<Valve>,
     surface: Surface,
     body: Body,
@@ -137,6 +140,7 @@ impl Model {
                 _ => 0.0,
             },
             layout,
+            mean_material: capacity_mixture(&mesh, &capacity_j_k),
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
             valve: vessel.valve.clone(),
@@ -197,7 +201,7 @@ impl Model {
             self.capacity_j_k.iter().zip(&x).map(|(c, x)| c * x).sum::<f64>() / self.wall_capacity_j_k;
         let fluid = &vessel.fluid;
         let volume = |wall_k: f64, p: f64| vessel.volume.volume_m3(wall_k, p);
-        let mean_wall_k = x[self.layout.mean_wall];
+        let mean_wall_k = self.mean_wall_k(&x);
         let mass = match initial.fill {
             Fill::Mass { mass_kg } => mass_kg,
             Fill::Settled { pressure_pa, temperature_k } => {
@@ -275,7 +279,13 @@ impl Model {
         let mean_rate = (from_outside + through_valve - to_gas) / self.wall_capacity_j_k;
         rate[layout.mean_wall] = mean_rate;
         rate[layout.heat_in] = from_outside + valve_outside;
-        self.gas_rates(&nodes, open, to_gas, wall, mean_rate, rate)
+        let mean_rate_k_s = self.mean_material.temperature_slope(x[layout.mean_wall]) * mean_rate;
+        self.gas_rates(&nodes, open, to_gas, wall, mean_rate_k_s, rate)
+    }
+
+    /// Mean wall temperature, K: the one that a uniform wall of the same energy would have.
+    fn mean_wall_k(&self, x: &[f64]) -> f64 {
+        self.mean_material.temperature_k(x[self.layout.mean_wall])
     }
 
     /// Rates of the gas and of its ledger entries.
@@ -285,14 +295,14 @@ impl Model {
         open: &[bool],
         to_gas_w: f64,
         wall: &WallAction<f64>,
-        mean_rate: f64,
+        mean_rate_k_s: f64,
         rate: &mut [f64],
     ) -> Result<(), ThermalError> {
         let layout = &self.layout;
         let boundary = self.boundary(open);
         match (&self.gas, nodes) {
             (Gas::WellMixed(gas), GasNodes::One(node)) => {
-                let gas = gas.rates(node, &boundary, to_gas_w, mean_rate)?;
+                let gas = gas.rates(node, &boundary, to_gas_w, mean_rate_k_s)?;
                 rate[layout.mass] = gas.mass_kg_s;
                 rate[layout.energy] = gas.energy_w;
                 rate[layout.enthalpy_in] = gas.enthalpy_w;
@@ -300,7 +310,7 @@ impl Model {
                 rate[layout.work_out] = gas.work_w;
             }
             (Gas::Stratified(gas), nodes) => {
-                let (cells, exchange) = gas.rates(nodes.as_slice(), &boundary, wall, mean_rate)?;
+                let (cells, exchange) = gas.rates(nodes.as_slice(), &boundary, wall, mean_rate_k_s)?;
                 let mut work = 0.0;
                 for (i, cell) in cells.iter().enumerate() {
                     rate[layout.mass + i] = cell.mass_kg_s;
@@ -318,7 +328,7 @@ impl Model {
 
     fn gas_nodes(&self, x: &[f64]) -> Result<GasNodes, ThermalError> {
         let layout = &self.layout;
-        let mean = x[layout.mean_wall];
+        let mean = self.mean_wall_k(x);
         match &self.gas {
             Gas::WellMixed(gas) => Ok(GasNodes::One(gas.node(x[layout.mass], x[layout.energy], mean)?)),
             Gas::Stratified(gas) => {
@@ -467,6 +477,16 @@ impl Model {
         let sun = self.valve_absorbing_m2 * inputs.irradiance_w_m2;
         (valve.area_m2 * heat - sun, valve.area_m2 * slope)
     }
+}
+
+/// One material with the whole wall's heat capacity and its slope.
+fn capacity_mixture(mesh: &Mesh, capacity_j_k: &[f64]) -> Material {
+    let mut parts: Vec<(&Material, f64)> = mesh.materials.iter().map(|material| (material, 0.0)).collect();
+    for (cell, &material) in mesh.material.iter().enumerate() {
+        let solid = &mesh.materials[material];
+        parts[material].1 += capacity_j_k[cell] / (solid.density_kg_m3 * solid.heat_capacity_j_kg_k);
+    }
+    Material::mixture(&parts)
 }
 
 /// Projected area of each column in the sun, m²: its outer area over pi, times the lit part of its height.

@@ -15,7 +15,7 @@ pub struct Output {
     pub wall_outer_k: Vec<f64>,
     /// Inner surface temperature of each column, K.
     pub wall_inner_k: Vec<f64>,
-    /// Mean wall temperature, weighted by heat capacity, K.
+    /// Mean wall temperature, K: that of a uniform wall of the same energy.
     pub wall_mean_k: f64,
     /// Valve temperature, K.
     pub valve_k: Option<f64>,
@@ -52,8 +52,7 @@ impl Model {
                 .map(|j| self.outer_face(j, &temperature_k, inputs).surface_k)
                 .collect(),
             wall_inner_k: inner.iter().map(|face| face.surface_k).collect(),
-            wall_mean_k: temperature_k.iter().zip(&self.capacity_j_k).map(|(t, c)| t * c).sum::<f64>()
-                / self.wall_capacity_j_k,
+            wall_mean_k: self.mean_wall_k(x),
             valve_k: layout
                 .valve
                 .zip(self.valve.as_ref())

@@ -299,7 +299,7 @@ impl Stratified {
     }
 
     /// Exact derivatives of [`Stratified::rates`], by dual numbers: once per cell for the equation of state, in
-    /// passes of eight columns for the flow network. Shapes as in [`super::jacobian::GasBlock`].
+    /// passes of eight columns for the flow network. Shapes as in `GasBlock`.
     ///
     /// # Errors
     /// As [`Stratified::rates`].
@@ -364,8 +364,8 @@ impl Stratified {
                     matrix[(row, first + lane)] = g[lane];
                 }
             };
-            for i in 0..n {
-                let node = nodes[i].map(|value| lift(value, i));
+            for (i, node) in nodes.iter().enumerate() {
+                let node = node.map(|value| lift(value, i));
                 let (mut mass, mut enthalpy) = (network.mass_kg_s[i], network.enthalpy_w[i]);
                 if i == self.outlet {
                     mass += mass_in;

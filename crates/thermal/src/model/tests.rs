@@ -1,1 +1,54 @@
-//!
+use super::grid::GasGrid;
+use crate::vessel::{GasResolution, Stratification, presets};
+use crate::wall::geometry::Orientation;
+use crate::wall::mesh::{Facing, Mesh};
+use approx::assert_relative_eq;
+
+fn grid(vessel: &str, orientation: Orientation, cells: usize) -> (GasGrid, Mesh) {
+    let mut vessel = presets::load(vessel).unwrap();
+    vessel.geometry.orientation = orientation;
+    vessel.gas = GasResolution::Stratified(Stratification {
+        cells,
+        exchange_length_diameters: 1.0,
+        core_mixing: 0.05,
+    });
+    let mesh = Mesh::new(&vessel.geometry);
+    (GasGrid::new(&vessel, &mesh), mesh)
+}
+
+#[test]
+fn gas_cells_fill_the_vessel_and_touch_all_of_its_wall() {
+    for name in ["nitrogen-20l", "haque-i1"] {
+        for orientation in [Orientation::Vertical, Orientation::Horizontal] {
+            let (grid, mesh) = grid(name, orientation, 17);
+            assert_relative_eq!(
+                grid.cells.iter().map(|c| c.volume_fraction).sum::<f64>(),
+                1.0,
+                epsilon = 1e-12
+            );
+            for (column, contacts) in mesh.columns.iter().zip(&grid.contacts) {
+                let area: f64 = contacts.iter().map(|c| c.area_m2).sum();
+                assert_relative_eq!(area, column.inner_area_m2, max_relative = 1e-9);
+            }
+            assert!(grid.cells.iter().all(|cell| cell.side_m2 > 0.0));
+        }
+    }
+}
+
+#[test]
+fn lying_cylinder_has_no_floor_and_its_outlet_at_mid_height() {
+    let (standing, _) = grid("haque-i1", Orientation::Vertical, 10);
+    let (lying, _) = grid("haque-i1", Orientation::Horizontal, 10);
+    let plates = |g: &GasGrid| g.contacts.iter().flatten().filter(|c| c.facing != Facing::Side).count();
+    assert!(plates(&standing) >= 2 && plates(&lying) == 0);
+    assert_eq!((standing.outlet, lying.outlet), (9, 5));
+}
+
+#[test]
+fn slabs_of_a_lying_cylinder_have_the_volumes_of_circle_segments() {
+    let (grid, _) = grid("haque-i1", Orientation::Horizontal, 4);
+    // Segment of height R/2 in a circle: (acos(1/2) - sqrt(3)/4) / pi of its area.
+    let segment = (0.5_f64.acos() - 3.0_f64.sqrt() / 4.0) / std::f64::consts::PI;
+    assert_relative_eq!(grid.cells[0].volume_fraction, segment, max_relative = 1e-4);
+    assert_relative_eq!(grid.cells[1].volume_fraction, 0.5 - segment, max_relative = 1e-4);
+}

@@ -206,3 +206,89 @@ impl LinearSolver<M> for BorderedLu {
         Err(LaError::Other("transposed systems are not solved".into()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tridiagonal block with two dense rows and columns and one row without a column.
+    struct Example(M);
+
+    fn example() -> (Example, DMatrix<f64>) {
+        let (n, border) = (7, 3);
+        let dense = DMatrix::from_fn(n + border, n + border, |i, j| match (i < n, j < n) {
+            (true, true) if i == j => 4.0 + i as f64,
+            (true, true) if i.abs_diff(j) == 1 => -1.0 - 0.1 * j as f64,
+            (true, true) => 0.0,
+            (true, false) if j == n + 2 => 0.0,
+            (false, false) if i == j => 3.0,
+            (false, false) if j == n + 2 => 0.0,
+            _ => ((3 * i + 5 * j) % 7) as f64 * 0.3 - 1.0,
+        });
+        let mut entries = Vec::new();
+        for j in 0..n + border {
+            entries.extend((0..n + border).filter(|&i| dense[(i, j)] != 0.0).map(|i| (i, j)));
+        }
+        let pattern = <<M as Matrix>::Sparsity as MatrixSparsity<M>>::try_from_indices(
+            n + border,
+            n + border,
+            entries.clone(),
+        );
+        let mut matrix = M::new_from_sparsity(n + border, n + border, pattern.ok(), FaerContext::default());
+        for (value, &(i, j)) in matrix.inner_mut()[0].val_mut().iter_mut().zip(&entries) {
+            *value = dense[(i, j)];
+        }
+        (Example(matrix), dense)
+    }
+
+    impl LinearOp for Example {
+        type T = f64;
+        type V = V;
+        type M = M;
+        type C = FaerContext;
+        fn nrows(&self) -> usize {
+            MatrixCommon::nrows(&self.0)
+        }
+        fn ncols(&self) -> usize {
+            MatrixCommon::ncols(&self.0)
+        }
+        fn context(&self) -> &FaerContext {
+            Matrix::context(&self.0)
+        }
+        fn matrix_inplace(&self, y: &mut M) {
+            y.copy_from(&self.0);
+        }
+        fn sparsity(&self) -> Option<<M as Matrix>::Sparsity> {
+            self.0.sparsity().map(|sparsity| MatrixSparsityRef::<M>::to_owned(&sparsity))
+        }
+    }
+
+    #[test]
+    fn bordered_solve_is_the_dense_solve() {
+        let (op, dense) = example();
+        let right = DVector::from_fn(10, |i, _| (i as f64).sin() + 0.3);
+        let expected = dense.lu().solve(&right).unwrap();
+        for border in [3, 4] {
+            let mut solver = BorderedLu::new(border);
+            solver.set_sparsity(&op);
+            solver.set_linearisation(&op);
+            let mut x = V::from_vec(right.as_slice().to_vec(), FaerContext::default());
+            solver.solve_in_place(&mut x).unwrap();
+            for i in 0..10 {
+                approx::assert_relative_eq!(
+                    x.get_index(i),
+                    expected[i],
+                    max_relative = 1e-12,
+                    epsilon = 1e-13
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn unset_solver_and_transposed_systems_are_errors() {
+        let mut x = V::zeros(3, FaerContext::default());
+        assert!(BorderedLu::new(1).solve_in_place(&mut x).is_err());
+        assert!(BorderedLu::new(1).solve_transpose_in_place(&mut x).is_err());
+    }
+}

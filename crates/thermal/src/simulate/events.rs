@@ -115,6 +115,9 @@ pub struct Monitors {
     fired: Vec<usize>,
 }
 
+/// Dense output of the last step: state at a time, s.
+pub type Interpolation<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), String> + 'a;
+
 /// What was found in a step.
 pub struct Located {
     /// Events to report, in order of time.
@@ -188,13 +191,13 @@ impl Monitors {
         before: f64,
         now: f64,
         scratch: &mut [f64],
-        interpolate: &mut dyn FnMut(f64, &mut [f64]) -> Result<(), String>,
+        interpolate: &mut Interpolation<'_>,
     ) -> Result<Located, ThermalError> {
         let mut located = Located { reports: Vec::new(), acts_at_s: None };
         let values = self.evaluate(model, flows, x_now)?;
         let mut acting: Vec<(f64, usize)> = Vec::new();
-        for index in 0..self.watches.len() {
-            let (Some(old), Some(new)) = (self.values[index], values[index]) else { continue };
+        for (index, (&old, &new)) in self.values.iter().zip(&values).enumerate() {
+            let (Some(old), Some(new)) = (old, new) else { continue };
             let falling = old > 0.0 && new <= 0.0;
             let rising = old < 0.0 && new >= 0.0;
             let watch = self.watches[index];

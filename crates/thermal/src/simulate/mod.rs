@@ -1,7 +1,7 @@
 //! Adaptive implicit simulation of a vessel through a scenario.
 //!
 //! The run is cut at every edge of an input and at every event that opens or closes a flow; between two cuts all
-//! inputs are linear in time and the solver ([`solver`]) runs free. Samples come from its dense output; a
+//! inputs are linear in time and the solver (diffsol) runs free. Samples come from its dense output; a
 //! sample on a cut belongs to the interval that begins there. Events are located on the dense output by bisection.
 mod bordered;
 mod events;
@@ -404,6 +404,3 @@ impl Samples {
         self.outputs.push(output);
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -241,3 +241,66 @@ pub fn jet_film_w_m2_k<D: Real>(
         viscosity_pa_s.recip() * (4.0 * mass_flow_kg_s / (std::f64::consts::PI * inlet_diameter_m));
     reynolds.powf(0.67) * conductivity_w_m_k * (0.56 / vessel_diameter_m)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MCADAMS: InsideFilm = InsideFilm::Rayleigh { factor: 0.13, exponent: 1.0 / 3.0, multiplier: 1.0 };
+
+    fn film(fluid: &str) -> InsideConvection {
+        InsideConvection::new(MCADAMS, 0.19, Fluid::named(fluid).expect("known"))
+    }
+
+    /// Coefficients computed with CoolProp for nitrogen (project reference "peers", section 6), printed without decimals.
+    #[test]
+    fn mcadams_film_has_the_published_coefficients() {
+        let film = film("nitrogen");
+        for (film_k, bar, theta, h) in [
+            (288.0, 200.0, 0.1, 33.0),
+            (288.0, 200.0, 1.0, 72.0),
+            (288.0, 200.0, 10.0, 155.0),
+            (288.0, 100.0, 1.0, 42.0),
+            (288.0, 20.0, 10.0, 26.0),
+            (253.0, 200.0, 1.0, 90.0),
+        ] {
+            let (warm, cold) = (film_k + 0.5 * theta, film_k - 0.5 * theta);
+            let flux = film.flux(Facing::Side, warm, cold, bar * 1e5, 0.0).flux_w_m2;
+            assert!((flux / theta - h).abs() < 0.02 * h + 0.5, "{bar} bar, {theta} K: {}", flux / theta);
+        }
+    }
+
+    #[test]
+    fn interpolated_groups_agree_with_exact_ones() {
+        for name in Fluid::names() {
+            let fluid = Fluid::named(name).expect("known");
+            let grid = FilmGrid::new(fluid.clone());
+            let mut worst = [0.0_f64; 2];
+            for i in 0..40 {
+                let (t, p) = (202.3 + 5.1 * f64::from(i), 1.7e5 * 1.127_f64.powi(i));
+                let (ln_k, ln_r) = film_groups_exact(&fluid, t, p).expect("inside the domain");
+                let groups = grid.groups(t, p);
+                worst[0] = worst[0].max((groups.ln_k[0] - ln_k).abs());
+                worst[1] = worst[1].max((groups.ln_r[0] - ln_r).abs());
+            }
+            println!("{name}: ln k {:.1e}, ln R {:.1e}", worst[0], worst[1]);
+            assert!(worst[0] < 3e-4 && worst[1] < 3e-4, "{name}: {worst:?}");
+        }
+    }
+
+    #[test]
+    fn film_is_an_odd_function_with_a_finite_slope_at_rest() {
+        let film = film("nitrogen");
+        let rest = film.flux(Facing::Side, 288.0, 288.0, 2e7, 0.0);
+        assert!(rest.flux_w_m2 == 0.0 && rest.per_surface_k > 10.0 && rest.per_surface_k < 20.0);
+    }
+
+    #[test]
+    fn hot_floor_stirs_more_than_a_hot_ceiling() {
+        let film = film("nitrogen");
+        let flux = |facing| film.flux(facing, 298.0, 288.0, 2e7, 0.0).flux_w_m2;
+        assert!(
+            flux(Facing::Floor) > 2.0 * flux(Facing::Ceiling) && flux(Facing::Floor) > flux(Facing::Side)
+        );
+    }
+}

@@ -1,4 +1,5 @@
 //! Tests of the thermal crate, modules by kind.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod analytic;
 mod blowdown;
 mod conservation;

@@ -1,7 +1,7 @@
 //! Correlations against CoolProp, their limits, and their derivatives.
 mod coolprop;
 
-use num_dual::{Dual64, DualNum};
+use num_dual::Dual64;
 use proptest::prelude::*;
 
 use super::*;
