@@ -112,6 +112,20 @@ pub enum ThermalError {
         /// Upper bound, Pa.
         highest_pa: f64,
     },
+    /// The state is on the solid side of the melting line.
+    #[error(
+        "{fluid} at {pressure_pa} Pa and {temperature_k} K is solid (melting pressure {melting_pa:.4e} Pa): lower the pressure or raise the temperature"
+    )]
+    Solid {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Melting pressure, Pa.
+        melting_pa: f64,
+    },
     /// The density is outside the equation's range.
     #[error("density {density_kg_m3} kg/m3 of {fluid} must be positive and at most {highest_kg_m3:.1} kg/m3")]
     DensityOutside {

@@ -250,7 +250,7 @@ impl Fluid {
         self.check_density(density_kg_m3)?;
         // Between the phases the pressure may be anything, even negative: the phase comes first.
         self.check_phase(density_kg_m3, temperature_k)?;
-        self.check_pressure(self.pressure_pa(density_kg_m3, temperature_k))
+        self.check_pressure(self.pressure_pa(density_kg_m3, temperature_k), temperature_k)
     }
 
     fn check_temperature(&self, temperature_k: f64) -> Result<(), ThermalError> {
@@ -274,12 +274,17 @@ impl Fluid {
         Err(ThermalError::DensityOutside { fluid: self.name(), density_kg_m3, highest_kg_m3 })
     }
 
-    fn check_pressure(&self, pressure_pa: f64) -> Result<(), ThermalError> {
+    /// Pressure inside the range and below the melting line; the ideal gas does not freeze.
+    fn check_pressure(&self, pressure_pa: f64, temperature_k: f64) -> Result<(), ThermalError> {
         let highest_pa = self.domain().highest_pressure_pa;
-        if pressure_pa > THINNEST && pressure_pa <= highest_pa {
-            return Ok(());
+        if !(pressure_pa > THINNEST && pressure_pa <= highest_pa) {
+            return Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa });
         }
-        Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa })
+        let melting_pa = self.data.melting.pressure_pa(temperature_k);
+        if pressure_pa > melting_pa && !matches!(self.description, Description::IdealGas(_)) {
+            return Err(ThermalError::Solid { fluid: self.name(), pressure_pa, temperature_k, melting_pa });
+        }
+        Ok(())
     }
 
     /// Viscosity, Pa s.

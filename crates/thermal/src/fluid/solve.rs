@@ -53,7 +53,7 @@ impl Fluid {
         temperature_k: f64,
     ) -> Result<f64, ThermalError> {
         self.check_temperature(temperature_k)?;
-        self.check_pressure(pressure_pa)?;
+        self.check_pressure(pressure_pa, temperature_k)?;
         let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
         let ideal = pressure_pa / rt;
         if let Description::IdealGas(_) = self.description {
@@ -214,7 +214,7 @@ impl Fluid {
         property: &'static str,
         value: impl Fn(&State) -> (f64, f64),
     ) -> Result<State, ThermalError> {
-        self.check_pressure(pressure_pa)?;
+        self.check_pressure(pressure_pa, self.data.highest_temperature_k)?;
         let none = || ThermalError::NoState { fluid: self.name(), pressure_pa, property, target };
         if !target.is_finite() {
             return Err(none());

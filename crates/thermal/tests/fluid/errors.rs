@@ -98,7 +98,7 @@ fn density_outside_names_the_bound() {
 
 #[test]
 fn too_high_a_pressure_for_the_cold_says_what_to_do() {
-    let error = nitrogen().density_from_pressure_temperature(2e9, 64.0).unwrap_err();
+    let error = nitrogen().density_from_pressure_temperature(2e9, 280.0).unwrap_err();
     assert!(matches!(error, ThermalError::TooDense { .. }), "{error:?}");
     says(&error, &["nitrogen", "2000000000 Pa", "lower the pressure or raise the temperature"]);
 }
@@ -236,5 +236,19 @@ proptest! {
         if let Ok(Some(s)) = fluid.saturation(a) {
             prop_assert!(s.pressure_pa > 0.0 && s.vapour_kg_m3 > 0.0 && s.vapour_kg_m3 < s.liquid_kg_m3, "{what}: {s:?}");
         }
+    }
+}
+
+/// Melting pressures of CoolProp 8.0.0 (`melting_line`). Helium meets the bound of its density first.
+#[test]
+fn solid_states_are_refused_on_their_side_of_the_melting_line() {
+    for (name, temperature_k, melting_mpa) in
+        [("nitrogen", 70.0, 32.443), ("argon", 90.0, 25.326), ("hydrogen", 20.0, 44.920)]
+    {
+        let fluid = Fluid::named(name).unwrap();
+        let at =
+            |factor: f64| fluid.density_from_pressure_temperature(factor * melting_mpa * 1e6, temperature_k);
+        assert!(at(0.999).is_ok(), "{name} below its melting line: {:?}", at(0.999));
+        assert!(matches!(at(1.001), Err(ThermalError::Solid { .. })), "{name} above it: {:?}", at(1.001));
     }
 }

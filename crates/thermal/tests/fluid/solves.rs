@@ -60,6 +60,7 @@ proptest! {
                 let densest = fluid.domain().highest_density_kg_m3;
                 prop_assert!(fluid.pressure_pa(densest, t) < p * (1.0 + 1e-6), "{} at {t} K, {p} Pa is not dense", fluid.name());
             }
+            Err(ThermalError::Solid { melting_pa, .. }) => prop_assert!(p > melting_pa),
             Err(error) => prop_assert!(false, "{error}"),
         }
     }

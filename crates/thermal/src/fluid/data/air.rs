@@ -4,7 +4,7 @@
 //! mixtures of nitrogen, argon, and oxygen from 60 to 2000 K at pressures to 2000 MPa", J. Phys. Chem. Ref. Data 29
 //! (2000) 331, doi:10.1063/1.1285884: dry air as a pseudo-pure fluid, reduced at its maxcondentherm.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, PowerTerm as P};
+use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
 
 /// Dry air.
 pub static AIR: FluidData = FluidData {
@@ -21,6 +21,8 @@ pub static AIR: FluidData = FluidData {
     highest_temperature_k: 2000.0,
     highest_pressure_pa: 2000000000.0,
     triple_liquid_density_mol_m3: 33066.642,
+    // Lemmon et al. (2000).
+    melting: Melting { temperature_k: 59.75, pressure_pa: 5264.181, terms: &[(186_844_210.8, 1.78963)] },
     power: &[
         P { n: 0.118160747229, d: 1, t: 0.0, l: 0 },
         P { n: 0.713116392079, d: 1, t: 0.33, l: 0 },

@@ -4,7 +4,7 @@
 //! temperatures from the melting line to 700 K at pressures up to 1000 MPa", J. Phys. Chem. Ref. Data 28 (1999) 779,
 //! doi:10.1063/1.556037. Reducing density 535.6 kg/m³.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, PowerTerm as P};
+use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 
 /// Argon.
 pub static ARGON: FluidData = FluidData {
@@ -21,6 +21,12 @@ pub static ARGON: FluidData = FluidData {
     highest_temperature_k: 700.0,
     highest_pressure_pa: 1000000000.0,
     triple_liquid_density_mol_m3: 35465.244,
+    // Tegeler et al. (1999).
+    melting: Melting {
+        temperature_k: 83.8058,
+        pressure_pa: 68891.0,
+        terms: &[(-515_047_475.45, 1.05), (686_089_692.02, 1.275)],
+    },
     power: &[
         P { n: 0.088722304990011, d: 1, t: 0.0, l: 0 },
         P { n: 0.70514805167298, d: 1, t: 0.25, l: 0 },

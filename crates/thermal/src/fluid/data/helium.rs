@@ -4,7 +4,7 @@
 //! (2013), as later published with K. R. Hall, J. C. Holste, V. D. Arp, A. H. Harvey, E. W. Lemmon,
 //! J. Phys. Chem. Ref. Data 49 (2020) 033105 (project coefficients: CoolProp 8.0.0).
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, PowerTerm as P};
+use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 
 /// Helium.
 pub static HELIUM: FluidData = FluidData {
@@ -21,6 +21,8 @@ pub static HELIUM: FluidData = FluidData {
     highest_temperature_k: 1500.0,
     highest_pressure_pa: 1000000000.0,
     triple_liquid_density_mol_m3: 36480.345,
+    // Datchi, Loubeyre, LeToullec, Phys. Rev. B 61 (2000) 6535.
+    melting: Melting { temperature_k: 1.0, pressure_pa: -1_606_700.0, terms: &[(1_606_700.0, 1.565)] },
     power: &[
         P { n: 0.015559018, d: 4, t: 1.0, l: 0 },
         P { n: 3.0638932, d: 1, t: 0.425, l: 0 },

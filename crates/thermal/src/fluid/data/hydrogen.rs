@@ -3,7 +3,7 @@
 //! Equation of state: J. W. Leachman, R. T Jacobsen, S. G. Penoncello, E. W. Lemmon, "Fundamental equations of state for
 //! parahydrogen, normal hydrogen, and orthohydrogen", J. Phys. Chem. Ref. Data 38 (2009) 721, doi:10.1063/1.3160306: normal hydrogen.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, PowerTerm as P};
+use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 
 /// Hydrogen.
 pub static HYDROGEN: FluidData = FluidData {
@@ -20,6 +20,8 @@ pub static HYDROGEN: FluidData = FluidData {
     highest_temperature_k: 1000.0,
     highest_pressure_pa: 2000000000.0,
     triple_liquid_density_mol_m3: 38198.542,
+    // Datchi, Loubeyre, LeToullec, Phys. Rev. B 61 (2000) 6535.
+    melting: Melting { temperature_k: 1.0, pressure_pa: -236_200.0, terms: &[(231_000.0, 1.7627)] },
     power: &[
         P { n: -6.93643, d: 1, t: 0.6844, l: 0 },
         P { n: 0.01, d: 4, t: 1.0, l: 0 },

@@ -41,6 +41,25 @@ pub struct GaussianTerm {
     pub epsilon: f64,
 }
 
+/// Melting pressure `p_0 + sum a [(T/T_0)^t - 1]`: above it the fluid is solid.
+#[derive(Clone, Copy, Debug)]
+pub struct Melting {
+    /// `T_0`, K.
+    pub temperature_k: f64,
+    /// `p_0`, Pa.
+    pub pressure_pa: f64,
+    /// Terms (a in Pa, t).
+    pub terms: &'static [(f64, f64)],
+}
+
+impl Melting {
+    /// Melting pressure at a temperature, Pa.
+    pub fn pressure_pa(&self, temperature_k: f64) -> f64 {
+        let ratio = temperature_k / self.temperature_k;
+        self.pressure_pa + self.terms.iter().map(|&(a, t)| a * (ratio.powf(t) - 1.0)).sum::<f64>()
+    }
+}
+
 /// A fundamental equation `a / (R T) = alpha0 + alphar` and its range of validity.
 #[derive(Debug)]
 pub struct FluidData {
@@ -70,6 +89,8 @@ pub struct FluidData {
     pub highest_pressure_pa: f64,
     /// Density of the liquid at the triple point, mol/m³: where a search from the dense side starts.
     pub triple_liquid_density_mol_m3: f64,
+    /// Melting line.
+    pub melting: Melting,
     /// Polynomial and exponential terms of the residual part.
     pub power: &'static [PowerTerm],
     /// Gaussian terms of the residual part.

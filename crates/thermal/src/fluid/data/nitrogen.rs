@@ -4,7 +4,7 @@
 //! thermodynamic properties of nitrogen for temperatures from 63.151 to 1000 K and pressures to 2200 MPa",
 //! J. Phys. Chem. Ref. Data 29 (2000) 1361, doi:10.1063/1.1349047. Reducing density as published, 11.1839 mol/dm³.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, PowerTerm as P};
+use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 
 /// Nitrogen.
 pub static NITROGEN: FluidData = FluidData {
@@ -21,6 +21,8 @@ pub static NITROGEN: FluidData = FluidData {
     highest_temperature_k: 1000.0,
     highest_pressure_pa: 2200000000.0,
     triple_liquid_density_mol_m3: 30957.31,
+    // Span et al. (2000).
+    melting: Melting { temperature_k: 63.151, pressure_pa: 12523.0, terms: &[(160_276_993.03, 1.78963)] },
     power: &[
         P { n: 0.924803575275, d: 1, t: 0.25, l: 0 },
         P { n: -0.492448489428, d: 1, t: 0.875, l: 0 },
