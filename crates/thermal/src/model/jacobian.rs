@@ -7,9 +7,10 @@
 use nalgebra::{Const, DMatrix, U1};
 use num_dual::DualSVec64;
 
+use super::gas::{Gas, GasPoint};
 use super::inputs::Inputs;
-use super::well_mixed::jet_film;
-use super::{Gas, GasPoint, Model, WallAction};
+use super::well_mixed::{WellMixed, jet_film};
+use super::{Model, WallAction};
 use crate::ThermalError;
 use crate::wall::conduction::link_flow;
 use crate::wall::mesh::Facing;
@@ -75,7 +76,7 @@ impl Model {
         let (energy, mean) = (&rest[..layout.gas], self.mean_wall_k(x));
         let outlet = self.grid.outlet;
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
-        let jet_of = |gas: &super::WellMixed| -> Result<[f64; 3], ThermalError> {
+        let jet_of = |gas: &WellMixed| -> Result<[f64; 3], ThermalError> {
             let node = gas.node(seed(mass[outlet], 0), seed(energy[outlet], 1), seed(mean, 2))?;
             Ok(gradient(jet_film(&self.fluid, &node, &self.flows, open, self.inner_diameter_m)))
         };

@@ -9,7 +9,10 @@
 //! Every flow leaves one balance and enters another with the same number, so mass and energy are conserved by
 //! construction: `d(wall + valve + gas)/dt = heat in + enthalpy in - work out` holds exactly at every
 //! evaluation, and exactly too for the Jacobian, so that an implicit integrator keeps it to rounding.
+mod faces;
+mod gas;
 pub mod grid;
+mod initial;
 pub mod inputs;
 mod jacobian;
 pub mod layout;
@@ -22,19 +25,20 @@ use std::cell::RefCell;
 use crate::ThermalError;
 use crate::flow::{Flow, FlowKind};
 use crate::fluid::Fluid;
-use crate::scenario::{Fill, Initial, Scenario, Sun};
-use crate::transfer::inside::{InsideConvection, InsideFlux};
-use crate::transfer::outside::{Body, convection_w_m2_k, radiation_w_m2};
-use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
+use crate::scenario::{Scenario, Sun};
+use crate::transfer::inside::InsideConvection;
+use crate::transfer::outside::Body;
 use crate::vessel::{GasResolution, Surface, Valve, Vessel};
 use crate::wall::conduction::link_flow;
 use crate::wall::material::Material;
-use crate::wall::mesh::{Facing, Mesh};
-use grid::{Contact, GasGrid};
-use inputs::{FilmInput, Inputs};
+use crate::wall::mesh::Mesh;
+use faces::lit_area_m2;
+use gas::{Gas, GasPoint};
+use grid::GasGrid;
+use inputs::Inputs;
 use layout::Layout;
 use stratified::{Stratified, WallAction};
-use well_mixed::{Boundary, Node, WellMixed, jet_film};
+use well_mixed::WellMixed;
 
 pub use jacobian::Assembly;
 pub use output::Output;
@@ -66,48 +70,12 @@ pub struct Model {
     scratch: RefCell<Scratch>,
 }
 
-/// How the gas is resolved.
-#[derive(Debug)]
-enum Gas {
-    WellMixed(Box<WellMixed>),
-    Stratified(Stratified),
-}
-
 /// Reused memory of one evaluation.
 #[derive(Debug, Default)]
 struct Scratch {
     temperature_k: Vec<f64>,
     points: Vec<GasPoint>,
     wall: WallAction<f64>,
-}
-
-/// What the film needs of a gas cell.
-#[derive(Clone, Copy, Debug)]
-struct GasPoint {
-    temperature_k: f64,
-    pressure_pa: f64,
-}
-
-impl From<&Node<f64>> for GasPoint {
-    fn from(node: &Node<f64>) -> Self {
-        Self { temperature_k: node.state.temperature_k, pressure_pa: node.state.pressure_pa }
-    }
-}
-
-/// States of the gas cells and the film of a refill's jet.
-#[derive(Debug)]
-enum GasNodes {
-    One(Node<f64>),
-    Many(Vec<Node<f64>>),
-}
-
-impl GasNodes {
-    fn as_slice(&self) -> &[Node<f64>] {
-        match self {
-            Self::One(node) => std::slice::from_ref(node),
-            Self::Many(nodes) => nodes,
-        }
-    }
 }
 
 impl Model {
@@ -185,47 +153,6 @@ impl Model {
         &self.mesh
     }
 
-    /// State vector at time 0.
-    ///
-    /// # Errors
-    /// The fill is outside the fluid's domain, two-phase included.
-    pub fn initial_state(&self, vessel: &Vessel, initial: &Initial) -> Result<Vec<f64>, ThermalError> {
-        let mut x = vec![0.0; self.layout.states];
-        for (cell, value) in x[..self.layout.wall].iter_mut().enumerate() {
-            *value = self.mesh.materials[self.mesh.material[cell]].energy_state_k(initial.wall_temperature_k);
-        }
-        if let (Some(index), Some(valve)) = (self.layout.valve, &self.valve) {
-            x[index] = valve.material.energy_state_k(initial.wall_temperature_k);
-        }
-        x[self.layout.mean_wall] =
-            self.capacity_j_k.iter().zip(&x).map(|(c, x)| c * x).sum::<f64>() / self.wall_capacity_j_k;
-        let fluid = &vessel.fluid;
-        let volume = |wall_k: f64, p: f64| vessel.volume.volume_m3(wall_k, p);
-        let mean_wall_k = self.mean_wall_k(&x);
-        let mass = match initial.fill {
-            Fill::Mass { mass_kg } => mass_kg,
-            Fill::Settled { pressure_pa, temperature_k } => {
-                fluid.density_from_pressure_temperature(pressure_pa, temperature_k)?
-                    * volume(temperature_k, pressure_pa)
-            }
-            Fill::Pressure { pressure_pa } => {
-                fluid.density_from_pressure_temperature(pressure_pa, initial.gas_temperature_k)?
-                    * volume(mean_wall_k, pressure_pa)
-            }
-        };
-        // The volume answers to the pressure, which answers to the volume: a contraction by about 0.003.
-        let mut v = vessel.volume.volume_m3;
-        for _ in 0..30 {
-            v = volume(mean_wall_k, fluid.pressure_pa(mass / v, initial.gas_temperature_k));
-        }
-        let state = fluid.checked_state(mass / v, initial.gas_temperature_k)?;
-        for (i, cell) in self.grid.cells.iter().enumerate() {
-            x[self.layout.mass + i] = mass * cell.volume_fraction;
-            x[self.layout.energy + i] = mass * cell.volume_fraction * state.internal_energy_j_kg;
-        }
-        Ok(x)
-    }
-
     /// Right-hand side `dx/dt`. Lengths of `x` and `rate`: the number of states.
     ///
     /// # Errors
@@ -288,115 +215,6 @@ impl Model {
         self.mean_material.temperature_k(x[self.layout.mean_wall])
     }
 
-    /// Rates of the gas and of its ledger entries.
-    fn gas_rates(
-        &self,
-        nodes: &GasNodes,
-        open: &[bool],
-        to_gas_w: f64,
-        wall: &WallAction<f64>,
-        mean_rate_k_s: f64,
-        rate: &mut [f64],
-    ) -> Result<(), ThermalError> {
-        let layout = &self.layout;
-        let boundary = self.boundary(open);
-        match (&self.gas, nodes) {
-            (Gas::WellMixed(gas), GasNodes::One(node)) => {
-                let gas = gas.rates(node, &boundary, to_gas_w, mean_rate_k_s)?;
-                rate[layout.mass] = gas.mass_kg_s;
-                rate[layout.energy] = gas.energy_w;
-                rate[layout.enthalpy_in] = gas.enthalpy_w;
-                rate[layout.mass_in] = gas.mass_kg_s;
-                rate[layout.work_out] = gas.work_w;
-            }
-            (Gas::Stratified(gas), nodes) => {
-                let (cells, exchange) = gas.rates(nodes.as_slice(), &boundary, wall, mean_rate_k_s)?;
-                let mut work = 0.0;
-                for (i, cell) in cells.iter().enumerate() {
-                    rate[layout.mass + i] = cell.mass_kg_s;
-                    rate[layout.energy + i] = cell.energy_w;
-                    work += cell.work_w;
-                }
-                rate[layout.enthalpy_in] = exchange.enthalpy_w;
-                rate[layout.mass_in] = exchange.mass_kg_s;
-                rate[layout.work_out] = work;
-            }
-            (Gas::WellMixed(_), GasNodes::Many(_)) => unreachable!("a well-mixed gas has one node"),
-        }
-        Ok(())
-    }
-
-    fn gas_nodes(&self, x: &[f64]) -> Result<GasNodes, ThermalError> {
-        let layout = &self.layout;
-        let mean = self.mean_wall_k(x);
-        match &self.gas {
-            Gas::WellMixed(gas) => Ok(GasNodes::One(gas.node(x[layout.mass], x[layout.energy], mean)?)),
-            Gas::Stratified(gas) => {
-                let (mass, rest) = x[layout.mass..].split_at(layout.gas);
-                Ok(GasNodes::Many(gas.nodes(mass, &rest[..layout.gas], mean)?))
-            }
-        }
-    }
-
-    fn jet_w_m2_k(&self, nodes: &GasNodes, open: &[bool]) -> f64 {
-        let outlet = &nodes.as_slice()[self.grid.outlet];
-        jet_film(&self.fluid, outlet, &self.flows, open, self.inner_diameter_m)
-    }
-
-    fn reset_action(&self, wall: &mut WallAction<f64>) {
-        for values in [&mut wall.side_w, &mut wall.plate_w, &mut wall.surface_k] {
-            values.clear();
-            values.resize(self.layout.gas, 0.0);
-        }
-    }
-
-    /// Add what a column does to the cells it touches; a single cell takes the column's heat as it is.
-    fn act(
-        &self,
-        column: usize,
-        surface_k: f64,
-        heat_w: f64,
-        points: &[GasPoint],
-        jet_w_m2_k: f64,
-        wall: &mut WallAction<f64>,
-    ) {
-        if let Gas::WellMixed(_) = self.gas {
-            wall.side_w[0] += heat_w;
-            return;
-        }
-        for contact in &self.grid.contacts[column] {
-            let heat = contact.area_m2 * self.contact_flux(contact, surface_k, points, jet_w_m2_k).flux_w_m2;
-            if contact.facing == Facing::Side {
-                wall.side_w[contact.cell] += heat;
-                wall.surface_k[contact.cell] += contact.area_m2 * surface_k;
-            } else {
-                wall.plate_w[contact.cell] += heat;
-            }
-        }
-    }
-
-    /// Turn the area-weighted sums of surface temperatures into means.
-    fn finish_action(&self, wall: &mut WallAction<f64>) {
-        for (surface_k, cell) in wall.surface_k.iter_mut().zip(&self.grid.cells) {
-            *surface_k /= cell.side_m2;
-        }
-    }
-
-    fn contact_flux(
-        &self,
-        contact: &Contact,
-        surface_k: f64,
-        points: &[GasPoint],
-        jet_w_m2_k: f64,
-    ) -> InsideFlux {
-        let gas = &points[contact.cell];
-        self.inside.flux(contact.facing, surface_k, gas.temperature_k, gas.pressure_pa, jet_w_m2_k)
-    }
-
-    fn boundary<'a>(&'a self, open: &'a [bool]) -> Boundary<'a> {
-        Boundary { flows: &self.flows, open, source_enthalpy_j_kg: &self.source_enthalpy_j_kg }
-    }
-
     fn node_temperatures(&self, x: &[f64], temperature_k: &mut Vec<f64>) {
         temperature_k.clear();
         temperature_k.extend(
@@ -405,77 +223,6 @@ impl Model {
                 .zip(&self.mesh.material)
                 .map(|(&x, &material)| self.mesh.materials[material].temperature_k(x)),
         );
-    }
-
-    /// Wall cell that the valve sits on.
-    fn contact_cell(&self) -> usize {
-        self.mesh.outer_cell(self.mesh.columns.len() - 1)
-    }
-
-    fn half_cell(&self, cell: usize, shape_m: f64, node_k: f64) -> HalfCell {
-        let material = &self.mesh.materials[self.mesh.material[cell]];
-        HalfCell {
-            node_k,
-            conductance_w_k: shape_m * material.conductivity_at_w_m_k(node_k),
-            conductance_slope_w_k2: shape_m * material.conductivity_w_m_k * material.conductivity_slope_per_k,
-        }
-    }
-
-    fn inner_face(
-        &self,
-        column: usize,
-        temperature_k: &[f64],
-        points: &[GasPoint],
-        jet_w_m2_k: f64,
-    ) -> SurfaceBalance {
-        let cell = self.mesh.inner_cell(column);
-        let half = self.half_cell(cell, self.mesh.columns[column].inner_shape_m, temperature_k[cell]);
-        solve_surface(&half, |surface_k| {
-            self.grid.contacts[column].iter().fold((0.0, 0.0), |(heat, slope), contact| {
-                let flux = self.contact_flux(contact, surface_k, points, jet_w_m2_k);
-                (heat + contact.area_m2 * flux.flux_w_m2, slope + contact.area_m2 * flux.per_surface_k)
-            })
-        })
-    }
-
-    fn outer_face(&self, column: usize, temperature_k: &[f64], inputs: &Inputs) -> SurfaceBalance {
-        let geometry = &self.mesh.columns[column];
-        let cell = self.mesh.outer_cell(column);
-        let half = self.half_cell(cell, geometry.outer_shape_m, temperature_k[cell]);
-        let sun = self.absorbing_m2[column] * inputs.irradiance_w_m2;
-        solve_surface(&half, |surface_k| {
-            let (heat, slope) = self.loss(&self.body, 1.0, surface_k, inputs);
-            (geometry.outer_area_m2 * heat - sun, geometry.outer_area_m2 * slope)
-        })
-    }
-
-    /// Heat flux from a surface to the surroundings without sun, W/m², and its derivative with the surface temperature.
-    fn loss(&self, body: &Body, film_factor: f64, surface_k: f64, inputs: &Inputs) -> (f64, f64) {
-        let difference = surface_k - inputs.air_k;
-        let (mut heat, mut slope) = match inputs.film {
-            FilmInput::Coefficient(film) => (film_factor * film * difference, film_factor * film),
-            FilmInput::Convection { wind_m_s, multiplier } => {
-                let surface = num_dual::Dual64::from(surface_k).derivative();
-                let flux = convection_w_m2_k(body, surface, inputs.air_k, wind_m_s)
-                    * (surface - inputs.air_k)
-                    * multiplier;
-                (flux.re, flux.eps)
-            }
-        };
-        if let Some(enclosure_k) = inputs.radiation_k {
-            let surface = num_dual::Dual64::from(surface_k).derivative();
-            let flux = radiation_w_m2(self.surface.emissivity, surface, enclosure_k);
-            heat += flux.re;
-            slope += flux.eps;
-        }
-        (heat, slope)
-    }
-
-    /// Heat flow from the valve to the surroundings, W, and its derivative with the valve's temperature.
-    fn valve_loss(&self, valve: &Valve, valve_k: f64, inputs: &Inputs) -> (f64, f64) {
-        let (heat, slope) = self.loss(&self.valve_body, valve.film_factor, valve_k, inputs);
-        let sun = self.valve_absorbing_m2 * inputs.irradiance_w_m2;
-        (valve.area_m2 * heat - sun, valve.area_m2 * slope)
     }
 }
 
@@ -487,25 +234,6 @@ fn capacity_mixture(mesh: &Mesh, capacity_j_k: &[f64]) -> Material {
         parts[material].1 += capacity_j_k[cell] / (solid.density_kg_m3 * solid.heat_capacity_j_kg_k);
     }
     Material::mixture(&parts)
-}
-
-/// Projected area of each column in the sun, m²: its outer area over pi, times the lit part of its height.
-fn lit_area_m2(mesh: &Mesh, sun: Option<&Sun>) -> Vec<f64> {
-    let Some(sun) = sun else { return vec![0.0; mesh.columns.len()] };
-    let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
-    let (from, to) = (sun.from_fraction * top, sun.to_fraction * top);
-    mesh.columns
-        .iter()
-        .map(|column| {
-            let (low, high) = column.inner_height_m;
-            let lit = if high > low {
-                ((high.min(to) - low.max(from)) / (high - low)).max(0.0)
-            } else {
-                f64::from(u8::from(from <= low && low <= to))
-            };
-            lit * column.outer_area_m2 / std::f64::consts::PI
-        })
-        .collect()
 }
 
 fn source_enthalpies(vessel: &Vessel, flows: &[Flow]) -> Result<Vec<f64>, ThermalError> {

@@ -1,6 +1,7 @@
 //! What a state vector means: temperatures, pressure, flows, balances.
+use super::Model;
+use super::gas::GasPoint;
 use super::inputs::Inputs;
-use super::{GasPoint, Model};
 use crate::ThermalError;
 use crate::flow::{FlowKind, orifice};
 

@@ -212,9 +212,7 @@ mod tests {
     use super::*;
 
     /// A tridiagonal block with two dense rows and columns and one row without a column.
-    struct Example(M);
-
-    fn example() -> (Example, DMatrix<f64>) {
+    fn example() -> (Block, DMatrix<f64>) {
         let (n, border) = (7, 3);
         let dense = DMatrix::from_fn(n + border, n + border, |i, j| match (i < n, j < n) {
             (true, true) if i == j => 4.0 + i as f64,
@@ -238,29 +236,7 @@ mod tests {
         for (value, &(i, j)) in matrix.inner_mut()[0].val_mut().iter_mut().zip(&entries) {
             *value = dense[(i, j)];
         }
-        (Example(matrix), dense)
-    }
-
-    impl LinearOp for Example {
-        type T = f64;
-        type V = V;
-        type M = M;
-        type C = FaerContext;
-        fn nrows(&self) -> usize {
-            MatrixCommon::nrows(&self.0)
-        }
-        fn ncols(&self) -> usize {
-            MatrixCommon::ncols(&self.0)
-        }
-        fn context(&self) -> &FaerContext {
-            Matrix::context(&self.0)
-        }
-        fn matrix_inplace(&self, y: &mut M) {
-            y.copy_from(&self.0);
-        }
-        fn sparsity(&self) -> Option<<M as Matrix>::Sparsity> {
-            self.0.sparsity().map(|sparsity| MatrixSparsityRef::<M>::to_owned(&sparsity))
-        }
+        (Block(matrix), dense)
     }
 
     #[test]

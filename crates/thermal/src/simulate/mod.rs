@@ -5,6 +5,7 @@
 //! sample on a cut belongs to the interval that begins there. Events are located on the dense output by bisection.
 mod bordered;
 mod events;
+mod samples;
 mod solver;
 
 use std::cell::{Cell, RefCell};
@@ -16,6 +17,7 @@ use crate::scenario::Scenario;
 use crate::trajectory::{Event, EventKind, Ledger, Place, SolverStatistics, Trajectory};
 use crate::vessel::Vessel;
 use events::{FlowStates, Monitors};
+use samples::Samples;
 use solver::{Drive, Step, Stepper, with_stepper};
 
 /// Integration method.
@@ -366,41 +368,5 @@ impl Run<'_> {
             ledger,
             statistics,
         }
-    }
-}
-
-/// The samples taken so far.
-struct Samples {
-    interval_s: f64,
-    duration_s: f64,
-    time_s: Vec<f64>,
-    ambient_k: Vec<f64>,
-    outputs: Vec<Output>,
-}
-
-impl Samples {
-    fn new(scenario: &Scenario) -> Self {
-        Self {
-            interval_s: scenario.sample_time_s,
-            duration_s: scenario.duration_s,
-            time_s: Vec::new(),
-            ambient_k: Vec::new(),
-            outputs: Vec::new(),
-        }
-    }
-
-    /// Time of the next sample if it lies before `until` (or at it when `inclusive`), s. The end is always a sample.
-    fn next_time(&self, until: f64, inclusive: bool) -> Option<f64> {
-        if self.time_s.last().is_some_and(|&last| last >= self.duration_s) {
-            return None;
-        }
-        let t = (self.time_s.len() as f64 * self.interval_s).min(self.duration_s);
-        (t < until || (inclusive && t <= until)).then_some(t)
-    }
-
-    fn push(&mut self, time_s: f64, ambient_k: f64, output: Output) {
-        self.time_s.push(time_s);
-        self.ambient_k.push(ambient_k);
-        self.outputs.push(output);
     }
 }

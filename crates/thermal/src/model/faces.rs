@@ -1,0 +1,101 @@
+//! The model's surfaces: films, radiation and sun on both sides of the wall and on the valve.
+use super::Model;
+use super::gas::GasPoint;
+use super::inputs::{FilmInput, Inputs};
+use crate::scenario::Sun;
+use crate::transfer::outside::{Body, convection_w_m2_k, radiation_w_m2};
+use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
+use crate::vessel::Valve;
+use crate::wall::mesh::Mesh;
+
+impl Model {
+    /// Wall cell that the valve sits on.
+    pub(super) fn contact_cell(&self) -> usize {
+        self.mesh.outer_cell(self.mesh.columns.len() - 1)
+    }
+
+    pub(super) fn half_cell(&self, cell: usize, shape_m: f64, node_k: f64) -> HalfCell {
+        let material = &self.mesh.materials[self.mesh.material[cell]];
+        HalfCell {
+            node_k,
+            conductance_w_k: shape_m * material.conductivity_at_w_m_k(node_k),
+            conductance_slope_w_k2: shape_m * material.conductivity_w_m_k * material.conductivity_slope_per_k,
+        }
+    }
+
+    pub(super) fn inner_face(
+        &self,
+        column: usize,
+        temperature_k: &[f64],
+        points: &[GasPoint],
+        jet_w_m2_k: f64,
+    ) -> SurfaceBalance {
+        let cell = self.mesh.inner_cell(column);
+        let half = self.half_cell(cell, self.mesh.columns[column].inner_shape_m, temperature_k[cell]);
+        solve_surface(&half, |surface_k| {
+            self.grid.contacts[column].iter().fold((0.0, 0.0), |(heat, slope), contact| {
+                let flux = self.contact_flux(contact, surface_k, points, jet_w_m2_k);
+                (heat + contact.area_m2 * flux.flux_w_m2, slope + contact.area_m2 * flux.per_surface_k)
+            })
+        })
+    }
+
+    pub(super) fn outer_face(&self, column: usize, temperature_k: &[f64], inputs: &Inputs) -> SurfaceBalance {
+        let geometry = &self.mesh.columns[column];
+        let cell = self.mesh.outer_cell(column);
+        let half = self.half_cell(cell, geometry.outer_shape_m, temperature_k[cell]);
+        let sun = self.absorbing_m2[column] * inputs.irradiance_w_m2;
+        solve_surface(&half, |surface_k| {
+            let (heat, slope) = self.loss(&self.body, 1.0, surface_k, inputs);
+            (geometry.outer_area_m2 * heat - sun, geometry.outer_area_m2 * slope)
+        })
+    }
+
+    /// Heat flux from a surface to the surroundings without sun, W/m², and its derivative with the surface temperature.
+    fn loss(&self, body: &Body, film_factor: f64, surface_k: f64, inputs: &Inputs) -> (f64, f64) {
+        let difference = surface_k - inputs.air_k;
+        let (mut heat, mut slope) = match inputs.film {
+            FilmInput::Coefficient(film) => (film_factor * film * difference, film_factor * film),
+            FilmInput::Convection { wind_m_s, multiplier } => {
+                let surface = num_dual::Dual64::from(surface_k).derivative();
+                let flux = convection_w_m2_k(body, surface, inputs.air_k, wind_m_s)
+                    * (surface - inputs.air_k)
+                    * multiplier;
+                (flux.re, flux.eps)
+            }
+        };
+        if let Some(enclosure_k) = inputs.radiation_k {
+            let surface = num_dual::Dual64::from(surface_k).derivative();
+            let flux = radiation_w_m2(self.surface.emissivity, surface, enclosure_k);
+            heat += flux.re;
+            slope += flux.eps;
+        }
+        (heat, slope)
+    }
+
+    /// Heat flow from the valve to the surroundings, W, and its derivative with the valve's temperature.
+    pub(super) fn valve_loss(&self, valve: &Valve, valve_k: f64, inputs: &Inputs) -> (f64, f64) {
+        let (heat, slope) = self.loss(&self.valve_body, valve.film_factor, valve_k, inputs);
+        let sun = self.valve_absorbing_m2 * inputs.irradiance_w_m2;
+        (valve.area_m2 * heat - sun, valve.area_m2 * slope)
+    }
+}
+
+/// Projected area of each column in the sun, m²: its outer area over pi, times the lit part of its height.
+pub(super) fn lit_area_m2(mesh: &Mesh, sun: Option<&Sun>) -> Vec<f64> {
+    let Some(sun) = sun else { return vec![0.0; mesh.columns.len()] };
+    let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
+    let (from, to) = (sun.from_fraction * top, sun.to_fraction * top);
+    mesh.columns
+        .iter()
+        .map(|column| {
+            let (low, high) = column.inner_height_m;
+            let lit = if high > low {
+                ((high.min(to) - low.max(from)) / (high - low)).max(0.0)
+            } else {
+                f64::from(u8::from(from <= low && low <= to))
+            };
+            lit * column.outer_area_m2 / std::f64::consts::PI
+        })
+        .collect()
+}
