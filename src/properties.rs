@@ -73,6 +73,10 @@ const PROPERTIES: [Property; 14] = [
     ("conductivity_w_m_k", "thermal conductivity", "W/(m K)", |p| p.conductivity_w_m_k),
 ];
 
+/// Printed for people beside [`PROPERTIES`]; the files keep to their fixed columns.
+const EXPANSION: Property =
+    ("expansion_per_k", "expansion coefficient at constant pressure", "1/K", |p| p.state.expansion_per_k);
+
 /// Properties at the given state.
 ///
 /// # Errors
@@ -137,6 +141,7 @@ pub fn text(properties: &Properties) -> String {
     let bar = properties.state.pressure_pa / 1e5;
     let rows: Vec<Vec<String>> = PROPERTIES
         .iter()
+        .chain([&EXPANSION])
         .map(|(column, name, unit, value)| {
             let also = match *column {
                 "temperature_k" => format!("({} °C)", number(degc, 8)),

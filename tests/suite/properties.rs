@@ -13,10 +13,21 @@ fn one_state_is_printed_with_units() {
     let arguments = ["properties", "nitrogen", "--temperature-degc", "15", "--pressure-bar", "200"];
     let outcome = run(folder.path(), &arguments);
     assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""));
-    assert_eq!(outcome.stdout.lines().count(), 14);
+    assert_eq!(outcome.stdout.lines().count(), 15);
     // CoolProp 8.0: 223.187 kg/m³, Z 1.04779.
-    for words in ["223.187", "kg/m³", "1.0477", "J/(kg K)", "m/s", "Pa s", "W/(m K)", "(200 bar)", "(15 °C)"]
-    {
+    for words in [
+        "223.187",
+        "kg/m³",
+        "1.0477",
+        "0.0042639",
+        "1/K",
+        "J/(kg K)",
+        "m/s",
+        "Pa s",
+        "W/(m K)",
+        "(200 bar)",
+        "(15 °C)",
+    ] {
         assert!(outcome.stdout.contains(words), "{words} is missing in\n{}", outcome.stdout);
     }
 }

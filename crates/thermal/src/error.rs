@@ -282,13 +282,12 @@ pub enum ThermalError {
         reason: String,
     },
     /// Something else went wrong at a time of a run.
-    #[error("at {time_s:.3} s of the scenario: {source}")]
+    #[error("at {time_s:.3} s of the scenario: {cause}")]
     AtTime {
         /// Time, s.
         time_s: f64,
         /// What went wrong.
-        #[source]
-        source: Box<ThermalError>,
+        cause: Box<ThermalError>,
     },
 }
 
@@ -297,7 +296,7 @@ impl ThermalError {
     pub fn at_time(self, time_s: f64) -> Self {
         match self {
             Self::AtTime { .. } => self,
-            source => Self::AtTime { time_s, source: Box::new(source) },
+            cause => Self::AtTime { time_s, cause: Box::new(cause) },
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Runs whose answer is known in closed form or from an independent program.
 use approx::assert_relative_eq;
+use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::{Equation, Fluid};
 use cylwatch_thermal::scenario::{Fill, Series};
+use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::EventKind;
 use cylwatch_thermal::vessel::{InsideFilm, Vessel};
 
@@ -133,4 +135,17 @@ fn short_pulse_is_not_missed() {
     assert_relative_eq!(highest - 288.15, 0.523 * 20.0 * 40.0 * 30.0 / 12_350.0, max_relative = 0.1);
     let at_jump = pulsed.time_s.iter().position(|&t| t == 14_040.0).unwrap();
     assert!(pulsed.wall_mean_k[at_jump] > 288.8, "dense output after the jump");
+}
+
+/// Cold gas that condenses while the wall cools: the run ends with the time and the two phases, not with a number.
+#[test]
+fn run_into_two_phases_is_an_error_with_its_time() {
+    let mut scenario = still(95.0, 150.0, 20.0, 6.0);
+    scenario.initial.fill = Fill::Pressure { pressure_pa: 30e5 };
+    let error =
+        simulate(&closed_bottle(), &scenario, &SimulationSettings::default(), &mut |_| {}).unwrap_err();
+    let ThermalError::AtTime { time_s, cause } = &error else { panic!("{error}") };
+    assert!(*time_s > 600.0, "{error}");
+    assert!(matches!(**cause, ThermalError::TwoPhase { .. } | ThermalError::NearCritical { .. }), "{error}");
+    assert!(error.to_string().contains("two-phase"), "{error}");
 }
