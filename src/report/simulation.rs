@@ -96,7 +96,7 @@ pub fn figure(run: &Trajectory) -> Figure {
     let differences = differences(&temperatures);
     let mut panels = vec![
         Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
-        Panel { quantity: "minus gas mean in K".into(), items: differences, height: 0.7 },
+        Panel { quantity: "above gas mean in K".into(), items: differences, height: 0.7 },
         Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
     ];
     let (least, most) = run.mass_kg.iter().fold((f64::INFINITY, 0.0), |r, &m| (m.min(r.0), m.max(r.1)));
@@ -161,6 +161,11 @@ pub fn remarks(run: &Trajectory) -> Vec<String> {
         run.ledger.energy_residual()
     ));
     lines
+}
+
+/// Size of a residual: two digits, or 0.
+pub fn residual(value: f64) -> String {
+    if value == 0.0 { "0".into() } else { format!("{:.1e}", value.abs()) }
 }
 
 /// The run as a JSON document: provenance, columns, events, ledger, what the solver did.
@@ -239,9 +244,9 @@ pub fn summary(run: &Trajectory) -> String {
         row(
             "balance",
             format!(
-                "mass within {:.1e}, energy within {:.1e}",
-                run.ledger.mass_residual().abs(),
-                run.ledger.energy_residual().abs()
+                "mass within {}, energy within {}",
+                residual(run.ledger.mass_residual()),
+                residual(run.ledger.energy_residual())
             ),
         ),
         row("solver", format!("{} steps with {} states", run.statistics.steps, run.statistics.states)),

@@ -3,6 +3,7 @@ use super::Reproduction;
 use super::blowdown::{Score, Stacked, Variant};
 use super::cylinder::time_63_s;
 use crate::report::aligned;
+use crate::report::simulation::residual;
 use serde_json::{Value, json};
 
 /// A number that was computed, with what it is held against.
@@ -96,8 +97,8 @@ pub fn scenarios_text(results: &Reproduction) -> String {
                 run.statistics.states.to_string(),
                 run.statistics.steps.to_string(),
                 format!("{:.0}", scenario.wall_time_s * 1e3),
-                format!("{:.1e}", run.ledger.mass_residual().abs()),
-                format!("{:.1e}", run.ledger.energy_residual().abs()),
+                residual(run.ledger.mass_residual()),
+                residual(run.ledger.energy_residual()),
             ]
         })
         .collect();
