@@ -3,7 +3,7 @@ use approx::assert_relative_eq;
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::{Equation, Fluid};
-use cylwatch_thermal::scenario::{Fill, Series};
+use cylwatch_thermal::scenario::{Fill, OutsideFilm, Series, Sun};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::EventKind;
 use cylwatch_thermal::vessel::{InsideFilm, Vessel};
@@ -148,4 +148,99 @@ fn run_into_two_phases_is_an_error_with_its_time() {
     assert!(*time_s > 600.0, "{error}");
     assert!(matches!(**cause, ThermalError::TwoPhase { .. } | ThermalError::NearCritical { .. }), "{error}");
     assert!(error.to_string().contains("two-phase"), "{error}");
+}
+
+/// Ideal monatomic gas filled adiabatically from a source of temperature T_s: `m cv T = m_0 cv T_0 + (m - m_0) cp T_s`.
+#[test]
+fn adiabatic_refill_of_an_ideal_gas_heats_by_its_flow_work_and_stops_at_its_pressure() {
+    let vessel = insulated(Fluid::named("argon").unwrap().with_equation(Equation::IdealGas));
+    let mut scenario = still(288.15, 288.15, 1e-9, 0.5);
+    scenario.initial.fill = Fill::Pressure { pressure_pa: 50e5 };
+    scenario.flows.push(Flow {
+        name: "refill".into(),
+        kind: FlowKind::Refill {
+            mass_flow_kg_s: 5e-3,
+            source_temperature_k: 300.0,
+            source_pressure_pa: 250e5,
+            inlet_diameter_m: None,
+        },
+        start_s: 100.0,
+        stop_s: f64::INFINITY,
+        opens_above_pa: None,
+        closes_below_pa: None,
+        closes_above_pa: Some(180e5),
+    });
+    let trajectory = run(&vessel, &scenario, 1e-9);
+    let closed = trajectory.events.last().unwrap();
+    assert_eq!(closed.kind, EventKind::FlowClosed { flow: "refill".into() });
+    assert_relative_eq!(closed.pressure_pa, 180e5, epsilon = 10.0);
+    let (m0, m) = (trajectory.mass_kg[0], *trajectory.mass_kg.last().unwrap());
+    let expected = (m0 * 288.15 + (m - m0) * 5.0 / 3.0 * 300.0) / m;
+    assert_relative_eq!(*trajectory.gas_mean_k.last().unwrap(), expected, max_relative = 1e-7);
+    assert_relative_eq!(m - m0, 5e-3 * (closed.time_s - 100.0), max_relative = 1e-8);
+    assert!(trajectory.ledger.energy_residual().abs() < 1e-12);
+}
+
+/// A relief device opens when the warming gas reaches its pressure and reseats below.
+#[test]
+fn relief_opens_at_its_pressure_and_closes_below_it() {
+    let mut scenario = still(340.0, 288.15, 20.0, 3.0);
+    scenario.flows.push(Flow {
+        name: "relief".into(),
+        kind: FlowKind::Orifice {
+            diameter_m: 0.001,
+            discharge_coefficient: 0.8,
+            back_pressure_pa: 101_325.0,
+        },
+        start_s: 0.0,
+        stop_s: f64::INFINITY,
+        opens_above_pa: Some(230e5),
+        closes_below_pa: Some(200e5),
+        closes_above_pa: None,
+    });
+    let trajectory = run(&closed_bottle(), &scenario, 1e-7);
+    let opened = &trajectory.events[0];
+    assert_eq!(opened.kind, EventKind::FlowOpened { flow: "relief".into() });
+    assert_relative_eq!(opened.pressure_pa, 230e5, epsilon = 10.0);
+    let closed = &trajectory.events[1];
+    assert_eq!(closed.kind, EventKind::FlowClosed { flow: "relief".into() });
+    assert_relative_eq!(closed.pressure_pa, 200e5, epsilon = 10.0);
+    assert!(trajectory.pressure_pa.iter().all(|&p| p <= 230.01e5));
+}
+
+/// Sun on the whole of an insulated bottle: it takes up `absorptivity * irradiance * outer area / pi`.
+#[test]
+fn sun_warms_by_the_projected_area() {
+    let mut vessel = insulated(Fluid::named("nitrogen").unwrap());
+    vessel.surface.solar_absorptivity = 0.6;
+    let mut scenario = still(288.15, 288.15, 1e-9, 1.0);
+    scenario.surroundings.sun = Some(Sun {
+        irradiance_w_m2: Series::constant(800.0),
+        from_fraction: 0.0,
+        to_fraction: 1.0,
+        valve: false,
+    });
+    let trajectory = run(&vessel, &scenario, 1e-9);
+    let (d, l) = (0.1907 + 2.0 * 0.0067_f64, 0.70 + 2.0 * 0.0067_f64);
+    let area = std::f64::consts::PI * d * (l + 0.5 * d);
+    let heat = 0.6 * 800.0 * area / std::f64::consts::PI * 3600.0;
+    assert_relative_eq!(trajectory.ledger.heat_in_j, heat, max_relative = 1e-6);
+}
+
+/// In wind and radiation the bottle comes to rest between air and surroundings, where both heat flows cancel.
+#[test]
+fn bottle_at_rest_balances_wind_against_radiation() {
+    let mut vessel = closed_bottle();
+    vessel.surface.emissivity = 0.9;
+    let mut scenario = still(288.15, 288.15, 8.0, 12.0);
+    scenario.surroundings.film = OutsideFilm::Convection { wind_m_s: Series::constant(3.0), multiplier: 1.0 };
+    scenario.surroundings.radiation_k = Some(Series::constant(258.15));
+    let trajectory = run(&vessel, &scenario, 1e-8);
+    let wall = *trajectory.wall_mean_k.last().unwrap();
+    // Film near 15 W/m²K (Churchill-Bernstein at 3 m/s), radiation 0.9 sigma (T⁴ - 258⁴).
+    let radiated = 0.9 * 5.670_374e-8 * (wall.powi(4) - 258.15_f64.powi(4));
+    let film = radiated / (288.15 - wall);
+    assert!((13.0..18.0).contains(&film), "film {film} W/m²K at {wall} K");
+    let last = trajectory.heat_to_gas_w.last().unwrap();
+    assert!(last.abs() < 0.05, "still {last} W to the gas");
 }
