@@ -2,7 +2,7 @@
 use crate::support::{column, files, refusal, refused, rows, run, run_with_stdin};
 use tempfile::tempdir;
 
-/// Columns of `/work/shared/data/nitrogen_reference.csv`.
+/// Columns of the reference table of nitrogen.
 const COLUMNS: &str = "temperature_k,pressure_pa,density_kg_m3,compressibility,internal_energy_j_kg,enthalpy_j_kg,\
 entropy_j_kg_k,cv_j_kg_k,cp_j_kg_k,sound_speed_m_s,dp_dt_at_density_pa_k,dp_drho_at_temperature_pa_m3_kg,\
 viscosity_pa_s,conductivity_w_m_k";
