@@ -244,3 +244,45 @@ fn bottle_at_rest_balances_wind_against_radiation() {
     let last = trajectory.heat_to_gas_w.last().unwrap();
     assert!(last.abs() < 0.05, "still {last} W to the gas");
 }
+
+/// Gas that the wall cannot heat, in a vessel that grows with its wall's temperature: the gas works on it along its isentrope,
+/// `T V^(g-1)` constant, and the ledger books `p dV`.
+#[test]
+fn gas_cools_by_the_work_on_its_growing_vessel() {
+    let mut vessel = insulated(Fluid::named("argon").unwrap().with_equation(Equation::IdealGas));
+    vessel.volume.thermal_expansion_per_k = 1e-3;
+    vessel.volume.reference_temperature_k = 288.15;
+    let mut scenario = still(338.15, 288.15, 50.0, 6.0);
+    scenario.initial.fill = Fill::Pressure { pressure_pa: 100e5 };
+    let trajectory = run(&vessel, &scenario, 1e-9);
+    let last = trajectory.time_s.len() - 1;
+    let growth = 1.0 + 1e-3 * (trajectory.wall_mean_k[last] - 288.15);
+    assert!(growth > 1.049);
+    assert_relative_eq!(trajectory.gas_mean_k[last], 288.15 * growth.powf(-2.0 / 3.0), max_relative = 1e-6);
+    assert_relative_eq!(trajectory.pressure_pa[last], 100e5 * growth.powf(-5.0 / 3.0), max_relative = 1e-6);
+    let cooled = trajectory.mass_kg[0] * 1.5 * vessel.fluid.specific_gas_constant_j_kg_k();
+    assert_relative_eq!(
+        trajectory.ledger.work_out_j,
+        cooled * (288.15 - trajectory.gas_mean_k[last]),
+        max_relative = 1e-4
+    );
+}
+
+/// Elastic by pressure too: at rest the volume is the one that belongs to the pressure it shows.
+#[test]
+fn elastic_cylinder_reads_less_than_a_rigid_one() {
+    let rigid = closed_bottle();
+    let mut elastic = rigid.clone();
+    elastic.volume.thermal_expansion_per_k = 3.5e-5;
+    elastic.volume.pressure_expansion_per_pa = 1.5e-10;
+    let scenario = still(328.15, 288.15, 20.0, 12.0);
+    let (a, b) = (run(&rigid, &scenario, 1e-8), run(&elastic, &scenario, 1e-8));
+    let last = a.time_s.len() - 1;
+    let density =
+        b.vessel.fluid.density_from_pressure_temperature(b.pressure_pa[last], b.gas_mean_k[last]).unwrap();
+    let volume = elastic.volume.volume_m3(b.wall_mean_k[last], b.pressure_pa[last]);
+    assert_relative_eq!(density * volume, b.mass_kg[0], max_relative = 1e-9);
+    let drop_bar = (a.pressure_pa[last] - b.pressure_pa[last]) / 1e5;
+    // 40 K x 3.5e-5 + 40 bar x 1.5e-5/bar = 0.2 % of the volume, over a bulk modulus of about 280 bar.
+    assert!((0.3..0.9).contains(&drop_bar), "{drop_bar} bar");
+}
