@@ -4,7 +4,7 @@ use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::{Equation, Fluid};
 use cylwatch_thermal::scenario::{Fill, OutsideFilm, Series, Sun};
-use cylwatch_thermal::simulate::{SimulationSettings, simulate};
+use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::EventKind;
 use cylwatch_thermal::vessel::{InsideFilm, Vessel};
 
@@ -285,4 +285,25 @@ fn elastic_cylinder_reads_less_than_a_rigid_one() {
     let drop_bar = (a.pressure_pa[last] - b.pressure_pa[last]) / 1e5;
     // 40 K x 3.5e-5 + 40 bar x 1.5e-5/bar = 0.2 % of the volume, over a bulk modulus of about 280 bar.
     assert!((0.3..0.9).contains(&drop_bar), "{drop_bar} bar");
+}
+
+/// After hours of rest the steps are long; the samples in the first step after a jump must not come from them.
+#[test]
+fn dense_output_is_right_just_after_a_jump_with_every_method() {
+    let mut scenario = still(288.15, 288.15, 40.0, 10.0);
+    scenario.sample_time_s = 10.0;
+    scenario.surroundings.air_k =
+        Series::try_new(vec![0.0, 30_000.0, 30_000.0], vec![288.15, 288.15, 348.15]).unwrap();
+    let with = |method, relative_tolerance| {
+        let settings = SimulationSettings { method, relative_tolerance, ..SimulationSettings::default() };
+        simulate(&closed_bottle(), &scenario, &settings, &mut |_| {}).unwrap()
+    };
+    let truth = with(Method::Bdf, 1e-10);
+    for method in [Method::Bdf, Method::TrBdf2, Method::Esdirk34] {
+        let run = with(method, 1e-4);
+        let worst =
+            run.wall_mean_k.iter().zip(&truth.wall_mean_k).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("{method:?}: largest error of the wall {worst:.3} K");
+        assert!(worst < 0.3, "{method:?}: {worst} K");
+    }
 }
