@@ -284,7 +284,7 @@ mod tests {
                 worst[1] = worst[1].max((groups.ln_r[0] - ln_r).abs());
             }
             println!("{name}: ln k {:.1e}, ln R {:.1e}", worst[0], worst[1]);
-            assert!(worst[0] < 3e-4 && worst[1] < 3e-4, "{name}: {worst:?}");
+            assert!(worst[0] < 1e-5 && worst[1] < 1e-5, "{name}: {worst:?}");
         }
     }
 
