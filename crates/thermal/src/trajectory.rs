@@ -79,7 +79,7 @@ pub struct Event {
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventKind {
-    /// The pressure crossed a limit.
+    /// The pressure crossed a limit, or began below it (at time 0, falling).
     PressureLimit {
         /// The limit, Pa.
         limit_pa: f64,

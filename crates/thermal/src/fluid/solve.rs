@@ -159,9 +159,29 @@ impl Fluid {
         };
         let start = guess_k.filter(|guess| guess.is_finite()).unwrap_or(300.0);
         match bracketed_newton(low, high, start, energy) {
-            Some(t) if t > low * 1.000_001 && t < high * 0.999_999 => Ok(t),
+            Some(t) if t > low * 1.000_001 && t < high * 0.999_999 => {
+                Ok(self.warmest_root(density_kg_m3, t, energy).unwrap_or(t))
+            }
             _ => Err(none),
         }
+    }
+
+    /// Between the phases the energy along an isochore need not increase, and a root there may have a warmer one above
+    /// it that is single-phase: the warmest below the critical temperature, if there is one.
+    fn warmest_root(
+        &self,
+        density_kg_m3: f64,
+        found_k: f64,
+        energy: impl Fn(f64) -> (f64, f64),
+    ) -> Option<f64> {
+        const STEPS: i32 = 80;
+        let top_k = self.data.critical_temperature_k * 1.01;
+        if found_k >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, found_k).is_ok() {
+            return None;
+        }
+        let at = |k: i32| found_k + (top_k - found_k) * f64::from(k) / f64::from(STEPS);
+        let below = (1..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
+        bracketed_newton(at(below), at(below + 1), at(below + 1), energy)
     }
 
     /// State from density and internal energy, with derivatives.

@@ -72,7 +72,7 @@ impl<'a> FlowStates<'a> {
     }
 
     /// Open and close by the pressures that were crossed; returns what happened.
-    pub fn at_pressure(&mut self, _time_s: f64, fired: &[usize]) -> Vec<EventKind> {
+    pub fn at_pressure(&mut self, fired: &[usize]) -> Vec<EventKind> {
         let mut happened = Vec::new();
         for &index in fired {
             let name = self.flows[index].name.clone();

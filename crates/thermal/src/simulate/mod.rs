@@ -200,6 +200,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn all_segments(&mut self, stepper: &mut dyn Stepper, edges: &[f64]) -> Result<(), ThermalError> {
+        self.report_start()?;
         let mut from = 0.0;
         for &to in edges {
             let jumped = self.begin_segment(from, to)?;
@@ -211,6 +212,17 @@ impl Run<'_> {
             (self.progress)(to / self.scenario.duration_s);
         }
         self.sample_until(stepper, self.scenario.duration_s, true)
+    }
+
+    /// A run that begins below a limit says so.
+    fn report_start(&mut self) -> Result<(), ThermalError> {
+        let pressure_pa = self.pressure(0.0)?;
+        for &limit_pa in self.scenario.pressure_limits_pa.iter().filter(|&&limit| pressure_pa <= limit) {
+            let kind = EventKind::PressureLimit { limit_pa, falling: true };
+            let event = self.event(0.0, kind, &self.x)?;
+            self.events.push(event);
+        }
+        Ok(())
     }
 
     /// Set the inputs of `[from, to]`, open and close flows by the clock; true if anything jumped.
@@ -239,7 +251,7 @@ impl Run<'_> {
                 self.sample_until(stepper, at, false)?;
                 stepper.back_to(at).map_err(|reason| self.cannot_go_on(at, reason))?;
                 stepper.state(&mut self.x);
-                let changed = self.flows.at_pressure(at, &self.monitors.take_fired());
+                let changed = self.flows.at_pressure(&self.monitors.take_fired());
                 self.record_flows(at, changed)?;
                 stepper.restart(at, self.settings.first_step_s.min(to - at).max(1e-9));
                 if at >= to {
