@@ -167,7 +167,7 @@ impl Fluid {
     }
 
     /// Between the phases the energy along an isochore need not increase, and a root there may have a warmer one above
-    /// it that is single-phase: the warmest below the critical temperature, if there is one.
+    /// it that is single-phase: the warmest one, if there is any.
     fn warmest_root(
         &self,
         density_kg_m3: f64,
@@ -178,6 +178,9 @@ impl Fluid {
         let top_k = self.data.critical_temperature_k * 1.01;
         if found_k >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, found_k).is_ok() {
             return None;
+        }
+        if energy(top_k).0 <= 0.0 {
+            return bracketed_newton(top_k, 2.0 * self.data.highest_temperature_k, 1.5 * top_k, energy);
         }
         let at = |k: i32| found_k + (top_k - found_k) * f64::from(k) / f64::from(STEPS);
         let below = (1..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
