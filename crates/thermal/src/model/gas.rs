@@ -88,8 +88,8 @@ impl Model {
         match &self.gas {
             Gas::WellMixed(gas) => Ok(GasNodes::One(gas.node(x[layout.mass], x[layout.energy], mean)?)),
             Gas::Stratified(gas) => {
-                let (mass, rest) = x[layout.mass..].split_at(layout.gas);
-                Ok(GasNodes::Many(gas.nodes(mass, &rest[..layout.gas], mean)?))
+                let (mass, energy) = layout.gas_of(x);
+                Ok(GasNodes::Many(gas.nodes(mass, energy, mean)?))
             }
         }
     }
@@ -106,7 +106,8 @@ impl Model {
         }
     }
 
-    /// Add what a column does to the cells it touches; a single cell takes the column's heat as it is.
+    /// Add what a column does to the cells it touches and return the heat it gives, W, so that wall and gas book the
+    /// same number; a single cell takes the column's heat as it is.
     pub(super) fn act(
         &self,
         column: usize,
@@ -115,13 +116,15 @@ impl Model {
         points: &[GasPoint],
         jet_w_m2_k: f64,
         wall: &mut WallAction<f64>,
-    ) {
+    ) -> f64 {
         if let Gas::WellMixed(_) = self.gas {
             wall.side_w[0] += heat_w;
-            return;
+            return heat_w;
         }
+        let mut given_w = 0.0;
         for contact in &self.grid.contacts[column] {
             let heat = contact.area_m2 * self.contact_flux(contact, surface_k, points, jet_w_m2_k).flux_w_m2;
+            given_w += heat;
             if contact.facing == Facing::Side {
                 wall.side_w[contact.cell] += heat;
                 wall.surface_k[contact.cell] += contact.area_m2 * surface_k;
@@ -129,6 +132,7 @@ impl Model {
                 wall.plate_w[contact.cell] += heat;
             }
         }
+        given_w
     }
 
     /// Turn the area-weighted sums of surface temperatures into means.

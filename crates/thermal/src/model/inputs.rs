@@ -43,13 +43,13 @@ impl InputPieces {
     /// The pieces on an interval without an edge in its inside.
     pub fn new(scenario: &Scenario, from_s: f64, to_s: f64) -> Self {
         let surroundings = &scenario.surroundings;
-        let (film, multiplier) = match &surroundings.film {
-            OutsideFilm::Coefficient { film_w_m2_k } => (film_w_m2_k, None),
-            OutsideFilm::Convection { wind_m_s, multiplier } => (wind_m_s, Some(*multiplier)),
+        let multiplier = match surroundings.film {
+            OutsideFilm::Coefficient { .. } => None,
+            OutsideFilm::Convection { multiplier, .. } => Some(multiplier),
         };
         Self {
             air: surroundings.air_k.segment(from_s, to_s),
-            film: film.segment(from_s, to_s),
+            film: surroundings.film.signal().segment(from_s, to_s),
             multiplier,
             radiation: surroundings.radiation_k.as_ref().map(|s| s.segment(from_s, to_s)),
             irradiance: surroundings.sun.as_ref().map(|sun| sun.irradiance_w_m2.segment(from_s, to_s)),
@@ -75,11 +75,8 @@ impl InputPieces {
 /// with the duration as the last.
 pub fn edges_s(scenario: &Scenario) -> Vec<f64> {
     let surroundings = &scenario.surroundings;
-    let film = match &surroundings.film {
-        OutsideFilm::Coefficient { film_w_m2_k } => film_w_m2_k,
-        OutsideFilm::Convection { wind_m_s, .. } => wind_m_s,
-    };
-    let mut edges: Vec<f64> = surroundings.air_k.edges_s().chain(film.edges_s()).collect();
+    let mut edges: Vec<f64> =
+        surroundings.air_k.edges_s().chain(surroundings.film.signal().edges_s()).collect();
     edges.extend(surroundings.radiation_k.iter().flat_map(|s| s.edges_s()));
     edges.extend(surroundings.sun.iter().flat_map(|sun| sun.irradiance_w_m2.edges_s()));
     edges.extend(scenario.flows.iter().flat_map(|flow| [flow.start_s, flow.stop_s]));

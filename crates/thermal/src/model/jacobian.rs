@@ -72,8 +72,7 @@ impl Model {
     ) -> Result<GasBlock, ThermalError> {
         let layout = &self.layout;
         let boundary = self.boundary(open);
-        let (mass, rest) = x[layout.mass..].split_at(layout.gas);
-        let (energy, mean) = (&rest[..layout.gas], self.mean_wall_k(x));
+        let ((mass, energy), mean) = (layout.gas_of(x), self.mean_wall_k(x));
         let outlet = self.grid.outlet;
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
         let jet_of = |gas: &WellMixed| -> Result<[f64; 3], ThermalError> {

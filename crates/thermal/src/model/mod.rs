@@ -93,7 +93,11 @@ impl Model {
             .collect();
         let geometry = &vessel.geometry;
         let outer_diameter_m = geometry.inner_diameter_m + 2.0 * geometry.thickness_m();
-        let height_m = geometry.outer_height_m();
+        let body = Body {
+            orientation: geometry.orientation,
+            diameter_m: outer_diameter_m,
+            height_m: geometry.outer_height_m(),
+        };
         let grid = GasGrid::new(vessel, &mesh);
         let layout = Layout::new(mesh.cells(), vessel.valve.is_some(), grid.cells.len());
         let start_k = scenario.initial.gas_temperature_k;
@@ -113,15 +117,12 @@ impl Model {
             capacity_j_k,
             valve: vessel.valve.clone(),
             surface: vessel.surface,
-            body: Body { orientation: geometry.orientation, diameter_m: outer_diameter_m, height_m },
-            valve_body: vessel.valve.as_ref().map_or(
-                Body { orientation: geometry.orientation, diameter_m: outer_diameter_m, height_m },
-                |valve| Body {
-                    orientation: geometry.orientation,
-                    diameter_m: valve.diameter_m,
-                    height_m: valve.diameter_m,
-                },
-            ),
+            body,
+            valve_body: vessel.valve.as_ref().map_or(body, |valve| Body {
+                diameter_m: valve.diameter_m,
+                height_m: valve.diameter_m,
+                ..body
+            }),
             inside: InsideConvection::new(
                 vessel.inside_film,
                 geometry.inner_diameter_m,
@@ -183,9 +184,9 @@ impl Model {
         let (mut to_gas, mut from_outside, mut through_valve) = (0.0, 0.0, 0.0);
         for column in 0..self.mesh.columns.len() {
             let inner = self.inner_face(column, temperature_k, points, jet);
-            rate[self.mesh.inner_cell(column)] -= inner.heat_w;
-            to_gas += inner.heat_w;
-            self.act(column, inner.surface_k, inner.heat_w, points, jet, wall);
+            let given_w = self.act(column, inner.surface_k, inner.heat_w, points, jet, wall);
+            rate[self.mesh.inner_cell(column)] -= given_w;
+            to_gas += given_w;
             let outer = self.outer_face(column, temperature_k, inputs).heat_w;
             rate[self.mesh.outer_cell(column)] -= outer;
             from_outside -= outer;

@@ -77,7 +77,7 @@ impl Model {
 
     /// Mass-weighted temperature, K, and volume-weighted pressure, Pa.
     fn mean_state(&self, x: &[f64], points: &[GasPoint]) -> (f64, f64) {
-        let masses = &x[self.layout.mass..];
+        let (masses, _) = self.layout.gas_of(x);
         let temperature: f64 = points.iter().zip(masses).map(|(p, m)| p.temperature_k * m).sum();
         let pressure =
             points.iter().zip(&self.grid.cells).map(|(p, cell)| p.pressure_pa * cell.volume_fraction).sum();
@@ -107,12 +107,12 @@ impl Model {
         let layout = &self.layout;
         let wall: f64 = x[..layout.wall].iter().zip(&self.capacity_j_k).map(|(x, c)| x * c).sum();
         let valve = layout.valve.zip(self.valve.as_ref()).map_or(0.0, |(i, v)| x[i] * v.capacity_j_k());
-        wall + valve + x[layout.energy..layout.energy + layout.gas].iter().sum::<f64>()
+        wall + valve + layout.gas_of(x).1.iter().sum::<f64>()
     }
 
     /// Gas mass, kg.
     pub fn mass_kg(&self, x: &[f64]) -> f64 {
-        x[self.layout.mass..self.layout.mass + self.layout.gas].iter().sum()
+        self.layout.gas_of(x).0.iter().sum()
     }
 
     /// The domain check of the gas state.

@@ -101,6 +101,16 @@ pub enum OutsideFilm {
     },
 }
 
+impl OutsideFilm {
+    /// The signal behind the film: the coefficient, or the wind.
+    pub fn signal(&self) -> &Series {
+        match self {
+            Self::Coefficient { film_w_m2_k } => film_w_m2_k,
+            Self::Convection { wind_m_s, .. } => wind_m_s,
+        }
+    }
+}
+
 /// Direct sun on a stretch of the surface. The lit cells absorb
 /// `absorptivity * irradiance * A_outer / pi` (projected area of a cylinder).
 #[derive(Clone, Debug)]
