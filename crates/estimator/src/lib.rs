@@ -1,5 +1,16 @@
-//! Estimation for gas cylinders: sensors, filters, the cylinder's observer, identification,
-//! calibration and sensor placement, on top of [`cylwatch_thermal`].
+//! Estimation for gas cylinders on top of [`cylwatch_thermal`]: sensors, filters, the cylinder's observer,
+//! and the means to judge an estimator.
 //!
-//! This crate so far holds only this page: the thermal solver comes first.
+//! A trajectory (simulated) becomes a [`log::Log`] through [`sensor`]; an observer turns a log, row by row,
+//! into the mean gas temperature, the gas mass and the leak rate, each with its standard deviation.
+pub mod bound;
+pub mod consistency;
+pub mod error;
+pub mod filter;
+pub mod log;
+pub mod observer;
+pub mod sensor;
+pub mod truth;
+
 pub use cylwatch_thermal as thermal;
+pub use error::EstimatorError;

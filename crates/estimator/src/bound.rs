@@ -1,0 +1,1 @@
+//! Posterior Cramer-Rao bound.

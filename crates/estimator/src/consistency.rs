@@ -1,0 +1,1 @@
+//! Judging an estimator: normalised innovations and errors against their chi-square bounds.

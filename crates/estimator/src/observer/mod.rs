@@ -1,0 +1,1 @@
+//! The cylinder's observer.

@@ -1,0 +1,1 @@
+//! What a sensor reads and how a filter predicts it.

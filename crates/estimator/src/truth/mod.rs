@@ -1,0 +1,1 @@
+//! Truth for judging: mismatched cylinders and weather, seeded.
