@@ -2,6 +2,9 @@
 use crate::scenario::series::LinearPiece;
 use crate::scenario::{OutsideFilm, Scenario};
 
+/// Relative difference above which a signal jumps at an edge: far above rounding, far below any effect.
+const JUMP: f64 = 1e-9;
+
 /// Outside film at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FilmInput {
@@ -29,6 +32,21 @@ pub struct Inputs {
     pub irradiance_w_m2: f64,
     /// Air temperature at the top minus that at the bottom, K.
     pub air_difference_k: f64,
+}
+
+impl Inputs {
+    /// Whether any signal differs by more than the rounding of a linear piece.
+    pub fn jumped_from(&self, before: &Self) -> bool {
+        let signals = |inputs: &Self| {
+            let (film, multiplier) = match inputs.film {
+                FilmInput::Coefficient(film) => (film, 1.0),
+                FilmInput::Convection { wind_m_s, multiplier } => (wind_m_s, multiplier),
+            };
+            let radiation_k = inputs.radiation_k.unwrap_or(0.0);
+            [inputs.air_k, film, multiplier, radiation_k, inputs.irradiance_w_m2, inputs.air_difference_k]
+        };
+        signals(self).iter().zip(signals(before)).any(|(a, b)| (a - b).abs() > JUMP * (1.0 + a.abs()))
+    }
 }
 
 /// The surroundings between two edges, every signal linear in time.
