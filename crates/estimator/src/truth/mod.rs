@@ -10,6 +10,7 @@ mod file;
 mod railway;
 mod random;
 mod readings;
+pub mod score;
 mod weather;
 
 use cylwatch_thermal::flow::{Flow, FlowKind};
