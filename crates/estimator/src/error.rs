@@ -40,4 +40,72 @@ pub enum EstimatorError {
         /// What is left of it when the later states are known.
         left: f64,
     },
+    /// A covariance has no inverse, and the chosen form carries the inverse.
+    #[error(
+        "the covariance has no inverse: the later states explain state {state}; carry it in another form"
+    )]
+    CovarianceSingular {
+        /// State, from 0.
+        state: usize,
+    },
+    /// A transition has no inverse, and the chosen form needs it.
+    #[error("the transition of the moving states has no inverse: carry the covariance in another form")]
+    TransitionSingular,
+    /// A noise variance cannot be used.
+    #[error("noise variance {variance} must be positive")]
+    NoiseNotPositive {
+        /// Variance as given, in the square of the output's unit.
+        variance: f64,
+    },
+    /// A step goes back in time.
+    #[error("interval {interval_s} s must not be negative: sort the samples by time")]
+    IntervalNegative {
+        /// Interval, s.
+        interval_s: f64,
+    },
+    /// Readings and outputs differ in number.
+    #[error("{readings} readings for {outputs} outputs: give one per output, NaN where there is none")]
+    ReadingsLength {
+        /// Number of readings.
+        readings: usize,
+        /// Number of outputs.
+        outputs: usize,
+    },
+    /// A state or its covariance does not fit the process.
+    #[error("state or covariance of length {length} for a process of {states} states")]
+    StateLength {
+        /// Length as given.
+        length: usize,
+        /// Number of states.
+        states: usize,
+    },
+    /// A setting names a state that the process does not have.
+    #[error("there is no state {state}: the process has {states}, counted from 0")]
+    StateUnknown {
+        /// State as named.
+        state: usize,
+        /// Number of states.
+        states: usize,
+    },
+    /// A state is NaN or infinite.
+    #[error("state {state} is not a finite number")]
+    StateNotFinite {
+        /// State, from 0.
+        state: usize,
+    },
+    /// A transition holds NaN, an infinity, or a negative noise variance.
+    #[error("the linearised transition must be finite, its noise variances not negative")]
+    LinearisationUnusable,
+    /// An output or its gradient is NaN or infinite.
+    #[error("output {output} or its gradient is not a finite number")]
+    OutputNotFinite {
+        /// Output, from 0.
+        output: usize,
+    },
+    /// A gate that passes everything or nothing.
+    #[error("gate probability {probability} must lie between 0 and 1, e.g. 0.9999")]
+    GateProbability {
+        /// Probability as given.
+        probability: f64,
+    },
 }

@@ -1,5 +1,5 @@
 //! Factors of a covariance, with every complaint that a matrix which is none deserves.
-use super::kernel::axpy;
+use super::kernel::{axpy, column, column_mut};
 use crate::EstimatorError;
 
 /// Relative difference of mirrored elements up to which a matrix counts as symmetric.
@@ -69,6 +69,32 @@ fn symmetrise(p: &mut [f64], n: usize) -> Result<(), EstimatorError> {
         }
     }
     Ok(())
+}
+
+/// Square root `S = U diag(sqrt d)` of `P = S S^T`, upper triangular, in place of the column-major `p`; `d` is work.
+///
+/// # Errors
+/// As [`factor_udu`].
+pub(crate) fn factor_root(p: &mut [f64], d: &mut [f64]) -> Result<(), EstimatorError> {
+    let n = d.len();
+    factor_udu(p, d)?;
+    for (j, d) in d.iter().enumerate() {
+        let root = d.sqrt();
+        column_mut(p, n, j)[..=j].iter_mut().for_each(|s| *s *= root);
+    }
+    Ok(())
+}
+
+/// `P = S S^T` of an upper triangular, column-major `S` (n, n), both triangles.
+pub(crate) fn square_root(s: &[f64], n: usize, p: &mut [f64]) {
+    p.fill(0.0);
+    for l in 0..n {
+        let s = &column(s, n, l)[..=l];
+        for j in 0..=l {
+            axpy(s[j], &s[..=j], &mut column_mut(p, n, j)[..=j]);
+        }
+    }
+    mirror(p, n);
 }
 
 /// Copy the upper triangle of a column-major matrix into its lower one.

@@ -1,1 +1,5 @@
 //! The tests of this crate in one binary, modules by kind.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+mod equivalence_filters;
+mod equivalence_forms;
+mod linear_model;
