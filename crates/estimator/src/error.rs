@@ -108,4 +108,38 @@ pub enum EstimatorError {
         /// Probability as given.
         probability: f64,
     },
+    /// The covariance of a filter grows without bound.
+    #[error(
+        "the filter has no steady state: a state that moves or is driven by noise is not seen by the outputs"
+    )]
+    NoSteadyState,
+    /// A pass with consider states cannot be smoothed.
+    #[error(
+        "a filter with consider states cannot be smoothed: its gains are not optimal; estimate these states"
+    )]
+    ConsiderStatesSmoothed,
+    /// A sample has no time.
+    #[error("sample time {time_s} s must be a finite number")]
+    TimeNotFinite {
+        /// Time as given, s.
+        time_s: f64,
+    },
+    /// Sigma points without spread.
+    #[error(
+        "sigma points with alpha {alpha}, beta {beta}, kappa {kappa}: alpha^2 (n + kappa) must be positive"
+    )]
+    SigmaPoints {
+        /// Spread.
+        alpha: f64,
+        /// Weight of the middle point.
+        beta: f64,
+        /// Secondary spread.
+        kappa: f64,
+    },
+    /// A stationary filter without an interval.
+    #[error("sampling interval {interval_s} s must be positive")]
+    IntervalNotPositive {
+        /// Interval, s.
+        interval_s: f64,
+    },
 }

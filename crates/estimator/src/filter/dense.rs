@@ -33,6 +33,20 @@ pub(crate) fn add_product_transposed(
     }
 }
 
+/// `C <- A^T B`; `A`: (inner, rows), `B`: (inner, columns), `C`: (rows, columns).
+pub(crate) fn transposed_product(c: &mut [f64], a: &[f64], b: &[f64], inner: usize) {
+    if inner == 0 {
+        c.fill(0.0);
+        return;
+    }
+    let rows = a.len() / inner;
+    for (c, b) in c.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
+        for (c, a) in c.iter_mut().zip(a.chunks_exact(inner)) {
+            *c = dot(a, b);
+        }
+    }
+}
+
 /// Turn `x` into the vector `v` of the reflection `I - beta v v^T` that maps `x` onto element `pivot`.
 ///
 /// Returns that element's new value and `beta`; `beta = 0` if `x` is zero.
@@ -105,6 +119,24 @@ pub(crate) fn solve_upper_transposed(r: &[f64], n: usize, b: &mut [f64]) {
         let r = column(r, n, j);
         b[j] = (b[j] - dot(&r[..j], &b[..j])) / r[j];
     }
+}
+
+/// Cholesky factor `R` of `A = R^T R` in place of the upper triangle; `false` if `A` is not positive definite.
+pub(crate) fn factor_cholesky(a: &mut [f64], n: usize) -> bool {
+    for j in 0..n {
+        let (before, rest) = a.split_at_mut(j * n);
+        let r = &mut rest[..=j];
+        for i in 0..j {
+            let other = column(before, n, i);
+            r[i] = (r[i] - dot(&other[..i], &r[..i])) / other[i];
+        }
+        let left = r[j] - dot(&r[..j], &r[..j]);
+        if left.is_nan() || left <= 0.0 {
+            return false;
+        }
+        r[j] = left.sqrt();
+    }
+    true
 }
 
 /// The identity (n, n), column-major.

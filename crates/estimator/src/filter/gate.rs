@@ -102,4 +102,11 @@ impl Gate {
             Outcome::Rejected
         }
     }
+
+    /// Factor `c` of the inflation `P <- P + c (P h)(P h)^T` with which an innovation `nu` of variance `s`, of which `r` is
+    /// noise, passes; zero if nothing is lacking or no state is seen.
+    pub fn inflation(&self, nu: f64, s: f64, r: f64) -> f64 {
+        let (known, lacking) = (s - r, nu * nu / self.limit - s);
+        if known > 0.0 && lacking > 0.0 { lacking / (known * known) } else { 0.0 }
+    }
 }

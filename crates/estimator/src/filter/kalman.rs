@@ -171,6 +171,14 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
         &mut self.counts
     }
 
+    pub(super) fn work(&self) -> &Work<F> {
+        &self.work
+    }
+
+    pub(super) fn has_consider_states(&self) -> bool {
+        !self.consider.is_empty()
+    }
+
     /// Advance by `dt_s`, s, and use the readings `z` (one per output, NaN where there is none).
     ///
     /// # Errors

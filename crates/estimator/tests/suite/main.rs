@@ -2,4 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod equivalence_filters;
 mod equivalence_forms;
+mod equivalence_smoother;
+mod equivalence_steady;
+mod equivalence_unscented;
+mod late_samples;
 mod linear_model;

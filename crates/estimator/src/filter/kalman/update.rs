@@ -108,12 +108,8 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     /// Let the covariance grow along `P h` until the reading passes the gate.
     fn inflate_along(&mut self, j: usize, nu: f64, s: f64) {
         let (n, work) = (self.x.len(), &mut self.work);
-        let known = s - work.r[j];
-        let lacking = nu * nu / self.gate.limit - s;
-        if known > 0.0 && lacking > 0.0 {
-            self.form.covariance_with(&work.h[j * n..(j + 1) * n], &mut work.scratch);
-            self.form.add_rank_one(lacking / (known * known), &work.scratch);
-        }
+        self.form.covariance_with(&work.h[j * n..(j + 1) * n], &mut work.scratch);
+        self.form.add_rank_one(self.gate.inflation(nu, s, work.r[j]), &work.scratch);
     }
 
     /// Scalar update by the innovation `nu` of output `j`.
