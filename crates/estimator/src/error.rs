@@ -29,7 +29,7 @@ pub enum EstimatorError {
     },
     /// A covariance is not positive semi-definite.
     #[error(
-        "covariance is not positive semi-definite: of the variance {variance} of state {state} the later states \
+        "covariance is not positive semi-definite: of the variance {variance} of state {state} the others \
          leave {left}; lower its covariances or raise its variance"
     )]
     CovarianceIndefinite {
@@ -37,13 +37,11 @@ pub enum EstimatorError {
         state: usize,
         /// Its variance.
         variance: f64,
-        /// What is left of it when the later states are known.
+        /// What is left of it when others are known.
         left: f64,
     },
     /// A covariance has no inverse, and the chosen form carries the inverse.
-    #[error(
-        "the covariance has no inverse: the later states explain state {state}; carry it in another form"
-    )]
+    #[error("the covariance has no inverse: other states explain state {state}; carry it in another form")]
     CovarianceSingular {
         /// State, from 0.
         state: usize,

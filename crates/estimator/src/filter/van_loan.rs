@@ -98,3 +98,6 @@ impl Discrete {
         Ok(Linearisation { phi: self.phi.rows(0, leading).into_owned(), g, q })
     }
 }
+
+#[cfg(test)]
+mod tests;

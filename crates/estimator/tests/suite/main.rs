@@ -5,5 +5,7 @@ mod equivalence_forms;
 mod equivalence_smoother;
 mod equivalence_steady;
 mod equivalence_unscented;
+mod ill_conditioned;
 mod late_samples;
 mod linear_model;
+mod properties;
