@@ -41,6 +41,8 @@ pub struct Refilter<F: SequentialFilter> {
     anchor_sampled: bool,
     entries: VecDeque<Entry<F::Snapshot>>,
     capacity: usize,
+    /// Readings of an entry before others were merged with it.
+    unmerged: Vec<f64>,
     /// An entry's memory for the next one.
     spare: Option<Entry<F::Snapshot>>,
 }
@@ -62,6 +64,7 @@ impl<F: SequentialFilter> Refilter<F> {
             anchor_sampled: false,
             entries: VecDeque::with_capacity(capacity + 1),
             capacity,
+            unmerged: vec![f64::NAN; filter.outputs()],
             spare: None,
             filter,
         }
@@ -148,14 +151,14 @@ impl<F: SequentialFilter> Refilter<F> {
     /// Add readings to entry `at`.
     fn merge(&mut self, at: usize, z: &[f64]) -> Result<Placement, StepError<F::Error>> {
         let entry = &mut self.entries[at];
-        let before = entry.z.clone();
+        self.unmerged.copy_from_slice(&entry.z);
         let mut replaced = 0;
         for (old, new) in entry.z.iter_mut().zip(z).filter(|(_, new)| new.is_finite()) {
             replaced += usize::from(old.is_finite());
             *old = *new;
         }
         if let Err(error) = self.refilter(at) {
-            self.entries[at].z = before;
+            self.entries[at].z.copy_from_slice(&self.unmerged);
             self.refilter(at)?;
             return Err(error);
         }
