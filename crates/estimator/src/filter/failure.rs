@@ -32,10 +32,16 @@ pub(crate) fn check_state(x: &[f64]) -> Result<(), EstimatorError> {
     }
 }
 
+/// Whether all values are finite. It looks at all of them, which is faster than to stop at the first.
+fn all_finite(values: &[f64]) -> bool {
+    values.iter().fold(true, |finite, value| finite & value.is_finite())
+}
+
 /// A linearisation must be finite, its noise variances not negative.
 pub(crate) fn check_linearisation(linear: &Linearisation) -> Result<(), EstimatorError> {
-    let finite = linear.phi.iter().chain(linear.g.iter()).all(|value| value.is_finite());
-    if !finite || !linear.q.iter().all(|q| q.is_finite() && *q >= 0.0) {
+    let q = linear.q.as_slice();
+    let finite = all_finite(linear.phi.as_slice()) && all_finite(linear.g.as_slice()) && all_finite(q);
+    if !finite || q.iter().any(|q| *q < 0.0) {
         return Err(EstimatorError::LinearisationUnusable);
     }
     Ok(())
@@ -43,7 +49,7 @@ pub(crate) fn check_linearisation(linear: &Linearisation) -> Result<(), Estimato
 
 /// Value and gradient of an output must be finite, its noise variance positive.
 pub(crate) fn check_output(output: usize, y: f64, h: &[f64], variance: f64) -> Result<(), EstimatorError> {
-    if !y.is_finite() || !h.iter().all(|h| h.is_finite()) {
+    if !y.is_finite() || !all_finite(h) {
         return Err(EstimatorError::OutputNotFinite { output });
     }
     if !variance.is_finite() || variance <= 0.0 {

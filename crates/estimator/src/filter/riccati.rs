@@ -17,6 +17,9 @@ use crate::EstimatorError;
 /// Doublings after which a growing covariance counts as unbounded: `2^60` filter steps.
 const DOUBLINGS: usize = 60;
 
+/// Growth of a variance, relative, after which the next, of the order of its square, is below rounding.
+const SETTLED: f64 = 1e-10;
+
 /// What a filter with constant matrices settles at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyState {
@@ -169,7 +172,9 @@ impl Doubling {
         }
         self.divide_by_w();
         let growth = self.grow_covariance();
-        self.double_dynamics();
+        if matches!(growth, Growth::Grows) {
+            self.double_dynamics();
+        }
         growth
     }
 
@@ -219,7 +224,7 @@ impl Doubling {
             if !(x + added).is_finite() {
                 return Growth::Unbounded;
             }
-            if added > f64::EPSILON * x {
+            if added > SETTLED * x {
                 growth = Growth::Grows;
             }
         }
