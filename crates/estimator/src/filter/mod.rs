@@ -3,6 +3,7 @@
 //! A problem is a [`StateSpace`]: how the state moves between samples and what each output reads. Every filter
 //! here works on any of them.
 mod factor;
+pub mod horizon;
 mod kernel;
 pub mod state_space;
 pub mod ud;
