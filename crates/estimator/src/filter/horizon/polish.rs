@@ -2,13 +2,13 @@
 //! optimum is the solution of one linear system.
 use nalgebra::{DMatrix, DVector};
 
-use super::program::{Optimum, Program};
+use super::program::{Basis, Optimum, Program};
 
 /// Largest violation of the optimality conditions that still counts as none, standard deviations.
 const ROUNDING: f64 = 1e-9;
 
-/// The optimum with the active set of `rough`, or `None` if that does not satisfy the optimality conditions, as where
-/// active rows depend on each other.
+/// The optimum with the active set of `rough`, or `None` if that does not satisfy the optimality conditions: the set
+/// was not clear yet, or the wrong ones of dependent rows were taken to carry the multipliers.
 pub(super) fn polish(program: &Program, rough: &Optimum) -> Option<Optimum> {
     let sets = Sets::of(program, rough);
     let optimum = sets.solve(program)?;
@@ -22,10 +22,20 @@ struct Sets {
 }
 
 impl Sets {
-    /// Of two complementary quantities the larger is the one that is not zero.
+    /// Of two complementary quantities the larger is the one that is not zero. Of active rows that depend on each
+    /// other, as bounds on a state that no noise moves, those before the dependence carry the multipliers.
     fn of(program: &Program, rough: &Optimum) -> Self {
         let distance = program.gaps() - program.row_matrix() * &rough.v;
-        let active = (0..distance.len()).filter(|&a| rough.multipliers[a] > distance[a]).collect();
+        let mut basis = Basis::default();
+        let mut independent = |a: &usize| {
+            let rank = basis.rank();
+            let mut coordinates = program.rows[*a].coordinates.clone();
+            coordinates.resize(program.rank, 0.0);
+            basis.coordinates(&coordinates);
+            basis.rank() > rank
+        };
+        let pushing = (0..distance.len()).filter(|&a| rough.multipliers[a] > distance[a]);
+        let active = pushing.filter(|a| independent(a)).collect();
         let residual = program.residuals() - program.suspect_matrix() * &rough.v;
         let outliers = (0..residual.len())
             .filter(|&j| residual[j].abs() > program.delta)
