@@ -8,6 +8,7 @@ pub mod failure;
 pub mod form;
 pub mod gate;
 pub mod kalman;
+pub mod horizon;
 mod kernel;
 pub mod report;
 pub mod riccati;

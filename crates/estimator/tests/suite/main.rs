@@ -11,3 +11,4 @@ mod ill_conditioned;
 mod late_samples;
 mod linear_model;
 mod properties;
+mod horizon;
