@@ -28,7 +28,8 @@ mod suite;
 mod typical;
 
 pub use cylwatch_thermal::scenario::sensor::{
-    CorrelatedNoise, GasPlace, Law, PressureReference, Pt100Class, SensorKind, SurfacePlace,
+    CorrelatedNoise, GasPlace, KindChoice, Law, PressureReference, Pt100Class, SensorKind, SensorSpec,
+    SurfacePlace,
 };
 pub use file::{SensorsSpec, read_sensors, schema};
 pub use model::{ELECTRONICS_REFERENCE_K, Exposure, Prediction, Sensor};

@@ -171,3 +171,6 @@ impl SuiteTruth {
         self.specimens.iter_mut().find(|specimen| specimen.sensor.name == name)
     }
 }
+
+#[cfg(test)]
+mod tests;
