@@ -1,1 +1,2 @@
 //! The tests of this crate in one binary, modules by kind.
+mod sensors;
