@@ -24,7 +24,7 @@ use cylwatch_thermal::trajectory::Trajectory;
 /// Readings at every sample of a trajectory; a sensor's readings depend on the seed and on that sensor alone.
 ///
 /// # Errors
-/// [`EstimatorError::SensorPlace`] for a sensor on a place that the vessel does not have.
+/// [`EstimatorError::SensorMisfit`] for a sensor on a place that the vessel does not have.
 pub fn sample(trajectory: &Trajectory, suite: &SuiteTruth, seed: u64) -> Result<Log, EstimatorError> {
     sample_at(trajectory, suite, &trajectory.time_s, seed)
 }

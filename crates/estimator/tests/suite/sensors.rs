@@ -1,4 +1,7 @@
 //! Typical sensors, and files of sensors with their priors.
+// Helpers outside of test functions fail a test by panicking, too.
+#![allow(clippy::unwrap_used)]
+
 use approx::assert_relative_eq;
 use cylwatch_estimator::log::Quantity;
 use cylwatch_estimator::sensor::{

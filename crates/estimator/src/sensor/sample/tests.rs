@@ -1,7 +1,7 @@
 //! Sampled readings against closed forms.
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use cylwatch_thermal::scenario::sensor::SensorSpec;
-use cylwatch_thermal::scenario::{presets, read_scenario};
+use cylwatch_thermal::scenario::{Series, presets, read_scenario};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::vessel;
 
@@ -132,6 +132,34 @@ fn the_air_in_a_coupled_sensor_lags_like_the_air_and_its_surface_like_the_surfac
     for ((coupled, air), surface) in coupled.iter().zip(&air).zip(&surface) {
         assert_relative_eq!(*coupled, 0.15 * air + 0.85 * surface, max_relative = 1e-12);
     }
+}
+
+#[test]
+fn a_surface_sensor_has_the_air_of_its_height_around_it() {
+    let mut run = trajectory("");
+    // 8 K more at the top than at the bottom from 1000 s on, nothing before.
+    let difference_k = Series::try_new(vec![0.0, 1000.0, 1000.0], vec![0.0, 0.0, 8.0]).unwrap();
+    run.scenario.surroundings.axial.air_difference_k = Some(difference_k);
+    let read = |name: &str, lag_s| {
+        let change = |spec: &mut SensorSpec| {
+            (spec.air_coupling, spec.lag_s) = (Some(0.5), Some(lag_s));
+        };
+        nominal(&run, sensor(name, change), 0)
+    };
+    let [valve, bottom, lagged] = [read("valve", 0.0), read("bottom", 0.0), read("valve", 500.0)];
+    let [valve_k, bottom_k] = ["valve", "bottom"].map(|name| run.surface_k(name).unwrap());
+    // Valve: the top, 4 K above the middle. Bottom: within the lowest tenth of the height, 3.2 to 4 K below.
+    for (k, &t) in run.time_s.iter().enumerate() {
+        let above = if t >= 1000.0 { 4.0 } else { 0.0 };
+        assert_abs_diff_eq!(valve[k], 0.5 * valve_k[k] + 0.5 * (293.15 + above), epsilon = 1e-10);
+        let below = 293.15 - (2.0 * bottom[k] - bottom_k[k]);
+        assert!((0.8 * above - 1e-9..=above + 1e-9).contains(&below), "{t}: {below}");
+    }
+    // Everything else rests at 20 degC: half of the 4 K is reached with the lag from 1000 s on, a time between samples.
+    let rest = run.valve_k.clone().unwrap();
+    assert!(rest.iter().all(|t| (t - 293.15).abs() < 0.05));
+    let index = run.time_s.iter().position(|&t| t == 1500.0).unwrap();
+    assert_abs_diff_eq!(lagged[index], 293.15 + 2.0 * (1.0 - (-1.0_f64).exp()), epsilon = 0.03);
 }
 
 #[test]

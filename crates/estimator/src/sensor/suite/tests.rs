@@ -107,7 +107,7 @@ fn an_ideal_sensor_has_its_means_and_its_lag_and_nothing_else() {
 fn two_sensors_of_one_name_are_refused() {
     let twice = vec![sensor("valve", |_| ()), sensor("valve", |_| ())];
     let message = SensorSuite::try_new(twice).unwrap_err().to_string();
-    assert_eq!(message, "two sensors are called valve: channels tell sensors apart by their names");
+    assert_eq!(message, "sensor `valve` is there twice; give each sensor a name of its own");
 }
 
 #[test]
