@@ -6,7 +6,7 @@ use super::output::Target;
 use super::progress::Progress;
 use anyhow::bail;
 use cylwatch::report::figure::Figure;
-use cylwatch::report::{Provenance, aligned, simulation};
+use cylwatch::report::{Provenance, Readings, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
@@ -27,6 +27,7 @@ struct Options {
     format: Format,
     plot: Option<(Target, Picture)>,
     settings: SimulationSettings,
+    seed: u64,
 }
 
 /// Simulates and writes, or lists the built-in vessels and scenarios.
@@ -42,11 +43,17 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     let run =
         simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;
     drop(progress);
-    let provenance = inputs.provenance();
+    let readings = Readings::sampled(&run, options.seed)?;
+    for sensor in &readings.left_out {
+        let needs = sensor.misfit(&vessel).unwrap_or_default();
+        messages
+            .caution(&format!("sensor {} is left out: {} does not have {needs}", sensor.name, vessel.name));
+    }
+    let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
     // Everything is made before anything is written.
-    let data = data(&run, options.format, &provenance)?;
-    let picture = options.plot.as_ref().map(|(_, kind)| draw(&simulation::figure(&run), *kind, &provenance));
-    let picture = picture.transpose()?;
+    let data = data(&run, &readings, options.format, &provenance)?;
+    let figure = |kind| draw(&simulation::figure(&run, &readings), kind, &provenance);
+    let picture = options.plot.as_ref().map(|&(_, kind)| figure(kind)).transpose()?;
     if let (Some((target, _)), Some(bytes)) = (&options.plot, picture) {
         target.write(&bytes)?;
     }
@@ -72,7 +79,7 @@ impl Options {
         }
         settings.validate()?;
         let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
-        Ok(Self { vessel, scenario, data, format, plot, settings })
+        Ok(Self { vessel, scenario, data, format, plot, settings, seed: arguments.seed })
     }
 }
 
@@ -90,10 +97,15 @@ fn checked_plot(path: &Path, inputs: &[&Path], data: &Target) -> anyhow::Result<
     Ok((target, picture))
 }
 
-fn data(run: &Trajectory, format: Format, provenance: &Provenance) -> anyhow::Result<String> {
+fn data(
+    run: &Trajectory,
+    readings: &Readings,
+    format: Format,
+    provenance: &Provenance,
+) -> anyhow::Result<String> {
     Ok(match format {
-        Format::Csv => simulation::table(run).to_csv(provenance, &simulation::remarks(run)),
-        Format::Json => serde_json::to_string(&simulation::document(run, provenance))? + "\n",
+        Format::Csv => simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run)),
+        Format::Json => serde_json::to_string(&simulation::document(run, readings, provenance))? + "\n",
     })
 }
 

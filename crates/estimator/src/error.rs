@@ -260,4 +260,34 @@ pub enum EstimatorError {
         /// What it must be.
         reason: &'static str,
     },
+    /// A sensor on a place that the vessel does not have.
+    #[error(
+        "sensor {name} needs {missing}, which vessel {vessel} does not have: give it another place or leave it out"
+    )]
+    SensorMisfit {
+        /// Name of the sensor.
+        name: String,
+        /// Name of the vessel.
+        vessel: String,
+        /// What is missing.
+        missing: String,
+    },
+    /// A time that cannot be sampled.
+    #[error(
+        "sampling time {number}, {time_s} s, must be later than the one before and lie within the trajectory, \
+         {from_s} s to {to_s} s"
+    )]
+    SampleTime {
+        /// Which one, from 1.
+        number: usize,
+        /// The time, s.
+        time_s: f64,
+        /// Start of the trajectory, s.
+        from_s: f64,
+        /// End of the trajectory, s.
+        to_s: f64,
+    },
+    /// A trajectory without samples.
+    #[error("the trajectory has no samples: simulate at least one")]
+    EmptyTrajectory,
 }

@@ -12,3 +12,4 @@ mod late_samples;
 mod linear_model;
 mod properties;
 mod horizon;
+mod sensors;
