@@ -33,7 +33,6 @@ fn pieces_of_a_straight_line_cost_one_step_each() {
         let air = knots.iter().map(|t| 288.15 + 1e-4 * t).collect();
         scenario.surroundings.air_k = Series::try_new(knots, air).unwrap();
         let statistics = run_with(&scenario, method).statistics;
-        println!("{statistics:?}");
         let extra = statistics.steps as f64 / statistics.segments as f64;
         assert!(extra < 1.1, "{method:?}: {extra} steps per piece");
     }
