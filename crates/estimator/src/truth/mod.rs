@@ -65,7 +65,7 @@ impl Default for TruthSettings {
             cylinder_cells: 6,
             radial_cells: 1,
             gas_cells: 10,
-            relative_tolerance: 1e-4,
+            relative_tolerance: 1e-6,
             leak: None,
         }
     }
