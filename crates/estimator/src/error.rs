@@ -156,44 +156,6 @@ pub enum EstimatorError {
     #[error("there is no state {state}: the process has {states}, counted from 0")]
     StateUnknown {
         /// State as named.
-    /// A setting of a moving-horizon estimator is out of its range.
-    #[error("moving-horizon setting {name} = {value} must be {bound}")]
-    HorizonSetting {
-        /// Setting by its field name.
-        name: &'static str,
-        /// As given.
-        value: f64,
-        /// Its range.
-        bound: &'static str,
-    },
-    /// A prior is not of the process's size.
-    #[error(
-        "a process of {states} states needs a prior mean of as many, not {mean}, and a square covariance, not {rows} x {columns}"
-    )]
-    HorizonPrior {
-        /// States of the process.
-        states: usize,
-        /// Length of the mean.
-        mean: usize,
-        /// Rows of the covariance.
-        rows: usize,
-        /// Columns of the covariance.
-        columns: usize,
-    },
-    /// A prior mean holds NaN or an infinity.
-    #[error("prior mean {value} of state {state} must be finite")]
-    HorizonPriorNotFinite {
-        /// State, from 0.
-        state: usize,
-        /// Its mean.
-        value: f64,
-    },
-    /// A constraint names a state that is not there.
-    #[error("constraint {row} names state {state}, but states run from 0 to {} only", .states - 1)]
-    ConstraintState {
-        /// Constraint, from 0.
-        row: usize,
-        /// State that it names.
         state: usize,
         /// Number of states.
         states: usize,
@@ -252,6 +214,49 @@ pub enum EstimatorError {
     IntervalNotPositive {
         /// Interval, s.
         interval_s: f64,
+    },
+    /// A setting of a moving-horizon estimator is out of its range.
+    #[error("moving-horizon setting {name} = {value} must be {bound}")]
+    HorizonSetting {
+        /// Setting by its field name.
+        name: &'static str,
+        /// As given.
+        value: f64,
+        /// Its range.
+        bound: &'static str,
+    },
+    /// A prior is not of the process's size.
+    #[error(
+        "a process of {states} states needs a prior mean of as many, not {mean}, and a square covariance, not {rows} x {columns}"
+    )]
+    HorizonPrior {
+        /// States of the process.
+        states: usize,
+        /// Length of the mean.
+        mean: usize,
+        /// Rows of the covariance.
+        rows: usize,
+        /// Columns of the covariance.
+        columns: usize,
+    },
+    /// A prior mean holds NaN or an infinity.
+    #[error("prior mean {value} of state {state} must be finite")]
+    HorizonPriorNotFinite {
+        /// State, from 0.
+        state: usize,
+        /// Its mean.
+        value: f64,
+    },
+    /// A constraint names a state that is not there.
+    #[error("constraint {row} names state {state}, but states run from 0 to {} only", .states - 1)]
+    ConstraintState {
+        /// Constraint, from 0.
+        row: usize,
+        /// State that it names.
+        state: usize,
+        /// Number of states.
+        states: usize,
+    },
     /// A constraint is no inequality.
     #[error("constraint {row}: {reason}")]
     ConstraintRow {

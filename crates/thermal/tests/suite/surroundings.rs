@@ -101,11 +101,22 @@ fn film_slope_scales_the_loss_of_each_height() {
 #[test]
 fn zz() {
     for method in [Method::TrBdf2, Method::Esdirk34] {
-    for spacing in [60.0, 120.0, 600.0, 3600.0] {
-    for tol in [1e-5, 1e-6,1e-7,1e-8,1e-9] {
-        let s = SimulationSettings { method, relative_tolerance: tol, ..SimulationSettings::default() };
-        let b = std::time::Instant::now();
-        let r = simulate(&closed_bottle(), &waves(spacing, 24.0 * 21.0), &s, &mut |_| {});
-        println!("{method:?} {spacing} {tol:e} {:.2} {:?}", b.elapsed().as_secs_f64(), r.map(|t| t.statistics.steps).map_err(|e| e.to_string().chars().take(150).collect::<String>()));
-    }}}
+        for spacing in [60.0, 120.0, 600.0, 3600.0] {
+            for tol in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
+                let s =
+                    SimulationSettings { method, relative_tolerance: tol, ..SimulationSettings::default() };
+                let b = std::time::Instant::now();
+                let r = simulate(&closed_bottle(), &waves(spacing, 24.0 * 21.0), &s, &mut |_| {});
+                println!(
+                    "{method:?} {spacing} {tol:e} {:.2} {:?}",
+                    b.elapsed().as_secs_f64(),
+                    r.map(|t| t.statistics.steps).map_err(|e| e
+                        .to_string()
+                        .chars()
+                        .take(150)
+                        .collect::<String>())
+                );
+            }
+        }
+    }
 }
