@@ -295,4 +295,18 @@ pub enum EstimatorError {
     /// A trajectory without samples.
     #[error("the trajectory has no samples: simulate at least one")]
     EmptyTrajectory,
+    /// A significance that is no probability.
+    #[error("significance {probability} must be a probability between 0 and 1, such as 0.01")]
+    Significance {
+        /// As given.
+        probability: f64,
+    },
+    /// A time that an ensemble does not have.
+    #[error("index {index} is beyond the {times} times of the ensemble")]
+    TimeUnknown {
+        /// Index, from 0.
+        index: usize,
+        /// Number of times.
+        times: usize,
+    },
 }

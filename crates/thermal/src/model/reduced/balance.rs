@@ -135,8 +135,8 @@ impl ReducedModel {
             self.mean_rate_by[n + Unknowns::CAPACITY] = -self.mean_rate_k_s;
             // The slope itself falls as the wall warms: d slope = -a slope^3 dx.
             let curvature = -material.heat_capacity_slope_per_k * mean_slope.powi(3) * mean_energy_rate;
-            for node in 0..nodes {
-                self.mean_rate_by[node] += curvature * self.weight(node) * capacity_ratio(material, x[node]);
+            for (node, &node_k) in x.iter().enumerate().take(nodes) {
+                self.mean_rate_by[node] += curvature * self.weight(node) * capacity_ratio(material, node_k);
             }
             for node in 0..self.gas_index() {
                 let (capacity, ln_slope) = self.node_capacity(node, x[node]);
