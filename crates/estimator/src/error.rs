@@ -309,4 +309,20 @@ pub enum EstimatorError {
         /// Number of times.
         times: usize,
     },
+    /// A bound that needs noise on every moving state.
+    #[error(
+        "the noise is singular where transitions differ from path to path: give these states noise, or take the mean transition"
+    )]
+    BoundNoiseSingular,
+    /// Errors that nothing can be concluded from.
+    #[error(
+        "the errors of {runs} runs have no spread to compare with a bound: give at least two runs with errors"
+    )]
+    NoErrors {
+        /// Number of runs.
+        runs: usize,
+    },
+    /// A bound without paths.
+    #[error("the bound needs at least one true path")]
+    NoPaths,
 }

@@ -1,6 +1,8 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod allocations;
+mod bound_linear;
+mod consistency_rates;
 mod copying_model;
 mod equivalence_filters;
 mod equivalence_forms;
