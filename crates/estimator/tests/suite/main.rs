@@ -13,5 +13,6 @@ mod horizon;
 mod ill_conditioned;
 mod late_samples;
 mod linear_model;
+mod matched;
 mod properties;
 mod sensors;
