@@ -4,6 +4,7 @@ mod allocations;
 mod bound_linear;
 mod consistency_rates;
 mod copying_model;
+mod cylinder_transition;
 mod equivalence_filters;
 mod equivalence_forms;
 mod equivalence_smoother;
