@@ -295,6 +295,12 @@ pub enum EstimatorError {
     /// A trajectory without samples.
     #[error("the trajectory has no samples: simulate at least one")]
     EmptyTrajectory,
+    /// An engine of the observer that is not there.
+    #[error("there is no filter `{word}`: take ekf, ukf, stationary or mhe")]
+    EngineUnknown {
+        /// As given.
+        word: String,
+    },
     /// A significance that is no probability.
     #[error("significance {probability} must be a probability between 0 and 1, such as 0.01")]
     Significance {
