@@ -12,7 +12,9 @@
 //! states without noise, such as constants, are the limit of small noise.
 //!
 //! # Which expectation
-//! * [`Expectation::Full`] is the bound as published. It asks for a regular `Q` wherever `phi` has a spread.
+//! * [`Expectation::Full`] is the bound as published. It asks for a regular `Q` wherever `phi` has a spread. Averaging the
+//!   information over unlike paths counts as known what each path by itself leaves open, such as the mass beside an offset:
+//!   with constants of some spread the bound, though right, lies far below what any estimator reaches.
 //! * [`Expectation::MeanTransition`] drops the spread of `phi` from path to path: `(E[Q] + E[phi] J^-1 E[phi]^T)^-1`. `Q` may be
 //!   singular. What the spread tells is missing, so that the result is never below the bound: it errs to the high
 //!   side, and an efficiency by it is too good. Without spread both are equal.

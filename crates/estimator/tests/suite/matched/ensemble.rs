@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
 
-use super::world::{Chamber, Draws, SAMPLE_S, World};
+use super::world::{Chamber, Draws, World};
 
 /// Fixed times at which errors are judged.
 const TIMES: usize = 10;
@@ -86,13 +86,13 @@ fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
     let mut draws = Draws(ChaCha12Rng::seed_from_u64(seed));
     let mut x = draws.state(&world);
     let mut filter = ExtendedKalman::try_new(model, &mean, p, &KalmanSettings::default()).unwrap();
-    let fixed = fixed(samples);
+    let (fixed, sample_s) = (fixed(samples), plan.chamber.sample_s);
     for k in 0..samples {
-        let (dt_s, before) = (if k > 0 { SAMPLE_S } else { 0.0 }, x.clone());
-        world.time_s = k.saturating_sub(1) as f64 * SAMPLE_S;
+        let (dt_s, before) = (if k > 0 { sample_s } else { 0.0 }, x.clone());
+        world.time_s = k.saturating_sub(1) as f64 * sample_s;
         filter.model_mut().time_s = world.time_s;
         if k > 0 {
-            draws.advance(&mut world, &mut x, SAMPLE_S);
+            draws.advance(&mut world, &mut x, sample_s);
         }
         let z = draws.readings(&mut world, &x);
         filter.step(dt_s, &z).unwrap();
@@ -130,11 +130,11 @@ impl Ensemble {
         let world = World::new(plan.chamber, &plan.truth, plan.spread);
         let prior = world.prior_covariance();
         let functionals = [world.map().gas, world.map().mass];
-        let samples = (plan.chamber.duration_s / SAMPLE_S) as usize + 1;
+        let samples = (plan.chamber.duration_s / plan.chamber.sample_s) as usize + 1;
         Self {
             runs: (0..plan.seeds).into_par_iter().map(|seed| run(plan, samples, functionals, seed)).collect(),
             plan: plan.clone(),
-            times_s: fixed(samples).iter().map(|k| *k as f64 * SAMPLE_S).collect(),
+            times_s: fixed(samples).iter().map(|k| *k as f64 * plan.chamber.sample_s).collect(),
             samples,
             functionals,
             uncertain: (0..world.states()).filter(|&i| prior[(i, i)] > 0.0).collect(),

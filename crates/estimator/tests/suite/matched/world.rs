@@ -11,7 +11,6 @@ use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 pub const ZERO_CELSIUS_K: f64 = 273.15;
-pub const SAMPLE_S: f64 = 60.0;
 pub const HOUR_S: f64 = 3600.0;
 
 /// Air of a climatic chamber: an hour of rest, a linear change (a jump where it takes no time), rest.
@@ -21,6 +20,8 @@ pub struct Chamber {
     pub change_k: f64,
     pub ramp_s: f64,
     pub duration_s: f64,
+    /// Interval of the samples, s.
+    pub sample_s: f64,
 }
 
 impl Chamber {
@@ -37,6 +38,7 @@ impl Chamber {
             change_k: end_degc - start_degc,
             ramp_s: ramp_h * HOUR_S,
             duration_s: (1.0 + after_h) * HOUR_S,
+            sample_s: if number == 4 { 120.0 } else { 60.0 },
         }
     }
 
@@ -124,7 +126,7 @@ pub const COLD: f64 = 1.0;
 /// corner of the inside film, whose conductance falls to nothing with the difference of wall and gas.
 pub fn settings(member: LeakHypothesis) -> ObserverSettings {
     ObserverSettings {
-        longest_step_s: SAMPLE_S,
+        longest_step_s: 120.0,
         temperature_walk_k_per_sqrt_s: 0.3 / HOUR_S.sqrt(),
         air: Walk::per_sqrt_hour(0.3, 1.0),
         ln_outside_film: Walk::per_sqrt_hour(0.15, 0.1).remembering_hours(2.0),
