@@ -9,7 +9,7 @@ pub mod form;
 pub mod gate;
 pub mod horizon;
 pub mod kalman;
-mod kernel;
+pub(crate) mod kernel;
 pub mod report;
 pub mod riccati;
 pub mod ring;

@@ -33,7 +33,7 @@ enum Target {
 }
 
 /// The cylinder with its sensors in the variables of [`States`].
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Cylinder {
     model: ReducedModel,
     sensors: Vec<Sensor>,
@@ -57,7 +57,7 @@ pub struct Cylinder {
 }
 
 /// Reused memory of one step. Rows of a coupled state are `n + 1` long: the state's columns, then the mean's increment.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Work {
     rate: Vec<f64>,
     jacobian: DMatrix<f64>,
@@ -76,7 +76,7 @@ struct Work {
 }
 
 /// Reused memory of a divided interval.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Parts {
     step: Linearisation,
     phi: DMatrix<f64>,
@@ -178,9 +178,25 @@ impl Cylinder {
         self.decay[self.states.leak] = leak.rate.decay_per_s();
     }
 
+    /// Whether a state has gas, at temperatures and a density that the equation of state knows.
+    pub fn is_possible(&mut self, x: &[f64]) -> bool {
+        let domain = self.model.fluid().domain();
+        let temperatures = domain.lowest_temperature_k..=domain.highest_temperature_k;
+        let warm = |state: usize| temperatures.contains(&x[state]);
+        let mass_kg = x[self.states.mass];
+        (0..self.states.wall).chain(self.states.valve).chain([self.states.gas]).all(warm)
+            && mass_kg > 0.0
+            && mass_kg <= self.model.highest_mass_kg()
+    }
+
     /// Interval since the last sample of a sensor, s.
     pub fn set_interval_s(&mut self, sensor: usize, interval_s: f64) {
         self.interval_s[sensor] = interval_s;
+    }
+
+    /// Interval since the last sample of a sensor, s.
+    pub fn interval_s(&self, sensor: usize) -> f64 {
+        self.interval_s[sensor]
     }
 
     /// Pressure at a state, Pa.

@@ -19,6 +19,7 @@ pub mod engine;
 mod learned;
 mod member;
 mod observability;
+mod screen;
 pub mod settings;
 pub mod states;
 
@@ -30,11 +31,14 @@ use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
-pub use engine::Engine;
+use engine::Shared;
+pub use engine::{Engine, MovingHorizonSettings};
 pub use learned::Learned;
-use member::{FREE_GAS_SD_K, FREE_MASS_SD_KG, Member, Shared};
+use member::{FREE_GAS_SD_K, FREE_MASS_SD_KG, Member};
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
+use screen::Screen;
+pub use screen::{Fault, FaultCount};
 pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
 
 /// Temperature at which the settled pressure is quoted, K: 15 °C.
@@ -129,6 +133,9 @@ struct Clock {
     reference_mass_kg: Option<f64>,
     exchange: Exchange,
     restarts: u64,
+    screens: Vec<Screen>,
+    /// Until then an estimate that has just begun or been opened is pulled by good readings too.
+    pulled_until_s: f64,
 }
 
 /// Exchange of gas with the outside.
@@ -152,6 +159,8 @@ pub struct Observer {
     clock: Clock,
     gate: f64,
     reference_x: Vec<f64>,
+    /// The readings of the present sample without the faulty ones.
+    usable: Vec<f64>,
 }
 
 impl Observer {
@@ -188,7 +197,10 @@ impl Observer {
                 reference_mass_kg: None,
                 exchange: Exchange::None,
                 restarts: 0,
+                screens: sensors.iter().map(Screen::new).collect(),
+                pulled_until_s: f64::INFINITY,
             },
+            usable: vec![f64::NAN; sensors.len()],
             gate,
             reference_x: vec![0.0; cylinder.states()],
             cylinder,
@@ -220,28 +232,69 @@ impl Observer {
         if !time_s.is_finite() || last_s.is_some_and(|last| time_s < last) {
             return Err(EstimatorError::TimeBackwards { time_s, last_s: last_s.unwrap_or(f64::NAN) });
         }
-        let mut restarted = false;
-        match last_s {
-            None => self.start(time_s, readings)?,
-            Some(last_s) => {
-                if self.advance(time_s - last_s, time_s, readings).is_err() || !self.is_finite() {
-                    self.clock.restarts += 1;
-                    restarted = true;
-                    self.start(time_s, readings)?;
-                }
+        let mut usable = std::mem::take(&mut self.usable);
+        usable.copy_from_slice(readings);
+        for (reading, screen) in usable.iter_mut().zip(&mut self.clock.screens) {
+            if screen.judge(*reading).is_some() {
+                *reading = f64::NAN;
             }
         }
-        self.clock.time_s = Some(time_s);
-        for (last, reading) in self.clock.last_reading_s.iter_mut().zip(readings) {
+        let restarted = self.take(time_s, &usable);
+        for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
             if reading.is_finite() {
                 *last = time_s;
             }
         }
+        self.mark_faulty(time_s, readings, &usable);
+        self.usable = usable;
+        let restarted = restarted?;
+        self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
     }
 
-    /// Begin from the prior at a sample, and use its readings.
+    /// Move on to a sample and take its readings; whether the estimate had to begin again.
+    fn take(&mut self, time_s: f64, readings: &[f64]) -> Result<bool, EstimatorError> {
+        let Some(last_s) = self.clock.time_s else {
+            self.start(time_s, readings)?;
+            return Ok(false);
+        };
+        if self.advance(time_s - last_s, time_s, readings).is_ok() && self.is_possible() {
+            return Ok(false);
+        }
+        self.clock.restarts += 1;
+        self.start(time_s, readings)?;
+        Ok(true)
+    }
+
+    /// What the screens have sorted out counts as rejected.
+    fn mark_faulty(&mut self, time_s: f64, readings: &[f64], usable: &[f64]) {
+        for member in &mut self.members {
+            for (sensor, innovation) in member.innovations.iter_mut().enumerate() {
+                if readings[sensor].is_finite() && !usable[sensor].is_finite() {
+                    innovation.outcome = Outcome::Rejected;
+                }
+            }
+        }
+        if let Some(first) = self.members.first()
+            && time_s > self.clock.pulled_until_s
+        {
+            self.clock.screens.iter_mut().zip(&first.pulled).for_each(|(screen, &by)| screen.pull(by));
+        }
+    }
+
+    /// Begin from the prior at a sample, and use its readings if they lead to a state that can be.
     fn start(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        self.reset(time_s, readings)?;
+        if self.update(readings).is_ok() && self.is_possible() {
+            return Ok(());
+        }
+        self.reset(time_s, readings)?;
+        let without = vec![f64::NAN; readings.len()];
+        self.update(&without)
+    }
+
+    /// Every member as the prior has it.
+    fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         let prior = commissioning::prior(
             self.cylinder.state_map(),
             self.cylinder.sensors(),
@@ -256,19 +309,18 @@ impl Observer {
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
-        self.members = self
-            .cylinder
-            .settings()
-            .bank
-            .iter()
-            .map(|hypothesis| Member::new(&self.cylinder, *hypothesis, &mean, &covariance))
+        let bank = self.cylinder.settings().bank.clone();
+        self.members = bank
+            .into_iter()
+            .map(|hypothesis| Member::new(&mut self.cylinder, hypothesis, &mean, &covariance))
             .collect::<Result<_, _>>()?;
         self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
         self.clock.reference_mass_kg = None;
+        self.clock.pulled_until_s = time_s + SETTLE_S;
         for sensor in 0..readings.len() {
             self.cylinder.set_interval_s(sensor, f64::INFINITY);
         }
-        self.update(readings)
+        Ok(())
     }
 
     fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
@@ -278,6 +330,7 @@ impl Observer {
             }
         }
         if self.exchanging(time_s) {
+            self.clock.pulled_until_s = time_s + SETTLE_S;
             for member in &mut self.members {
                 member.open(&self.cylinder, FREE_MASS_SD_KG, FREE_GAS_SD_K);
             }
@@ -295,8 +348,8 @@ impl Observer {
         Ok(())
     }
 
-    fn is_finite(&self) -> bool {
-        self.members.iter().all(Member::is_finite)
+    fn is_possible(&mut self) -> bool {
+        self.members.iter().all(|member| member.is_possible(&mut self.cylinder))
     }
 
     /// Whether gas is exchanged at a time; ends the settling that is over.
@@ -406,9 +459,20 @@ impl Observer {
         self.members.get(member).map(|member| (member.mean(), member.covariance()))
     }
 
+    /// Faulty readings of each sensor so far.
+    pub fn faults(&self) -> impl Iterator<Item = FaultCount> {
+        self.clock.screens.iter().map(|screen| screen.count)
+    }
+
     /// Number of times the estimate had to begin again.
     pub fn restarts(&self) -> u64 {
         self.clock.restarts
+    }
+
+    /// Samples, of all members, at which the engine could not do its own and fell back on the extended filter inside it:
+    /// windows of the moving horizon without a solution inside the constraints.
+    pub fn fallbacks(&self) -> u64 {
+        self.members.iter().map(Member::fallbacks).sum()
     }
 
     /// Whether a film multiplier of the first member stands at the bound of what is plausible.
@@ -447,3 +511,6 @@ impl Observer {
         Some(observability::given_constants(&member.covariance(), states.mass, states.leading).sqrt())
     }
 }
+
+#[cfg(test)]
+mod tests;

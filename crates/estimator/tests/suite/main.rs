@@ -11,5 +11,6 @@ mod horizon;
 mod ill_conditioned;
 mod late_samples;
 mod linear_model;
+mod observer;
 mod properties;
 mod sensors;
