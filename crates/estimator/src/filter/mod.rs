@@ -29,6 +29,7 @@ pub use report::{OutputReport, StepReport};
 pub use riccati::{SteadyState, steady_state};
 pub use ring::{Placement, Refilter};
 pub use sequential::{KalmanSnapshot, SequentialFilter};
+pub(crate) use smoother::Backward;
 pub use smoother::{FixedLag, PassStep, Smoothed, smooth_fixed_interval};
 pub use state_space::{Linearisation, StateSpace};
 pub use stationary::{Stationary, StationarySettings, StationarySnapshot};

@@ -1,6 +1,7 @@
 //! One member of the bank: a Kalman filter with its own view of how gas may leave.
 use super::cylinder::Cylinder;
 use super::engine::{Mechanism, Predicted, Shared};
+use super::pass::Pass;
 use super::settings::LeakHypothesis;
 use crate::EstimatorError;
 use crate::filter::{StateSpace, UdFactors};
@@ -57,6 +58,8 @@ pub(super) struct Member {
     /// Whether a film multiplier stood at its bound after the last step.
     pub at_bound: bool,
     pub mechanism: Mechanism,
+    /// The last step, for a smoother.
+    pub pass: Option<Box<Pass>>,
 }
 
 impl Member {
@@ -85,6 +88,7 @@ impl Member {
             slow_s: 0.0,
             at_bound: false,
             mechanism,
+            pass: None,
         })
     }
 
@@ -96,7 +100,11 @@ impl Member {
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
         cylinder.suppose(&self.hypothesis);
-        self.mechanism.predict(cylinder, shared, (&mut self.x, &mut self.p), dt_s)?;
+        if let Some(pass) = &mut self.pass {
+            pass.begin(dt_s);
+        }
+        let belief = (self.x.as_mut_slice(), &mut self.p);
+        self.mechanism.predict(cylinder, shared, belief, self.pass.as_deref_mut(), dt_s)?;
         self.slow_s += dt_s;
         if self.slow_s >= SLOW_WALK_S {
             for state in cylinder.leading()..cylinder.states() {
@@ -161,7 +169,7 @@ impl Member {
             }
             outcome = Outcome::Reacquired;
             if cylinder.reads_pressure(sensor) {
-                self.open(cylinder, FREE_MASS_SD_KG, FREE_GAS_SD_K);
+                self.open(cylinder, Some(sensor));
             } else {
                 // Whatever moved the reading, the state may follow it half of the way at most.
                 r = r.max(nu * nu);
@@ -170,7 +178,10 @@ impl Member {
         }
         self.rejected[sensor] = 0;
         self.pulled[sensor] = (1.0 - r / s) * nu;
-        self.mechanism.update(shared, &mut self.p, (sensor, reading), r);
+        let used_s = self.mechanism.update(shared, &mut self.p, (sensor, reading), r);
+        if let Some(pass) = &mut self.pass {
+            pass.take(sensor, &shared.h, &shared.gain, (nu, used_s));
+        }
         for (x, k) in self.x.iter_mut().zip(&shared.gain) {
             *x += k * nu;
         }
@@ -178,10 +189,15 @@ impl Member {
     }
 
     /// Free mass and gas temperature of everything known about them; what has been learnt of the constants stays.
-    pub fn open(&mut self, cylinder: &Cylinder, mass_sd_kg: f64, gas_sd_k: f64) {
+    /// It happens before the readings of a sample, or before that of one sensor.
+    pub fn open(&mut self, cylinder: &Cylinder, before: Option<usize>) {
         let states = cylinder.state_map();
-        self.mechanism.decorrelate_and_set(&mut self.p, states.mass, mass_sd_kg * mass_sd_kg);
-        self.mechanism.decorrelate_and_set(&mut self.p, states.gas, gas_sd_k * gas_sd_k);
+        for (state, sd) in [(states.mass, FREE_MASS_SD_KG), (states.gas, FREE_GAS_SD_K)] {
+            self.mechanism.decorrelate_and_set(&mut self.p, state, sd * sd);
+        }
+        if let Some(pass) = &mut self.pass {
+            pass.open(before);
+        }
     }
 
     /// Whether mean and covariance are numbers, and the mean a state of the cylinder.
@@ -210,5 +226,5 @@ impl Member {
 }
 
 /// What mass and gas temperature may be while gas is exchanged.
-pub(super) const FREE_MASS_SD_KG: f64 = 1.0;
-pub(super) const FREE_GAS_SD_K: f64 = 20.0;
+const FREE_MASS_SD_KG: f64 = 1.0;
+const FREE_GAS_SD_K: f64 = 20.0;

@@ -19,8 +19,10 @@ pub mod engine;
 mod learned;
 mod member;
 mod observability;
+mod pass;
 mod screen;
 pub mod settings;
+mod smoother;
 pub mod states;
 
 use nalgebra::DMatrix;
@@ -34,12 +36,13 @@ use cylinder::Cylinder;
 use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
 pub use learned::Learned;
-use member::{FREE_GAS_SD_K, FREE_MASS_SD_KG, Member};
+use member::Member;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 use screen::Screen;
 pub use screen::{Fault, FaultCount};
 pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
+pub use smoother::Smoother;
 
 /// Temperature at which the settled pressure is quoted, K: 15 °C.
 const QUOTED_K: f64 = 288.15;
@@ -47,6 +50,9 @@ const QUOTED_K: f64 = 288.15;
 const REFERENCE_AFTER_S: f64 = 86_400.0;
 /// Time after an exchange of gas during which mass and gas stay free, s.
 const SETTLE_S: f64 = 1200.0;
+
+/// Interval as which that between two rows of one time counts, s.
+const SHORTEST_S: f64 = 1e-3;
 
 /// How far an estimate can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -332,11 +338,11 @@ impl Observer {
         if self.exchanging(time_s) {
             self.clock.pulled_until_s = time_s + SETTLE_S;
             for member in &mut self.members {
-                member.open(&self.cylinder, FREE_MASS_SD_KG, FREE_GAS_SD_K);
+                member.open(&self.cylinder, None);
             }
         }
         for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
-            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(f64::MIN_POSITIVE));
+            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
         }
         self.update(readings)
     }
@@ -385,37 +391,48 @@ impl Observer {
         readings: &[f64],
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
+        let (first, slow) = (&self.members[0], self.middle_slow_member());
         let states = self.cylinder.state_map();
-        let (gas, mass, leak) = (states.gas, states.mass, states.leak);
-        let (leak_kg_s, leak_sd_kg_s) = self
-            .middle_slow_member()
-            .map_or((f64::NAN, f64::NAN), |member| (member.x[leak], member.variance(leak).sqrt()));
-        let first = &self.members[0];
-        let (gas_mean_k, mass_kg) = (first.x[gas], first.x[mass]);
-        let (gas_sd, mass_sd) = (first.variance(gas).sqrt(), first.variance(mass).sqrt());
+        let sd = |member: &Member, state: usize| member.variance(state).sqrt();
+        let mut estimate = Estimate {
+            time_s,
+            gas_mean_k: first.x[states.gas],
+            gas_mean_sd_k: sd(first, states.gas),
+            mass_kg: first.x[states.mass],
+            mass_sd_kg: sd(first, states.mass),
+            leak_kg_s: slow.map_or(f64::NAN, |member| member.x[states.leak]),
+            leak_sd_kg_s: slow.map_or(f64::NAN, |member| sd(member, states.leak)),
+            pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
+            pressure_expected_pa: f64::NAN,
+            p15_pa: f64::NAN,
+            quality: self.quality(restarted),
+        };
         if self.clock.reference_mass_kg.is_none() && time_s >= self.clock.reference_due_s {
-            self.clock.reference_mass_kg = Some(mass_kg);
+            self.clock.reference_mass_kg = Some(estimate.mass_kg);
         }
-        let pressure_sensor = (0..readings.len()).find(|&sensor| self.cylinder.reads_pressure(sensor));
         self.reference_x.copy_from_slice(&first.x);
-        self.reference_x[mass] = self.clock.reference_mass_kg.unwrap_or(mass_kg);
-        let pressure_expected_pa = match pressure_sensor {
+        self.add_pressures(&mut estimate, self.clock.reference_mass_kg)?;
+        Ok(estimate)
+    }
+
+    /// Pressures of an estimate whose state is `reference_x`, with a reference mass, kg, if there is one.
+    fn add_pressures(
+        &mut self,
+        estimate: &mut Estimate,
+        reference_kg: Option<f64>,
+    ) -> Result<(), EstimatorError> {
+        let mass = self.cylinder.state_map().mass;
+        self.reference_x[mass] = reference_kg.unwrap_or(estimate.mass_kg);
+        estimate.pressure_expected_pa = match self.pressure_sensor() {
             Some(sensor) => self.cylinder.output(sensor, &self.reference_x, None)?,
             None => self.cylinder.pressure_pa(&self.reference_x)?,
         };
-        Ok(Estimate {
-            time_s,
-            gas_mean_k,
-            gas_mean_sd_k: gas_sd,
-            mass_kg,
-            mass_sd_kg: mass_sd,
-            leak_kg_s,
-            leak_sd_kg_s,
-            pressure_pa: pressure_sensor.map_or(f64::NAN, |sensor| readings[sensor]),
-            pressure_expected_pa,
-            p15_pa: self.cylinder.model().settled_pressure_pa(mass_kg, QUOTED_K)?,
-            quality: self.quality(restarted),
-        })
+        estimate.p15_pa = self.cylinder.model().settled_pressure_pa(estimate.mass_kg, QUOTED_K)?;
+        Ok(())
+    }
+
+    fn pressure_sensor(&self) -> Option<usize> {
+        (0..self.cylinder.outputs()).find(|&sensor| self.cylinder.reads_pressure(sensor))
     }
 
     fn quality(&self, restarted: bool) -> Quality {
@@ -432,7 +449,12 @@ impl Observer {
 
     /// The middle one of the members that have a leak rate, in the order of the bank.
     fn middle_slow_member(&self) -> Option<&Member> {
-        let slow = || self.members.iter().filter(|member| !member.hypothesis.rate.is_known());
+        self.middle_slow_index().map(|index| &self.members[index])
+    }
+
+    fn middle_slow_index(&self) -> Option<usize> {
+        let bank = &self.cylinder.settings().bank;
+        let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
         slow().nth(slow().count() / 2)
     }
 

@@ -44,7 +44,9 @@ fn an_impossible_state_restarts_the_estimate_which_says_so() {
 #[test]
 fn a_restart_keeps_what_was_learnt_before_it() {
     let mut teacher = observer(Engine::Extended);
-    (0..100).for_each(|k| drop(teacher.step(60.0 * f64::from(k), &REST).unwrap()));
+    for k in 0..100 {
+        teacher.step(60.0 * f64::from(k), &REST).unwrap();
+    }
     let learned = teacher.learned().unwrap();
     let mut pupil = observer(Engine::Extended).with_learned(learned.clone());
     pupil.step(0.0, &[f64::NAN; 3]).unwrap();

@@ -2,6 +2,7 @@
 use nalgebra::{DMatrix, Dyn};
 
 use super::super::cylinder::Cylinder;
+use super::super::pass::Pass;
 use super::Engine;
 use super::horizon::Horizon;
 use super::stationary::Stationary;
@@ -72,7 +73,7 @@ impl Mechanism {
         })
     }
 
-    /// Time update over `dt_s`, s, in steps no longer than the settings allow.
+    /// Time update over `dt_s`, s, in steps no longer than the settings allow, recorded in `pass`.
     ///
     /// # Errors
     /// The process refuses the state.
@@ -81,6 +82,7 @@ impl Mechanism {
         cylinder: &mut Cylinder,
         shared: &mut Shared,
         (x, p): (&mut [f64], &mut UdFactors<Dyn>),
+        mut pass: Option<&mut Pass>,
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
         let parts = (dt_s / cylinder.settings().longest_step_s).ceil().max(1.0);
@@ -91,12 +93,18 @@ impl Mechanism {
         for _ in 0..parts as usize {
             if let Self::Unscented = self {
                 shared.points.predict(cylinder, x, p, part_s)?;
+                if let Some(pass) = &mut pass {
+                    pass.move_on(&shared.points.linear.phi);
+                }
                 continue;
             }
             cylinder.propagate(x, part_s, Some(&mut shared.linear))?;
             match self {
                 Self::Stationary(stationary) => stationary.predict(&shared.linear, p),
                 _ => p.predict(&shared.linear),
+            }
+            if let Some(pass) = &mut pass {
+                pass.move_on(&shared.linear.phi);
             }
         }
         if let Self::MovingHorizon(horizon) = self {
@@ -131,26 +139,24 @@ impl Mechanism {
         }
     }
 
-    /// Update the covariance by a reading with the gradient `shared.h` and noise of variance `r`; the gain goes to `shared.gain`.
+    /// Update the covariance by a reading with the gradient `shared.h` and noise of variance `r`; the gain goes to
+    /// `shared.gain`. Returns the innovation's variance; with a constant gain it is of no meaning.
     pub fn update(
         &mut self,
         shared: &mut Shared,
         p: &mut UdFactors<Dyn>,
         (sensor, reading): (usize, f64),
         r: f64,
-    ) {
+    ) -> f64 {
         match self {
             Self::Stationary(stationary) => {
                 stationary.update(p, sensor, &shared.h, r, &mut shared.gain);
+                return f64::NAN;
             }
-            Self::MovingHorizon(horizon) => {
-                horizon.take(sensor, reading);
-                p.update(&shared.h, r, &mut shared.gain);
-            }
-            Self::Extended | Self::Unscented => {
-                p.update(&shared.h, r, &mut shared.gain);
-            }
+            Self::MovingHorizon(horizon) => horizon.take(sensor, reading),
+            Self::Extended | Self::Unscented => {}
         }
+        p.update(&shared.h, r, &mut shared.gain)
     }
 
     /// The sample is not as usual: a reading is missing or was rejected.

@@ -167,3 +167,17 @@ fn impossible_readings_never_end_in_nan_in_any_engine() {
         assert!(error.abs() < 20.0, "{engine}: {error} K");
     }
 }
+
+#[test]
+fn a_doubled_row_tells_nothing_new() {
+    let case = Case::ramp().until(2.0);
+    let (mut once, mut twice) = (observer(Engine::Extended), observer(Engine::Extended));
+    for (t, readings) in &case.rows {
+        let expected = once.step(*t, readings).unwrap();
+        twice.step(*t, readings).unwrap();
+        let doubled = twice.step(*t, readings).unwrap();
+        assert_ne!(doubled.quality, Quality::Restarted);
+        assert!((doubled.gas_mean_k - expected.gas_mean_k).abs() < 0.1 * expected.gas_mean_sd_k, "at {t} s");
+        assert!((doubled.gas_mean_sd_k / expected.gas_mean_sd_k - 1.0).abs() < 0.1, "at {t} s");
+    }
+}
