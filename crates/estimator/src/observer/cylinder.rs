@@ -14,7 +14,7 @@ use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{ReducedModel, Unknowns};
+use crate::thermal::model::reduced::{ReducedModel, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 
 /// A term of the series below this part of the largest sum is the last.
@@ -164,6 +164,11 @@ impl Cylinder {
     /// The thermal model.
     pub fn model(&mut self) -> &mut ReducedModel {
         &mut self.model
+    }
+
+    /// Where the model's iterations start next.
+    pub(super) fn warm_start(&self) -> WarmStart {
+        self.model.warm_start()
     }
 
     /// Whether a sensor reads the gas pressure.

@@ -16,6 +16,7 @@
 pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
+mod late;
 mod learned;
 mod member;
 mod observability;
@@ -30,11 +31,13 @@ use nalgebra::DMatrix;
 use crate::EstimatorError;
 use crate::filter::StateSpace;
 use crate::sensor::Sensor;
+use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
 use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
+pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
 use member::Member;
 pub use member::{Innovation, Outcome};
@@ -128,6 +131,7 @@ pub struct Leak {
 pub struct Snapshot {
     members: Vec<Member>,
     clock: Clock,
+    warm_start: WarmStart,
 }
 
 /// Times that the observer keeps.
@@ -504,13 +508,18 @@ impl Observer {
 
     /// The observer as it is now.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { members: self.members.clone(), clock: self.clock.clone() }
+        Snapshot {
+            members: self.members.clone(),
+            clock: self.clock.clone(),
+            warm_start: self.cylinder.warm_start(),
+        }
     }
 
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.members.clone_from(&snapshot.members);
         self.clock.clone_from(&snapshot.clock);
+        self.cylinder.model().set_warm_start(&snapshot.warm_start);
     }
 
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.

@@ -2,6 +2,7 @@
 mod bad_input;
 mod engines;
 mod events;
+mod late;
 mod smoothing;
 
 use std::sync::OnceLock;
