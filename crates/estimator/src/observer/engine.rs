@@ -22,6 +22,9 @@ use crate::EstimatorError;
 use crate::filter::horizon::{HorizonSettings, Loss};
 pub(super) use mechanism::{Mechanism, Predicted, Shared};
 
+/// Iterations of a window per sample at most. The next sample iterates the same trajectory again.
+const ITERATIONS: usize = 2;
+
 /// Filter that the observer runs. [`str::parse`] takes `ekf`, `ukf`, `stationary`, `mhe` and the words of files: `extended`,
 /// `unscented`, `stationary`, `moving-horizon`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -67,7 +70,12 @@ impl Default for MovingHorizonSettings {
 impl MovingHorizonSettings {
     fn horizon(&self) -> HorizonSettings {
         let loss = self.huber.map_or(Loss::Quadratic, |delta| Loss::Huber { delta });
-        HorizonSettings { samples: self.samples, loss, ..HorizonSettings::default() }
+        HorizonSettings {
+            samples: self.samples,
+            loss,
+            iterations_max: ITERATIONS,
+            ..HorizonSettings::default()
+        }
     }
 }
 

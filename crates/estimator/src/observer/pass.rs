@@ -2,6 +2,7 @@
 use nalgebra::DMatrix;
 
 use crate::filter::PassStep;
+use crate::filter::dense::add_product;
 
 /// The last step of a member.
 #[derive(Clone, Debug)]
@@ -36,11 +37,12 @@ impl Pass {
 
     /// Part of the interval with the transition `phi`: (leading, n).
     pub fn move_on(&mut self, phi: &DMatrix<f64>) {
-        let (m, n) = phi.shape();
-        self.product.copy_from(phi);
-        self.product.columns_mut(0, m).fill(0.0);
-        self.product.gemm(1.0, &phi.columns(0, m), &self.step.phi, 1.0);
-        debug_assert_eq!(self.product.ncols(), n);
+        let m = phi.nrows();
+        let (moving, constant) = phi.as_slice().split_at(m * m);
+        let product = self.product.as_mut_slice();
+        product[..m * m].fill(0.0);
+        product[m * m..].copy_from_slice(constant);
+        add_product(product, 1.0, moving, self.step.phi.as_slice(), m);
         std::mem::swap(&mut self.product, &mut self.step.phi);
     }
 
