@@ -9,12 +9,12 @@
 //! the parts is gathered into the same number of columns.
 use nalgebra::DMatrix;
 
-use super::settings::{LeakHypothesis, ObserverSettings};
+use super::settings::{LeakHypothesis, ObserverSettings, Walk};
 use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{ReducedModel, Unknowns, WarmStart};
+use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 
 /// A term of the series below this part of the largest sum is the last.
@@ -24,12 +24,34 @@ const MAX_TERMS: usize = 60;
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// What a sensor looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
-    /// A state that is a temperature: wall node, valve or gas.
-    Temperature(usize),
+    /// A place on the surface.
+    Surface(SurfaceState),
+    /// The gas.
+    Gas,
     Air,
     Pressure,
+}
+
+/// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowProcess {
+    /// Variance gained in a second.
+    pub intensity: f64,
+    /// Inverse memory, 1/s; 0: a random walk.
+    pub decay_per_s: f64,
+    /// Value that it returns to.
+    pub rest: f64,
+}
+
+impl SlowProcess {
+    /// Factor on the departure from rest, and variance gained, over an interval, s.
+    pub fn over(&self, dt_s: f64) -> (f64, f64) {
+        let decay = self.decay_per_s * dt_s;
+        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
+        ((-decay).exp(), self.intensity * span_s)
+    }
 }
 
 /// The cylinder with its sensors in the variables of [`States`].
@@ -97,7 +119,7 @@ impl Cylinder {
         let model = ReducedModel::new(vessel, settings.wall_nodes, settings.film_w_m2_k);
         let states = States::new(&model, sensors, settings);
         let targets =
-            sensors.iter().map(|sensor| target(sensor, &model, &states, vessel)).collect::<Result<_, _>>()?;
+            sensors.iter().map(|sensor| target(sensor, &model, vessel)).collect::<Result<_, _>>()?;
         if let Some(twice) =
             sensors.iter().enumerate().find(|(i, s)| sensors[..*i].iter().any(|o| o.name == s.name))
         {
@@ -218,20 +240,24 @@ impl Cylinder {
         Ok(self.model.pressure(&x[..n])?.pressure_pa)
     }
 
-    /// Variance that a trailing state gains in a second.
-    pub fn slow_walk(&self, state: usize) -> f64 {
-        let walk = match &self.states.kinds[state] {
-            StateKind::InsideFilm => self.settings.ln_inside_film.per_sqrt_s,
-            StateKind::Capacity => self.settings.ln_capacity.per_sqrt_s,
+    /// How a trailing state moves while nobody looks.
+    pub fn slow_process(&self, state: usize) -> SlowProcess {
+        let of = |walk: &Walk, rest| SlowProcess {
+            intensity: walk.per_sqrt_s * walk.per_sqrt_s,
+            decay_per_s: walk.decay_per_s(),
+            rest,
+        };
+        match &self.states.kinds[state] {
+            StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
+            StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
+            StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
-                parameter
-                    .walk_per_sqrt_s
-                    .max(self.settings.walk_of(parameter.kind, self.sensors[*sensor].quantity()))
+                let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
+                of(&walk, parameter.mean)
             }
-            _ => 0.0,
-        };
-        walk * walk
+            _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
+        }
     }
 
     fn set_walks(&mut self) {
@@ -260,6 +286,7 @@ impl Cylinder {
             ln_inside_film: value(self.states.inside),
             ln_capacity: value(self.states.capacity),
             sun_w: value(self.states.sun),
+            film_slope: value(self.states.slope),
             outflow_kg_s: x[self.states.leak],
         }
     }
@@ -272,8 +299,15 @@ impl Cylinder {
         self.model.rates(&x[..physical], &unknowns, rate, Some(jacobian))?;
         a.fill(0.0);
         let states = &self.states;
-        let columns =
-            [Some(states.air), states.outside, states.inside, states.capacity, states.sun, Some(states.leak)];
+        let columns = [
+            Some(states.air),
+            states.outside,
+            states.inside,
+            states.capacity,
+            states.sun,
+            states.slope,
+            Some(states.leak),
+        ];
         for (row, &state) in a.chunks_exact_mut(n + 1).zip(&self.coupled) {
             if state >= physical {
                 continue;
@@ -310,6 +344,13 @@ impl Cylinder {
         Ok(())
     }
 
+    /// Temperature of a place on the surface, K.
+    fn surface_k(&self, place: SurfaceState, x: &[f64]) -> f64 {
+        let departure = self.states.valve.map_or(0.0, |valve| x[valve] - x[self.states.wall - 1]);
+        let sun_w = self.states.sun.map_or(0.0, |sun| x[sun]);
+        x[place.state] + place.valve_share * departure + place.sun_rise_k_w * sun_w
+    }
+
     /// Reading of a sensor before its lag, with its gradient.
     fn static_reading(
         &mut self,
@@ -324,7 +365,11 @@ impl Cylinder {
             _ => None,
         };
         let exposure = Exposure {
-            body_k: if let Target::Temperature(state) = target { x[state] } else { 0.0 },
+            body_k: match target {
+                Target::Surface(place) => self.surface_k(place, x),
+                Target::Gas => x[states.gas],
+                Target::Air | Target::Pressure => 0.0,
+            },
             air_k: x[states.air],
             pressure_pa: pressure.map_or(0.0, |p| p.pressure_pa),
             electronics_k: x[electronics],
@@ -339,8 +384,19 @@ impl Cylinder {
         let prediction = object.predict(&exposure, &parameters);
         let Some(h) = gradient else { return Ok(prediction.value) };
         h.fill(0.0);
-        if let Target::Temperature(state) = target {
-            h[state] += prediction.per_body;
+        match target {
+            Target::Surface(place) => {
+                h[place.state] += prediction.per_body;
+                if let Some(valve) = states.valve {
+                    h[valve] += prediction.per_body * place.valve_share;
+                    h[states.wall - 1] -= prediction.per_body * place.valve_share;
+                }
+                if let Some(sun) = states.sun {
+                    h[sun] += prediction.per_body * place.sun_rise_k_w;
+                }
+            }
+            Target::Gas => h[states.gas] += prediction.per_body,
+            Target::Air | Target::Pressure => {}
         }
         h[states.air] += prediction.per_air;
         if let Some(p) = pressure {
@@ -524,20 +580,12 @@ fn triangular_factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
     }
 }
 
-fn target(
-    sensor: &Sensor,
-    model: &ReducedModel,
-    states: &States,
-    vessel: &Vessel,
-) -> Result<Target, EstimatorError> {
+fn target(sensor: &Sensor, model: &ReducedModel, vessel: &Vessel) -> Result<Target, EstimatorError> {
     Ok(match &sensor.kind {
-        SensorKind::Surface { place } => {
-            Target::Temperature(model.index_of_place(place).ok_or_else(|| EstimatorError::SensorPlace {
-                name: sensor.name.clone(),
-                vessel: vessel.name.clone(),
-            })?)
-        }
-        SensorKind::Gas { .. } => Target::Temperature(states.gas),
+        SensorKind::Surface { place } => Target::Surface(model.surface(place).ok_or_else(|| {
+            EstimatorError::SensorPlace { name: sensor.name.clone(), vessel: vessel.name.clone() }
+        })?),
+        SensorKind::Gas { .. } => Target::Gas,
         SensorKind::Ambient => Target::Air,
         SensorKind::Pressure { .. } => Target::Pressure,
     })
@@ -590,13 +638,14 @@ impl StateSpace for Cylinder {
         let error = &self.settings.model_error;
         let states = &self.states;
         let square = |v: f64| v * v;
-        let model = match (self.targets[j], &self.sensors[j].kind) {
-            (_, SensorKind::Gas { .. }) => square(error.gas_k),
-            (Target::Temperature(body), _) => {
-                square(error.surface_k) + square(error.surface_per_air_k * (x[states.air] - x[body]))
+        let model = match self.targets[j] {
+            Target::Gas => square(error.gas_k),
+            Target::Surface(place) => {
+                let away_k = x[states.air] - self.surface_k(place, x);
+                square(error.surface_k) + square(error.surface_per_air_k * away_k)
             }
-            (Target::Air, _) => square(error.air_k),
-            (Target::Pressure, _) => {
+            Target::Air => square(error.air_k),
+            Target::Pressure => {
                 let wall_k = self.model.mean_wall_k(x);
                 square(error.pressure_pa) + square(error.pressure_per_wall_k * (wall_k - x[states.gas]))
             }

@@ -11,6 +11,8 @@ pub(super) struct Pass {
     /// Whether mass and gas temperature were freed before the sample's readings, and before each of them.
     pub opened: bool,
     pub opened_before: Vec<bool>,
+    /// Factor by which each state came nearer to its rest before the readings: (n).
+    pub relaxed: Vec<f64>,
     /// Memory of a product.
     product: DMatrix<f64>,
 }
@@ -22,6 +24,7 @@ impl Pass {
             step: PassStep::zeros(n, leading, sensors),
             opened: false,
             opened_before: vec![false; sensors],
+            relaxed: vec![1.0; n],
             product: DMatrix::zeros(leading, n),
         }
     }
@@ -32,6 +35,7 @@ impl Pass {
         self.step.phi.fill_with_identity();
         self.step.used.fill(false);
         self.opened = false;
+        self.relaxed.fill(1.0);
         self.opened_before.fill(false);
     }
 
@@ -54,6 +58,11 @@ impl Pass {
         step.innovation[sensor] = nu;
         step.variance[sensor] = s;
         step.used[sensor] = true;
+    }
+
+    /// A constant came nearer to its rest.
+    pub fn relax(&mut self, state: usize, factor: f64) {
+        self.relaxed[state] *= factor;
     }
 
     /// Mass and gas temperature are freed before the readings, or before that of one sensor.

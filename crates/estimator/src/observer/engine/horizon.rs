@@ -65,6 +65,13 @@ impl Horizon {
         self.window = None;
     }
 
+    /// A constant has come nearer to where it rests, by a factor.
+    pub fn relax(&mut self, state: usize, factor: f64, rest: f64) {
+        if let Some(window) = &mut self.window {
+            window.relax(state, factor, rest);
+        }
+    }
+
     /// Add `variance` to a constant.
     pub fn inflate(&mut self, state: usize, variance: f64) {
         if let Some(window) = &mut self.window {

@@ -240,6 +240,14 @@ impl Stationary {
         self.sensitivity.row_mut(state).fill(0.0);
     }
 
+    /// A constant's error has become smaller by a factor; the error that it made has not.
+    pub fn relax(&mut self, state: usize, factor: f64) {
+        let constant = state - self.sensitivity.nrows();
+        self.constants.row_mut(constant).iter_mut().for_each(|b| *b *= factor);
+        self.constants.column_mut(constant).iter_mut().for_each(|b| *b *= factor);
+        self.sensitivity.column_mut(constant).iter_mut().for_each(|e| *e /= factor);
+    }
+
     /// Add `variance` to a constant.
     pub fn inflate(&mut self, state: usize, variance: f64) {
         let constant = state - self.sensitivity.nrows();

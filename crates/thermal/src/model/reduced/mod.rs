@@ -14,6 +14,7 @@
 //! and unknowns.
 mod balance;
 mod gas;
+mod spread;
 
 use nalgebra::DMatrix;
 
@@ -26,6 +27,7 @@ use crate::wall::geometry::Geometry;
 use crate::wall::material::{Material, REFERENCE_TEMPERATURE_K};
 use crate::wall::mesh::Mesh;
 use gas::GasNode;
+use spread::Spread;
 
 /// What acts on the cylinder and what is uncertain about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,13 +42,15 @@ pub struct Unknowns {
     pub ln_capacity: f64,
     /// Sun absorbed by the topmost wall node, W; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
     pub sun_w: f64,
+    /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
+    pub film_slope: f64,
     /// Mass flow out, kg/s.
     pub outflow_kg_s: f64,
 }
 
 impl Unknowns {
     /// Number of unknowns: columns of the Jacobian behind the states, in the order of the fields.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 7;
     /// Column of [`Unknowns::air_k`] behind the states.
     pub const AIR: usize = 0;
     /// Column of [`Unknowns::ln_outside_film`].
@@ -57,8 +61,10 @@ impl Unknowns {
     pub const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
     pub const SUN: usize = 4;
+    /// Column of [`Unknowns::film_slope`].
+    pub const SLOPE: usize = 5;
     /// Column of [`Unknowns::outflow_kg_s`].
-    pub const OUTFLOW: usize = 5;
+    pub const OUTFLOW: usize = 6;
 
     /// Nothing but surroundings of a temperature, K.
     pub fn still(air_k: f64) -> Self {
@@ -68,6 +74,7 @@ impl Unknowns {
             ln_inside_film: 0.0,
             ln_capacity: 0.0,
             sun_w: 0.0,
+            film_slope: 0.0,
             outflow_kg_s: 0.0,
         }
     }
@@ -93,6 +100,18 @@ pub struct WarmStart {
     skin_k: Vec<f64>,
 }
 
+/// Temperature of a place on the surface, `T = x_state + valve_share (x_valve - x_top) + sun_rise Q_sun` with the topmost
+/// wall node and the sun on it ([`Unknowns::sun_w`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceState {
+    /// Index of its wall node or of the valve.
+    pub state: usize,
+    /// Share of the valve's departure from the topmost node.
+    pub valve_share: f64,
+    /// Rise over the node in the sun, K/W.
+    pub sun_rise_k_w: f64,
+}
+
 /// The reduced model of one vessel.
 #[derive(Clone, Debug)]
 pub struct ReducedModel {
@@ -103,7 +122,11 @@ pub struct ReducedModel {
     /// Heat capacity of each wall node at the reference temperature, J/K.
     capacity_j_k: Vec<f64>,
     wall_capacity_j_k: f64,
+    /// Height of each wall node above the middle as a fraction of the inner height.
+    above_middle: Vec<f64>,
     valve: Option<Valve>,
+    /// How the heat of valve and sun spreads in the wall.
+    spread: Spread,
     film_w_m2_k: f64,
     inside: InsideConvection,
     gas: GasNode,
@@ -132,12 +155,17 @@ impl ReducedModel {
             })
             .collect();
         let nodes = mesh.columns.len();
+        let fine = Mesh::of_mixture(&vessel.geometry);
+        let contact_w_k = vessel.valve.as_ref().map_or(0.0, |valve| valve.contact_w_k);
+        let spread = Spread::new(&fine, &node_of_column, contact_w_k, film_w_m2_k);
         Self {
             geometry: vessel.geometry.clone(),
-            fine: Mesh::new(&vessel.geometry),
+            fine,
+            spread,
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
+            above_middle: crate::model::above_middle(&mesh),
             valve: vessel.valve.clone(),
             film_w_m2_k,
             inside: InsideConvection::new(
@@ -200,12 +228,27 @@ impl ReducedModel {
         self.gas_index() + 2
     }
 
-    /// State that stands for a place on the surface: a wall node or the valve; `None` where the vessel has no such place.
-    pub fn index_of_place(&self, place: &SurfacePlace) -> Option<usize> {
-        match place {
-            SurfacePlace::Valve => self.valve_index(),
-            place => place.column(&self.geometry, &self.fine).map(|column| self.node_of_column[column]),
+    /// Conductance between the valve and the topmost wall node, W/K: the contact in series with the wall in which the valve's
+    /// heat spreads; 0 without a valve.
+    pub fn valve_conductance_w_k(&self) -> f64 {
+        self.spread.conductance_w_k
+    }
+
+    /// How the states give the temperature of a place on the surface; `None` where the vessel has no such place.
+    pub fn surface(&self, place: &SurfacePlace) -> Option<SurfaceState> {
+        if *place == SurfacePlace::Valve {
+            return self.valve_index().map(|state| SurfaceState {
+                state,
+                valve_share: 0.0,
+                sun_rise_k_w: 0.0,
+            });
         }
+        let column = place.column(&self.geometry, &self.fine)?;
+        Some(SurfaceState {
+            state: self.node_of_column[column],
+            valve_share: self.spread.share[column],
+            sun_rise_k_w: self.spread.rise_k_w[column],
+        })
     }
 
     /// Pressure at a state.
