@@ -4,6 +4,7 @@
 
 mod examples;
 mod files;
+mod log;
 mod pages;
 mod properties;
 mod report;
