@@ -183,6 +183,15 @@ impl LogReader {
         self.source.origin().map(|origin| origin.to_string())
     }
 
+    /// Share of the log that has been read, where the file says how long it is.
+    pub fn fraction(&self) -> Option<f64> {
+        match &self.source {
+            Source::Csv(_) => None,
+            #[cfg(feature = "parquet")]
+            Source::Parquet(source) => Some(source.fraction()),
+        }
+    }
+
     /// Cautions so far, in the order of their first occurrence.
     pub fn cautions(&self) -> &[Caution] {
         self.cautions.list()

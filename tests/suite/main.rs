@@ -5,6 +5,8 @@
 mod examples;
 mod files;
 mod log;
+#[cfg(feature = "parquet")]
+mod log_parquet;
 mod pages;
 mod properties;
 mod report;
