@@ -2,7 +2,8 @@
 use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
 use super::table::{Table, number};
 use super::{Provenance, aligned};
-use crate::thermal::scenario::SurfaceSensor;
+use crate::estimator::sensor::{Exposure, Sensor};
+use crate::thermal::scenario::SensorKind;
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use serde_json::{Value, json};
 
@@ -52,13 +53,18 @@ pub fn table(run: &Trajectory) -> Table {
     table
 }
 
-/// What the scenario's sensors read, K: `T_surface + coupling (T_air - T_surface)`.
-pub fn readings(run: &Trajectory) -> Vec<(&SurfaceSensor, Vec<f64>)> {
-    let reading = |sensor| {
-        let sensor: &SurfaceSensor = sensor;
-        let surface = run.surface_k(&sensor.place)?;
-        let values = surface.iter().zip(&run.ambient_k).map(|(t, air)| t + sensor.air_coupling * (air - t));
-        Some((sensor, values.collect()))
+/// What the scenario's surface sensors read, K: `T_surface + coupling (T_air - T_surface)`.
+pub fn readings(run: &Trajectory) -> Vec<(Sensor, Vec<f64>)> {
+    let reading = |mounted| {
+        let sensor = Sensor::from(mounted);
+        let SensorKind::Surface { place } = sensor.kind else { return None };
+        let surface = run.surface_k(place.as_str())?;
+        let read = |(&body_k, &air_k)| {
+            let exposure = Exposure { body_k, air_k, ..Exposure::default() };
+            sensor.predict(&exposure, &sensor.means()).value
+        };
+        let values = surface.iter().zip(&run.ambient_k).map(read).collect();
+        Some((sensor, values))
     };
     run.scenario.sensors.iter().filter_map(reading).collect()
 }
@@ -125,7 +131,8 @@ fn temperatures(run: &Trajectory) -> Vec<Item> {
         }
     }
     for (number, (sensor, reading_k)) in readings(run).into_iter().enumerate() {
-        let stroke = style::sensor(&sensor.place, number);
+        let SensorKind::Surface { place } = sensor.kind else { continue };
+        let stroke = style::sensor(place.as_str(), number);
         items.push(Item::line(format!("sensor {}", sensor.name), time, celsius(&reading_k), stroke));
     }
     let cells = run.gas_cells_k.first().map_or(0, Vec::len);

@@ -18,10 +18,14 @@ const PSI_PA: f64 = 6_894.757_293_168_361;
 pub enum Dimension {
     /// Absolute pressure, Pa.
     Pressure,
+    /// Difference, deviation or error of a pressure, Pa.
+    PressureDifference,
     /// Temperature on a scale with a zero, K.
     Temperature,
     /// Difference, deviation or rate-free change of temperature, K.
     TemperatureDifference,
+    /// Change of temperature per time, K/s.
+    TemperatureRate,
     /// Time, s.
     Time,
     /// Volume, m³.
@@ -72,6 +76,8 @@ pub enum Dimension {
     SpecificVolume,
     /// Diffusivity, m²/s.
     Diffusivity,
+    /// Relative error, 1.
+    Ratio,
 }
 
 /// A unit: a suffix and its way to SI.
@@ -115,9 +121,18 @@ pub const UNITS: &[Unit] = {
         unit("barg", Pressure, 1e5, ATMOSPHERE_PA),
         unit("psi", Pressure, PSI_PA, 0.0),
         unit("psig", Pressure, PSI_PA, ATMOSPHERE_PA),
+        unit("bar", PressureDifference, 1e5, 0.0),
+        unit("pa", PressureDifference, 1.0, 0.0),
+        unit("kpa", PressureDifference, 1e3, 0.0),
+        unit("mpa", PressureDifference, 1e6, 0.0),
+        unit("mbar", PressureDifference, 1e2, 0.0),
+        unit("psi", PressureDifference, PSI_PA, 0.0),
         unit("degc", Temperature, 1.0, ZERO_CELSIUS_K),
         unit("k", Temperature, 1.0, 0.0),
         unit("k", TemperatureDifference, 1.0, 0.0),
+        unit("k_h", TemperatureRate, 1.0 / 3_600.0, 0.0),
+        unit("k_s", TemperatureRate, 1.0, 0.0),
+        unit("k_d", TemperatureRate, 1.0 / 86_400.0, 0.0),
         unit("min", Time, 60.0, 0.0),
         unit("s", Time, 1.0, 0.0),
         unit("h", Time, 3_600.0, 0.0),
@@ -159,19 +174,27 @@ pub const UNITS: &[Unit] = {
         unit("pa_s", Viscosity, 1.0, 0.0),
         unit("bar_h", PressureRate, 1e5 / 3_600.0, 0.0),
         unit("mbar_h", PressureRate, 1e2 / 3_600.0, 0.0),
+        unit("bar_d", PressureRate, 1e5 / 86_400.0, 0.0),
+        unit("mbar_d", PressureRate, 1e2 / 86_400.0, 0.0),
         unit("pa_s", PressureRate, 1.0, 0.0),
         unit("bar_k", PressurePerTemperature, 1e5, 0.0),
         unit("pa_k", PressurePerTemperature, 1.0, 0.0),
+        unit("mbar_k", PressurePerTemperature, 1e2, 0.0),
         unit("k_bar", TemperaturePerPressure, 1e-5, 0.0),
         unit("k_pa", TemperaturePerPressure, 1.0, 0.0),
         unit("pa_m3_kg", PressurePerDensity, 1.0, 0.0),
         unit("m3_kg", SpecificVolume, 1.0, 0.0),
         unit("m2_s", Diffusivity, 1.0, 0.0),
+        unit("percent", Ratio, 1e-2, 0.0),
+        unit("ratio", Ratio, 1.0, 0.0),
+        unit("ppm", Ratio, 1e-6, 0.0),
     ]
 };
 
-/// Endings of a quantity's name that make its kelvins a difference, which has no Celsius zero.
-const DIFFERENCES: [&str; 6] = ["sd", "difference", "rise", "offset", "drift", "noise"];
+/// Last words of a quantity's name that make its kelvins or its pascals a difference, which has no Celsius zero and
+/// no gauge zero.
+const DIFFERENCES: [&str; 9] =
+    ["sd", "difference", "rise", "offset", "drift", "noise", "tolerance", "resolution", "scale"];
 
 /// Units of a dimension, the customary one first.
 pub fn units_of(dimension: Dimension) -> impl Iterator<Item = &'static Unit> {
@@ -196,16 +219,20 @@ pub fn listed(dimension: Dimension) -> String {
 
 /// Splits a key into the quantity and the unit of its longest suffix; `None` if it ends in no unit.
 ///
-/// `shoulder_k` is a temperature, `shoulder_sd_k` a difference: the quantity's last word decides.
+/// `shoulder_k` is a temperature, `shoulder_sd_k` a difference, `drift_pa_s` a rate and no viscosity: the quantity's
+/// last word decides.
 pub fn split(key: &str) -> Option<(&str, &'static Unit)> {
     let strip = |suffix: &str| key.strip_suffix(suffix)?.strip_suffix('_').filter(|base| !base.is_empty());
     let (base, longest) = UNITS
         .iter()
         .filter_map(|unit| Some((strip(unit.suffix)?, unit)))
         .min_by_key(|(base, _)| base.len())?;
-    let is_difference = DIFFERENCES.iter().any(|word| base.rsplit('_').next() == Some(word));
+    let last_word = base.rsplit('_').next().unwrap_or(base);
+    let is_difference = DIFFERENCES.contains(&last_word);
     let dimension = match longest.dimension {
         Dimension::Temperature if is_difference => Dimension::TemperatureDifference,
+        Dimension::Pressure if is_difference => Dimension::PressureDifference,
+        Dimension::Viscosity if last_word == "drift" => Dimension::PressureRate,
         other => other,
     };
     Some((base, find(longest.suffix, dimension).unwrap_or(longest)))

@@ -12,8 +12,8 @@ pub(super) fn match_key(key: &str, fields: &'static [&'static str]) -> Result<Ma
     }
     let known: Vec<String> = fields.iter().map(|field| example(field)).collect();
     for field in fields {
-        let Some((base, unit)) = units::split(field) else { continue };
-        let (quantity, units) = (base.replace('_', " "), units::listed(unit.dimension));
+        let Some((base, _)) = units::split(field) else { continue };
+        let (quantity, units) = (base.replace('_', " "), units_of_quantity(base, fields));
         if key == base {
             return Err(Problem::NoUnit { key: key.to_owned(), example: example(field), units });
         }
@@ -32,6 +32,12 @@ pub(super) fn match_key(key: &str, fields: &'static [&'static str]) -> Result<Ma
     }
     let nearest = suggestion(key, known.iter().map(String::as_str));
     Err(Problem::UnknownKey { key: key.to_owned(), nearest, known: known.join(", ") })
+}
+
+/// Suffixes of a quantity; one that is stated in kelvins here and in pascals there, as a sensor's offset, has both.
+fn units_of_quantity(base: &str, fields: &[&'static str]) -> String {
+    let of_quantity = fields.iter().filter_map(|field| units::split(field)).filter(|(name, _)| *name == base);
+    of_quantity.map(|(_, unit)| units::listed(unit.dimension)).collect::<Vec<_>>().join(", ")
 }
 
 fn in_right_unit(key: &str, field: &'static str) -> Option<Match> {

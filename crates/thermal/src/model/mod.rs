@@ -17,6 +17,7 @@ pub mod inputs;
 mod jacobian;
 pub mod layout;
 mod output;
+pub mod reduced;
 pub mod stratified;
 pub mod well_mixed;
 
@@ -84,7 +85,14 @@ impl Model {
     /// # Errors
     /// The source of a refill is outside the fluid's domain.
     pub fn new(vessel: &Vessel, scenario: &Scenario) -> Result<Self, ThermalError> {
-        let mesh = Mesh::new(&vessel.geometry);
+        Self::on_mesh(Mesh::new(&vessel.geometry), vessel, scenario)
+    }
+
+    /// The model on a mesh that was made for this vessel, e.g. a coarse one.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn on_mesh(mesh: Mesh, vessel: &Vessel, scenario: &Scenario) -> Result<Self, ThermalError> {
         let capacity_j_k: Vec<f64> = (0..mesh.cells())
             .map(|cell| {
                 let material = &mesh.materials[mesh.material[cell]];

@@ -1,14 +1,11 @@
 //! From the raw content of a scenario file to a checked [`Scenario`].
 use super::flows;
 use super::signal::{Files, Signal};
-use super::spec::{AmbientSpec, InitialSpec, ScenarioSpec, SensorSpec};
-use super::{Fill, Initial, OutsideFilm, Scenario, Series, Sun, SurfaceSensor, Surroundings};
+use super::spec::{AmbientSpec, InitialSpec, ScenarioSpec};
+use super::{Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings, sensor};
 use crate::ThermalError;
 use crate::document::check;
 use crate::units::{Dimension, ZERO_CELSIUS_K};
-
-/// Places that a surface sensor can sit at.
-pub const PLACES: [&str; 5] = ["bottom", "middle", "shoulder", "neck", "valve"];
 
 /// Longest duration, s: ten years.
 const DURATION_MAX_S: f64 = 3.2e8;
@@ -44,7 +41,7 @@ impl ScenarioSpec {
                 .enumerate()
                 .map(|(i, &pressure)| check::pressure_pa(&format!("limits.pressure_pa[{i}]"), pressure))
                 .collect::<Result<_, _>>()?,
-            sensors: sensors(&self.sensor)?,
+            sensors: sensor::mounted(&self.sensor, "sensor")?,
             duration_s,
             sample_time_s,
         })
@@ -233,32 +230,4 @@ fn initial(spec: &InitialSpec, air_k: f64) -> Result<Initial, ThermalError> {
         wall_temperature_k: check::temperature_k("initial.wall_temperature_k", wall_k)?,
         gas_temperature_k: check::temperature_k("initial.gas_temperature_k", gas_k)?,
     })
-}
-
-fn sensors(specs: &[SensorSpec]) -> Result<Vec<SurfaceSensor>, ThermalError> {
-    let mut sensors: Vec<SurfaceSensor> = Vec::new();
-    for (i, spec) in specs.iter().enumerate() {
-        let path = |field: &str| format!("sensor[{i}].{field}");
-        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        if spec.name.is_empty() || !spec.name.chars().all(is_word) {
-            let remedy = "it becomes part of a column's name, e.g. measured_shoulder_degc";
-            let text = format!("{:?}", spec.name);
-            return Err(check::broken(&path("name"), text, "of the letters a-z, digits and _", remedy));
-        }
-        if sensors.iter().any(|other| other.name == spec.name) {
-            let text = format!("{:?}", spec.name);
-            let remedy = "columns tell sensors apart by their names";
-            return Err(check::broken(&path("name"), text, "a name that no other sensor has", remedy));
-        }
-        let place = spec.place.clone().unwrap_or_else(|| spec.name.clone());
-        if !PLACES.contains(&place.as_str()) {
-            let field = if spec.place.is_some() { "place" } else { "name" };
-            return Err(check::unknown(&path(field), &place, PLACES));
-        }
-        let coupling = spec.air_coupling.unwrap_or(0.0);
-        let remedy = "0 is a sensor in ideal contact, 0.15 to 0.2 a strapped one";
-        let air_coupling = check::fraction(&path("air_coupling"), coupling, remedy)?;
-        sensors.push(SurfaceSensor { name: spec.name.clone(), place, air_coupling });
-    }
-    Ok(sensors)
 }

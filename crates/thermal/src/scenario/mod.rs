@@ -6,12 +6,13 @@ mod build;
 mod flows;
 pub mod presets;
 mod read;
+pub mod sensor;
 pub mod series;
 mod signal;
 pub mod spec;
 
-pub use build::PLACES;
 pub use read::{read_scenario, schema};
+pub use sensor::{MountedSensor, PLACES, SensorKind, SensorSpec};
 pub use series::Series;
 pub use spec::ScenarioSpec;
 
@@ -30,8 +31,8 @@ pub struct Scenario {
     pub flows: Vec<Flow>,
     /// Pressures whose crossing (either way) is reported as an event, Pa.
     pub pressure_limits_pa: Vec<f64>,
-    /// Surface temperature sensors of the scenario, for the simulated log.
-    pub sensors: Vec<SurfaceSensor>,
+    /// Sensors of the scenario, for the simulated log.
+    pub sensors: Vec<MountedSensor>,
     /// End time, s.
     pub duration_s: f64,
     /// Interval of the output samples, s.
@@ -123,16 +124,4 @@ pub struct Sun {
     pub to_fraction: f64,
     /// Whether the valve is lit too.
     pub valve: bool,
-}
-
-/// A temperature sensor on the outer surface, without dynamics and noise:
-/// it reads `T_surface + coupling (T_air - T_surface)`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SurfaceSensor {
-    /// Name of the sensor, e.g. `shoulder`.
-    pub name: String,
-    /// Where it sits: a place name (`bottom`, `middle`, `shoulder`, `neck`, `valve`).
-    pub place: String,
-    /// Mounting coupling to the air, 0 to 1.
-    pub air_coupling: f64,
 }

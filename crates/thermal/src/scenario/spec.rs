@@ -4,6 +4,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+pub use super::sensor::SensorSpec;
 pub use super::signal::*;
 
 /// Raw content of a scenario file.
@@ -33,7 +34,7 @@ pub struct ScenarioSpec {
     /// Limits whose crossing is reported.
     #[serde(default)]
     pub limits: LimitsSpec,
-    /// Surface temperature sensors.
+    /// Sensors.
     #[serde(default)]
     pub sensor: Vec<SensorSpec>,
 }
@@ -171,15 +172,4 @@ pub struct LimitsSpec {
     /// Absolute pressures.
     #[serde(default)]
     pub pressure_pa: Vec<f64>,
-}
-
-/// A temperature sensor on the outer surface.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-pub struct SensorSpec {
-    /// Name; it becomes part of a column's name.
-    pub name: String,
-    /// Where it sits: bottom, middle, shoulder, neck or valve; its name by default.
-    pub place: Option<String>,
-    /// Mounting coupling to the air, 0 (default) to 1: it reads `T_surface + coupling (T_air - T_surface)`.
-    pub air_coupling: Option<f64>,
 }

@@ -3,4 +3,4 @@ pub mod inside;
 pub mod outside;
 mod surface;
 
-pub use surface::{HalfCell, SurfaceBalance, solve_surface};
+pub use surface::{HalfCell, SurfaceBalance, solve_surface, solve_surface_from};

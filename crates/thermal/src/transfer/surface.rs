@@ -37,9 +37,23 @@ pub struct HalfCell {
 /// Solve the balance of a half cell and a film whose heat flow and its derivative with the surface temperature
 /// are given by `film` (W, W/K).
 pub fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> SurfaceBalance {
+    let with_nothing = |surface_k| {
+        let (heat_w, slope) = film(surface_k);
+        (heat_w, slope, ())
+    };
+    solve_surface_from(half, half.node_k, with_nothing).0
+}
+
+/// As [`solve_surface`], started at a known surface temperature, K; `film` may return something beside heat flow and
+/// slope, and what it returned last, within 1 µK of the solution, comes back.
+pub fn solve_surface_from<T>(
+    half: &HalfCell,
+    start_k: f64,
+    film: impl Fn(f64) -> (f64, f64, T),
+) -> (SurfaceBalance, T) {
     let HalfCell { node_k, conductance_w_k, conductance_slope_w_k2 } = *half;
-    let mut surface_k = node_k;
-    let (mut heat_w, mut slope) = film(surface_k);
+    let mut surface_k = start_k;
+    let (mut heat_w, mut slope, mut beside) = film(surface_k);
     for _ in 0..MAX_ITERATIONS {
         let step = (conductance_w_k * (node_k - surface_k) - heat_w) / (conductance_w_k + slope);
         surface_k += step;
@@ -47,12 +61,12 @@ pub fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> Surfa
             heat_w += slope * step;
             break;
         }
-        (heat_w, slope) = film(surface_k);
+        (heat_w, slope, beside) = film(surface_k);
     }
     let film_factor = conductance_w_k / (conductance_w_k + slope);
     let node_factor = conductance_w_k + conductance_slope_w_k2 * (node_k - surface_k);
     let heat_per_node_k = slope / (conductance_w_k + slope) * node_factor;
-    SurfaceBalance { surface_k, heat_w, heat_per_node_k, film_factor }
+    (SurfaceBalance { surface_k, heat_w, heat_per_node_k, film_factor }, beside)
 }
 
 #[cfg(test)]

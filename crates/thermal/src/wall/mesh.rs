@@ -9,6 +9,8 @@
 //!
 //! Areas and volumes of domes come from the parametrisation `r = (a + s t) cos(phi)`, `z = (b + s t) sin(phi)`
 //! with semi-axes `a, b`, thickness `t`, depth in the wall `s` in `[0, 1]`, by Gauss-Legendre quadrature; hemispheres are exact.
+mod coarse;
+
 use std::f64::consts::PI;
 
 use super::geometry::{End, EndShape, Geometry};
@@ -310,30 +312,7 @@ impl Mesh {
 
     /// One cell for the whole wall: capacities and areas add, the layers become one mixture.
     fn lumped(geometry: &Geometry) -> Self {
-        let parts: Vec<(&Material, f64)> =
-            geometry.layers.iter().map(|layer| (&layer.material, layer.thickness_m)).collect();
-        let mixture = Material::mixture(&parts);
-        let layer =
-            super::geometry::Layer { material: mixture, thickness_m: geometry.thickness_m(), cells: 1 };
-        let fine = Self::resolved(&Geometry { layers: vec![layer], lumped: false, ..geometry.clone() });
-        let sum = |value: fn(&Column) -> f64| fine.columns.iter().map(value).sum::<f64>();
-        let height = fine.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
-        Mesh {
-            radial: 1,
-            columns: vec![Column {
-                section: Section::Cylinder,
-                facing: Facing::Side,
-                inner_area_m2: sum(|c| c.inner_area_m2),
-                outer_area_m2: sum(|c| c.outer_area_m2),
-                inner_height_m: (0.0, height),
-                inner_shape_m: sum(|c| c.inner_shape_m),
-                outer_shape_m: sum(|c| c.outer_shape_m),
-            }],
-            volume_m3: vec![fine.volume_m3.iter().sum()],
-            material: vec![0],
-            materials: fine.materials,
-            links: Vec::new(),
-        }
+        Self::coarse(geometry, 1).0
     }
 }
 

@@ -54,7 +54,7 @@ fn shoulder_to_gas_has_nearly_the_published_pole() {
             let reading = wall
                 .iter()
                 .zip(&trajectory.ambient_k)
-                .map(|(wall, air)| wall + sensor.air_coupling * (air - wall) - 273.15)
+                .map(|(wall, air)| wall + sensor.air_coupling.value * (air - wall) - 273.15)
                 .collect();
             (reading, trajectory.gas_mean_k.iter().map(|t| t - 273.15).collect())
         })

@@ -154,3 +154,42 @@ fn contour_volume_is_the_sum_of_its_discs() {
         .sum();
     assert_relative_eq!(geometry.contour_volume_m3(), volume, max_relative = 1e-5);
 }
+
+#[test]
+fn a_coarse_wall_keeps_mass_areas_and_contact_to_the_air() {
+    for name in ["nitrogen-20l", "haque-i1"] {
+        let geometry = crate::vessel::presets::load(name).unwrap().geometry;
+        let fine = Mesh::new(&geometry);
+        let sum = |mesh: &Mesh, value: fn(&Column) -> f64| mesh.columns.iter().map(value).sum::<f64>();
+        for nodes in [1, 2, 3, 5, fine.columns.len(), 400] {
+            let (coarse, node_of) = Mesh::coarse(&geometry, nodes);
+            assert_eq!(coarse.columns.len(), nodes.min(fine.columns.len()));
+            assert_eq!(node_of.len(), fine.columns.len());
+            assert!(node_of.windows(2).all(|pair| pair[1] == pair[0] || pair[1] == pair[0] + 1));
+            assert_relative_eq!(coarse.mass_kg(), fine.mass_kg(), max_relative = 1e-9);
+            for value in [|c: &Column| c.inner_area_m2, |c: &Column| c.outer_area_m2] {
+                assert_relative_eq!(sum(&coarse, value), sum(&fine, value), max_relative = 1e-9);
+            }
+        }
+    }
+}
+
+/// Along a bar the conductance between two nodes is that of the stretch from middle to middle.
+#[test]
+fn coarse_nodes_of_a_tube_conduct_like_the_tube_between_their_middles() {
+    let mut geometry = crate::vessel::presets::load("nitrogen-20l").unwrap().geometry;
+    geometry.cylinder_cells = 400;
+    let (coarse, node_of) = Mesh::coarse(&geometry, 8);
+    let fine = Mesh::coarse(&geometry, usize::MAX).0;
+    let middle = |node: usize| {
+        let of = |j: usize| fine.columns[j].inner_height_m;
+        let columns: Vec<usize> = (0..node_of.len()).filter(|&j| node_of[j] == node).collect();
+        0.5 * (of(columns[0]).0 + of(columns[columns.len() - 1]).1)
+    };
+    // Nodes 3 and 4 lie in the shell.
+    let (inner, outer) =
+        (0.5 * geometry.inner_diameter_m, 0.5 * geometry.inner_diameter_m + geometry.thickness_m());
+    let section_m2 = std::f64::consts::PI * (outer * outer - inner * inner);
+    let expected = section_m2 / (middle(4) - middle(3));
+    assert_relative_eq!(coarse.links[3].series_m(), expected, max_relative = 0.01);
+}

@@ -1,0 +1,72 @@
+//! Loops over contiguous columns that every covariance form is made of.
+//!
+//! Sums run in four interleaved partial sums, so that the compiler may use vector registers; the order of
+//! summation depends on the length alone, never on the machine.
+
+/// `sum a_i b_i` over the shorter of the two.
+#[inline]
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let (a4, a1) = a[..n].as_chunks::<4>();
+    let (b4, b1) = b[..n].as_chunks::<4>();
+    let mut sum = [0.0; 4];
+    for (x, y) in a4.iter().zip(b4) {
+        for lane in 0..4 {
+            sum[lane] += x[lane] * y[lane];
+        }
+    }
+    let tail: f64 = a1.iter().zip(b1).map(|(x, y)| x * y).sum();
+    (sum[0] + sum[2]) + (sum[1] + sum[3]) + tail
+}
+
+/// `y <- y + c x`.
+#[inline]
+pub(crate) fn axpy(c: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += c * x;
+    }
+}
+
+/// `y_i <- x_i w_i`; returns `sum x_i^2 w_i`.
+#[inline]
+pub(crate) fn weigh(x: &[f64], w: &[f64], y: &mut [f64]) -> f64 {
+    for ((y, x), w) in y.iter_mut().zip(x).zip(w) {
+        *y = x * w;
+    }
+    dot(y, x)
+}
+
+/// Column `j` of a column-major matrix with `rows` rows.
+#[inline]
+pub(crate) fn column(a: &[f64], rows: usize, j: usize) -> &[f64] {
+    &a[j * rows..(j + 1) * rows]
+}
+
+/// Column `j` of a column-major matrix with `rows` rows.
+#[inline]
+pub(crate) fn column_mut(a: &mut [f64], rows: usize, j: usize) -> &mut [f64] {
+    &mut a[j * rows..(j + 1) * rows]
+}
+
+/// Smallest multiple of four that holds `n`: the leading dimension of padded work arrays.
+#[inline]
+pub(crate) fn padded(n: usize) -> usize {
+    n.next_multiple_of(4)
+}
+
+/// `y <- A x` for `A` with `rows` rows, a multiple of four, and as many columns as `x` has entries.
+///
+/// Four rows at a time stay in registers over all columns.
+#[inline]
+pub(crate) fn multiply(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
+    for (block, y) in y[..rows].as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        let mut sum = [0.0; 4];
+        for (column, c) in a.chunks_exact(rows).zip(x) {
+            let rows4 = &column.as_chunks::<4>().0[block];
+            for lane in 0..4 {
+                sum[lane] += c * rows4[lane];
+            }
+        }
+        *y = sum;
+    }
+}

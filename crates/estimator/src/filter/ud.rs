@@ -1,0 +1,322 @@
+//! Covariance as `P = U diag(d) U^T` with unit upper triangular `U`: the form of Bierman and Thornton.
+//!
+//! No step subtracts covariances, so `P` stays symmetric and positive semi-definite whatever the rounding, at about
+//! the cost of the plain formulas and without square roots. Zero variances (`d_j = 0`) are allowed everywhere.
+//!
+//! * measurement: Bierman's rank-one update, one scalar at a time;
+//! * time: Thornton's modified weighted Gram-Schmidt on `[Phi U, G]` with weights `[d, q]`. Trailing states are
+//!   constants: with `U = [U_x U_xy; 0 U_y]` their `U_y, d_y` stay, `U_xy <- Phi_xx U_xy + Phi_xy U_y`, and only
+//!   `[Phi_xx U_x, G]` is orthogonalised;
+//! * added variance: Agee and Turner's rank-one update.
+//!
+//! Source: Bierman 1977 (chapters III, V, VI), Thornton 1976.
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, U1};
+
+use super::factor::{factor_udu, mirror};
+use super::kernel::{axpy, column, column_mut, dot, multiply, padded, weigh};
+use super::state_space::Linearisation;
+use crate::EstimatorError;
+
+/// Factors of a covariance of `n` states, with the memory that its updates work in.
+///
+/// # Shapes
+/// `U`: (n, n) unit upper triangular; `d`: (n), not negative. `D` is `Const<n>` or `Dyn`.
+#[derive(Clone, Debug)]
+pub struct UdFactors<D: Dim>
+where
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
+    u: OMatrix<f64, D, D>,
+    d: OVector<f64, D>,
+    /// `U^T h` in an update, `v` in a rank-one update.
+    f: OVector<f64, D>,
+    work: Work,
+}
+
+/// Memory of the time update; it grows at the first use with more noise sources, then stays.
+#[derive(Clone, Debug, Default)]
+struct Work {
+    /// Transition, rows padded: (padded(m), n).
+    phi: Vec<f64>,
+    /// One column of `F U`: (padded(m)).
+    moved: Vec<f64>,
+    /// Rows of `[Phi_xx U_x, G]` as columns, padded: (padded(m + k), m).
+    rows: Vec<f64>,
+    /// `[d_x, q]`, padded with zeros.
+    weights: Vec<f64>,
+    /// A row times the weights.
+    weighted: Vec<f64>,
+}
+
+impl Work {
+    /// Zeroed room for `m` moving states of `n` and `k` noise sources.
+    fn reserve(&mut self, n: usize, m: usize, k: usize) {
+        let width = padded(m + k);
+        self.phi.resize(padded(m) * n, 0.0);
+        self.moved.resize(padded(m), 0.0);
+        self.rows.resize(width * m, 0.0);
+        self.weights.resize(width, 0.0);
+        self.weighted.resize(width, 0.0);
+    }
+}
+
+impl<D: Dim> UdFactors<D>
+where
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
+    /// Factors of the covariance `p`, which may be singular and may hold zero variances.
+    ///
+    /// A variance that the later states explain up to rounding (`n` epsilon of itself) counts as explained in full.
+    ///
+    /// # Errors
+    /// `p` is not finite, not symmetric, or not positive semi-definite.
+    pub fn from_covariance(p: &OMatrix<f64, D, D>) -> Result<Self, EstimatorError> {
+        let mut u = p.clone();
+        let mut d = OVector::zeros_generic(p.shape_generic().0, U1);
+        factor_udu(u.as_mut_slice(), d.as_mut_slice())?;
+        let f = d.clone();
+        Ok(Self { u, d, f, work: Work::default() })
+    }
+
+    /// Make room for a process with `leading` moving states and `noises` noise sources, so that not even the first
+    /// [`predict`](Self::predict) allocates.
+    pub fn reserve(&mut self, leading: usize, noises: usize) {
+        self.work.reserve(self.states(), leading, noises);
+    }
+
+    /// Number of states `n`.
+    pub fn states(&self) -> usize {
+        self.d.len()
+    }
+
+    /// The factor `U`: (n, n).
+    pub fn unit_upper(&self) -> &OMatrix<f64, D, D> {
+        &self.u
+    }
+
+    /// The factor `d`: (n).
+    pub fn diagonal(&self) -> &OVector<f64, D> {
+        &self.d
+    }
+
+    /// Take over the covariance of `other`, of the same size, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.u.copy_from(&other.u);
+        self.d.copy_from(&other.d);
+    }
+
+    /// The covariance `P`: (n, n).
+    pub fn covariance(&self) -> OMatrix<f64, D, D> {
+        let mut p = self.u.clone();
+        self.covariance_into(&mut p);
+        p
+    }
+
+    /// Write the covariance `P` into `p`: (n, n).
+    pub fn covariance_into(&self, p: &mut OMatrix<f64, D, D>) {
+        self.write_covariance(p.as_mut_slice());
+    }
+
+    /// Write the covariance `P` into a column-major slice of length n^2.
+    pub fn write_covariance(&self, p: &mut [f64]) {
+        let n = self.states();
+        p.fill(0.0);
+        for (l, &d) in self.d.as_slice().iter().enumerate() {
+            let u = &column(self.u.as_slice(), n, l)[..=l];
+            for j in 0..=l {
+                axpy(d * u[j], &u[..=j], &mut column_mut(p, n, j)[..=j]);
+            }
+        }
+        mirror(p, n);
+    }
+
+    /// Variance of state `i`.
+    pub fn variance(&self, i: usize) -> f64 {
+        let (n, u) = (self.states(), self.u.as_slice());
+        (i..n).map(|j| self.d[j] * u[j * n + i] * u[j * n + i]).sum()
+    }
+
+    /// Variance `h^T P h` of a linear function of the state; `h`: (n).
+    pub fn quadratic(&self, h: &[f64]) -> f64 {
+        let (n, u) = (self.states(), self.u.as_slice());
+        (0..n)
+            .map(|j| {
+                let f = dot(&column(u, n, j)[..=j], h);
+                f * f * self.d[j]
+            })
+            .sum()
+    }
+
+    /// Covariance `y = P h` of every state with a linear function of the state; `h` and `y`: (n).
+    pub fn covariance_with(&self, h: &[f64], y: &mut [f64]) {
+        let (n, u) = (self.states(), self.u.as_slice());
+        y.fill(0.0);
+        for (j, d) in self.d.as_slice().iter().enumerate() {
+            let u = &column(u, n, j)[..=j];
+            axpy(d * dot(u, h), u, y);
+        }
+    }
+
+    /// Time update `P <- F P F^T + G diag(q) G^T` (Thornton).
+    ///
+    /// # Panics
+    /// The sizes of `linear` are not those of this covariance.
+    pub fn predict(&mut self, linear: &Linearisation) {
+        let (n, m, k) = (self.states(), linear.phi.nrows(), linear.q.len());
+        assert_eq!(linear.phi.ncols(), n, "the transition has as many columns as there are states");
+        self.work.reserve(n, m, k);
+        self.load(linear);
+        self.transform(m, k);
+        self.orthogonalise(m, k);
+    }
+
+    /// Padded copies of transition, noise input and weights: what the inner loops read.
+    fn load(&mut self, linear: &Linearisation) {
+        let (m, k) = (linear.phi.nrows(), linear.q.len());
+        let (high, width) = (padded(m), padded(m + k));
+        let work = &mut self.work;
+        if m == 0 {
+            return;
+        }
+        for (to, from) in work.phi.chunks_exact_mut(high).zip(linear.phi.as_slice().chunks_exact(m)) {
+            to[..m].copy_from_slice(from);
+            to[m..].fill(0.0);
+        }
+        for (row, to) in work.rows.chunks_exact_mut(width).enumerate() {
+            for (to, from) in to[m..m + k].iter_mut().zip(linear.g.as_slice().iter().skip(row).step_by(m)) {
+                *to = *from;
+            }
+            to[m + k..].fill(0.0);
+        }
+        work.weights[..m].copy_from_slice(&self.d.as_slice()[..m]);
+        work.weights[m..m + k].copy_from_slice(linear.q.as_slice());
+        work.weights[m + k..].fill(0.0);
+    }
+
+    /// `F U`: its columns of moving states become rows to orthogonalise, those of constants are final.
+    fn transform(&mut self, m: usize, k: usize) {
+        let (n, high, width) = (self.states(), padded(m), padded(m + k));
+        let work = &mut self.work;
+        for j in 0..n {
+            let u = column_mut(self.u.as_mut_slice(), n, j);
+            multiply(&work.phi, high, &u[..=j], &mut work.moved);
+            if j < m {
+                for (to, from) in work.rows[j..].iter_mut().step_by(width).zip(&work.moved[..m]) {
+                    *to = *from;
+                }
+            } else {
+                u[..m].copy_from_slice(&work.moved[..m]);
+            }
+        }
+    }
+
+    /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
+    fn orthogonalise(&mut self, m: usize, k: usize) {
+        let (n, width) = (self.states(), padded(m + k));
+        let Work { rows, weights, weighted, .. } = &mut self.work;
+        for j in (0..m).rev() {
+            let (before, row) = rows[..(j + 1) * width].split_at_mut(j * width);
+            let d = weigh(row, weights, weighted);
+            let u = &mut column_mut(self.u.as_mut_slice(), n, j)[..j];
+            if d < f64::MIN_POSITIVE {
+                self.d[j] = 0.0;
+                u.fill(0.0);
+                continue;
+            }
+            self.d[j] = d;
+            let inverse = 1.0 / d;
+            for (other, u) in before.chunks_exact_mut(width).zip(u) {
+                *u = dot(weighted, other) * inverse;
+                axpy(-*u, row, other);
+            }
+        }
+    }
+
+    /// Update by a scalar measurement `z = h^T x + v`, `v ~ N(0, r)` (Bierman); `h`: (n), `r >= 0`.
+    ///
+    /// Writes the gain `K = P h / S` into `gain` (n) and returns `S = h^T P h + r`. If `S = 0`, nothing was left to
+    /// learn: the gain is zero.
+    pub fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> f64 {
+        let n = self.states();
+        gain.fill(0.0);
+        let mut s = r;
+        let columns = self.u.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate();
+        for ((j, u), d) in columns.zip(self.d.as_mut_slice()) {
+            let u = &mut u[..j];
+            let f = dot(u, h) + h[j];
+            let v = f * *d;
+            let before = s;
+            s += f * v;
+            if v == 0.0 || s == 0.0 {
+                continue;
+            }
+            *d *= before / s;
+            // Where no noise and no variance came before, the gain collected so far is zero.
+            let p = if before > 0.0 { -f / before } else { 0.0 };
+            for (u, b) in u.iter_mut().zip(gain.iter_mut()) {
+                let old = *u;
+                *u += *b * p;
+                *b += old * v;
+            }
+            gain[j] = v;
+        }
+        if s > 0.0 {
+            let inverse = 1.0 / s;
+            gain.iter_mut().for_each(|b| *b *= inverse);
+        }
+        s
+    }
+
+    /// `P <- P + c v v^T` with `c >= 0` (Agee and Turner); `v`: (n).
+    pub fn add_rank_one(&mut self, c: f64, v: &[f64]) {
+        self.f.as_mut_slice().copy_from_slice(v);
+        self.add_leading(c, v.len());
+    }
+
+    /// Rank-one update of the leading block of `size` states by `c v v^T` with `v = f[..size]`.
+    fn add_leading(&mut self, mut c: f64, size: usize) {
+        let n = self.states();
+        let v = &mut self.f.as_mut_slice()[..size];
+        for j in (0..size).rev() {
+            let s = v[j];
+            let old = self.d[j];
+            let new = old + c * s * s;
+            if s == 0.0 || new == 0.0 {
+                continue;
+            }
+            let b = c * s / new;
+            for (u, v) in column_mut(self.u.as_mut_slice(), n, j)[..j].iter_mut().zip(v.iter_mut()) {
+                *v -= s * *u;
+                *u += b * *v;
+            }
+            self.d[j] = new;
+            c *= old / new;
+        }
+    }
+
+    /// Add `variance` to state `i`, its covariances unchanged.
+    pub fn inflate(&mut self, i: usize, variance: f64) {
+        self.f.fill(0.0);
+        self.f[i] = 1.0;
+        self.add_leading(variance, i + 1);
+    }
+
+    /// Make state `i` independent of all others, with the given variance: an event has reset it.
+    pub fn decorrelate_and_set(&mut self, i: usize, variance: f64) {
+        let n = self.states();
+        let u = self.u.as_mut_slice();
+        for j in i + 1..n {
+            u[j * n + i] = 0.0;
+        }
+        // What state i explained in the states before it remains theirs.
+        let explained = &mut column_mut(u, n, i)[..i];
+        self.f.as_mut_slice()[..i].copy_from_slice(explained);
+        explained.fill(0.0);
+        let d = std::mem::replace(&mut self.d[i], variance);
+        self.add_leading(d, i);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,203 @@
+//! A sensor: its numbers, its static reading and the derivatives of that.
+use super::parameter::{MAX_PARAMETERS, Parameter, ParameterKind};
+use crate::EstimatorError;
+use crate::log::Quantity;
+use cylwatch_thermal::scenario::sensor::{
+    CorrelatedNoise, MountedSensor, PressureReference, SensorKind, SensorSpec,
+};
+use cylwatch_thermal::units::ATMOSPHERE_PA;
+
+/// Temperature of the electronics at which a pressure transmitter has no temperature error, K: 15 °C.
+pub const ELECTRONICS_REFERENCE_K: f64 = 288.15;
+
+/// What a sensor is exposed to at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exposure {
+    /// Temperature of surface, valve or gas at its place, K.
+    pub body_k: f64,
+    /// Air temperature, K.
+    pub air_k: f64,
+    /// Gas pressure, Pa absolute.
+    pub pressure_pa: f64,
+    /// Temperature of a transmitter's electronics, which is that of the valve, K.
+    pub electronics_k: f64,
+}
+
+/// A reading with its derivatives, in K or Pa.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Prediction {
+    /// Reading.
+    pub value: f64,
+    /// Derivative to the body's temperature.
+    pub per_body: f64,
+    /// Derivative to the air temperature.
+    pub per_air: f64,
+    /// Derivative to the pressure.
+    pub per_pressure: f64,
+    /// Derivative to the electronics' temperature.
+    pub per_electronics: f64,
+    /// Derivatives to the parameters, in their order; 0 beyond the last one.
+    pub per_parameter: [f64; MAX_PARAMETERS],
+}
+
+/// A sensor. Readings are in K or in Pa absolute, and so is everything here that has the unit of a reading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// Name, that of its channel in a log.
+    pub name: String,
+    /// What it reads, and where.
+    pub kind: SensorKind,
+    /// Time constant of its first-order lag, s; 0: none.
+    pub lag_s: f64,
+    /// Standard deviation of its white noise.
+    pub noise_sd: f64,
+    /// Correlated noise.
+    pub correlated: Option<CorrelatedNoise>,
+    /// Smallest step of a reading; 0: none.
+    pub resolution: f64,
+    /// Steady drift per second.
+    pub drift_per_s: f64,
+    /// Probability that a reading is missing.
+    pub dropout: f64,
+    plausible: (f64, f64),
+    parameters: Vec<Parameter>,
+}
+
+impl From<&MountedSensor> for Sensor {
+    fn from(mounted: &MountedSensor) -> Self {
+        use ParameterKind::{Coupling, Offset, Span, TemperatureCoefficient};
+        let mut parameters = vec![Parameter::new(Offset, mounted.offset).walking(mounted.walk_per_sqrt_s)];
+        match mounted.kind {
+            SensorKind::Surface { .. } => parameters.push(Parameter::new(Coupling, mounted.air_coupling)),
+            SensorKind::Pressure { .. } => parameters.extend([
+                Parameter::new(TemperatureCoefficient, mounted.temperature_coefficient_pa_k),
+                Parameter::new(Span, mounted.span),
+            ]),
+            SensorKind::Gas { .. } | SensorKind::Ambient => {}
+        }
+        Self {
+            name: mounted.name.clone(),
+            kind: mounted.kind,
+            lag_s: mounted.lag_s,
+            noise_sd: mounted.noise,
+            correlated: mounted.correlated,
+            resolution: mounted.resolution,
+            drift_per_s: mounted.drift_per_s,
+            dropout: mounted.dropout,
+            plausible: mounted.plausible,
+            parameters,
+        }
+    }
+}
+
+impl TryFrom<&SensorSpec> for Sensor {
+    type Error = EstimatorError;
+
+    /// Checks a specification by itself.
+    ///
+    /// # Errors
+    /// [`EstimatorError::Thermal`] with the first value that breaks a bound.
+    fn try_from(spec: &SensorSpec) -> Result<Self, EstimatorError> {
+        Ok(Self::from(&spec.build("sensor")?))
+    }
+}
+
+impl Sensor {
+    /// Parameters: offset, then coupling (surface) or temperature coefficient and span (pressure).
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The parameter of a kind, to change its prior; `None` for a kind that this sensor does not have.
+    pub fn parameter_mut(&mut self, kind: ParameterKind) -> Option<&mut Parameter> {
+        self.parameters.iter_mut().find(|parameter| parameter.kind == kind)
+    }
+
+    /// Means of the parameters; 0 beyond the last one.
+    pub fn means(&self) -> [f64; MAX_PARAMETERS] {
+        let mut means = [0.0; MAX_PARAMETERS];
+        for (mean, parameter) in means.iter_mut().zip(&self.parameters) {
+            *mean = parameter.mean;
+        }
+        means
+    }
+
+    /// Static reading (before the lag, without drift and noise) with its derivatives. It is linear in the exposure for
+    /// fixed parameters, and linear in the parameters for a fixed exposure.
+    ///
+    /// # Shapes
+    /// `parameters`: one value for each of [`Sensor::parameters`], in that order; further ones are ignored.
+    ///
+    /// # Panics
+    /// With fewer values than parameters.
+    pub fn predict(&self, exposure: &Exposure, parameters: &[f64]) -> Prediction {
+        let offset = parameters[0];
+        match self.kind {
+            SensorKind::Surface { .. } => {
+                let (kappa, t, air) = (parameters[1], exposure.body_k, exposure.air_k);
+                Prediction {
+                    value: t + kappa * (air - t) + offset,
+                    per_body: 1.0 - kappa,
+                    per_air: kappa,
+                    per_parameter: [1.0, air - t, 0.0],
+                    ..Prediction::default()
+                }
+            }
+            SensorKind::Gas { .. } => Prediction {
+                value: exposure.body_k + offset,
+                per_body: 1.0,
+                per_parameter: [1.0, 0.0, 0.0],
+                ..Prediction::default()
+            },
+            SensorKind::Ambient => Prediction {
+                value: exposure.air_k + offset,
+                per_air: 1.0,
+                per_parameter: [1.0, 0.0, 0.0],
+                ..Prediction::default()
+            },
+            SensorKind::Pressure { reference, .. } => {
+                let (zero_pa, recorded_zero_pa) = match reference {
+                    PressureReference::Absolute => (0.0, 0.0),
+                    PressureReference::Gauge { atmosphere_pa } => (atmosphere_pa, ATMOSPHERE_PA),
+                };
+                let (c, s) = (parameters[1], parameters[2]);
+                let warmer_k = exposure.electronics_k - ELECTRONICS_REFERENCE_K;
+                let counted_pa = exposure.pressure_pa - zero_pa;
+                Prediction {
+                    value: (1.0 + s) * counted_pa + offset + c * warmer_k + recorded_zero_pa,
+                    per_pressure: 1.0 + s,
+                    per_electronics: c,
+                    per_parameter: [1.0, warmer_k, counted_pa],
+                    ..Prediction::default()
+                }
+            }
+        }
+    }
+
+    /// Variance of a reading's noise: white, correlated, and rounding to a step `d`, which is uniform in `±d/2`:
+    /// `sd^2 + sd_c^2 + d^2 / 12`.
+    pub fn noise_variance(&self) -> f64 {
+        let correlated = self.correlated.map_or(0.0, |noise| noise.sd * noise.sd);
+        self.noise_sd * self.noise_sd + correlated + self.resolution * self.resolution / 12.0
+    }
+
+    /// What it measures.
+    pub fn quantity(&self) -> Quantity {
+        match self.kind {
+            SensorKind::Pressure { .. } => Quantity::Pressure,
+            SensorKind::Surface { .. } | SensorKind::Gas { .. } | SensorKind::Ambient => {
+                Quantity::Temperature
+            }
+        }
+    }
+
+    /// Lowest and highest reading that can be one; a reading outside is a fault of the sensor.
+    pub fn plausible(&self) -> (f64, f64) {
+        self.plausible
+    }
+
+    /// Time constant of its first-order lag, s; 0: none.
+    pub fn lag_s(&self) -> f64 {
+        self.lag_s
+    }
+}

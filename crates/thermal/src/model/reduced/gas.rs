@@ -1,0 +1,181 @@
+//! The gas of the reduced model: one well-mixed node in the chart (temperature, mass, mean wall temperature).
+//!
+//! With `V = V_0 [1 + a (T_w - T_0) + b (p - p_0)]`, `D = 1 + V_0 b p_rho rho / V` and
+//! `dV = alpha dT_w + beta dT + gamma dm`, `alpha = V_0 a / D`, `beta = V_0 b p_T / D`, `gamma = V_0 b p_rho / (V D)`, the
+//! energy balance of [`crate::model::well_mixed`] reads
+//!
+//! `(m c_v + T p_T beta) dT/dt = Q - T p_T [alpha dT_w/dt + r (1/rho - gamma)]`, `dm/dt = -r`.
+//!
+//! Second derivatives of the Helmholtz energy come from dual numbers in (T, rho), so the linearisation is exact.
+use num_dual::DualSVec64;
+
+use super::Pressure;
+use crate::ThermalError;
+use crate::fluid::{Fluid, Real};
+use crate::vessel::InnerVolume;
+
+/// A value with its derivatives by gas temperature, gas mass and mean wall temperature.
+pub(super) type Dual = DualSVec64<3>;
+
+/// Relative change of the volume below which it counts as found.
+const VOLUME_TOLERANCE: f64 = 1e-13;
+const MAX_ITERATIONS: usize = 30;
+
+/// A value at an instant with its derivatives `[by gas temperature, by mass, by mean wall temperature]`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slope {
+    pub value: f64,
+    pub by: [f64; 3],
+}
+
+impl From<f64> for Slope {
+    fn from(value: f64) -> Self {
+        Self { value, by: [0.0; 3] }
+    }
+}
+
+impl From<Dual> for Slope {
+    fn from(dual: Dual) -> Self {
+        Self { value: dual.re, by: dual.eps.unwrap_generic(nalgebra::Const::<3>, nalgebra::U1).into() }
+    }
+}
+
+/// The gas at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GasState<D> {
+    /// Pressure, Pa.
+    pub pressure_pa: D,
+    /// Heat that raises the gas by one kelvin, J/K: `m c_v + T p_T beta`.
+    pub capacity_j_k: D,
+    /// Heat taken per kelvin of the mean wall temperature, J/K: `T p_T alpha`.
+    pub per_wall_j_k: D,
+    /// Heat taken per kilogram that leaves, J/kg: `T p_T (1/rho - gamma)`.
+    pub per_outflow_j_kg: D,
+}
+
+impl<D: Into<Slope>> GasState<D> {
+    fn into_slopes(self) -> GasState<Slope> {
+        GasState {
+            pressure_pa: self.pressure_pa.into(),
+            capacity_j_k: self.capacity_j_k.into(),
+            per_wall_j_k: self.per_wall_j_k.into(),
+            per_outflow_j_kg: self.per_outflow_j_kg.into(),
+        }
+    }
+}
+
+/// The gas node of a vessel.
+#[derive(Clone, Debug)]
+pub(super) struct GasNode {
+    fluid: Fluid,
+    volume: InnerVolume,
+    /// Last volume, m³: where Newton starts, without influence on where it ends.
+    guess_m3: f64,
+}
+
+impl GasNode {
+    pub fn new(fluid: Fluid, volume: InnerVolume) -> Self {
+        Self { fluid, volume, guess_m3: volume.volume_m3 }
+    }
+
+    /// Volume at a gas temperature, mass and mean wall temperature, m³.
+    ///
+    /// # Errors
+    /// The mass is not positive or a value not finite.
+    pub fn volume_m3(&mut self, temperature_k: f64, mass_kg: f64, wall_k: f64) -> Result<f64, ThermalError> {
+        let InnerVolume { volume_m3: v0, pressure_expansion_per_pa: b, .. } = self.volume;
+        let sane = mass_kg > 0.0 && temperature_k > 0.0 && mass_kg.is_finite() && wall_k.is_finite();
+        let mut v = self.guess_m3;
+        if sane && temperature_k.is_finite() {
+            for _ in 0..MAX_ITERATIONS {
+                let rho = mass_kg / v;
+                let p = self.fluid.pressure_with_derivatives(rho, temperature_k);
+                let residual = v - self.volume.volume_m3(wall_k, p.pressure_pa);
+                let step = residual / (1.0 + v0 * b * p.dp_drho_pa_m3_kg * rho / v);
+                v -= step.clamp(-0.3 * v, 0.3 * v);
+                if step.abs() <= VOLUME_TOLERANCE.max(1e-6 * v0 * b * p.dp_drho_pa_m3_kg * rho / v) * v {
+                    // The next Newton step would be smaller by the square of this one.
+                    self.guess_m3 = v;
+                    return Ok(v);
+                }
+                if !v.is_finite() {
+                    break;
+                }
+            }
+        }
+        Err(ThermalError::NoGasState { mass_kg, energy_j: f64::NAN })
+    }
+
+    /// The gas at a temperature, mass and mean wall temperature; derivatives are zero unless asked for.
+    ///
+    /// # Errors
+    /// As [`GasNode::volume_m3`].
+    pub fn at(
+        &mut self,
+        t: f64,
+        m: f64,
+        wall_k: f64,
+        derivatives: bool,
+    ) -> Result<GasState<Slope>, ThermalError> {
+        let v = self.volume_m3(t, m, wall_k)?;
+        if !derivatives {
+            let s = self.fluid.state(m / v, t);
+            return Ok(self
+                .combine(t, m, v, m / v, [s.pressure_pa, s.cv_j_kg_k, s.dp_dt_pa_k, s.dp_drho_pa_m3_kg])
+                .into_slopes());
+        }
+        let rho = m / v;
+        let seed = |value: f64, index: usize| DualSVec64::<2>::from(value).derivative(index);
+        let s = self.fluid.state(seed(rho, 1), seed(t, 0));
+        let volume_by = self.volume_by(rho, v, s.dp_dt_pa_k.re, s.dp_drho_pa_m3_kg.re);
+        let rho_by = [-rho * volume_by[0] / v, (1.0 - rho * volume_by[1]) / v, -rho * volume_by[2] / v];
+        let dual = |value: f64, by: [f64; 3]| Dual::new(value, num_dual::Derivative::some(by.into()));
+        let lift = |value: DualSVec64<2>| {
+            let [by_t, by_rho]: [f64; 2] =
+                value.eps.unwrap_generic(nalgebra::Const::<2>, nalgebra::U1).into();
+            dual(value.re, [by_t + by_rho * rho_by[0], by_rho * rho_by[1], by_rho * rho_by[2]])
+        };
+        let properties = [s.pressure_pa, s.cv_j_kg_k, s.dp_dt_pa_k, s.dp_drho_pa_m3_kg].map(lift);
+        let (t, m) = (dual(t, [1.0, 0.0, 0.0]), dual(m, [0.0, 1.0, 0.0]));
+        Ok(self.combine(t, m, dual(v, volume_by), dual(rho, rho_by), properties).into_slopes())
+    }
+
+    /// Pressure with its derivatives.
+    ///
+    /// # Errors
+    /// As [`GasNode::volume_m3`].
+    pub fn pressure(&mut self, t: f64, m: f64, wall_k: f64) -> Result<Pressure, ThermalError> {
+        let v = self.volume_m3(t, m, wall_k)?;
+        let rho = m / v;
+        let p = self.fluid.pressure_with_derivatives(rho, t);
+        let by = self.volume_by(rho, v, p.dp_dt_pa_k, p.dp_drho_pa_m3_kg);
+        Ok(Pressure {
+            pressure_pa: p.pressure_pa,
+            per_gas_k: p.dp_dt_pa_k - p.dp_drho_pa_m3_kg * rho * by[0] / v,
+            per_mass_kg: p.dp_drho_pa_m3_kg * (1.0 - rho * by[1]) / v,
+            per_wall_k: -p.dp_drho_pa_m3_kg * rho * by[2] / v,
+        })
+    }
+
+    /// Derivatives `[beta, gamma, alpha]` of the volume.
+    fn volume_by(&self, rho: f64, v: f64, p_t: f64, p_rho: f64) -> [f64; 3] {
+        let InnerVolume { volume_m3: v0, thermal_expansion_per_k: a, pressure_expansion_per_pa: b, .. } =
+            self.volume;
+        let d = 1.0 + v0 * b * p_rho * rho / v;
+        [v0 * b * p_t / d, v0 * b * p_rho / (v * d), v0 * a / d]
+    }
+
+    /// Properties: `[p, c_v, p_T, p_rho]`.
+    fn combine<D: Real>(&self, t: D, m: D, v: D, rho: D, [p, cv, p_t, p_rho]: [D; 4]) -> GasState<D> {
+        let InnerVolume { volume_m3: v0, thermal_expansion_per_k: a, pressure_expansion_per_pa: b, .. } =
+            self.volume;
+        let elastic = (p_rho * rho / v * (v0 * b) + 1.0).recip();
+        let work = t * p_t;
+        GasState {
+            pressure_pa: p,
+            capacity_j_k: m * cv + work * p_t * elastic * (v0 * b),
+            per_wall_j_k: work * elastic * (v0 * a),
+            per_outflow_j_kg: work * (rho.recip() - p_rho * elastic / v * (v0 * b)),
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! The reduced model: a few wall nodes, the valve and one well-mixed gas node, in temperatures and gas mass.
+//!
+//! The same equations as [`crate::model::Model`] on a coarse wall ([`Mesh::coarse`]), with the same conduction, films and
+//! equation of state, but in the variables an observer estimates, with the inputs an observer does not know
+//! (air, sun, multipliers on films and capacity, outflow), and without allocation. States
+//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m]`:
+//!
+//! * wall node `i`: `e^c C_i(T_i) dT_i/dt = -e^i q_in,i - e^o q_out,i + conduction + contact + sun`
+//! * valve: `e^c C_v dT_v/dt = contact - e^o q_out + sun`
+//! * gas: `gas` (this folder); `dm/dt = -r`
+//!
+//! The exponents `o, i, c` are the logarithms of multipliers ([`Unknowns`]). Outside there is one film coefficient for
+//! convection and radiation together. [`ReducedModel::rates`] also gives the exact Jacobian with all states
+//! and unknowns.
+mod balance;
+mod gas;
+
+use nalgebra::DMatrix;
+
+use crate::ThermalError;
+use crate::transfer::inside::InsideConvection;
+use crate::vessel::{Valve, Vessel};
+use crate::wall::material::{Material, REFERENCE_TEMPERATURE_K};
+use crate::wall::mesh::Mesh;
+use gas::GasNode;
+
+/// What acts on the cylinder and what is uncertain about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unknowns {
+    /// Temperature of the surroundings, K.
+    pub air_k: f64,
+    /// Logarithm of the multiplier on the outside film.
+    pub ln_outside_film: f64,
+    /// Logarithm of the multiplier on the inside film.
+    pub ln_inside_film: f64,
+    /// Logarithm of the multiplier on the heat capacity of wall and valve.
+    pub ln_capacity: f64,
+    /// Sun absorbed by the topmost wall node, W; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
+    pub sun_w: f64,
+    /// Mass flow out, kg/s.
+    pub outflow_kg_s: f64,
+}
+
+impl Unknowns {
+    /// Number of unknowns: columns of the Jacobian behind the states, in the order of the fields.
+    pub const COUNT: usize = 6;
+    /// Column of [`Unknowns::air_k`] behind the states.
+    pub const AIR: usize = 0;
+    /// Column of [`Unknowns::ln_outside_film`].
+    pub const OUTSIDE: usize = 1;
+    /// Column of [`Unknowns::ln_inside_film`].
+    pub const INSIDE: usize = 2;
+    /// Column of [`Unknowns::ln_capacity`].
+    pub const CAPACITY: usize = 3;
+    /// Column of [`Unknowns::sun_w`].
+    pub const SUN: usize = 4;
+    /// Column of [`Unknowns::outflow_kg_s`].
+    pub const OUTFLOW: usize = 5;
+
+    /// Nothing but surroundings of a temperature, K.
+    pub fn still(air_k: f64) -> Self {
+        Self {
+            air_k,
+            ln_outside_film: 0.0,
+            ln_inside_film: 0.0,
+            ln_capacity: 0.0,
+            sun_w: 0.0,
+            outflow_kg_s: 0.0,
+        }
+    }
+}
+
+/// Pressure with its derivatives by gas temperature, mass and mean wall temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressure {
+    /// Pressure, Pa.
+    pub pressure_pa: f64,
+    /// By gas temperature, Pa/K.
+    pub per_gas_k: f64,
+    /// By mass, Pa/kg.
+    pub per_mass_kg: f64,
+    /// By mean wall temperature, Pa/K.
+    pub per_wall_k: f64,
+}
+
+/// The reduced model of one vessel.
+#[derive(Debug)]
+pub struct ReducedModel {
+    mesh: Mesh,
+    node_of_column: Vec<usize>,
+    fine: Mesh,
+    /// Heat capacity of each wall node at the reference temperature, J/K.
+    capacity_j_k: Vec<f64>,
+    wall_capacity_j_k: f64,
+    valve: Option<Valve>,
+    film_w_m2_k: f64,
+    inside: InsideConvection,
+    gas: GasNode,
+    /// Last difference between each wall node and its inner surface, K: where the next solve starts.
+    skin_k: Vec<f64>,
+    /// Rate of the mean wall temperature at the last evaluation, K/s.
+    mean_rate_k_s: f64,
+    /// Its derivatives.
+    mean_rate_by: Vec<f64>,
+}
+
+impl ReducedModel {
+    /// Part of the sun on the topmost wall node that the valve absorbs beside.
+    pub const VALVE_SUN: f64 = 0.25;
+
+    /// A vessel's model with so many wall nodes (at most as many as its wall has columns) and an outside film
+    /// coefficient for convection and radiation together, W/(m² K).
+    pub fn new(vessel: &Vessel, nodes: usize, film_w_m2_k: f64) -> Self {
+        let (mesh, node_of_column) = Mesh::coarse(&vessel.geometry, nodes);
+        let capacity_j_k: Vec<f64> = mesh
+            .volume_m3
+            .iter()
+            .zip(&mesh.material)
+            .map(|(volume, &m)| {
+                volume * mesh.materials[m].density_kg_m3 * mesh.materials[m].heat_capacity_j_kg_k
+            })
+            .collect();
+        let nodes = mesh.columns.len();
+        Self {
+            fine: Mesh::new(&vessel.geometry),
+            node_of_column,
+            wall_capacity_j_k: capacity_j_k.iter().sum(),
+            capacity_j_k,
+            valve: vessel.valve.clone(),
+            film_w_m2_k,
+            inside: InsideConvection::new(
+                vessel.inside_film,
+                vessel.geometry.inner_diameter_m,
+                vessel.fluid.clone(),
+            ),
+            gas: GasNode::new(vessel.fluid.clone(), vessel.volume),
+            skin_k: vec![0.0; nodes],
+            mean_rate_k_s: 0.0,
+            mean_rate_by: vec![0.0; nodes + 3 + Unknowns::COUNT],
+            mesh,
+        }
+    }
+
+    /// Number of wall nodes.
+    pub fn wall_nodes(&self) -> usize {
+        self.mesh.columns.len()
+    }
+
+    /// Index of the valve's temperature, if there is a valve.
+    pub fn valve_index(&self) -> Option<usize> {
+        self.valve.as_ref().map(|_| self.wall_nodes())
+    }
+
+    /// Index of the gas temperature.
+    pub fn gas_index(&self) -> usize {
+        self.wall_nodes() + usize::from(self.valve.is_some())
+    }
+
+    /// Index of the gas mass.
+    pub fn mass_index(&self) -> usize {
+        self.gas_index() + 1
+    }
+
+    /// Number of states.
+    pub fn states(&self) -> usize {
+        self.gas_index() + 2
+    }
+
+    /// State that stands for a named place: a wall node for `bottom`, `middle`, `shoulder`, `neck`; the valve.
+    pub fn index_of_place(&self, place: &str) -> Option<usize> {
+        match place {
+            "valve" => self.valve_index(),
+            place => self.fine.column_of(place).map(|column| self.node_of_column[column]),
+        }
+    }
+
+    /// Weight of each wall node in the mean wall temperature; length: number of wall nodes.
+    pub fn wall_weights(&self) -> impl Iterator<Item = f64> + '_ {
+        self.capacity_j_k.iter().map(|c| c / self.wall_capacity_j_k)
+    }
+
+    /// Pressure at a state.
+    ///
+    /// # Errors
+    /// The state has no gas: mass or temperature not positive.
+    pub fn pressure(&mut self, x: &[f64]) -> Result<Pressure, ThermalError> {
+        let wall_k = self.mean_wall_k(x);
+        self.gas.pressure(x[self.gas_index()], x[self.mass_index()], wall_k)
+    }
+
+    /// Pressure at which the gas mass of a state would settle with wall and gas at one temperature, Pa.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::pressure`].
+    pub fn settled_pressure_pa(&mut self, mass_kg: f64, temperature_k: f64) -> Result<f64, ThermalError> {
+        Ok(self.gas.pressure(temperature_k, mass_kg, temperature_k)?.pressure_pa)
+    }
+
+    /// Density of the gas at a state, kg/m³.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::pressure`].
+    pub fn density_kg_m3(&mut self, x: &[f64]) -> Result<f64, ThermalError> {
+        let (wall_k, mass_kg) = (self.mean_wall_k(x), x[self.mass_index()]);
+        Ok(mass_kg / self.gas.volume_m3(x[self.gas_index()], mass_kg, wall_k)?)
+    }
+
+    /// Mean wall temperature, K: that of a uniform wall of the same energy.
+    pub fn mean_wall_k(&self, x: &[f64]) -> f64 {
+        self.material().temperature_k(self.mean_energy_state_k(x))
+    }
+
+    /// Derivative of the mean wall temperature with that of a wall node.
+    pub fn mean_wall_per_node(&self, x: &[f64], node: usize) -> f64 {
+        let material = self.material();
+        material.temperature_slope(self.mean_energy_state_k(x))
+            * self.weight(node)
+            * capacity_ratio(material, x[node])
+    }
+
+    fn material(&self) -> &Material {
+        &self.mesh.materials[0]
+    }
+
+    fn weight(&self, node: usize) -> f64 {
+        self.capacity_j_k[node] / self.wall_capacity_j_k
+    }
+
+    fn mean_energy_state_k(&self, x: &[f64]) -> f64 {
+        let sum: f64 =
+            x.iter().zip(&self.capacity_j_k).map(|(&t, c)| self.material().energy_state_k(t) * c).sum();
+        sum / self.wall_capacity_j_k
+    }
+
+    /// Rates of change of all states; where `jacobian` is given, also their exact derivatives.
+    ///
+    /// # Shapes
+    /// `x`, `rate`: (n); `jacobian`: (n, n + [`Unknowns::COUNT`]), states first.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::pressure`].
+    pub fn rates(
+        &mut self,
+        x: &[f64],
+        unknowns: &Unknowns,
+        rate: &mut [f64],
+        mut jacobian: Option<&mut DMatrix<f64>>,
+    ) -> Result<(), ThermalError> {
+        let gas = self.gas.at(
+            x[self.gas_index()],
+            x[self.mass_index()],
+            self.mean_wall_k(x),
+            jacobian.is_some(),
+        )?;
+        if let Some(jacobian) = jacobian.as_deref_mut() {
+            jacobian.fill(0.0);
+        }
+        rate.fill(0.0);
+        self.add_conduction(x, rate, jacobian.as_deref_mut());
+        self.add_inner_faces(x, unknowns, &gas, rate, jacobian.as_deref_mut());
+        self.add_outer_faces(x, unknowns, rate, jacobian.as_deref_mut());
+        self.add_valve(x, unknowns, rate, jacobian.as_deref_mut());
+        self.divide_by_capacities(x, unknowns, rate, jacobian.as_deref_mut());
+        self.close_gas(x, unknowns, &gas, rate, jacobian);
+        Ok(())
+    }
+}
+
+/// `c(T) / c_20` of a material.
+fn capacity_ratio(material: &Material, temperature_k: f64) -> f64 {
+    1.0 + material.heat_capacity_slope_per_k * (temperature_k - REFERENCE_TEMPERATURE_K)
+}
+
+#[cfg(test)]
+mod tests;

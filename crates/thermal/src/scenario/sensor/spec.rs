@@ -1,0 +1,102 @@
+//! Raw content of a `[[sensor]]` table. Fields are SI; the file may use any unit of the field's dimension.
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::Pt100Class;
+
+/// A sensor. In a scenario it is ideal unless its errors are stated, and what is stated with a standard deviation, a
+/// tolerance or a class is drawn by the run's seed.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema, PartialEq)]
+pub struct SensorSpec {
+    /// Name; it becomes part of a column's name.
+    pub name: String,
+    /// What it reads; by default pressure for the name `pressure`, ambient for `ambient`, gas for `gas_<number>`, else
+    /// surface.
+    pub kind: Option<KindChoice>,
+    /// Surface: where it sits: bottom, middle, shoulder, neck or valve; its name by default, without a leading `wall_`.
+    pub place: Option<String>,
+    /// Surface: distance from the outer bottom along the axis, instead of a place. Gas: vertical distance from there,
+    /// instead of a cell.
+    pub height_m: Option<f64>,
+    /// Gas: cell of the model, 1 at the bottom; by default the number of the name `gas_<number>`.
+    pub cell: Option<usize>,
+    /// Surface: mounting coupling to the air, 0 (default) to 1: it reads `T_surface + coupling (T_air - T_surface)`.
+    pub air_coupling: Option<f64>,
+    /// Surface: standard deviation of the coupling, 0 by default.
+    pub air_coupling_sd: Option<f64>,
+    /// Time constant of its first-order lag, 0 by default.
+    pub lag_s: Option<f64>,
+    /// Constant error of a temperature, 0 by default.
+    pub offset_k: Option<f64>,
+    /// Standard deviation of the constant error of a temperature, normal; 0 by default.
+    pub offset_sd_k: Option<f64>,
+    /// Largest deviation of a temperature from its stated offset; all within are equally likely.
+    pub offset_tolerance_k: Option<f64>,
+    /// Tolerance class after IEC 60751 (AA, A, B, C), instead of an offset tolerance: its tolerance at 20 °C.
+    pub class: Option<Pt100Class>,
+    /// Standard deviation of the white noise of a temperature, 0 by default.
+    pub noise_k: Option<f64>,
+    /// Standard deviation of the correlated noise of a temperature, 0 by default.
+    pub correlated_noise_k: Option<f64>,
+    /// Correlation time of the correlated noise.
+    pub correlation_time_s: Option<f64>,
+    /// Smallest step of a temperature; none by default.
+    pub resolution_k: Option<f64>,
+    /// Steady drift of a temperature, 0 by default.
+    pub drift_k_s: Option<f64>,
+    /// Random walk of a temperature's offset: the standard deviation that it reaches in `walk_time`; 0 by default.
+    pub walk_sd_k: Option<f64>,
+    /// Time in which the random walk reaches its standard deviation.
+    pub walk_time_s: Option<f64>,
+    /// Lowest temperature that can be a reading; a lower one is a fault. -90 °C outside, -180 °C in the gas by default.
+    pub lowest_k: Option<f64>,
+    /// Highest temperature that can be a reading; 150 °C outside, 330 °C in the gas by default.
+    pub highest_k: Option<f64>,
+    /// Constant error of a pressure, 0 by default.
+    pub offset_pa: Option<f64>,
+    /// Standard deviation of the constant error of a pressure, normal; 0 by default.
+    pub offset_sd_pa: Option<f64>,
+    /// Largest deviation of a pressure from its stated offset; all within are equally likely.
+    pub offset_tolerance_pa: Option<f64>,
+    /// Relative error of a transmitter's span, 0 by default.
+    pub span_ratio: Option<f64>,
+    /// Standard deviation of the relative error of the span, 0 by default.
+    pub span_sd_ratio: Option<f64>,
+    /// Error of a pressure per kelvin of the transmitter away from 15 °C, 0 by default.
+    pub temperature_coefficient_pa_k: Option<f64>,
+    /// Standard deviation of that error, 0 by default.
+    pub temperature_coefficient_sd_pa_k: Option<f64>,
+    /// Standard deviation of the white noise of a pressure, 0 by default.
+    pub noise_pa: Option<f64>,
+    /// Standard deviation of the correlated noise of a pressure, 0 by default.
+    pub correlated_noise_pa: Option<f64>,
+    /// Smallest step of a pressure; none by default.
+    pub resolution_pa: Option<f64>,
+    /// Steady drift of a pressure, 0 by default.
+    pub drift_pa_s: Option<f64>,
+    /// Random walk of a pressure's offset: the standard deviation that it reaches in `walk_time`; 0 by default.
+    pub walk_sd_pa: Option<f64>,
+    /// Upper end of a transmitter's range; a reading stays between -1.25 and 103.125 % of it (NAMUR NE 43). No end by
+    /// default.
+    pub full_scale_pa: Option<f64>,
+    /// Whether a transmitter counts from the air's pressure and not from vacuum; false by default.
+    pub gauge: Option<bool>,
+    /// Gauge transmitters: altitude above the sea, which gives the air's pressure; 0 by default.
+    pub altitude_m: Option<f64>,
+    /// Probability that a reading is missing, 0 by default.
+    pub dropout: Option<f64>,
+}
+
+/// What a sensor reads.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum KindChoice {
+    /// Temperature of the outer surface or of the valve body.
+    Surface,
+    /// Gas pressure.
+    Pressure,
+    /// Gas temperature inside.
+    Gas,
+    /// Air temperature.
+    Ambient,
+}
