@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_coarse_thermometer_at_rest_is_not_stuck() {
-        let noise = |k: u32| if k % 2 == 0 { 0.2 } else { -0.2 };
+        let noise = |k: u32| if k.is_multiple_of(2) { 0.2 } else { -0.2 };
         assert_eq!(first_stuck(Quantity::Temperature, |k| [288.15, 288.15 + noise(k)]), None);
     }
 
@@ -100,7 +100,8 @@ mod tests {
 
     #[test]
     fn a_last_digit_that_moves_is_enough_to_be_alive() {
-        let alive = |k: u32| [288.15 + if k % 50 == 0 { 0.01 } else { 0.0 }, 288.15 - 0.1 * f64::from(k)];
+        let alive =
+            |k: u32| [288.15 + if k.is_multiple_of(50) { 0.01 } else { 0.0 }, 288.15 - 0.1 * f64::from(k)];
         assert_eq!(first_stuck(Quantity::Temperature, alive), None);
     }
 }

@@ -76,9 +76,9 @@ fn rows_of_many_groups_and_batches_are_those_of_the_same_text() {
     let count = 20_011;
     let time: Vec<Option<i64>> = (0..count).map(|k| Some(10 * k)).collect();
     let shoulder: Vec<Option<f64>> =
-        (0..count).map(|k| (k % 7 != 3).then(|| 15.0 + (k % 100) as f64 * 0.01)).collect();
+        (0..count).map(|k| (k % 7 != 3).then_some(15.0 + (k % 100) as f64 * 0.01)).collect();
     let pressure: Vec<Option<f64>> =
-        (0..count).map(|k| (!(6000..12_000).contains(&k)).then(|| 200.0 + k as f64 * 1e-4)).collect();
+        (0..count).map(|k| (!(6000..12_000).contains(&k)).then_some(200.0 + k as f64 * 1e-4)).collect();
     let mut text = String::from("time_s,shoulder_degc,pressure_bar\n");
     let cell = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
     for k in 0..count as usize {
