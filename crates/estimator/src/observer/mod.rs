@@ -1,1 +1,447 @@
-//! The cylinder's observer.
+//! The cylinder's observer: mean gas temperature, gas mass and leak rate from sensors outside.
+//!
+//! A bank of extended Kalman filters ([`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
+//! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
+//! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives temperature
+//! and mass. The others hold the mass and let a leak rate walk, each with its own bandwidth.
+//!
+//! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
+//! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
+//! from the prior with what it has learnt, and says so ([`Quality::Restarted`]).
+//!
+//! # What cannot be observed
+//! Pressure, temperature and mass hang together by one equation, so constant errors of the sensors shift the mass for ever: 0.4 bar are
+//! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
+//! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
+pub mod commissioning;
+pub mod cylinder;
+mod learned;
+mod member;
+mod observability;
+pub mod settings;
+pub mod states;
+
+use nalgebra::DMatrix;
+
+use crate::EstimatorError;
+use crate::filter::StateSpace;
+use crate::sensor::Sensor;
+use crate::thermal::vessel::Vessel;
+pub use commissioning::Commissioning;
+use cylinder::Cylinder;
+pub use learned::Learned;
+use member::{FREE_GAS_SD_K, FREE_MASS_SD_KG, Member, Shared};
+pub use member::{Innovation, Outcome};
+pub use observability::{Combination, Observability};
+pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
+
+/// Temperature at which the settled pressure is quoted, K: 15 °C.
+const QUOTED_K: f64 = 288.15;
+/// Time after commissioning or an exchange of gas after which the mass counts as the reference, s.
+const REFERENCE_AFTER_S: f64 = 86_400.0;
+/// Time after an exchange of gas during which mass and gas stay free, s.
+const SETTLE_S: f64 = 1200.0;
+
+/// How far an estimate can be relied on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// Every sensor was heard.
+    Good,
+    /// A sensor had no reading, or its reading was rejected.
+    Degraded,
+    /// No reading at all: the model alone.
+    Predicted,
+    /// Gas is or was just exchanged, or a reading was taken after many rejections: mass and gas temperature are free.
+    Open,
+    /// The estimate could not go on and began again from its prior.
+    Restarted,
+}
+
+impl Quality {
+    /// One word for a table.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Degraded => "degraded",
+            Self::Predicted => "predicted",
+            Self::Open => "open",
+            Self::Restarted => "restarted",
+        }
+    }
+}
+
+/// Estimate after a sample. SI; `sd` is a standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Time, s.
+    pub time_s: f64,
+    /// Mean gas temperature, K.
+    pub gas_mean_k: f64,
+    /// Its sd, K.
+    pub gas_mean_sd_k: f64,
+    /// Gas mass, kg.
+    pub mass_kg: f64,
+    /// Its sd, kg.
+    pub mass_sd_kg: f64,
+    /// Leak rate, kg/s, by the middle one of the members that have one; NaN without such a member.
+    pub leak_kg_s: f64,
+    /// Its sd, kg/s.
+    pub leak_sd_kg_s: f64,
+    /// Pressure as read, Pa; NaN: missing.
+    pub pressure_pa: f64,
+    /// Pressure that the transmitter would show now with the reference mass, Pa: with the mass a day after commissioning or
+    /// after the last exchange of gas, before that with the mass as estimated.
+    pub pressure_expected_pa: f64,
+    /// Pressure of the estimated mass settled at 15 °C, Pa.
+    pub p15_pa: f64,
+    /// How far to rely on it.
+    pub quality: Quality,
+}
+
+/// Leak rate in the eyes of one member.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leak {
+    /// Leak rate, kg/s.
+    pub rate_kg_s: f64,
+    /// Its standard deviation, kg/s.
+    pub sd_kg_s: f64,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Its standard deviation, kg.
+    pub mass_sd_kg: f64,
+}
+
+/// The members as they were after a sample: what a late sample goes back to.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    members: Vec<Member>,
+    clock: Clock,
+}
+
+/// Times that the observer keeps.
+#[derive(Clone, Debug)]
+struct Clock {
+    time_s: Option<f64>,
+    last_reading_s: Vec<f64>,
+    reference_due_s: f64,
+    reference_mass_kg: Option<f64>,
+    exchange: Exchange,
+    restarts: u64,
+}
+
+/// Exchange of gas with the outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Exchange {
+    None,
+    Open,
+    Settling { until_s: f64 },
+}
+
+/// The observer of one cylinder.
+#[derive(Debug)]
+pub struct Observer {
+    vessel: Vessel,
+    commissioning: Commissioning,
+    cylinder: Cylinder,
+    members: Vec<Member>,
+    shared: Shared,
+    learned: Option<Learned>,
+    prior: DMatrix<f64>,
+    clock: Clock,
+    gate: f64,
+    reference_x: Vec<f64>,
+}
+
+impl Observer {
+    /// An observer that starts with the first sample.
+    ///
+    /// # Errors
+    /// A setting is out of its bounds, a sensor has no place on the vessel, or the fill is no state of the fluid.
+    pub fn new(
+        vessel: &Vessel,
+        sensors: &[Sensor],
+        commissioning: &Commissioning,
+        settings: &ObserverSettings,
+    ) -> Result<Self, EstimatorError> {
+        if sensors.is_empty() {
+            return Err(EstimatorError::NoSensors);
+        }
+        let cylinder = Cylinder::new(vessel, sensors, settings)?;
+        commissioning.mass_kg(vessel, QUOTED_K)?;
+        let gate = {
+            use statrs::distribution::{ChiSquared, ContinuousCDF};
+            ChiSquared::new(1.0).expect("one degree of freedom").inverse_cdf(1.0 - settings.gate_probability)
+        };
+        Ok(Self {
+            vessel: vessel.clone(),
+            commissioning: *commissioning,
+            shared: Shared::new(&cylinder),
+            members: Vec::new(),
+            learned: None,
+            prior: DMatrix::zeros(0, 0),
+            clock: Clock {
+                time_s: None,
+                last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
+                reference_due_s: f64::INFINITY,
+                reference_mass_kg: None,
+                exchange: Exchange::None,
+                restarts: 0,
+            },
+            gate,
+            reference_x: vec![0.0; cylinder.states()],
+            cylinder,
+        })
+    }
+
+    /// Start with what an observer of the same cylinder has learnt; before the first sample.
+    pub fn with_learned(mut self, learned: Learned) -> Self {
+        self.learned = Some(learned);
+        self
+    }
+
+    /// The observer's state space, e.g. for another filter.
+    pub fn cylinder(&mut self) -> &mut Cylinder {
+        &mut self.cylinder
+    }
+
+    /// Take in a row of readings, one per sensor, SI, NaN where missing.
+    ///
+    /// # Errors
+    /// The row has another length, its time is not a number or before the last one; the observer stays as it was.
+    /// Or the commissioning fits no state of the fluid.
+    pub fn step(&mut self, time_s: f64, readings: &[f64]) -> Result<Estimate, EstimatorError> {
+        let expected = self.cylinder.outputs();
+        if readings.len() != expected {
+            return Err(EstimatorError::RowLength { expected, found: readings.len() });
+        }
+        let last_s = self.clock.time_s;
+        if !time_s.is_finite() || last_s.is_some_and(|last| time_s < last) {
+            return Err(EstimatorError::TimeBackwards { time_s, last_s: last_s.unwrap_or(f64::NAN) });
+        }
+        let mut restarted = false;
+        match last_s {
+            None => self.start(time_s, readings)?,
+            Some(last_s) => {
+                if self.advance(time_s - last_s, time_s, readings).is_err() || !self.is_finite() {
+                    self.clock.restarts += 1;
+                    restarted = true;
+                    self.start(time_s, readings)?;
+                }
+            }
+        }
+        self.clock.time_s = Some(time_s);
+        for (last, reading) in self.clock.last_reading_s.iter_mut().zip(readings) {
+            if reading.is_finite() {
+                *last = time_s;
+            }
+        }
+        self.estimate(time_s, readings, restarted)
+    }
+
+    /// Begin from the prior at a sample, and use its readings.
+    fn start(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        let prior = commissioning::prior(
+            self.cylinder.state_map(),
+            self.cylinder.sensors(),
+            self.cylinder.settings(),
+            &self.commissioning,
+            &self.vessel,
+            readings,
+        )?;
+        let mut mean = prior.mean;
+        let mut covariance = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(prior.variance));
+        self.prior = covariance.clone();
+        if let Some(learned) = &self.learned {
+            learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
+        }
+        self.members = self
+            .cylinder
+            .settings()
+            .bank
+            .iter()
+            .map(|hypothesis| Member::new(&self.cylinder, *hypothesis, &mean, &covariance))
+            .collect::<Result<_, _>>()?;
+        self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
+        self.clock.reference_mass_kg = None;
+        for sensor in 0..readings.len() {
+            self.cylinder.set_interval_s(sensor, f64::INFINITY);
+        }
+        self.update(readings)
+    }
+
+    fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        if dt_s > 0.0 {
+            for member in &mut self.members {
+                member.predict(&mut self.cylinder, &mut self.shared, dt_s)?;
+            }
+        }
+        if self.exchanging(time_s) {
+            for member in &mut self.members {
+                member.open(&self.cylinder, FREE_MASS_SD_KG, FREE_GAS_SD_K);
+            }
+        }
+        for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
+            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(f64::MIN_POSITIVE));
+        }
+        self.update(readings)
+    }
+
+    fn update(&mut self, readings: &[f64]) -> Result<(), EstimatorError> {
+        for member in &mut self.members {
+            member.update(&mut self.cylinder, &mut self.shared, readings, self.gate)?;
+        }
+        Ok(())
+    }
+
+    fn is_finite(&self) -> bool {
+        self.members.iter().all(Member::is_finite)
+    }
+
+    /// Whether gas is exchanged at a time; ends the settling that is over.
+    fn exchanging(&mut self, time_s: f64) -> bool {
+        match self.clock.exchange {
+            Exchange::None => false,
+            Exchange::Open => true,
+            Exchange::Settling { until_s } if time_s <= until_s => true,
+            Exchange::Settling { .. } => {
+                self.clock.exchange = Exchange::None;
+                false
+            }
+        }
+    }
+
+    /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends.
+    pub fn begin_exchange(&mut self) {
+        self.clock.exchange = Exchange::Open;
+        self.clock.reference_mass_kg = None;
+    }
+
+    /// The exchange is over; mass and gas stay free for twenty minutes more, in which the gas comes to rest.
+    pub fn end_exchange(&mut self) {
+        if let Some(time_s) = self.clock.time_s {
+            self.clock.exchange = Exchange::Settling { until_s: time_s + SETTLE_S };
+            self.clock.reference_due_s = time_s + SETTLE_S + REFERENCE_AFTER_S;
+        }
+    }
+
+    fn estimate(
+        &mut self,
+        time_s: f64,
+        readings: &[f64],
+        restarted: bool,
+    ) -> Result<Estimate, EstimatorError> {
+        let states = self.cylinder.state_map();
+        let (gas, mass, leak) = (states.gas, states.mass, states.leak);
+        let slow = self.slow_members();
+        let middle = (!slow.is_empty()).then(|| &slow[slow.len() / 2]);
+        let (leak_kg_s, leak_sd_kg_s) =
+            middle.map_or((f64::NAN, f64::NAN), |member| (member.x[leak], member.p.variance(leak).sqrt()));
+        let first = &self.members[0];
+        let (gas_mean_k, mass_kg) = (first.x[gas], first.x[mass]);
+        let (gas_sd, mass_sd) = (first.p.variance(gas).sqrt(), first.p.variance(mass).sqrt());
+        if self.clock.reference_mass_kg.is_none() && time_s >= self.clock.reference_due_s {
+            self.clock.reference_mass_kg = Some(mass_kg);
+        }
+        let pressure_sensor = (0..readings.len()).find(|&sensor| self.cylinder.reads_pressure(sensor));
+        self.reference_x.copy_from_slice(&first.x);
+        self.reference_x[mass] = self.clock.reference_mass_kg.unwrap_or(mass_kg);
+        let pressure_expected_pa = match pressure_sensor {
+            Some(sensor) => self.cylinder.output(sensor, &self.reference_x, None)?,
+            None => self.cylinder.pressure_pa(&self.reference_x)?,
+        };
+        Ok(Estimate {
+            time_s,
+            gas_mean_k,
+            gas_mean_sd_k: gas_sd,
+            mass_kg,
+            mass_sd_kg: mass_sd,
+            leak_kg_s,
+            leak_sd_kg_s,
+            pressure_pa: pressure_sensor.map_or(f64::NAN, |sensor| readings[sensor]),
+            pressure_expected_pa,
+            p15_pa: self.cylinder.model().settled_pressure_pa(mass_kg, QUOTED_K)?,
+            quality: self.quality(restarted),
+        })
+    }
+
+    fn quality(&self, restarted: bool) -> Quality {
+        let innovations = self.innovations();
+        let any = |outcome: Outcome| innovations.iter().any(|i| i.outcome == outcome);
+        match () {
+            () if restarted => Quality::Restarted,
+            () if self.clock.exchange != Exchange::None || any(Outcome::Reacquired) => Quality::Open,
+            () if !any(Outcome::Accepted) => Quality::Predicted,
+            () if any(Outcome::Missing) || any(Outcome::Rejected) => Quality::Degraded,
+            () => Quality::Good,
+        }
+    }
+
+    /// Members that have a leak rate, in the order of the bank.
+    fn slow_members(&self) -> Vec<&Member> {
+        self.members.iter().filter(|member| !member.hypothesis.rate.is_known()).collect()
+    }
+
+    /// Innovation of each sensor at the last sample, by the first member.
+    pub fn innovations(&self) -> &[Innovation] {
+        self.members.first().map_or(&[], |member| &member.innovations)
+    }
+
+    /// Leak rate and mass of every member, in the order of the bank; empty before the first sample.
+    pub fn leaks(&self) -> Vec<Leak> {
+        let states = self.cylinder.state_map();
+        let of = |member: &Member| Leak {
+            rate_kg_s: member.x[states.leak],
+            sd_kg_s: member.p.variance(states.leak).sqrt(),
+            mass_kg: member.x[states.mass],
+            mass_sd_kg: member.p.variance(states.mass).sqrt(),
+        };
+        self.members.iter().map(of).collect()
+    }
+
+    /// Mean and covariance of a member's state, in the order of [`states::States`]; `None` before the first sample or
+    /// beyond the bank.
+    pub fn state(&self, member: usize) -> Option<(nalgebra::DVector<f64>, DMatrix<f64>)> {
+        self.members.get(member).map(|member| (member.mean(), member.covariance()))
+    }
+
+    /// Number of times the estimate had to begin again.
+    pub fn restarts(&self) -> u64 {
+        self.clock.restarts
+    }
+
+    /// Whether a film multiplier of the first member stands at the bound of what is plausible.
+    pub fn at_bound(&self) -> bool {
+        self.members.first().is_some_and(|member| member.at_bound)
+    }
+
+    /// The observer as it is now.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot { members: self.members.clone(), clock: self.clock.clone() }
+    }
+
+    /// Back to a snapshot of this observer.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.members.clone_from(&snapshot.members);
+        self.clock.clone_from(&snapshot.clock);
+    }
+
+    /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.
+    pub fn learned(&self) -> Option<Learned> {
+        let member = self.members.first()?;
+        Some(Learned::of(&self.vessel.name, self.cylinder.state_map(), &member.x, &member.covariance()))
+    }
+
+    /// Which combinations of states the data have not separated. `None` before the first sample.
+    pub fn observability(&self) -> Option<Observability> {
+        let member = self.members.first()?;
+        Some(Observability::of(self.cylinder.state_map(), &self.prior, &member.covariance()))
+    }
+
+    /// Standard deviation of the mass relative to commissioning, kg: of the mass where every constant error of a sensor is
+    /// taken as it is, since it was the same at commissioning. `None` before the first sample.
+    pub fn mass_change_sd_kg(&self) -> Option<f64> {
+        let member = self.members.first()?;
+        let states = self.cylinder.state_map();
+        Some(observability::given_constants(&member.covariance(), states.mass, states.leading).sqrt())
+    }
+}

@@ -8,6 +8,16 @@ use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
 use crate::vessel::Valve;
 use crate::wall::mesh::Mesh;
 
+/// Height of the valve above the middle, as a fraction of the inner height.
+const TOP: f64 = 0.5;
+
+/// Air and film at one height.
+struct Exposure {
+    air_k: f64,
+    /// Film relative to that in the middle.
+    film_factor: f64,
+}
+
 impl Model {
     /// Wall cell that the valve sits on.
     pub(super) fn contact_cell(&self) -> usize {
@@ -46,21 +56,40 @@ impl Model {
         let half = self.half_cell(cell, geometry.outer_shape_m, temperature_k[cell]);
         let sun = self.absorbing_m2[column] * inputs.irradiance_w_m2;
         solve_surface(&half, |surface_k| {
-            let (heat, slope) = self.loss(&self.body, 1.0, surface_k, inputs);
+            let place = self.exposure(self.above_middle[column], inputs);
+            let (heat, slope) = self.loss(&self.body, 1.0, &place, surface_k, inputs);
             (geometry.outer_area_m2 * heat - sun, geometry.outer_area_m2 * slope)
         })
     }
 
+    /// What surrounds a place so far above the middle of the height.
+    fn exposure(&self, above_middle: f64, inputs: &Inputs) -> Exposure {
+        Exposure {
+            air_k: inputs.air_k + above_middle * inputs.air_difference_k,
+            film_factor: 1.0 + self.film_slope * above_middle,
+        }
+    }
+
     /// Heat flux from a surface to the surroundings without sun, W/m², and its derivative with the surface temperature.
-    fn loss(&self, body: &Body, film_factor: f64, surface_k: f64, inputs: &Inputs) -> (f64, f64) {
-        let difference = surface_k - inputs.air_k;
+    fn loss(
+        &self,
+        body: &Body,
+        film_factor: f64,
+        place: &Exposure,
+        surface_k: f64,
+        inputs: &Inputs,
+    ) -> (f64, f64) {
+        let difference = surface_k - place.air_k;
         let (mut heat, mut slope) = match inputs.film {
-            FilmInput::Coefficient(film) => (film_factor * film * difference, film_factor * film),
+            FilmInput::Coefficient(film) => {
+                let film = place.film_factor * film_factor * film;
+                (film * difference, film)
+            }
             FilmInput::Convection { wind_m_s, multiplier } => {
                 let surface = num_dual::Dual64::from(surface_k).derivative();
-                let flux = convection_w_m2_k(body, surface, inputs.air_k, wind_m_s)
-                    * (surface - inputs.air_k)
-                    * multiplier;
+                let flux = convection_w_m2_k(body, surface, place.air_k, wind_m_s)
+                    * (surface - place.air_k)
+                    * (place.film_factor * multiplier);
                 (flux.re, flux.eps)
             }
         };
@@ -75,10 +104,20 @@ impl Model {
 
     /// Heat flow from the valve to the surroundings, W, and its derivative with the valve's temperature.
     pub(super) fn valve_loss(&self, valve: &Valve, valve_k: f64, inputs: &Inputs) -> (f64, f64) {
-        let (heat, slope) = self.loss(&self.valve_body, valve.film_factor, valve_k, inputs);
+        let place = self.exposure(TOP, inputs);
+        let (heat, slope) = self.loss(&self.valve_body, valve.film_factor, &place, valve_k, inputs);
         let sun = self.valve_absorbing_m2 * inputs.irradiance_w_m2;
         (valve.area_m2 * heat - sun, valve.area_m2 * slope)
     }
+}
+
+/// Height of the middle of each column above that of the vessel, as a fraction of the inner height.
+pub(super) fn above_middle(mesh: &Mesh) -> Vec<f64> {
+    let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
+    mesh.columns
+        .iter()
+        .map(|column| 0.5 * (column.inner_height_m.0 + column.inner_height_m.1) / top - 0.5)
+        .collect()
 }
 
 /// Projected area of each column in the sun, m²: its outer area over pi, times the lit part of its height.

@@ -2,6 +2,9 @@
 use crate::scenario::series::LinearPiece;
 use crate::scenario::{OutsideFilm, Scenario};
 
+/// Relative difference above which a signal jumps at an edge: far above rounding, far below any effect.
+const JUMP: f64 = 1e-9;
+
 /// Outside film at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FilmInput {
@@ -27,6 +30,23 @@ pub struct Inputs {
     pub radiation_k: Option<f64>,
     /// Solar irradiance, W/m².
     pub irradiance_w_m2: f64,
+    /// Air temperature at the top minus that at the bottom, K.
+    pub air_difference_k: f64,
+}
+
+impl Inputs {
+    /// Whether any signal differs by more than the rounding of a linear piece.
+    pub fn jumped_from(&self, before: &Self) -> bool {
+        let signals = |inputs: &Self| {
+            let (film, multiplier) = match inputs.film {
+                FilmInput::Coefficient(film) => (film, 1.0),
+                FilmInput::Convection { wind_m_s, multiplier } => (wind_m_s, multiplier),
+            };
+            let radiation_k = inputs.radiation_k.unwrap_or(0.0);
+            [inputs.air_k, film, multiplier, radiation_k, inputs.irradiance_w_m2, inputs.air_difference_k]
+        };
+        signals(self).iter().zip(signals(before)).any(|(a, b)| (a - b).abs() > JUMP * (1.0 + a.abs()))
+    }
 }
 
 /// The surroundings between two edges, every signal linear in time.
@@ -37,6 +57,7 @@ pub struct InputPieces {
     multiplier: Option<f64>,
     radiation: Option<LinearPiece>,
     irradiance: Option<LinearPiece>,
+    air_difference: Option<LinearPiece>,
 }
 
 impl InputPieces {
@@ -53,6 +74,7 @@ impl InputPieces {
             multiplier,
             radiation: surroundings.radiation_k.as_ref().map(|s| s.segment(from_s, to_s)),
             irradiance: surroundings.sun.as_ref().map(|sun| sun.irradiance_w_m2.segment(from_s, to_s)),
+            air_difference: surroundings.axial.air_difference_k.as_ref().map(|s| s.segment(from_s, to_s)),
         }
     }
 
@@ -67,6 +89,7 @@ impl InputPieces {
             },
             radiation_k: self.radiation.map(|piece| piece.at(t_s)),
             irradiance_w_m2: self.irradiance.map_or(0.0, |piece| piece.at(t_s)),
+            air_difference_k: self.air_difference.map_or(0.0, |piece| piece.at(t_s)),
         }
     }
 }
@@ -79,6 +102,7 @@ pub fn edges_s(scenario: &Scenario) -> Vec<f64> {
         surroundings.air_k.edges_s().chain(surroundings.film.signal().edges_s()).collect();
     edges.extend(surroundings.radiation_k.iter().flat_map(|s| s.edges_s()));
     edges.extend(surroundings.sun.iter().flat_map(|sun| sun.irradiance_w_m2.edges_s()));
+    edges.extend(surroundings.axial.air_difference_k.iter().flat_map(|s| s.edges_s()));
     edges.extend(scenario.flows.iter().flat_map(|flow| [flow.start_s, flow.stop_s]));
     edges.retain(|&t| t > 0.0 && t < scenario.duration_s);
     edges.push(scenario.duration_s);

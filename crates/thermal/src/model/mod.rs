@@ -33,7 +33,7 @@ use crate::vessel::{GasResolution, Surface, Valve, Vessel};
 use crate::wall::conduction::link_flow;
 use crate::wall::material::Material;
 use crate::wall::mesh::Mesh;
-use faces::lit_area_m2;
+use faces::{above_middle, lit_area_m2};
 use gas::{Gas, GasPoint};
 use grid::GasGrid;
 use inputs::Inputs;
@@ -58,6 +58,9 @@ pub struct Model {
     surface: Surface,
     body: Body,
     valve_body: Body,
+    /// How much above the middle each column lies, as a fraction of the height: -1/2 to 1/2.
+    above_middle: Vec<f64>,
+    film_slope: f64,
     /// Sunlit, absorbing area of each column, m².
     absorbing_m2: Vec<f64>,
     valve_absorbing_m2: f64,
@@ -112,6 +115,8 @@ impl Model {
         let absorptivity = vessel.surface.solar_absorptivity;
         let sun = scenario.surroundings.sun.as_ref();
         Ok(Self {
+            above_middle: above_middle(&mesh),
+            film_slope: scenario.surroundings.axial.film_slope,
             absorbing_m2: lit_area_m2(&mesh, sun).iter().map(|area| area * absorptivity).collect(),
             valve_absorbing_m2: match (&vessel.valve, sun) {
                 (Some(valve), Some(Sun { valve: true, .. })) => {

@@ -2,7 +2,7 @@
 use super::flows;
 use super::signal::{Files, Signal};
 use super::spec::{AmbientSpec, InitialSpec, ScenarioSpec};
-use super::{Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings, sensor};
+use super::{AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings, sensor};
 use crate::ThermalError;
 use crate::document::check;
 use crate::units::{Dimension, ZERO_CELSIUS_K};
@@ -97,7 +97,13 @@ impl ScenarioSpec {
             }
         };
         let radiation_k = radiation.or_else(|| (!is_coefficient).then(|| air_k.clone()));
-        Ok(Surroundings { air_k, film, radiation_k, sun: self.sun(irradiance)? })
+        Ok(Surroundings {
+            air_k,
+            film,
+            radiation_k,
+            sun: self.sun(irradiance)?,
+            axial: AxialVariation::default(),
+        })
     }
 
     fn sun(&self, irradiance: Option<Series>) -> Result<Option<Sun>, ThermalError> {

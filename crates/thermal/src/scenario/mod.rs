@@ -83,6 +83,18 @@ pub struct Surroundings {
     pub radiation_k: Option<Series>,
     /// Sun on a part of the surface.
     pub sun: Option<Sun>,
+    /// How film and air change along the axis.
+    pub axial: AxialVariation,
+}
+
+/// Change of the surroundings from the bottom to the top; none by default. Heights are fractions of the inner height,
+/// the valve counts as the top.
+#[derive(Clone, Debug, Default)]
+pub struct AxialVariation {
+    /// Relative change of the outside film (not of radiation): it is multiplied by `1 + film_slope (z/H - 1/2)`.
+    pub film_slope: f64,
+    /// Air temperature at the top minus that at the bottom, K, linear between; none: the same air everywhere.
+    pub air_difference_k: Option<Series>,
 }
 
 /// Outside film.

@@ -63,6 +63,14 @@ impl Series {
         Ok(Self { time_s, value })
     }
 
+    /// The function times a factor.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn scaled(&self, factor: f64) -> Result<Self, ThermalError> {
+        Self::try_new(self.time_s.clone(), self.value.iter().map(|value| value * factor).collect())
+    }
+
     /// Times at which the function jumps or changes its slope, s, increasing.
     pub fn edges_s(&self) -> impl Iterator<Item = f64> + '_ {
         let mut last = f64::NEG_INFINITY;

@@ -230,7 +230,7 @@ impl Run<'_> {
         self.segments += 1;
         let before = self.drive.pieces.get().at(from);
         self.drive.pieces.set(InputPieces::new(self.scenario, from, to));
-        let jumped = before != self.drive.pieces.get().at(from);
+        let jumped = self.drive.pieces.get().at(from).jumped_from(&before);
         let changed = self.flows.at_time(from, self.pressure(from)?);
         Ok(self.record_flows(from, changed)? || jumped)
     }

@@ -4,7 +4,7 @@
 //! * The Jacobian's pattern is given explicitly, from the model's fixed sequence of entries; nothing is probed.
 //! * After a jump of an input the derivative is refreshed, the step reset and the order lowered: dense
 //!   output over a jump with the old step can be wrong by tens of kelvin without any error.
-//! * The stop time is snapped, since one-step methods may end one rounding below it.
+//! * The stop time is snapped, since one-step methods may end one rounding beside it.
 //! * A failing right-hand side yields NaN, so that the step is rejected; a NaN that slips into an accepted
 //!   state is caught by the driver.
 use std::cell::{Cell, RefCell};
@@ -260,6 +260,8 @@ struct Wrapper<'a, 'm, S> {
     equations: &'a Equations<'m>,
     buffer: V,
     rate: V,
+    /// Start of the last step, s.
+    begin_s: f64,
 }
 
 impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 'm, S> {
@@ -275,6 +277,7 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
     }
 
     fn step(&mut self) -> Result<Step, String> {
+        self.begin_s = self.solver.state().t;
         match self.solver.step().map_err(|error| error.to_string())? {
             OdeSolverStopReason::TstopReached => Ok(Step::Stop),
             _ => Ok(Step::Internal),
@@ -286,7 +289,8 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
     }
 
     fn interpolate(&mut self, t_s: f64, out: &mut [f64]) -> Result<(), String> {
-        let t = t_s.min(self.solver.state().t);
+        // A step that stopped at an edge may end one rounding beside it, and the next one begin there.
+        let t = t_s.max(self.begin_s).min(self.solver.state().t);
         self.solver.interpolate_inplace(t, &mut self.buffer).map_err(|error| error.to_string())?;
         for (i, value) in out.iter_mut().enumerate() {
             *value = self.buffer.get_index(i);
@@ -357,17 +361,17 @@ pub fn with_stepper<R>(
     match method {
         Method::TrBdf2 => {
             let solver = one_step(Tableau::tr_bdf2()).map_err(failed)?;
-            work(&mut Wrapper { solver, equations, buffer, rate })
+            work(&mut Wrapper { solver, equations, buffer, rate, begin_s: 0.0 })
         }
         Method::Esdirk34 => {
             let solver = one_step(Tableau::esdirk34()).map_err(failed)?;
-            work(&mut Wrapper { solver, equations, buffer, rate })
+            work(&mut Wrapper { solver, equations, buffer, rate, begin_s: 0.0 })
         }
         Method::Automatic | Method::Bdf => {
             let state = problem.bdf_state::<LS>().map_err(failed)?;
             let solver: Bdf<'_, _, LS> =
                 Bdf::new(&problem, state, BorderedLu::new(border)).map_err(failed)?;
-            work(&mut Wrapper { solver, equations, buffer, rate })
+            work(&mut Wrapper { solver, equations, buffer, rate, begin_s: 0.0 })
         }
     }
 }

@@ -138,8 +138,13 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
     }
 }
 
-const STILL: Inputs =
-    Inputs { air_k: 275.0, film: FilmInput::Coefficient(12.0), radiation_k: None, irradiance_w_m2: 0.0 };
+const STILL: Inputs = Inputs {
+    air_k: 275.0,
+    film: FilmInput::Coefficient(12.0),
+    radiation_k: None,
+    irradiance_w_m2: 0.0,
+    air_difference_k: 0.0,
+};
 
 #[test]
 fn jacobian_is_the_derivative_in_a_closed_cylinder() {

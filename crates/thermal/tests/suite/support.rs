@@ -1,6 +1,8 @@
 //! Vessels and scenarios that the tests build by hand.
 use cylwatch_thermal::fluid::Fluid;
-use cylwatch_thermal::scenario::{Fill, Initial, OutsideFilm, Scenario, Series, Surroundings};
+use cylwatch_thermal::scenario::{
+    AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Surroundings,
+};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::vessel::{GasResolution, InnerVolume, InsideFilm, Surface, Vessel};
@@ -71,6 +73,7 @@ pub fn still(air_k: f64, start_k: f64, film_w_m2_k: f64, hours: f64) -> Scenario
             film: OutsideFilm::Coefficient { film_w_m2_k: Series::constant(film_w_m2_k) },
             radiation_k: None,
             sun: None,
+            axial: AxialVariation::default(),
         },
         flows: Vec::new(),
         pressure_limits_pa: Vec::new(),

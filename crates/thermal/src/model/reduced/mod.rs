@@ -18,8 +18,10 @@ mod gas;
 use nalgebra::DMatrix;
 
 use crate::ThermalError;
+use crate::scenario::sensor::SurfacePlace;
 use crate::transfer::inside::InsideConvection;
 use crate::vessel::{Valve, Vessel};
+use crate::wall::geometry::Geometry;
 use crate::wall::material::{Material, REFERENCE_TEMPERATURE_K};
 use crate::wall::mesh::Mesh;
 use gas::GasNode;
@@ -88,6 +90,7 @@ pub struct Pressure {
 pub struct ReducedModel {
     mesh: Mesh,
     node_of_column: Vec<usize>,
+    geometry: Geometry,
     fine: Mesh,
     /// Heat capacity of each wall node at the reference temperature, J/K.
     capacity_j_k: Vec<f64>,
@@ -122,6 +125,7 @@ impl ReducedModel {
             .collect();
         let nodes = mesh.columns.len();
         Self {
+            geometry: vessel.geometry.clone(),
             fine: Mesh::new(&vessel.geometry),
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
@@ -166,17 +170,12 @@ impl ReducedModel {
         self.gas_index() + 2
     }
 
-    /// State that stands for a named place: a wall node for `bottom`, `middle`, `shoulder`, `neck`; the valve.
-    pub fn index_of_place(&self, place: &str) -> Option<usize> {
+    /// State that stands for a place on the surface: a wall node or the valve; `None` where the vessel has no such place.
+    pub fn index_of_place(&self, place: &SurfacePlace) -> Option<usize> {
         match place {
-            "valve" => self.valve_index(),
-            place => self.fine.column_of(place).map(|column| self.node_of_column[column]),
+            SurfacePlace::Valve => self.valve_index(),
+            place => place.column(&self.geometry, &self.fine).map(|column| self.node_of_column[column]),
         }
-    }
-
-    /// Weight of each wall node in the mean wall temperature; length: number of wall nodes.
-    pub fn wall_weights(&self) -> impl Iterator<Item = f64> + '_ {
-        self.capacity_j_k.iter().map(|c| c / self.wall_capacity_j_k)
     }
 
     /// Pressure at a state.

@@ -1,0 +1,265 @@
+//! What the observer assumes: resolution, priors, random walks, model error.
+//!
+//! The defaults are those of a study with the 20 L cylinder under a train. They are tuned for the estimate, not for the
+//! statistics of the innovations: model error is coloured, and a filter that treats it as white noise of its actual size
+//! trusts its parameters too much. So the noise of the outputs is stated two to five times too large and grows
+//! with the temperature differences that the reduced model resolves worst.
+use serde::{Deserialize, Serialize};
+
+use crate::EstimatorError;
+use crate::log::Quantity;
+use crate::sensor::ParameterKind;
+
+const PER_HOUR: f64 = 1.0 / 3600.0;
+
+/// Random walk or, with a finite `memory_s`, Ornstein-Uhlenbeck process `dx/dt = -x/memory + w`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Walk {
+    /// Standard deviation of the prior.
+    pub prior_sd: f64,
+    /// Standard deviation that the walk gains in one second; sd after `t` seconds is this times `sqrt(t)`.
+    pub per_sqrt_s: f64,
+    /// Memory, s; infinite: a random walk.
+    pub memory_s: f64,
+}
+
+impl Walk {
+    /// A constant with a prior standard deviation; 0: known.
+    pub fn constant(prior_sd: f64) -> Self {
+        Self { prior_sd, per_sqrt_s: 0.0, memory_s: f64::INFINITY }
+    }
+
+    /// A walk stated by the standard deviation it gains in an hour.
+    pub fn per_sqrt_hour(prior_sd: f64, walk: f64) -> Self {
+        Self { prior_sd, per_sqrt_s: walk * PER_HOUR.sqrt(), memory_s: f64::INFINITY }
+    }
+
+    /// The same with a memory, h.
+    pub fn remembering_hours(self, memory_h: f64) -> Self {
+        Self { memory_s: memory_h / PER_HOUR, ..self }
+    }
+
+    /// Whether the quantity is known and constant, so that it needs no state.
+    pub fn is_known(&self) -> bool {
+        self.prior_sd == 0.0 && self.per_sqrt_s == 0.0
+    }
+
+    fn check(&self, setting: &'static str) -> Result<(), EstimatorError> {
+        for value in [self.prior_sd, self.per_sqrt_s] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(EstimatorError::ObserverSetting {
+                    setting,
+                    value,
+                    bound: "finite and at least 0",
+                });
+            }
+        }
+        if self.memory_s > 0.0 {
+            return Ok(());
+        }
+        Err(EstimatorError::ObserverSetting { setting, value: self.memory_s, bound: "a positive memory, s" })
+    }
+}
+
+/// How freely gas may leave in the eyes of one member of the bank.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeakHypothesis {
+    /// Random walk of the mass itself, kg/sqrt(s): fast losses, and everything else that looks like one.
+    pub mass_walk_kg_per_sqrt_s: f64,
+    /// Leak rate, kg/s: prior and random walk.
+    pub rate: Walk,
+}
+
+impl LeakHypothesis {
+    /// The mass walks by so many grams in the square root of an hour; no leak rate.
+    pub fn walking_mass(grams_per_sqrt_h: f64) -> Self {
+        Self { mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * PER_HOUR.sqrt(), rate: Walk::constant(0.0) }
+    }
+
+    /// A leak rate that changes by so many g/h in the square root of an hour.
+    pub fn walking_rate(grams_per_h_per_sqrt_h: f64) -> Self {
+        Self {
+            mass_walk_kg_per_sqrt_s: 0.0,
+            rate: Walk::per_sqrt_hour(0.0, grams_per_h_per_sqrt_h * 1e-3 * PER_HOUR),
+        }
+    }
+}
+
+/// Noise that stands for what the reduced model cannot say, beside the sensor's own.
+///
+/// The variances hold for one sample in `correlation_s`; samples that come faster see the same error again, so their
+/// variance is larger by the ratio of the intervals. The information per unit of time does not depend on the sampling.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelError {
+    /// Of a surface temperature, K.
+    pub surface_k: f64,
+    /// The same per kelvin between air and surface.
+    pub surface_per_air_k: f64,
+    /// Of the pressure, Pa.
+    pub pressure_pa: f64,
+    /// The same per kelvin between mean wall and gas, Pa/K.
+    pub pressure_per_wall_k: f64,
+    /// Of an in-gas temperature, K.
+    pub gas_k: f64,
+    /// Of an air temperature: the air at the sensor is not that at the cylinder, K.
+    pub air_k: f64,
+    /// Interval over which these errors are the same, s.
+    pub correlation_s: f64,
+}
+
+impl ModelError {
+    /// No model error: for a truth that is the observer's own model.
+    pub const NONE: Self = Self {
+        surface_k: 0.0,
+        surface_per_air_k: 0.0,
+        pressure_pa: 0.0,
+        pressure_per_wall_k: 0.0,
+        gas_k: 0.0,
+        air_k: 0.0,
+        correlation_s: 0.0,
+    };
+}
+
+/// Settings of the cylinder's observer. SI.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ObserverSettings {
+    /// Wall nodes, from 1 to the number of columns of the vessel's mesh.
+    pub wall_nodes: usize,
+    /// Outside film for convection and radiation together, W/(m² K): nominal, the observer learns its multiplier.
+    pub film_w_m2_k: f64,
+    /// Longest step of the transition, s; longer intervals are divided.
+    pub longest_step_s: f64,
+    /// Random walk of wall, valve and gas temperatures, K/sqrt(s): heat that the model does not know.
+    pub temperature_walk_k_per_sqrt_s: f64,
+    /// Temperature of the surroundings, K.
+    pub air: Walk,
+    /// Logarithm of the outside film's multiplier.
+    pub ln_outside_film: Walk,
+    /// Logarithm of the inside film's multiplier.
+    pub ln_inside_film: Walk,
+    /// Logarithm of the multiplier on the heat capacity of wall and valve.
+    pub ln_capacity: Walk,
+    /// Sun on the topmost wall node, W.
+    pub sun: Walk,
+    /// Random walk of a mounting coupling, 1/sqrt(s).
+    pub coupling_walk_per_sqrt_s: f64,
+    /// Random walk that keeps sensor constants from being believed for ever: temperature offsets, K/sqrt(s).
+    pub offset_walk_k_per_sqrt_s: f64,
+    /// The same for the pressure's temperature coefficient, Pa/(K sqrt(s)).
+    pub coefficient_walk_pa_k_per_sqrt_s: f64,
+    /// Noise beside the sensors' own.
+    pub model_error: ModelError,
+    /// The bank: the first member gives temperature and mass, each gives a leak rate.
+    pub bank: Vec<LeakHypothesis>,
+    /// Probability with which a good reading is rejected by its gate.
+    pub gate_probability: f64,
+    /// Rejections of one sensor in a row after which its next reading is taken whatever it says.
+    pub rejections_in_a_row: u32,
+}
+
+impl Default for ObserverSettings {
+    fn default() -> Self {
+        const YEAR_S: f64 = 365.25 * 86_400.0;
+        Self {
+            wall_nodes: 2,
+            film_w_m2_k: 14.0,
+            longest_step_s: 20.0,
+            temperature_walk_k_per_sqrt_s: PER_HOUR.sqrt(),
+            air: Walk::per_sqrt_hour(5.0, 60.0),
+            ln_outside_film: Walk::per_sqrt_hour(0.6, 0.6).remembering_hours(2.0),
+            ln_inside_film: Walk::per_sqrt_hour(0.25, 0.02),
+            ln_capacity: Walk::constant(0.12),
+            sun: Walk::per_sqrt_hour(2.0, 2.0).remembering_hours(0.5),
+            coupling_walk_per_sqrt_s: 0.003 * PER_HOUR.sqrt(),
+            offset_walk_k_per_sqrt_s: 0.05 / YEAR_S.sqrt(),
+            coefficient_walk_pa_k_per_sqrt_s: 200.0 / YEAR_S.sqrt(),
+            model_error: ModelError {
+                surface_k: 0.15,
+                surface_per_air_k: 0.05,
+                pressure_pa: 0.1e5,
+                pressure_per_wall_k: 0.5e5,
+                gas_k: 0.5,
+                air_k: 0.5,
+                correlation_s: 60.0,
+            },
+            bank: vec![
+                LeakHypothesis::walking_mass(5.0),
+                LeakHypothesis::walking_rate(0.02),
+                LeakHypothesis::walking_rate(0.005),
+                LeakHypothesis::walking_rate(0.001),
+            ],
+            gate_probability: 1e-7,
+            rejections_in_a_row: 5,
+        }
+    }
+}
+
+impl ObserverSettings {
+    /// The default with the first member of the bank alone: temperature and mass, no slow leak rates.
+    pub fn single() -> Self {
+        let mut settings = Self::default();
+        settings.bank.truncate(1);
+        settings
+    }
+
+    /// Slow random walk of a sensor's parameter, in the unit of its kind.
+    pub(super) fn walk_of(&self, kind: ParameterKind, quantity: Quantity) -> f64 {
+        match (kind, quantity) {
+            (ParameterKind::Coupling, _) => self.coupling_walk_per_sqrt_s,
+            (ParameterKind::Offset, Quantity::Temperature) => self.offset_walk_k_per_sqrt_s,
+            (ParameterKind::TemperatureCoefficient, _) => self.coefficient_walk_pa_k_per_sqrt_s,
+            (ParameterKind::Offset, Quantity::Pressure) | (ParameterKind::Span, _) => 0.0,
+        }
+    }
+
+    /// Check every value.
+    ///
+    /// # Errors
+    /// Names the setting, its value and the bound.
+    pub fn validate(&self) -> Result<(), EstimatorError> {
+        let require = |ok: bool, setting: &'static str, value: f64, bound: &'static str| {
+            if ok { Ok(()) } else { Err(EstimatorError::ObserverSetting { setting, value, bound }) }
+        };
+        let positive = |setting, value: f64| {
+            require(value > 0.0 && value.is_finite(), setting, value, "positive and finite")
+        };
+        let not_negative = |setting, value: f64| {
+            require(value >= 0.0 && value.is_finite(), setting, value, "finite and at least 0")
+        };
+        require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
+        require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
+        positive("film_w_m2_k", self.film_w_m2_k)?;
+        positive("longest_step_s", self.longest_step_s)?;
+        let gate = self.gate_probability;
+        require(gate > 0.0 && gate < 1.0, "gate_probability", gate, "between 0 and 1")?;
+        for (setting, value) in [
+            ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
+            ("coupling_walk_per_sqrt_s", self.coupling_walk_per_sqrt_s),
+            ("offset_walk_k_per_sqrt_s", self.offset_walk_k_per_sqrt_s),
+            ("coefficient_walk_pa_k_per_sqrt_s", self.coefficient_walk_pa_k_per_sqrt_s),
+            ("model_error.surface_k", self.model_error.surface_k),
+            ("model_error.surface_per_air_k", self.model_error.surface_per_air_k),
+            ("model_error.pressure_pa", self.model_error.pressure_pa),
+            ("model_error.pressure_per_wall_k", self.model_error.pressure_per_wall_k),
+            ("model_error.gas_k", self.model_error.gas_k),
+            ("model_error.air_k", self.model_error.air_k),
+            ("model_error.correlation_s", self.model_error.correlation_s),
+        ] {
+            not_negative(setting, value)?;
+        }
+        for (setting, walk) in [
+            ("air", &self.air),
+            ("ln_outside_film", &self.ln_outside_film),
+            ("ln_inside_film", &self.ln_inside_film),
+            ("ln_capacity", &self.ln_capacity),
+            ("sun", &self.sun),
+        ] {
+            walk.check(setting)?;
+        }
+        for member in &self.bank {
+            not_negative("bank.mass_walk_kg_per_sqrt_s", member.mass_walk_kg_per_sqrt_s)?;
+            member.rate.check("bank.rate")?;
+        }
+        Ok(())
+    }
+}
