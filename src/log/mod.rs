@@ -30,7 +30,7 @@ mod time;
 pub use caution::{Caution, Kind};
 pub use error::LogError;
 pub use mapping::Mapping;
-pub use reader::{LogReader, Row, Truth};
+pub use reader::{LogReader, Row, Truth, is_parquet};
 pub use sampling::Sampling;
 
 use crate::estimator::log::Quantity;

@@ -192,6 +192,11 @@ impl LogReader {
         }
     }
 
+    /// Place of a row for a message: file and line.
+    pub fn place(&self, row: &Row) -> String {
+        self.source.place(row.number)
+    }
+
     /// Cautions so far, in the order of their first occurrence.
     pub fn cautions(&self) -> &[Caution] {
         self.cautions.list()
@@ -340,7 +345,7 @@ impl LogReader {
 }
 
 /// Whether a file's name says that it is Parquet.
-fn is_parquet(path: &Path) -> bool {
+pub fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 

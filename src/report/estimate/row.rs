@@ -1,0 +1,165 @@
+//! One estimate as a row of a CSV file or of a JSON array.
+use crate::estimator::observer::Estimate;
+use crate::thermal::units::ZERO_CELSIUS_K;
+use std::fmt::Write;
+
+const PASCAL_PER_BAR: f64 = 1e5;
+const GRAM_PER_HOUR: f64 = 3.6e6;
+const SECONDS_PER_HOUR: f64 = 3600.0;
+
+/// Columns of an estimate.
+pub const COLUMNS: [&str; 13] = [
+    "time_s",
+    "gas_mean_degc",
+    "gas_mean_sd_k",
+    "mass_kg",
+    "mass_sd_g",
+    "leak_g_h",
+    "leak_sd_g_h",
+    "leak_bar_h",
+    "pressure_bar",
+    "pressure_expected_bar",
+    "p15_bar",
+    "verdict",
+    "quality",
+];
+
+/// What the columns mean, for a help page.
+pub const DOCUMENTATION: &str = "\
+Columns (empty where nothing is known; sd is a standard deviation):
+  time_s                     of the row; after the first row where the log has dates
+  gas_mean_degc, _sd_k       mean temperature of the gas
+  mass_kg, mass_sd_g         mass of the gas
+  leak_g_h, leak_sd_g_h      rate at which gas is lost
+  leak_bar_h                 the same as fall of p15_bar
+  pressure_bar               pressure as read, absolute
+  pressure_expected_bar      pressure that the gauge would show had no gas been lost
+  p15_bar                    pressure of this mass when all is at 15 degC
+  verdict                    empty: `estimate` does not decide
+  quality                    good, degraded, predicted, open or restarted";
+
+/// An estimate with what a file says beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EstimateRow {
+    /// Estimate.
+    pub estimate: Estimate,
+    /// The leak as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown.
+    pub leak_pa_s: f64,
+}
+
+impl EstimateRow {
+    /// Numbers of the row in the order of [`COLUMNS`], with the decimals that are worth writing.
+    fn numbers(&self) -> [(f64, usize); 11] {
+        let e = &self.estimate;
+        [
+            (e.time_s, usize::MAX),
+            (e.gas_mean_k - ZERO_CELSIUS_K, 4),
+            (e.gas_mean_sd_k, 4),
+            (e.mass_kg, 6),
+            (e.mass_sd_kg * 1e3, 4),
+            (e.leak_kg_s * GRAM_PER_HOUR, 6),
+            (e.leak_sd_kg_s * GRAM_PER_HOUR, 6),
+            (self.leak_pa_s / PASCAL_PER_BAR * SECONDS_PER_HOUR, 8),
+            (e.pressure_pa / PASCAL_PER_BAR, 5),
+            (e.pressure_expected_pa / PASCAL_PER_BAR, 5),
+            (e.p15_pa / PASCAL_PER_BAR, 5),
+        ]
+    }
+}
+
+/// Names of the columns as a line, without its end.
+pub fn csv_header() -> String {
+    COLUMNS.join(",")
+}
+
+/// Appends a row with its line feed.
+pub fn csv_row(row: &EstimateRow, text: &mut String) {
+    for number in row.numbers() {
+        push(number, "", text);
+        text.push(',');
+    }
+    // The verdict is the monitor's.
+    text.push(',');
+    text.push_str(row.estimate.quality.as_str());
+    text.push('\n');
+}
+
+/// Appends a row as a JSON array.
+pub fn json_row(row: &EstimateRow, text: &mut String) {
+    text.push('[');
+    for number in row.numbers() {
+        push(number, "null", text);
+        text.push(',');
+    }
+    text.push_str("null,\"");
+    text.push_str(row.estimate.quality.as_str());
+    text.push_str("\"]");
+}
+
+fn push((value, decimals): (f64, usize), missing: &str, text: &mut String) {
+    if !value.is_finite() {
+        text.push_str(missing);
+        return;
+    }
+    // Adding zero turns a negative zero into a positive one; writing to a string does not fail.
+    let _ = match decimals {
+        usize::MAX => write!(text, "{}", value + 0.0),
+        _ => write!(text, "{:.decimals$}", cleared(value, decimals)),
+    };
+}
+
+/// Zero for a value that would be written as minus zero.
+fn cleared(value: f64, decimals: usize) -> f64 {
+    let half_a_digit = 0.5 * 10f64.powi(-(decimals as i32));
+    if value.abs() < half_a_digit { 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimator::observer::Quality;
+
+    fn row() -> EstimateRow {
+        let estimate = Estimate {
+            time_s: 0.5,
+            gas_mean_k: 288.15,
+            gas_mean_sd_k: 0.25,
+            mass_kg: 4.5,
+            mass_sd_kg: 2e-3,
+            leak_kg_s: 1e-6,
+            leak_sd_kg_s: 1e-8,
+            pressure_pa: f64::NAN,
+            pressure_expected_pa: 200e5,
+            p15_pa: 199e5,
+            quality: Quality::Degraded,
+        };
+        EstimateRow { estimate, leak_pa_s: 1.0 }
+    }
+
+    #[test]
+    fn a_row_has_the_units_of_its_columns_and_empty_cells_for_what_is_missing() {
+        let mut text = String::new();
+        csv_row(&row(), &mut text);
+        // 1e-6 kg/s are 3.6 g/h, 1 Pa/s is 0.036 bar/h.
+        let expected = "0.5,15.0000,0.2500,4.500000,2.0000,3.600000,0.036000,0.03600000,,200.00000,199.00000,,degraded\n";
+        assert_eq!(text, expected);
+        assert_eq!(text.matches(',').count() + 1, COLUMNS.len());
+    }
+
+    #[test]
+    fn a_json_row_is_an_array_with_null_for_what_is_missing() {
+        let mut text = String::new();
+        json_row(&row(), &mut text);
+        let values: Vec<serde_json::Value> = serde_json::from_str(&text).unwrap();
+        assert_eq!(values.len(), COLUMNS.len());
+        assert!(values[8].is_null() && values[11].is_null());
+        assert_eq!((values[0].as_f64(), values[12].as_str()), (Some(0.5), Some("degraded")));
+    }
+
+    #[test]
+    fn nothing_is_minus_zero() {
+        let mut text = String::new();
+        push((-1e-9, 4), "", &mut text);
+        assert_eq!(text, "0.0000");
+    }
+}

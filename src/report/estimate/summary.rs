@@ -1,0 +1,182 @@
+//! A run of an observer in a few lines for people, and as JSON.
+use super::innovation::SensorStatistics;
+use super::row::EstimateRow;
+use super::score::{Score, Spread};
+use crate::log::{Caution, Sampling};
+use crate::report::aligned;
+use crate::thermal::units::ZERO_CELSIUS_K;
+use serde_json::{Value, json};
+
+const GRAM_PER_HOUR: f64 = 3.6e6;
+const PASCAL_PER_BAR: f64 = 1e5;
+
+/// What is left of a run when its rows have gone.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// Title: vessel and sensors.
+    pub title: String,
+    /// How the log was sampled.
+    pub sampling: Sampling,
+    /// What was cautioned about.
+    pub cautions: Vec<Caution>,
+    /// Last estimate.
+    pub last: EstimateRow,
+    /// Standard deviation of the change of mass since the first row, kg; NaN: unknown.
+    pub mass_change_sd_kg: f64,
+    /// Names of the sensors with the statistics of their innovations.
+    pub sensors: Vec<(String, SensorStatistics)>,
+    /// How near to the truth.
+    pub score: Score,
+    /// How often the observer began again.
+    pub restarts: u64,
+}
+
+/// The run in a few lines.
+pub fn text(summary: &Summary) -> String {
+    let row = |what: &str, value: String| vec![what.to_owned(), value];
+    let mut rows = vec![row("log", log(&summary.sampling))];
+    rows.extend(end(summary).into_iter().map(|(what, value)| row(what, value)));
+    if summary.restarts > 0 {
+        rows.push(row("restarts", format!("{} times from the prior", summary.restarts)));
+    }
+    for (what, value) in score(&summary.score) {
+        rows.push(row(what, value));
+    }
+    let mut text = format!("{}\n{}", summary.title, aligned(&[], &rows));
+    text.push_str(&sensors(&summary.sensors));
+    text
+}
+
+fn log(sampling: &Sampling) -> String {
+    let gaps = sampling.gaps();
+    let mut text = match sampling.rows() {
+        1 => "1 row".to_owned(),
+        rows => {
+            let (length, usual) = (duration(sampling.duration_s()), duration(sampling.usual_interval_s()));
+            format!("{rows} rows in {length}, usually {usual} apart")
+        }
+    };
+    if gaps.count > 0 {
+        let (longest, all) = (duration(gaps.longest_s), duration(gaps.total_s));
+        let gaps = gaps.count;
+        text.push_str(&match gaps {
+            1 => format!(", 1 gap of {longest}"),
+            _ => format!(", {gaps} gaps of together {all}, the longest {longest}"),
+        });
+    }
+    text
+}
+
+/// The last estimate.
+fn end(summary: &Summary) -> Vec<(&'static str, String)> {
+    let e = &summary.last.estimate;
+    let gas_degc = e.gas_mean_k - ZERO_CELSIUS_K;
+    let mut lines = vec![
+        ("gas mean at the end", format!("{gas_degc:.2} ± {:.2} °C", e.gas_mean_sd_k)),
+        (
+            "gas mass at the end",
+            format!(
+                "{:.4} ± {:.4} kg, as a change since the start ± {:.4} kg",
+                e.mass_kg, e.mass_sd_kg, summary.mass_change_sd_kg
+            ),
+        ),
+    ];
+    if e.leak_kg_s.is_finite() {
+        let (leak, sd) = (e.leak_kg_s * GRAM_PER_HOUR, e.leak_sd_kg_s * GRAM_PER_HOUR);
+        let bar_h = summary.last.leak_pa_s / PASCAL_PER_BAR * 3600.0;
+        lines.push(("leak rate at the end", format!("{leak:.4} ± {sd:.4} g/h, {bar_h:.5} bar/h")));
+    }
+    lines.push(("pressure at 15 °C", format!("{:.2} bar", e.p15_pa / PASCAL_PER_BAR)));
+    lines
+}
+
+/// How near to the truth, where the log knows it.
+fn score(score: &Score) -> Vec<(&'static str, String)> {
+    let line = |spread: &Spread, factor: f64, unit: &str| {
+        let [rms, mean, largest] =
+            [spread.rms(), spread.mean(), spread.largest()].map(|value| value * factor);
+        format!(
+            "rms {rms:.3}, mean {mean:+.3}, largest {largest:.3} {unit}; {:.0} % within 2 sd",
+            100.0 * spread.covered()
+        )
+    };
+    let known = [
+        ("gas mean against truth", &score.gas_mean_k, 1.0, "K"),
+        ("gas mass against truth", &score.mass_kg, 1e3, "g"),
+        ("leak rate against truth", &score.leak_kg_s, GRAM_PER_HOUR, "g/h"),
+    ];
+    let known = known.into_iter().filter(|(_, spread, _, _)| spread.count() > 0);
+    known.map(|(what, spread, factor, unit)| (what, line(spread, factor, unit))).collect()
+}
+
+/// Readings and innovations of every sensor as a table.
+fn sensors(sensors: &[(String, SensorStatistics)]) -> String {
+    let known = |value: f64, text: String| if value.is_finite() { text } else { String::new() };
+    let rows: Vec<Vec<String>> = sensors
+        .iter()
+        .map(|(name, s)| {
+            vec![
+                name.clone(),
+                s.accepted.to_string(),
+                s.rejected.to_string(),
+                s.missing.to_string(),
+                known(s.nis, format!("{:.2}", s.nis)),
+                known(s.autocorrelation, format!("{:.2}", s.autocorrelation)),
+            ]
+        })
+        .collect();
+    let header =
+        ["sensor", "used", "rejected", "missing", "NIS (1 if noise alone)", "autocorrelation (0 if white)"];
+    aligned(&header, &rows)
+}
+
+/// A duration in the unit that people would say.
+fn duration(duration_s: f64) -> String {
+    let (value, unit) = match duration_s {
+        d if d < 120.0 => (d, "s"),
+        d if d < 2.0 * 3600.0 => (d / 60.0, "min"),
+        d if d < 3.0 * 86_400.0 => (d / 3600.0, "h"),
+        d => (d / 86_400.0, "d"),
+    };
+    format!("{} {unit}", crate::report::number(value, 4))
+}
+
+/// The run as JSON; null where nothing is known.
+pub fn document(summary: &Summary) -> Value {
+    let (sampling, gaps) = (&summary.sampling, summary.sampling.gaps());
+    let spread = |spread: &Spread, factor: f64| match spread.count() {
+        0 => Value::Null,
+        count => json!({
+            "rows": count,
+            "rms": spread.rms() * factor,
+            "mean": spread.mean() * factor,
+            "largest": spread.largest() * factor,
+            "within_2_sd": spread.covered(),
+        }),
+    };
+    let sensor = |(name, s): &(String, SensorStatistics)| {
+        json!({
+            "name": name,
+            "used": s.accepted,
+            "rejected": s.rejected,
+            "missing": s.missing,
+            "nis": s.nis,
+            "autocorrelation": s.autocorrelation,
+        })
+    };
+    json!({
+        "rows": sampling.rows(),
+        "duration_s": sampling.duration_s(),
+        "usual_interval_s": sampling.usual_interval_s(),
+        "gaps": { "count": gaps.count, "longest_s": gaps.longest_s, "total_s": gaps.total_s },
+        "mass_change_sd_g": summary.mass_change_sd_kg * 1e3,
+        "restarts": summary.restarts,
+        "sensors": summary.sensors.iter().map(sensor).collect::<Vec<_>>(),
+        "against_truth": {
+            "gas_mean_k": spread(&summary.score.gas_mean_k, 1.0),
+            "mass_g": spread(&summary.score.mass_kg, 1e3),
+            "leak_g_h": spread(&summary.score.leak_kg_s, GRAM_PER_HOUR),
+        },
+        "cautions": summary.cautions.iter().map(Caution::to_string).collect::<Vec<_>>(),
+    })
+}
