@@ -8,8 +8,8 @@
 #![allow(clippy::print_stdout)]
 
 use anyhow::Context;
-use cylwatch::report::aligned;
-use cylwatch::report::simulation::readings;
+use cylwatch::estimator::sensor::SensorKind;
+use cylwatch::report::{Readings, aligned};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::{scenario, vessel};
 
@@ -35,7 +35,11 @@ pub fn run() -> anyhow::Result<Vec<Lag>> {
     for place in ["bottom", "middle", "shoulder", "valve"] {
         outside.push((place.to_owned(), run.surface_k(place).context("no such place")?));
     }
-    outside.extend(readings(&run).into_iter().map(|(sensor, k)| (format!("{} sensor", sensor.name), k)));
+    for (sensor, k) in Readings::expected(&run)?.columns() {
+        if let SensorKind::Surface { .. } = sensor.kind {
+            outside.push((format!("{} sensor", sensor.name), k));
+        }
+    }
     let passes = |k: &[f64]| passing_s(&run.time_s, k).context("it never gets half way");
     let gas_s = passes(&run.gas_mean_k)?;
     outside

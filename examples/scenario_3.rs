@@ -7,8 +7,7 @@
 #![allow(clippy::print_stdout)]
 
 use anyhow::Context;
-use cylwatch::report::aligned;
-use cylwatch::report::simulation::readings;
+use cylwatch::report::{Readings, aligned};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
@@ -31,7 +30,9 @@ pub fn run() -> anyhow::Result<Vec<Moment>> {
     let scenario = scenario::presets::load("ramp-warm")?;
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;
     let shoulder = run.surface_k("shoulder").context("the vessel has no shoulder")?;
-    let (_, sensor) = readings(&run).into_iter().next().context("the scenario has no sensor")?;
+    let readings = Readings::expected(&run)?;
+    let sensor = readings.columns().find(|(sensor, _)| sensor.name == "shoulder");
+    let (_, sensor) = sensor.context("the scenario has no sensor on the shoulder")?;
     Ok((0..=5)
         .map(|time_h| {
             // One sample a minute.

@@ -97,6 +97,9 @@ pub struct SimulateArguments {
     /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
     #[arg(long, value_name = "NUMBER")]
     pub relative_tolerance: Option<f64>,
+    /// Seed of the sensors' specimens and noise, a whole number of at least 0.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    pub seed: u64,
     /// List the built-in vessels and scenarios and stop.
     #[arg(long)]
     pub list: bool,
@@ -105,7 +108,8 @@ pub struct SimulateArguments {
 const SIMULATE_EXAMPLES: &str = "\
 Columns: time_s, ambient_degc, gas_mean_degc, gas_<k>_degc (k = 1 at the bottom),
 wall_<name>_degc, shoulder_degc, valve_degc, pressure_bar (absolute), mass_kg, outflow_g_h,
-heat_to_gas_w, measured_<sensor>_degc.
+heat_to_gas_w, and what the scenario's sensors read: measured_<sensor>_degc, _bar or _barg; an
+empty cell is a lost reading.
 
 Examples:
   cylwatch simulate --list

@@ -6,7 +6,12 @@ use super::output::Target;
 use super::plot::Plot;
 use super::progress::Progress;
 use anyhow::bail;
+<<<<<<< HEAD
 use cylwatch::report::{Provenance, aligned, simulation};
+=======
+use cylwatch::report::figure::Figure;
+use cylwatch::report::{Provenance, Readings, aligned, simulation};
+>>>>>>> main
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
@@ -20,6 +25,7 @@ struct Options {
     format: Format,
     plot: Option<Plot>,
     settings: SimulationSettings,
+    seed: u64,
 }
 
 /// Simulates and writes, or lists the built-in vessels and scenarios.
@@ -35,12 +41,26 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     let run =
         simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;
     drop(progress);
-    let provenance = inputs.provenance();
+    let readings = Readings::sampled(&run, options.seed)?;
+    for sensor in &readings.left_out {
+        let needs = sensor.misfit(&vessel).unwrap_or_default();
+        messages
+            .caution(&format!("sensor {} is left out: {} does not have {needs}", sensor.name, vessel.name));
+    }
+    let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
     // Everything is made before anything is written.
+<<<<<<< HEAD
     let data = data(&run, options.format, &provenance)?;
     let picture = options.plot.as_ref().map(|plot| plot.draw(&simulation::figure(&run), &provenance));
     if let (Some(plot), Some(bytes)) = (&options.plot, picture.transpose()?) {
         plot.write(&bytes)?;
+=======
+    let data = data(&run, &readings, options.format, &provenance)?;
+    let figure = |kind| draw(&simulation::figure(&run, &readings), kind, &provenance);
+    let picture = options.plot.as_ref().map(|&(_, kind)| figure(kind)).transpose()?;
+    if let (Some((target, _)), Some(bytes)) = (&options.plot, picture) {
+        target.write(&bytes)?;
+>>>>>>> main
     }
     options.data.write(data.as_bytes())?;
     messages.say(&simulation::summary(&run));
@@ -65,14 +85,37 @@ impl Options {
         }
         settings.validate()?;
         let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
-        Ok(Self { vessel, scenario, data, format, plot, settings })
+        Ok(Self { vessel, scenario, data, format, plot, settings, seed: arguments.seed })
     }
 }
 
+<<<<<<< HEAD
 fn data(run: &Trajectory, format: Format, provenance: &Provenance) -> anyhow::Result<String> {
+=======
+fn checked_plot(path: &Path, inputs: &[&Path], data: &Target) -> anyhow::Result<(Target, Picture)> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let picture = match ending.as_deref() {
+        Some("svg") => Picture::Svg,
+        Some("png") => Picture::Png,
+        _ => bail!("--plot {}: the ending must be .svg or .png", path.display()),
+    };
+    let target = Target::checked(Some(path), inputs)?;
+    if matches!((&target, data), (Target::File(plot), Target::File(data)) if plot == data) {
+        bail!("--plot and --output name the same file {}: choose two", path.display());
+    }
+    Ok((target, picture))
+}
+
+fn data(
+    run: &Trajectory,
+    readings: &Readings,
+    format: Format,
+    provenance: &Provenance,
+) -> anyhow::Result<String> {
+>>>>>>> main
     Ok(match format {
-        Format::Csv => simulation::table(run).to_csv(provenance, &simulation::remarks(run)),
-        Format::Json => serde_json::to_string(&simulation::document(run, provenance))? + "\n",
+        Format::Csv => simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run)),
+        Format::Json => serde_json::to_string(&simulation::document(run, readings, provenance))? + "\n",
     })
 }
 

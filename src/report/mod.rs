@@ -2,10 +2,12 @@
 pub mod estimate;
 pub mod figure;
 mod provenance;
+mod readings;
 pub mod simulation;
 mod table;
 
 pub use provenance::{Fingerprint, Input, Provenance};
+pub use readings::Readings;
 pub use table::{Column, Table, aligned, number, rounded};
 
 /// What can go wrong while results become text or pictures.

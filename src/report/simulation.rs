@@ -1,9 +1,8 @@
 //! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
 use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
 use super::table::{Table, number};
-use super::{Provenance, aligned};
-use crate::estimator::sensor::{Exposure, Sensor};
-use crate::thermal::scenario::SensorKind;
+use super::{Provenance, Readings, aligned, readings};
+use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use serde_json::{Value, json};
 
@@ -23,7 +22,7 @@ fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
 }
 
 /// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
-pub fn table(run: &Trajectory) -> Table {
+pub fn table(run: &Trajectory, readings: &Readings) -> Table {
     let mut table = Table::new(DIGITS);
     table.push("time_s", run.time_s.iter().copied());
     table.push("ambient_degc", celsius(&run.ambient_k));
@@ -47,26 +46,11 @@ pub fn table(run: &Trajectory) -> Table {
     table.push("mass_kg", run.mass_kg.iter().copied());
     table.push("outflow_g_h", run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
     table.push("heat_to_gas_w", run.heat_to_gas_w.iter().copied());
-    for (sensor, reading_k) in readings(run) {
-        table.push(format!("measured_{}_degc", sensor.name), celsius(&reading_k));
+    for (sensor, values) in readings.columns() {
+        let (name, values) = readings::column(sensor, &values);
+        table.push(name, values);
     }
     table
-}
-
-/// What the scenario's surface sensors read, K: `T_surface + coupling (T_air - T_surface)`.
-pub fn readings(run: &Trajectory) -> Vec<(Sensor, Vec<f64>)> {
-    let reading = |mounted| {
-        let sensor = Sensor::from(mounted);
-        let SensorKind::Surface { place } = sensor.kind else { return None };
-        let surface = run.surface_k(place.as_str())?;
-        let read = |(&body_k, &air_k)| {
-            let exposure = Exposure { body_k, air_k, ..Exposure::default() };
-            sensor.predict(&exposure, &sensor.means()).value
-        };
-        let values = surface.iter().zip(&run.ambient_k).map(read).collect();
-        Some((sensor, values))
-    };
-    run.scenario.sensors.iter().filter_map(reading).collect()
 }
 
 /// An event in words.
@@ -90,7 +74,7 @@ pub fn title(run: &Trajectory) -> String {
 }
 
 /// Temperatures, how they differ from the gas, pressure, and the gas mass where it changes.
-pub fn figure(run: &Trajectory) -> Figure {
+pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
     let time = &run.time_s;
     let limit = |&limit_pa: &f64| Item::Limit {
         name: format!("limit {} bar", number(limit_pa / PASCAL_PER_BAR, 6)),
@@ -98,8 +82,16 @@ pub fn figure(run: &Trajectory) -> Figure {
     };
     let mut pressure: Vec<Item> = run.scenario.pressure_limits_pa.iter().map(limit).collect();
     pressure.push(Item::line("pressure", time, bar(&run.pressure_pa), style::PRESSURE));
-    let temperatures = temperatures(run);
-    let differences = differences(&temperatures);
+    for (number, (sensor, values)) in readings.columns().enumerate() {
+        if let SensorKind::Pressure { .. } = sensor.kind {
+            let name = format!("sensor {}", sensor.name);
+            pressure.push(Item::line(name, time, bar(&values), style::sensor("pressure", number)));
+        }
+    }
+    let air = air(run, readings);
+    let bodies = bodies(run, readings);
+    let differences = differences(&bodies);
+    let temperatures = air.into_iter().chain(bodies).collect();
     let mut panels = vec![
         Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
         Panel { quantity: "above gas mean in K".into(), items: differences, height: 0.7 },
@@ -114,9 +106,25 @@ pub fn figure(run: &Trajectory) -> Figure {
     Figure { title: title(run), horizontal: Horizontal::Time, panels, marks }
 }
 
-fn temperatures(run: &Trajectory) -> Vec<Item> {
+/// The air, and what sensors read of it.
+fn air(run: &Trajectory, readings: &Readings) -> Vec<Item> {
+    let mut items = vec![Item::line("air", &run.time_s, celsius(&run.ambient_k), style::AIR)];
+    for (number, (sensor, values_k)) in readings.columns().enumerate() {
+        if sensor.kind == SensorKind::Ambient {
+            items.push(sensor_line(run, sensor, &values_k, style::sensor("ambient", number)));
+        }
+    }
+    items
+}
+
+fn sensor_line(run: &Trajectory, sensor: &Sensor, values_k: &[f64], stroke: style::Stroke) -> Item {
+    Item::line(format!("sensor {}", sensor.name), &run.time_s, celsius(values_k), stroke)
+}
+
+/// Walls, valve, gas, and what sensors read of them; the mean gas is the last.
+fn bodies(run: &Trajectory, readings: &Readings) -> Vec<Item> {
     let time = &run.time_s;
-    let mut items = vec![Item::line("air", time, celsius(&run.ambient_k), style::AIR)];
+    let mut items = Vec::new();
     let resolved: &[(&str, &str, style::Stroke)] = &[
         ("valve", "valve", style::VALVE),
         ("shoulder", "shoulder", style::SHOULDER),
@@ -130,10 +138,13 @@ fn temperatures(run: &Trajectory) -> Vec<Item> {
             items.push(Item::line(name, time, celsius(&surface), stroke));
         }
     }
-    for (number, (sensor, reading_k)) in readings(run).into_iter().enumerate() {
-        let SensorKind::Surface { place } = sensor.kind else { continue };
-        let stroke = style::sensor(place.as_str(), number);
-        items.push(Item::line(format!("sensor {}", sensor.name), time, celsius(&reading_k), stroke));
+    for (number, (sensor, values_k)) in readings.columns().enumerate() {
+        let place = match sensor.kind {
+            SensorKind::Surface { place } => place.as_str(),
+            SensorKind::Gas { .. } => "gas",
+            SensorKind::Pressure { .. } | SensorKind::Ambient => continue,
+        };
+        items.push(sensor_line(run, sensor, &values_k, style::sensor(place, number)));
     }
     let cells = run.gas_cells_k.first().map_or(0, Vec::len);
     if cells > 1 {
@@ -146,16 +157,16 @@ fn temperatures(run: &Trajectory) -> Vec<Item> {
 }
 
 /// The curves of walls, valve, sensors and gas cells minus the last one, the mean gas: what a sensor on the wall
-/// gets wrong about the gas. The air, which is first, is left out: it would set the scale alone.
-fn differences(temperatures: &[Item]) -> Vec<Item> {
-    let Some((Item::Line { y: mean, .. }, others)) = temperatures.split_last() else { return Vec::new() };
+/// gets wrong about the gas. The air is not among them: it would set the scale alone.
+fn differences(bodies: &[Item]) -> Vec<Item> {
+    let Some((Item::Line { y: mean, .. }, others)) = bodies.split_last() else { return Vec::new() };
     let difference = |item: &Item| match item {
         Item::Line { x, y, stroke, .. } => {
             Some(Item::line("", x, y.iter().zip(mean).map(|(t, gas)| t - gas), *stroke))
         }
         _ => None,
     };
-    others.iter().skip(1).filter_map(difference).collect()
+    others.iter().filter_map(difference).collect()
 }
 
 /// Events and balances as comment lines of a CSV file.
@@ -176,7 +187,7 @@ pub fn residual(value: f64) -> String {
 }
 
 /// The run as a JSON document: provenance, columns, events, ledger, what the solver did.
-pub fn document(run: &Trajectory, provenance: &Provenance) -> Value {
+pub fn document(run: &Trajectory, readings: &Readings, provenance: &Provenance) -> Value {
     let event = |event: &Event| {
         json!({
             "time_s": event.time_s,
@@ -192,7 +203,7 @@ pub fn document(run: &Trajectory, provenance: &Provenance) -> Value {
         "events": run.events.iter().map(event).collect::<Vec<_>>(),
         "ledger": ledger(run),
         "solver": statistics(run),
-        "columns": table(run).to_json(),
+        "columns": table(run, readings).to_json(),
     })
 }
 

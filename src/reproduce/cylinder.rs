@@ -1,5 +1,6 @@
 //! The 20 L cylinder: the paper's scenarios, and what the equation of state alone says about its gauge.
 use super::ReproduceError;
+use crate::report::Readings;
 use crate::thermal::ThermalError;
 use crate::thermal::fluid::{Equation, Fluid};
 use crate::thermal::scenario;
@@ -27,6 +28,8 @@ pub struct ScenarioRun {
     pub name: &'static str,
     /// The run.
     pub run: Trajectory,
+    /// What its sensors are expected to read; nothing of a reproduction is random.
+    pub readings: Readings,
     /// Time that it took, s.
     pub wall_time_s: f64,
 }
@@ -45,7 +48,8 @@ pub fn simulated(
     let scenario = scenario::presets::load(name)?;
     let start = Instant::now();
     let run = simulate(&vessel, &scenario, settings, progress)?;
-    Ok(ScenarioRun { name, run, wall_time_s: start.elapsed().as_secs_f64() })
+    let wall_time_s = start.elapsed().as_secs_f64();
+    Ok(ScenarioRun { name, readings: Readings::expected(&run)?, run, wall_time_s })
 }
 
 /// What the equation of state says about a tight, rigid, full cylinder.

@@ -8,6 +8,7 @@ pub mod measured;
 mod minimum;
 pub mod rows;
 
+use crate::estimator::EstimatorError;
 use crate::report::figure::Figure;
 use crate::report::{Input, Provenance, ReportError, Table, simulation};
 use crate::thermal::ThermalError;
@@ -25,6 +26,9 @@ pub enum ReproduceError {
     /// A vessel, a scenario or a simulation.
     #[error(transparent)]
     Thermal(#[from] ThermalError),
+    /// The sensors' readings.
+    #[error(transparent)]
+    Estimator(#[from] EstimatorError),
     /// A figure.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -91,10 +95,10 @@ impl Reproduction {
     pub fn files(&self, provenance: &Provenance) -> Result<Vec<File>, ReportError> {
         let mut files = Vec::new();
         for scenario in self.scenarios.iter().chain([&self.closed]) {
-            files.extend(drawn(scenario.name, &simulation::figure(&scenario.run), provenance)?);
-            let csv =
-                simulation::table(&scenario.run).to_csv(provenance, &simulation::remarks(&scenario.run));
-            files.push((format!("{}.csv", scenario.name), csv.into_bytes()));
+            let ScenarioRun { name, run, readings, .. } = scenario;
+            files.extend(drawn(name, &simulation::figure(run, readings), provenance)?);
+            let csv = simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run));
+            files.push((format!("{name}.csv"), csv.into_bytes()));
         }
         files.extend(drawn("tight-cylinder", &figures::tight(&self.tight), provenance)?);
         files.extend(drawn("blowdown-i1", &figures::blowdown(&self.blowdown), provenance)?);

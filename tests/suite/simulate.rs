@@ -45,7 +45,8 @@ fn the_columns_are_those_of_the_contract() {
     assert_eq!(
         header.join(","),
         "time_s,ambient_degc,gas_mean_degc,gas_1_degc,wall_bottom_degc,wall_middle_degc,wall_neck_degc,shoulder_degc,\
-         valve_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc"
+         valve_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc,\
+         measured_pressure_bar"
     );
 }
 
@@ -58,6 +59,94 @@ fn a_sensor_reads_between_its_surface_and_the_air() {
     for (k, reading) in column(&csv, "measured_shoulder_degc").into_iter().enumerate() {
         assert!((reading - (0.8 * surface[k] + 0.2 * air[k])).abs() < 1e-6);
     }
+}
+
+/// [`SHORT`] for an hour, with sensors of every kind that have errors.
+fn with_noisy_sensors() -> String {
+    let sensors = "noise_k = 0.05\n[[sensor]]\nname = \"pressure\"\ngauge = true\noffset_sd_bar = 0.4\nnoise_mbar = 10\n\
+                   dropout = 0.5\n[[sensor]]\nname = \"ambient\"\nlag_s = 20\n[[sensor]]\nname = \"gas_1\"\nresolution_k = 0.5\n";
+    format!("{SHORT}{sensors}").replace("duration_min = 2", "duration_min = 60")
+}
+
+#[test]
+fn a_seed_draws_the_sensors_and_stands_in_every_output() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), with_noisy_sensors()).unwrap();
+    let csv = |seed: &[&str]| {
+        let outcome = run(folder.path(), &[&["simulate", "nitrogen-20l", "s.toml"], seed].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        outcome.stdout
+    };
+    let readings = |csv: &str| rows(csv).1.concat().join(",");
+    let (none, zero, one) = (csv(&[]), csv(&["--seed", "0"]), csv(&["--seed", "1"]));
+    assert!(none.lines().any(|line| line == "# seed: 0") && one.lines().any(|line| line == "# seed: 1"));
+    assert_eq!(readings(&none), readings(&zero));
+    assert_eq!(column(&zero, "shoulder_degc"), column(&one, "shoulder_degc"));
+    let differ = |name: &str| column(&zero, name).iter().zip(column(&one, name)).all(|(a, b)| *a != b);
+    assert!(differ("measured_shoulder_degc"));
+    let arguments =
+        ["simulate", "nitrogen-20l", "s.toml", "-o", "run.json", "--plot", "run.svg", "--seed", "5"];
+    assert_eq!(run(folder.path(), &arguments).code, Some(0));
+    let text = std::fs::read_to_string(folder.path().join("run.json")).unwrap();
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["provenance"]["seed"], 5);
+    assert!(std::fs::read_to_string(folder.path().join("run.svg")).unwrap().contains("seed: 5"));
+    refused(folder.path(), &["simulate", "nitrogen-20l", "s.toml", "--seed", "-1"], &["-1"]);
+}
+
+#[test]
+fn sensors_of_every_kind_get_a_column_in_their_unit() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), with_noisy_sensors()).unwrap();
+    let csv = run(folder.path(), &["simulate", "nitrogen-20l", "s.toml"]).stdout;
+    let (header, rows) = rows(&csv);
+    let measured: Vec<&str> = header.iter().copied().filter(|name| name.starts_with("measured_")).collect();
+    let expected = ["shoulder_degc", "pressure_barg", "ambient_degc", "gas_1_degc"]
+        .map(|name| format!("measured_{name}"));
+    assert_eq!(measured, expected);
+    // The air does not change, so a lag does not either.
+    assert_eq!(column(&csv, "measured_ambient_degc"), column(&csv, "ambient_degc"));
+    for gas_degc in column(&csv, "measured_gas_1_degc") {
+        let steps = (gas_degc + 273.15) / 0.5;
+        assert!((steps - steps.round()).abs() < 1e-6, "{gas_degc}");
+    }
+    let at = header.iter().position(|name| *name == "measured_pressure_barg").unwrap();
+    let truth = column(&csv, "pressure_bar");
+    let errors: Vec<f64> =
+        (0..rows.len()).filter_map(|k| Some(rows[k][at].parse::<f64>().ok()? + 1.01325 - truth[k])).collect();
+    // Half of the 121 readings are lost (binomial, within five standard deviations); the others are off by one
+    // offset, of 0.4 bar within five standard deviations, and 10 mbar of noise.
+    assert!((33..88).contains(&errors.len()), "{}", errors.len());
+    assert!(errors.iter().all(|error| (error - errors[0]).abs() < 0.1 && error.abs() < 2.0), "{errors:?}");
+}
+
+#[test]
+fn noise_of_the_presets_is_50_millikelvin_and_10_millibar() {
+    let folder = tempdir().unwrap();
+    let csv = run(folder.path(), &["simulate", "nitrogen-20l", "ramp-warm", "--seed", "3"]).stdout;
+    let (surface, air) = (column(&csv, "shoulder_degc"), column(&csv, "ambient_degc"));
+    let shoulder = column(&csv, "measured_shoulder_degc");
+    let temperature = (0..air.len()).map(|k| shoulder[k] - (0.85 * surface[k] + 0.15 * air[k]));
+    let truth = column(&csv, "pressure_bar");
+    let pressure = column(&csv, "measured_pressure_bar").into_iter().zip(truth).map(|(read, p)| read - p);
+    let sd = |errors: Vec<f64>| (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+    // 301 samples give a standard deviation to 4 %; five of those.
+    assert!((sd(temperature.collect()) / 0.05 - 1.0).abs() < 0.2);
+    assert!((sd(pressure.collect()) / 0.01 - 1.0).abs() < 0.2);
+}
+
+#[test]
+fn a_sensor_that_the_vessel_has_no_place_for_is_left_out_with_a_caution() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &["simulate", "closed-bottle", "shock-cold"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let (header, _) = rows(&outcome.stdout);
+    assert!(header.contains(&"measured_shoulder_degc") && !header.contains(&"measured_valve_degc"));
+    let cautions: Vec<&str> = outcome.stderr.lines().filter(|line| line.contains("caution")).collect();
+    assert_eq!(cautions.len(), 1, "{}", outcome.stderr);
+    assert!(
+        cautions[0].contains("sensor valve is left out") && cautions[0].contains("does not have a valve")
+    );
 }
 
 #[test]

@@ -1,45 +1,142 @@
-//! Cost of one step, prediction and scalar updates, of every estimator.
+//! Cost of one step, prediction and update, of every estimator on a process that costs next to nothing itself.
 //!
 //! `cargo bench -p cylwatch-estimator --bench filter`
-use criterion::{Criterion, criterion_group, criterion_main};
-use cylwatch_estimator::filter::{Linearisation, UdFactors};
-use nalgebra::{Const, DMatrix, Dyn, SMatrix};
+use std::time::Duration;
 
-/// A dense, stable transition of `leading` of `n` states with `k` noise sources.
-fn transition(n: usize, leading: usize, k: usize) -> Linearisation {
-    let mut linear = Linearisation::zeros(n, leading, k);
-    linear.phi = DMatrix::from_fn(leading, n, |i, j| if i == j { 0.9 } else { 0.1 / (1 + i + 2 * j) as f64 });
-    linear.g = DMatrix::from_fn(leading, k, |i, j| if i == j % leading { 1.0 } else { 0.05 });
-    linear.q.fill(0.01);
-    linear
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use cylwatch_estimator::filter::{
+    CovarianceForm, ExtendedKalman, FixedLag, Information, Joseph, KalmanSettings, SequentialFilter,
+    SquareRoot, StateSpace, Stationary, StationarySettings, UdFactors, Unscented, UnscentedSettings,
+    steady_state,
+};
+use nalgebra::{Const, DMatrix, DVector, Dyn, SMatrix};
+
+#[path = "../tests/suite/copying_model.rs"]
+mod copying_model;
+
+use copying_model::CopyingModel;
+
+/// States and outputs of the comparison; all states move, each driven by its own noise.
+const STATES: [usize; 4] = [4, 8, 12, 20];
+const OUTPUTS: [usize; 4] = [1, 2, 3, 4];
+
+fn kalman<F: CovarianceForm>(model: CopyingModel, form: F) -> ExtendedKalman<CopyingModel, F> {
+    let start = vec![0.0; model.states()];
+    ExtendedKalman::try_new(model, &start, form, &KalmanSettings::default()).expect("settings fit")
 }
 
-fn gradient(n: usize, j: usize) -> Vec<f64> {
-    (0..n).map(|i| if i == 2 * j { 1.0 } else { 0.2 / (1 + i + j) as f64 }).collect()
+fn bench_steps<F: SequentialFilter>(c: &mut Criterion, name: &str, build: impl Fn(CopyingModel) -> F) {
+    let mut group = c.benchmark_group(name);
+    group
+        .sample_size(30)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(600));
+    for n in STATES {
+        for outputs in OUTPUTS {
+            let mut filter = build(CopyingModel::new(n, n, n, outputs));
+            let z = vec![0.1; outputs];
+            group.bench_function(
+                BenchmarkId::from_parameter(format!("{n} states, {outputs} outputs")),
+                |b| {
+                    b.iter(|| filter.step(1.0, &z).is_ok());
+                },
+            );
+        }
+    }
 }
 
-/// The covariance of an observer of 15 states, 9 of them moving, with 14 noise sources and 3 sensors.
-fn observer_covariance(c: &mut Criterion) {
-    let linear = transition(15, 9, 14);
-    let h: Vec<Vec<f64>> = (0..3).map(|j| gradient(15, j)).collect();
-    let mut gain = [0.0; 15];
-    let mut dynamic = UdFactors::<Dyn>::from_covariance(&DMatrix::identity(15, 15)).expect("a covariance");
-    let mut group = c.benchmark_group("ud, 9 of 15 states, 14 noises, 3 sensors");
-    group.bench_function("dynamic", |b| {
+fn identity(model: &CopyingModel) -> DMatrix<f64> {
+    DMatrix::identity(model.states(), model.states())
+}
+
+fn forms(c: &mut Criterion) {
+    bench_steps(c, "kalman, ud", |model| {
+        let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
+        kalman(model, form)
+    });
+    bench_steps(c, "kalman, square root", |model| {
+        let form = SquareRoot::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
+        kalman(model, form)
+    });
+    bench_steps(c, "kalman, joseph", |model| {
+        let form = Joseph::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
+        kalman(model, form)
+    });
+    bench_steps(c, "kalman, information", |model| {
+        let form = Information::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
+        kalman(model, form)
+    });
+}
+
+fn other_filters(c: &mut Criterion) {
+    bench_steps(c, "unscented", |model| {
+        let start = vec![0.0; model.states()];
+        let p = identity(&model);
+        Unscented::try_new(model, &start, &p, &UnscentedSettings::default()).expect("a covariance")
+    });
+    bench_steps(c, "stationary", |model| {
+        let start = vec![0.0; model.states()];
+        Stationary::try_new(model, &start, &start, &StationarySettings::new(1.0)).expect("a steady state")
+    });
+}
+
+/// An observer's covariance: 15 states, 9 of them moving, 14 noise sources, 3 outputs.
+fn observer(c: &mut Criterion) {
+    let model = CopyingModel::new(15, 9, 14, 3);
+    let mut group = c.benchmark_group("9 of 15 states, 14 noises, 3 outputs");
+    let z = [0.1; 3];
+    let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
+    let mut filter = kalman(model.clone(), form.clone());
+    group.bench_function("kalman, ud", |b| b.iter(|| filter.step(1.0, &z).is_ok()));
+    let fixed = UdFactors::<Const<15>>::from_covariance(&SMatrix::identity()).expect("a covariance");
+    let mut filter = kalman(model.clone(), fixed.clone());
+    group.bench_function("kalman, ud of static size", |b| b.iter(|| filter.step(1.0, &z).is_ok()));
+    bench_covariance(&mut group, "covariance alone, dynamic", form, model.clone());
+    bench_covariance(&mut group, "covariance alone, static", fixed, model.clone());
+    let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
+    let mut filter = kalman(model, form);
+    let mut smoother = FixedLag::try_new(20, &filter).expect("no consider states");
+    group.bench_function("kalman, ud, and fixed lag of 20 steps", |b| {
+        b.iter(|| filter.step(1.0, &z).is_ok() && smoother.push(&filter).is_ok());
+    });
+}
+
+type Group<'a> = criterion::BenchmarkGroup<'a, criterion::measurement::WallTime>;
+
+/// Prediction and three scalar updates of the covariance, without state, outputs and report.
+fn bench_covariance<F: CovarianceForm>(
+    group: &mut Group<'_>,
+    name: &str,
+    mut form: F,
+    mut model: CopyingModel,
+) {
+    let (n, m) = (model.states(), model.leading());
+    let mut linear = cylwatch_estimator::filter::Linearisation::zeros(n, m, model.noises());
+    let mut h = vec![vec![0.0; n]; model.outputs()];
+    let _ = model.propagate(&mut vec![0.0; n], 1.0, Some(&mut linear));
+    for (j, h) in h.iter_mut().enumerate() {
+        let _ = model.output(j, &vec![0.0; n], Some(h));
+    }
+    let mut gain = vec![0.0; n];
+    group.bench_function(name, |b| {
         b.iter(|| {
-            dynamic.predict(&linear);
-            h.iter().map(|h| dynamic.update(h, 0.1, &mut gain)).sum::<f64>()
+            let _ = form.predict(&linear);
+            h.iter().filter_map(|h| form.update(h, 0.1, &mut gain).ok()).sum::<f64>()
         });
     });
-    let mut fixed = UdFactors::<Const<15>>::from_covariance(&SMatrix::identity()).expect("a covariance");
-    group.bench_function("static", |b| {
-        b.iter(|| {
-            fixed.predict(&linear);
-            h.iter().map(|h| fixed.update(h, 0.1, &mut gain)).sum::<f64>()
-        });
-    });
-    group.bench_function("dynamic, prediction alone", |b| b.iter(|| dynamic.predict(&linear)));
 }
 
-criterion_group!(benches, observer_covariance);
+fn riccati(c: &mut Criterion) {
+    let mut group = c.benchmark_group("steady state");
+    for n in [4, 8, 13, 20] {
+        let f = DMatrix::from_fn(n, n, |i, j| if i == j { 0.99 } else { 0.05 / (1 + i + 2 * j) as f64 });
+        let h = DMatrix::from_fn(3, n, |i, j| if j == i { 1.0 } else { 0.1 });
+        let (q, r) = (DMatrix::identity(n, n) * 1e-3, DVector::from_element(3, 0.1));
+        group.bench_function(BenchmarkId::from_parameter(n), |b| {
+            b.iter(|| steady_state(&f, &h, &q, &r).map(|s| s.doublings));
+        });
+    }
+}
+
+criterion_group!(benches, observer, riccati, forms, other_filters);
 criterion_main!(benches);

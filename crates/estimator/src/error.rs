@@ -29,7 +29,7 @@ pub enum EstimatorError {
     },
     /// A covariance is not positive semi-definite.
     #[error(
-        "covariance is not positive semi-definite: of the variance {variance} of state {state} the later states \
+        "covariance is not positive semi-definite: of the variance {variance} of state {state} the others \
          leave {left}; lower its covariances or raise its variance"
     )]
     CovarianceIndefinite {
@@ -37,7 +37,7 @@ pub enum EstimatorError {
         state: usize,
         /// Its variance.
         variance: f64,
-        /// What is left of it when the later states are known.
+        /// What is left of it when others are known.
         left: f64,
     },
     /// A setting of the observer is out of its bounds.
@@ -115,4 +115,184 @@ pub enum EstimatorError {
     /// Reading or writing failed.
     #[error(transparent)]
     Io(#[from] std::io::Error),
+    /// A covariance has no inverse, and the chosen form carries the inverse.
+    #[error("the covariance has no inverse: other states explain state {state}; carry it in another form")]
+    CovarianceSingular {
+        /// State, from 0.
+        state: usize,
+    },
+    /// A transition has no inverse, and the chosen form needs it.
+    #[error("the transition of the moving states has no inverse: carry the covariance in another form")]
+    TransitionSingular,
+    /// A noise variance cannot be used.
+    #[error("noise variance {variance} must be positive")]
+    NoiseNotPositive {
+        /// Variance as given, in the square of the output's unit.
+        variance: f64,
+    },
+    /// A step goes back in time.
+    #[error("interval {interval_s} s must not be negative: sort the samples by time")]
+    IntervalNegative {
+        /// Interval, s.
+        interval_s: f64,
+    },
+    /// Readings and outputs differ in number.
+    #[error("{readings} readings for {outputs} outputs: give one per output, NaN where there is none")]
+    ReadingsLength {
+        /// Number of readings.
+        readings: usize,
+        /// Number of outputs.
+        outputs: usize,
+    },
+    /// A state or its covariance does not fit the process.
+    #[error("state or covariance of length {length} for a process of {states} states")]
+    StateLength {
+        /// Length as given.
+        length: usize,
+        /// Number of states.
+        states: usize,
+    },
+    /// A setting names a state that the process does not have.
+    #[error("there is no state {state}: the process has {states}, counted from 0")]
+    StateUnknown {
+        /// State as named.
+        state: usize,
+        /// Number of states.
+        states: usize,
+    },
+    /// A state is NaN or infinite.
+    #[error("state {state} is not a finite number")]
+    StateNotFinite {
+        /// State, from 0.
+        state: usize,
+    },
+    /// A transition holds NaN, an infinity, or a negative noise variance.
+    #[error("the linearised transition must be finite, its noise variances not negative")]
+    LinearisationUnusable,
+    /// An output or its gradient is NaN or infinite.
+    #[error("output {output} or its gradient is not a finite number")]
+    OutputNotFinite {
+        /// Output, from 0.
+        output: usize,
+    },
+    /// A gate that passes everything or nothing.
+    #[error("gate probability {probability} must lie between 0 and 1, e.g. 0.9999")]
+    GateProbability {
+        /// Probability as given.
+        probability: f64,
+    },
+    /// The covariance of a filter grows without bound.
+    #[error(
+        "the filter has no steady state: a state that moves or is driven by noise is not seen by the outputs"
+    )]
+    NoSteadyState,
+    /// A pass with consider states cannot be smoothed.
+    #[error(
+        "a filter with consider states cannot be smoothed: its gains are not optimal; estimate these states"
+    )]
+    ConsiderStatesSmoothed,
+    /// A sample has no time.
+    #[error("sample time {time_s} s must be a finite number")]
+    TimeNotFinite {
+        /// Time as given, s.
+        time_s: f64,
+    },
+    /// Sigma points without spread.
+    #[error(
+        "sigma points with alpha {alpha}, beta {beta}, kappa {kappa}: alpha^2 (n + kappa) must be positive"
+    )]
+    SigmaPoints {
+        /// Spread.
+        alpha: f64,
+        /// Weight of the middle point.
+        beta: f64,
+        /// Secondary spread.
+        kappa: f64,
+    },
+    /// A stationary filter without an interval.
+    #[error("sampling interval {interval_s} s must be positive")]
+    IntervalNotPositive {
+        /// Interval, s.
+        interval_s: f64,
+    },
+    /// A setting of a moving-horizon estimator is out of its range.
+    #[error("moving-horizon setting {name} = {value} must be {bound}")]
+    HorizonSetting {
+        /// Setting by its field name.
+        name: &'static str,
+        /// As given.
+        value: f64,
+        /// Its range.
+        bound: &'static str,
+    },
+    /// A prior is not of the process's size.
+    #[error(
+        "a process of {states} states needs a prior mean of as many, not {mean}, and a square covariance, not {rows} x {columns}"
+    )]
+    HorizonPrior {
+        /// States of the process.
+        states: usize,
+        /// Length of the mean.
+        mean: usize,
+        /// Rows of the covariance.
+        rows: usize,
+        /// Columns of the covariance.
+        columns: usize,
+    },
+    /// A prior mean holds NaN or an infinity.
+    #[error("prior mean {value} of state {state} must be finite")]
+    HorizonPriorNotFinite {
+        /// State, from 0.
+        state: usize,
+        /// Its mean.
+        value: f64,
+    },
+    /// A constraint names a state that is not there.
+    #[error("constraint {row} names state {state}, but states run from 0 to {} only", .states - 1)]
+    ConstraintState {
+        /// Constraint, from 0.
+        row: usize,
+        /// State that it names.
+        state: usize,
+        /// Number of states.
+        states: usize,
+    },
+    /// A constraint is no inequality.
+    #[error("constraint {row}: {reason}")]
+    ConstraintRow {
+        /// Constraint, from 0.
+        row: usize,
+        /// What it must be.
+        reason: &'static str,
+    },
+    /// A sensor on a place that the vessel does not have.
+    #[error(
+        "sensor {name} needs {missing}, which vessel {vessel} does not have: give it another place or leave it out"
+    )]
+    SensorMisfit {
+        /// Name of the sensor.
+        name: String,
+        /// Name of the vessel.
+        vessel: String,
+        /// What is missing.
+        missing: String,
+    },
+    /// A time that cannot be sampled.
+    #[error(
+        "sampling time {number}, {time_s} s, must be later than the one before and lie within the trajectory, \
+         {from_s} s to {to_s} s"
+    )]
+    SampleTime {
+        /// Which one, from 1.
+        number: usize,
+        /// The time, s.
+        time_s: f64,
+        /// Start of the trajectory, s.
+        from_s: f64,
+        /// End of the trajectory, s.
+        to_s: f64,
+    },
+    /// A trajectory without samples.
+    #[error("the trajectory has no samples: simulate at least one")]
+    EmptyTrajectory,
 }

@@ -56,17 +56,29 @@ pub(crate) fn padded(n: usize) -> usize {
 
 /// `y <- A x` for `A` with `rows` rows, a multiple of four, and as many columns as `x` has entries.
 ///
-/// Four rows at a time stay in registers over all columns.
+/// Eight rows at a time, then four, stay in registers over all columns.
 #[inline]
 pub(crate) fn multiply(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
-    for (block, y) in y[..rows].as_chunks_mut::<4>().0.iter_mut().enumerate() {
-        let mut sum = [0.0; 4];
-        for (column, c) in a.chunks_exact(rows).zip(x) {
-            let rows4 = &column.as_chunks::<4>().0[block];
-            for lane in 0..4 {
-                sum[lane] += c * rows4[lane];
+    let (eights, four) = y[..rows].as_chunks_mut::<8>();
+    let done = 8 * eights.len();
+    for (block, y) in eights.iter_mut().enumerate() {
+        *y = multiply_rows(a, rows, 8 * block, x);
+    }
+    if let Some(y) = four.first_chunk_mut::<4>() {
+        *y = multiply_rows(a, rows, done, x);
+    }
+}
+
+/// `N` rows of `A x` from row `first` on.
+#[inline]
+fn multiply_rows<const N: usize>(a: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; N] {
+    let mut sum = [0.0; N];
+    for (column, c) in a.chunks_exact(rows).zip(x) {
+        if let Some(values) = column[first..].first_chunk::<N>() {
+            for lane in 0..N {
+                sum[lane] += c * values[lane];
             }
         }
-        *y = sum;
     }
+    sum
 }

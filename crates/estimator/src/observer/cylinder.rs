@@ -44,6 +44,8 @@ pub struct Cylinder {
     intensity: Vec<f64>,
     /// Inverse memory of each leading state that walks alone, 1/s.
     decay: Vec<f64>,
+    /// Value that each leading state with a memory returns to.
+    rest: Vec<f64>,
     /// Leading states with coupled rows of the transition, and the others.
     coupled: Vec<usize>,
     alone: Vec<usize>,
@@ -128,6 +130,7 @@ impl Cylinder {
             interval_s: vec![f64::INFINITY; sensors.len()],
             intensity: vec![0.0; states.leading],
             decay: vec![0.0; states.leading],
+            rest: vec![0.0; states.leading],
             sensors: sensors.to_vec(),
             targets,
             states,
@@ -172,7 +175,7 @@ impl Cylinder {
     pub fn suppose(&mut self, leak: &LeakHypothesis) {
         self.intensity[self.states.mass] = leak.mass_walk_kg_per_sqrt_s.powi(2);
         self.intensity[self.states.leak] = leak.rate.per_sqrt_s.powi(2);
-        self.decay[self.states.leak] = leak.rate.memory_s.recip();
+        self.decay[self.states.leak] = leak.rate.decay_per_s();
     }
 
     /// Interval since the last sample of a sensor, s.
@@ -207,18 +210,19 @@ impl Cylinder {
 
     fn set_walks(&mut self) {
         let s = &self.settings;
+        self.rest[self.states.air] = s.air_rest_k;
         for (i, kind) in self.states.kinds[..self.states.leading].iter().enumerate() {
-            let (walk, memory_s) = match kind {
+            let (walk, decay) = match kind {
                 StateKind::Wall(_) | StateKind::Valve | StateKind::Gas => {
-                    (s.temperature_walk_k_per_sqrt_s, f64::INFINITY)
+                    (s.temperature_walk_k_per_sqrt_s, 0.0)
                 }
-                StateKind::Air => (s.air.per_sqrt_s, s.air.memory_s),
-                StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.memory_s),
-                StateKind::Sun => (s.sun.per_sqrt_s, s.sun.memory_s),
+                StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
+                StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
+                StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
                 _ => continue,
             };
             self.intensity[i] = walk * walk;
-            self.decay[i] = memory_s.recip();
+            self.decay[i] = decay;
         }
     }
 
@@ -338,7 +342,7 @@ impl Cylinder {
         }
         for ((term, mean), &state) in alone_term.iter_mut().zip(alone_mean.iter_mut()).zip(&self.alone) {
             *term = -h * self.decay[state];
-            *mean = *term * x[state];
+            *mean = *term * (x[state] - self.rest[state]);
         }
         sum.copy_from_slice(term);
         for (points, at) in at_gauss.iter_mut().zip(GAUSS) {
@@ -427,7 +431,8 @@ impl Cylinder {
             x[state] += row[stride - 1];
         }
         for &state in &self.alone {
-            x[state] *= (-h * self.decay[state]).exp();
+            let rest = self.rest[state];
+            x[state] = rest + (x[state] - rest) * (-h * self.decay[state]).exp();
         }
         if let Some(linear) = linear {
             self.write_linearisation(h, linear);

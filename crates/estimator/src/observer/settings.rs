@@ -12,31 +12,31 @@ use crate::sensor::ParameterKind;
 
 const PER_HOUR: f64 = 1.0 / 3600.0;
 
-/// Random walk or, with a finite `memory_s`, Ornstein-Uhlenbeck process `dx/dt = -x/memory + w`.
+/// Random walk or, with a `memory_s`, Ornstein-Uhlenbeck process `dx/dt = -x/memory + w`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Walk {
     /// Standard deviation of the prior.
     pub prior_sd: f64,
     /// Standard deviation that the walk gains in one second; sd after `t` seconds is this times `sqrt(t)`.
     pub per_sqrt_s: f64,
-    /// Memory, s; infinite: a random walk.
-    pub memory_s: f64,
+    /// Memory, s; `None`: a random walk.
+    pub memory_s: Option<f64>,
 }
 
 impl Walk {
     /// A constant with a prior standard deviation; 0: known.
     pub fn constant(prior_sd: f64) -> Self {
-        Self { prior_sd, per_sqrt_s: 0.0, memory_s: f64::INFINITY }
+        Self { prior_sd, per_sqrt_s: 0.0, memory_s: None }
     }
 
     /// A walk stated by the standard deviation it gains in an hour.
     pub fn per_sqrt_hour(prior_sd: f64, walk: f64) -> Self {
-        Self { prior_sd, per_sqrt_s: walk * PER_HOUR.sqrt(), memory_s: f64::INFINITY }
+        Self { prior_sd, per_sqrt_s: walk * PER_HOUR.sqrt(), memory_s: None }
     }
 
     /// The same with a memory, h.
     pub fn remembering_hours(self, memory_h: f64) -> Self {
-        Self { memory_s: memory_h / PER_HOUR, ..self }
+        Self { memory_s: Some(memory_h / PER_HOUR), ..self }
     }
 
     /// Whether the quantity is known and constant, so that it needs no state.
@@ -54,10 +54,17 @@ impl Walk {
                 });
             }
         }
-        if self.memory_s > 0.0 {
-            return Ok(());
+        match self.memory_s {
+            Some(value) if !(value > 0.0 && value.is_finite()) => {
+                Err(EstimatorError::ObserverSetting { setting, value, bound: "a positive memory, s" })
+            }
+            _ => Ok(()),
         }
-        Err(EstimatorError::ObserverSetting { setting, value: self.memory_s, bound: "a positive memory, s" })
+    }
+
+    /// Inverse memory, 1/s; 0 for a random walk.
+    pub(super) fn decay_per_s(&self) -> f64 {
+        self.memory_s.map_or(0.0, f64::recip)
     }
 }
 
@@ -133,6 +140,8 @@ pub struct ObserverSettings {
     pub temperature_walk_k_per_sqrt_s: f64,
     /// Temperature of the surroundings, K.
     pub air: Walk,
+    /// Temperature that the surroundings return to where `air` has a memory, K.
+    pub air_rest_k: f64,
     /// Logarithm of the outside film's multiplier.
     pub ln_outside_film: Walk,
     /// Logarithm of the inside film's multiplier.
@@ -166,6 +175,7 @@ impl Default for ObserverSettings {
             longest_step_s: 20.0,
             temperature_walk_k_per_sqrt_s: PER_HOUR.sqrt(),
             air: Walk::per_sqrt_hour(5.0, 60.0),
+            air_rest_k: 283.15,
             ln_outside_film: Walk::per_sqrt_hour(0.6, 0.6).remembering_hours(2.0),
             ln_inside_film: Walk::per_sqrt_hour(0.25, 0.02),
             ln_capacity: Walk::constant(0.12),
@@ -229,6 +239,7 @@ impl ObserverSettings {
         require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
         require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
         positive("film_w_m2_k", self.film_w_m2_k)?;
+        positive("air_rest_k", self.air_rest_k)?;
         positive("longest_step_s", self.longest_step_s)?;
         let gate = self.gate_probability;
         require(gate > 0.0 && gate < 1.0, "gate_probability", gate, "between 0 and 1")?;

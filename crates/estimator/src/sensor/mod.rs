@@ -16,12 +16,23 @@
 //! [`Sensor::predict`] is the static reading with its derivatives, for a filter; [`sample`] turns a trajectory into a
 //! [`crate::log::Log`] with everything that follows. The numbers `b, kappa, c, s` are [`Parameter`]s: known, or with a
 //! prior from which [`Sensor::draw`] takes one specimen ([`SensorTruth`]).
+mod exposure;
+mod file;
+pub mod lag;
 mod model;
+pub mod noise;
 mod parameter;
+mod sample;
+mod stream;
+mod suite;
 mod typical;
 
 pub use cylwatch_thermal::scenario::sensor::{
-    CorrelatedNoise, GasPlace, Law, PressureReference, Pt100Class, SensorKind, SurfacePlace,
+    CorrelatedNoise, GasPlace, KindChoice, Law, PressureReference, Pt100Class, SensorKind, SensorSpec,
+    SurfacePlace,
 };
+pub use file::{SensorsSpec, read_sensors, schema};
 pub use model::{ELECTRONICS_REFERENCE_K, Exposure, Prediction, Sensor};
 pub use parameter::{MAX_PARAMETERS, Parameter, ParameterKind};
+pub use sample::{sample, sample_at};
+pub use suite::{SensorSuite, SensorTruth, Specimen, SuiteTruth};

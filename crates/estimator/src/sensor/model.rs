@@ -201,3 +201,6 @@ impl Sensor {
         self.lag_s
     }
 }
+
+#[cfg(test)]
+mod tests;

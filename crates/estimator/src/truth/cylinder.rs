@@ -51,16 +51,17 @@ pub struct CylinderParameters {
 }
 
 /// A surface temperature sensor as it is: it reads
-/// `T + kappa (h/h_0)^0.3 (T_air - T) + offset + noise`, with `h` the film by convection and `h_0` the mean one.
+/// `T + kappa (h/h_0)^0.3 (T_air - T) + offset + noise`, with `h` the film by convection, `h_0` = 10 W/(m² K), and
+/// noise of 0.05 K. A filter takes the coupling as constant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TemperatureSensor {
     /// Constant offset, K.
     pub offset_k: f64,
-    /// Mounting coupling to the air at the mean film, 0 to 1.
+    /// Mounting coupling `kappa` to the air, 0 to 1.
     pub air_coupling: f64,
 }
 
-/// A pressure transmitter as it is: it reads `p + offset + coefficient (T_valve - 288.15 K) + noise`.
+/// A pressure transmitter as it is: it reads `p + offset + coefficient (T_valve - 288.15 K) + noise`, noise of 10 mbar.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PressureSensor {
     /// Constant offset, Pa.

@@ -10,6 +10,7 @@ mod file;
 mod railway;
 mod random;
 mod readings;
+pub mod score;
 mod weather;
 
 use cylwatch_thermal::flow::{Flow, FlowKind};
@@ -64,7 +65,7 @@ impl Default for TruthSettings {
             cylinder_cells: 6,
             radial_cells: 1,
             gas_cells: 10,
-            relative_tolerance: 1e-4,
+            relative_tolerance: 1e-6,
             leak: None,
         }
     }

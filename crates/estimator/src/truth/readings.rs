@@ -5,14 +5,14 @@ use cylwatch_thermal::trajectory::Trajectory;
 use super::random::{Purpose, Random};
 use super::{Course, Cylinder, TemperatureSensor, Truth, TruthLeak};
 use crate::EstimatorError;
-use crate::log::{Channel, Log, Quantity};
+use crate::log::{Channel, Log};
+use crate::sensor::{Exposure, Sensor};
 
 /// Film by convection at which a mounting has its stated coupling, W/(m² K).
-const FILM_MEAN_W_M2_K: f64 = 10.0;
+const COUPLING_FILM_W_M2_K: f64 = 10.0;
 const COUPLING_EXPONENT: f64 = 0.3;
 const NOISE_K: f64 = 0.05;
 const NOISE_PA: f64 = 1000.0;
-const COEFFICIENT_REFERENCE_K: f64 = 288.15;
 
 impl Truth {
     /// Chosen samples of a trajectory, read by the cylinder's sensors.
@@ -47,72 +47,85 @@ impl Truth {
             bottom_k: place("bottom")?,
             log: Log::default(),
         };
-        truth.log = truth.readings(&trajectory.scenario);
+        truth.log = truth.readings(&trajectory.scenario)?;
         Ok(truth)
     }
 
-    fn readings(&self, scenario: &Scenario) -> Log {
-        let surface = |sensor: &TemperatureSensor, at_k: &[f64], above_middle: f64, purpose| {
-            self.read_surface(sensor, at_k, &|t| exposure(scenario, above_middle, t), purpose)
-        };
+    fn readings(&self, scenario: &Scenario) -> Result<Log, EstimatorError> {
         let s = &self.sensors;
+        let surface = |name, place: &Place<'_>| self.read_surface(name, place, scenario);
         let columns = [
-            ("shoulder", surface(&s.shoulder, &self.shoulder_k, 0.4, Purpose::ShoulderNoise)),
-            ("valve", surface(&s.valve, &self.valve_k, 0.5, Purpose::ValveNoise)),
-            ("wall_middle", surface(&s.middle, &self.middle_k, 0.0, Purpose::MiddleNoise)),
-            ("wall_bottom", surface(&s.bottom, &self.bottom_k, -0.5, Purpose::BottomNoise)),
-            ("pressure", self.read_pressure()),
+            surface("shoulder", &Place::new(&s.shoulder, &self.shoulder_k, 0.4, Purpose::ShoulderNoise))?,
+            surface("valve", &Place::new(&s.valve, &self.valve_k, 0.5, Purpose::ValveNoise))?,
+            surface("wall_middle", &Place::new(&s.middle, &self.middle_k, 0.0, Purpose::MiddleNoise))?,
+            surface("wall_bottom", &Place::new(&s.bottom, &self.bottom_k, -0.5, Purpose::BottomNoise))?,
+            self.read_pressure("pressure")?,
         ];
-        let quantity = |name: &str| match name {
-            "pressure" => Quantity::Pressure,
-            _ => Quantity::Temperature,
-        };
-        Log {
-            channels: columns
-                .iter()
-                .map(|(name, _)| Channel { name: (*name).into(), quantity: quantity(name) })
-                .collect(),
-            time_s: self.time_s.clone(),
-            values: (0..self.time_s.len())
-                .flat_map(|row| columns.iter().map(move |(_, values)| values[row]))
-                .collect(),
-        }
+        let values = (0..self.time_s.len())
+            .flat_map(|row| columns.iter().map(move |(_, values)| values[row]))
+            .collect();
+        let channels = columns.iter().map(|(channel, _)| channel.clone()).collect();
+        Ok(Log { channels, time_s: self.time_s.clone(), values })
     }
 
     fn read_surface(
         &self,
-        sensor: &TemperatureSensor,
-        at_k: &[f64],
-        exposure: &dyn Fn(f64) -> (f64, f64),
-        purpose: Purpose,
-    ) -> Vec<f64> {
-        let mut noise = Random::new(self.seed, purpose);
-        let read = |(&t_s, &surface_k): (&f64, &f64)| {
-            let (air_k, film_w_m2_k) = exposure(t_s);
-            let coupling = sensor.air_coupling * (film_w_m2_k / FILM_MEAN_W_M2_K).powf(COUPLING_EXPONENT);
-            surface_k + coupling * (air_k - surface_k) + sensor.offset_k + NOISE_K * noise.normal()
+        name: &str,
+        place: &Place<'_>,
+        scenario: &Scenario,
+    ) -> Result<Column, EstimatorError> {
+        let sensor = Sensor::typical(name)?;
+        let mut noise = Random::new(self.seed, place.noise);
+        let read = |(&t_s, &body_k): (&f64, &f64)| {
+            let (air_k, film_w_m2_k) = surroundings(scenario, place.above_middle, t_s);
+            let coupling =
+                place.sensor.air_coupling * (film_w_m2_k / COUPLING_FILM_W_M2_K).powf(COUPLING_EXPONENT);
+            let exposure = Exposure { body_k, air_k, ..Exposure::default() };
+            sensor.predict(&exposure, &[place.sensor.offset_k, coupling]).value + NOISE_K * noise.normal()
         };
-        self.time_s.iter().zip(at_k).map(read).collect()
+        let values = self.time_s.iter().zip(place.body_k).map(read).collect();
+        Ok((Channel { name: name.into(), quantity: sensor.quantity() }, values))
     }
 
-    fn read_pressure(&self) -> Vec<f64> {
+    fn read_pressure(&self, name: &str) -> Result<Column, EstimatorError> {
+        let sensor = Sensor::typical(name)?;
         let mut noise = Random::new(self.seed, Purpose::PressureNoise);
-        let sensor = &self.sensors.pressure;
-        let read = |(&pressure_pa, &valve_k): (&f64, &f64)| {
-            let drift = sensor.coefficient_pa_k * (valve_k - COEFFICIENT_REFERENCE_K);
-            pressure_pa + sensor.offset_pa + drift + NOISE_PA * noise.normal()
+        let parameters = [self.sensors.pressure.offset_pa, self.sensors.pressure.coefficient_pa_k, 0.0];
+        let read = |(&pressure_pa, &electronics_k): (&f64, &f64)| {
+            let exposure = Exposure { pressure_pa, electronics_k, ..Exposure::default() };
+            sensor.predict(&exposure, &parameters).value + NOISE_PA * noise.normal()
         };
-        self.pressure_pa.iter().zip(&self.valve_k).map(read).collect()
+        let values = self.pressure_pa.iter().zip(&self.valve_k).map(read).collect();
+        Ok((Channel { name: name.into(), quantity: sensor.quantity() }, values))
+    }
+}
+
+/// A channel and its readings.
+type Column = (Channel, Vec<f64>);
+
+/// Where a surface sensor sits.
+struct Place<'a> {
+    sensor: &'a TemperatureSensor,
+    /// Temperature of the surface at every sample, K.
+    body_k: &'a [f64],
+    /// Height above the middle as a fraction of the vessel's.
+    above_middle: f64,
+    noise: Purpose,
+}
+
+impl<'a> Place<'a> {
+    fn new(sensor: &'a TemperatureSensor, body_k: &'a [f64], above_middle: f64, noise: Purpose) -> Self {
+        Self { sensor, body_k, above_middle, noise }
     }
 }
 
 /// Air, K, and film by convection, W/(m² K), at a height as a fraction above the middle.
-fn exposure(scenario: &Scenario, above_middle: f64, t_s: f64) -> (f64, f64) {
+fn surroundings(scenario: &Scenario, above_middle: f64, t_s: f64) -> (f64, f64) {
     let around = &scenario.surroundings;
     let difference_k = around.axial.air_difference_k.as_ref().map_or(0.0, |series| series.at(t_s));
     let film_w_m2_k = match &around.film {
         OutsideFilm::Coefficient { film_w_m2_k } => film_w_m2_k.at(t_s),
-        OutsideFilm::Convection { .. } => FILM_MEAN_W_M2_K,
+        OutsideFilm::Convection { .. } => COUPLING_FILM_W_M2_K,
     };
     let film = film_w_m2_k * (1.0 + around.axial.film_slope * above_middle);
     (around.air_k.at(t_s) + above_middle * difference_k, film)

@@ -9,7 +9,7 @@ use crate::vessel::Valve;
 use crate::wall::mesh::Mesh;
 
 /// Height of the valve above the middle, as a fraction of the inner height.
-const TOP: f64 = 0.5;
+pub(crate) const TOP: f64 = 0.5;
 
 /// Air and film at one height.
 struct Exposure {
@@ -112,7 +112,7 @@ impl Model {
 }
 
 /// Height of the middle of each column above that of the vessel, as a fraction of the inner height.
-pub(super) fn above_middle(mesh: &Mesh) -> Vec<f64> {
+pub(crate) fn above_middle(mesh: &Mesh) -> Vec<f64> {
     let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
     mesh.columns
         .iter()

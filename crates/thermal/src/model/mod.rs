@@ -33,7 +33,7 @@ use crate::vessel::{GasResolution, Surface, Valve, Vessel};
 use crate::wall::conduction::link_flow;
 use crate::wall::material::Material;
 use crate::wall::mesh::Mesh;
-use faces::{above_middle, lit_area_m2};
+use faces::lit_area_m2;
 use gas::{Gas, GasPoint};
 use grid::GasGrid;
 use inputs::Inputs;
@@ -41,6 +41,7 @@ use layout::Layout;
 use stratified::{Stratified, WallAction};
 use well_mixed::WellMixed;
 
+pub(crate) use faces::{TOP, above_middle};
 pub use jacobian::Assembly;
 pub use output::Output;
 

@@ -262,6 +262,18 @@ struct Wrapper<'a, 'm, S> {
     rate: V,
     /// Start of the last step, s.
     begin_s: f64,
+    /// Stop time, s.
+    stop_s: f64,
+    /// The last step ended at the stop time, give or take a rounding.
+    at_stop: bool,
+    /// Whether the method keeps no history, so that its time may be set.
+    one_step: bool,
+}
+
+impl<'a, 'm, S> Wrapper<'a, 'm, S> {
+    fn new(solver: S, equations: &'a Equations<'m>, buffer: V, rate: V, one_step: bool) -> Self {
+        Self { solver, equations, buffer, rate, begin_s: 0.0, stop_s: 0.0, at_stop: false, one_step }
+    }
 }
 
 impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 'm, S> {
@@ -279,12 +291,20 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
     fn step(&mut self) -> Result<Step, String> {
         self.begin_s = self.solver.state().t;
         match self.solver.step().map_err(|error| error.to_string())? {
-            OdeSolverStopReason::TstopReached => Ok(Step::Stop),
+            OdeSolverStopReason::TstopReached => {
+                self.at_stop = true;
+                Ok(Step::Stop)
+            }
             _ => Ok(Step::Internal),
         }
     }
 
     fn set_stop(&mut self, t_s: f64) -> Result<(), String> {
+        // One rounding beside each edge would add up until a step ends beyond the solver's own tolerance.
+        if self.one_step && self.at_stop {
+            *self.solver.state_mut().t = self.stop_s;
+        }
+        (self.stop_s, self.at_stop) = (t_s, false);
         self.solver.set_stop_time(t_s).map_err(|error| error.to_string())
     }
 
@@ -308,6 +328,7 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
         state.dy.copy_from(&self.rate);
         *state.t = t_s;
         *state.h = first_step_s;
+        self.at_stop = false;
     }
 
     fn statistics(&self) -> SolverStatistics {
@@ -361,17 +382,17 @@ pub fn with_stepper<R>(
     match method {
         Method::TrBdf2 => {
             let solver = one_step(Tableau::tr_bdf2()).map_err(failed)?;
-            work(&mut Wrapper { solver, equations, buffer, rate, begin_s: 0.0 })
+            work(&mut Wrapper::new(solver, equations, buffer, rate, true))
         }
         Method::Esdirk34 => {
             let solver = one_step(Tableau::esdirk34()).map_err(failed)?;
-            work(&mut Wrapper { solver, equations, buffer, rate, begin_s: 0.0 })
+            work(&mut Wrapper::new(solver, equations, buffer, rate, true))
         }
         Method::Automatic | Method::Bdf => {
             let state = problem.bdf_state::<LS>().map_err(failed)?;
             let solver: Bdf<'_, _, LS> =
                 Bdf::new(&problem, state, BorderedLu::new(border)).map_err(failed)?;
-            work(&mut Wrapper { solver, equations, buffer, rate, begin_s: 0.0 })
+            work(&mut Wrapper::new(solver, equations, buffer, rate, false))
         }
     }
 }

@@ -7,6 +7,8 @@ mod presets;
 mod property;
 mod scenario_messages;
 mod schema;
+mod sensor_messages;
+mod sensors;
 mod units;
 mod vessel_messages;
 

@@ -20,6 +20,11 @@ fn suffixes_convert_to_known_values() {
         ("u_km_h", 36.0, 10.0),
         ("b_per_bar", 1.5e-5, 1.5e-10),
         ("r_bar_h", 0.036, 1.0),
+        ("drift_k_d", 86_400.0, 1.0),
+        ("drift_bar_d", 0.864, 1.0),
+        ("offset_psi", 1.0, 6_894.757_293_168_361),
+        ("span_percent", 0.1, 1e-3),
+        ("c_mbar_k", 12.0, 1_200.0),
     ];
     for (key, value, si) in cases {
         let (_, unit) = units::split(key).unwrap();
@@ -42,6 +47,13 @@ fn the_longest_suffix_wins() {
         ("shoulder_k", "shoulder", Dimension::Temperature),
         ("gas_mean_sd_k", "gas_mean_sd", Dimension::TemperatureDifference),
         ("slope_pa_k", "slope", Dimension::PressurePerTemperature),
+        ("pressure_sd_bar", "pressure_sd", Dimension::PressureDifference),
+        ("noise_mbar", "noise", Dimension::PressureDifference),
+        ("resolution_k", "resolution", Dimension::TemperatureDifference),
+        ("offset_tolerance_pa", "offset_tolerance", Dimension::PressureDifference),
+        ("drift_pa_s", "drift", Dimension::PressureRate),
+        ("viscosity_pa_s", "viscosity", Dimension::Viscosity),
+        ("drift_k_h", "drift", Dimension::TemperatureRate),
     ];
     for (key, base, dimension) in cases {
         let (found, unit) = units::split(key).unwrap();
@@ -57,6 +69,7 @@ fn a_unit_of_another_dimension_is_refused() {
     assert_eq!(units::to_si("x_bar", 2.0, Dimension::Pressure), Some(2e5));
     assert_eq!(units::to_si("x_bar", 2.0, Dimension::Temperature), None);
     assert_eq!(units::to_si("x_degc", 2.0, Dimension::TemperatureDifference), None);
+    assert_eq!(units::to_si("x_barg", 2.0, Dimension::PressureDifference), None);
     assert_eq!(units::to_si("x", 2.0, Dimension::Pressure), None);
 }
 

@@ -165,6 +165,15 @@ fn jacobian_is_the_derivative_in_wind_and_radiation() {
 }
 
 #[test]
+fn jacobian_is_the_derivative_where_film_and_air_change_along_the_axis() {
+    let mut scenario = with_flows(vec![]);
+    scenario.surroundings.axial.film_slope = 0.8;
+    check(&full(), &scenario, &Inputs { air_difference_k: 15.0, ..STILL }, 1.0);
+    let wind = FilmInput::Convection { wind_m_s: 3.0, multiplier: 1.0 };
+    check(&full(), &scenario, &Inputs { air_difference_k: 15.0, film: wind, ..STILL }, 1.0);
+}
+
+#[test]
 fn jacobian_is_the_derivative_in_a_blowdown_and_a_refill() {
     let orifice = |back_pressure_pa| FlowKind::Orifice {
         diameter_m: 0.003,

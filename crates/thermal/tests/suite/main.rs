@@ -7,3 +7,4 @@ mod convergence;
 mod jacobian;
 mod preset_runs;
 mod support;
+mod surroundings;

@@ -81,7 +81,7 @@ fn what_is_no_covariance_is_refused() {
     ));
     assert!(matches!(
         refuse(SMatrix::from([[1.0, 1.001], [1.001, 1.0]])),
-        EstimatorError::CovarianceIndefinite { state: 0, .. }
+        EstimatorError::CovarianceIndefinite { state: 1, .. }
     ));
     assert!(matches!(
         refuse(SMatrix::from([[1.0, 0.0], [0.0, -1e-9]])),

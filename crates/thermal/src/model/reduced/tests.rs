@@ -39,6 +39,7 @@ fn rates_are_those_of_the_simulation_on_the_same_wall() {
                 film: FilmInput::Coefficient(FILM),
                 radiation_k: None,
                 irradiance_w_m2: 0.0,
+                air_difference_k: 0.0,
             };
             let mut expected = vec![0.0; model.layout().states];
             model.rate(&energy_states(&x), &inputs, &[true], &mut expected).unwrap();

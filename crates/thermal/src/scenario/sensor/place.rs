@@ -1,5 +1,6 @@
 //! Places of sensors, and the cells of a model that stand for them.
 use crate::model::grid::GasGrid;
+use crate::model::{self, TOP};
 use crate::vessel::Vessel;
 use crate::wall::geometry::{Geometry, Orientation};
 use crate::wall::mesh::{Facing, Mesh};
@@ -82,6 +83,15 @@ impl SurfacePlace {
         };
         let sides = (0..mesh.columns.len()).filter(|&j| mesh.columns[j].facing == Facing::Side);
         sides.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// Height above the middle as a fraction of the inner height, as [`crate::scenario::AxialVariation`] counts it;
+    /// `None` as for [`SurfacePlace::column`], but the valve is the top.
+    pub fn above_middle(&self, geometry: &Geometry, mesh: &Mesh) -> Option<f64> {
+        match self {
+            Self::Valve => Some(TOP),
+            place => Some(model::above_middle(mesh)[place.column(geometry, mesh)?]),
+        }
     }
 }
 

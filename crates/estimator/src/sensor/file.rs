@@ -1,0 +1,44 @@
+//! Files of sensors with their priors: `[[sensor]]` tables as in a scenario.
+use super::typical::completed;
+use super::{Sensor, SensorSuite};
+use crate::EstimatorError;
+use cylwatch_thermal::document;
+use cylwatch_thermal::scenario::sensor::{SensorSpec, mounted};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Raw content of a file of sensors. Whatever a table leaves out is that of the typical sensor of its kind
+/// ([`Sensor::typical`]); in a scenario it would be nothing.
+#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq)]
+pub struct SensorsSpec {
+    /// Sensors.
+    pub sensor: Vec<SensorSpec>,
+}
+
+impl SensorsSpec {
+    /// Checks the sensors and fills in the typical numbers.
+    ///
+    /// # Errors
+    /// [`EstimatorError::Thermal`] with the path of the first value that breaks a bound.
+    pub fn build(&self) -> Result<SensorSuite, EstimatorError> {
+        let complete: Vec<SensorSpec> = self.sensor.iter().map(completed).collect();
+        SensorSuite::try_new(mounted(&complete, "sensor")?.iter().map(Sensor::from).collect())
+    }
+}
+
+/// Reads a file of sensors; `source` is its name in messages.
+///
+/// # Errors
+/// [`EstimatorError::Thermal`] with file, line, value and remedy for whatever is wrong with the text.
+pub fn read_sensors(text: &str, source: &str) -> Result<SensorSuite, EstimatorError> {
+    let (specification, places) = document::read::<SensorsSpec>(text, source)?;
+    specification.build().map_err(|error| match error {
+        EstimatorError::Thermal(error) => places.locate(error).into(),
+        other => other,
+    })
+}
+
+/// JSON schema of files of sensors.
+pub fn schema() -> serde_json::Value {
+    document::schema::of::<SensorsSpec>("cylwatch sensors")
+}

@@ -1,0 +1,172 @@
+//! Smoothers against the dense solution for all states at once.
+use cylwatch_estimator::EstimatorError;
+use cylwatch_estimator::filter::{
+    CovarianceForm, ExtendedKalman, FixedLag, KalmanSettings, PassStep, UdFactors, smooth_fixed_interval,
+};
+use nalgebra::{DMatrix, DVector, Dyn};
+use rand::RngExt;
+
+use crate::linear_model::{
+    LinearModel, covariance, covariance_difference, normal, rng, state_difference, uniform,
+};
+
+type Filter = ExtendedKalman<LinearModel, UdFactors<Dyn>>;
+
+struct Case {
+    model: LinearModel,
+    x0: DVector<f64>,
+    p0: DMatrix<f64>,
+    dt_s: Vec<f64>,
+    z: Vec<Vec<f64>>,
+}
+
+impl Case {
+    fn random(seed: u64, (n, leading, outputs): (usize, usize, usize), steps: usize) -> Self {
+        let mut rng = rng(seed);
+        let model = LinearModel::random(&mut rng, n, leading, outputs);
+        let p0 = covariance(&mut rng, n);
+        let x0 = normal(&mut rng, n) * 3.0;
+        let dt_s: Vec<f64> = (0..steps).map(|_| rng.random_range(0.05..1.5)).collect();
+        let z = model.readings(&mut rng, &x0, &dt_s, 0.25);
+        Self { model, x0, p0, dt_s, z }
+    }
+
+    fn filter(&self) -> Filter {
+        let form = UdFactors::from_covariance(&self.p0).unwrap();
+        let settings = KalmanSettings::default();
+        ExtendedKalman::try_new(self.model.clone(), self.x0.as_slice(), form, &settings).unwrap()
+    }
+
+    /// The start and all steps, recorded.
+    fn pass(&self) -> Vec<PassStep> {
+        let mut filter = self.filter();
+        let mut steps = vec![filter.record().unwrap()];
+        for (dt_s, z) in self.dt_s.iter().zip(&self.z) {
+            filter.step(*dt_s, z).unwrap();
+            steps.push(filter.record().unwrap());
+        }
+        steps
+    }
+
+    /// Mean and covariance of all states given all readings.
+    ///
+    /// All states are linear in the start and the noises: their joint prior covariance is dense and exact even where
+    /// a state has no noise. One conditioning on all readings at once gives the answer.
+    fn joint(&self) -> (DVector<f64>, DMatrix<f64>) {
+        let (n, steps) = (self.x0.len(), self.dt_s.len());
+        let size = n * (steps + 1);
+        let (mut mean, mut prior) = (DVector::zeros(size), DMatrix::zeros(size, size));
+        mean.rows_mut(0, n).copy_from(&self.x0);
+        prior.view_mut((0, 0), (n, n)).copy_from(&self.p0);
+        for (k, dt_s) in self.dt_s.iter().enumerate() {
+            let (f, q) = self.model.discrete(*dt_s);
+            let moved = &f * mean.rows(k * n, n);
+            mean.rows_mut((k + 1) * n, n).copy_from(&moved);
+            // Covariance of the new state with all before it, then with itself.
+            let known = (k + 1) * n;
+            let cross = &f * prior.view((k * n, 0), (n, known));
+            let own = &f * prior.view((k * n, k * n), (n, n)) * f.transpose() + q;
+            prior.view_mut((known, 0), (n, known)).copy_from(&cross);
+            prior.view_mut((0, known), (known, n)).copy_from(&cross.transpose());
+            prior.view_mut((known, known), (n, n)).copy_from(&own);
+        }
+        let readings: Vec<(usize, usize)> = (0..steps)
+            .flat_map(|k| (0..self.model.r.len()).map(move |j| (k, j)))
+            .filter(|(k, j)| self.z[*k][*j].is_finite())
+            .collect();
+        let mut h = DMatrix::zeros(readings.len(), size);
+        for (row, (k, j)) in readings.iter().enumerate() {
+            h.view_mut((row, (k + 1) * n), (1, n)).copy_from(&self.model.h.row(*j));
+        }
+        let z = DVector::from_iterator(readings.len(), readings.iter().map(|(k, j)| self.z[*k][*j]));
+        let r = DVector::from_iterator(readings.len(), readings.iter().map(|(_, j)| self.model.r[*j]));
+        let cross = &prior * h.transpose();
+        let s = (&h * &cross + DMatrix::from_diagonal(&r)).cholesky().unwrap();
+        let innovation = z - &h * &mean;
+        let posterior = &prior - &cross * s.solve(&cross.transpose());
+        (mean + &cross * s.solve(&innovation), posterior)
+    }
+}
+
+fn assert_is_the_dense_solution(case: &Case) {
+    let n = case.x0.len();
+    let (x, p) = case.joint();
+    for (k, smoothed) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
+        let expected = p.view((k * n, k * n), (n, n)).into_owned();
+        assert!(state_difference(smoothed.x.as_slice(), &x.rows(k * n, n).into_owned(), &expected) < 1e-10);
+        assert!(covariance_difference(&smoothed.p, &expected) < 1e-10);
+    }
+}
+
+#[test]
+fn smoother_is_the_dense_solution_for_all_states() {
+    for (seed, sizes) in [(41, (1, 1, 1)), (42, (3, 3, 2)), (43, (6, 4, 2)), (44, (9, 6, 3))] {
+        assert_is_the_dense_solution(&Case::random(seed, sizes, 15));
+    }
+}
+
+#[test]
+fn smoother_needs_no_process_noise_and_no_inverse() {
+    let mut silent = Case::random(45, (5, 4, 2), 12);
+    silent.model.q_c.fill(0.0);
+    assert_is_the_dense_solution(&silent);
+    let mut known = Case::random(46, (5, 3, 2), 12);
+    // The start has rank 2, one state is known, and one noise source drives all: every covariance is singular.
+    let root = uniform(&mut rng(47), 5, 2);
+    known.p0 = &root * root.transpose();
+    known.p0.row_mut(4).fill(0.0);
+    known.p0.column_mut(4).fill(0.0);
+    known.model.q_c.fill(0.0);
+    known.model.q_c[(0, 0)] = 0.5;
+    assert_is_the_dense_solution(&known);
+}
+
+#[test]
+fn fixed_lag_is_fixed_interval_on_the_window() {
+    let case = Case::random(48, (6, 4, 2), 20);
+    for lag in [0, 1, 4, 20] {
+        let (mut filter, steps) = (case.filter(), case.pass());
+        let mut smoother = FixedLag::try_new(lag, &filter).unwrap();
+        for (k, (dt_s, z)) in case.dt_s.iter().zip(&case.z).enumerate() {
+            filter.step(*dt_s, z).unwrap();
+            let lagged = smoother.push(&filter).unwrap();
+            assert_eq!(lagged.is_some(), k + 1 >= lag);
+            if let Some(lagged) = lagged {
+                let expected = &smooth_fixed_interval(&steps[..=k + 1])[k + 1 - lag];
+                assert!(state_difference(lagged.x.as_slice(), &expected.x, &expected.p) < 1e-12);
+                assert!(covariance_difference(&lagged.p, &expected.p) < 1e-12);
+            }
+            assert!(smoother.steps().len() <= lag + 1);
+        }
+    }
+}
+
+#[test]
+fn a_step_taken_in_two_calls_is_smoothed_as_one() {
+    let case = Case::random(49, (4, 3, 2), 10);
+    let mut filter = case.filter();
+    let mut steps = vec![filter.record().unwrap()];
+    for (dt_s, z) in case.dt_s.iter().zip(&case.z) {
+        filter.predict(*dt_s).unwrap();
+        steps.push(filter.record().unwrap());
+        filter.update(z).unwrap();
+        steps.push(filter.record().unwrap());
+    }
+    let apart = smooth_fixed_interval(&steps);
+    for (k, expected) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
+        assert!(state_difference(apart[2 * k].x.as_slice(), &expected.x, &expected.p) < 1e-12);
+        assert!(covariance_difference(&apart[2 * k].p, &expected.p) < 1e-12);
+    }
+}
+
+#[test]
+fn a_pass_with_consider_states_is_refused() {
+    let case = Case::random(50, (3, 2, 1), 1);
+    let form = UdFactors::<Dyn>::from_covariance(&case.p0).unwrap();
+    let settings = KalmanSettings { consider: vec![2], ..KalmanSettings::default() };
+    let filter = ExtendedKalman::try_new(case.model.clone(), case.x0.as_slice(), form, &settings).unwrap();
+    assert!(matches!(filter.record(), Err(EstimatorError::ConsiderStatesSmoothed)));
+    assert!(smooth_fixed_interval(&[]).is_empty());
+    let form = filter.form();
+    assert!(covariance_difference(&form.to_dense(), &case.p0) < 1e-14);
+}
