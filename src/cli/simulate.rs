@@ -6,12 +6,7 @@ use super::output::Target;
 use super::plot::Plot;
 use super::progress::Progress;
 use anyhow::bail;
-<<<<<<< HEAD
-use cylwatch::report::{Provenance, aligned, simulation};
-=======
-use cylwatch::report::figure::Figure;
 use cylwatch::report::{Provenance, Readings, aligned, simulation};
->>>>>>> main
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
@@ -49,18 +44,12 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     }
     let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
     // Everything is made before anything is written.
-<<<<<<< HEAD
-    let data = data(&run, options.format, &provenance)?;
-    let picture = options.plot.as_ref().map(|plot| plot.draw(&simulation::figure(&run), &provenance));
-    if let (Some(plot), Some(bytes)) = (&options.plot, picture.transpose()?) {
-        plot.write(&bytes)?;
-=======
     let data = data(&run, &readings, options.format, &provenance)?;
-    let figure = |kind| draw(&simulation::figure(&run, &readings), kind, &provenance);
-    let picture = options.plot.as_ref().map(|&(_, kind)| figure(kind)).transpose()?;
-    if let (Some((target, _)), Some(bytes)) = (&options.plot, picture) {
-        target.write(&bytes)?;
->>>>>>> main
+    let figure = options.plot.is_some().then(|| simulation::figure(&run, &readings));
+    let picture = options.plot.as_ref().zip(figure);
+    let picture = picture.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
+    if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
+        plot.write(&bytes)?;
     }
     options.data.write(data.as_bytes())?;
     messages.say(&simulation::summary(&run));
@@ -89,30 +78,12 @@ impl Options {
     }
 }
 
-<<<<<<< HEAD
-fn data(run: &Trajectory, format: Format, provenance: &Provenance) -> anyhow::Result<String> {
-=======
-fn checked_plot(path: &Path, inputs: &[&Path], data: &Target) -> anyhow::Result<(Target, Picture)> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let picture = match ending.as_deref() {
-        Some("svg") => Picture::Svg,
-        Some("png") => Picture::Png,
-        _ => bail!("--plot {}: the ending must be .svg or .png", path.display()),
-    };
-    let target = Target::checked(Some(path), inputs)?;
-    if matches!((&target, data), (Target::File(plot), Target::File(data)) if plot == data) {
-        bail!("--plot and --output name the same file {}: choose two", path.display());
-    }
-    Ok((target, picture))
-}
-
 fn data(
     run: &Trajectory,
     readings: &Readings,
     format: Format,
     provenance: &Provenance,
 ) -> anyhow::Result<String> {
->>>>>>> main
     Ok(match format {
         Format::Csv => simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run)),
         Format::Json => serde_json::to_string(&simulation::document(run, readings, provenance))? + "\n",
