@@ -21,7 +21,7 @@ pub struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   cylwatch simulate nitrogen-20l shock-cold -o run.csv --plot run.svg
-  cylwatch estimate nitrogen-20l log.csv -o estimates.csv --plot estimates.svg
+  cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
@@ -136,8 +136,8 @@ pub struct EstimateArguments {
     /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
     #[arg(long = "map", value_name = "OURS=THEIRS")]
     pub mappings: Vec<Mapping>,
-    /// TOML file of the sensors with their errors [default: typical ones on the columns shoulder, valve, wall_<place>
-    /// and pressure].
+    /// TOML file of the sensors with their errors [default: on the columns shoulder, valve, wall_<place> Pt100 of class
+    /// B, on pressure a transmitter of 250 bar and 0.25 %].
     #[arg(long, value_name = "FILE")]
     pub sensors: Option<PathBuf>,
     /// What is known at the first row.
@@ -154,17 +154,19 @@ pub struct EstimateArguments {
 fn estimate_help() -> String {
     format!(
         "\
-A log has a column time_<unit>, or time for RFC 3339, and readings shoulder, valve, ambient, pressure,
-wall_<place> or gas_<name>, each with its unit: shoulder_degc, pressure_barg. Empty cells, NaN and NA
-are missing values. Columns measured_<name> of a simulated log are readings; gas_mean, mass and outflow
-are taken as truth, to score the estimates. Rows go upwards in time.
+A log has a column time_<unit>, or time for RFC 3339, and readings shoulder, valve, ambient,
+pressure, wall_<place> or gas_<name>, each with its unit: shoulder_degc, pressure_barg. Empty
+cells, NaN and NA are missing values; rows go upwards in time at any interval. In a simulated log
+the columns measured_<name> are the readings, and gas_mean, mass and outflow are taken as truth,
+to score the estimates.
 
 {}
 
 Examples:
-  cylwatch estimate nitrogen-20l log.csv -o estimates.csv --plot estimates.svg
-  cylwatch estimate nitrogen-20l logger.csv --map time=Timestamp --map shoulder_degc=T1 --map pressure_barg=P1
-  cylwatch simulate nitrogen-20l tunnel-winter | cylwatch estimate nitrogen-20l - --plot estimates.svg",
+  cylwatch simulate nitrogen-20l tunnel-winter -o run.csv
+  cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
+  cylwatch estimate nitrogen-20l logger.csv --map time=Timestamp --map shoulder_degc=T1
+  tail -n +1 -f live.csv | cylwatch estimate nitrogen-20l - --fill-mass-kg 4.48",
         estimate::DOCUMENTATION
     )
 }

@@ -1,6 +1,6 @@
 //! `cylwatch estimate`: the observer on a log, row by row.
 use super::arguments::{EstimateArguments, Format};
-use super::fill::{FillSource, GivenFill};
+use super::fill::{self, FillSource, GivenFill};
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::output::Target;
@@ -8,7 +8,7 @@ use super::plot::Plot;
 use super::progress::Progress;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::{Channel, Quantity};
-use cylwatch::estimator::observer::{Learned, Observer, ObserverSettings};
+use cylwatch::estimator::observer::{Learned, Observer};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::log::{LogOptions, LogReader, Mapping, Row};
 use cylwatch::report::estimate as report;
@@ -60,6 +60,9 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
         messages.caution(&caution.to_string());
     }
     let summary = outcome?;
+    for doubt in report::doubts(&summary) {
+        messages.caution(&doubt);
+    }
     messages.say(&report::text(&summary));
     Ok(())
 }
@@ -102,9 +105,19 @@ fn estimate(
     let selection = Selection::new(&mut log.reader, sensors, vessel, messages)?;
     let (first, fill) = first_rows(&mut log.reader, &selection, options.source)?;
     let first_k = selection.mean_temperature_k(first.first());
-    let commissioning = options.fill.commissioning(fill, vessel, first_k)?;
-    let settings = ObserverSettings::default();
+    let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
+    let commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
+    let settings = options.fill.settings();
     let mut observer = Observer::new(vessel, &selection.sensors, &commissioning, &settings)?;
+    if let (Some(row), Some(channel)) = (first.last(), selection.first_of(Quantity::Pressure)) {
+        let mass_kg = commissioning.mass_kg(vessel, first_k)?;
+        let fill_pa = observer.cylinder().model().settled_pressure_pa(mass_kg, first_k)?;
+        if let Some(doubt) =
+            fill::misfit(mass_kg, first_k, fill_pa, row.readings[channel]).with_context(begin)?
+        {
+            messages.caution(&format!("{}: {doubt}", begin()));
+        }
+    }
     if let Some(learned) = learned {
         observer = observer.with_learned(learned);
     }

@@ -1,5 +1,6 @@
 //! Which columns of a log the observer uses, and as which sensors.
 use super::*;
+use cylwatch::estimator::sensor::read_sensors;
 
 /// Sensors with their channels in the log.
 pub struct Selection {
@@ -111,13 +112,14 @@ fn typical(channel: &Channel, vessel: &Vessel) -> Result<Sensor, String> {
     if sensor.quantity() != channel.quantity {
         return Err("its unit is of another quantity".to_owned());
     }
-    let _ = vessel;
-    Ok(sensor)
+    match sensor.misfit(vessel) {
+        Some(needs) => Err(format!("the vessel does not have {needs}")),
+        None => Ok(sensor),
+    }
 }
 
 /// Reads a file of sensors.
 pub fn read(inputs: &Inputs, path: &Path) -> anyhow::Result<Vec<Sensor>> {
     let name = path.to_string_lossy();
-    let text = inputs.read(&name)?;
-    bail!("{text}")
+    Ok(read_sensors(&inputs.read(&name)?, &name)?.sensors().to_vec())
 }

@@ -80,13 +80,11 @@ impl FigureData {
     }
 
     fn pressure(&self) -> Option<Panel> {
-        let items: Vec<Item> = [
-            self.line("as read", PRESSURE, style::SECOND),
-            self.line("had no gas been lost", EXPECTED, style::FIRST),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
+        let items: Vec<Item> =
+            [self.line("as read", PRESSURE, style::SECOND), self.line("expected", EXPECTED, style::FIRST)]
+                .into_iter()
+                .flatten()
+                .collect();
         self.course.has(PRESSURE).then(|| Panel { quantity: "pressure in bar".into(), items, height: 0.7 })
     }
 

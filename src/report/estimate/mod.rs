@@ -15,4 +15,4 @@ pub use figure::{FigureData, figure};
 pub use innovation::{Innovations, SensorStatistics};
 pub use row::{COLUMNS, DOCUMENTATION, EstimateRow, csv_header, csv_row, json_row};
 pub use score::{Score, Spread};
-pub use summary::{Summary, document, text};
+pub use summary::{Summary, document, doubts, text};

@@ -27,16 +27,18 @@ pub const COLUMNS: [&str; 13] = [
 /// What the columns mean, for a help page.
 pub const DOCUMENTATION: &str = "\
 Columns (empty where nothing is known; sd is a standard deviation):
-  time_s                     of the row; after the first row where the log has dates
-  gas_mean_degc, _sd_k       mean temperature of the gas
-  mass_kg, mass_sd_g         mass of the gas
-  leak_g_h, leak_sd_g_h      rate at which gas is lost
-  leak_bar_h                 the same as fall of p15_bar
-  pressure_bar               pressure as read, absolute
-  pressure_expected_bar      pressure that the gauge would show had no gas been lost
-  p15_bar                    pressure of this mass when all is at 15 degC
-  verdict                    empty: `estimate` does not decide
-  quality                    good, degraded, predicted, open or restarted";
+  time_s                 of the row; counted from the first row where the log has dates
+  gas_mean_degc, _sd_k   mean temperature of the gas
+  mass_kg, mass_sd_g     mass of the gas; fast losses show here at once
+  leak_g_h, leak_sd_g_h  rate of a slow, lasting leak, averaged over days
+  leak_bar_h             the same as fall of p15_bar
+  pressure_bar           pressure as read, absolute
+  pressure_expected_bar  what the sensor would read with the mass of a day after the first row
+                         (until then: with the mass as estimated)
+  p15_bar                pressure of this mass when all is at 15 degC
+  verdict                empty: `estimate` does not decide
+  quality                good, degraded (a reading is missing or refused), predicted (none),
+                         open (mass is free after many refusals) or restarted";
 
 /// An estimate with what a file says beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]

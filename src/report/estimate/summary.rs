@@ -33,18 +33,36 @@ pub struct Summary {
 
 /// The run in a few lines.
 pub fn text(summary: &Summary) -> String {
-    let row = |what: &str, value: String| vec![what.to_owned(), value];
-    let mut rows = vec![row("log", log(&summary.sampling))];
-    rows.extend(end(summary).into_iter().map(|(what, value)| row(what, value)));
-    if summary.restarts > 0 {
-        rows.push(row("restarts", format!("{} times from the prior", summary.restarts)));
+    let mut rows = vec![("log", log(&summary.sampling))];
+    rows.extend(end(summary));
+    match summary.restarts {
+        0 => {}
+        1 => rows.push(("restarts", "once from the prior".to_owned())),
+        many => rows.push(("restarts", format!("{many} times from the prior"))),
     }
-    for (what, value) in score(&summary.score) {
-        rows.push(row(what, value));
+    rows.extend(score(&summary.score));
+    let width = rows.iter().map(|(what, _)| what.chars().count()).max().unwrap_or(0);
+    let mut text = format!("{}\n", summary.title);
+    for (what, value) in rows {
+        text.push_str(&format!("{what:width$}  {value}\n"));
     }
-    let mut text = format!("{}\n{}", summary.title, aligned(&[], &rows));
+    text.push('\n');
     text.push_str(&sensors(&summary.sensors));
     text
+}
+
+/// What speaks against the model: sensors whose readings it refused so often that it does not describe them.
+pub fn doubts(summary: &Summary) -> Vec<String> {
+    const FEWEST: u64 = 5;
+    const SHARE: f64 = 0.05;
+    let doubt = |(name, s): &(String, SensorStatistics)| {
+        let all = s.accepted + s.rejected;
+        (s.rejected >= FEWEST && s.rejected as f64 > SHARE * all as f64).then(|| {
+            let rejected = s.rejected;
+            format!("{rejected} of {all} readings of {name} do not fit the vessel: look at the vessel, at the sensor's place and at its unit")
+        })
+    };
+    summary.sensors.iter().filter_map(doubt).collect()
 }
 
 fn log(sampling: &Sampling) -> String {
@@ -84,10 +102,21 @@ fn end(summary: &Summary) -> Vec<(&'static str, String)> {
     if e.leak_kg_s.is_finite() {
         let (leak, sd) = (e.leak_kg_s * GRAM_PER_HOUR, e.leak_sd_kg_s * GRAM_PER_HOUR);
         let bar_h = summary.last.leak_pa_s / PASCAL_PER_BAR * 3600.0;
-        lines.push(("leak rate at the end", format!("{leak:.4} ± {sd:.4} g/h, {bar_h:.5} bar/h")));
+        let [leak, sd, bar_h] =
+            [(leak, 4), (sd, 4), (bar_h, 5)].map(|(value, decimals)| fixed(value, decimals));
+        lines.push(("leak rate at the end", format!("{leak} ± {sd} g/h, {bar_h} bar/h")));
     }
     lines.push(("pressure at 15 °C", format!("{:.2} bar", e.p15_pa / PASCAL_PER_BAR)));
     lines
+}
+
+/// A number with so many decimals, never minus zero.
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(size) if size.bytes().all(|byte| matches!(byte, b'0' | b'.')) => size.to_owned(),
+        _ => text,
+    }
 }
 
 /// How near to the truth, where the log knows it.
