@@ -83,7 +83,7 @@ impl TimeReader {
     /// Seconds from the first instant, which becomes the origin.
     pub fn since_origin(&mut self, instant: Timestamp) -> f64 {
         let origin = *self.origin.get_or_insert(instant);
-        (instant.as_nanosecond() - origin.as_nanosecond()) as f64 * 1e-9
+        (instant.as_nanosecond() - origin.as_nanosecond()) as f64 / 1e9
     }
 
     fn refuse(&self, cell: &[u8], at: String, expected: &'static str) -> LogError {

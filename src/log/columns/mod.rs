@@ -20,6 +20,9 @@ use crate::thermal::units::{Dimension, Unit};
 /// Names of readings, for messages.
 pub(super) const KNOWN: &str = "shoulder, valve, ambient, pressure, wall_<place>, gas_<name>";
 
+/// Columns of a simulation that no observer has a use for.
+const SIMULATED_ONLY: [&str; 1] = ["heat_to_gas_w"];
+
 /// How the column of time is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeForm {
@@ -271,8 +274,11 @@ fn twice(second: &Found<'_>, first: &Found<'_>, at: &str) -> LogError {
 
 /// Names the columns that nobody knows, once, and what the first of them that looks like a slip may have meant.
 fn set_aside(found: &[Found<'_>], at: &str, cautions: &mut Cautions) {
-    let unknown: Vec<&str> =
-        found.iter().filter(|c| c.meaning == Meaning::Unknown).map(|column| column.header).collect();
+    let simulated = found.iter().any(|c| matches!(c.meaning, Meaning::Reading { measured: true, .. }));
+    let is_known = |column: &Found<'_>| {
+        column.meaning != Meaning::Unknown || (simulated && SIMULATED_ONLY.contains(&column.header))
+    };
+    let unknown: Vec<&str> = found.iter().filter(|c| !is_known(c)).map(|column| column.header).collect();
     if unknown.is_empty() {
         return;
     }
