@@ -99,21 +99,43 @@ pub fn json_row(row: &EstimateRow, text: &mut String) {
 }
 
 fn push((value, decimals): (f64, usize), missing: &str, text: &mut String) {
-    if !value.is_finite() {
-        text.push_str(missing);
-        return;
+    match decimals {
+        _ if !value.is_finite() => text.push_str(missing),
+        // Adding zero turns a negative zero into a positive one; writing to a string does not fail.
+        usize::MAX if value.fract() != 0.0 => _ = write!(text, "{}", value + 0.0),
+        usize::MAX => push_fixed(value, 0, text),
+        _ => push_fixed(value, decimals, text),
     }
-    // Adding zero turns a negative zero into a positive one; writing to a string does not fail.
-    let _ = match decimals {
-        usize::MAX => write!(text, "{}", value + 0.0),
-        _ => write!(text, "{:.decimals$}", cleared(value, decimals)),
-    };
 }
 
-/// Zero for a value that would be written as minus zero.
-fn cleared(value: f64, decimals: usize) -> f64 {
-    let half_a_digit = 0.5 * 10f64.powi(-(decimals as i32));
-    if value.abs() < half_a_digit { 0.0 } else { value }
+/// Appends a number with so many decimals; the general formatter of the standard library, which is exact to the last
+/// of all digits, would take longer than reading, and a year has 35 million numbers.
+fn push_fixed(value: f64, decimals: usize, text: &mut String) {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let power = 10_u64.pow(decimals as u32);
+    let scaled = (value.abs() * power as f64).round();
+    if scaled >= EXACT {
+        _ = write!(text, "{value:.decimals$}");
+        return;
+    }
+    let (mut rest, mut cells) = (scaled as u64, [0_u8; 24]);
+    let mut at = cells.len();
+    for place in 0.. {
+        if place > decimals && rest == 0 {
+            break;
+        }
+        at -= 1;
+        if place == decimals && decimals > 0 {
+            cells[at] = b'.';
+            at -= 1;
+        }
+        cells[at] = b'0' + (rest % 10) as u8;
+        rest /= 10;
+    }
+    if value < 0.0 && scaled > 0.0 {
+        text.push('-');
+    }
+    text.extend(cells[at..].iter().map(|&digit| char::from(digit)));
 }
 
 #[cfg(test)]
@@ -156,6 +178,42 @@ mod tests {
         assert_eq!(values.len(), COLUMNS.len());
         assert!(values[8].is_null() && values[11].is_null());
         assert_eq!((values[0].as_f64(), values[12].as_str()), (Some(0.5), Some("degraded")));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn a_fixed_number_is_within_half_a_last_digit_and_written_as_the_standard_library_does(
+            value in -1e7..1e7_f64,
+            decimals in 0..9_usize,
+        ) {
+            let mut text = String::new();
+            push_fixed(value, decimals, &mut text);
+            let read: f64 = text.parse().unwrap();
+            let half_a_digit = 0.5 * 10f64.powi(-(decimals as i32));
+            proptest::prop_assert!((read - value).abs() <= half_a_digit + 1e-15 * value.abs());
+            let written = format!("{read:.decimals$}");
+            proptest::prop_assert_eq!(text, if read == 0.0 { written.replace('-', "") } else { written });
+        }
+    }
+
+    #[test]
+    fn small_whole_and_huge_numbers_keep_their_places() {
+        for (value, decimals, expected) in [
+            (0.0, 0, "0"),
+            (-0.0, 3, "0.000"),
+            (0.05, 1, "0.1"),
+            (-0.049, 1, "0.0"),
+            (9.9996, 3, "10.000"),
+            (-12.5, 2, "-12.50"),
+            (1e15, 3, "1000000000000000.000"),
+            (7.0, usize::MAX, "7"),
+            (-7.25, usize::MAX, "-7.25"),
+            (1e17, usize::MAX, "100000000000000000"),
+        ] {
+            let mut text = String::new();
+            push((value, decimals), "", &mut text);
+            assert_eq!(text, expected);
+        }
     }
 
     #[test]
