@@ -295,4 +295,10 @@ pub enum EstimatorError {
     /// A trajectory without samples.
     #[error("the trajectory has no samples: simulate at least one")]
     EmptyTrajectory,
+    /// An engine of the observer that is not there.
+    #[error("there is no filter `{word}`: take ekf, ukf, stationary or mhe")]
+    EngineUnknown {
+        /// As given.
+        word: String,
+    },
 }

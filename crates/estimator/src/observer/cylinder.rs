@@ -14,7 +14,7 @@ use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{ReducedModel, Unknowns};
+use crate::thermal::model::reduced::{SurfaceState, ReducedModel, Unknowns};
 use crate::thermal::vessel::Vessel;
 
 /// A term of the series below this part of the largest sum is the last.
@@ -24,10 +24,12 @@ const MAX_TERMS: usize = 60;
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// What a sensor looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
-    /// A state that is a temperature: wall node, valve or gas.
-    Temperature(usize),
+    /// A place on the surface.
+    Surface(SurfaceState),
+    /// The gas.
+    Gas,
     Air,
     Pressure,
 }
@@ -97,7 +99,7 @@ impl Cylinder {
         let model = ReducedModel::new(vessel, settings.wall_nodes, settings.film_w_m2_k);
         let states = States::new(&model, sensors, settings);
         let targets =
-            sensors.iter().map(|sensor| target(sensor, &model, &states, vessel)).collect::<Result<_, _>>()?;
+            sensors.iter().map(|sensor| target(sensor, &model, vessel)).collect::<Result<_, _>>()?;
         if let Some(twice) =
             sensors.iter().enumerate().find(|(i, s)| sensors[..*i].iter().any(|o| o.name == s.name))
         {
@@ -284,6 +286,13 @@ impl Cylinder {
         Ok(())
     }
 
+    /// Temperature of a place on the surface, K.
+    fn surface_k(&self, place: SurfaceState, x: &[f64]) -> f64 {
+        let departure = self.states.valve.map_or(0.0, |valve| x[valve] - x[self.states.wall - 1]);
+        let sun_w = self.states.sun.map_or(0.0, |sun| x[sun]);
+        x[place.state] + place.valve_share * departure + place.sun_rise_k_w * sun_w
+    }
+
     /// Reading of a sensor before its lag, with its gradient.
     fn static_reading(
         &mut self,
@@ -298,7 +307,11 @@ impl Cylinder {
             _ => None,
         };
         let exposure = Exposure {
-            body_k: if let Target::Temperature(state) = target { x[state] } else { 0.0 },
+            body_k: match target {
+                Target::Surface(place) => self.surface_k(place, x),
+                Target::Gas => x[states.gas],
+                Target::Air | Target::Pressure => 0.0,
+            },
             air_k: x[states.air],
             pressure_pa: pressure.map_or(0.0, |p| p.pressure_pa),
             electronics_k: x[electronics],
@@ -313,8 +326,19 @@ impl Cylinder {
         let prediction = object.predict(&exposure, &parameters);
         let Some(h) = gradient else { return Ok(prediction.value) };
         h.fill(0.0);
-        if let Target::Temperature(state) = target {
-            h[state] += prediction.per_body;
+        match target {
+            Target::Surface(place) => {
+                h[place.state] += prediction.per_body;
+                if let Some(valve) = states.valve {
+                    h[valve] += prediction.per_body * place.valve_share;
+                    h[states.wall - 1] -= prediction.per_body * place.valve_share;
+                }
+                if let Some(sun) = states.sun {
+                    h[sun] += prediction.per_body * place.sun_rise_k_w;
+                }
+            }
+            Target::Gas => h[states.gas] += prediction.per_body,
+            Target::Air | Target::Pressure => {}
         }
         h[states.air] += prediction.per_air;
         if let Some(p) = pressure {
@@ -501,17 +525,16 @@ fn triangular_factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
 fn target(
     sensor: &Sensor,
     model: &ReducedModel,
-    states: &States,
     vessel: &Vessel,
 ) -> Result<Target, EstimatorError> {
     Ok(match &sensor.kind {
         SensorKind::Surface { place } => {
-            Target::Temperature(model.index_of_place(place).ok_or_else(|| EstimatorError::SensorPlace {
+            Target::Surface(model.surface(place).ok_or_else(|| EstimatorError::SensorPlace {
                 name: sensor.name.clone(),
                 vessel: vessel.name.clone(),
             })?)
         }
-        SensorKind::Gas { .. } => Target::Temperature(states.gas),
+        SensorKind::Gas { .. } => Target::Gas,
         SensorKind::Ambient => Target::Air,
         SensorKind::Pressure { .. } => Target::Pressure,
     })
@@ -564,13 +587,14 @@ impl StateSpace for Cylinder {
         let error = &self.settings.model_error;
         let states = &self.states;
         let square = |v: f64| v * v;
-        let model = match (self.targets[j], &self.sensors[j].kind) {
-            (_, SensorKind::Gas { .. }) => square(error.gas_k),
-            (Target::Temperature(body), _) => {
-                square(error.surface_k) + square(error.surface_per_air_k * (x[states.air] - x[body]))
+        let model = match self.targets[j] {
+            Target::Gas => square(error.gas_k),
+            Target::Surface(place) => {
+                let away_k = x[states.air] - self.surface_k(place, x);
+                square(error.surface_k) + square(error.surface_per_air_k * away_k)
             }
-            (Target::Air, _) => square(error.air_k),
-            (Target::Pressure, _) => {
+            Target::Air => square(error.air_k),
+            Target::Pressure => {
                 let wall_k = self.model.mean_wall_k(x);
                 square(error.pressure_pa) + square(error.pressure_per_wall_k * (wall_k - x[states.gas]))
             }

@@ -1,5 +1,6 @@
-//! One member of the bank: an extended Kalman filter with its own view of how gas may leave.
+//! One member of the bank: a Kalman filter with its own view of how gas may leave.
 use super::cylinder::Cylinder;
+use super::engine::{self, Mechanism, Predicted, SigmaPoints};
 use super::settings::LeakHypothesis;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace, UdFactors};
@@ -53,6 +54,7 @@ pub(super) struct Member {
     slow_s: f64,
     /// Whether a film multiplier stood at its bound after the last step.
     pub at_bound: bool,
+    mechanism: Mechanism,
 }
 
 /// Memory shared by the members.
@@ -61,6 +63,7 @@ pub(super) struct Shared {
     pub linear: Linearisation,
     pub h: Vec<f64>,
     pub gain: Vec<f64>,
+    points: SigmaPoints,
 }
 
 impl Shared {
@@ -70,6 +73,7 @@ impl Shared {
             linear: Linearisation::zeros(n, cylinder.leading(), cylinder.noises()),
             h: vec![0.0; n],
             gain: vec![0.0; n],
+            points: SigmaPoints::new(cylinder),
         }
     }
 }
@@ -87,7 +91,8 @@ impl Member {
         covariance.column_mut(leak).fill(0.0);
         covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
         let mut p = UdFactors::from_covariance(&covariance)?;
-        p.reserve(cylinder.leading(), cylinder.noises());
+        let engine = cylinder.settings().engine;
+        p.reserve(cylinder.leading(), engine::noises(engine, cylinder));
         let sensors = cylinder.sensors().len();
         Ok(Self {
             hypothesis,
@@ -97,6 +102,7 @@ impl Member {
             innovations: vec![Innovation::MISSING; sensors],
             slow_s: 0.0,
             at_bound: false,
+            mechanism: Mechanism::new(engine),
         })
     }
 
@@ -110,8 +116,7 @@ impl Member {
         cylinder.suppose(&self.hypothesis);
         let parts = (dt_s / cylinder.settings().longest_step_s).ceil().max(1.0);
         for _ in 0..parts as usize {
-            cylinder.propagate(&mut self.x, dt_s / parts, Some(&mut shared.linear))?;
-            self.p.predict(&shared.linear);
+            self.move_on(cylinder, shared, dt_s / parts)?;
         }
         self.slow_s += dt_s;
         if self.slow_s >= SLOW_WALK_S {
@@ -124,6 +129,38 @@ impl Member {
             self.slow_s = 0.0;
         }
         Ok(())
+    }
+
+    fn move_on(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        dt_s: f64,
+    ) -> Result<(), EstimatorError> {
+        match &mut self.mechanism {
+            Mechanism::Extended => {
+                cylinder.propagate(&mut self.x, dt_s, Some(&mut shared.linear))?;
+                self.p.predict(&shared.linear);
+            }
+            Mechanism::Unscented => shared.points.predict(cylinder, &mut self.x, &mut self.p, dt_s)?,
+        }
+        Ok(())
+    }
+
+    /// Mean and noise of a sensor's next reading; its gradient goes to `shared.h`.
+    fn expect(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        sensor: usize,
+    ) -> Result<Predicted, EstimatorError> {
+        match &mut self.mechanism {
+            Mechanism::Extended => Ok(Predicted {
+                value: cylinder.output(sensor, &self.x, Some(&mut shared.h))?,
+                r: cylinder.noise_variance(sensor, &self.x),
+            }),
+            Mechanism::Unscented => shared.points.output(cylinder, sensor, &self.x, &self.p, &mut shared.h),
+        }
     }
 
     /// Measurement update with one reading per sensor (NaN: missing), sensor by sensor.
@@ -160,8 +197,8 @@ impl Member {
         reading: f64,
         gate: f64,
     ) -> Result<Innovation, EstimatorError> {
-        let nu = reading - cylinder.output(sensor, &self.x, Some(&mut shared.h))?;
-        let mut r = cylinder.noise_variance(sensor, &self.x);
+        let Predicted { value, mut r } = self.expect(cylinder, shared, sensor)?;
+        let nu = reading - value;
         let s = self.p.quadratic(&shared.h) + r;
         let mut outcome = Outcome::Accepted;
         if nu * nu > gate * s {
@@ -194,6 +231,11 @@ impl Member {
 
     pub fn is_finite(&self) -> bool {
         self.x.iter().all(|x| x.is_finite()) && self.p.diagonal().iter().all(|d| d.is_finite())
+    }
+
+    /// Variance of a state.
+    pub fn variance(&self, state: usize) -> f64 {
+        self.p.variance(state)
     }
 
     pub fn covariance(&self) -> DMatrix<f64> {

@@ -1,6 +1,6 @@
 //! The cylinder's observer: mean gas temperature, gas mass and leak rate from sensors outside.
 //!
-//! A bank of extended Kalman filters ([`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
+//! A bank of Kalman filters ([`Engine`]; [`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
 //! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
 //! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives temperature
 //! and mass. The others hold the mass and let a leak rate walk, each with its own bandwidth.
@@ -15,6 +15,7 @@
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
 pub mod commissioning;
 pub mod cylinder;
+pub mod engine;
 mod learned;
 mod member;
 mod observability;
@@ -29,6 +30,7 @@ use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
+pub use engine::Engine;
 pub use learned::Learned;
 use member::{FREE_GAS_SD_K, FREE_MASS_SD_KG, Member, Shared};
 pub use member::{Innovation, Outcome};
@@ -332,13 +334,12 @@ impl Observer {
     ) -> Result<Estimate, EstimatorError> {
         let states = self.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
-        let slow = self.slow_members();
-        let middle = (!slow.is_empty()).then(|| &slow[slow.len() / 2]);
-        let (leak_kg_s, leak_sd_kg_s) =
-            middle.map_or((f64::NAN, f64::NAN), |member| (member.x[leak], member.p.variance(leak).sqrt()));
+        let (leak_kg_s, leak_sd_kg_s) = self
+            .middle_slow_member()
+            .map_or((f64::NAN, f64::NAN), |member| (member.x[leak], member.variance(leak).sqrt()));
         let first = &self.members[0];
         let (gas_mean_k, mass_kg) = (first.x[gas], first.x[mass]);
-        let (gas_sd, mass_sd) = (first.p.variance(gas).sqrt(), first.p.variance(mass).sqrt());
+        let (gas_sd, mass_sd) = (first.variance(gas).sqrt(), first.variance(mass).sqrt());
         if self.clock.reference_mass_kg.is_none() && time_s >= self.clock.reference_due_s {
             self.clock.reference_mass_kg = Some(mass_kg);
         }
@@ -376,9 +377,10 @@ impl Observer {
         }
     }
 
-    /// Members that have a leak rate, in the order of the bank.
-    fn slow_members(&self) -> Vec<&Member> {
-        self.members.iter().filter(|member| !member.hypothesis.rate.is_known()).collect()
+    /// The middle one of the members that have a leak rate, in the order of the bank.
+    fn middle_slow_member(&self) -> Option<&Member> {
+        let slow = || self.members.iter().filter(|member| !member.hypothesis.rate.is_known());
+        slow().nth(slow().count() / 2)
     }
 
     /// Innovation of each sensor at the last sample, by the first member.
@@ -391,9 +393,9 @@ impl Observer {
         let states = self.cylinder.state_map();
         let of = |member: &Member| Leak {
             rate_kg_s: member.x[states.leak],
-            sd_kg_s: member.p.variance(states.leak).sqrt(),
+            sd_kg_s: member.variance(states.leak).sqrt(),
             mass_kg: member.x[states.mass],
-            mass_sd_kg: member.p.variance(states.mass).sqrt(),
+            mass_sd_kg: member.variance(states.mass).sqrt(),
         };
         self.members.iter().map(of).collect()
     }

@@ -6,6 +6,7 @@
 //! with the temperature differences that the reduced model resolves worst.
 use serde::{Deserialize, Serialize};
 
+use super::engine::Engine;
 use crate::EstimatorError;
 use crate::log::Quantity;
 use crate::sensor::ParameterKind;
@@ -130,6 +131,9 @@ impl ModelError {
 /// Settings of the cylinder's observer. SI.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObserverSettings {
+    /// Filter that every member of the bank runs.
+    #[serde(default)]
+    pub engine: Engine,
     /// Wall nodes, from 1 to the number of columns of the vessel's mesh.
     pub wall_nodes: usize,
     /// Outside film for convection and radiation together, W/(m² K): nominal, the observer learns its multiplier.
@@ -170,6 +174,7 @@ impl Default for ObserverSettings {
     fn default() -> Self {
         const YEAR_S: f64 = 365.25 * 86_400.0;
         Self {
+            engine: Engine::default(),
             wall_nodes: 2,
             film_w_m2_k: 14.0,
             longest_step_s: 20.0,

@@ -16,7 +16,7 @@ const NOISE_PA: f64 = 1000.0;
 
 impl Truth {
     /// Chosen samples of a trajectory, read by the cylinder's sensors.
-    pub(super) fn sample(
+    pub fn sample(
         course: &Course,
         seed: u64,
         leak: Option<TruthLeak>,

@@ -68,7 +68,18 @@ pub fn score(
 ) -> Result<Score, EstimatorError> {
     let objects = sensors.iter().map(|name| Sensor::typical(name)).collect::<Result<Vec<_>, _>>()?;
     let commissioning = Commissioning::filled(2e7, ZERO_CELSIUS_K + 15.0);
-    let mut observer = Observer::new(nominal, &objects, &commissioning, settings)?;
+    score_observer(truth, &mut Observer::new(nominal, &objects, &commissioning, settings)?, sensors)
+}
+
+/// Run an observer that has seen nothing yet over a truth's readings of the named sensors and score it.
+///
+/// # Errors
+/// The observer's sensors are not as many as the names, or it refuses a row.
+pub fn score_observer(
+    truth: &Truth,
+    observer: &mut Observer,
+    sensors: &[&str],
+) -> Result<Score, EstimatorError> {
     let columns = columns(truth, sensors);
     let (mut pairs, mut nis) = (Vec::new(), (0.0, 0.0));
     for (index, (time_s, row)) in truth.log.rows().enumerate() {

@@ -98,19 +98,22 @@ impl ReducedModel {
 
     pub(super) fn add_valve(&self, x: &[f64], unknowns: &Unknowns, rate: &mut [f64], jacobian: Jacobian<'_>) {
         let (Some(index), Some(valve)) = (self.valve_index(), &self.valve) else { return };
+        let conductance_w_k = self.spread.conductance_w_k;
+        let sun_rise_k_w = self.spread.top_rise_k_w;
         let (top, n) = (index - 1, self.states());
         let slope = valve.area_m2 * valve.film_factor * self.film_w_m2_k * unknowns.ln_outside_film.exp();
-        let contact_w = valve.contact_w_k * (x[index] - x[top]);
+        let contact_w = conductance_w_k * (x[index] - x[top] - sun_rise_k_w * unknowns.sun_w);
         rate[top] += contact_w;
         rate[index] = Self::VALVE_SUN * unknowns.sun_w - contact_w - slope * (x[index] - unknowns.air_k);
         let Some(j) = jacobian else { return };
-        j[(top, index)] += valve.contact_w_k;
-        j[(top, top)] -= valve.contact_w_k;
-        j[(index, top)] += valve.contact_w_k;
-        j[(index, index)] -= valve.contact_w_k + slope;
+        j[(top, index)] += conductance_w_k;
+        j[(top, top)] -= conductance_w_k;
+        j[(index, top)] += conductance_w_k;
+        j[(index, index)] -= conductance_w_k + slope;
         j[(index, n + Unknowns::AIR)] += slope;
         j[(index, n + Unknowns::OUTSIDE)] -= slope * (x[index] - unknowns.air_k);
-        j[(index, n + Unknowns::SUN)] += Self::VALVE_SUN;
+        j[(index, n + Unknowns::SUN)] += Self::VALVE_SUN + conductance_w_k * sun_rise_k_w;
+        j[(top, n + Unknowns::SUN)] -= conductance_w_k * sun_rise_k_w;
     }
 
     /// From heat flows to rates of wall and valve; keeps the rate of the mean wall temperature with its derivatives.
@@ -137,8 +140,9 @@ impl ReducedModel {
             self.mean_rate_by[n + Unknowns::CAPACITY] = -self.mean_rate_k_s;
             // The slope itself falls as the wall warms: d slope = -a slope^3 dx.
             let curvature = -material.heat_capacity_slope_per_k * mean_slope.powi(3) * mean_energy_rate;
-            for node in 0..nodes {
-                self.mean_rate_by[node] += curvature * self.weight(node) * capacity_ratio(material, x[node]);
+            for (node, &temperature_k) in x.iter().enumerate().take(nodes) {
+                self.mean_rate_by[node] +=
+                    curvature * self.weight(node) * capacity_ratio(material, temperature_k);
             }
             for node in 0..self.gas_index() {
                 let (capacity, ln_slope) = self.node_capacity(node, x[node]);

@@ -14,6 +14,7 @@
 //! and unknowns.
 mod balance;
 mod gas;
+mod spread;
 
 use nalgebra::DMatrix;
 
@@ -25,6 +26,7 @@ use crate::wall::geometry::Geometry;
 use crate::wall::material::{Material, REFERENCE_TEMPERATURE_K};
 use crate::wall::mesh::Mesh;
 use gas::GasNode;
+use spread::Spread;
 
 /// What acts on the cylinder and what is uncertain about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +87,18 @@ pub struct Pressure {
     pub per_wall_k: f64,
 }
 
+/// Temperature of a place on the surface, `T = x_state + valve_share (x_valve - x_top) + sun_rise Q_sun` with the topmost
+/// wall node and the sun on it ([`Unknowns::sun_w`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceState {
+    /// Index of its wall node or of the valve.
+    pub state: usize,
+    /// Share of the valve's departure from the topmost node.
+    pub valve_share: f64,
+    /// Rise over the node in the sun, K/W.
+    pub sun_rise_k_w: f64,
+}
+
 /// The reduced model of one vessel.
 #[derive(Debug)]
 pub struct ReducedModel {
@@ -96,6 +110,8 @@ pub struct ReducedModel {
     capacity_j_k: Vec<f64>,
     wall_capacity_j_k: f64,
     valve: Option<Valve>,
+    /// How the heat of valve and sun spreads in the wall.
+    spread: Spread,
     film_w_m2_k: f64,
     inside: InsideConvection,
     gas: GasNode,
@@ -124,9 +140,13 @@ impl ReducedModel {
             })
             .collect();
         let nodes = mesh.columns.len();
+        let fine = Mesh::of_mixture(&vessel.geometry);
+        let contact_w_k = vessel.valve.as_ref().map_or(0.0, |valve| valve.contact_w_k);
+        let spread = Spread::new(&fine, &node_of_column, contact_w_k, film_w_m2_k);
         Self {
             geometry: vessel.geometry.clone(),
-            fine: Mesh::new(&vessel.geometry),
+            fine,
+            spread,
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
@@ -170,12 +190,23 @@ impl ReducedModel {
         self.gas_index() + 2
     }
 
-    /// State that stands for a place on the surface: a wall node or the valve; `None` where the vessel has no such place.
-    pub fn index_of_place(&self, place: &SurfacePlace) -> Option<usize> {
-        match place {
-            SurfacePlace::Valve => self.valve_index(),
-            place => place.column(&self.geometry, &self.fine).map(|column| self.node_of_column[column]),
+    /// Conductance between the valve and the topmost wall node, W/K: the contact in series with the wall in which the valve's
+    /// heat spreads; 0 without a valve.
+    pub fn valve_conductance_w_k(&self) -> f64 {
+        self.spread.conductance_w_k
+    }
+
+    /// How the states give the temperature of a place on the surface; `None` where the vessel has no such place.
+    pub fn surface(&self, place: &SurfacePlace) -> Option<SurfaceState> {
+        if *place == SurfacePlace::Valve {
+            return self.valve_index().map(|state| SurfaceState { state, valve_share: 0.0, sun_rise_k_w: 0.0 });
         }
+        let column = place.column(&self.geometry, &self.fine)?;
+        Some(SurfaceState {
+            state: self.node_of_column[column],
+            valve_share: self.spread.share[column],
+            sun_rise_k_w: self.spread.rise_k_w[column],
+        })
     }
 
     /// Pressure at a state.

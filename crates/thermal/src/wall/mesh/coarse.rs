@@ -5,22 +5,27 @@ use crate::wall::material::Material;
 
 impl Link {
     /// Shape factor of both halves in series in one material, m.
-    pub(super) fn series_m(&self) -> f64 {
+    pub(crate) fn series_m(&self) -> f64 {
         (self.shape_a_m.recip() + self.shape_b_m.recip()).recip()
     }
 }
 
 impl Mesh {
+    /// All columns of the resolved mesh, the layers of each as one cell of their mixture.
+    pub fn of_mixture(geometry: &Geometry) -> Self {
+        let parts: Vec<(&Material, f64)> =
+            geometry.layers.iter().map(|layer| (&layer.material, layer.thickness_m)).collect();
+        let mixture = Material::mixture(&parts);
+        let layer = Layer { material: mixture, thickness_m: geometry.thickness_m(), cells: 1 };
+        Self::resolved(&Geometry { layers: vec![layer], lumped: false, ..geometry.clone() })
+    }
+
     /// A wall of a few nodes, each a stretch of the contour over the full thickness, and the node of every column
     /// of the resolved mesh. Stretches have about equal outer areas; capacities, areas and shape factors add, the layers
     /// become one mixture, and between two nodes the half cells of the columns from middle to middle lie in series.
     /// There are never more nodes than columns.
     pub fn coarse(geometry: &Geometry, nodes: usize) -> (Self, Vec<usize>) {
-        let parts: Vec<(&Material, f64)> =
-            geometry.layers.iter().map(|layer| (&layer.material, layer.thickness_m)).collect();
-        let mixture = Material::mixture(&parts);
-        let layer = Layer { material: mixture, thickness_m: geometry.thickness_m(), cells: 1 };
-        let fine = Self::resolved(&Geometry { layers: vec![layer], lumped: false, ..geometry.clone() });
+        let fine = Self::of_mixture(geometry);
         let node_of = stretches_of_equal_area(&fine.columns, nodes);
         let count = node_of.last().map_or(0, |last| last + 1);
         let range =

@@ -1,0 +1,98 @@
+use super::*;
+use crate::filter::{Unscented, UnscentedSettings};
+use crate::observer::ObserverSettings;
+use crate::sensor::Sensor;
+use crate::thermal::vessel::presets;
+
+fn cylinder() -> Cylinder {
+    let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+    Cylinder::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &ObserverSettings::default()).unwrap()
+}
+
+/// A gas warmer than the wall, everything in doubt.
+fn start(cylinder: &Cylinder) -> (Vec<f64>, DMatrix<f64>) {
+    use crate::observer::states::StateKind;
+    let n = cylinder.states();
+    let (mut x, mut p) = (vec![0.0; n], DMatrix::zeros(n, n));
+    for (i, kind) in cylinder.state_map().kinds.iter().enumerate() {
+        let (mean, sd) = match kind {
+            StateKind::Wall(node) => (280.0 + *node as f64, 1.0),
+            StateKind::Valve => (279.0, 1.0),
+            StateKind::Gas => (290.0, 2.0),
+            StateKind::Mass => (4.5, 0.05),
+            StateKind::Leak => (0.0, 0.0),
+            StateKind::Air => (270.0, 5.0),
+            StateKind::OutsideFilm | StateKind::InsideFilm | StateKind::Capacity => (0.1, 0.3),
+            StateKind::Sun | StateKind::Lag { .. } => (1.0, 2.0),
+            StateKind::Parameter { sensor, parameter } => {
+                let parameter = &cylinder.sensors()[*sensor].parameters()[*parameter];
+                (parameter.mean, parameter.sd)
+            }
+        };
+        x[i] = mean;
+        p[(i, i)] = sd * sd;
+    }
+    (x, p)
+}
+
+fn observe(
+    cylinder: &mut Cylinder,
+    points: &mut SigmaPoints,
+    (x, p): (&mut [f64], &mut UdFactors<Dyn>),
+    readings: &[f64],
+) {
+    let (mut h, mut gain) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    for (sensor, reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
+        let predicted = points.output(cylinder, sensor, x, p, &mut h).unwrap();
+        p.update(&h, predicted.r, &mut gain);
+        x.iter_mut().zip(&gain).for_each(|(x, k)| *x += k * (reading - predicted.value));
+    }
+}
+
+#[test]
+fn statistical_linearisation_is_the_unscented_filter_with_dense_covariance() {
+    let mut cylinder = cylinder();
+    let (mut x, dense) = start(&cylinder);
+    let n = x.len();
+    let settings = UnscentedSettings {
+        alpha: (SPREAD_SQUARED / n as f64).sqrt(),
+        beta: 2.0,
+        kappa: 0.0,
+        redraw: true,
+        gate: None,
+    };
+    let mut reference = Unscented::try_new(self::cylinder(), &x, &dense, &settings).unwrap();
+    let mut p = UdFactors::from_covariance(&dense).unwrap();
+    let mut points = SigmaPoints::new(&cylinder);
+    for k in 0..40 {
+        let (t, missing) = (f64::from(k) * 15.0, if k % 7 == 3 { f64::NAN } else { 0.0 });
+        let readings = [279.0 - t * 2e-3, 278.0 - t * 3e-3 + missing, 195e5 - 300.0 * t];
+        reference.step(15.0, &readings).unwrap();
+        points.predict(&mut cylinder, &mut x, &mut p, 15.0).unwrap();
+        observe(&mut cylinder, &mut points, (&mut x, &mut p), &readings);
+    }
+    let (ours, theirs) = (p.covariance(), reference.covariance());
+    for i in 0..n {
+        let sd = theirs[(i, i)].sqrt();
+        assert!((x[i] - reference.state()[i]).abs() <= 1e-7 * sd, "state {i}");
+        for j in 0..n {
+            let scale = sd * theirs[(j, j)].sqrt();
+            assert!((ours[(i, j)] - theirs[(i, j)]).abs() <= 1e-7 * scale, "covariance ({i}, {j})");
+        }
+    }
+}
+
+#[test]
+fn a_point_outside_the_domain_is_replaced_by_the_tangent() {
+    let mut cylinder = cylinder();
+    let (mut x, mut dense) = start(&cylinder);
+    let mass = cylinder.state_map().mass;
+    dense[(mass, mass)] = 9.0; // three times sqrt(3) kg reaches below an empty cylinder
+    let mut p = UdFactors::from_covariance(&dense).unwrap();
+    let mut points = SigmaPoints::new(&cylinder);
+    points.predict(&mut cylinder, &mut x, &mut p, 15.0).unwrap();
+    observe(&mut cylinder, &mut points, (&mut x, &mut p), &[279.0, 278.0, 195e5]);
+    assert!(x.iter().all(|x| x.is_finite()));
+    // What is left is the doubt about the gas temperature and the transmitter.
+    assert!(p.variance(mass).sqrt() < 0.1, "mass sd {}", p.variance(mass).sqrt());
+}
