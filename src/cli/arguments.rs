@@ -2,6 +2,8 @@
 use super::fill::GivenFill;
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use cylwatch::estimator::EstimatorError;
+use cylwatch::estimator::observer::Engine;
 use cylwatch::log::Mapping;
 use cylwatch::report::estimate;
 use std::path::{Path, PathBuf};
@@ -136,6 +138,9 @@ pub struct EstimateArguments {
     /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
     #[arg(long = "map", value_name = "OURS=THEIRS")]
     pub mappings: Vec<Mapping>,
+    /// Filter of the observer.
+    #[arg(long, value_enum, default_value = "ekf")]
+    pub filter: Filter,
     /// TOML file of the sensors with their errors [default: on the columns shoulder, valve, wall_<place> Pt100 of class
     /// B, on pressure a transmitter of 250 bar and 0.25 %].
     #[arg(long, value_name = "FILE")]
@@ -149,6 +154,32 @@ pub struct EstimateArguments {
     /// File for what this run has learnt, as JSON.
     #[arg(long, value_name = "FILE")]
     pub learned_out: Option<PathBuf>,
+}
+
+/// Filter of the observer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Filter {
+    /// Extended Kalman filter.
+    Ekf,
+    /// Unscented Kalman filter; about forty times the time.
+    Ukf,
+    /// Extended Kalman filter with the constant gain of the steady state; it learns no constants.
+    Stationary,
+    /// Moving-horizon estimation inside physical bounds; some hundred times the time.
+    Mhe,
+}
+
+impl Filter {
+    /// The observer's engine.
+    pub fn engine(self) -> Result<Engine, EstimatorError> {
+        let word = match self {
+            Self::Ekf => "ekf",
+            Self::Ukf => "ukf",
+            Self::Stationary => "stationary",
+            Self::Mhe => "mhe",
+        };
+        word.parse()
+    }
 }
 
 fn estimate_help() -> String {

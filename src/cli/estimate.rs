@@ -8,7 +8,7 @@ use super::plot::Plot;
 use super::progress::Progress;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::{Channel, Quantity};
-use cylwatch::estimator::observer::{Learned, Observer};
+use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::log::{LogOptions, LogReader, Mapping, Row};
 use cylwatch::report::estimate as report;
@@ -37,6 +37,7 @@ struct Options {
     sensors: Option<PathBuf>,
     fill: GivenFill,
     source: FillSource,
+    engine: Engine,
     learned_in: Option<PathBuf>,
     learned_out: Option<Target>,
 }
@@ -69,7 +70,7 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
 
 impl Options {
     fn checked(arguments: EstimateArguments) -> anyhow::Result<Self> {
-        let EstimateArguments { vessel, log, fill, mappings, sensors, learned_in, .. } = arguments;
+        let EstimateArguments { vessel, log, fill, filter, mappings, sensors, learned_in, .. } = arguments;
         if vessel == "-" && log == "-" {
             bail!("stdin can be the vessel or the log, not both: give the other one as a file");
         }
@@ -86,9 +87,22 @@ impl Options {
         {
             bail!("--learned-out and --output name the same place: choose two");
         }
-        let source = fill.source()?;
+        let (source, engine) = (fill.source()?, filter.engine()?);
         let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
-        Ok(Self { vessel, log, data, format, plot, mappings, sensors, fill, source, learned_in, learned_out })
+        Ok(Self {
+            vessel,
+            log,
+            data,
+            format,
+            plot,
+            mappings,
+            sensors,
+            fill,
+            source,
+            engine,
+            learned_in,
+            learned_out,
+        })
     }
 }
 
@@ -107,7 +121,7 @@ fn estimate(
     let first_k = selection.mean_temperature_k(first.first());
     let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
     let commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
-    let settings = options.fill.settings();
+    let settings = ObserverSettings { engine: options.engine, ..options.fill.settings() };
     let mut observer = Observer::new(vessel, &selection.sensors, &commissioning, &settings)?;
     if let (Some(row), Some(channel)) = (first.last(), selection.first_of(Quantity::Pressure)) {
         let mass_kg = commissioning.mass_kg(vessel, first_k)?;

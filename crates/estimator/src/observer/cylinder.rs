@@ -14,7 +14,7 @@ use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{SurfaceState, ReducedModel, Unknowns};
+use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns};
 use crate::thermal::vessel::Vessel;
 
 /// A term of the series below this part of the largest sum is the last.
@@ -522,18 +522,11 @@ fn triangular_factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
     }
 }
 
-fn target(
-    sensor: &Sensor,
-    model: &ReducedModel,
-    vessel: &Vessel,
-) -> Result<Target, EstimatorError> {
+fn target(sensor: &Sensor, model: &ReducedModel, vessel: &Vessel) -> Result<Target, EstimatorError> {
     Ok(match &sensor.kind {
-        SensorKind::Surface { place } => {
-            Target::Surface(model.surface(place).ok_or_else(|| EstimatorError::SensorPlace {
-                name: sensor.name.clone(),
-                vessel: vessel.name.clone(),
-            })?)
-        }
+        SensorKind::Surface { place } => Target::Surface(model.surface(place).ok_or_else(|| {
+            EstimatorError::SensorPlace { name: sensor.name.clone(), vessel: vessel.name.clone() }
+        })?),
         SensorKind::Gas { .. } => Target::Gas,
         SensorKind::Ambient => Target::Air,
         SensorKind::Pressure { .. } => Target::Pressure,

@@ -199,7 +199,11 @@ impl ReducedModel {
     /// How the states give the temperature of a place on the surface; `None` where the vessel has no such place.
     pub fn surface(&self, place: &SurfacePlace) -> Option<SurfaceState> {
         if *place == SurfacePlace::Valve {
-            return self.valve_index().map(|state| SurfaceState { state, valve_share: 0.0, sun_rise_k_w: 0.0 });
+            return self.valve_index().map(|state| SurfaceState {
+                state,
+                valve_share: 0.0,
+                sun_rise_k_w: 0.0,
+            });
         }
         let column = place.column(&self.geometry, &self.fine)?;
         Some(SurfaceState {

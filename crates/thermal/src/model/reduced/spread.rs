@@ -47,7 +47,8 @@ impl Spread {
             Section::Shoulder | Section::Neck => fine.columns[j].outer_area_m2,
             Section::Bottom | Section::Cylinder => 0.0,
         });
-        let conductance_w_k = if contact_w_k > 0.0 { (contact_w_k.recip() + valve[last]).recip() } else { 0.0 };
+        let conductance_w_k =
+            if contact_w_k > 0.0 { (contact_w_k.recip() + valve[last]).recip() } else { 0.0 };
         let share: Vec<f64> = valve.iter().map(|above| conductance_w_k * above).collect();
         let rise_k_w = sun.iter().zip(&share).map(|(rise, share)| rise - share * sun[last]).collect();
         Self { conductance_w_k, top_rise_k_w: sun[last], share, rise_k_w }
@@ -88,9 +89,10 @@ fn above_nodes(
     heat /= total;
     let rise = wall.solve(&heat);
     let mean_of_node = |node: usize| {
-        let (sum, volume) = (0..rise.len())
-            .filter(|&j| node_of_column[j] == node)
-            .fold((0.0, 0.0), |(sum, volume), j| (sum + fine.volume_m3[j] * rise[j], volume + fine.volume_m3[j]));
+        let (sum, volume) =
+            (0..rise.len()).filter(|&j| node_of_column[j] == node).fold((0.0, 0.0), |(sum, volume), j| {
+                (sum + fine.volume_m3[j] * rise[j], volume + fine.volume_m3[j])
+            });
         sum / volume
     };
     (0..rise.len()).map(|j| rise[j] - mean_of_node(node_of_column[j])).collect()
