@@ -301,4 +301,34 @@ pub enum EstimatorError {
         /// As given.
         word: String,
     },
+    /// A significance that is no probability.
+    #[error("significance {probability} must be a probability between 0 and 1, such as 0.01")]
+    Significance {
+        /// As given.
+        probability: f64,
+    },
+    /// A time that an ensemble does not have.
+    #[error("index {index} is beyond the {times} times of the ensemble")]
+    TimeUnknown {
+        /// Index, from 0.
+        index: usize,
+        /// Number of times.
+        times: usize,
+    },
+    /// A bound that needs noise on every moving state.
+    #[error(
+        "the noise is singular where transitions differ from path to path: give these states noise, or take the mean transition"
+    )]
+    BoundNoiseSingular,
+    /// Errors that nothing can be concluded from.
+    #[error(
+        "the errors of {runs} runs have no spread to compare with a bound: give at least two runs with errors"
+    )]
+    NoErrors {
+        /// Number of runs.
+        runs: usize,
+    },
+    /// A bound without paths.
+    #[error("the bound needs at least one true path")]
+    NoPaths,
 }

@@ -302,6 +302,19 @@ where
         self.add_leading(variance, i + 1);
     }
 
+    /// Multiply state `i` by a positive factor: its variance by the square, its covariances by the factor.
+    pub fn scale(&mut self, i: usize, factor: f64) {
+        let n = self.states();
+        let u = self.u.as_mut_slice();
+        for j in i + 1..n {
+            u[j * n + i] *= factor;
+        }
+        for above in &mut column_mut(u, n, i)[..i] {
+            *above /= factor;
+        }
+        self.d[i] *= factor * factor;
+    }
+
     /// Make state `i` independent of all others, with the given variance: an event has reset it.
     pub fn decorrelate_and_set(&mut self, i: usize, variance: f64) {
         let n = self.states();

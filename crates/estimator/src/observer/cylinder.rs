@@ -9,7 +9,7 @@
 //! the parts is gathered into the same number of columns.
 use nalgebra::DMatrix;
 
-use super::settings::{LeakHypothesis, ObserverSettings};
+use super::settings::{LeakHypothesis, ObserverSettings, Walk};
 use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
@@ -32,6 +32,26 @@ enum Target {
     Gas,
     Air,
     Pressure,
+}
+
+/// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowProcess {
+    /// Variance gained in a second.
+    pub intensity: f64,
+    /// Inverse memory, 1/s; 0: a random walk.
+    pub decay_per_s: f64,
+    /// Value that it returns to.
+    pub rest: f64,
+}
+
+impl SlowProcess {
+    /// Factor on the departure from rest, and variance gained, over an interval, s.
+    pub fn over(&self, dt_s: f64) -> (f64, f64) {
+        let decay = self.decay_per_s * dt_s;
+        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
+        ((-decay).exp(), self.intensity * span_s)
+    }
 }
 
 /// The cylinder with its sensors in the variables of [`States`].
@@ -194,20 +214,24 @@ impl Cylinder {
         Ok(self.model.pressure(&x[..n])?.pressure_pa)
     }
 
-    /// Variance that a trailing state gains in a second.
-    pub fn slow_walk(&self, state: usize) -> f64 {
-        let walk = match &self.states.kinds[state] {
-            StateKind::InsideFilm => self.settings.ln_inside_film.per_sqrt_s,
-            StateKind::Capacity => self.settings.ln_capacity.per_sqrt_s,
+    /// How a trailing state moves while nobody looks.
+    pub fn slow_process(&self, state: usize) -> SlowProcess {
+        let of = |walk: &Walk, rest| SlowProcess {
+            intensity: walk.per_sqrt_s * walk.per_sqrt_s,
+            decay_per_s: walk.decay_per_s(),
+            rest,
+        };
+        match &self.states.kinds[state] {
+            StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
+            StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
+            StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
-                parameter
-                    .walk_per_sqrt_s
-                    .max(self.settings.walk_of(parameter.kind, self.sensors[*sensor].quantity()))
+                let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
+                of(&walk, parameter.mean)
             }
-            _ => 0.0,
-        };
-        walk * walk
+            _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
+        }
     }
 
     fn set_walks(&mut self) {
@@ -236,6 +260,7 @@ impl Cylinder {
             ln_inside_film: value(self.states.inside),
             ln_capacity: value(self.states.capacity),
             sun_w: value(self.states.sun),
+            film_slope: value(self.states.slope),
             outflow_kg_s: x[self.states.leak],
         }
     }
@@ -248,8 +273,15 @@ impl Cylinder {
         self.model.rates(&x[..physical], &unknowns, rate, Some(jacobian))?;
         a.fill(0.0);
         let states = &self.states;
-        let columns =
-            [Some(states.air), states.outside, states.inside, states.capacity, states.sun, Some(states.leak)];
+        let columns = [
+            Some(states.air),
+            states.outside,
+            states.inside,
+            states.capacity,
+            states.sun,
+            states.slope,
+            Some(states.leak),
+        ];
         for (row, &state) in a.chunks_exact_mut(n + 1).zip(&self.coupled) {
             if state >= physical {
                 continue;

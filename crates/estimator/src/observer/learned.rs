@@ -68,5 +68,8 @@ impl Learned {
 
 /// What belongs to the cylinder and its sensors, not to the moment.
 fn is_learnt(kind: &StateKind) -> bool {
-    matches!(kind, StateKind::InsideFilm | StateKind::Capacity | StateKind::Parameter { .. })
+    matches!(
+        kind,
+        StateKind::InsideFilm | StateKind::Capacity | StateKind::FilmSlope | StateKind::Parameter { .. }
+    )
 }

@@ -121,7 +121,12 @@ impl Member {
         self.slow_s += dt_s;
         if self.slow_s >= SLOW_WALK_S {
             for state in cylinder.leading()..cylinder.states() {
-                let variance = cylinder.slow_walk(state) * self.slow_s;
+                let process = cylinder.slow_process(state);
+                let (factor, variance) = process.over(self.slow_s);
+                if factor < 1.0 {
+                    self.x[state] = process.rest + factor * (self.x[state] - process.rest);
+                    self.p.scale(state, factor);
+                }
                 if variance > 0.0 {
                     self.p.inflate(state, variance);
                 }

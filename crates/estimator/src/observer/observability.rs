@@ -39,7 +39,11 @@ impl Observability {
         let constant = |i: &usize| {
             matches!(
                 states.kinds[*i],
-                StateKind::Mass | StateKind::InsideFilm | StateKind::Capacity | StateKind::Parameter { .. }
+                StateKind::Mass
+                    | StateKind::InsideFilm
+                    | StateKind::Capacity
+                    | StateKind::FilmSlope
+                    | StateKind::Parameter { .. }
             ) && prior[(*i, *i)] > 0.0
         };
         let chosen: Vec<usize> = (0..states.count()).filter(constant).collect();

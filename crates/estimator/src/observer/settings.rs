@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::engine::Engine;
 use crate::EstimatorError;
 use crate::log::Quantity;
-use crate::sensor::ParameterKind;
+use crate::sensor::{Parameter, ParameterKind};
 
 const PER_HOUR: f64 = 1.0 / 3600.0;
 
@@ -154,8 +154,11 @@ pub struct ObserverSettings {
     pub ln_capacity: Walk,
     /// Sun on the topmost wall node, W.
     pub sun: Walk,
-    /// Random walk of a mounting coupling, 1/sqrt(s).
-    pub coupling_walk_per_sqrt_s: f64,
+    /// Change of the outside film from bottom to top, relative to that in the middle.
+    pub film_slope: Walk,
+    /// Memory of a mounting coupling, s: with the wind and the place of the air it returns to its prior, and what is
+    /// learnt of it lasts so long. `None`: it is constant.
+    pub coupling_memory_s: Option<f64>,
     /// Random walk that keeps sensor constants from being believed for ever: temperature offsets, K/sqrt(s).
     pub offset_walk_k_per_sqrt_s: f64,
     /// The same for the pressure's temperature coefficient, Pa/(K sqrt(s)).
@@ -185,7 +188,8 @@ impl Default for ObserverSettings {
             ln_inside_film: Walk::per_sqrt_hour(0.25, 0.02),
             ln_capacity: Walk::constant(0.12),
             sun: Walk::per_sqrt_hour(2.0, 2.0).remembering_hours(0.5),
-            coupling_walk_per_sqrt_s: 0.003 * PER_HOUR.sqrt(),
+            film_slope: Walk::constant(0.2),
+            coupling_memory_s: Some(24.0 / PER_HOUR),
             offset_walk_k_per_sqrt_s: 0.05 / YEAR_S.sqrt(),
             coefficient_walk_pa_k_per_sqrt_s: 200.0 / YEAR_S.sqrt(),
             model_error: ModelError {
@@ -217,13 +221,22 @@ impl ObserverSettings {
         settings
     }
 
-    /// Slow random walk of a sensor's parameter, in the unit of its kind.
-    pub(super) fn walk_of(&self, kind: ParameterKind, quantity: Quantity) -> f64 {
-        match (kind, quantity) {
-            (ParameterKind::Coupling, _) => self.coupling_walk_per_sqrt_s,
-            (ParameterKind::Offset, Quantity::Temperature) => self.offset_walk_k_per_sqrt_s,
-            (ParameterKind::TemperatureCoefficient, _) => self.coefficient_walk_pa_k_per_sqrt_s,
-            (ParameterKind::Offset, Quantity::Pressure) | (ParameterKind::Span, _) => 0.0,
+    /// Slow motion of a sensor's parameter about its prior, in the unit of its kind.
+    pub(super) fn walk_of(&self, parameter: &Parameter, quantity: Quantity) -> Walk {
+        let walk = |per_sqrt_s: f64, memory_s| Walk {
+            prior_sd: parameter.sd,
+            per_sqrt_s: per_sqrt_s.max(parameter.walk_per_sqrt_s),
+            memory_s,
+        };
+        match (parameter.kind, quantity) {
+            (ParameterKind::Coupling, _) => {
+                // As uncertain for ever as its prior says.
+                let stationary = self.coupling_memory_s.map_or(0.0, |memory_s| (2.0 / memory_s).sqrt());
+                walk(stationary * parameter.sd, self.coupling_memory_s)
+            }
+            (ParameterKind::Offset, Quantity::Temperature) => walk(self.offset_walk_k_per_sqrt_s, None),
+            (ParameterKind::TemperatureCoefficient, _) => walk(self.coefficient_walk_pa_k_per_sqrt_s, None),
+            (ParameterKind::Offset, Quantity::Pressure) | (ParameterKind::Span, _) => walk(0.0, None),
         }
     }
 
@@ -246,11 +259,11 @@ impl ObserverSettings {
         positive("film_w_m2_k", self.film_w_m2_k)?;
         positive("air_rest_k", self.air_rest_k)?;
         positive("longest_step_s", self.longest_step_s)?;
+        positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
         let gate = self.gate_probability;
         require(gate > 0.0 && gate < 1.0, "gate_probability", gate, "between 0 and 1")?;
         for (setting, value) in [
             ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
-            ("coupling_walk_per_sqrt_s", self.coupling_walk_per_sqrt_s),
             ("offset_walk_k_per_sqrt_s", self.offset_walk_k_per_sqrt_s),
             ("coefficient_walk_pa_k_per_sqrt_s", self.coefficient_walk_pa_k_per_sqrt_s),
             ("model_error.surface_k", self.model_error.surface_k),
@@ -269,6 +282,7 @@ impl ObserverSettings {
             ("ln_inside_film", &self.ln_inside_film),
             ("ln_capacity", &self.ln_capacity),
             ("sun", &self.sun),
+            ("film_slope", &self.film_slope),
         ] {
             walk.check(setting)?;
         }

@@ -1,8 +1,9 @@
 //! The observer's state vector: what each entry is.
 //!
-//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m | r | T_air | o | sun | sensor lags || i | c | sensor parameters]`
+//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m | r | T_air | o | sun | sensor lags || i | c | s | sensor parameters]`
 //!
-//! with the leak rate `r` and the logarithms `o, i, c` of the multipliers on outside film, inside film and capacity.
+//! with the leak rate `r` and the logarithms `o, i, c` of the multipliers on outside film, inside film and capacity,
+//! and the change `s` of the outside film along the axis.
 //! What stands behind the double bar is constant but for slow walks ([`crate::filter::StateSpace::leading`]). A
 //! quantity that the settings declare known has no state.
 use crate::sensor::{ParameterKind, Sensor};
@@ -38,6 +39,8 @@ pub enum StateKind {
     InsideFilm,
     /// Logarithm of the multiplier on the heat capacity of wall and valve.
     Capacity,
+    /// Change of the outside film from bottom to top, relative.
+    FilmSlope,
     /// A parameter of a sensor, in the unit of its kind.
     Parameter {
         /// Index of the sensor.
@@ -76,6 +79,8 @@ pub struct States {
     pub inside: Option<usize>,
     /// Heat capacity.
     pub capacity: Option<usize>,
+    /// Change of the outside film along the axis.
+    pub slope: Option<usize>,
     /// Lag state of each sensor.
     pub lag: Vec<Option<usize>>,
     /// State of each parameter of each sensor.
@@ -108,6 +113,7 @@ impl States {
         let leading = kinds.len();
         let inside = uncertain(&mut kinds, &settings.ln_inside_film, StateKind::InsideFilm);
         let capacity = uncertain(&mut kinds, &settings.ln_capacity, StateKind::Capacity);
+        let slope = uncertain(&mut kinds, &settings.film_slope, StateKind::FilmSlope);
         let parameters = sensors
             .iter()
             .enumerate()
@@ -135,6 +141,7 @@ impl States {
             sun,
             inside,
             capacity,
+            slope,
             lag,
             parameters,
         }
@@ -158,6 +165,7 @@ fn name(kind: &StateKind, sensors: &[Sensor]) -> String {
         StateKind::Sun => "sun_w".into(),
         StateKind::InsideFilm => "ln_inside_film".into(),
         StateKind::Capacity => "ln_capacity".into(),
+        StateKind::FilmSlope => "film_slope".into(),
         StateKind::Lag { sensor } => format!("{}.lagged", sensors[*sensor].name),
         StateKind::Parameter { sensor, parameter } => {
             let sensor = &sensors[*sensor];

@@ -1,7 +1,10 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod allocations;
+mod bound_linear;
+mod consistency_rates;
 mod copying_model;
+mod cylinder_transition;
 mod equivalence_filters;
 mod equivalence_forms;
 mod equivalence_smoother;
@@ -11,5 +14,6 @@ mod horizon;
 mod ill_conditioned;
 mod late_samples;
 mod linear_model;
+mod matched;
 mod properties;
 mod sensors;

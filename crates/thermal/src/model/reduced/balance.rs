@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use super::gas::{GasState, Slope};
 use super::{ReducedModel, Unknowns, capacity_ratio};
+use crate::model::TOP;
 use crate::transfer::{HalfCell, solve_surface, solve_surface_from};
 use crate::wall::conduction::link_flow;
 use crate::wall::mesh::Facing;
@@ -82,7 +83,10 @@ impl ReducedModel {
         for (node, column) in self.mesh.columns.iter().enumerate() {
             let sunlit = node + 1 == self.wall_nodes();
             let sun_w = if sunlit { unknowns.sun_w } else { 0.0 };
-            let (half, slope) = (self.half_cell(x[node], column.outer_shape_m), column.outer_area_m2 * film);
+            let height = self.above_middle[node];
+            let everywhere = column.outer_area_m2 * film;
+            let slope = everywhere * (1.0 + unknowns.film_slope * height);
+            let half = self.half_cell(x[node], column.outer_shape_m);
             let face =
                 solve_surface(&half, |surface_k| (slope * (surface_k - unknowns.air_k) - sun_w, slope));
             rate[node] -= face.heat_w;
@@ -90,6 +94,8 @@ impl ReducedModel {
             j[(node, node)] -= face.heat_per_node_k;
             j[(node, n + Unknowns::AIR)] += face.film_factor * slope;
             j[(node, n + Unknowns::OUTSIDE)] -= face.film_factor * slope * (face.surface_k - unknowns.air_k);
+            j[(node, n + Unknowns::SLOPE)] -=
+                face.film_factor * everywhere * height * (face.surface_k - unknowns.air_k);
             if sunlit {
                 j[(node, n + Unknowns::SUN)] += face.film_factor;
             }
@@ -101,7 +107,9 @@ impl ReducedModel {
         let conductance_w_k = self.spread.conductance_w_k;
         let sun_rise_k_w = self.spread.top_rise_k_w;
         let (top, n) = (index - 1, self.states());
-        let slope = valve.area_m2 * valve.film_factor * self.film_w_m2_k * unknowns.ln_outside_film.exp();
+        let everywhere =
+            valve.area_m2 * valve.film_factor * self.film_w_m2_k * unknowns.ln_outside_film.exp();
+        let slope = everywhere * (1.0 + unknowns.film_slope * TOP);
         let contact_w = conductance_w_k * (x[index] - x[top] - sun_rise_k_w * unknowns.sun_w);
         rate[top] += contact_w;
         rate[index] = Self::VALVE_SUN * unknowns.sun_w - contact_w - slope * (x[index] - unknowns.air_k);
@@ -112,6 +120,7 @@ impl ReducedModel {
         j[(index, index)] -= conductance_w_k + slope;
         j[(index, n + Unknowns::AIR)] += slope;
         j[(index, n + Unknowns::OUTSIDE)] -= slope * (x[index] - unknowns.air_k);
+        j[(index, n + Unknowns::SLOPE)] -= everywhere * TOP * (x[index] - unknowns.air_k);
         j[(index, n + Unknowns::SUN)] += Self::VALVE_SUN + conductance_w_k * sun_rise_k_w;
         j[(top, n + Unknowns::SUN)] -= conductance_w_k * sun_rise_k_w;
     }

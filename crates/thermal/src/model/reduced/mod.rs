@@ -41,13 +41,15 @@ pub struct Unknowns {
     pub ln_capacity: f64,
     /// Sun absorbed by the topmost wall node, W; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
     pub sun_w: f64,
+    /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
+    pub film_slope: f64,
     /// Mass flow out, kg/s.
     pub outflow_kg_s: f64,
 }
 
 impl Unknowns {
     /// Number of unknowns: columns of the Jacobian behind the states, in the order of the fields.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 7;
     /// Column of [`Unknowns::air_k`] behind the states.
     pub const AIR: usize = 0;
     /// Column of [`Unknowns::ln_outside_film`].
@@ -58,8 +60,10 @@ impl Unknowns {
     pub const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
     pub const SUN: usize = 4;
+    /// Column of [`Unknowns::film_slope`].
+    pub const SLOPE: usize = 5;
     /// Column of [`Unknowns::outflow_kg_s`].
-    pub const OUTFLOW: usize = 5;
+    pub const OUTFLOW: usize = 6;
 
     /// Nothing but surroundings of a temperature, K.
     pub fn still(air_k: f64) -> Self {
@@ -69,6 +73,7 @@ impl Unknowns {
             ln_inside_film: 0.0,
             ln_capacity: 0.0,
             sun_w: 0.0,
+            film_slope: 0.0,
             outflow_kg_s: 0.0,
         }
     }
@@ -109,6 +114,8 @@ pub struct ReducedModel {
     /// Heat capacity of each wall node at the reference temperature, J/K.
     capacity_j_k: Vec<f64>,
     wall_capacity_j_k: f64,
+    /// Height of each wall node above the middle as a fraction of the inner height.
+    above_middle: Vec<f64>,
     valve: Option<Valve>,
     /// How the heat of valve and sun spreads in the wall.
     spread: Spread,
@@ -150,6 +157,7 @@ impl ReducedModel {
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
+            above_middle: crate::model::above_middle(&mesh),
             valve: vessel.valve.clone(),
             film_w_m2_k,
             inside: InsideConvection::new(

@@ -132,7 +132,8 @@ proptest! {
             ln_inside_film: values[2],
             ln_capacity: values[3],
             sun_w: values[4],
-            outflow_kg_s: values[5],
+            film_slope: values[5],
+            outflow_kg_s: values[6],
         };
         let [a, o, i, c, s, r] = unknown;
         let at: Vec<f64> = x.iter().copied().chain([280.0 + 40.0 * a, o, 0.5 * i, 0.2 * c, 5.0 * s, 1e-3 * r]).collect();
@@ -145,7 +146,7 @@ proptest! {
         }
         for column in 0..at.len() {
             // Steps stay clear of the flat spot of the film at rest, 0.01 K wide.
-            let step = [1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-2, 1e-5];
+            let step = [1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-2, 1e-4, 1e-5];
             let step = if model.valve_index().is_some() { step[column] } else { step[column + usize::from(column > 2)] };
             let mut along = |sign: f64| {
                 let mut moved = at.clone();

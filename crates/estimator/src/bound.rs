@@ -1,1 +1,0 @@
-//! Posterior Cramer-Rao bound.

@@ -1,1 +1,0 @@
-//! Judging an estimator: normalised innovations and errors against their chi-square bounds.

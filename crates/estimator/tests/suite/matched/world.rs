@@ -1,0 +1,227 @@
+//! Worlds that are the observer's own model: its state space, with truths drawn from its prior and its noise.
+use cylwatch_estimator::EstimatorError;
+use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::observer::cylinder::Cylinder;
+use cylwatch_estimator::observer::states::{StateKind, States};
+use cylwatch_estimator::observer::{LeakHypothesis, ModelError, ObserverSettings, Walk};
+use cylwatch_estimator::sensor::Sensor;
+use cylwatch_estimator::thermal::vessel::presets;
+use nalgebra::{DMatrix, DVector};
+use rand_chacha::ChaCha12Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+pub const ZERO_CELSIUS_K: f64 = 273.15;
+pub const HOUR_S: f64 = 3600.0;
+
+/// Air of a climatic chamber: an hour of rest, a linear change (a jump where it takes no time), rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Chamber {
+    pub start_k: f64,
+    pub change_k: f64,
+    pub ramp_s: f64,
+    pub duration_s: f64,
+    /// Interval of the samples, s.
+    pub sample_s: f64,
+}
+
+impl Chamber {
+    /// Scenarios 1 to 4 of the paper.
+    pub fn scenario(number: usize) -> Self {
+        let (start_degc, end_degc, ramp_h, after_h) = [
+            (21.0, -25.0, 0.0, 3.0),
+            (-25.0, 40.0, 0.0, 3.45),
+            (10.0, 60.0, 5.0, 5.0),
+            (60.0, 28.0, 14.0, 14.0),
+        ][number - 1];
+        Self {
+            start_k: start_degc + ZERO_CELSIUS_K,
+            change_k: end_degc - start_degc,
+            ramp_s: ramp_h * HOUR_S,
+            duration_s: (1.0 + after_h) * HOUR_S,
+            sample_s: if number == 4 { 120.0 } else { 60.0 },
+        }
+    }
+
+    fn air_k(&self, time_s: f64) -> f64 {
+        let since_s = time_s - HOUR_S;
+        let done = if self.ramp_s > 0.0 {
+            (since_s / self.ramp_s).clamp(0.0, 1.0)
+        } else {
+            f64::from(u8::from(since_s > 0.0))
+        };
+        self.start_k + done * self.change_k
+    }
+}
+
+/// A cylinder in a chamber: the known change of the air comes on top of the cylinder's own transition, half of it before and
+/// half of it after.
+#[derive(Debug)]
+pub struct World {
+    pub cylinder: Cylinder,
+    pub chamber: Chamber,
+    /// Part of the cold spreads that the prior has.
+    pub spread: f64,
+    /// Time at the beginning of the next transition, s.
+    pub time_s: f64,
+}
+
+impl World {
+    /// A cylinder with the typical sensors of the shoulder, the valve and the pressure.
+    pub fn new(chamber: Chamber, settings: &ObserverSettings, spread: f64) -> Self {
+        let sensors: Vec<Sensor> =
+            ["shoulder", "valve", "pressure"].iter().map(|name| Sensor::typical(name).unwrap()).collect();
+        let cylinder = Cylinder::new(&presets::load("nitrogen-20l").unwrap(), &sensors, settings).unwrap();
+        Self { cylinder, chamber, spread, time_s: 0.0 }
+    }
+
+    /// What each state is.
+    pub fn map(&self) -> &States {
+        self.cylinder.state_map()
+    }
+
+    /// Mean and standard deviations of the state at the first sample.
+    pub fn prior(&self) -> (Vec<f64>, Vec<f64>) {
+        let (states, settings) = (self.cylinder.state_map(), self.cylinder.settings());
+        let (start_k, spread) = (self.chamber.start_k, self.spread);
+        let of = |kind: &StateKind| match *kind {
+            StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Lag { .. } => {
+                (start_k, spread * BODY_SD_K)
+            }
+            StateKind::Mass => (MASS_KG, spread * MASS_SD_KG),
+            StateKind::Leak => (0.0, settings.bank[0].rate.prior_sd),
+            StateKind::Air => (start_k, settings.air.prior_sd),
+            StateKind::OutsideFilm => (0.0, settings.ln_outside_film.prior_sd),
+            StateKind::Sun => (0.0, settings.sun.prior_sd),
+            StateKind::InsideFilm => (0.0, settings.ln_inside_film.prior_sd),
+            StateKind::Capacity => (0.0, settings.ln_capacity.prior_sd),
+            StateKind::Parameter { sensor, parameter } => {
+                let parameter = &self.cylinder.sensors()[sensor].parameters()[parameter];
+                (parameter.mean, spread * parameter.sd)
+            }
+        };
+        states.kinds.iter().map(of).unzip()
+    }
+
+    /// Prior covariance: (n, n).
+    pub fn prior_covariance(&self) -> DMatrix<f64> {
+        DMatrix::from_diagonal(&DVector::from_vec(self.prior().1).map(|sd| sd * sd))
+    }
+}
+
+/// What a filter knows at first of a cylinder that nobody has seen: its temperatures, K, and the mass of a fill, kg.
+const BODY_SD_K: f64 = 1.0;
+const MASS_KG: f64 = 4.46;
+const MASS_SD_KG: f64 = 0.045;
+
+/// Part of those spreads, and of the sensors' own priors, that is left after commissioning: offsets of 0.05 K and 0.11 bar,
+/// couplings of 0.012, a temperature coefficient of 0.0075 bar/K, a mass of 13 g.
+pub const COMMISSIONED: f64 = 0.3;
+/// All of them.
+pub const COLD: f64 = 1.0;
+
+/// The observer's settings with films of 15 % and a capacity of 10 %, without model error and without the slow walks of the
+/// constants, which the observer adds hourly, outside its state space.
+///
+/// Wall, valve and gas walk by 0.3 K in the square root of an hour instead of 1 K: an hour of rest then keeps clear of the
+/// corner of the inside film, whose conductance falls to nothing with the difference of wall and gas.
+pub fn settings(member: LeakHypothesis) -> ObserverSettings {
+    ObserverSettings {
+        longest_step_s: 120.0,
+        temperature_walk_k_per_sqrt_s: 0.3 / HOUR_S.sqrt(),
+        air: Walk::per_sqrt_hour(0.3, 1.0),
+        ln_outside_film: Walk::per_sqrt_hour(0.15, 0.1).remembering_hours(2.0),
+        ln_inside_film: Walk::constant(0.15),
+        ln_capacity: Walk::constant(0.1),
+        sun: Walk::per_sqrt_hour(0.6, 2.0).remembering_hours(0.5),
+        coupling_walk_per_sqrt_s: 0.0,
+        offset_walk_k_per_sqrt_s: 0.0,
+        coefficient_walk_pa_k_per_sqrt_s: 0.0,
+        model_error: ModelError::NONE,
+        bank: vec![member],
+        ..ObserverSettings::default()
+    }
+}
+
+/// The member whose mass walks, by 5 g in the square root of an hour.
+pub fn mass_member() -> LeakHypothesis {
+    LeakHypothesis::walking_mass(5.0)
+}
+
+/// A member whose leak rate walks, by 0.02 g/h in the square root of an hour from 0 +- 0.2 g/h.
+pub fn leak_member() -> LeakHypothesis {
+    let g_h = 1e-3 / HOUR_S;
+    LeakHypothesis { mass_walk_kg_per_sqrt_s: 0.0, rate: Walk::per_sqrt_hour(0.2 * g_h, 0.02 * g_h) }
+}
+
+/// Random numbers of a truth.
+pub struct Draws(pub ChaCha12Rng);
+
+impl Draws {
+    pub fn normal(&mut self) -> f64 {
+        StandardNormal.sample(&mut self.0)
+    }
+
+    /// A state of the prior.
+    pub fn state(&mut self, world: &World) -> Vec<f64> {
+        let (mean, sd) = world.prior();
+        mean.iter().zip(&sd).map(|(mean, sd)| mean + sd * self.normal()).collect()
+    }
+
+    /// The state some time later.
+    pub fn advance(&mut self, world: &mut World, x: &mut [f64], dt_s: f64) {
+        let mut linear = Linearisation::zeros(world.states(), world.leading(), world.noises());
+        world.propagate(x, dt_s, Some(&mut linear)).unwrap();
+        let w = DVector::from_fn(linear.q.len(), |i, _| linear.q[i].sqrt() * self.normal());
+        let spread = &linear.g * w;
+        x.iter_mut().zip(spread.iter()).for_each(|(x, by)| *x += by);
+    }
+
+    /// Readings of a state.
+    pub fn readings(&mut self, world: &mut World, x: &[f64]) -> Vec<f64> {
+        (0..world.outputs())
+            .map(|j| world.output(j, x, None).unwrap() + world.noise_variance(j, x).sqrt() * self.normal())
+            .collect()
+    }
+}
+
+impl StateSpace for World {
+    type Error = EstimatorError;
+
+    fn states(&self) -> usize {
+        self.cylinder.states()
+    }
+
+    fn leading(&self) -> usize {
+        self.cylinder.leading()
+    }
+
+    fn noises(&self) -> usize {
+        self.cylinder.noises()
+    }
+
+    fn outputs(&self) -> usize {
+        self.cylinder.outputs()
+    }
+
+    fn propagate(
+        &mut self,
+        x: &mut [f64],
+        dt_s: f64,
+        linear: Option<&mut Linearisation>,
+    ) -> Result<(), EstimatorError> {
+        let air = self.cylinder.state_map().air;
+        let half_k = 0.5 * (self.chamber.air_k(self.time_s + dt_s) - self.chamber.air_k(self.time_s));
+        x[air] += half_k;
+        self.cylinder.propagate(x, dt_s, linear)?;
+        x[air] += half_k;
+        Ok(())
+    }
+
+    fn output(&mut self, j: usize, x: &[f64], h: Option<&mut [f64]>) -> Result<f64, EstimatorError> {
+        self.cylinder.output(j, x, h)
+    }
+
+    fn noise_variance(&self, j: usize, x: &[f64]) -> f64 {
+        self.cylinder.noise_variance(j, x)
+    }
+}
