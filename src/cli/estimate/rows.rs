@@ -52,7 +52,7 @@ impl<'a> Rows<'a> {
             format: options.format,
             readings: Vec::with_capacity(names.len()),
             text: String::new(),
-            innovations: Innovations::new(names.len()),
+            innovations: Innovations::new(&names),
             figure: options.plot.is_some().then(|| FigureData::new(names)),
             score: Score::default(),
             last: None,
@@ -94,14 +94,13 @@ impl<'a> Rows<'a> {
         log: &LogInput,
         options: &Options,
     ) -> anyhow::Result<Summary> {
-        let names = self.selection.names();
         let summary = Summary {
             title,
             sampling: log.reader.sampling().clone(),
             cautions: log.reader.cautions().to_vec(),
             last: self.last.context("a log that was read without an error has a row")?,
             mass_change_sd_kg: self.observer.mass_change_sd_kg().unwrap_or(f64::NAN),
-            sensors: names.into_iter().zip(self.innovations.statistics()).collect(),
+            innovations: self.innovations,
             score: self.score,
             restarts: self.observer.restarts(),
         };

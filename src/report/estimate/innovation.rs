@@ -1,102 +1,56 @@
-//! Statistics of the innovations, sensor by sensor.
+//! Statistics of the innovations, sensor by sensor, and what they say of the filter.
 //!
-//! With `z = nu / sqrt(S)` of an accepted reading: NIS per reading `mean(z^2)` (1 for a filter whose noise is what it
-//! says; this observer states its noise too large on purpose and stays below), and the autocorrelation of `z` from one
-//! row to the next, which is 0 for white innovations and near 1 for slow model errors.
+//! Sizes and whiteness are those of [`RunConsistency`], in fixed room. This observer states its noise too large on purpose, since
+//! the errors of its model are not white; so its innovations are smaller than stated and correlated, and a mean of
+//! their squares above 1 is a warning.
+use crate::estimator::consistency::{ConsistencyReport, RunConsistency, Significance};
 use crate::estimator::observer::{Innovation, Outcome};
 
-/// Sums over the innovations of every sensor.
+/// Counts and statistics of the innovations of a run.
 #[derive(Clone, Debug)]
 pub struct Innovations {
-    sensors: Vec<Sums>,
+    counts: Vec<Counts>,
+    consistency: RunConsistency,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Sums {
-    accepted: u64,
-    rejected: u64,
-    missing: u64,
-    /// Innovations in the sums below.
-    count: u64,
-    sum: f64,
-    squares: f64,
-    /// Products of neighbours and their number.
-    products: f64,
-    pairs: u64,
-    last: f64,
-}
-
-/// Statistics of one sensor's innovations.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorStatistics {
+/// What became of the readings of a sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
     /// Readings that were used, also those that were taken after too many refusals.
-    pub accepted: u64,
+    pub used: u64,
     /// Readings that were refused.
     pub rejected: u64,
     /// Rows without a reading.
     pub missing: u64,
-    /// Mean of the squared normalised innovations; NaN without a used reading.
-    pub nis: f64,
-    /// Autocorrelation of the normalised innovations from row to row; NaN below two rows.
-    pub autocorrelation: f64,
 }
 
 impl Innovations {
-    /// For so many sensors.
-    pub fn new(sensors: usize) -> Self {
-        let none = Sums {
-            accepted: 0,
-            rejected: 0,
-            missing: 0,
-            count: 0,
-            sum: 0.0,
-            squares: 0.0,
-            products: 0.0,
-            pairs: 0,
-            last: f64::NAN,
-        };
-        Self { sensors: vec![none; sensors] }
+    /// For sensors of these names.
+    pub fn new(names: &[String]) -> Self {
+        let consistency = RunConsistency::new(names, RunConsistency::LAGS);
+        Self { counts: vec![Counts::default(); names.len()], consistency }
     }
 
     /// Counts the innovations of a row.
     pub fn push(&mut self, innovations: &[Innovation]) {
-        for (sums, innovation) in self.sensors.iter_mut().zip(innovations) {
+        for (counts, innovation) in self.counts.iter_mut().zip(innovations) {
             match innovation.outcome {
-                Outcome::Missing => sums.missing += 1,
-                Outcome::Rejected => sums.rejected += 1,
-                Outcome::Accepted | Outcome::Reacquired => sums.accepted += 1,
+                Outcome::Missing => counts.missing += 1,
+                Outcome::Rejected => counts.rejected += 1,
+                Outcome::Accepted | Outcome::Reacquired => counts.used += 1,
             }
-            if innovation.outcome != Outcome::Accepted {
-                sums.last = f64::NAN;
-                continue;
-            }
-            let z = normalised(innovation);
-            sums.count += 1;
-            sums.sum += z;
-            sums.squares += z * z;
-            if !sums.last.is_nan() {
-                sums.products += z * sums.last;
-                sums.pairs += 1;
-            }
-            sums.last = z;
         }
+        self.consistency.record_innovations(innovations);
     }
 
-    /// Statistics in the order of the sensors.
-    pub fn statistics(&self) -> Vec<SensorStatistics> {
-        let of = |sums: &Sums| {
-            let count = sums.count as f64;
-            let (mean, square) = (sums.sum / count, sums.squares / count);
-            let variance = square - mean * mean;
-            SensorStatistics {
-                accepted: sums.accepted,
-                rejected: sums.rejected,
-                missing: sums.missing,
-                nis: square,
-                autocorrelation: (sums.products / sums.pairs as f64 - mean * mean) / variance,
-            }
-        };
-        self.sensors.iter().map(of).collect()
+    /// Counts in the order of the sensors.
+    pub fn counts(&self) -> &[Counts] {
+        &self.counts
+    }
+
+    /// Sizes and whiteness with what they say, at one in a hundred.
+    pub fn report(&self) -> ConsistencyReport {
+        self.consistency.report(Significance::ONE_PERCENT)
     }
 }
 
@@ -110,36 +64,17 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    fn of(values: impl Iterator<Item = f64>) -> SensorStatistics {
-        let mut all = Innovations::new(1);
-        for nu in values {
-            all.push(&[Innovation { nu, s: 4.0, outcome: Outcome::Accepted }]);
-        }
-        all.statistics()[0]
-    }
-
     #[test]
-    fn alternating_innovations_are_anticorrelated_and_constant_drift_correlated() {
-        let alternating = of((0..10_000).map(|k| if k % 2 == 0 { 2.0 } else { -2.0 }));
-        assert_relative_eq!(alternating.nis, 1.0);
-        assert_relative_eq!(alternating.autocorrelation, -1.0, epsilon = 1e-6);
-        // A sine of period n has the autocorrelation cos(2 pi / n).
-        let step = std::f64::consts::TAU / 100.0;
-        let slow = of((0..100_000).map(|k| (f64::from(k) * step).sin()));
-        assert_relative_eq!(slow.autocorrelation, step.cos(), epsilon = 1e-4);
-        assert_relative_eq!(slow.nis, 0.125, epsilon = 1e-9);
-    }
-
-    #[test]
-    fn refused_and_missing_readings_are_counted_and_break_the_chain() {
-        let mut all = Innovations::new(1);
-        let rejected = Innovation { nu: 1e3, s: 1.0, outcome: Outcome::Rejected };
-        for innovation in [Innovation::MISSING, rejected] {
-            all.push(&[Innovation { nu: 1.0, s: 1.0, outcome: Outcome::Accepted }]);
-            all.push(&[innovation]);
+    fn readings_are_counted_by_what_became_of_them_and_judged_before_their_gate() {
+        let mut all = Innovations::new(&["shoulder".to_owned()]);
+        let outcomes = [Outcome::Accepted, Outcome::Rejected, Outcome::Missing, Outcome::Reacquired];
+        for (nu, outcome) in [2.0, 6.0, f64::NAN, -4.0].into_iter().zip(outcomes) {
+            all.push(&[Innovation { nu, s: if nu.is_nan() { nu } else { 4.0 }, outcome }]);
         }
-        let found = all.statistics()[0];
-        assert_eq!((found.accepted, found.rejected, found.missing, found.nis), (2, 1, 1, 1.0));
-        assert!(found.autocorrelation.is_nan());
+        assert_eq!(all.counts(), [Counts { used: 2, rejected: 1, missing: 1 }]);
+        // (1 + 9 + 4) / 3 of all, 1 of the one that its gate passed.
+        let nis = all.report().outputs[0].nis;
+        assert_relative_eq!(nis.mean, 14.0 / 3.0);
+        assert_relative_eq!(nis.mean_accepted, 1.0);
     }
 }

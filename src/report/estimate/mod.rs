@@ -12,7 +12,7 @@ mod summary;
 
 pub use course::Course;
 pub use figure::{FigureData, figure};
-pub use innovation::{Innovations, SensorStatistics};
+pub use innovation::{Counts, Innovations};
 pub use row::{COLUMNS, DOCUMENTATION, EstimateRow, csv_header, csv_row, json_row};
 pub use score::{Score, Spread};
 pub use summary::{Summary, document, doubts, text};

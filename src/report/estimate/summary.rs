@@ -1,7 +1,8 @@
 //! A run of an observer in a few lines for people, and as JSON.
-use super::innovation::SensorStatistics;
+use super::innovation::{Counts, Innovations};
 use super::row::EstimateRow;
 use super::score::{Score, Spread};
+use crate::estimator::consistency::{Finding, OutputReport};
 use crate::log::{Caution, Sampling};
 use crate::report::aligned;
 use crate::thermal::units::ZERO_CELSIUS_K;
@@ -23,8 +24,8 @@ pub struct Summary {
     pub last: EstimateRow,
     /// Standard deviation of the change of mass since the first row, kg; NaN: unknown.
     pub mass_change_sd_kg: f64,
-    /// Names of the sensors with the statistics of their innovations.
-    pub sensors: Vec<(String, SensorStatistics)>,
+    /// Innovations of the sensors.
+    pub innovations: Innovations,
     /// How near to the truth.
     pub score: Score,
     /// How often the observer began again.
@@ -47,7 +48,7 @@ pub fn text(summary: &Summary) -> String {
         text.push_str(&format!("{what:width$}  {value}\n"));
     }
     text.push('\n');
-    text.push_str(&sensors(&summary.sensors));
+    text.push_str(&sensors(&summary.innovations));
     text
 }
 
@@ -55,14 +56,18 @@ pub fn text(summary: &Summary) -> String {
 pub fn doubts(summary: &Summary) -> Vec<String> {
     const FEWEST: u64 = 5;
     const SHARE: f64 = 0.05;
-    let doubt = |(name, s): &(String, SensorStatistics)| {
-        let all = s.accepted + s.rejected;
-        (s.rejected >= FEWEST && s.rejected as f64 > SHARE * all as f64).then(|| {
-            let rejected = s.rejected;
-            format!("{rejected} of {all} readings of {name} do not fit the vessel: look at the vessel, at the sensor's place and at its unit")
+    let doubt = |(name, counts): (String, &Counts)| {
+        let all = counts.used + counts.rejected;
+        (counts.rejected >= FEWEST && counts.rejected as f64 > SHARE * all as f64).then(|| {
+            let rejected = counts.rejected;
+            format!(
+                "{rejected} of {all} readings of {name} do not fit the vessel: look at the vessel, at the sensor's \
+                 place and at its unit"
+            )
         })
     };
-    summary.sensors.iter().filter_map(doubt).collect()
+    let names = summary.innovations.report().outputs.into_iter().map(|output| output.name);
+    names.zip(summary.innovations.counts()).filter_map(doubt).collect()
 }
 
 fn log(sampling: &Sampling) -> String {
@@ -139,24 +144,34 @@ fn score(score: &Score) -> Vec<(&'static str, String)> {
 }
 
 /// Readings and innovations of every sensor as a table.
-fn sensors(sensors: &[(String, SensorStatistics)]) -> String {
-    let known = |value: f64, text: String| if value.is_finite() { text } else { String::new() };
-    let rows: Vec<Vec<String>> = sensors
-        .iter()
-        .map(|(name, s)| {
-            vec![
-                name.clone(),
-                s.accepted.to_string(),
-                s.rejected.to_string(),
-                s.missing.to_string(),
-                known(s.nis, format!("{:.2}", s.nis)),
-                known(s.autocorrelation, format!("{:.2}", s.autocorrelation)),
-            ]
-        })
-        .collect();
+fn sensors(innovations: &Innovations) -> String {
+    let row = |(counts, output): (&Counts, &OutputReport)| {
+        let mut row = vec![output.name.clone()];
+        row.extend([counts.used, counts.rejected, counts.missing].map(|count| count.to_string()));
+        row.push(if output.nis.readings > 0 { format!("{:.2}", output.nis.mean) } else { String::new() });
+        row.push(short(output.nis.finding).to_owned());
+        row.push(output.largest_autocorrelation.map_or(String::new(), |(_, largest)| fixed(largest, 2)));
+        let white = output.whiteness.is_consistent();
+        row.push(if white { "white".to_owned() } else { short(output.whiteness).to_owned() });
+        row
+    };
+    let report = innovations.report();
+    let rows: Vec<Vec<String>> = innovations.counts().iter().zip(&report.outputs).map(row).collect();
     let header =
-        ["sensor", "used", "rejected", "missing", "NIS (1 if noise alone)", "autocorrelation (0 if white)"];
+        ["sensor", "used", "rejected", "missing", "NIS (1)", "innovations", "autocorrelation (0)", "in time"];
     aligned(&header, &rows)
+}
+
+/// A finding in few words.
+fn short(finding: Finding) -> &'static str {
+    match finding {
+        Finding::Consistent => "as stated",
+        Finding::TooConfident => "larger than stated",
+        Finding::TooCautious => "smaller than stated",
+        Finding::Correlated => "correlated",
+        Finding::NotNormal => "not normal",
+        Finding::TooFew => "too few to tell",
+    }
 }
 
 /// A duration in the unit that people would say.
@@ -183,16 +198,17 @@ pub fn document(summary: &Summary) -> Value {
             "within_2_sd": spread.covered(),
         }),
     };
-    let sensor = |(name, s): &(String, SensorStatistics)| {
+    let report = summary.innovations.report();
+    let sensor = |(counts, output): (&Counts, &OutputReport)| {
         json!({
-            "name": name,
-            "used": s.accepted,
-            "rejected": s.rejected,
-            "missing": s.missing,
-            "nis": s.nis,
-            "autocorrelation": s.autocorrelation,
+            "name": output.name,
+            "used": counts.used,
+            "rejected": counts.rejected,
+            "missing": counts.missing,
+            "innovations": output,
         })
     };
+    let sensors: Vec<Value> = summary.innovations.counts().iter().zip(&report.outputs).map(sensor).collect();
     json!({
         "rows": sampling.rows(),
         "duration_s": sampling.duration_s(),
@@ -200,7 +216,7 @@ pub fn document(summary: &Summary) -> Value {
         "gaps": { "count": gaps.count, "longest_s": gaps.longest_s, "total_s": gaps.total_s },
         "mass_change_sd_g": summary.mass_change_sd_kg * 1e3,
         "restarts": summary.restarts,
-        "sensors": summary.sensors.iter().map(sensor).collect::<Vec<_>>(),
+        "sensors": sensors,
         "against_truth": {
             "gas_mean_k": spread(&summary.score.gas_mean_k, 1.0),
             "mass_g": spread(&summary.score.mass_kg, 1e3),
