@@ -254,6 +254,7 @@ impl ObserverSettings {
         let not_negative = |setting, value: f64| {
             require(value >= 0.0 && value.is_finite(), setting, value, "finite and at least 0")
         };
+        self.engine.validate()?;
         require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
         require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
         positive("film_w_m2_k", self.film_w_m2_k)?;

@@ -59,6 +59,12 @@ impl Arrival {
         self.refresh_root();
     }
 
+    /// Add `variance` to state `i`.
+    pub fn inflate(&mut self, i: usize, variance: f64) {
+        self.factors.inflate(i, variance);
+        self.refresh_root();
+    }
+
     fn refresh_root(&mut self) {
         self.root.copy_from(self.factors.unit_upper());
         for (mut column, d) in self.root.column_iter_mut().zip(self.factors.diagonal()) {

@@ -79,6 +79,12 @@ impl<M: StateSpace> MovingHorizon<M> {
         self.take(dt_s, z, false)
     }
 
+    /// Add `variance` to state `i` at the window's start: a constant that walks so slowly that no interval has noise for it.
+    pub fn inflate(&mut self, i: usize, variance: f64) {
+        self.window.arrival.inflate(i, variance);
+        self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
+    }
+
     /// The process.
     pub fn model(&self) -> &M {
         &self.model

@@ -1,0 +1,64 @@
+//! Record of a member's last step, as a smoother needs it.
+use nalgebra::DMatrix;
+
+use crate::filter::PassStep;
+
+/// The last step of a member.
+#[derive(Clone, Debug)]
+pub(super) struct Pass {
+    pub step: PassStep,
+    /// Whether mass and gas temperature were freed before the sample's readings, and before each of them.
+    pub opened: bool,
+    pub opened_before: Vec<bool>,
+    /// Memory of a product.
+    product: DMatrix<f64>,
+}
+
+impl Pass {
+    /// No step yet, of a member with `n` states, of which `leading` move, and so many sensors.
+    pub fn new(n: usize, leading: usize, sensors: usize) -> Self {
+        Self {
+            step: PassStep::zeros(n, leading, sensors),
+            opened: false,
+            opened_before: vec![false; sensors],
+            product: DMatrix::zeros(leading, n),
+        }
+    }
+
+    /// A sample comes `dt_s`, s, after the last one.
+    pub fn begin(&mut self, dt_s: f64) {
+        self.step.interval_s = dt_s;
+        self.step.phi.fill_with_identity();
+        self.step.used.fill(false);
+        self.opened = false;
+        self.opened_before.fill(false);
+    }
+
+    /// Part of the interval with the transition `phi`: (leading, n).
+    pub fn move_on(&mut self, phi: &DMatrix<f64>) {
+        let (m, n) = phi.shape();
+        self.product.copy_from(phi);
+        self.product.columns_mut(0, m).fill(0.0);
+        self.product.gemm(1.0, &phi.columns(0, m), &self.step.phi, 1.0);
+        debug_assert_eq!(self.product.ncols(), n);
+        std::mem::swap(&mut self.product, &mut self.step.phi);
+    }
+
+    /// A reading was used: gradient and gain (n), innovation and its variance.
+    pub fn take(&mut self, sensor: usize, h: &[f64], gain: &[f64], (nu, s): (f64, f64)) {
+        let step = &mut self.step;
+        step.h.column_mut(sensor).as_mut_slice().copy_from_slice(h);
+        step.gain.column_mut(sensor).as_mut_slice().copy_from_slice(gain);
+        step.innovation[sensor] = nu;
+        step.variance[sensor] = s;
+        step.used[sensor] = true;
+    }
+
+    /// Mass and gas temperature are freed before the readings, or before that of one sensor.
+    pub fn open(&mut self, before: Option<usize>) {
+        match before {
+            Some(sensor) => self.opened_before[sensor] = true,
+            None => self.opened = true,
+        }
+    }
+}
