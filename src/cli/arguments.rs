@@ -141,6 +141,9 @@ pub struct EstimateArguments {
     /// Filter of the observer.
     #[arg(long, value_enum, default_value = "ekf")]
     pub filter: Filter,
+    /// Use later readings, too: rows come out half a day later, and are nearer to the truth; ekf and ukf only.
+    #[arg(long)]
+    pub smooth: bool,
     /// TOML file of the sensors with their errors [default: on the columns shoulder, valve, wall_<place> Pt100 of class
     /// B, on pressure a transmitter of 250 bar and 0.25 %].
     #[arg(long, value_name = "FILE")]

@@ -17,9 +17,11 @@ use cylwatch::thermal::vessel::Vessel;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+mod pass;
 mod rows;
 mod selection;
 
+use pass::Pass;
 use rows::Rows;
 use selection::Selection;
 
@@ -38,6 +40,7 @@ struct Options {
     fill: GivenFill,
     source: FillSource,
     engine: Engine,
+    smooth: bool,
     learned_in: Option<PathBuf>,
     learned_out: Option<Target>,
 }
@@ -70,7 +73,8 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
 
 impl Options {
     fn checked(arguments: EstimateArguments) -> anyhow::Result<Self> {
-        let EstimateArguments { vessel, log, fill, filter, mappings, sensors, learned_in, .. } = arguments;
+        let EstimateArguments { vessel, log, fill, filter, smooth, mappings, sensors, learned_in, .. } =
+            arguments;
         if vessel == "-" && log == "-" {
             bail!("stdin can be the vessel or the log, not both: give the other one as a file");
         }
@@ -100,6 +104,7 @@ impl Options {
             fill,
             source,
             engine,
+            smooth,
             learned_in,
             learned_out,
         })

@@ -1,7 +1,9 @@
 //! The loop's body: a row in, an estimate out, everything else counted.
 use super::*;
 use crate::cli::output::Stream;
-use cylwatch::estimator::observer::Estimate;
+use cylwatch::estimator::observer::cylinder::Cylinder;
+use cylwatch::estimator::observer::{Estimate, Innovation};
+use cylwatch::log::Truth;
 use cylwatch::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
 use cylwatch::report::{Input, Provenance};
 
@@ -14,16 +16,23 @@ const SETTLED_K: f64 = 288.15;
 
 /// A run that is under way.
 pub struct Rows<'a> {
-    observer: Observer,
+    pass: Pass,
     selection: &'a Selection,
+    readings: Vec<f64>,
+    results: Results,
+}
+
+/// Where estimates go.
+struct Results {
     stream: Stream,
     format: Format,
-    readings: Vec<f64>,
     text: String,
     figure: Option<FigureData>,
     innovations: Innovations,
     score: Score,
     last: Option<EstimateRow>,
+    /// Model of the gas for the slope of its settled pressure.
+    cylinder: Cylinder,
     /// Mass, kg, and slope of the settled pressure there, Pa/kg.
     slope: (f64, f64),
 }
@@ -31,13 +40,15 @@ pub struct Rows<'a> {
 impl<'a> Rows<'a> {
     /// Opens the output and writes what stands above the rows.
     pub fn begin(
-        observer: Observer,
+        mut observer: Observer,
         selection: &'a Selection,
         options: &Options,
         inputs: &Inputs,
         log: &LogInput,
     ) -> anyhow::Result<Self> {
         let names = selection.names();
+        let cylinder = observer.cylinder().clone();
+        let pass = Pass::new(observer, options.smooth)?;
         let mut stream = options.data.open()?;
         match options.format {
             Format::Csv => stream.write(&head(&inputs.provenance(), &names, log))?,
@@ -45,26 +56,74 @@ impl<'a> Rows<'a> {
                 stream.write(&format!("{{\"columns\":{},\"data\":[", json!(report::COLUMNS)))?;
             }
         }
-        Ok(Self {
-            observer,
-            selection,
+        let results = Results {
             stream,
             format: options.format,
-            readings: Vec::with_capacity(names.len()),
             text: String::new(),
             innovations: Innovations::new(&names),
-            figure: options.plot.is_some().then(|| FigureData::new(names)),
             score: Score::default(),
             last: None,
             slope: (f64::NAN, f64::NAN),
-        })
+            cylinder,
+            figure: options.plot.is_some().then(|| FigureData::new(names)),
+        };
+        Ok(Self { pass, selection, readings: Vec::new(), results })
     }
 
-    /// Takes in a row and writes its estimate.
+    /// Takes in a row and writes the estimates that are final.
     pub fn push(&mut self, row: &Row) -> anyhow::Result<()> {
         self.readings.clear();
         self.readings.extend(self.selection.readings(row));
-        let estimate = self.observer.step(row.time_s, &self.readings)?;
+        let results = &mut self.results;
+        self.pass.push(row, &self.readings, |estimate, truth, innovations| {
+            results.take(estimate, truth, innovations)
+        })
+    }
+
+    /// Ends the output; files appear here.
+    pub fn finish(
+        self,
+        title: String,
+        inputs: &Inputs,
+        log: &LogInput,
+        options: &Options,
+    ) -> anyhow::Result<Summary> {
+        let mut results = self.results;
+        let observer =
+            self.pass.finish(|estimate, truth, innovations| results.take(estimate, truth, innovations))?;
+        let summary = Summary {
+            title,
+            sampling: log.reader.sampling().clone(),
+            cautions: log.reader.cautions().to_vec(),
+            last: results.last.context("a log that was read without an error has a row")?,
+            mass_change_sd_kg: observer.mass_change_sd_kg().unwrap_or(f64::NAN),
+            innovations: results.innovations,
+            score: results.score,
+            restarts: observer.restarts(),
+        };
+        let late = inputs.record_log(log);
+        let provenance = inputs.provenance();
+        let figure = results.figure.take().map(|data| report::figure(&summary.title, &data));
+        // Everything is made before any file appears.
+        let plot = options.plot.as_ref().zip(figure);
+        let picture = plot.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
+        let learned = options.learned_out.as_ref().zip(observer.learned());
+        results.stream.write(&tail(results.format, &summary, &provenance, late, log))?;
+        if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
+            plot.write(&bytes)?;
+        }
+        if let Some((target, learned)) = learned {
+            let document = json!({ "provenance": provenance.to_json(), "learned": learned });
+            target.write(format!("{}\n", serde_json::to_string_pretty(&document)?).as_bytes())?;
+        }
+        results.stream.finish()?;
+        Ok(summary)
+    }
+}
+
+impl Results {
+    /// Writes an estimate and counts it.
+    fn take(&mut self, estimate: Estimate, truth: &Truth, innovations: &[Innovation]) -> anyhow::Result<()> {
         let leak_pa_s = estimate.leak_kg_s * self.slope_pa_kg(&estimate)?;
         let line = EstimateRow { estimate, leak_pa_s };
         self.text.clear();
@@ -76,51 +135,13 @@ impl<'a> Rows<'a> {
             }
         }
         self.stream.write(&self.text)?;
-        let innovations = self.observer.innovations();
         self.innovations.push(innovations);
-        self.score.push(&estimate, &row.truth);
+        self.score.push(&estimate, truth);
         if let Some(figure) = &mut self.figure {
-            figure.push(&estimate, &row.truth, innovations);
+            figure.push(&estimate, truth, innovations);
         }
         self.last = Some(line);
         Ok(())
-    }
-
-    /// Ends the output; files appear here.
-    pub fn finish(
-        mut self,
-        title: String,
-        inputs: &Inputs,
-        log: &LogInput,
-        options: &Options,
-    ) -> anyhow::Result<Summary> {
-        let summary = Summary {
-            title,
-            sampling: log.reader.sampling().clone(),
-            cautions: log.reader.cautions().to_vec(),
-            last: self.last.context("a log that was read without an error has a row")?,
-            mass_change_sd_kg: self.observer.mass_change_sd_kg().unwrap_or(f64::NAN),
-            innovations: self.innovations,
-            score: self.score,
-            restarts: self.observer.restarts(),
-        };
-        let late = inputs.record_log(log);
-        let provenance = inputs.provenance();
-        let figure = self.figure.take().map(|data| report::figure(&summary.title, &data));
-        let plot = options.plot.as_ref().zip(figure);
-        let plot = plot.map(|(plot, figure)| Ok((plot, plot.draw(&figure, &provenance)?)));
-        let plot: Option<(&Plot, Vec<u8>)> = plot.transpose().map_err(|error: anyhow::Error| error)?;
-        let learned = options.learned_out.as_ref().zip(self.observer.learned());
-        self.stream.write(&tail(self.format, &summary, &provenance, late, log))?;
-        if let Some((plot, bytes)) = plot {
-            plot.write(&bytes)?;
-        }
-        if let Some((target, learned)) = learned {
-            let document = json!({ "provenance": provenance.to_json(), "learned": learned });
-            target.write(format!("{}\n", serde_json::to_string_pretty(&document)?).as_bytes())?;
-        }
-        self.stream.finish()?;
-        Ok(summary)
     }
 
     /// Slope of the settled pressure in the mass, Pa/kg.
@@ -128,7 +149,7 @@ impl<'a> Rows<'a> {
         let mass_kg = estimate.mass_kg;
         let age = (mass_kg / self.slope.0 - 1.0).abs();
         if age.is_nan() || age > SLOPE_AGES {
-            let model = self.observer.cylinder().model();
+            let model = self.cylinder.model();
             let above = model.settled_pressure_pa(mass_kg * (1.0 + SLOPE_STEP), SETTLED_K)?;
             let below = model.settled_pressure_pa(mass_kg * (1.0 - SLOPE_STEP), SETTLED_K)?;
             self.slope = (mass_kg, (above - below) / (2.0 * SLOPE_STEP * mass_kg));

@@ -1,5 +1,6 @@
 //! `cylwatch estimate`.
 mod bad_input;
+mod filters;
 mod outputs;
 mod session;
 
