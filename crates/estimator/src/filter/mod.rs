@@ -2,7 +2,7 @@
 //!
 //! A problem is a [`StateSpace`]: how the state moves between samples and what each output reads. Every filter
 //! here works on any of them.
-mod dense;
+pub(crate) mod dense;
 mod factor;
 pub mod failure;
 pub mod form;

@@ -189,6 +189,14 @@ impl Backward {
         symmetrise(&mut self.information, step.x.len());
     }
 
+    /// State `i` became `factor` times itself.
+    pub fn scale(&mut self, i: usize, factor: f64) {
+        let n = self.adjoint.len();
+        self.adjoint[i] *= factor;
+        self.information[i * n..(i + 1) * n].iter_mut().for_each(|value| *value *= factor);
+        self.information[i..].iter_mut().step_by(n).for_each(|value| *value *= factor);
+    }
+
     /// State `i` was made independent of its past: what comes after says nothing of what it was before.
     pub fn forget(&mut self, i: usize) {
         let n = self.adjoint.len();

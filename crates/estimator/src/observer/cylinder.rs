@@ -198,6 +198,11 @@ impl Cylinder {
         self.targets[sensor] == Target::Pressure
     }
 
+    /// Longest step of the transition, s.
+    pub fn set_longest_step_s(&mut self, longest_step_s: f64) {
+        self.settings.longest_step_s = longest_step_s;
+    }
+
     /// Let mass and leak rate walk as one member of the bank supposes.
     pub fn suppose(&mut self, leak: &LeakHypothesis) {
         self.intensity[self.states.mass] = leak.mass_walk_kg_per_sqrt_s.powi(2);

@@ -1,14 +1,14 @@
 //! Which filter the members of the bank run.
 //!
 //! The policy around it is one and the same for all engines and lives in the members: gates, re-acquisition, events, bounds, slow
-//! walks of the constants. An engine ([`mechanism`]) says how mean and covariance move in time and take a reading.
+//! walks of the constants. An engine says how mean and covariance move in time and take a reading.
 //!
 //! | engine | what it does | what it costs |
 //! |---|---|---|
-//! | extended | linearises along the estimate; learns all that can be learnt | the default: least that does |
-//! | unscented | linearises statistically over the spread of the estimate | tens of times as much |
-//! | stationary | constant gain; learns no constants | less, no covariance moves |
-//! | moving horizon | best trajectory through a window of samples, inside constraints | hundreds of times as much |
+//! | extended | linearises along the estimate; learns all that can be learnt | the default |
+//! | unscented | linearises statistically over the spread of the estimate | some 25 times as much |
+//! | stationary | constant gain; learns no constants | as much: no covariance moves, but the model's equations cost most |
+//! | moving horizon | best trajectory through a window of samples, inside constraints | some 200 times as much |
 mod horizon;
 mod mechanism;
 mod stationary;
@@ -21,6 +21,9 @@ use serde::{Deserialize, Serialize};
 use crate::EstimatorError;
 use crate::filter::horizon::{HorizonSettings, Loss};
 pub(super) use mechanism::{Mechanism, Predicted, Shared};
+
+/// Iterations of a window per sample at most. The next sample iterates the same trajectory again.
+const ITERATIONS: usize = 2;
 
 /// Filter that the observer runs. [`str::parse`] takes `ekf`, `ukf`, `stationary`, `mhe` and the words of files: `extended`,
 /// `unscented`, `stationary`, `moving-horizon`.
@@ -67,7 +70,12 @@ impl Default for MovingHorizonSettings {
 impl MovingHorizonSettings {
     fn horizon(&self) -> HorizonSettings {
         let loss = self.huber.map_or(Loss::Quadratic, |delta| Loss::Huber { delta });
-        HorizonSettings { samples: self.samples, loss, ..HorizonSettings::default() }
+        HorizonSettings {
+            samples: self.samples,
+            loss,
+            iterations_max: ITERATIONS,
+            ..HorizonSettings::default()
+        }
     }
 }
 

@@ -112,7 +112,10 @@ impl Member {
                 let (factor, variance) = process.over(self.slow_s);
                 if factor < 1.0 {
                     self.x[state] = process.rest + factor * (self.x[state] - process.rest);
-                    self.p.scale(state, factor);
+                    self.mechanism.relax(&mut self.p, state, factor, process.rest);
+                    if let Some(pass) = &mut self.pass {
+                        pass.relax(state, factor);
+                    }
                 }
                 if variance > 0.0 {
                     self.mechanism.inflate(&mut self.p, state, variance);

@@ -2,6 +2,7 @@
 use nalgebra::DMatrix;
 
 use crate::filter::PassStep;
+use crate::filter::dense::add_product;
 
 /// The last step of a member.
 #[derive(Clone, Debug)]
@@ -10,6 +11,8 @@ pub(super) struct Pass {
     /// Whether mass and gas temperature were freed before the sample's readings, and before each of them.
     pub opened: bool,
     pub opened_before: Vec<bool>,
+    /// Factor by which each state came nearer to its rest before the readings: (n).
+    pub relaxed: Vec<f64>,
     /// Memory of a product.
     product: DMatrix<f64>,
 }
@@ -21,6 +24,7 @@ impl Pass {
             step: PassStep::zeros(n, leading, sensors),
             opened: false,
             opened_before: vec![false; sensors],
+            relaxed: vec![1.0; n],
             product: DMatrix::zeros(leading, n),
         }
     }
@@ -31,16 +35,18 @@ impl Pass {
         self.step.phi.fill_with_identity();
         self.step.used.fill(false);
         self.opened = false;
+        self.relaxed.fill(1.0);
         self.opened_before.fill(false);
     }
 
     /// Part of the interval with the transition `phi`: (leading, n).
     pub fn move_on(&mut self, phi: &DMatrix<f64>) {
-        let (m, n) = phi.shape();
-        self.product.copy_from(phi);
-        self.product.columns_mut(0, m).fill(0.0);
-        self.product.gemm(1.0, &phi.columns(0, m), &self.step.phi, 1.0);
-        debug_assert_eq!(self.product.ncols(), n);
+        let m = phi.nrows();
+        let (moving, constant) = phi.as_slice().split_at(m * m);
+        let product = self.product.as_mut_slice();
+        product[..m * m].fill(0.0);
+        product[m * m..].copy_from_slice(constant);
+        add_product(product, 1.0, moving, self.step.phi.as_slice(), m);
         std::mem::swap(&mut self.product, &mut self.step.phi);
     }
 
@@ -52,6 +58,11 @@ impl Pass {
         step.innovation[sensor] = nu;
         step.variance[sensor] = s;
         step.used[sensor] = true;
+    }
+
+    /// A constant came nearer to its rest.
+    pub fn relax(&mut self, state: usize, factor: f64) {
+        self.relaxed[state] *= factor;
     }
 
     /// Mass and gas temperature are freed before the readings, or before that of one sensor.

@@ -45,7 +45,8 @@ struct Row {
 }
 
 impl Smoother {
-    /// Smooth the estimates of an observer that has not begun, with the default room.
+    /// Smooth the estimates of an observer that has not begun, with room for 8192 rows: some 75 MB, 23 hours at 10 s or 5.7 days at
+    /// a minute. A longer log is smoothed block by block, each row with at least half the room of later rows.
     ///
     /// # Errors
     /// Its engine has not the gains of its covariance ([`Engine::can_be_smoothed`]), or it has taken samples.
@@ -209,6 +210,9 @@ fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States)
     }
     if pass.opened {
         freed.iter().for_each(|&state| backward.forget(state));
+    }
+    for (state, &factor) in pass.relaxed.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
+        backward.scale(state, factor);
     }
     backward.pass_interval(&pass.step);
 }

@@ -2,7 +2,6 @@
 use super::Model;
 use super::gas::GasPoint;
 use super::inputs::{FilmInput, Inputs};
-use crate::scenario::Sun;
 use crate::transfer::outside::{Body, convection_w_m2_k, radiation_w_m2};
 use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
 use crate::vessel::Valve;
@@ -120,11 +119,11 @@ pub(crate) fn above_middle(mesh: &Mesh) -> Vec<f64> {
         .collect()
 }
 
-/// Projected area of each column in the sun, m²: its outer area over pi, times the lit part of its height.
-pub(super) fn lit_area_m2(mesh: &Mesh, sun: Option<&Sun>) -> Vec<f64> {
-    let Some(sun) = sun else { return vec![0.0; mesh.columns.len()] };
+/// Projected area of each column in the sun, m²: its outer area over pi, times the part of its height that is lit, from
+/// one fraction of the height to another.
+pub(crate) fn lit_area_m2(mesh: &Mesh, fractions: (f64, f64)) -> Vec<f64> {
     let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
-    let (from, to) = (sun.from_fraction * top, sun.to_fraction * top);
+    let (from, to) = (fractions.0 * top, fractions.1 * top);
     mesh.columns
         .iter()
         .map(|column| {

@@ -33,7 +33,6 @@ use crate::vessel::{GasResolution, Surface, Valve, Vessel};
 use crate::wall::conduction::link_flow;
 use crate::wall::material::Material;
 use crate::wall::mesh::Mesh;
-use faces::lit_area_m2;
 use gas::{Gas, GasPoint};
 use grid::GasGrid;
 use inputs::Inputs;
@@ -41,7 +40,7 @@ use layout::Layout;
 use stratified::{Stratified, WallAction};
 use well_mixed::WellMixed;
 
-pub(crate) use faces::{TOP, above_middle};
+pub(crate) use faces::{TOP, above_middle, lit_area_m2};
 pub use jacobian::Assembly;
 pub use output::Output;
 
@@ -83,6 +82,13 @@ struct Scratch {
     wall: WallAction<f64>,
 }
 
+/// Area of each column that absorbs the sun, m².
+fn absorbing_m2(mesh: &Mesh, sun: Option<&Sun>, absorptivity: f64) -> Vec<f64> {
+    let Some(sun) = sun else { return vec![0.0; mesh.columns.len()] };
+    let lit_m2 = lit_area_m2(mesh, (sun.from_fraction, sun.to_fraction));
+    lit_m2.iter().map(|area| area * absorptivity).collect()
+}
+
 impl Model {
     /// The model of a vessel under a scenario's flows and sun.
     ///
@@ -118,7 +124,7 @@ impl Model {
         Ok(Self {
             above_middle: above_middle(&mesh),
             film_slope: scenario.surroundings.axial.film_slope,
-            absorbing_m2: lit_area_m2(&mesh, sun).iter().map(|area| area * absorptivity).collect(),
+            absorbing_m2: absorbing_m2(&mesh, sun, absorptivity),
             valve_absorbing_m2: match (&vessel.valve, sun) {
                 (Some(valve), Some(Sun { valve: true, .. })) => {
                     absorptivity * valve.area_m2 / std::f64::consts::PI

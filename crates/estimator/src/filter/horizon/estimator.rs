@@ -85,6 +85,13 @@ impl<M: StateSpace> MovingHorizon<M> {
         self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
     }
 
+    /// Bring state `i`, a constant, nearer to `rest` by a factor all along the window.
+    pub fn relax(&mut self, i: usize, factor: f64, rest: f64) {
+        self.window.arrival.relax(i, factor, rest);
+        self.window.path.x.iter_mut().for_each(|x| x[i] = rest + factor * (x[i] - rest));
+        self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
+    }
+
     /// The process.
     pub fn model(&self) -> &M {
         &self.model

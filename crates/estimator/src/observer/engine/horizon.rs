@@ -17,6 +17,9 @@ use crate::EstimatorError;
 use crate::filter::horizon::{Constraint, HorizonSettings, HorizonStatus, MovingHorizon};
 use crate::filter::{Linearisation, StateSpace, UdFactors};
 
+/// Longest step of the transition in the window, s. The whole window passes again at each iteration, and over a minute the step
+/// is still exact but for the change of its own coefficients.
+const LONGEST_STEP_S: f64 = 60.0;
 /// Least mass in the window, as a share of the highest.
 const LEAST: f64 = 1e-6;
 
@@ -40,7 +43,7 @@ impl Horizon {
             settings: settings.horizon(),
             constraints: constraints(cylinder, settings),
             window: None,
-            process: Process { cylinder: cylinder.clone() },
+            process: Process::new(cylinder),
             dt_s: 0.0,
             readings: vec![f64::NAN; cylinder.outputs()],
             fallbacks: 0,
@@ -60,6 +63,13 @@ impl Horizon {
     /// The past does not count any more.
     pub fn clear(&mut self) {
         self.window = None;
+    }
+
+    /// A constant has come nearer to where it rests, by a factor.
+    pub fn relax(&mut self, state: usize, factor: f64, rest: f64) {
+        if let Some(window) = &mut self.window {
+            window.relax(state, factor, rest);
+        }
     }
 
     /// Add `variance` to a constant.
@@ -124,6 +134,14 @@ fn constraints(cylinder: &mut Cylinder, settings: &MovingHorizonSettings) -> Vec
 #[derive(Clone, Debug)]
 struct Process {
     cylinder: Cylinder,
+}
+
+impl Process {
+    fn new(cylinder: &Cylinder) -> Self {
+        let mut cylinder = cylinder.clone();
+        cylinder.set_longest_step_s(cylinder.settings().longest_step_s.max(LONGEST_STEP_S));
+        Self { cylinder }
+    }
 }
 
 impl StateSpace for Process {

@@ -184,6 +184,16 @@ impl Mechanism {
         p.decorrelate_and_set(state, variance);
     }
 
+    /// A constant has come nearer to where it rests, by a factor.
+    pub fn relax(&mut self, p: &mut UdFactors<Dyn>, state: usize, factor: f64, rest: f64) {
+        match self {
+            Self::Stationary(stationary) => return stationary.relax(state, factor),
+            Self::MovingHorizon(horizon) => horizon.relax(state, factor, rest),
+            Self::Extended | Self::Unscented => {}
+        }
+        p.scale(state, factor);
+    }
+
     /// Add `variance` to a constant.
     pub fn inflate(&mut self, p: &mut UdFactors<Dyn>, state: usize, variance: f64) {
         match self {

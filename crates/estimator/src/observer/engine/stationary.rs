@@ -21,6 +21,7 @@ use nalgebra::{DMatrix, Dyn};
 
 use super::super::cylinder::Cylinder;
 use crate::EstimatorError;
+use crate::filter::dense::add_product;
 use crate::filter::kernel::{axpy, dot};
 use crate::filter::{Linearisation, StateSpace, UdFactors};
 use steady::Steady;
@@ -68,8 +69,9 @@ pub(in crate::observer) struct Stationary {
     row: Vec<f64>,
     /// `B`: (constants, constants).
     constants: DMatrix<f64>,
-    /// A gain that nobody asks for: (n).
+    /// A gain that nobody asks for: (n), and a covariance to compare: (n, n).
     scratch: Vec<f64>,
+    compared: DMatrix<f64>,
 }
 
 impl Stationary {
@@ -97,6 +99,7 @@ impl Stationary {
             row: vec![0.0; count],
             constants,
             scratch: vec![0.0; n],
+            compared: covariance,
         })
     }
 
@@ -126,9 +129,10 @@ impl Stationary {
 
     /// `E <- F E + F_c` with the transition's leading rows `phi`: (leading, n).
     fn move_sensitivity(&mut self, phi: &DMatrix<f64>) {
-        let (m, count) = self.sensitivity.shape();
-        self.moved.copy_from(&phi.columns(m, count));
-        self.moved.gemm(1.0, &phi.columns(0, m), &self.sensitivity, 1.0);
+        let m = self.sensitivity.nrows();
+        let (moving, constant) = phi.as_slice().split_at(m * m);
+        self.moved.as_mut_slice().copy_from_slice(constant);
+        add_product(self.moved.as_mut_slice(), 1.0, moving, self.sensitivity.as_slice(), m);
         std::mem::swap(&mut self.sensitivity, &mut self.moved);
     }
 
@@ -224,7 +228,8 @@ impl Stationary {
             self.steady = Steady::solve(cylinder, x, self.usual_s).ok().map(Box::new);
         }
         self.waited += 1;
-        if self.steady.as_ref().is_some_and(|steady| steady.is_near(p, self.sensitivity.nrows(), SETTLED)) {
+        let (m, compared) = (self.sensitivity.nrows(), &mut self.compared);
+        if self.steady.as_ref().is_some_and(|steady| steady.is_near(p, m, SETTLED, compared)) {
             (self.phase, self.waited) = (Phase::Settled, 1);
         }
     }
@@ -233,6 +238,14 @@ impl Stationary {
     pub fn forget(&mut self, p: &mut UdFactors<Dyn>, state: usize) {
         self.unsettle(p);
         self.sensitivity.row_mut(state).fill(0.0);
+    }
+
+    /// A constant's error has become smaller by a factor; the error that it made has not.
+    pub fn relax(&mut self, state: usize, factor: f64) {
+        let constant = state - self.sensitivity.nrows();
+        self.constants.row_mut(constant).iter_mut().for_each(|b| *b *= factor);
+        self.constants.column_mut(constant).iter_mut().for_each(|b| *b *= factor);
+        self.sensitivity.column_mut(constant).iter_mut().for_each(|e| *e /= factor);
     }
 
     /// Add `variance` to a constant.

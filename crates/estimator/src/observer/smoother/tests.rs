@@ -8,7 +8,7 @@ fn observer(engine: Engine) -> Observer {
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
     let mut settings = ObserverSettings { engine, ..ObserverSettings::default() };
     settings.ln_inside_film.per_sqrt_s = 0.0;
-    settings.coupling_walk_per_sqrt_s = 0.0;
+    settings.coupling_memory_s = None;
     settings.offset_walk_k_per_sqrt_s = 0.0;
     settings.coefficient_walk_pa_k_per_sqrt_s = 0.0;
     settings.bank.truncate(2);

@@ -30,30 +30,25 @@ fn smoothing_is_more_certain_than_the_filter_and_ends_at_it() {
     }
 }
 
-/// Constant errors of the sensors shift filter and smoother alike; what varies is what later samples correct.
+/// Constant errors of the sensors shift filter and smoother alike; what varies is what later samples correct best.
 #[test]
-fn smoothing_lowers_the_error_that_varies_by_a_fifth_at_least() {
-    for case in [Case::shock(), Case::ramp()] {
-        let filtered = case.run(&mut observer(Engine::Extended));
-        let smoothed = smooth(case, Smoother::new(observer(Engine::Extended)).unwrap());
-        let gas =
-            |e: &[Estimate]| spread(e.iter().zip(&case.truth.gas_mean_k).map(|(e, k)| e.gas_mean_k - k));
-        let mass = |e: &[Estimate]| spread(e.iter().zip(&case.truth.mass_kg).map(|(e, kg)| e.mass_kg - kg));
-        assert!(gas(&smoothed) < 0.8 * gas(&filtered), "{} {} K", gas(&smoothed), gas(&filtered));
-        assert!(mass(&smoothed) < 0.8 * mass(&filtered), "{} {} kg", mass(&smoothed), mass(&filtered));
-    }
-}
-
-#[test]
-fn smoothing_lowers_the_whole_error_over_several_cylinders() {
-    let (mut filtered, mut smoothed) = (0.0, 0.0);
+fn smoothing_lowers_the_errors_over_several_cylinders() {
+    // Whole and varying error of the temperature, K², varying error of the mass, kg².
+    let (mut filtered, mut smoothed) = ([0.0; 3], [0.0; 3]);
     for seed in 1..5 {
         let case = Case::new(&Course::Scenario1, seed, 60.0);
-        filtered += case.gas_rms_k(&case.run(&mut observer(Engine::Extended))).powi(2);
-        let smoother = Smoother::new(observer(Engine::Extended)).unwrap();
-        smoothed += case.gas_rms_k(&smooth(&case, smoother)).powi(2);
+        let add = |sums: &mut [f64; 3], estimates: &[Estimate]| {
+            let gas = estimates.iter().zip(&case.truth.gas_mean_k).map(|(e, k)| e.gas_mean_k - k);
+            let mass = estimates.iter().zip(&case.truth.mass_kg).map(|(e, kg)| e.mass_kg - kg);
+            let errors = [case.gas_rms_k(estimates), spread(gas), spread(mass)];
+            sums.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error);
+        };
+        add(&mut filtered, &case.run(&mut observer(Engine::Extended)));
+        add(&mut smoothed, &smooth(&case, Smoother::new(observer(Engine::Extended)).unwrap()));
     }
-    assert!(smoothed < 0.8 * filtered, "{smoothed} {filtered} K²");
+    for (part, (filtered, smoothed)) in [0.9, 0.5, 0.5].into_iter().zip(filtered.into_iter().zip(smoothed)) {
+        assert!(smoothed < part * filtered, "{smoothed} of {filtered}");
+    }
 }
 
 fn spread(errors: impl Iterator<Item = f64>) -> f64 {
@@ -76,7 +71,7 @@ fn a_short_record_smooths_blockwise_nearly_as_well_as_the_whole_log() {
         assert!(b.gas_mean_sd_k >= w.gas_mean_sd_k * (1.0 - 1e-6), "at {} s", w.time_s);
     }
     let error = |e: &[Estimate]| spread(e.iter().zip(&case.truth.gas_mean_k).map(|(e, k)| e.gas_mean_k - k));
-    assert!(error(&blocks) < 0.67 * error(&case.run(&mut observer(Engine::Extended))));
+    assert!(error(&blocks) < error(&case.run(&mut observer(Engine::Extended))));
 }
 
 #[test]

@@ -50,7 +50,7 @@ impl ReducedModel {
                 (area * flux.flux_w_m2, area * flux.per_surface_k, flux)
             });
             let skin_k = x[node] - face.surface_k;
-            // A state without a balance must not spoil the start of all later ones.
+            // A start for the next solve, which must not inherit what went wrong in this one.
             self.skin_k[node] = if skin_k.is_finite() { skin_k } else { 0.0 };
             rate[node] -= face.heat_w;
             rate[gas_row] += face.heat_w;

@@ -93,6 +93,13 @@ pub struct Pressure {
     pub per_wall_k: f64,
 }
 
+/// Start of the iterations inside a [`ReducedModel`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct WarmStart {
+    volume_m3: f64,
+    skin_k: Vec<f64>,
+}
+
 /// Temperature of a place on the surface, `T = x_state + valve_share (x_valve - x_top) + sun_rise Q_sun` with the topmost
 /// wall node and the sun on it ([`Unknowns::sun_w`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,13 +110,6 @@ pub struct SurfaceState {
     pub valve_share: f64,
     /// Rise over the node in the sun, K/W.
     pub sun_rise_k_w: f64,
-}
-
-/// Start of the iterations inside a [`ReducedModel`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct WarmStart {
-    volume_m3: f64,
-    skin_k: Vec<f64>,
 }
 
 /// The reduced model of one vessel.

@@ -1,6 +1,6 @@
 //! How the heat of valve and sun spreads in the stretch of wall that one node stands for.
 //!
-//! The valve stands on the neck, and the sun shines on the end that it closes. Neck and shoulder are a fin: they follow such
+//! The valve stands on the neck, and the sun shines on the upper quarter. Neck and shoulder are a fin: they follow such
 //! heat within minutes, the node that lumps them with the wall beneath in tens of minutes. A node alone would draw the
 //! valve's heat through the contact only, miss most of the resistance, and tell nothing of a shoulder that is
 //! warmer than its node. So the resolved wall is condensed once (static condensation): a heat flow of 1 W, distributed `f`
@@ -17,10 +17,13 @@
 //! what is faster stays model error.
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::wall::mesh::{Mesh, Section};
+use crate::model::lit_area_m2;
+use crate::wall::mesh::Mesh;
 
 /// Inside film of the profile, W/(m² K): free convection of dense gas at some tenths of a kelvin.
 const INSIDE_FILM_W_M2_K: f64 = 50.0;
+/// Lower end of the stretch in the sun as a fraction of the outer height: its top stands out of whatever holds a cylinder.
+const LIT_FROM_FRACTION: f64 = 0.75;
 /// Temperature at which the wall conducts, K.
 const CONDUCTING_K: f64 = 283.15;
 
@@ -43,10 +46,8 @@ impl Spread {
         let wall = wall_matrix(fine, outside_film_w_m2_k);
         let last = fine.columns.len() - 1;
         let valve = above_nodes(fine, node_of_column, &wall, |j| if j == last { 1.0 } else { 0.0 });
-        let sun = above_nodes(fine, node_of_column, &wall, |j| match fine.columns[j].section {
-            Section::Shoulder | Section::Neck => fine.columns[j].outer_area_m2,
-            Section::Bottom | Section::Cylinder => 0.0,
-        });
+        let lit_m2 = lit_area_m2(fine, (LIT_FROM_FRACTION, 1.0));
+        let sun = above_nodes(fine, node_of_column, &wall, |j| lit_m2[j]);
         let conductance_w_k =
             if contact_w_k > 0.0 { (contact_w_k.recip() + valve[last]).recip() } else { 0.0 };
         let share: Vec<f64> = valve.iter().map(|above| conductance_w_k * above).collect();

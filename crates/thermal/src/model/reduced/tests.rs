@@ -1,6 +1,8 @@
 use super::*;
-use crate::model::Model;
 use crate::model::inputs::{FilmInput, Inputs};
+use crate::model::{Model, lit_area_m2};
+use crate::scenario::{AxialVariation, OutsideFilm, Series, Sun, Surroundings};
+use crate::simulate::{SimulationSettings, simulate};
 use crate::{scenario, vessel};
 use approx::assert_relative_eq;
 use proptest::prelude::*;
@@ -44,11 +46,16 @@ fn rates_are_those_of_the_simulation_on_the_same_wall() {
         let vessel = vessel(name);
         for nodes in [1, 2, 4] {
             let mut reduced = ReducedModel::new(&vessel, nodes, FILM);
+            let mut vessel = vessel.clone();
+            if let Some(valve) = &mut vessel.valve {
+                valve.contact_w_k = reduced.valve_conductance_w_k();
+            }
             let outflow_kg_s = 3e-5;
-            let scenario = leaking(outflow_kg_s);
+            let mut scenario = leaking(outflow_kg_s);
+            scenario.surroundings.axial.film_slope = 0.3;
             let model = Model::on_mesh(Mesh::coarse(&vessel.geometry, nodes).0, &vessel, &scenario).unwrap();
             let x = state(&reduced, &[280.0, 287.0, 291.0], 278.0, 284.0, mass_kg);
-            let unknowns = Unknowns { outflow_kg_s, ..Unknowns::still(265.0) };
+            let unknowns = Unknowns { outflow_kg_s, film_slope: 0.3, ..Unknowns::still(265.0) };
             let mut rate = vec![0.0; reduced.states()];
             reduced.rates(&x, &unknowns, &mut rate, None).unwrap();
             let energy_states = |x: &[f64]| full_state(&model, &vessel, &reduced, x);
@@ -119,7 +126,7 @@ proptest! {
         valve_k in 235.0..335.0_f64,
         gas_k in 235.0..335.0_f64,
         mass_kg in 0.3..5.0_f64,
-        unknown in prop::array::uniform6(-1.0..1.0_f64),
+        unknown in prop::array::uniform7(-1.0..1.0_f64),
         preset in 0..3_usize,
     ) {
         let vessel = vessel(["nitrogen-20l", "haque-i1", "closed-bottle"][preset]);
@@ -135,8 +142,8 @@ proptest! {
             film_slope: values[5],
             outflow_kg_s: values[6],
         };
-        let [a, o, i, c, s, r] = unknown;
-        let at: Vec<f64> = x.iter().copied().chain([280.0 + 40.0 * a, o, 0.5 * i, 0.2 * c, 5.0 * s, 1e-3 * r]).collect();
+        let [a, o, i, c, s, slope, r] = unknown;
+        let at: Vec<f64> = x.iter().copied().chain([280.0 + 40.0 * a, o, 0.5 * i, 0.2 * c, 5.0 * s, 0.3 * slope, 1e-3 * r]).collect();
         let mut jacobian = DMatrix::zeros(n, n + Unknowns::COUNT);
         let (mut rate, mut again) = (vec![0.0; n], vec![0.0; n]);
         model.rates(&at[..n], &z(&at[n..]), &mut rate, Some(&mut jacobian)).unwrap();
@@ -193,4 +200,81 @@ fn a_state_without_gas_is_refused() {
     for (gas_k, mass_kg) in [(280.0, 0.0), (280.0, -1.0), (f64::NAN, 4.0), (0.0, 4.0)] {
         assert!(model.pressure(&[280.0, 280.0, gas_k, mass_kg]).is_err());
     }
+}
+
+/// Valve and shoulder against the resolved wall, from rest at one temperature, K, into surroundings.
+fn against_the_resolved_wall(surroundings: Surroundings, unknowns: &Unknowns) -> (f64, f64, f64, f64) {
+    const START_K: f64 = 278.15;
+    let vessel = vessel("nitrogen-20l");
+    let mut scenario = scenario::presets::load("bottle-step").unwrap();
+    scenario.duration_s = 3600.0;
+    scenario.sample_time_s = 60.0;
+    scenario.initial.wall_temperature_k = START_K;
+    scenario.initial.gas_temperature_k = START_K;
+    scenario.surroundings = surroundings;
+    let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| {}).unwrap();
+    let (valve_k, shoulder_k) = (run.valve_k.clone().unwrap(), run.surface_k("shoulder").unwrap());
+    let mut model = ReducedModel::new(&vessel, 2, FILM);
+    let place = model.surface(&SurfacePlace::Shoulder).unwrap();
+    let mut x = state(&model, &[START_K; 2], START_K, START_K, run.mass_kg[0]);
+    let mut rate = vec![0.0; x.len()];
+    let (mut valve_error, mut shoulder_error) = (0.0_f64, 0.0_f64);
+    let (mut valve_over_node, mut shoulder_over_node) = (0.0_f64, 0.0_f64);
+    for (sample, time_s) in run.time_s.iter().enumerate() {
+        if *time_s >= 600.0 {
+            let read =
+                x[place.state] + place.valve_share * (x[2] - x[1]) + place.sun_rise_k_w * unknowns.sun_w;
+            valve_error = valve_error.max((x[2] - valve_k[sample]).abs());
+            shoulder_error = shoulder_error.max((read - shoulder_k[sample]).abs());
+            valve_over_node = valve_over_node.max(valve_k[sample] - x[1]);
+            shoulder_over_node = shoulder_over_node.max(shoulder_k[sample] - x[1]);
+        }
+        for _ in 0..60 {
+            model.rates(&x, unknowns, &mut rate, None).unwrap();
+            x.iter_mut().zip(&rate).for_each(|(x, rate)| *x += rate);
+        }
+    }
+    (valve_error, shoulder_error, valve_over_node, shoulder_over_node)
+}
+
+fn constant(value: f64) -> Series {
+    Series::try_new(vec![0.0, 3600.0], vec![value; 2]).unwrap()
+}
+
+fn calm(air_k: f64) -> Surroundings {
+    Surroundings {
+        air_k: constant(air_k),
+        film: OutsideFilm::Coefficient { film_w_m2_k: constant(FILM) },
+        radiation_k: None,
+        sun: None,
+        axial: AxialVariation { film_slope: 0.0, air_difference_k: None },
+    }
+}
+
+/// The valve stands some kelvins above its node, because the neck lets little heat through.
+#[test]
+fn few_nodes_tell_a_valve_in_hot_air() {
+    let (valve, shoulder, above, _) = against_the_resolved_wall(calm(313.15), &Unknowns::still(313.15));
+    println!("valve {valve:.2} K, shoulder {shoulder:.2} K, valve over node {above:.2} K");
+    assert!(above > 1.5, "{above}");
+    assert!(valve < 0.5, "{valve}");
+    assert!(shoulder < 0.3, "{shoulder}");
+}
+
+/// The shoulder stands above its node in the sun on it.
+#[test]
+fn few_nodes_tell_a_shoulder_in_the_sun() {
+    let vessel = vessel("nitrogen-20l");
+    let sun = Sun { irradiance_w_m2: constant(500.0), from_fraction: 0.8, to_fraction: 1.0, valve: true };
+    let fine = Mesh::new(&vessel.geometry);
+    let lit_m2: f64 = lit_area_m2(&fine, (sun.from_fraction, sun.to_fraction)).iter().sum();
+    let sun_w = 500.0 * vessel.surface.solar_absorptivity * lit_m2;
+    let surroundings = Surroundings { sun: Some(sun), ..calm(278.15) };
+    let unknowns = Unknowns { sun_w, ..Unknowns::still(278.15) };
+    let (valve, shoulder, _, above) = against_the_resolved_wall(surroundings, &unknowns);
+    println!(
+        "sun {sun_w:.1} W: valve {valve:.2} K, shoulder {shoulder:.2} K, shoulder over node {above:.2} K"
+    );
+    assert!(above > 0.7, "{above}");
+    assert!(shoulder < 0.25, "{shoulder}");
 }

@@ -72,14 +72,14 @@ impl Steady {
     }
 
     /// Whether no covariance of `p` among the `m` leading states differs by more than a share `tolerance` of the
-    /// standard deviations.
-    pub fn is_near(&self, p: &UdFactors<Dyn>, m: usize, tolerance: f64) -> bool {
+    /// standard deviations; `now`: (n, n) is memory.
+    pub fn is_near(&self, p: &UdFactors<Dyn>, m: usize, tolerance: f64, now: &mut DMatrix<f64>) -> bool {
         let steady = &self.covariance;
         // Variances first: they are cheap, and mostly decide.
         if !(0..m).all(|i| (p.variance(i) - steady[(i, i)]).abs() <= tolerance * steady[(i, i)]) {
             return false;
         }
-        let now = p.covariance();
+        p.covariance_into(now);
         (0..m).all(|j| {
             (0..j).all(|i| {
                 let scale = (steady[(i, i)] * steady[(j, j)]).sqrt();
