@@ -265,9 +265,8 @@ impl Cylinder {
         self.rest[self.states.air] = s.air_rest_k;
         for (i, kind) in self.states.kinds[..self.states.leading].iter().enumerate() {
             let (walk, decay) = match kind {
-                StateKind::Wall(_) | StateKind::Valve | StateKind::Gas => {
-                    (s.temperature_walk_k_per_sqrt_s, 0.0)
-                }
+                StateKind::Wall(_) | StateKind::Valve => (s.temperature_walk_k_per_sqrt_s, 0.0),
+                StateKind::Gas => (s.gas_walk_k_per_sqrt_s, 0.0),
                 StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
                 StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
                 StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),

@@ -1,4 +1,5 @@
 //! One member of the bank: a Kalman filter with its own view of how gas may leave.
+use super::belief::Moments;
 use super::cylinder::Cylinder;
 use super::engine::{Mechanism, Predicted, Shared};
 use super::pass::Pass;
@@ -196,6 +197,24 @@ impl Member {
         Ok(Innovation { nu, s, outcome })
     }
 
+    /// Begin anew with all that another member knows, but a leak rate, kg/s, that may be anything.
+    pub fn begin_anew_from(&mut self, other: &Self, leak: usize, leak_sd_kg_s: f64) {
+        self.x.clone_from(&other.x);
+        self.p.clone_from(&other.p);
+        self.mechanism.clone_from(&other.mechanism);
+        self.x[leak] = 0.0;
+        self.mechanism.decorrelate_and_set(&mut self.p, leak, leak_sd_kg_s * leak_sd_kg_s);
+        self.slow_s = other.slow_s;
+        if let Some(pass) = &mut self.pass {
+            pass.begin_anew();
+        }
+    }
+
+    /// Mean and variance of a state.
+    pub fn moments(&self, state: usize) -> Moments {
+        (self.x[state], self.variance(state))
+    }
+
     /// Free mass and gas temperature of everything known about them; what has been learnt of the constants stays.
     /// It happens before the readings of a sample, or before that of one sensor.
     pub fn open(&mut self, cylinder: &Cylinder, before: Option<usize>) {
@@ -236,3 +255,6 @@ impl Member {
 /// What mass and gas temperature may be while gas is exchanged.
 const FREE_MASS_SD_KG: f64 = 1.0;
 const FREE_GAS_SD_K: f64 = 20.0;
+
+/// What a leak rate may be once a slow member was wrong, kg/s: 20 g/h.
+pub(super) const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;

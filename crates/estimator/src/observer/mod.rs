@@ -41,7 +41,7 @@ use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
 pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
-use member::Member;
+use member::{ANY_LEAK_SD_KG_S, Member};
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 use screen::Screen;
@@ -148,7 +148,6 @@ struct Clock {
     screens: Vec<Screen>,
     /// Until then an estimate that has just begun or been opened is pulled by good readings too.
     pulled_until_s: f64,
-    belief: Belief,
 }
 
 /// Exchange of gas with the outside.
@@ -212,7 +211,6 @@ impl Observer {
                 restarts: 0,
                 screens: sensors.iter().map(Screen::new).collect(),
                 pulled_until_s: f64::INFINITY,
-                belief: Belief::new(),
             },
             usable: vec![f64::NAN; sensors.len()],
             gate,
@@ -253,9 +251,8 @@ impl Observer {
                 *reading = f64::NAN;
             }
         }
-        let last_s = self.clock.time_s.unwrap_or(time_s);
         let restarted = self.take(time_s, &usable);
-        self.weigh(time_s - last_s);
+        self.replace_the_wrong();
         for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
             if reading.is_finite() {
                 *last = time_s;
@@ -309,11 +306,19 @@ impl Observer {
         self.update(&without)
     }
 
-    /// Let the readings decide between the free member and the middle slow one.
-    fn weigh(&mut self, dt_s: f64) {
-        let Some(slow) = self.middle_slow_index() else { return };
-        let (slow, free) = (&self.members[slow], &self.members[0]);
-        self.clock.belief.update(dt_s, &slow.innovations, &free.innovations);
+    /// Slow members that are out of the question begin anew from the free one.
+    fn replace_the_wrong(&mut self) {
+        let states = self.cylinder.state_map();
+        let Some((free, slow)) = self.members.split_first_mut() else { return };
+        if !free.hypothesis.rate.is_known() {
+            return;
+        }
+        for member in slow {
+            let belief = Belief::of(member.moments(states.mass), free.moments(states.mass));
+            if belief.is_out_of_the_question() {
+                member.begin_anew_from(free, states.leak, ANY_LEAK_SD_KG_S);
+            }
+        }
     }
 
     /// Every member as the prior has it.
@@ -340,7 +345,6 @@ impl Observer {
         self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
         self.clock.reference_mass_kg = None;
         self.clock.pulled_until_s = time_s + SETTLE_S;
-        self.clock.belief = Belief::new();
         for sensor in 0..readings.len() {
             self.cylinder.set_interval_s(sensor, f64::INFINITY);
         }
@@ -412,10 +416,10 @@ impl Observer {
         let (first, slow) = (&self.members[0], self.middle_slow_member());
         let states = self.cylinder.state_map();
         let sd = |member: &Member, state: usize| member.variance(state).sqrt();
-        let gas = |member: &Member| (member.x[states.gas], member.variance(states.gas));
         let (gas_mean_k, gas_variance_k2) = match slow {
-            Some(slow) => self.clock.belief.blend(gas(slow), gas(first)),
-            None => gas(first),
+            Some(slow) => Belief::of(slow.moments(states.mass), first.moments(states.mass))
+                .blend(slow.moments(states.gas), first.moments(states.gas)),
+            None => first.moments(states.gas),
         };
         let mut estimate = Estimate {
             time_s,

@@ -199,6 +199,10 @@ impl Smoother {
 
 /// From after a step to after the step before it.
 fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States) {
+    if pass.begun_anew {
+        backward.clear();
+        return;
+    }
     let freed = [states.mass, states.gas];
     for sensor in (0..pass.step.used.len()).rev() {
         if pass.step.used[sensor] {
