@@ -301,6 +301,18 @@ pub enum EstimatorError {
         /// As given.
         word: String,
     },
+    /// An engine whose pass cannot be smoothed.
+    #[error("only ekf and ukf can be smoothed: the gains of the others are not those of their covariance")]
+    EngineNotSmoothed,
+    /// A smoother without room.
+    #[error("a smoother needs room for {rows} rows: at least 2")]
+    SmootherRows {
+        /// As given.
+        rows: usize,
+    },
+    /// An observer that has begun.
+    #[error("the observer has already taken samples: smooth from the first one")]
+    ObserverBegun,
     /// A significance that is no probability.
     #[error("significance {probability} must be a probability between 0 and 1, such as 0.01")]
     Significance {

@@ -2,14 +2,14 @@
 //!
 //! A problem is a [`StateSpace`]: how the state moves between samples and what each output reads. Every filter
 //! here works on any of them.
-mod dense;
+pub(crate) mod dense;
 mod factor;
 pub mod failure;
 pub mod form;
 pub mod gate;
 pub mod horizon;
 pub mod kalman;
-mod kernel;
+pub(crate) mod kernel;
 pub mod report;
 pub mod riccati;
 pub mod ring;
@@ -29,6 +29,7 @@ pub use report::{OutputReport, StepReport};
 pub use riccati::{SteadyState, steady_state};
 pub use ring::{Placement, Refilter};
 pub use sequential::{KalmanSnapshot, SequentialFilter};
+pub(crate) use smoother::Backward;
 pub use smoother::{FixedLag, PassStep, Smoothed, smooth_fixed_interval};
 pub use state_space::{Linearisation, StateSpace};
 pub use stationary::{Stationary, StationarySettings, StationarySnapshot};

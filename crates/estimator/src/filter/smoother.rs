@@ -46,6 +46,23 @@ pub struct PassStep {
     pub p: DMatrix<f64>,
 }
 
+impl PassStep {
+    /// A step that tells nothing: `n` states of which `leading` move, and so many outputs.
+    pub fn zeros(n: usize, leading: usize, outputs: usize) -> Self {
+        Self {
+            interval_s: 0.0,
+            phi: DMatrix::zeros(leading, n),
+            h: DMatrix::zeros(n, outputs),
+            gain: DMatrix::zeros(n, outputs),
+            innovation: DVector::zeros(outputs),
+            variance: DVector::zeros(outputs),
+            used: vec![false; outputs],
+            x: DVector::zeros(n),
+            p: DMatrix::zeros(n, n),
+        }
+    }
+}
+
 /// A smoothed state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothed {
@@ -62,17 +79,7 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     /// The filter has consider states, whose gains are not optimal: its pass cannot be smoothed.
     pub fn record(&self) -> Result<PassStep, EstimatorError> {
         let (n, outputs, leading) = (self.state().len(), self.gate_counts().len(), self.model().leading());
-        let mut step = PassStep {
-            interval_s: 0.0,
-            phi: DMatrix::zeros(leading, n),
-            h: DMatrix::zeros(n, outputs),
-            gain: DMatrix::zeros(n, outputs),
-            innovation: DVector::zeros(outputs),
-            variance: DVector::zeros(outputs),
-            used: vec![false; outputs],
-            x: DVector::zeros(n),
-            p: DMatrix::zeros(n, n),
-        };
+        let mut step = PassStep::zeros(n, leading, outputs);
         self.record_into(&mut step)?;
         Ok(step)
     }
@@ -124,7 +131,7 @@ pub fn smooth_fixed_interval(steps: &[PassStep]) -> Vec<Smoothed> {
 
 /// What the samples after a time say about the state at that time.
 #[derive(Clone, Debug)]
-struct Backward {
+pub(crate) struct Backward {
     /// `lambda`: (n).
     adjoint: Vec<f64>,
     /// `Lambda`: (n, n).
@@ -136,7 +143,7 @@ struct Backward {
 }
 
 impl Backward {
-    fn new(n: usize) -> Self {
+    pub fn new(n: usize) -> Self {
         Self {
             adjoint: vec![0.0; n],
             information: vec![0.0; n * n],
@@ -147,13 +154,13 @@ impl Backward {
     }
 
     /// No samples.
-    fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.adjoint.fill(0.0);
         self.information.fill(0.0);
     }
 
     /// Smoothed state after the update of `step`.
-    fn estimate(&mut self, step: &PassStep, smoothed: &mut Smoothed) {
+    pub fn estimate(&mut self, step: &PassStep, smoothed: &mut Smoothed) {
         let (n, p) = (step.x.len(), step.p.as_slice());
         smoothed.x.copy_from(&step.x);
         add_product(smoothed.x.as_mut_slice(), -1.0, p, &self.adjoint, n);
@@ -165,19 +172,40 @@ impl Backward {
     }
 
     /// From after the update of `step` to after the update of the step before.
-    fn pass(&mut self, step: &PassStep) {
+    pub fn pass(&mut self, step: &PassStep) {
         for (j, used) in step.used.iter().enumerate().rev() {
             if *used {
                 self.pass_update(step, j);
             }
         }
+        self.pass_interval(step);
+    }
+
+    /// From before the update of `step` to after the update of the step before.
+    pub fn pass_interval(&mut self, step: &PassStep) {
         if step.interval_s > 0.0 {
             self.pass_transition(&step.phi);
         }
         symmetrise(&mut self.information, step.x.len());
     }
 
-    fn pass_update(&mut self, step: &PassStep, output: usize) {
+    /// State `i` became `factor` times itself.
+    pub fn scale(&mut self, i: usize, factor: f64) {
+        let n = self.adjoint.len();
+        self.adjoint[i] *= factor;
+        self.information[i * n..(i + 1) * n].iter_mut().for_each(|value| *value *= factor);
+        self.information[i..].iter_mut().step_by(n).for_each(|value| *value *= factor);
+    }
+
+    /// State `i` was made independent of its past: what comes after says nothing of what it was before.
+    pub fn forget(&mut self, i: usize) {
+        let n = self.adjoint.len();
+        self.adjoint[i] = 0.0;
+        self.information[i * n..(i + 1) * n].fill(0.0);
+        self.information[i..].iter_mut().step_by(n).for_each(|value| *value = 0.0);
+    }
+
+    pub fn pass_update(&mut self, step: &PassStep, output: usize) {
         let n = step.x.len();
         let (h, gain) = (column(step.h.as_slice(), n, output), column(step.gain.as_slice(), n, output));
         let variance = step.variance[output];

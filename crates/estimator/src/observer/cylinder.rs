@@ -14,7 +14,7 @@ use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns};
+use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 
 /// A term of the series below this part of the largest sum is the last.
@@ -55,7 +55,7 @@ impl SlowProcess {
 }
 
 /// The cylinder with its sensors in the variables of [`States`].
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Cylinder {
     model: ReducedModel,
     sensors: Vec<Sensor>,
@@ -79,7 +79,7 @@ pub struct Cylinder {
 }
 
 /// Reused memory of one step. Rows of a coupled state are `n + 1` long: the state's columns, then the mean's increment.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Work {
     rate: Vec<f64>,
     jacobian: DMatrix<f64>,
@@ -98,7 +98,7 @@ struct Work {
 }
 
 /// Reused memory of a divided interval.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Parts {
     step: Linearisation,
     phi: DMatrix<f64>,
@@ -188,9 +188,19 @@ impl Cylinder {
         &mut self.model
     }
 
+    /// Where the model's iterations start next.
+    pub(super) fn warm_start(&self) -> WarmStart {
+        self.model.warm_start()
+    }
+
     /// Whether a sensor reads the gas pressure.
     pub fn reads_pressure(&self, sensor: usize) -> bool {
         self.targets[sensor] == Target::Pressure
+    }
+
+    /// Longest step of the transition, s.
+    pub fn set_longest_step_s(&mut self, longest_step_s: f64) {
+        self.settings.longest_step_s = longest_step_s;
     }
 
     /// Let mass and leak rate walk as one member of the bank supposes.
@@ -200,9 +210,25 @@ impl Cylinder {
         self.decay[self.states.leak] = leak.rate.decay_per_s();
     }
 
+    /// Whether a state has gas, at temperatures and a density that the equation of state knows.
+    pub fn is_possible(&mut self, x: &[f64]) -> bool {
+        let domain = self.model.fluid().domain();
+        let temperatures = domain.lowest_temperature_k..=domain.highest_temperature_k;
+        let warm = |state: usize| temperatures.contains(&x[state]);
+        let mass_kg = x[self.states.mass];
+        (0..self.states.wall).chain(self.states.valve).chain([self.states.gas]).all(warm)
+            && mass_kg > 0.0
+            && mass_kg <= self.model.highest_mass_kg()
+    }
+
     /// Interval since the last sample of a sensor, s.
     pub fn set_interval_s(&mut self, sensor: usize, interval_s: f64) {
         self.interval_s[sensor] = interval_s;
+    }
+
+    /// Interval since the last sample of a sensor, s.
+    pub fn interval_s(&self, sensor: usize) -> f64 {
+        self.interval_s[sensor]
     }
 
     /// Pressure at a state, Pa.

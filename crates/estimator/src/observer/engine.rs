@@ -1,72 +1,108 @@
-//! Which filter a member of the bank runs: how its mean and covariance move in time and take a reading.
+//! Which filter the members of the bank run.
 //!
-//! The policy around it is one and the same for all engines and lives in [`super::member`]: gates, re-acquisition, events, bounds,
-//! slow walks of the constants.
+//! The policy around it is one and the same for all engines and lives in the members: gates, re-acquisition, events, bounds, slow
+//! walks of the constants. An engine says how mean and covariance move in time and take a reading.
 //!
-//! * extended: linearised along the estimate; the default;
-//! * [`unscented`]: linearised statistically, over the spread of the estimate.
+//! | engine | what it does | what it costs |
+//! |---|---|---|
+//! | extended | linearises along the estimate; learns all that can be learnt | the default |
+//! | unscented | linearises statistically over the spread of the estimate | some 25 times as much |
+//! | stationary | constant gain; learns no constants | as much: no covariance moves, but the model's equations cost most |
+//! | moving horizon | best trajectory through a window of samples, inside constraints | some 200 times as much |
+mod horizon;
+mod mechanism;
+mod stationary;
 mod unscented;
+
+use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::cylinder::Cylinder;
-use crate::filter::StateSpace;
-pub(super) use unscented::SigmaPoints;
+use crate::EstimatorError;
+use crate::filter::horizon::{HorizonSettings, Loss};
+pub(super) use mechanism::{Mechanism, Predicted, Shared};
 
-/// Filter that the observer runs. The words for [`str::parse`] and in files: `extended` or `ekf`, `unscented` or `ukf`.
+/// Iterations of a window per sample at most. The next sample iterates the same trajectory again.
+const ITERATIONS: usize = 2;
+
+/// Filter that the observer runs. [`str::parse`] takes `ekf`, `ukf`, `stationary`, `mhe` and the words of files: `extended`,
+/// `unscented`, `stationary`, `moving-horizon`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Engine {
-    /// Extended Kalman filter in factorised form: fast, and learns all that can be learnt.
+    /// Extended Kalman filter in factorised form.
     #[default]
     Extended,
-    /// Unscented Kalman filter with the same noise, also in factorised form: about forty times the cost; it needs no
-    /// gradients to be right over the spread of the estimate.
+    /// Unscented Kalman filter with the same noise, in factorised form.
     Unscented,
+    /// Extended Kalman filter with the gain of the steady state: by the discrete Riccati equation, at the state of commissioning,
+    /// for the interval at which samples usually come.
+    ///
+    /// At a fixed state the constants (films, capacity, offsets, couplings, coefficients) cannot be told apart, so they stay
+    /// at what is nominal or was learnt before, and what their uncertainty does to the estimate is part of its
+    /// standard deviations. Start it with [`super::Learned`] constants, or those will be large.
+    Stationary,
+    /// Moving-horizon estimation on top of the extended Kalman filter.
+    MovingHorizon(MovingHorizonSettings),
 }
 
-impl std::str::FromStr for Engine {
-    type Err = crate::EstimatorError;
+/// Window of [`Engine::MovingHorizon`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MovingHorizonSettings {
+    /// Samples in the window.
+    pub samples: usize,
+    /// Residual, in standard deviations, from which a reading pulls no harder (Huber's loss); `None`: least squares.
+    pub huber: Option<f64>,
+    /// A leak rate is not negative.
+    pub leak_not_negative: bool,
+    /// Mass does not rise, but for an exchange of gas.
+    pub mass_not_rising: bool,
+}
 
-    fn from_str(word: &str) -> Result<Self, Self::Err> {
+impl Default for MovingHorizonSettings {
+    fn default() -> Self {
+        Self { samples: 20, huber: None, leak_not_negative: true, mass_not_rising: true }
+    }
+}
+
+impl MovingHorizonSettings {
+    fn horizon(&self) -> HorizonSettings {
+        let loss = self.huber.map_or(Loss::Quadratic, |delta| Loss::Huber { delta });
+        HorizonSettings {
+            samples: self.samples,
+            loss,
+            iterations_max: ITERATIONS,
+            ..HorizonSettings::default()
+        }
+    }
+}
+
+impl Engine {
+    pub(super) fn validate(&self) -> Result<(), EstimatorError> {
+        match self {
+            Self::MovingHorizon(settings) => settings.horizon().validate(),
+            Self::Extended | Self::Unscented | Self::Stationary => Ok(()),
+        }
+    }
+
+    /// Whether a pass can be smoothed: its gains are those of its own covariance.
+    pub fn can_be_smoothed(&self) -> bool {
+        matches!(self, Self::Extended | Self::Unscented)
+    }
+}
+
+impl FromStr for Engine {
+    type Err = EstimatorError;
+
+    fn from_str(word: &str) -> Result<Self, EstimatorError> {
         match word {
             "extended" | "ekf" => Ok(Self::Extended),
             "unscented" | "ukf" => Ok(Self::Unscented),
-            _ => Err(crate::EstimatorError::EngineUnknown { word: word.to_owned() }),
+            "stationary" => Ok(Self::Stationary),
+            "moving-horizon" | "mhe" => Ok(Self::MovingHorizon(MovingHorizonSettings::default())),
+            _ => Err(EstimatorError::EngineUnknown { word: word.to_owned() }),
         }
-    }
-}
-
-/// An engine with its memory of the past beside mean and covariance.
-#[derive(Clone, Debug)]
-pub(super) enum Mechanism {
-    Extended,
-    Unscented,
-}
-
-impl Mechanism {
-    pub fn new(engine: Engine) -> Self {
-        match engine {
-            Engine::Extended => Self::Extended,
-            Engine::Unscented => Self::Unscented,
-        }
-    }
-}
-
-/// A reading as an engine predicts it; the gradient is written beside.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Predicted {
-    /// Mean.
-    pub value: f64,
-    /// Variance of what the gradient does not say: the sensor's noise, and curvature over the spread of the estimate.
-    pub r: f64,
-}
-
-/// Noise sources of a time update with an engine.
-pub(super) fn noises(engine: Engine, cylinder: &Cylinder) -> usize {
-    match engine {
-        Engine::Unscented => SigmaPoints::noises(cylinder),
-        _ => cylinder.noises(),
     }
 }

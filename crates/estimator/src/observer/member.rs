@@ -1,9 +1,10 @@
 //! One member of the bank: a Kalman filter with its own view of how gas may leave.
 use super::cylinder::Cylinder;
-use super::engine::{self, Mechanism, Predicted, SigmaPoints};
+use super::engine::{Mechanism, Predicted, Shared};
+use super::pass::Pass;
 use super::settings::LeakHypothesis;
 use crate::EstimatorError;
-use crate::filter::{Linearisation, StateSpace, UdFactors};
+use crate::filter::{StateSpace, UdFactors};
 use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Interval at which slow walks are added to the constants, s.
@@ -51,36 +52,19 @@ pub(super) struct Member {
     /// Rejections in a row of each sensor.
     pub rejected: Vec<u32>,
     pub innovations: Vec<Innovation>,
+    /// Change of each sensor's expected reading by its last reading.
+    pub pulled: Vec<f64>,
     slow_s: f64,
     /// Whether a film multiplier stood at its bound after the last step.
     pub at_bound: bool,
-    mechanism: Mechanism,
-}
-
-/// Memory shared by the members.
-#[derive(Debug)]
-pub(super) struct Shared {
-    pub linear: Linearisation,
-    pub h: Vec<f64>,
-    pub gain: Vec<f64>,
-    points: SigmaPoints,
-}
-
-impl Shared {
-    pub fn new(cylinder: &Cylinder) -> Self {
-        let n = cylinder.states();
-        Self {
-            linear: Linearisation::zeros(n, cylinder.leading(), cylinder.noises()),
-            h: vec![0.0; n],
-            gain: vec![0.0; n],
-            points: SigmaPoints::new(cylinder),
-        }
-    }
+    pub mechanism: Mechanism,
+    /// The last step, for a smoother.
+    pub pass: Option<Box<Pass>>,
 }
 
 impl Member {
     pub fn new(
-        cylinder: &Cylinder,
+        cylinder: &mut Cylinder,
         hypothesis: LeakHypothesis,
         mean: &[f64],
         covariance: &DMatrix<f64>,
@@ -91,8 +75,8 @@ impl Member {
         covariance.column_mut(leak).fill(0.0);
         covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
         let mut p = UdFactors::from_covariance(&covariance)?;
-        let engine = cylinder.settings().engine;
-        p.reserve(cylinder.leading(), engine::noises(engine, cylinder));
+        cylinder.suppose(&hypothesis);
+        let mechanism = Mechanism::new(cylinder.settings().engine, cylinder, &mut p)?;
         let sensors = cylinder.sensors().len();
         Ok(Self {
             hypothesis,
@@ -100,9 +84,11 @@ impl Member {
             p,
             rejected: vec![0; sensors],
             innovations: vec![Innovation::MISSING; sensors],
+            pulled: vec![0.0; sensors],
             slow_s: 0.0,
             at_bound: false,
-            mechanism: Mechanism::new(engine),
+            mechanism,
+            pass: None,
         })
     }
 
@@ -114,10 +100,11 @@ impl Member {
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
         cylinder.suppose(&self.hypothesis);
-        let parts = (dt_s / cylinder.settings().longest_step_s).ceil().max(1.0);
-        for _ in 0..parts as usize {
-            self.move_on(cylinder, shared, dt_s / parts)?;
+        if let Some(pass) = &mut self.pass {
+            pass.begin(dt_s);
         }
+        let belief = (self.x.as_mut_slice(), &mut self.p);
+        self.mechanism.predict(cylinder, shared, belief, self.pass.as_deref_mut(), dt_s)?;
         self.slow_s += dt_s;
         if self.slow_s >= SLOW_WALK_S {
             for state in cylinder.leading()..cylinder.states() {
@@ -125,47 +112,18 @@ impl Member {
                 let (factor, variance) = process.over(self.slow_s);
                 if factor < 1.0 {
                     self.x[state] = process.rest + factor * (self.x[state] - process.rest);
-                    self.p.scale(state, factor);
+                    self.mechanism.relax(&mut self.p, state, factor, process.rest);
+                    if let Some(pass) = &mut self.pass {
+                        pass.relax(state, factor);
+                    }
                 }
                 if variance > 0.0 {
-                    self.p.inflate(state, variance);
+                    self.mechanism.inflate(&mut self.p, state, variance);
                 }
             }
             self.slow_s = 0.0;
         }
         Ok(())
-    }
-
-    fn move_on(
-        &mut self,
-        cylinder: &mut Cylinder,
-        shared: &mut Shared,
-        dt_s: f64,
-    ) -> Result<(), EstimatorError> {
-        match &mut self.mechanism {
-            Mechanism::Extended => {
-                cylinder.propagate(&mut self.x, dt_s, Some(&mut shared.linear))?;
-                self.p.predict(&shared.linear);
-            }
-            Mechanism::Unscented => shared.points.predict(cylinder, &mut self.x, &mut self.p, dt_s)?,
-        }
-        Ok(())
-    }
-
-    /// Mean and noise of a sensor's next reading; its gradient goes to `shared.h`.
-    fn expect(
-        &mut self,
-        cylinder: &mut Cylinder,
-        shared: &mut Shared,
-        sensor: usize,
-    ) -> Result<Predicted, EstimatorError> {
-        match &mut self.mechanism {
-            Mechanism::Extended => Ok(Predicted {
-                value: cylinder.output(sensor, &self.x, Some(&mut shared.h))?,
-                r: cylinder.noise_variance(sensor, &self.x),
-            }),
-            Mechanism::Unscented => shared.points.output(cylinder, sensor, &self.x, &self.p, &mut shared.h),
-        }
     }
 
     /// Measurement update with one reading per sensor (NaN: missing), sensor by sensor.
@@ -176,13 +134,17 @@ impl Member {
         readings: &[f64],
         gate: f64,
     ) -> Result<(), EstimatorError> {
+        self.pulled.fill(0.0);
         for (sensor, &reading) in readings.iter().enumerate() {
             self.innovations[sensor] = if reading.is_finite() {
                 self.update_one(cylinder, shared, sensor, reading, gate)?
             } else {
+                self.mechanism.interrupt(&mut self.p);
                 Innovation::MISSING
             };
         }
+        cylinder.suppose(&self.hypothesis);
+        self.mechanism.finish(cylinder, &mut self.x, &mut self.p);
         let states = cylinder.state_map();
         self.at_bound = false;
         for (state, bound) in [(states.outside, LN_OUTSIDE_BOUND), (states.inside, LN_INSIDE_BOUND)] {
@@ -202,25 +164,32 @@ impl Member {
         reading: f64,
         gate: f64,
     ) -> Result<Innovation, EstimatorError> {
-        let Predicted { value, mut r } = self.expect(cylinder, shared, sensor)?;
+        let Predicted { value, mut r } =
+            self.mechanism.expect(cylinder, shared, (&self.x, &self.p), sensor)?;
         let nu = reading - value;
-        let s = self.p.quadratic(&shared.h) + r;
+        let s = self.mechanism.innovation_variance(shared, &self.p, sensor, r);
         let mut outcome = Outcome::Accepted;
         if nu * nu > gate * s {
             self.rejected[sensor] += 1;
+            self.mechanism.interrupt(&mut self.p);
             if self.rejected[sensor] <= cylinder.settings().rejections_in_a_row {
                 return Ok(Innovation { nu, s, outcome: Outcome::Rejected });
             }
             outcome = Outcome::Reacquired;
             if cylinder.reads_pressure(sensor) {
-                self.open(cylinder, FREE_MASS_SD_KG, FREE_GAS_SD_K);
+                self.open(cylinder, Some(sensor));
             } else {
                 // Whatever moved the reading, the state may follow it half of the way at most.
                 r = r.max(nu * nu);
+                self.mechanism.distrust();
             }
         }
         self.rejected[sensor] = 0;
-        self.p.update(&shared.h, r, &mut shared.gain);
+        self.pulled[sensor] = (1.0 - r / s) * nu;
+        let used_s = self.mechanism.update(shared, &mut self.p, (sensor, reading), r);
+        if let Some(pass) = &mut self.pass {
+            pass.take(sensor, &shared.h, &shared.gain, (nu, used_s));
+        }
         for (x, k) in self.x.iter_mut().zip(&shared.gain) {
             *x += k * nu;
         }
@@ -228,23 +197,35 @@ impl Member {
     }
 
     /// Free mass and gas temperature of everything known about them; what has been learnt of the constants stays.
-    pub fn open(&mut self, cylinder: &Cylinder, mass_sd_kg: f64, gas_sd_k: f64) {
+    /// It happens before the readings of a sample, or before that of one sensor.
+    pub fn open(&mut self, cylinder: &Cylinder, before: Option<usize>) {
         let states = cylinder.state_map();
-        self.p.decorrelate_and_set(states.mass, mass_sd_kg * mass_sd_kg);
-        self.p.decorrelate_and_set(states.gas, gas_sd_k * gas_sd_k);
+        for (state, sd) in [(states.mass, FREE_MASS_SD_KG), (states.gas, FREE_GAS_SD_K)] {
+            self.mechanism.decorrelate_and_set(&mut self.p, state, sd * sd);
+        }
+        if let Some(pass) = &mut self.pass {
+            pass.open(before);
+        }
     }
 
-    pub fn is_finite(&self) -> bool {
-        self.x.iter().all(|x| x.is_finite()) && self.p.diagonal().iter().all(|d| d.is_finite())
+    /// Whether mean and covariance are numbers, and the mean a state of the cylinder.
+    pub fn is_possible(&self, cylinder: &mut Cylinder) -> bool {
+        let finite = self.x.iter().chain(self.p.diagonal().iter()).all(|value| value.is_finite());
+        finite && cylinder.is_possible(&self.x)
     }
 
     /// Variance of a state.
     pub fn variance(&self, state: usize) -> f64 {
-        self.p.variance(state)
+        self.mechanism.variance(&self.p, state)
     }
 
     pub fn covariance(&self) -> DMatrix<f64> {
-        self.p.covariance()
+        self.mechanism.covariance(&self.p)
+    }
+
+    /// Samples at which the engine could not do its own and fell back on the extended filter inside it.
+    pub fn fallbacks(&self) -> u64 {
+        self.mechanism.fallbacks()
     }
 
     pub fn mean(&self) -> DVector<f64> {
@@ -253,5 +234,5 @@ impl Member {
 }
 
 /// What mass and gas temperature may be while gas is exchanged.
-pub(super) const FREE_MASS_SD_KG: f64 = 1.0;
-pub(super) const FREE_GAS_SD_K: f64 = 20.0;
+const FREE_MASS_SD_KG: f64 = 1.0;
+const FREE_GAS_SD_K: f64 = 20.0;

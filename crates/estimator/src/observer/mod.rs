@@ -16,10 +16,14 @@
 pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
+mod late;
 mod learned;
 mod member;
 mod observability;
+mod pass;
+mod screen;
 pub mod settings;
+mod smoother;
 pub mod states;
 
 use nalgebra::DMatrix;
@@ -27,15 +31,21 @@ use nalgebra::DMatrix;
 use crate::EstimatorError;
 use crate::filter::StateSpace;
 use crate::sensor::Sensor;
+use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
-pub use engine::Engine;
+use engine::Shared;
+pub use engine::{Engine, MovingHorizonSettings};
+pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
-use member::{FREE_GAS_SD_K, FREE_MASS_SD_KG, Member, Shared};
+use member::Member;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
+use screen::Screen;
+pub use screen::{Fault, FaultCount};
 pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
+pub use smoother::Smoother;
 
 /// Temperature at which the settled pressure is quoted, K: 15 °C.
 const QUOTED_K: f64 = 288.15;
@@ -43,6 +53,9 @@ const QUOTED_K: f64 = 288.15;
 const REFERENCE_AFTER_S: f64 = 86_400.0;
 /// Time after an exchange of gas during which mass and gas stay free, s.
 const SETTLE_S: f64 = 1200.0;
+
+/// Interval as which that between two rows of one time counts, s.
+const SHORTEST_S: f64 = 1e-3;
 
 /// How far an estimate can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +131,7 @@ pub struct Leak {
 pub struct Snapshot {
     members: Vec<Member>,
     clock: Clock,
+    warm_start: WarmStart,
 }
 
 /// Times that the observer keeps.
@@ -129,6 +143,9 @@ struct Clock {
     reference_mass_kg: Option<f64>,
     exchange: Exchange,
     restarts: u64,
+    screens: Vec<Screen>,
+    /// Until then an estimate that has just begun or been opened is pulled by good readings too.
+    pulled_until_s: f64,
 }
 
 /// Exchange of gas with the outside.
@@ -152,6 +169,8 @@ pub struct Observer {
     clock: Clock,
     gate: f64,
     reference_x: Vec<f64>,
+    /// The readings of the present sample without the faulty ones.
+    usable: Vec<f64>,
 }
 
 impl Observer {
@@ -188,7 +207,10 @@ impl Observer {
                 reference_mass_kg: None,
                 exchange: Exchange::None,
                 restarts: 0,
+                screens: sensors.iter().map(Screen::new).collect(),
+                pulled_until_s: f64::INFINITY,
             },
+            usable: vec![f64::NAN; sensors.len()],
             gate,
             reference_x: vec![0.0; cylinder.states()],
             cylinder,
@@ -220,28 +242,69 @@ impl Observer {
         if !time_s.is_finite() || last_s.is_some_and(|last| time_s < last) {
             return Err(EstimatorError::TimeBackwards { time_s, last_s: last_s.unwrap_or(f64::NAN) });
         }
-        let mut restarted = false;
-        match last_s {
-            None => self.start(time_s, readings)?,
-            Some(last_s) => {
-                if self.advance(time_s - last_s, time_s, readings).is_err() || !self.is_finite() {
-                    self.clock.restarts += 1;
-                    restarted = true;
-                    self.start(time_s, readings)?;
-                }
+        let mut usable = std::mem::take(&mut self.usable);
+        usable.copy_from_slice(readings);
+        for (reading, screen) in usable.iter_mut().zip(&mut self.clock.screens) {
+            if screen.judge(*reading).is_some() {
+                *reading = f64::NAN;
             }
         }
-        self.clock.time_s = Some(time_s);
-        for (last, reading) in self.clock.last_reading_s.iter_mut().zip(readings) {
+        let restarted = self.take(time_s, &usable);
+        for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
             if reading.is_finite() {
                 *last = time_s;
             }
         }
+        self.mark_faulty(time_s, readings, &usable);
+        self.usable = usable;
+        let restarted = restarted?;
+        self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
     }
 
-    /// Begin from the prior at a sample, and use its readings.
+    /// Move on to a sample and take its readings; whether the estimate had to begin again.
+    fn take(&mut self, time_s: f64, readings: &[f64]) -> Result<bool, EstimatorError> {
+        let Some(last_s) = self.clock.time_s else {
+            self.start(time_s, readings)?;
+            return Ok(false);
+        };
+        if self.advance(time_s - last_s, time_s, readings).is_ok() && self.is_possible() {
+            return Ok(false);
+        }
+        self.clock.restarts += 1;
+        self.start(time_s, readings)?;
+        Ok(true)
+    }
+
+    /// What the screens have sorted out counts as rejected.
+    fn mark_faulty(&mut self, time_s: f64, readings: &[f64], usable: &[f64]) {
+        for member in &mut self.members {
+            for (sensor, innovation) in member.innovations.iter_mut().enumerate() {
+                if readings[sensor].is_finite() && !usable[sensor].is_finite() {
+                    innovation.outcome = Outcome::Rejected;
+                }
+            }
+        }
+        if let Some(first) = self.members.first()
+            && time_s > self.clock.pulled_until_s
+        {
+            self.clock.screens.iter_mut().zip(&first.pulled).for_each(|(screen, &by)| screen.pull(by));
+        }
+    }
+
+    /// Begin from the prior at a sample, and use its readings if they lead to a state that can be.
     fn start(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        self.reset(time_s, readings)?;
+        if self.update(readings).is_ok() && self.is_possible() {
+            return Ok(());
+        }
+        self.reset(time_s, readings)?;
+        let without = vec![f64::NAN; readings.len()];
+        self.update(&without)
+    }
+
+    /// Every member as the prior has it.
+    fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         let prior = commissioning::prior(
             self.cylinder.state_map(),
             self.cylinder.sensors(),
@@ -256,19 +319,18 @@ impl Observer {
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
-        self.members = self
-            .cylinder
-            .settings()
-            .bank
-            .iter()
-            .map(|hypothesis| Member::new(&self.cylinder, *hypothesis, &mean, &covariance))
+        let bank = self.cylinder.settings().bank.clone();
+        self.members = bank
+            .into_iter()
+            .map(|hypothesis| Member::new(&mut self.cylinder, hypothesis, &mean, &covariance))
             .collect::<Result<_, _>>()?;
         self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
         self.clock.reference_mass_kg = None;
+        self.clock.pulled_until_s = time_s + SETTLE_S;
         for sensor in 0..readings.len() {
             self.cylinder.set_interval_s(sensor, f64::INFINITY);
         }
-        self.update(readings)
+        Ok(())
     }
 
     fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
@@ -278,12 +340,13 @@ impl Observer {
             }
         }
         if self.exchanging(time_s) {
+            self.clock.pulled_until_s = time_s + SETTLE_S;
             for member in &mut self.members {
-                member.open(&self.cylinder, FREE_MASS_SD_KG, FREE_GAS_SD_K);
+                member.open(&self.cylinder, None);
             }
         }
         for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
-            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(f64::MIN_POSITIVE));
+            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
         }
         self.update(readings)
     }
@@ -295,8 +358,8 @@ impl Observer {
         Ok(())
     }
 
-    fn is_finite(&self) -> bool {
-        self.members.iter().all(Member::is_finite)
+    fn is_possible(&mut self) -> bool {
+        self.members.iter().all(|member| member.is_possible(&mut self.cylinder))
     }
 
     /// Whether gas is exchanged at a time; ends the settling that is over.
@@ -332,37 +395,48 @@ impl Observer {
         readings: &[f64],
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
+        let (first, slow) = (&self.members[0], self.middle_slow_member());
         let states = self.cylinder.state_map();
-        let (gas, mass, leak) = (states.gas, states.mass, states.leak);
-        let (leak_kg_s, leak_sd_kg_s) = self
-            .middle_slow_member()
-            .map_or((f64::NAN, f64::NAN), |member| (member.x[leak], member.variance(leak).sqrt()));
-        let first = &self.members[0];
-        let (gas_mean_k, mass_kg) = (first.x[gas], first.x[mass]);
-        let (gas_sd, mass_sd) = (first.variance(gas).sqrt(), first.variance(mass).sqrt());
+        let sd = |member: &Member, state: usize| member.variance(state).sqrt();
+        let mut estimate = Estimate {
+            time_s,
+            gas_mean_k: first.x[states.gas],
+            gas_mean_sd_k: sd(first, states.gas),
+            mass_kg: first.x[states.mass],
+            mass_sd_kg: sd(first, states.mass),
+            leak_kg_s: slow.map_or(f64::NAN, |member| member.x[states.leak]),
+            leak_sd_kg_s: slow.map_or(f64::NAN, |member| sd(member, states.leak)),
+            pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
+            pressure_expected_pa: f64::NAN,
+            p15_pa: f64::NAN,
+            quality: self.quality(restarted),
+        };
         if self.clock.reference_mass_kg.is_none() && time_s >= self.clock.reference_due_s {
-            self.clock.reference_mass_kg = Some(mass_kg);
+            self.clock.reference_mass_kg = Some(estimate.mass_kg);
         }
-        let pressure_sensor = (0..readings.len()).find(|&sensor| self.cylinder.reads_pressure(sensor));
         self.reference_x.copy_from_slice(&first.x);
-        self.reference_x[mass] = self.clock.reference_mass_kg.unwrap_or(mass_kg);
-        let pressure_expected_pa = match pressure_sensor {
+        self.add_pressures(&mut estimate, self.clock.reference_mass_kg)?;
+        Ok(estimate)
+    }
+
+    /// Pressures of an estimate whose state is `reference_x`, with a reference mass, kg, if there is one.
+    fn add_pressures(
+        &mut self,
+        estimate: &mut Estimate,
+        reference_kg: Option<f64>,
+    ) -> Result<(), EstimatorError> {
+        let mass = self.cylinder.state_map().mass;
+        self.reference_x[mass] = reference_kg.unwrap_or(estimate.mass_kg);
+        estimate.pressure_expected_pa = match self.pressure_sensor() {
             Some(sensor) => self.cylinder.output(sensor, &self.reference_x, None)?,
             None => self.cylinder.pressure_pa(&self.reference_x)?,
         };
-        Ok(Estimate {
-            time_s,
-            gas_mean_k,
-            gas_mean_sd_k: gas_sd,
-            mass_kg,
-            mass_sd_kg: mass_sd,
-            leak_kg_s,
-            leak_sd_kg_s,
-            pressure_pa: pressure_sensor.map_or(f64::NAN, |sensor| readings[sensor]),
-            pressure_expected_pa,
-            p15_pa: self.cylinder.model().settled_pressure_pa(mass_kg, QUOTED_K)?,
-            quality: self.quality(restarted),
-        })
+        estimate.p15_pa = self.cylinder.model().settled_pressure_pa(estimate.mass_kg, QUOTED_K)?;
+        Ok(())
+    }
+
+    fn pressure_sensor(&self) -> Option<usize> {
+        (0..self.cylinder.outputs()).find(|&sensor| self.cylinder.reads_pressure(sensor))
     }
 
     fn quality(&self, restarted: bool) -> Quality {
@@ -379,7 +453,12 @@ impl Observer {
 
     /// The middle one of the members that have a leak rate, in the order of the bank.
     fn middle_slow_member(&self) -> Option<&Member> {
-        let slow = || self.members.iter().filter(|member| !member.hypothesis.rate.is_known());
+        self.middle_slow_index().map(|index| &self.members[index])
+    }
+
+    fn middle_slow_index(&self) -> Option<usize> {
+        let bank = &self.cylinder.settings().bank;
+        let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
         slow().nth(slow().count() / 2)
     }
 
@@ -406,9 +485,20 @@ impl Observer {
         self.members.get(member).map(|member| (member.mean(), member.covariance()))
     }
 
+    /// Faulty readings of each sensor so far.
+    pub fn faults(&self) -> impl Iterator<Item = FaultCount> {
+        self.clock.screens.iter().map(|screen| screen.count)
+    }
+
     /// Number of times the estimate had to begin again.
     pub fn restarts(&self) -> u64 {
         self.clock.restarts
+    }
+
+    /// Samples, of all members, at which the engine could not do its own and fell back on the extended filter inside it:
+    /// windows of the moving horizon without a solution inside the constraints.
+    pub fn fallbacks(&self) -> u64 {
+        self.members.iter().map(Member::fallbacks).sum()
     }
 
     /// Whether a film multiplier of the first member stands at the bound of what is plausible.
@@ -418,13 +508,18 @@ impl Observer {
 
     /// The observer as it is now.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { members: self.members.clone(), clock: self.clock.clone() }
+        Snapshot {
+            members: self.members.clone(),
+            clock: self.clock.clone(),
+            warm_start: self.cylinder.warm_start(),
+        }
     }
 
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.members.clone_from(&snapshot.members);
         self.clock.clone_from(&snapshot.clock);
+        self.cylinder.model().set_warm_start(&snapshot.warm_start);
     }
 
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.
@@ -447,3 +542,6 @@ impl Observer {
         Some(observability::given_constants(&member.covariance(), states.mass, states.leading).sqrt())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,8 +11,10 @@ use super::states::{StateKind, States};
 const NOT_LEARNT: f64 = 0.5;
 /// Correlation from which two states count as not separated.
 const NOT_SEPARATED: f64 = 0.9;
-/// Weight from which a state is named in a combination.
+/// Weight from which a state is named in a combination,
 const NAMED: f64 = 0.2;
+/// and the part of what is left of its variance that the combination makes, from which it is named too.
+const EXPLAINED: f64 = 0.25;
 
 /// A combination of constants that the data have not determined.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +58,12 @@ impl Observability {
             .filter(|&e| eigen.eigenvalues[e] > NOT_LEARNT)
             .map(|e| {
                 let mut terms: Vec<(String, f64)> = (0..k)
-                    .map(|i| (name(i), eigen.eigenvectors[(i, e)]))
-                    .filter(|(_, weight)| weight.abs() > NAMED)
+                    .map(|i| (i, eigen.eigenvectors[(i, e)]))
+                    .filter(|&(i, weight)| {
+                        let part = eigen.eigenvalues[e] * weight * weight;
+                        weight.abs() > NAMED || part > EXPLAINED * scaled[(i, i)]
+                    })
+                    .map(|(i, weight)| (name(i), weight))
                     .collect();
                 terms.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
                 Combination { variance_left: eigen.eigenvalues[e], terms }

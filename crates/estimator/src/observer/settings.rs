@@ -161,8 +161,9 @@ pub struct ObserverSettings {
     pub coupling_memory_s: Option<f64>,
     /// Random walk that keeps sensor constants from being believed for ever: temperature offsets, K/sqrt(s).
     pub offset_walk_k_per_sqrt_s: f64,
-    /// The same for the pressure's temperature coefficient, Pa/(K sqrt(s)).
-    pub coefficient_walk_pa_k_per_sqrt_s: f64,
+    /// Memory of a transmitter's temperature coefficient, s, as for the couplings: the coefficient is hardly linear, and
+    /// coloured model error would make it certain of a wrong value.
+    pub coefficient_memory_s: Option<f64>,
     /// Noise beside the sensors' own.
     pub model_error: ModelError,
     /// The bank: the first member gives temperature and mass, each gives a leak rate.
@@ -175,7 +176,8 @@ pub struct ObserverSettings {
 
 impl Default for ObserverSettings {
     fn default() -> Self {
-        const YEAR_S: f64 = 365.25 * 86_400.0;
+        const DAY_S: f64 = 86_400.0;
+        const YEAR_S: f64 = 365.25 * DAY_S;
         Self {
             engine: Engine::default(),
             wall_nodes: 2,
@@ -189,9 +191,9 @@ impl Default for ObserverSettings {
             ln_capacity: Walk::constant(0.12),
             sun: Walk::per_sqrt_hour(2.0, 2.0).remembering_hours(0.5),
             film_slope: Walk::constant(0.2),
-            coupling_memory_s: Some(24.0 / PER_HOUR),
+            coupling_memory_s: Some(DAY_S),
             offset_walk_k_per_sqrt_s: 0.05 / YEAR_S.sqrt(),
-            coefficient_walk_pa_k_per_sqrt_s: 200.0 / YEAR_S.sqrt(),
+            coefficient_memory_s: Some(10.0 * DAY_S),
             model_error: ModelError {
                 surface_k: 0.15,
                 surface_per_air_k: 0.05,
@@ -228,14 +230,15 @@ impl ObserverSettings {
             per_sqrt_s: per_sqrt_s.max(parameter.walk_per_sqrt_s),
             memory_s,
         };
+        // What forgets is as uncertain in the end as its prior says.
+        let forgetting = |memory_s: Option<f64>| {
+            let stationary = memory_s.map_or(0.0, |memory_s| (2.0 / memory_s).sqrt());
+            walk(stationary * parameter.sd, memory_s)
+        };
         match (parameter.kind, quantity) {
-            (ParameterKind::Coupling, _) => {
-                // As uncertain for ever as its prior says.
-                let stationary = self.coupling_memory_s.map_or(0.0, |memory_s| (2.0 / memory_s).sqrt());
-                walk(stationary * parameter.sd, self.coupling_memory_s)
-            }
+            (ParameterKind::Coupling, _) => forgetting(self.coupling_memory_s),
+            (ParameterKind::TemperatureCoefficient, _) => forgetting(self.coefficient_memory_s),
             (ParameterKind::Offset, Quantity::Temperature) => walk(self.offset_walk_k_per_sqrt_s, None),
-            (ParameterKind::TemperatureCoefficient, _) => walk(self.coefficient_walk_pa_k_per_sqrt_s, None),
             (ParameterKind::Offset, Quantity::Pressure) | (ParameterKind::Span, _) => walk(0.0, None),
         }
     }
@@ -254,18 +257,19 @@ impl ObserverSettings {
         let not_negative = |setting, value: f64| {
             require(value >= 0.0 && value.is_finite(), setting, value, "finite and at least 0")
         };
+        self.engine.validate()?;
         require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
         require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
         positive("film_w_m2_k", self.film_w_m2_k)?;
         positive("air_rest_k", self.air_rest_k)?;
         positive("longest_step_s", self.longest_step_s)?;
         positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
+        positive("coefficient_memory_s", self.coefficient_memory_s.unwrap_or(1.0))?;
         let gate = self.gate_probability;
         require(gate > 0.0 && gate < 1.0, "gate_probability", gate, "between 0 and 1")?;
         for (setting, value) in [
             ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
             ("offset_walk_k_per_sqrt_s", self.offset_walk_k_per_sqrt_s),
-            ("coefficient_walk_pa_k_per_sqrt_s", self.coefficient_walk_pa_k_per_sqrt_s),
             ("model_error.surface_k", self.model_error.surface_k),
             ("model_error.surface_per_air_k", self.model_error.surface_per_air_k),
             ("model_error.pressure_pa", self.model_error.pressure_pa),

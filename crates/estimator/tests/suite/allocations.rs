@@ -5,6 +5,9 @@ use cylwatch_estimator::filter::{
     Refilter, SequentialFilter, SquareRoot, Stationary, StationarySettings, UdFactors, Unscented,
     UnscentedSettings,
 };
+use cylwatch_estimator::observer::{Commissioning, Engine, Observer, ObserverSettings};
+use cylwatch_estimator::sensor::Sensor;
+use cylwatch_estimator::thermal::vessel::presets;
 use nalgebra::{Const, DMatrix, Dyn, SMatrix};
 
 use crate::copying_model::CopyingModel;
@@ -105,4 +108,50 @@ fn a_full_fixed_lag_smoother_does_not_allocate() {
     };
     run(7);
     assert_eq!(allocations(|| run(50)), 0);
+}
+
+/// Readings of a cylinder that warms and cools, with gaps, spikes and an exchange; the grid of film properties, which grows where
+/// states are new, knows the way from a first run.
+#[test]
+fn no_step_of_the_observer_allocates_with_any_engine_but_the_moving_horizon() {
+    for engine in [Engine::Extended, Engine::Unscented, Engine::Stationary] {
+        let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+        let settings = ObserverSettings { engine, ..ObserverSettings::default() };
+        let vessel = presets::load("nitrogen-20l").unwrap();
+        let commissioning = Commissioning::filled(2e7, 288.15);
+        let mut observer = Observer::new(&vessel, &sensors, &commissioning, &settings).unwrap();
+        let row = |k: u32| {
+            let warm = 5.0 * (f64::from(k) / 30.0).sin();
+            let mut z = [288.15 + warm, 288.15 + warm, 2e7 + 0.7e5 * warm];
+            match k % 13 {
+                5 => z[1] = f64::NAN,
+                8 => z = [f64::NAN; 3],
+                11 => z[0] += 60.0,
+                _ => {}
+            }
+            z
+        };
+        for k in 0..200 {
+            observer.step(60.0 * f64::from(k), &row(k)).unwrap();
+        }
+        let begin = observer.snapshot();
+        let mut sought = 0;
+        for counts in [false, true] {
+            observer.restore(&begin);
+            for k in 200..400 {
+                match k {
+                    300 => observer.begin_exchange(),
+                    303 => observer.end_exchange(),
+                    _ => {}
+                }
+                let (t, z) = (60.0 * f64::from(k), row(k));
+                let counted = allocations(|| assert!(observer.step(t, &z).unwrap().mass_kg > 0.0));
+                sought += u32::from(counts && counted > 0);
+            }
+        }
+        // A stationary gain is sought anew after an hour of complete samples at most, which allocates.
+        let may = if engine == Engine::Stationary { 4 } else { 0 };
+        assert!(sought <= may, "{engine:?}: {sought} steps allocate");
+        assert_eq!(observer.restarts(), 0);
+    }
 }

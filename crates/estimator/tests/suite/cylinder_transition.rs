@@ -46,6 +46,7 @@ fn state(cylinder: &Cylinder, hot: bool) -> (Vec<f64>, Vec<f64>) {
         StateKind::Sun => (at(3.0, 0.0), 2.0),
         StateKind::InsideFilm => (at(0.1, 0.0), 0.2),
         StateKind::Capacity => (at(0.05, 0.0), 0.1),
+        StateKind::FilmSlope => (at(0.1, 0.0), 0.2),
         StateKind::Lag { sensor: 0 } => (at(284.0, rest_k), 1.0),
         StateKind::Lag { .. } => (pressure_pa, 1e5),
         StateKind::Parameter { sensor, parameter } => {
@@ -144,7 +145,7 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
     let (map, n) = (cylinder.state_map().clone(), x.len());
     let settings = cylinder.settings().clone();
     let physical = map.mass + 1;
-    let columns = [Some(map.air), map.outside, map.inside, map.capacity, map.sun, Some(map.leak)];
+    let columns = [Some(map.air), map.outside, map.inside, map.capacity, map.sun, map.slope, Some(map.leak)];
     let value = |state: Option<usize>| x[state.unwrap()];
     let unknowns = Unknowns {
         air_k: x[map.air],
@@ -152,6 +153,7 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
         ln_inside_film: value(map.inside),
         ln_capacity: value(map.capacity),
         sun_w: value(map.sun),
+        film_slope: value(map.slope),
         outflow_kg_s: x[map.leak],
     };
     let mut rate = vec![0.0; physical];

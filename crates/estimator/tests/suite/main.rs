@@ -15,5 +15,6 @@ mod ill_conditioned;
 mod late_samples;
 mod linear_model;
 mod matched;
+mod observer;
 mod properties;
 mod sensors;

@@ -76,7 +76,7 @@ type GridIndex = (i32, i32);
 type Patch = [[[f64; 4]; 4]; 2];
 
 /// The lazily filled grid of film property groups of one fluid.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FilmGrid {
     fluid: Fluid,
     nodes: RefCell<HashMap<GridIndex, [f64; 2]>>,
@@ -150,7 +150,7 @@ pub struct InsideFlux {
 }
 
 /// A film law bound to a length and to the property grid of a gas.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct InsideConvection {
     law: InsideFilm,
     length_m: f64,

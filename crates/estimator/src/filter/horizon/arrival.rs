@@ -59,6 +59,19 @@ impl Arrival {
         self.refresh_root();
     }
 
+    /// Bring state `i` nearer to `rest` by a factor.
+    pub fn relax(&mut self, i: usize, factor: f64, rest: f64) {
+        self.mean[i] = rest + factor * (self.mean[i] - rest);
+        self.factors.scale(i, factor);
+        self.refresh_root();
+    }
+
+    /// Add `variance` to state `i`.
+    pub fn inflate(&mut self, i: usize, variance: f64) {
+        self.factors.inflate(i, variance);
+        self.refresh_root();
+    }
+
     fn refresh_root(&mut self) {
         self.root.copy_from(self.factors.unit_upper());
         for (mut column, d) in self.root.column_iter_mut().zip(self.factors.diagonal()) {

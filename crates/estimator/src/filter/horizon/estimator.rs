@@ -79,6 +79,19 @@ impl<M: StateSpace> MovingHorizon<M> {
         self.take(dt_s, z, false)
     }
 
+    /// Add `variance` to state `i` at the window's start: a constant that walks so slowly that no interval has noise for it.
+    pub fn inflate(&mut self, i: usize, variance: f64) {
+        self.window.arrival.inflate(i, variance);
+        self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
+    }
+
+    /// Bring state `i`, a constant, nearer to `rest` by a factor all along the window.
+    pub fn relax(&mut self, i: usize, factor: f64, rest: f64) {
+        self.window.arrival.relax(i, factor, rest);
+        self.window.path.x.iter_mut().for_each(|x| x[i] = rest + factor * (x[i] - rest));
+        self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
+    }
+
     /// The process.
     pub fn model(&self) -> &M {
         &self.model

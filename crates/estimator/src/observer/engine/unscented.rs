@@ -98,8 +98,8 @@ impl SigmaPoints {
             && cylinder.propagate(&mut self.plus, dt_s, None).is_ok()
             && cylinder.propagate(&mut self.minus, dt_s, None).is_ok();
         if !(inside && is_finite(&self.plus) && is_finite(&self.minus)) {
-            let column = self.tangent.phi.columns(0, j + 1) * p.unit_upper().view((0, j), (j + 1, 1));
-            self.moved.column_mut(j).copy_from(&column);
+            let u = p.unit_upper().column(j);
+            self.moved.column_mut(j).gemv(1.0, &self.tangent.phi.columns(0, j + 1), &u.rows(0, j + 1), 0.0);
             return;
         }
         for i in 0..leading {

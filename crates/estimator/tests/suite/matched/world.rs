@@ -94,6 +94,7 @@ impl World {
             StateKind::Sun => (0.0, settings.sun.prior_sd),
             StateKind::InsideFilm => (0.0, settings.ln_inside_film.prior_sd),
             StateKind::Capacity => (0.0, settings.ln_capacity.prior_sd),
+            StateKind::FilmSlope => (0.0, settings.film_slope.prior_sd),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.cylinder.sensors()[sensor].parameters()[parameter];
                 (parameter.mean, spread * parameter.sd)
@@ -133,9 +134,10 @@ pub fn settings(member: LeakHypothesis) -> ObserverSettings {
         ln_inside_film: Walk::constant(0.15),
         ln_capacity: Walk::constant(0.1),
         sun: Walk::per_sqrt_hour(0.6, 2.0).remembering_hours(0.5),
-        coupling_walk_per_sqrt_s: 0.0,
+        film_slope: Walk::constant(0.0),
+        coupling_memory_s: None,
         offset_walk_k_per_sqrt_s: 0.0,
-        coefficient_walk_pa_k_per_sqrt_s: 0.0,
+        coefficient_memory_s: None,
         model_error: ModelError::NONE,
         bank: vec![member],
         ..ObserverSettings::default()

@@ -49,7 +49,9 @@ impl ReducedModel {
                 let flux = self.inside.flux(Facing::Side, surface_k, gas_k, pressure_pa, 0.0);
                 (area * flux.flux_w_m2, area * flux.per_surface_k, flux)
             });
-            self.skin_k[node] = x[node] - face.surface_k;
+            let skin_k = x[node] - face.surface_k;
+            // A start for the next solve, which must not inherit what went wrong in this one.
+            self.skin_k[node] = if skin_k.is_finite() { skin_k } else { 0.0 };
             rate[node] -= face.heat_w;
             rate[gas_row] += face.heat_w;
             let Some(j) = jacobian.as_deref_mut() else { continue };

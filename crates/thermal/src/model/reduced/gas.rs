@@ -78,6 +78,22 @@ impl GasNode {
         Self { fluid, volume, guess_m3: volume.volume_m3 }
     }
 
+    pub fn fluid(&self) -> &Fluid {
+        &self.fluid
+    }
+
+    pub fn reference_volume_m3(&self) -> f64 {
+        self.volume.volume_m3
+    }
+
+    pub fn guess_m3(&self) -> f64 {
+        self.guess_m3
+    }
+
+    pub fn set_guess_m3(&mut self, guess_m3: f64) {
+        self.guess_m3 = guess_m3;
+    }
+
     /// Volume at a gas temperature, mass and mean wall temperature, m³.
     ///
     /// # Errors

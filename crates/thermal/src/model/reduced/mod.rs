@@ -19,6 +19,7 @@ mod spread;
 use nalgebra::DMatrix;
 
 use crate::ThermalError;
+use crate::fluid::Fluid;
 use crate::scenario::sensor::SurfacePlace;
 use crate::transfer::inside::InsideConvection;
 use crate::vessel::{Valve, Vessel};
@@ -92,6 +93,13 @@ pub struct Pressure {
     pub per_wall_k: f64,
 }
 
+/// Start of the iterations inside a [`ReducedModel`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct WarmStart {
+    volume_m3: f64,
+    skin_k: Vec<f64>,
+}
+
 /// Temperature of a place on the surface, `T = x_state + valve_share (x_valve - x_top) + sun_rise Q_sun` with the topmost
 /// wall node and the sun on it ([`Unknowns::sun_w`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +113,7 @@ pub struct SurfaceState {
 }
 
 /// The reduced model of one vessel.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ReducedModel {
     mesh: Mesh,
     node_of_column: Vec<usize>,
@@ -176,6 +184,28 @@ impl ReducedModel {
     /// Number of wall nodes.
     pub fn wall_nodes(&self) -> usize {
         self.mesh.columns.len()
+    }
+
+    /// The gas.
+    pub fn fluid(&self) -> &Fluid {
+        self.gas.fluid()
+    }
+
+    /// Mass of the densest gas that the equation of state knows, kg, at the reference volume.
+    pub fn highest_mass_kg(&self) -> f64 {
+        self.fluid().domain().highest_density_kg_m3 * self.gas.reference_volume_m3()
+    }
+
+    /// Where the iterative solutions of the next evaluation start. The solutions depend on it in their last digits, so
+    /// a computation that must repeat to the last digit starts from the same.
+    pub fn warm_start(&self) -> WarmStart {
+        WarmStart { volume_m3: self.gas.guess_m3(), skin_k: self.skin_k.clone() }
+    }
+
+    /// Start the next evaluation as another one did.
+    pub fn set_warm_start(&mut self, start: &WarmStart) {
+        self.gas.set_guess_m3(start.volume_m3);
+        self.skin_k.clone_from(&start.skin_k);
     }
 
     /// Index of the valve's temperature, if there is a valve.

@@ -1,0 +1,72 @@
+use nalgebra::DMatrix;
+
+use super::*;
+use crate::observer::ObserverSettings;
+use crate::observer::states::StateKind;
+use crate::sensor::Sensor;
+use crate::thermal::vessel::presets;
+
+/// A settled cylinder at 15 °C and 200 bar with a pressure that rises by 0.1 bar a minute; the masses along the last window.
+fn masses_while_pressure_rises(settings: &MovingHorizonSettings) -> Vec<f64> {
+    let sensors = ["shoulder", "pressure"].map(|name| Sensor::typical(name).unwrap());
+    let vessel = presets::load("nitrogen-20l").unwrap();
+    let mut cylinder = Cylinder::new(&vessel, &sensors, &ObserverSettings::single()).unwrap();
+    let n = cylinder.states();
+    let mut x = vec![0.0; n];
+    let mut covariance = DMatrix::identity(n, n) * 1e-4;
+    for (i, kind) in cylinder.state_map().kinds.iter().enumerate() {
+        match kind {
+            StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Air => x[i] = 288.15,
+            StateKind::Mass => x[i] = 4.49,
+            StateKind::Leak => covariance[(i, i)] = 0.0,
+            _ => {}
+        }
+    }
+    let mut p = UdFactors::from_covariance(&covariance).unwrap();
+    let start_pa = cylinder.output(1, &x, None).unwrap();
+    let mut horizon = Horizon::new(&mut cylinder, settings);
+    for k in 0..12 {
+        horizon.begin(60.0);
+        horizon.take(0, 288.15);
+        horizon.take(1, start_pa + 1e4 * f64::from(k));
+        horizon.refine(&mut x, &mut p);
+    }
+    assert_eq!(horizon.fallbacks, 0);
+    let mass = cylinder.state_map().mass;
+    horizon.window.unwrap().trajectory().iter().map(|x| x[mass]).collect()
+}
+
+#[test]
+fn mass_rises_nowhere_in_the_window_unless_it_may() {
+    let bound = MovingHorizonSettings { samples: 10, ..MovingHorizonSettings::default() };
+    let masses = masses_while_pressure_rises(&bound);
+    assert_eq!(masses.len(), 11);
+    assert!(masses.windows(2).all(|w| w[1] <= w[0] + 1e-9), "{masses:?}");
+    let free = MovingHorizonSettings { mass_not_rising: false, ..bound };
+    let masses = masses_while_pressure_rises(&free);
+    assert!(masses[10] > masses[0] + 1e-3, "{masses:?}");
+}
+
+#[test]
+fn an_opened_estimate_begins_a_new_window() {
+    let sensors = ["pressure"].map(|name| Sensor::typical(name).unwrap());
+    let vessel = presets::load("nitrogen-20l").unwrap();
+    let mut cylinder = Cylinder::new(&vessel, &sensors, &ObserverSettings::single()).unwrap();
+    let mut horizon = Horizon::new(&mut cylinder, &MovingHorizonSettings::default());
+    let n = cylinder.states();
+    let states = cylinder.state_map().clone();
+    let mut x = vec![0.0; n];
+    (0..states.wall).chain(states.valve).chain([states.gas, states.air]).for_each(|i| x[i] = 288.15);
+    x[states.mass] = 4.49;
+    let mut p = UdFactors::from_covariance(&(DMatrix::identity(n, n) * 1e-4)).unwrap();
+    let length = |horizon: &Horizon| horizon.window.as_ref().map_or(0, |window| window.trajectory().len());
+    horizon.refine(&mut x, &mut p);
+    assert_eq!(length(&horizon), 1);
+    horizon.begin(10.0);
+    horizon.refine(&mut x, &mut p);
+    assert_eq!(length(&horizon), 2);
+    horizon.clear();
+    horizon.begin(10.0);
+    horizon.refine(&mut x, &mut p);
+    assert_eq!(length(&horizon), 1);
+}

@@ -1,0 +1,90 @@
+//! The steady state given the constants.
+use nalgebra::{DMatrix, DVector, Dyn};
+
+use crate::EstimatorError;
+use crate::filter::{Linearisation, StateSpace, UdFactors, steady_state};
+use crate::observer::cylinder::Cylinder;
+
+/// Noise variances of the steady state, in those at rest: wall and gas a few tenths of a kelvin apart.
+const MARGIN: f64 = 2.0;
+
+/// The linearised process in its steady state. Covariances are (n, n) with zeros where the constants are.
+#[derive(Clone, Debug)]
+pub(super) struct Steady {
+    /// Gradients of the outputs: (n, sensors).
+    pub h: DMatrix<f64>,
+    /// Noise variance of each sensor.
+    pub r: Vec<f64>,
+    /// Gain of each sensor when those before it have been used: (n, sensors).
+    pub gain: DMatrix<f64>,
+    /// Variance of each sensor's innovation without its noise.
+    pub known: Vec<f64>,
+    /// Covariance before a sample.
+    pub predicted: UdFactors<Dyn>,
+    /// Covariance after a sample.
+    pub updated: UdFactors<Dyn>,
+    /// The same.
+    pub covariance: DMatrix<f64>,
+}
+
+impl Steady {
+    /// Steady state at the state `point` (n) for samples every `interval_s`, s.
+    ///
+    /// # Errors
+    /// The process refuses the state, or the outputs do not see every state that walks.
+    pub fn solve(cylinder: &mut Cylinder, point: &[f64], interval_s: f64) -> Result<Self, EstimatorError> {
+        let (n, m, sensors) = (cylinder.states(), cylinder.leading(), cylinder.outputs());
+        let mut linear = Linearisation::zeros(n, m, cylinder.noises());
+        cylinder.propagate(&mut point.to_vec(), interval_s, Some(&mut linear))?;
+        let mut h = DMatrix::zeros(n, sensors);
+        for (sensor, mut column) in h.column_iter_mut().enumerate() {
+            cylinder.output(sensor, point, Some(column.as_mut_slice()))?;
+        }
+        let noise = |sensor: usize| {
+            let present_s = cylinder.interval_s(sensor);
+            cylinder.set_interval_s(sensor, interval_s);
+            let variance = cylinder.noise_variance(sensor, point);
+            cylinder.set_interval_s(sensor, present_s);
+            MARGIN * variance
+        };
+        let r: Vec<f64> = (0..sensors).map(noise).collect();
+        let f = linear.phi.columns(0, m).into_owned();
+        let q = &linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose();
+        let outputs = h.rows(0, m).transpose();
+        let solution = steady_state(&f, &outputs, &q, &DVector::from_column_slice(&r))?;
+        let mut covariance = DMatrix::zeros(n, n);
+        covariance.view_mut((0, 0), (m, m)).copy_from(&solution.predicted);
+        // A state without noise is known; the solution has rounding errors there.
+        for known in (0..m).filter(|&i| q[(i, i)] == 0.0) {
+            covariance.row_mut(known).fill(0.0);
+            covariance.column_mut(known).fill(0.0);
+        }
+        let predicted = UdFactors::from_covariance(&covariance)?;
+        let mut updated = predicted.clone();
+        let mut gain = DMatrix::zeros(n, sensors);
+        let update = |(sensor, r): (usize, &f64)| {
+            let mut column = gain.column_mut(sensor);
+            updated.update(h.column(sensor).as_slice(), *r, column.as_mut_slice()) - r
+        };
+        let known = r.iter().enumerate().map(update).collect();
+        let covariance = updated.covariance();
+        Ok(Self { h, r, gain, known, predicted, updated, covariance })
+    }
+
+    /// Whether no covariance of `p` among the `m` leading states differs by more than a share `tolerance` of the
+    /// standard deviations; `now`: (n, n) is memory.
+    pub fn is_near(&self, p: &UdFactors<Dyn>, m: usize, tolerance: f64, now: &mut DMatrix<f64>) -> bool {
+        let steady = &self.covariance;
+        // Variances first: they are cheap, and mostly decide.
+        if !(0..m).all(|i| (p.variance(i) - steady[(i, i)]).abs() <= tolerance * steady[(i, i)]) {
+            return false;
+        }
+        p.covariance_into(now);
+        (0..m).all(|j| {
+            (0..j).all(|i| {
+                let scale = (steady[(i, i)] * steady[(j, j)]).sqrt();
+                (now[(i, j)] - steady[(i, j)]).abs() <= tolerance * scale
+            })
+        })
+    }
+}

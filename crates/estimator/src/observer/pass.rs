@@ -1,0 +1,75 @@
+//! Record of a member's last step, as a smoother needs it.
+use nalgebra::DMatrix;
+
+use crate::filter::PassStep;
+use crate::filter::dense::add_product;
+
+/// The last step of a member.
+#[derive(Clone, Debug)]
+pub(super) struct Pass {
+    pub step: PassStep,
+    /// Whether mass and gas temperature were freed before the sample's readings, and before each of them.
+    pub opened: bool,
+    pub opened_before: Vec<bool>,
+    /// Factor by which each state came nearer to its rest before the readings: (n).
+    pub relaxed: Vec<f64>,
+    /// Memory of a product.
+    product: DMatrix<f64>,
+}
+
+impl Pass {
+    /// No step yet, of a member with `n` states, of which `leading` move, and so many sensors.
+    pub fn new(n: usize, leading: usize, sensors: usize) -> Self {
+        Self {
+            step: PassStep::zeros(n, leading, sensors),
+            opened: false,
+            opened_before: vec![false; sensors],
+            relaxed: vec![1.0; n],
+            product: DMatrix::zeros(leading, n),
+        }
+    }
+
+    /// A sample comes `dt_s`, s, after the last one.
+    pub fn begin(&mut self, dt_s: f64) {
+        self.step.interval_s = dt_s;
+        self.step.phi.fill_with_identity();
+        self.step.used.fill(false);
+        self.opened = false;
+        self.relaxed.fill(1.0);
+        self.opened_before.fill(false);
+    }
+
+    /// Part of the interval with the transition `phi`: (leading, n).
+    pub fn move_on(&mut self, phi: &DMatrix<f64>) {
+        let m = phi.nrows();
+        let (moving, constant) = phi.as_slice().split_at(m * m);
+        let product = self.product.as_mut_slice();
+        product[..m * m].fill(0.0);
+        product[m * m..].copy_from_slice(constant);
+        add_product(product, 1.0, moving, self.step.phi.as_slice(), m);
+        std::mem::swap(&mut self.product, &mut self.step.phi);
+    }
+
+    /// A reading was used: gradient and gain (n), innovation and its variance.
+    pub fn take(&mut self, sensor: usize, h: &[f64], gain: &[f64], (nu, s): (f64, f64)) {
+        let step = &mut self.step;
+        step.h.column_mut(sensor).as_mut_slice().copy_from_slice(h);
+        step.gain.column_mut(sensor).as_mut_slice().copy_from_slice(gain);
+        step.innovation[sensor] = nu;
+        step.variance[sensor] = s;
+        step.used[sensor] = true;
+    }
+
+    /// A constant came nearer to its rest.
+    pub fn relax(&mut self, state: usize, factor: f64) {
+        self.relaxed[state] *= factor;
+    }
+
+    /// Mass and gas temperature are freed before the readings, or before that of one sensor.
+    pub fn open(&mut self, before: Option<usize>) {
+        match before {
+            Some(sensor) => self.opened_before[sensor] = true,
+            None => self.opened = true,
+        }
+    }
+}

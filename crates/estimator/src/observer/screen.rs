@@ -1,0 +1,115 @@
+//! Readings that no working sensor gives: outside what it can read, or stuck.
+//!
+//! A gate judges one reading by its innovation. A sensor that stops moving passes every gate, since the estimate is pulled
+//! along a little at each sample. So identical readings in a row are watched: how far has the estimate been pulled back to them
+//! in sum, `sum h^T K nu`? At rest that is next to nothing. Beyond [`PULLED`] standard deviations of the sensor's own noise the
+//! readings count as stuck, and are not used until they change.
+
+use crate::sensor::Sensor;
+
+/// Identical readings in a row from which a sensor may be stuck.
+const IN_A_ROW: u32 = 10;
+/// Standard deviations of a sensor's noise by which stuck readings have pulled the estimate.
+const PULLED: f64 = 20.0;
+
+/// What is wrong with a reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Outside what the sensor can read.
+    Implausible,
+    /// The same as long before, while the cylinder moved on.
+    Stuck,
+}
+
+/// Faulty readings of a sensor so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FaultCount {
+    /// Readings outside what the sensor can read.
+    pub implausible: u64,
+    /// Stuck readings.
+    pub stuck: u64,
+}
+
+/// Watch over one sensor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Screen {
+    low: f64,
+    high: f64,
+    /// Pull, in the sensor's unit, from which identical readings are stuck.
+    limit: f64,
+    latest: f64,
+    in_a_row: u32,
+    pulled: f64,
+    pub count: FaultCount,
+}
+
+impl Screen {
+    pub fn new(sensor: &Sensor) -> Self {
+        let (low, high) = sensor.plausible();
+        let limit = PULLED * sensor.noise_variance().sqrt();
+        Self { low, high, limit, latest: f64::NAN, in_a_row: 0, pulled: 0.0, count: FaultCount::default() }
+    }
+
+    /// Judge and count a reading; NaN is none.
+    pub fn judge(&mut self, reading: f64) -> Option<Fault> {
+        if !reading.is_finite() {
+            return None;
+        }
+        if reading < self.low || reading > self.high {
+            self.count.implausible += 1;
+            return Some(Fault::Implausible);
+        }
+        if reading == self.latest {
+            self.in_a_row = self.in_a_row.saturating_add(1);
+        } else {
+            (self.latest, self.in_a_row, self.pulled) = (reading, 1, 0.0);
+        }
+        // A sensor without noise of its own tells nothing by standing still.
+        if self.in_a_row >= IN_A_ROW && self.limit > 0.0 && self.pulled.abs() > self.limit {
+            self.count.stuck += 1;
+            return Some(Fault::Stuck);
+        }
+        None
+    }
+
+    /// A reading has been used, and has changed its own expectation by so much.
+    pub fn pull(&mut self, by: f64) {
+        self.pulled += by;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn screen() -> Screen {
+        Screen::new(&Sensor::typical("pressure").unwrap())
+    }
+
+    #[test]
+    fn readings_outside_the_range_are_implausible_and_counted() {
+        let mut screen = screen();
+        for reading in [-1e9, 1e12] {
+            assert_eq!(screen.judge(reading), Some(Fault::Implausible));
+        }
+        assert_eq!(screen.judge(2e7), None);
+        assert_eq!(screen.judge(f64::NAN), None);
+        assert_eq!(screen.count, FaultCount { implausible: 2, stuck: 0 });
+    }
+
+    #[test]
+    fn identical_readings_are_stuck_only_where_they_pull() {
+        let mut screen = screen();
+        for _ in 0..1000 {
+            assert_eq!(screen.judge(2e7), None);
+        }
+        // 30 standard deviations of 10 mbar in sum.
+        for _ in 0..30 {
+            screen.judge(2e7);
+            screen.pull(1e3);
+        }
+        assert_eq!(screen.judge(2e7), Some(Fault::Stuck));
+        assert_eq!(screen.judge(2e7 + 1.0), None);
+        assert_eq!(screen.judge(2e7 + 1.0), None);
+    }
+}

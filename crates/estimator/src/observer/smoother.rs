@@ -1,0 +1,221 @@
+//! Estimates given the samples before and after them.
+//!
+//! The observer's pass is recorded, sample by sample, and smoothed backwards (modified Bryson-Frazier recursion of
+//! [`crate::filter::smoother`]): the first member gives temperature and mass, the middle slow one the leak rate.
+//!
+//! A year of samples does not fit into memory, so the record has room for a number of rows, by default [`ROWS`]. A log of
+//! no more rows is smoothed over its whole length. When the record is full, it is smoothed from the newest row back, the older
+//! half is handed out, each row with at least half the record of later samples, and the newer half stays. Later samples count
+//! less and less: what matters is whether half the record is longer than the filter's memory of the mass, some hours.
+//!
+//! Where gas was exchanged, later samples say nothing about the mass before, and earlier ones nothing about that after. A
+//! restart of the estimate ends one record and begins another.
+use std::collections::VecDeque;
+
+use super::engine::Engine;
+use super::pass::Pass;
+use super::{Estimate, Observer, Quality};
+use crate::EstimatorError;
+use crate::filter::{Backward, Smoothed, StateSpace};
+
+/// Rows of the record by default: at 17 states and two members some 75 MB; 23 hours at 10 s, 5.7 days at a minute.
+pub const ROWS: usize = 8192;
+
+/// An observer whose estimates are smoothed.
+///
+/// Rows go in one after the other ([`push`](Self::push)) and come out in the same order, later, each exactly once; the rest
+/// comes at the [end](Self::finish).
+#[derive(Debug)]
+pub struct Smoother {
+    observer: Observer,
+    rows: usize,
+    record: VecDeque<Row>,
+    /// Indices of the members that are recorded.
+    members: Vec<usize>,
+    backward: Vec<Backward>,
+    smoothed: Vec<Smoothed>,
+}
+
+/// One sample as the filter saw it.
+#[derive(Debug)]
+struct Row {
+    estimate: Estimate,
+    reference_kg: Option<f64>,
+    passes: Vec<Pass>,
+}
+
+impl Smoother {
+    /// Smooth the estimates of an observer that has not begun, with room for 8192 rows: some 75 MB, 23 hours at 10 s or 5.7 days at
+    /// a minute. A longer log is smoothed block by block, each row with at least half the room of later rows.
+    ///
+    /// # Errors
+    /// Its engine has not the gains of its covariance ([`Engine::can_be_smoothed`]), or it has taken samples.
+    pub fn new(observer: Observer) -> Result<Self, EstimatorError> {
+        Self::with_rows(observer, ROWS)
+    }
+
+    /// The same with room for so many rows, at least 2.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), or there is no room.
+    pub fn with_rows(observer: Observer, rows: usize) -> Result<Self, EstimatorError> {
+        let engine: Engine = observer.cylinder.settings().engine;
+        if !engine.can_be_smoothed() {
+            return Err(EstimatorError::EngineNotSmoothed);
+        }
+        if rows < 2 {
+            return Err(EstimatorError::SmootherRows { rows });
+        }
+        if observer.clock.time_s.is_some() {
+            return Err(EstimatorError::ObserverBegun);
+        }
+        let n = observer.cylinder.states();
+        let mut members = vec![0];
+        members.extend(observer.middle_slow_index().filter(|&index| index != 0));
+        let zeros = Smoothed { x: nalgebra::DVector::zeros(n), p: nalgebra::DMatrix::zeros(n, n) };
+        Ok(Self {
+            rows,
+            record: VecDeque::new(),
+            backward: vec![Backward::new(n); members.len()],
+            smoothed: vec![zeros; members.len()],
+            members,
+            observer,
+        })
+    }
+
+    /// The observer, as it is after the last row.
+    pub fn observer(&self) -> &Observer {
+        &self.observer
+    }
+
+    /// As [`Observer::begin_exchange`].
+    pub fn begin_exchange(&mut self) {
+        self.observer.begin_exchange();
+    }
+
+    /// As [`Observer::end_exchange`].
+    pub fn end_exchange(&mut self) {
+        self.observer.end_exchange();
+    }
+
+    /// Take in a row of readings; the smoothed estimates that are final now, mostly none.
+    ///
+    /// # Errors
+    /// As [`Observer::step`].
+    pub fn push(&mut self, time_s: f64, readings: &[f64]) -> Result<Vec<Estimate>, EstimatorError> {
+        let estimate = self.observer.step(time_s, readings)?;
+        let restarted = self.record.is_empty() || estimate.quality == Quality::Restarted;
+        let out = if restarted { self.smooth(self.record.len()) } else { Vec::new() };
+        let row = self.row(estimate, restarted);
+        self.record.push_back(row);
+        if self.record.len() < self.rows {
+            return Ok(out);
+        }
+        let mut out = out;
+        out.extend(self.smooth(self.record.len() / 2));
+        Ok(out)
+    }
+
+    /// The estimates that are left.
+    pub fn finish(mut self) -> Vec<Estimate> {
+        self.smooth(self.record.len())
+    }
+
+    /// The observer after the last row, and the estimates that are left.
+    pub fn into_parts(mut self) -> (Observer, Vec<Estimate>) {
+        let rest = self.smooth(self.record.len());
+        (self.observer, rest)
+    }
+
+    /// Record the last step of the observer; after a restart there is no step that leads there.
+    fn row(&mut self, estimate: Estimate, restarted: bool) -> Row {
+        let (n, m) = (self.observer.cylinder.states(), self.observer.cylinder.leading());
+        let sensors = self.observer.cylinder.outputs();
+        let mut passes = Vec::with_capacity(self.members.len());
+        for &index in &self.members {
+            let member = &mut self.observer.members[index];
+            if restarted {
+                member.pass = None;
+            }
+            let pass = member.pass.get_or_insert_with(|| Box::new(Pass::new(n, m, sensors)));
+            pass.step.x.as_mut_slice().copy_from_slice(&member.x);
+            member.p.covariance_into(&mut pass.step.p);
+            passes.push(pass.as_ref().clone());
+            // A row at the same time has no interval of its own.
+            pass.begin(0.0);
+        }
+        Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, passes }
+    }
+
+    /// Smooth the whole record and hand out the oldest `count` rows.
+    fn smooth(&mut self, count: usize) -> Vec<Estimate> {
+        self.backward.iter_mut().for_each(Backward::clear);
+        let mut out = Vec::with_capacity(count);
+        for index in (0..self.record.len()).rev() {
+            if index < count {
+                let estimate = self.smoothed_estimate(index);
+                out.push(estimate);
+            }
+            for (pass, backward) in self.record[index].passes.iter().zip(&mut self.backward) {
+                go_back(backward, pass, self.observer.cylinder.state_map());
+            }
+        }
+        out.reverse();
+        self.record.drain(..count);
+        out
+    }
+
+    /// Where the smoothed state is none of a cylinder, the estimate is that of the filter.
+    fn smoothed_estimate(&mut self, index: usize) -> Estimate {
+        let row = &self.record[index];
+        for ((pass, backward), smoothed) in row.passes.iter().zip(&mut self.backward).zip(&mut self.smoothed)
+        {
+            backward.estimate(&pass.step, smoothed);
+        }
+        let (filtered, reference_kg) = (row.estimate, row.reference_kg);
+        let observer = &mut self.observer;
+        let states = observer.cylinder.state_map();
+        let (gas, mass, leak) = (states.gas, states.mass, states.leak);
+        let first = &self.smoothed[0];
+        let sd = |smoothed: &Smoothed, state: usize| smoothed.p[(state, state)].max(0.0).sqrt();
+        let mut estimate = Estimate {
+            gas_mean_k: first.x[gas],
+            gas_mean_sd_k: sd(first, gas),
+            mass_kg: first.x[mass],
+            mass_sd_kg: sd(first, mass),
+            ..filtered
+        };
+        // A bank of slow members alone has its leak rate in the first.
+        if let Some(slow) = self.smoothed.last().filter(|_| !filtered.leak_kg_s.is_nan()) {
+            (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (slow.x[leak], sd(slow, leak));
+        }
+        observer.reference_x.copy_from_slice(first.x.as_slice());
+        match observer.add_pressures(&mut estimate, reference_kg) {
+            Ok(()) => estimate,
+            Err(_) => filtered,
+        }
+    }
+}
+
+/// From after a step to after the step before it.
+fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States) {
+    let freed = [states.mass, states.gas];
+    for sensor in (0..pass.step.used.len()).rev() {
+        if pass.step.used[sensor] {
+            backward.pass_update(&pass.step, sensor);
+        }
+        if pass.opened_before[sensor] {
+            freed.iter().for_each(|&state| backward.forget(state));
+        }
+    }
+    if pass.opened {
+        freed.iter().for_each(|&state| backward.forget(state));
+    }
+    for (state, &factor) in pass.relaxed.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
+        backward.scale(state, factor);
+    }
+    backward.pass_interval(&pass.step);
+}
+
+#[cfg(test)]
+mod tests;

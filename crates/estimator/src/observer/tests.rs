@@ -1,0 +1,56 @@
+use super::*;
+use crate::thermal::vessel::presets;
+
+const REST: [f64; 3] = [288.15, 288.15, 2e7];
+
+fn observer(engine: Engine) -> Observer {
+    let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+    let settings = ObserverSettings { engine, ..ObserverSettings::default() };
+    let commissioning = Commissioning::filled(2e7, 288.15);
+    Observer::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &commissioning, &settings).unwrap()
+}
+
+#[test]
+fn an_impossible_state_restarts_the_estimate_which_says_so() {
+    for word in ["ekf", "ukf", "stationary", "mhe"] {
+        let mut observer = observer(word.parse().unwrap());
+        let states = observer.cylinder.state_map().clone();
+        let wrong = [
+            (states.gas, f64::NAN),
+            (states.gas, 10.0),
+            (states.mass, -1.0),
+            (states.mass, 100.0),
+            (states.wall - 1, f64::INFINITY),
+            (states.outside.unwrap(), f64::NAN),
+        ];
+        let mut t = 0.0;
+        for (count, (state, value)) in wrong.into_iter().enumerate() {
+            for _ in 0..3 {
+                t += 60.0;
+                let quality = observer.step(t, &REST).unwrap().quality;
+                assert_ne!(quality, Quality::Restarted, "{word} after {count} restarts");
+            }
+            t += 60.0;
+            // Without readings nothing could pull the state back.
+            observer.members[1].x[state] = value;
+            let estimate = observer.step(t, &[f64::NAN; 3]).unwrap();
+            assert_eq!(estimate.quality, Quality::Restarted, "{word}: state {state} = {value}");
+            assert!(estimate.gas_mean_k.is_finite() && estimate.mass_sd_kg.is_finite());
+            assert_eq!(observer.restarts(), count as u64 + 1);
+        }
+    }
+}
+
+#[test]
+fn a_restart_keeps_what_was_learnt_before_it() {
+    let mut teacher = observer(Engine::Extended);
+    for k in 0..100 {
+        teacher.step(60.0 * f64::from(k), &REST).unwrap();
+    }
+    let learned = teacher.learned().unwrap();
+    let mut pupil = observer(Engine::Extended).with_learned(learned.clone());
+    pupil.step(0.0, &[f64::NAN; 3]).unwrap();
+    pupil.members[0].x[0] = f64::NAN;
+    assert_eq!(pupil.step(60.0, &[f64::NAN; 3]).unwrap().quality, Quality::Restarted);
+    assert_eq!(pupil.learned().unwrap().mean, learned.mean);
+}
