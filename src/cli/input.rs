@@ -1,12 +1,15 @@
 //! What a run reads: files, stdin, built-in vessels and scenarios. Everything read is recorded with its SHA-256.
 use super::command_line;
 use anyhow::{Context, bail};
-use cylwatch::report::{Input, Provenance};
+use cylwatch::log::{LogOptions, LogReader, is_parquet};
+use cylwatch::report::{Fingerprint, Input, Provenance};
 use cylwatch::thermal::scenario::{self, Scenario};
 use cylwatch::thermal::vessel::{self, Vessel};
 use std::cell::{Cell, RefCell};
-use std::io::Read;
+use std::fs::File;
+use std::io::{Read, Seek};
 use std::path::Path;
+use std::rc::Rc;
 
 /// The inputs of a run.
 #[derive(Debug, Default)]
@@ -75,6 +78,53 @@ impl Inputs {
         Ok(scenario::read_scenario(&document.text, &document.shown, &table)?)
     }
 
+    /// Opens a log for reading row by row; - is stdin.
+    ///
+    /// A file is hashed first and then read up to the length that it had, so that a logger may go on writing. What
+    /// cannot be read twice is hashed on the way and recorded at its end.
+    pub fn log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
+        let passed = Rc::new(Passed::default());
+        if name == "-" {
+            if self.stdin_taken.replace(true) {
+                bail!("stdin can be read once: give the other input as a file");
+            }
+            let input = Box::new(Metered { input: std::io::stdin(), passed: passed.clone(), hashes: true });
+            let reader = LogReader::from_text(input, "stdin", options)?;
+            return Ok(LogInput { reader, name: name.to_owned(), passed, length: None });
+        }
+        let failed = || format!("{name} cannot be read");
+        let mut file = File::open(name).with_context(failed)?;
+        let metadata = file.metadata().with_context(failed)?;
+        if metadata.is_dir() {
+            bail!("{name} is a folder: name a file in it");
+        }
+        let name = name.to_owned();
+        if !metadata.is_file() {
+            let input = Box::new(Metered { input: file, passed: passed.clone(), hashes: true });
+            let reader = LogReader::from_text(input, &name, options)?;
+            return Ok(LogInput { reader, name, passed, length: None });
+        }
+        let (record, length) = hashed(&mut file, &name).with_context(failed)?;
+        self.records.borrow_mut().push(record);
+        let reader = if is_parquet(Path::new(&name)) {
+            LogReader::from_parquet(file, &name, options)?
+        } else {
+            let input = Box::new(Metered { input: file.take(length), passed: passed.clone(), hashes: false });
+            LogReader::from_text(input, &name, options)?
+        };
+        Ok(LogInput { reader, name, passed, length: Some(length) })
+    }
+
+    /// Records a log that was hashed on the way, when it has been read; `None` if it was recorded before.
+    pub fn record_log(&self, log: &LogInput) -> Option<Input> {
+        if !log.is_hashed_late() {
+            return None;
+        }
+        let record = log.passed.fingerprint.borrow().input(&log.name);
+        self.records.borrow_mut().push(record.clone());
+        Some(record)
+    }
+
     fn document(
         &self,
         kind: &str,
@@ -91,6 +141,71 @@ impl Inputs {
         self.records.borrow_mut().push(Input::of(format!("preset {name}"), text.as_bytes()));
         Ok(Document { text: text.to_owned(), shown: format!("preset {name}"), built_in: true })
     }
+}
+
+/// A log that is being read.
+pub struct LogInput {
+    /// Its rows.
+    pub reader: LogReader,
+    name: String,
+    passed: Rc<Passed>,
+    /// Bytes, where they are known beforehand.
+    length: Option<u64>,
+}
+
+impl LogInput {
+    /// Whether its hash is known at its end only.
+    pub fn is_hashed_late(&self) -> bool {
+        self.length.is_none()
+    }
+
+    /// Share that has been read; 0 where nobody knows how much there will be.
+    pub fn fraction(&self) -> f64 {
+        let of_bytes = || self.length.map(|length| self.passed.bytes.get() as f64 / length.max(1) as f64);
+        self.reader.fraction().or_else(of_bytes).unwrap_or(0.0)
+    }
+}
+
+/// What has passed through a [`Metered`] input.
+#[derive(Default)]
+struct Passed {
+    bytes: Cell<u64>,
+    fingerprint: RefCell<Fingerprint>,
+}
+
+/// An input that counts what is read from it, and hashes it where it cannot be read twice.
+struct Metered<R> {
+    input: R,
+    passed: Rc<Passed>,
+    hashes: bool,
+}
+
+impl<R: Read> Read for Metered<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.input.read(buffer)?;
+        self.passed.bytes.set(self.passed.bytes.get() + count as u64);
+        if self.hashes {
+            self.passed.fingerprint.borrow_mut().update(&buffer[..count]);
+        }
+        Ok(count)
+    }
+}
+
+/// Hash and length of a file, which then stands at its start again.
+fn hashed(file: &mut File, name: &str) -> std::io::Result<(Input, u64)> {
+    let mut fingerprint = Fingerprint::default();
+    let mut piece = vec![0; 1 << 16];
+    let mut length = 0;
+    loop {
+        let count = file.read(&mut piece)?;
+        if count == 0 {
+            break;
+        }
+        fingerprint.update(&piece[..count]);
+        length += count as u64;
+    }
+    file.rewind()?;
+    Ok((fingerprint.input(name), length))
 }
 
 /// The message for a name that is neither a file nor built in.

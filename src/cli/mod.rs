@@ -3,16 +3,20 @@
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error.
 mod arguments;
 mod completions;
+mod estimate;
+mod fill;
 mod init;
 mod input;
 mod message;
 mod output;
+mod plot;
 mod progress;
 mod properties;
 mod reproduce;
 mod schema;
 mod simulate;
 mod states;
+mod unit_options;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -40,6 +44,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<()> {
     match command {
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),
+        Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

@@ -4,8 +4,9 @@
 //! so that a reader never meets half of it and an older file stays until the new one is there.
 use anyhow::{Context, anyhow, bail};
 use std::fs::File;
-use std::io::Write;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
 
 /// A checked place for one result.
@@ -48,6 +49,33 @@ impl Target {
         Ok(Self::File(path))
     }
 
+    /// Whether both are one regular file.
+    pub fn is_same_file(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::File(a), Self::File(b)) if a == b)
+    }
+
+    /// Begins a result that is written piece by piece.
+    pub fn open(&self) -> anyhow::Result<Stream> {
+        let (writer, shown) = match self {
+            Self::Stdout => (Writer::Plain(Box::new(std::io::stdout())), "stdout".to_owned()),
+            Self::File(path) => {
+                let shown = path.display().to_string();
+                let file =
+                    temporary(folder_of(path)).with_context(|| format!("{shown} cannot be written"))?;
+                (Writer::File(file, path.clone()), shown)
+            }
+            Self::Device(path) => {
+                let shown = path.display().to_string();
+                let device = File::options().write(true).open(path);
+                (
+                    Writer::Plain(Box::new(device.with_context(|| format!("{shown} cannot be written"))?)),
+                    shown,
+                )
+            }
+        };
+        Ok(Stream { writer: BufWriter::with_capacity(BUFFER, writer), shown, flushed: Instant::now() })
+    }
+
     /// Writes the result.
     pub fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
         match self {
@@ -59,6 +87,68 @@ impl Target {
             Self::Device(path) => {
                 let write = File::options().write(true).open(path).and_then(|mut file| file.write_all(bytes));
                 write.with_context(|| format!("{} cannot be written", path.display()))
+            }
+        }
+    }
+}
+
+const BUFFER: usize = 1 << 16;
+
+/// What waits longer in the buffer of a stream goes out with the next piece, for whoever watches a pipe.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// A result that is written piece by piece. A file appears with [`Stream::finish`]; dropped before, it leaves nothing.
+pub struct Stream {
+    writer: BufWriter<Writer>,
+    shown: String,
+    flushed: Instant,
+}
+
+enum Writer {
+    /// Stdout or a device.
+    Plain(Box<dyn Write>),
+    /// A file under another name, and its place.
+    File(NamedTempFile, PathBuf),
+}
+
+impl Write for Writer {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        match self {
+            Self::Plain(writer) => writer.write(bytes),
+            Self::File(file, _) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Plain(writer) => writer.flush(),
+            Self::File(file, _) => file.flush(),
+        }
+    }
+}
+
+impl Stream {
+    /// Writes a piece.
+    pub fn write(&mut self, text: &str) -> anyhow::Result<()> {
+        let failed = || format!("{} cannot be written", self.shown);
+        self.writer.write_all(text.as_bytes()).with_context(failed)?;
+        if self.flushed.elapsed() > PATIENCE {
+            self.writer.flush().with_context(failed)?;
+            self.flushed = Instant::now();
+        }
+        Ok(())
+    }
+
+    /// Ends the result: all of it is there.
+    pub fn finish(self) -> anyhow::Result<()> {
+        let failed = || format!("{} cannot be written", self.shown);
+        let writer = self.writer.into_inner().map_err(|error| error.into_error()).with_context(failed)?;
+        match writer {
+            Writer::Plain(mut writer) => writer.flush().with_context(failed),
+            Writer::File(file, path) => {
+                file.as_file().sync_all().with_context(failed)?;
+                file.persist(path).map_err(|error| error.error).with_context(failed)?;
+                Ok(())
             }
         }
     }

@@ -3,21 +3,14 @@ use super::arguments::{Format, SimulateArguments};
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
+use super::plot::Plot;
 use super::progress::Progress;
 use anyhow::bail;
-use cylwatch::report::figure::Figure;
 use cylwatch::report::{Provenance, Readings, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
 use std::path::Path;
-
-/// Picture format of a plot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Picture {
-    Svg,
-    Png,
-}
 
 /// Validated options.
 struct Options {
@@ -25,7 +18,7 @@ struct Options {
     scenario: String,
     data: Target,
     format: Format,
-    plot: Option<(Target, Picture)>,
+    plot: Option<Plot>,
     settings: SimulationSettings,
     seed: u64,
 }
@@ -52,10 +45,11 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
     // Everything is made before anything is written.
     let data = data(&run, &readings, options.format, &provenance)?;
-    let figure = |kind| draw(&simulation::figure(&run, &readings), kind, &provenance);
-    let picture = options.plot.as_ref().map(|&(_, kind)| figure(kind)).transpose()?;
-    if let (Some((target, _)), Some(bytes)) = (&options.plot, picture) {
-        target.write(&bytes)?;
+    let figure = options.plot.is_some().then(|| simulation::figure(&run, &readings));
+    let picture = options.plot.as_ref().zip(figure);
+    let picture = picture.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
+    if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
+        plot.write(&bytes)?;
     }
     options.data.write(data.as_bytes())?;
     messages.say(&simulation::summary(&run));
@@ -72,7 +66,8 @@ impl Options {
         }
         let inputs = [Path::new(&vessel), Path::new(&scenario)];
         let data = Target::checked(arguments.output.as_deref(), &inputs)?;
-        let plot = arguments.plot.as_deref().map(|path| checked_plot(path, &inputs, &data)).transpose()?;
+        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &[&data]));
+        let plot = plot.transpose()?;
         let mut settings = SimulationSettings::default();
         if let Some(tolerance) = arguments.relative_tolerance {
             settings.relative_tolerance = tolerance;
@@ -81,20 +76,6 @@ impl Options {
         let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
         Ok(Self { vessel, scenario, data, format, plot, settings, seed: arguments.seed })
     }
-}
-
-fn checked_plot(path: &Path, inputs: &[&Path], data: &Target) -> anyhow::Result<(Target, Picture)> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let picture = match ending.as_deref() {
-        Some("svg") => Picture::Svg,
-        Some("png") => Picture::Png,
-        _ => bail!("--plot {}: the ending must be .svg or .png", path.display()),
-    };
-    let target = Target::checked(Some(path), inputs)?;
-    if matches!((&target, data), (Target::File(plot), Target::File(data)) if plot == data) {
-        bail!("--plot and --output name the same file {}: choose two", path.display());
-    }
-    Ok((target, picture))
 }
 
 fn data(
@@ -106,13 +87,6 @@ fn data(
     Ok(match format {
         Format::Csv => simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run)),
         Format::Json => serde_json::to_string(&simulation::document(run, readings, provenance))? + "\n",
-    })
-}
-
-fn draw(figure: &Figure, kind: Picture, provenance: &Provenance) -> anyhow::Result<Vec<u8>> {
-    Ok(match kind {
-        Picture::Svg => figure.to_svg(provenance)?.into_bytes(),
-        Picture::Png => figure.to_png(provenance)?,
     })
 }
 

@@ -1,46 +1,22 @@
 //! Quantities that fix a state, from options (`--pressure-bar 200`) or from the columns of a CSV file.
 use super::message::Messages;
+use super::unit_options::{self, Choice, Quantity};
 use anyhow::{Context, anyhow, bail};
-use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use clap::{ArgMatches, Args, Command, FromArgMatches};
 use cylwatch::properties::Given;
 use cylwatch::thermal::units::{self, Dimension, Unit};
 
-/// Quantities that can be given, with what they measure.
-const QUANTITIES: [(&str, Dimension); 3] = [
-    ("temperature", Dimension::Temperature),
-    ("pressure", Dimension::Pressure),
-    ("density", Dimension::Density),
+/// Quantities that can be given.
+const QUANTITIES: &[Choice] = &[
+    ("temperature", Dimension::Temperature, "Temperature"),
+    ("pressure", Dimension::Pressure, "Pressure"),
+    ("density", Dimension::Density, "Density in kg/m³"),
 ];
 
 /// The quantities given as options, each in any unit of its dimension.
 #[derive(Clone, Debug, Default)]
 pub struct GivenQuantities {
     given: Vec<Quantity>,
-}
-
-/// A quantity with the name it was given by.
-#[derive(Clone, Debug)]
-struct Quantity {
-    name: String,
-    unit: &'static Unit,
-    dimension: Dimension,
-    value: f64,
-}
-
-impl Quantity {
-    /// SI value; above zero, as an absolute temperature, pressure or density is.
-    fn si(&self) -> anyhow::Result<f64> {
-        let (name, value, unit) = (&self.name, self.value, self.unit);
-        if !value.is_finite() {
-            bail!("{name} = {value} must be a finite number");
-        }
-        let si = unit.to_si(value);
-        if si <= 0.0 {
-            bail!("{name} = {value} must be above {}: check the number and its unit", unit.from_si(0.0));
-        }
-        Ok(si)
-    }
 }
 
 impl GivenQuantities {
@@ -70,36 +46,9 @@ fn from_quantities(given: &[Quantity]) -> anyhow::Result<Option<Given>> {
     })
 }
 
-/// Every option: its name, quantity, unit, and whether it is the first of its quantity.
-fn options() -> impl Iterator<Item = (String, &'static str, Dimension, &'static Unit, bool)> {
-    QUANTITIES.iter().flat_map(|&(quantity, dimension)| {
-        units::units_of(dimension).enumerate().map(move |(k, unit)| {
-            (format!("{quantity}-{}", unit.suffix.replace('_', "-")), quantity, dimension, unit, k == 0)
-        })
-    })
-}
-
 impl Args for GivenQuantities {
     fn augment_args(command: Command) -> Command {
-        options().fold(command, |command, (name, quantity, dimension, unit, first)| {
-            let others: Vec<&str> = units::units_of(dimension).skip(1).map(|unit| unit.suffix).collect();
-            let absolute = if quantity == "pressure" { "absolute; " } else { "" };
-            let help = match others.len() {
-                0 => format!("{quantity} in kg/m³"),
-                _ => format!("{quantity} in {} ({absolute}other units: {})", unit.suffix, others.join(", ")),
-            };
-            let mut letters = help.chars();
-            let help = letters.next().map(|c| c.to_uppercase().collect::<String>() + letters.as_str());
-            let arg = Arg::new(name.clone())
-                .long(name)
-                .value_name("NUMBER")
-                .value_parser(value_parser!(f64))
-                .allow_negative_numbers(true)
-                .conflicts_with("states")
-                .hide(!first)
-                .help(help.unwrap_or_default());
-            command.arg(arg)
-        })
+        unit_options::augment(command, QUANTITIES, |arg| arg.conflicts_with("states"))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -109,19 +58,11 @@ impl Args for GivenQuantities {
 
 impl FromArgMatches for GivenQuantities {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut all = Self::default();
-        all.update_from_arg_matches(matches)?;
-        Ok(all)
+        Ok(Self { given: unit_options::given(matches, QUANTITIES) })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        for (name, _, dimension, unit, _) in options() {
-            if matches.value_source(&name) == Some(ValueSource::CommandLine)
-                && let Some(&value) = matches.get_one::<f64>(&name)
-            {
-                self.given.push(Quantity { name: format!("--{name}"), unit, dimension, value });
-            }
-        }
+        self.given.extend(unit_options::given(matches, QUANTITIES));
         Ok(())
     }
 }
@@ -185,7 +126,7 @@ fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyho
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
         let (base, unit) = units::split(name).map_or((name, None), |(base, unit)| (base, Some(unit)));
-        let Some(&(_, dimension)) = QUANTITIES.iter().find(|(quantity, _)| *quantity == base) else {
+        let Some(&(_, dimension, _)) = QUANTITIES.iter().find(|(quantity, _, _)| *quantity == base) else {
             ignored.push(name);
             continue;
         };

@@ -1,11 +1,12 @@
 //! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal. Pure functions; nothing here reads or writes.
+pub mod estimate;
 pub mod figure;
 mod provenance;
 mod readings;
 pub mod simulation;
 mod table;
 
-pub use provenance::{Input, Provenance};
+pub use provenance::{Fingerprint, Input, Provenance};
 pub use readings::Readings;
 pub use table::{Column, Table, aligned, number, rounded};
 

@@ -26,8 +26,31 @@ pub struct Input {
 impl Input {
     /// The record of an input with this content.
     pub fn of(name: impl Into<String>, content: &[u8]) -> Self {
-        let sha256 = Sha256::digest(content).iter().map(|byte| format!("{byte:02x}")).collect();
-        Self { name: name.into(), sha256 }
+        let mut fingerprint = Fingerprint::default();
+        fingerprint.update(content);
+        fingerprint.input(name)
+    }
+
+    /// As a comment line of a CSV file, without its line feed.
+    pub fn comment_line(&self) -> String {
+        format!("# input: {} sha256 {}", one_line(&self.name), self.sha256)
+    }
+}
+
+/// SHA-256 of an input that is read piece by piece.
+#[derive(Clone, Debug, Default)]
+pub struct Fingerprint(Sha256);
+
+impl Fingerprint {
+    /// Takes in a piece.
+    pub fn update(&mut self, piece: &[u8]) {
+        self.0.update(piece);
+    }
+
+    /// The record of the input that the pieces make.
+    pub fn input(&self, name: impl Into<String>) -> Input {
+        let sha256 = self.0.clone().finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Input { name: name.into(), sha256 }
     }
 }
 
@@ -39,7 +62,8 @@ impl Provenance {
     pub fn comment_lines(&self) -> String {
         let mut text = format!("# cylwatch {}\n# command: {}\n", Self::VERSION, one_line(&self.command));
         for input in &self.inputs {
-            text.push_str(&format!("# input: {} sha256 {}\n", one_line(&input.name), input.sha256));
+            text.push_str(&input.comment_line());
+            text.push('\n');
         }
         match self.seed {
             Some(seed) => text.push_str(&format!("# seed: {seed}\n")),

@@ -3,6 +3,9 @@
 #[path = "../../examples/leak.rs"]
 mod leak;
 #[allow(dead_code)]
+#[path = "../../examples/observe_scenarios.rs"]
+mod observe_scenarios;
+#[allow(dead_code)]
 #[path = "../../examples/scenario_1.rs"]
 mod scenario_1;
 #[allow(dead_code)]
@@ -92,4 +95,19 @@ fn a_cold_and_a_leaking_cylinder_show_the_same_pressure_and_differ_by_their_mass
     assert_abs_diff_eq!(cold.lost_g, 0.0, epsilon = 0.01);
     assert_abs_diff_eq!(leaking.lost_g, 60.0 * leaking.time_h, epsilon = 0.01);
     assert!(leaking.lost_g > 500.0 && leaking.gas_degc > cold.gas_degc + 29.0);
+}
+
+#[test]
+fn the_observer_is_nearer_to_gas_and_mass_than_the_transfer_function_and_knows_how_near() {
+    let nominal = cylwatch::thermal::vessel::presets::load("nitrogen-20l").unwrap();
+    for (course, title) in observe_scenarios::COURSES {
+        let comparison = observe_scenarios::Comparison::new(&course, &nominal, 1).unwrap();
+        let errors = comparison.errors();
+        let [gas, transfer] = errors.gas_k;
+        assert!(gas < 0.6 && gas < 0.5 * transfer, "{title}: {gas} K and {transfer} K");
+        let [mass, transfer] = errors.mass_g;
+        assert!(mass < 25.0 && mass < transfer, "{title}: {mass} g and {transfer} g");
+        assert!(errors.covered > 0.95, "{title}: {}", errors.covered);
+        assert_eq!(comparison.figure(title).panels.len(), 3);
+    }
 }

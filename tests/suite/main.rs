@@ -2,8 +2,12 @@
 // Helpers outside of test functions fail a test by panicking, too.
 #![allow(clippy::unwrap_used)]
 
+mod estimate;
 mod examples;
 mod files;
+mod log;
+#[cfg(feature = "parquet")]
+mod log_parquet;
 mod pages;
 mod properties;
 mod report;

@@ -93,6 +93,19 @@ pub fn sensor(place: &str, number: usize) -> Stroke {
     Stroke { color, width: 1.3, dash: DASHES[number % DASHES.len()] }
 }
 
+/// Stroke of a sensor's innovations: thin and full, since noise would blur dashes.
+pub fn innovation(name: &str, number: usize) -> Stroke {
+    const OTHERS: [Rgb; 3] = [Rgb::SKY, Rgb::ORANGE, Rgb::GREY];
+    let color = match name {
+        "shoulder" => SHOULDER.color,
+        "valve" => VALVE.color,
+        "wall_bottom" => WALL_BOTTOM.color,
+        "pressure" => PRESSURE.color,
+        _ => OTHERS[number % OTHERS.len()],
+    };
+    Stroke { color, width: 1.1, dash: &[] }
+}
+
 /// Width of a figure; an SVG opens at this many pixels.
 pub const WIDTH: f64 = 860.0;
 /// Height of a panel of weight 1.

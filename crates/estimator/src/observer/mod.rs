@@ -13,7 +13,8 @@
 //! Pressure, temperature and mass hang together by one equation, so constant errors of the sensors shift the mass for ever: 0.4 bar are
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
-pub mod commissioning;
+pub mod belief;
+mod commissioning;
 pub mod cylinder;
 pub mod engine;
 mod late;
@@ -33,6 +34,7 @@ use crate::filter::StateSpace;
 use crate::sensor::Sensor;
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
+use belief::Belief;
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
 use engine::Shared;
@@ -146,6 +148,7 @@ struct Clock {
     screens: Vec<Screen>,
     /// Until then an estimate that has just begun or been opened is pulled by good readings too.
     pulled_until_s: f64,
+    belief: Belief,
 }
 
 /// Exchange of gas with the outside.
@@ -209,6 +212,7 @@ impl Observer {
                 restarts: 0,
                 screens: sensors.iter().map(Screen::new).collect(),
                 pulled_until_s: f64::INFINITY,
+                belief: Belief::new(),
             },
             usable: vec![f64::NAN; sensors.len()],
             gate,
@@ -249,7 +253,9 @@ impl Observer {
                 *reading = f64::NAN;
             }
         }
+        let last_s = self.clock.time_s.unwrap_or(time_s);
         let restarted = self.take(time_s, &usable);
+        self.weigh(time_s - last_s);
         for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
             if reading.is_finite() {
                 *last = time_s;
@@ -303,6 +309,13 @@ impl Observer {
         self.update(&without)
     }
 
+    /// Let the readings decide between the free member and the middle slow one.
+    fn weigh(&mut self, dt_s: f64) {
+        let Some(slow) = self.middle_slow_index() else { return };
+        let (slow, free) = (&self.members[slow], &self.members[0]);
+        self.clock.belief.update(dt_s, &slow.innovations, &free.innovations);
+    }
+
     /// Every member as the prior has it.
     fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         let prior = commissioning::prior(
@@ -327,6 +340,7 @@ impl Observer {
         self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
         self.clock.reference_mass_kg = None;
         self.clock.pulled_until_s = time_s + SETTLE_S;
+        self.clock.belief = Belief::new();
         for sensor in 0..readings.len() {
             self.cylinder.set_interval_s(sensor, f64::INFINITY);
         }
@@ -398,10 +412,15 @@ impl Observer {
         let (first, slow) = (&self.members[0], self.middle_slow_member());
         let states = self.cylinder.state_map();
         let sd = |member: &Member, state: usize| member.variance(state).sqrt();
+        let gas = |member: &Member| (member.x[states.gas], member.variance(states.gas));
+        let (gas_mean_k, gas_variance_k2) = match slow {
+            Some(slow) => self.clock.belief.blend(gas(slow), gas(first)),
+            None => gas(first),
+        };
         let mut estimate = Estimate {
             time_s,
-            gas_mean_k: first.x[states.gas],
-            gas_mean_sd_k: sd(first, states.gas),
+            gas_mean_k,
+            gas_mean_sd_k: gas_variance_k2.sqrt(),
             mass_kg: first.x[states.mass],
             mass_sd_kg: sd(first, states.mass),
             leak_kg_s: slow.map_or(f64::NAN, |member| member.x[states.leak]),

@@ -96,8 +96,45 @@ pub fn score_observer(
     Ok(Score { nis: nis.0 / nis.1, ..summarise(truth, &pairs) })
 }
 
-/// The paper's way: a first-order transfer function (gain, pole in 1/s) from the shoulder's reading in °C to the mean gas temperature,
-/// started settled, and the mass from the measured pressure at that temperature.
+/// The paper's estimator of the mean gas temperature: a first-order transfer function from the shoulder's reading,
+/// `dT/dt = pole (gain u - T)` in °C, exact for a reading that is linear between samples, started settled.
+#[derive(Clone, Copy, Debug)]
+pub struct TransferFunction {
+    gain: f64,
+    pole_per_s: f64,
+    gas_degc: f64,
+    /// Time, s, and input, °C, of the last sample.
+    before: Option<(f64, f64)>,
+}
+
+impl TransferFunction {
+    /// The one that the paper publishes: `0.003121 / (s + 0.003021)`.
+    pub const PUBLISHED: Self = Self::new(0.003121 / 0.003021, 0.003021);
+
+    /// Of a gain and a pole, 1/s.
+    pub const fn new(gain: f64, pole_per_s: f64) -> Self {
+        Self { gain, pole_per_s, gas_degc: f64::NAN, before: None }
+    }
+
+    /// Mean gas temperature, °C, after a reading of the shoulder, °C.
+    pub fn step(&mut self, time_s: f64, input_degc: f64) -> f64 {
+        let gain = self.gain;
+        self.gas_degc = match self.before {
+            None => gain * input_degc,
+            Some((before_s, before_degc)) => {
+                let dt = time_s - before_s;
+                let decay = (-self.pole_per_s * dt).exp();
+                let late = (1.0 - (1.0 - decay) / (self.pole_per_s * dt)) * gain;
+                decay * self.gas_degc + gain * (1.0 - decay) * before_degc + late * (input_degc - before_degc)
+            }
+        };
+        self.before = Some((time_s, input_degc));
+        self.gas_degc
+    }
+}
+
+/// The paper's way: a [`TransferFunction`] from the shoulder's reading in °C to the mean gas temperature (gain, pole in
+/// 1/s), and the mass from the measured pressure at that temperature.
 ///
 /// # Errors
 /// The pressure is outside the fluid's domain.
@@ -108,19 +145,10 @@ pub fn score_transfer_function(
     pole_per_s: f64,
 ) -> Result<Score, EstimatorError> {
     let columns = columns(truth, &["shoulder", "pressure"]);
-    let (mut pairs, mut gas_degc, mut before) = (Vec::new(), f64::NAN, (f64::NAN, f64::NAN));
+    let (mut pairs, mut filter) = (Vec::new(), TransferFunction::new(gain, pole_per_s));
     for (index, (time_s, row)) in truth.log.rows().enumerate() {
         let (input, pressure_pa) = (row[columns[0]] - ZERO_CELSIUS_K, row[columns[1]]);
-        if gas_degc.is_nan() {
-            gas_degc = gain * input;
-        } else {
-            // Exact for an input that is linear between samples.
-            let dt = time_s - before.0;
-            let decay = (-pole_per_s * dt).exp();
-            let late = (1.0 - (1.0 - decay) / (pole_per_s * dt)) * gain;
-            gas_degc = decay * gas_degc + gain * (1.0 - decay) * before.1 + late * (input - before.1);
-        }
-        before = (time_s, input);
+        let gas_degc = filter.step(time_s, input);
         if time_s < commissioning_s(truth) {
             continue;
         }

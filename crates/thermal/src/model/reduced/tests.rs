@@ -21,6 +21,24 @@ fn state(model: &ReducedModel, wall_k: &[f64], valve_k: f64, gas_k: f64, mass_kg
     x
 }
 
+#[test]
+fn a_state_without_a_balance_spoils_no_later_one() {
+    let vessel = vessel("nitrogen-20l");
+    let rates = |model: &mut ReducedModel, ln_inside_film: f64| {
+        let x = state(model, &[280.0, 287.0], 278.0, 284.0, 4.46);
+        let mut rate = vec![0.0; model.states()];
+        model.rates(&x, &Unknowns { ln_inside_film, ..Unknowns::still(265.0) }, &mut rate, None).unwrap();
+        rate
+    };
+    let (mut model, mut fresh) = (ReducedModel::new(&vessel, 2, FILM), ReducedModel::new(&vessel, 2, FILM));
+    // A film beyond all numbers.
+    assert!(rates(&mut model, 800.0).iter().any(|rate| rate.is_nan()));
+    let [after, never] = [&mut model, &mut fresh].map(|model| rates(model, 0.0));
+    for (after, never) in after.iter().zip(&never) {
+        assert_relative_eq!(after, never, max_relative = 1e-9);
+    }
+}
+
 /// The model that simulates, on the same wall, moves the same energy states at the same rates.
 #[test]
 fn rates_are_those_of_the_simulation_on_the_same_wall() {

@@ -1,0 +1,208 @@
+//! `cylwatch estimate`: the observer on a log, row by row.
+use super::arguments::{EstimateArguments, Format};
+use super::fill::{self, FillSource, GivenFill};
+use super::input::{Inputs, LogInput};
+use super::message::Messages;
+use super::output::Target;
+use super::plot::Plot;
+use super::progress::Progress;
+use anyhow::{Context, bail};
+use cylwatch::estimator::log::{Channel, Quantity};
+use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
+use cylwatch::estimator::sensor::Sensor;
+use cylwatch::log::{LogOptions, LogReader, Mapping, Row};
+use cylwatch::report::estimate as report;
+use cylwatch::thermal::scenario::Fill;
+use cylwatch::thermal::vessel::Vessel;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+mod pass;
+mod rows;
+mod selection;
+
+use pass::Pass;
+use rows::Rows;
+use selection::Selection;
+
+/// Rows that are looked through for the first pressure.
+const LONGEST_WAIT: usize = 10_000;
+
+/// Validated options.
+struct Options {
+    vessel: String,
+    log: String,
+    data: Target,
+    format: Format,
+    plot: Option<Plot>,
+    mappings: Vec<Mapping>,
+    sensors: Option<PathBuf>,
+    fill: GivenFill,
+    source: FillSource,
+    engine: Engine,
+    smooth: bool,
+    learned_in: Option<PathBuf>,
+    learned_out: Option<Target>,
+}
+
+/// Estimates row by row and writes.
+pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<()> {
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let vessel = inputs.vessel(&options.vessel)?;
+    let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
+    let learned = options.learned_in.as_deref().map(|path| learned(&inputs, path, &vessel)).transpose()?;
+    let log_options = LogOptions {
+        mappings: options.mappings.clone(),
+        sensors: sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect(),
+        ..LogOptions::default()
+    };
+    let mut log = inputs.log(&options.log, &log_options)?;
+    let outcome = estimate(&options, &inputs, &vessel, sensors, learned, &mut log, messages);
+    // What was strange about the log may explain an error.
+    for caution in log.reader.cautions() {
+        messages.caution(&caution.to_string());
+    }
+    let summary = outcome?;
+    for doubt in report::doubts(&summary) {
+        messages.caution(&doubt);
+    }
+    messages.say(&report::text(&summary));
+    Ok(())
+}
+
+impl Options {
+    fn checked(arguments: EstimateArguments) -> anyhow::Result<Self> {
+        let EstimateArguments { vessel, log, fill, filter, smooth, mappings, sensors, learned_in, .. } =
+            arguments;
+        if vessel == "-" && log == "-" {
+            bail!("stdin can be the vessel or the log, not both: give the other one as a file");
+        }
+        let files = [sensors.as_deref(), learned_in.as_deref()];
+        let mut inputs = vec![Path::new(&vessel), Path::new(&log)];
+        inputs.extend(files.into_iter().flatten());
+        let data = Target::checked(arguments.output.as_deref(), &inputs)?;
+        let learned_out = arguments.learned_out.as_deref();
+        let learned_out = learned_out.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
+        let others: Vec<&Target> = [Some(&data), learned_out.as_ref()].into_iter().flatten().collect();
+        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
+        if let Some(target) = &learned_out
+            && (target.is_same_file(&data) || matches!((target, &data), (Target::Stdout, Target::Stdout)))
+        {
+            bail!("--learned-out and --output name the same place: choose two");
+        }
+        let (source, engine) = (fill.source()?, filter.engine()?);
+        let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
+        Ok(Self {
+            vessel,
+            log,
+            data,
+            format,
+            plot,
+            mappings,
+            sensors,
+            fill,
+            source,
+            engine,
+            smooth,
+            learned_in,
+            learned_out,
+        })
+    }
+}
+
+/// Runs the observer over the log; nothing is left behind if it fails.
+fn estimate(
+    options: &Options,
+    inputs: &Inputs,
+    vessel: &Vessel,
+    sensors: Option<Vec<Sensor>>,
+    learned: Option<Learned>,
+    log: &mut LogInput,
+    messages: &Messages,
+) -> anyhow::Result<report::Summary> {
+    let selection = Selection::new(&mut log.reader, sensors, vessel, messages)?;
+    let (first, fill) = first_rows(&mut log.reader, &selection, options.source)?;
+    let first_k = selection.mean_temperature_k(first.first());
+    let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
+    let commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
+    let settings = ObserverSettings { engine: options.engine, ..options.fill.settings() };
+    let mut observer = Observer::new(vessel, &selection.sensors, &commissioning, &settings)?;
+    if let (Some(row), Some(channel)) = (first.last(), selection.first_of(Quantity::Pressure)) {
+        let mass_kg = commissioning.mass_kg(vessel, first_k)?;
+        let fill_pa = observer.cylinder().model().settled_pressure_pa(mass_kg, first_k)?;
+        if let Some(doubt) =
+            fill::misfit(mass_kg, first_k, fill_pa, row.readings[channel]).with_context(begin)?
+        {
+            messages.caution(&format!("{}: {doubt}", begin()));
+        }
+    }
+    if let Some(learned) = learned {
+        observer = observer.with_learned(learned);
+    }
+    let title = format!("{} \u{2013} {}", vessel.name, selection.names().join(", "));
+    let progress = Progress::new(messages);
+    let mut rows = Rows::begin(observer, &selection, options, inputs, log)?;
+    for row in &first {
+        rows.push(row).with_context(|| log.reader.place(row))?;
+    }
+    loop {
+        progress.show(&options.log, log.fraction());
+        let Some(row) = log.reader.next_row()? else { break };
+        let row = row.clone();
+        rows.push(&row).with_context(|| log.reader.place(&row))?;
+    }
+    drop(progress);
+    rows.finish(title, inputs, log, options)
+}
+
+/// Reads rows until the fill is known: one row, or all up to the first pressure.
+fn first_rows(
+    reader: &mut LogReader,
+    selection: &Selection,
+    source: FillSource,
+) -> anyhow::Result<(Vec<Row>, Fill)> {
+    const REMEDY: &str = "give --fill-pressure-bar and --fill-temperature-degc, or --fill-mass-kg";
+    let pressure = selection.first_of(Quantity::Pressure);
+    if source == FillSource::FirstPressure && pressure.is_none() {
+        bail!("the log has no pressure, so that nothing says how much gas there is: {REMEDY}");
+    }
+    let mut rows = Vec::new();
+    while let Some(row) = reader.next_row()? {
+        rows.push(row.clone());
+        match source {
+            FillSource::Given(fill) => return Ok((rows, fill)),
+            FillSource::FirstPressure => {
+                let pressure_pa = pressure.map_or(f64::NAN, |channel| row.readings[channel]);
+                if pressure_pa.is_finite() {
+                    return Ok((rows, Fill::Pressure { pressure_pa }));
+                }
+            }
+        }
+        if rows.len() == LONGEST_WAIT {
+            break;
+        }
+    }
+    bail!("none of the first {} rows has a pressure: {REMEDY}", rows.len())
+}
+
+/// What an earlier run has learnt of the same vessel.
+fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<Learned> {
+    let shown = path.display();
+    let text = inputs.read(&path.to_string_lossy())?;
+    let document: serde_json::Value =
+        serde_json::from_str(&text).with_context(|| format!("{shown} is no JSON"))?;
+    let learned = serde_json::from_value::<Learned>(document["learned"].clone())
+        .with_context(|| format!("{shown} is no file of --learned-out"))?;
+    if learned.version != Learned::VERSION {
+        let version = learned.version;
+        bail!("{shown} has version {version}, this program reads {}: learn anew", Learned::VERSION);
+    }
+    if !learned.is_consistent() {
+        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn anew");
+    }
+    if learned.vessel != vessel.name {
+        bail!("{shown} was learnt on `{}`, and this is `{}`: learn on this one", learned.vessel, vessel.name);
+    }
+    Ok(learned)
+}

@@ -1,0 +1,190 @@
+//! The loop's body: a row in, an estimate out, everything else counted.
+use super::*;
+use crate::cli::output::Stream;
+use cylwatch::estimator::observer::cylinder::Cylinder;
+use cylwatch::estimator::observer::{Estimate, Innovation};
+use cylwatch::log::Truth;
+use cylwatch::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
+use cylwatch::report::{Input, Provenance};
+
+/// Change of the mass, relative, after which the slope of the settled pressure is taken anew.
+const SLOPE_AGES: f64 = 1e-3;
+/// Step of the mass for that slope, relative.
+const SLOPE_STEP: f64 = 1e-4;
+/// Temperature at which pressures are compared, K: 15 °C.
+const SETTLED_K: f64 = 288.15;
+
+/// A run that is under way.
+pub struct Rows<'a> {
+    pass: Pass,
+    selection: &'a Selection,
+    readings: Vec<f64>,
+    results: Results,
+}
+
+/// Where estimates go.
+struct Results {
+    stream: Stream,
+    format: Format,
+    text: String,
+    figure: Option<FigureData>,
+    innovations: Innovations,
+    score: Score,
+    last: Option<EstimateRow>,
+    /// Model of the gas for the slope of its settled pressure.
+    cylinder: Cylinder,
+    /// Mass, kg, and slope of the settled pressure there, Pa/kg.
+    slope: (f64, f64),
+}
+
+impl<'a> Rows<'a> {
+    /// Opens the output and writes what stands above the rows.
+    pub fn begin(
+        mut observer: Observer,
+        selection: &'a Selection,
+        options: &Options,
+        inputs: &Inputs,
+        log: &LogInput,
+    ) -> anyhow::Result<Self> {
+        let names = selection.names();
+        let cylinder = observer.cylinder().clone();
+        let pass = Pass::new(observer, options.smooth)?;
+        let mut stream = options.data.open()?;
+        match options.format {
+            Format::Csv => stream.write(&head(&inputs.provenance(), &names, log))?,
+            Format::Json => {
+                stream.write(&format!("{{\"columns\":{},\"data\":[", json!(report::COLUMNS)))?;
+            }
+        }
+        let results = Results {
+            stream,
+            format: options.format,
+            text: String::new(),
+            innovations: Innovations::new(&names),
+            score: Score::default(),
+            last: None,
+            slope: (f64::NAN, f64::NAN),
+            cylinder,
+            figure: options.plot.is_some().then(|| FigureData::new(names)),
+        };
+        Ok(Self { pass, selection, readings: Vec::new(), results })
+    }
+
+    /// Takes in a row and writes the estimates that are final.
+    pub fn push(&mut self, row: &Row) -> anyhow::Result<()> {
+        self.readings.clear();
+        self.readings.extend(self.selection.readings(row));
+        let results = &mut self.results;
+        self.pass.push(row, &self.readings, |estimate, truth, innovations| {
+            results.take(estimate, truth, innovations)
+        })
+    }
+
+    /// Ends the output; files appear here.
+    pub fn finish(
+        self,
+        title: String,
+        inputs: &Inputs,
+        log: &LogInput,
+        options: &Options,
+    ) -> anyhow::Result<Summary> {
+        let mut results = self.results;
+        let observer =
+            self.pass.finish(|estimate, truth, innovations| results.take(estimate, truth, innovations))?;
+        let summary = Summary {
+            title,
+            sampling: log.reader.sampling().clone(),
+            cautions: log.reader.cautions().to_vec(),
+            last: results.last.context("a log that was read without an error has a row")?,
+            mass_change_sd_kg: observer.mass_change_sd_kg().unwrap_or(f64::NAN),
+            innovations: results.innovations,
+            score: results.score,
+            restarts: observer.restarts(),
+        };
+        let late = inputs.record_log(log);
+        let provenance = inputs.provenance();
+        let figure = results.figure.take().map(|data| report::figure(&summary.title, &data));
+        // Everything is made before any file appears.
+        let plot = options.plot.as_ref().zip(figure);
+        let picture = plot.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
+        let learned = options.learned_out.as_ref().zip(observer.learned());
+        results.stream.write(&tail(results.format, &summary, &provenance, late, log))?;
+        if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
+            plot.write(&bytes)?;
+        }
+        if let Some((target, learned)) = learned {
+            let document = json!({ "provenance": provenance.to_json(), "learned": learned });
+            target.write(format!("{}\n", serde_json::to_string_pretty(&document)?).as_bytes())?;
+        }
+        results.stream.finish()?;
+        Ok(summary)
+    }
+}
+
+impl Results {
+    /// Writes an estimate and counts it.
+    fn take(&mut self, estimate: Estimate, truth: &Truth, innovations: &[Innovation]) -> anyhow::Result<()> {
+        let leak_pa_s = estimate.leak_kg_s * self.slope_pa_kg(&estimate)?;
+        let line = EstimateRow { estimate, leak_pa_s };
+        self.text.clear();
+        match self.format {
+            Format::Csv => report::csv_row(&line, &mut self.text),
+            Format::Json => {
+                self.text.push_str(if self.last.is_some() { ",\n" } else { "\n" });
+                report::json_row(&line, &mut self.text);
+            }
+        }
+        self.stream.write(&self.text)?;
+        self.innovations.push(innovations);
+        self.score.push(&estimate, truth);
+        if let Some(figure) = &mut self.figure {
+            figure.push(&estimate, truth, innovations);
+        }
+        self.last = Some(line);
+        Ok(())
+    }
+
+    /// Slope of the settled pressure in the mass, Pa/kg.
+    fn slope_pa_kg(&mut self, estimate: &Estimate) -> anyhow::Result<f64> {
+        let mass_kg = estimate.mass_kg;
+        let age = (mass_kg / self.slope.0 - 1.0).abs();
+        if age.is_nan() || age > SLOPE_AGES {
+            let model = self.cylinder.model();
+            let above = model.settled_pressure_pa(mass_kg * (1.0 + SLOPE_STEP), SETTLED_K)?;
+            let below = model.settled_pressure_pa(mass_kg * (1.0 - SLOPE_STEP), SETTLED_K)?;
+            self.slope = (mass_kg, (above - below) / (2.0 * SLOPE_STEP * mass_kg));
+        }
+        Ok(self.slope.1)
+    }
+}
+
+/// Comments and header of a CSV file.
+fn head(provenance: &Provenance, sensors: &[String], log: &LogInput) -> String {
+    let mut text = provenance.comment_lines();
+    if log.is_hashed_late() {
+        text.push_str("# input: the log's SHA-256 stands in the last line\n");
+    }
+    text.push_str(&format!("# sensors: {}\n", sensors.join(", ")));
+    if let Some(origin) = log.reader.origin() {
+        text.push_str(&format!("# time_s = 0 is {origin}\n"));
+    }
+    text + &report::csv_header() + "\n"
+}
+
+/// What stands below the rows.
+fn tail(
+    format: Format,
+    summary: &Summary,
+    provenance: &Provenance,
+    late: Option<Input>,
+    log: &LogInput,
+) -> String {
+    match format {
+        Format::Csv => late.map_or(String::new(), |input| input.comment_line() + "\n"),
+        Format::Json => {
+            let (origin, provenance) = (json!(log.reader.origin()), provenance.to_json());
+            let summary = report::document(summary);
+            format!("\n],\"origin\":{origin},\"summary\":{summary},\"provenance\":{provenance}}}\n")
+        }
+    }
+}

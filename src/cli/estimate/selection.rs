@@ -1,0 +1,125 @@
+//! Which columns of a log the observer uses, and as which sensors.
+use super::*;
+use cylwatch::estimator::sensor::read_sensors;
+
+/// Sensors with their channels in the log.
+pub struct Selection {
+    /// Sensors in the order in which the observer gets them.
+    pub sensors: Vec<Sensor>,
+    /// Channel of each.
+    channels: Vec<usize>,
+}
+
+impl Selection {
+    /// The sensors of a file, or typical ones on all columns outside of the gas; narrows what the log takes as a reading
+    /// to what the sensors can read.
+    pub fn new(
+        reader: &mut LogReader,
+        sensors: Option<Vec<Sensor>>,
+        vessel: &Vessel,
+        messages: &Messages,
+    ) -> anyhow::Result<Self> {
+        let channels = reader.channels();
+        let selection = match sensors {
+            Some(sensors) => Self::of(sensors, channels)?,
+            None => Self::typical(channels, vessel, messages)?,
+        };
+        for (sensor, &channel) in selection.sensors.iter().zip(&selection.channels) {
+            let (low, high) = sensor.plausible();
+            reader.set_range(channel, low, high);
+        }
+        Ok(selection)
+    }
+
+    fn of(sensors: Vec<Sensor>, channels: &[Channel]) -> anyhow::Result<Self> {
+        let channel = |sensor: &Sensor| {
+            let found = channels.iter().position(|channel| channel.name.eq_ignore_ascii_case(&sensor.name));
+            let found = found.with_context(|| {
+                let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+                let (name, names) = (&sensor.name, names.join(", "));
+                format!(
+                    "sensor {name} has no column in the log, which has {names}: give --map, or leave it out"
+                )
+            })?;
+            if channels[found].quantity != sensor.quantity() {
+                bail!("sensor {}: its column is of another quantity: look at the units", sensor.name);
+            }
+            Ok(found)
+        };
+        let channels = sensors.iter().map(channel).collect::<anyhow::Result<_>>()?;
+        Ok(Self { sensors, channels })
+    }
+
+    fn typical(channels: &[Channel], vessel: &Vessel, messages: &Messages) -> anyhow::Result<Self> {
+        let mut selection = Self { sensors: Vec::new(), channels: Vec::new() };
+        let mut left_out = Vec::new();
+        for (index, channel) in channels.iter().enumerate() {
+            match typical(channel, vessel) {
+                Ok(sensor) => {
+                    selection.sensors.push(sensor);
+                    selection.channels.push(index);
+                }
+                Err(reason) => left_out.push(format!("{} ({reason})", channel.name)),
+            }
+        }
+        if selection.sensors.is_empty() {
+            bail!("no column can be used: {}; name sensors with --sensors", left_out.join(", "));
+        }
+        if !left_out.is_empty() {
+            messages.caution(&format!("not used: {}", left_out.join(", ")));
+        }
+        Ok(selection)
+    }
+
+    /// Names of the sensors.
+    pub fn names(&self) -> Vec<String> {
+        self.sensors.iter().map(|sensor| sensor.name.clone()).collect()
+    }
+
+    /// Readings of a row in the order of the sensors.
+    pub fn readings<'a>(&'a self, row: &'a Row) -> impl Iterator<Item = f64> + 'a {
+        self.channels.iter().map(|&channel| row.readings[channel])
+    }
+
+    /// Channel of the first sensor of a quantity.
+    pub fn first_of(&self, quantity: Quantity) -> Option<usize> {
+        let index = self.sensors.iter().position(|sensor| sensor.quantity() == quantity)?;
+        Some(self.channels[index])
+    }
+
+    /// Mean of a row's temperatures, K; 15 °C where it has none.
+    pub fn mean_temperature_k(&self, row: Option<&Row>) -> f64 {
+        let Some(row) = row else { return 288.15 };
+        let readings = self.sensors.iter().zip(self.readings(row));
+        let known: Vec<f64> = readings
+            .filter(|(sensor, reading)| sensor.quantity() == Quantity::Temperature && reading.is_finite())
+            .map(|(_, reading)| reading)
+            .collect();
+        if known.is_empty() { 288.15 } else { known.iter().sum::<f64>() / known.len() as f64 }
+    }
+}
+
+/// The typical sensor of a column, or why it is not used without a file of sensors.
+fn typical(channel: &Channel, vessel: &Vessel) -> Result<Sensor, String> {
+    let name = channel.name.as_str();
+    if name == "ambient" {
+        return Err("the air at a sensor is not the air at the cylinder; --sensors takes it".to_owned());
+    }
+    if name.starts_with("gas_") {
+        return Err("inside the gas; --sensors takes it".to_owned());
+    }
+    let sensor = Sensor::typical(name).map_err(|_| "its place is unknown; --sensors says it".to_owned())?;
+    if sensor.quantity() != channel.quantity {
+        return Err("its unit is of another quantity".to_owned());
+    }
+    match sensor.misfit(vessel) {
+        Some(needs) => Err(format!("the vessel does not have {needs}")),
+        None => Ok(sensor),
+    }
+}
+
+/// Reads a file of sensors.
+pub fn read(inputs: &Inputs, path: &Path) -> anyhow::Result<Vec<Sensor>> {
+    let name = path.to_string_lossy();
+    Ok(read_sensors(&inputs.read(&name)?, &name)?.sensors().to_vec())
+}

@@ -1,0 +1,165 @@
+//! Options that say what is known of the cylinder at the first row of a log.
+use super::unit_options::{self, Choice, Quantity};
+use anyhow::{anyhow, bail};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use cylwatch::estimator::observer::{Commissioning, ObserverSettings};
+use cylwatch::thermal::scenario::Fill;
+use cylwatch::thermal::units::{Dimension, ZERO_CELSIUS_K};
+use cylwatch::thermal::vessel::Vessel;
+
+/// Quantities that fix the mass.
+const QUANTITIES: &[Choice] = &[
+    (
+        "fill-pressure",
+        Dimension::Pressure,
+        "Pressure that the cylinder was filled to [default: the first pressure of the log]",
+    ),
+    (
+        "fill-temperature",
+        Dimension::Temperature,
+        "Temperature at which it had that pressure, at rest [default: that of the first row]",
+    ),
+    ("fill-mass", Dimension::Mass, "Gas mass, instead of pressure and temperature"),
+];
+
+const MASS_SD: &str = "fill-sd-percent";
+const SETTLED: &str = "settled";
+
+/// Standard deviation of the mass of a fill of known pressure and temperature, %: 1.7 K and 1.7 bar together at 200 bar.
+const MASS_SD_PERCENT: f64 = 1.0;
+/// Standard deviation of the gas temperature where the first row's readings stand for it, K: at rest, and in air that has
+/// just changed, which a sensor on the wall feels first.
+const SETTLED_SD_K: f64 = 1.0;
+const UNSETTLED_SD_K: f64 = 5.0;
+/// Standard deviation of the air about the cylinder where it need not be at rest, K: a train may leave a tunnel.
+const UNSETTLED_AIR_SD_K: f64 = 20.0;
+
+/// Fill as given.
+#[derive(Clone, Debug, Default)]
+pub struct GivenFill {
+    given: Vec<Quantity>,
+    mass_sd_percent: Option<f64>,
+    settled: bool,
+}
+
+/// What fixes the mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FillSource {
+    /// The options alone.
+    Given(Fill),
+    /// The first pressure of the log.
+    FirstPressure,
+}
+
+impl GivenFill {
+    /// What fixes the mass.
+    pub fn source(&self) -> anyhow::Result<FillSource> {
+        let si = |dimension| -> anyhow::Result<Option<f64>> {
+            let mut given = self.given.iter().filter(|quantity| quantity.dimension == dimension);
+            match (given.next(), given.next()) {
+                (Some(first), Some(second)) => {
+                    bail!("{} says again what {} says: keep one", second.name, first.name)
+                }
+                (first, _) => first.map(Quantity::si).transpose(),
+            }
+        };
+        let pressure_pa = si(Dimension::Pressure)?;
+        let temperature_k = si(Dimension::Temperature)?;
+        let mass_kg = si(Dimension::Mass)?;
+        Ok(match (mass_kg, pressure_pa, temperature_k) {
+            (Some(mass_kg), None, None) => FillSource::Given(Fill::Mass { mass_kg }),
+            (Some(_), _, _) => bail!("--fill-mass fixes the mass: leave out pressure and temperature"),
+            (None, Some(pressure_pa), Some(temperature_k)) => {
+                FillSource::Given(Fill::Settled { pressure_pa, temperature_k })
+            }
+            (None, Some(pressure_pa), None) => FillSource::Given(Fill::Pressure { pressure_pa }),
+            (None, None, Some(_)) => {
+                bail!("--fill-temperature needs the pressure at that temperature: add --fill-pressure-bar")
+            }
+            (None, None, None) => FillSource::FirstPressure,
+        })
+    }
+
+    /// What is known at the first row. `first_k` is the temperature that stands for one that is not given, K.
+    pub fn commissioning(&self, fill: Fill, vessel: &Vessel, first_k: f64) -> anyhow::Result<Commissioning> {
+        let percent = self.mass_sd_percent.unwrap_or(MASS_SD_PERCENT);
+        if !(percent > 0.0 && percent <= 100.0) {
+            bail!("--{MASS_SD} = {percent} must be above 0 and at most 100");
+        }
+        let one = Commissioning { fill, mass_sd_kg: 1.0, settled: self.settled };
+        let mass_kg = one.mass_kg(vessel, first_k)?;
+        let stated_kg = percent / 100.0 * mass_kg;
+        let of_temperature_kg = match (fill, self.mass_sd_percent) {
+            (Fill::Pressure { .. }, None) => {
+                let sd_k = if self.settled { SETTLED_SD_K } else { UNSETTLED_SD_K };
+                0.5 * (one.mass_kg(vessel, first_k - sd_k)? - one.mass_kg(vessel, first_k + sd_k)?)
+            }
+            _ => 0.0,
+        };
+        Ok(Commissioning { mass_sd_kg: stated_kg.hypot(of_temperature_kg), ..one })
+    }
+
+    /// Settings of the observer: where nobody says that all is at rest, the air may be anything.
+    pub fn settings(&self) -> ObserverSettings {
+        let mut settings = ObserverSettings::default();
+        if !self.settled {
+            settings.air.prior_sd = UNSETTLED_AIR_SD_K;
+        }
+        settings
+    }
+}
+
+/// How a fill contradicts the first pressure of the log (`read_pa`, Pa; NaN: none): an error where they are a factor of
+/// three apart, words for a caution from a quarter on. `fill_pa` is the pressure of `mass_kg` at `temperature_k`.
+pub fn misfit(
+    mass_kg: f64,
+    temperature_k: f64,
+    fill_pa: f64,
+    read_pa: f64,
+) -> anyhow::Result<Option<String>> {
+    let ratio = (fill_pa / read_pa).max(read_pa / fill_pa);
+    if ratio.is_nan() || ratio < 1.25 {
+        return Ok(None);
+    }
+    let [fill_bar, read_bar] = [fill_pa, read_pa].map(|pressure_pa| pressure_pa / 1e5);
+    let degc = temperature_k - ZERO_CELSIUS_K;
+    let words = format!(
+        "the fill of {mass_kg:.3} kg makes {fill_bar:.1} bar at {degc:.0} °C in this vessel, and the log begins with \
+         {read_bar:.1} bar: look at vessel, fill and unit of the pressure"
+    );
+    if ratio > 3.0 { Err(anyhow!(words)) } else { Ok(Some(words)) }
+}
+
+impl Args for GivenFill {
+    fn augment_args(command: Command) -> Command {
+        let percent = Arg::new(MASS_SD)
+            .long(MASS_SD)
+            .value_name("NUMBER")
+            .value_parser(value_parser!(f64))
+            .help("Standard deviation of the gas mass that the fill stands for, in % of it [default: 1, and what 5 K are where the \
+                   temperature is that of the first row; 1 K with --settled]");
+        let settled = Arg::new(SETTLED).long(SETTLED).action(ArgAction::SetTrue).help(
+            "Gas, wall and air have one temperature at the first row, within 1 K [default: they may differ]",
+        );
+        unit_options::augment(command, QUANTITIES, |arg| arg).arg(percent).arg(settled)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for GivenFill {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self {
+            given: unit_options::given(matches, QUANTITIES),
+            mass_sd_percent: matches.get_one(MASS_SD).copied(),
+            settled: matches.get_flag(SETTLED),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}

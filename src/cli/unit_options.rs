@@ -1,0 +1,79 @@
+//! Options that are a quantity with its unit, as `--pressure-bar 200`: one for every unit of the quantity.
+//!
+//! The help shows the customary unit and names the others.
+use anyhow::bail;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Command, value_parser};
+use cylwatch::thermal::units::{self, Dimension, Unit};
+
+/// A quantity that can be given: name, what it measures, words of its help, with the unit if it is the only one.
+pub type Choice = (&'static str, Dimension, &'static str);
+
+/// A quantity with the name it was given by.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Option or column.
+    pub name: String,
+    /// Unit of the value.
+    pub unit: &'static Unit,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// Value as given.
+    pub value: f64,
+}
+
+impl Quantity {
+    /// SI value; above zero, as an absolute temperature, pressure or density is.
+    pub fn si(&self) -> anyhow::Result<f64> {
+        let (name, value, unit) = (&self.name, self.value, self.unit);
+        if !value.is_finite() {
+            bail!("{name} = {value} must be a finite number");
+        }
+        let si = unit.to_si(value);
+        if si <= 0.0 {
+            bail!("{name} = {value} must be above {}: check the number and its unit", unit.from_si(0.0));
+        }
+        Ok(si)
+    }
+}
+
+/// Every option: its quantity, name, unit, and whether it is the first of its quantity.
+fn options(known: &'static [Choice]) -> impl Iterator<Item = (&'static Choice, String, &'static Unit, bool)> {
+    known.iter().flat_map(|quantity| {
+        units::units_of(quantity.1).enumerate().map(move |(k, unit)| {
+            (quantity, format!("{}-{}", quantity.0, unit.suffix.replace('_', "-")), unit, k == 0)
+        })
+    })
+}
+
+/// Adds the options to a command; `finish` may change each.
+pub fn augment(command: Command, known: &'static [Choice], finish: impl Fn(Arg) -> Arg) -> Command {
+    options(known).fold(command, |command, (&(quantity, dimension, words), name, unit, first)| {
+        let others: Vec<&str> = units::units_of(dimension).skip(1).map(|unit| unit.suffix).collect();
+        let absolute = if quantity.ends_with("pressure") { "absolute; " } else { "" };
+        let help = match others.len() {
+            0 => words.to_owned(),
+            _ => format!("{words} in {} ({absolute}other units: {})", unit.suffix, others.join(", ")),
+        };
+        let arg = Arg::new(name.clone())
+            .long(name)
+            .value_name("NUMBER")
+            .value_parser(value_parser!(f64))
+            .allow_negative_numbers(true)
+            .hide(!first)
+            .help(help);
+        command.arg(finish(arg))
+    })
+}
+
+/// The quantities that were given.
+pub fn given(matches: &ArgMatches, known: &'static [Choice]) -> Vec<Quantity> {
+    let given = options(known).filter_map(|(&(_, dimension, _), name, unit, _)| {
+        if matches.value_source(&name) != Some(ValueSource::CommandLine) {
+            return None;
+        }
+        let value = *matches.get_one::<f64>(&name)?;
+        Some(Quantity { name: format!("--{name}"), unit, dimension, value })
+    });
+    given.collect()
+}

@@ -1,0 +1,368 @@
+//! The reader: rows of a source in the order of time, checked.
+use super::caution::{Caution, Cautions, Kind};
+use super::columns::{Columns, TruthQuantity};
+use super::csv::CsvSource;
+use super::sampling::Sampling;
+use super::stuck::StuckWatch;
+use super::{LogError, LogOptions};
+use crate::estimator::log::{Channel, Log};
+use std::io::Read;
+use std::path::Path;
+
+/// One row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Time, s; increasing.
+    pub time_s: f64,
+    /// Readings in the order of [`LogReader::channels`], SI; NaN is a missing value.
+    pub readings: Vec<f64>,
+    /// What is true, where the log knows it.
+    pub truth: Truth,
+    /// Line of a text log, or number of the row.
+    pub number: u64,
+}
+
+/// True values of a row; NaN where the log does not know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth {
+    /// Mean gas temperature, K.
+    pub gas_mean_k: f64,
+    /// Gas mass, kg.
+    pub mass_kg: f64,
+    /// Mass flow out of the cylinder, kg/s.
+    pub outflow_kg_s: f64,
+}
+
+impl Truth {
+    /// Nothing is known.
+    pub const UNKNOWN: Self = Self { gas_mean_k: f64::NAN, mass_kg: f64::NAN, outflow_kg_s: f64::NAN };
+}
+
+/// A row as a source gives it: readings, then truth, SI.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct RawRow {
+    pub time_s: f64,
+    pub number: u64,
+    pub values: Vec<f64>,
+}
+
+/// Where rows come from.
+enum Source {
+    Csv(Box<CsvSource>),
+    #[cfg(feature = "parquet")]
+    Parquet(Box<super::parquet::ParquetSource>),
+}
+
+impl Source {
+    fn next(&mut self, row: &mut RawRow, cautions: &mut Cautions) -> Result<bool, LogError> {
+        match self {
+            Self::Csv(source) => source.next(row, cautions),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(source) => source.next(row, cautions),
+        }
+    }
+
+    fn place(&self, number: u64) -> String {
+        match self {
+            Self::Csv(source) => source.place(number),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(source) => source.place(number),
+        }
+    }
+
+    fn origin(&self) -> Option<jiff::Timestamp> {
+        match self {
+            Self::Csv(source) => source.origin(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(source) => source.origin(),
+        }
+    }
+}
+
+/// Reads a log row by row.
+pub struct LogReader {
+    file: String,
+    source: Source,
+    columns: Columns,
+    channels: Vec<Channel>,
+    ranges: Vec<(f64, f64)>,
+    /// Usable readings of every channel so far.
+    usable: Vec<u64>,
+    /// The row that waits for another of its time.
+    pending: Option<RawRow>,
+    fetched: RawRow,
+    row: Row,
+    stuck: StuckWatch,
+    sampling: Sampling,
+    cautions: Cautions,
+    ended: bool,
+}
+
+impl LogReader {
+    /// Opens a file; a name that ends in `.parquet` is a Parquet file, any other a text.
+    ///
+    /// # Errors
+    /// The file cannot be read, or its header does not say what the columns mean.
+    pub fn open(path: &Path, options: &LogOptions) -> Result<Self, LogError> {
+        let file = path.display().to_string();
+        let opened = std::fs::File::open(path);
+        let opened = opened.map_err(|source| LogError::Io { file: file.clone(), source })?;
+        if is_parquet(path) {
+            return Self::from_parquet(opened, &file, options);
+        }
+        Self::from_text(Box::new(opened), &file, options)
+    }
+
+    /// Reads a text; `file` is what messages call it.
+    ///
+    /// # Errors
+    /// The header does not say what the columns mean.
+    pub fn from_text(input: Box<dyn Read>, file: &str, options: &LogOptions) -> Result<Self, LogError> {
+        let mut cautions = Cautions::default();
+        let (source, columns) = CsvSource::open(input, file, options, &mut cautions)?;
+        Ok(Self::new(Source::Csv(Box::new(source)), columns, file, options, cautions))
+    }
+
+    /// Reads a Parquet file; `file` is what messages call it.
+    ///
+    /// # Errors
+    /// The file is no Parquet file, this build cannot read any, or the names of its columns do not say what they mean.
+    #[cfg(feature = "parquet")]
+    pub fn from_parquet(input: std::fs::File, file: &str, options: &LogOptions) -> Result<Self, LogError> {
+        let mut cautions = Cautions::default();
+        let (source, columns) = super::parquet::ParquetSource::open(input, file, options, &mut cautions)?;
+        Ok(Self::new(Source::Parquet(Box::new(source)), columns, file, options, cautions))
+    }
+
+    /// Refuses a Parquet file, which this build cannot read.
+    ///
+    /// # Errors
+    /// Always.
+    #[cfg(not(feature = "parquet"))]
+    pub fn from_parquet(_: std::fs::File, file: &str, _: &LogOptions) -> Result<Self, LogError> {
+        Err(LogError::WithoutParquet { file: file.to_owned() })
+    }
+
+    fn new(source: Source, columns: Columns, file: &str, options: &LogOptions, cautions: Cautions) -> Self {
+        let channels: Vec<Channel> = columns.readings.iter().map(|column| column.meaning.clone()).collect();
+        let count = channels.len();
+        Self {
+            file: file.to_owned(),
+            source,
+            ranges: channels.iter().map(|channel| options.range(channel.quantity)).collect(),
+            usable: vec![0; count],
+            pending: None,
+            fetched: RawRow::default(),
+            row: Row { time_s: 0.0, readings: vec![f64::NAN; count], truth: Truth::UNKNOWN, number: 0 },
+            stuck: StuckWatch::new(channels.iter().map(|channel| channel.quantity)),
+            sampling: Sampling::default(),
+            cautions,
+            ended: false,
+            columns,
+            channels,
+        }
+    }
+
+    /// What the readings of a row are, in their order.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// Columns of the file by what they are for.
+    pub fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    /// Narrows what a channel can read, SI; what lies outside is taken as missing.
+    pub fn set_range(&mut self, channel: usize, low: f64, high: f64) {
+        self.ranges[channel] = (low, high);
+    }
+
+    /// Date of second 0 in RFC 3339, if the log has dates and a row has been read.
+    pub fn origin(&self) -> Option<String> {
+        self.source.origin().map(|origin| origin.to_string())
+    }
+
+    /// Share of the log that has been read, where the file says how long it is.
+    pub fn fraction(&self) -> Option<f64> {
+        match &self.source {
+            Source::Csv(_) => None,
+            #[cfg(feature = "parquet")]
+            Source::Parquet(source) => Some(source.fraction()),
+        }
+    }
+
+    /// Place of a row for a message: file and line.
+    pub fn place(&self, row: &Row) -> String {
+        self.source.place(row.number)
+    }
+
+    /// Cautions so far, in the order of their first occurrence.
+    pub fn cautions(&self) -> &[Caution] {
+        self.cautions.list()
+    }
+
+    /// How the log is sampled so far.
+    pub fn sampling(&self) -> &Sampling {
+        &self.sampling
+    }
+
+    /// The next row, or `None` at the end.
+    ///
+    /// # Errors
+    /// The log cannot be read on, runs backwards or contradicts itself; or it has ended without one usable reading.
+    pub fn next_row(&mut self) -> Result<Option<&Row>, LogError> {
+        if !self.advance()? {
+            return self.end().map(|()| None);
+        }
+        self.screen();
+        self.sampling.push(self.row.time_s);
+        Ok(Some(&self.row))
+    }
+
+    /// The remaining rows in memory.
+    ///
+    /// # Errors
+    /// As of [`LogReader::next_row`].
+    pub fn read_all(&mut self) -> Result<Log, LogError> {
+        let mut log = Log { channels: self.channels.clone(), ..Log::default() };
+        while let Some(row) = self.next_row()? {
+            log.time_s.push(row.time_s);
+            log.values.extend_from_slice(&row.readings);
+        }
+        Ok(log)
+    }
+
+    /// Moves the next row, joined from all rows of its time, into `self.row`; `false` at the end.
+    fn advance(&mut self) -> Result<bool, LogError> {
+        loop {
+            let found = !self.ended && self.source.next(&mut self.fetched, &mut self.cautions)?;
+            self.ended |= !found;
+            let Some(pending) = &mut self.pending else {
+                if !found {
+                    return Ok(false);
+                }
+                self.pending = Some(self.fetched.clone());
+                continue;
+            };
+            if !found || self.fetched.time_s > pending.time_s {
+                emit(pending, &self.columns, &mut self.row);
+                if found {
+                    std::mem::swap(pending, &mut self.fetched);
+                } else {
+                    self.pending = None;
+                }
+                return Ok(true);
+            }
+            self.same_time()?;
+        }
+    }
+
+    /// Joins the fetched row with the pending one of the same time, or refuses it.
+    fn same_time(&mut self) -> Result<(), LogError> {
+        let (Some(pending), fetched) = (&mut self.pending, &self.fetched) else { return Ok(()) };
+        let (at, before) = (|| self.source.place(fetched.number), self.source.place(pending.number));
+        if fetched.time_s < pending.time_s {
+            let back_s = pending.time_s - fetched.time_s;
+            let text = format!("{} s", fetched.time_s);
+            return Err(LogError::Backwards { at: at(), text, before, back_s });
+        }
+        let mut joined = false;
+        for ((_, header, unit), (first, second)) in
+            self.columns.values().zip(pending.values.iter_mut().zip(&fetched.values))
+        {
+            if first.is_nan() && !second.is_nan() {
+                (*first, joined) = (*second, true);
+            } else if !second.is_nan() && *first != *second {
+                let (first, value) = (unit.from_si(*first), unit.from_si(*second));
+                return Err(LogError::Contradiction {
+                    at: at(),
+                    before,
+                    column: header.to_owned(),
+                    value,
+                    first,
+                });
+            }
+        }
+        let kind = if joined { Kind::Joined } else { Kind::Repeated };
+        self.cautions.count(kind, "", || (at(), String::new()));
+        Ok(())
+    }
+
+    /// Takes impossible readings as missing and watches for those that stand still.
+    fn screen(&mut self) {
+        let row = &mut self.row;
+        let place = || self.source.place(row.number);
+        for (channel, value) in row.readings.iter_mut().enumerate() {
+            let (low, high) = self.ranges[channel];
+            if value.is_nan() {
+                continue;
+            }
+            if (low..=high).contains(value) {
+                self.usable[channel] += 1;
+                continue;
+            }
+            let column = &self.columns.readings[channel];
+            self.cautions.count(Kind::OutOfRange, &column.header, || {
+                let [value, low, high] = [*value, low, high].map(|si| tidy(column.unit.from_si(si)));
+                (place(), format!("{value} lies outside of {low} to {high}"))
+            });
+            *value = f64::NAN;
+        }
+        let (columns, cautions) = (&self.columns.readings, &mut self.cautions);
+        self.stuck.push(row.time_s, &row.readings, |channel| {
+            let column = &columns[channel];
+            let value = || tidy(column.unit.from_si(row.readings[channel])).to_string();
+            cautions.count(Kind::Stuck, &column.header, || (place(), value()));
+        });
+    }
+
+    /// Looks back over the whole log.
+    fn end(&mut self) -> Result<(), LogError> {
+        let silent: Vec<&str> = self
+            .columns
+            .readings
+            .iter()
+            .zip(&self.usable)
+            .filter_map(|(column, &usable)| (usable == 0).then_some(column.header.as_str()))
+            .collect();
+        if silent.len() == self.channels.len() {
+            let columns = silent.join(", ");
+            let first = self.cautions.list().iter().find(|caution| silent.contains(&caution.column.as_str()));
+            let remedy = match first {
+                Some(caution) => format!("{caution}; look at the unit"),
+                None => "write a row of numbers for each time below the header".to_owned(),
+            };
+            return Err(LogError::NoRows { file: self.file.clone(), columns, remedy });
+        }
+        for column in silent.into_iter().map(str::to_owned).collect::<Vec<_>>() {
+            if !self.cautions.list().iter().any(|c| c.kind == Kind::Silent && c.column == column) {
+                self.cautions.count(Kind::Silent, &column, || (self.file.clone(), String::new()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a file's name says that it is Parquet.
+pub fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
+}
+
+fn emit(raw: &RawRow, columns: &Columns, row: &mut Row) {
+    (row.time_s, row.number, row.truth) = (raw.time_s, raw.number, Truth::UNKNOWN);
+    let (readings, truth) = raw.values.split_at(columns.readings.len());
+    row.readings.copy_from_slice(readings);
+    for (column, &value) in columns.truth.iter().zip(truth) {
+        match column.meaning {
+            TruthQuantity::GasMean => row.truth.gas_mean_k = value,
+            TruthQuantity::Mass => row.truth.mass_kg = value,
+            TruthQuantity::Outflow => row.truth.outflow_kg_s = value,
+        }
+    }
+}
+
+/// A converted number without the rounding of its conversion.
+fn tidy(value: f64) -> f64 {
+    crate::report::rounded(value, 10)
+}

@@ -1,0 +1,18 @@
+//! Estimates as rows of a file, as a figure, as a score, as a few lines for the terminal.
+//!
+//! Everything here takes one estimate after the other and keeps what fits in bounded memory, whatever the length of
+//! the log: rows leave at once, curves are kept as extremes of time buckets ([`Course`]), statistics as sums
+//! ([`Score`], [`Innovations`]).
+mod course;
+mod figure;
+mod innovation;
+mod row;
+mod score;
+mod summary;
+
+pub use course::Course;
+pub use figure::{FigureData, figure};
+pub use innovation::{Counts, Innovations};
+pub use row::{COLUMNS, DOCUMENTATION, EstimateRow, csv_header, csv_row, json_row};
+pub use score::{Score, Spread};
+pub use summary::{Summary, document, doubts, text};
