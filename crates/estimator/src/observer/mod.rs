@@ -2,8 +2,9 @@
 //!
 //! A bank of Kalman filters ([`Engine`]; [`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
 //! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
-//! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives temperature
-//! and mass. The others hold the mass and let a leak rate walk, each with its own bandwidth.
+//! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives the mass.
+//! The others hold the mass and let a leak rate walk, each with its own bandwidth. The gas temperature is a mixture of the
+//! first and the middle slow one, by what their readings speak for.
 //!
 //! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
 //! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
@@ -13,8 +14,8 @@
 //! Pressure, temperature and mass hang together by one equation, so constant errors of the sensors shift the mass for ever: 0.4 bar are
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
-pub mod belief;
-mod commissioning;
+mod belief;
+pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
 mod late;
