@@ -13,13 +13,20 @@ use super::settings::{LeakHypothesis, ObserverSettings, Walk};
 use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
-use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
+use crate::sensor::{Exposure, MAX_PARAMETERS, ParameterKind, Sensor, SensorKind};
 use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 
 /// A term of the series below this part of the largest sum is the last.
 const SERIES_TOLERANCE: f64 = 1e-12;
 const MAX_TERMS: usize = 60;
+/// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
+const LEAST_FILM_W_M2_K: f64 = 4.0;
+const LARGEST_FILM_W_M2_K: f64 = 80.0;
+/// Bound on the logarithm of the inside film's multiplier.
+const LN_INSIDE_BOUND: f64 = 1.5;
+/// Bound on a coupling above its prior mean, in standard deviations of the prior.
+const COUPLING_BOUND_SD: f64 = 2.5;
 /// Points of Gauss's two-point rule on [0, 1].
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
@@ -257,6 +264,24 @@ impl Cylinder {
                 of(&walk, parameter.mean)
             }
             _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
+        }
+    }
+
+    /// Values of a state that can be; beyond them an estimate has left what it knows.
+    pub fn bounds(&self, state: usize) -> Option<(f64, f64)> {
+        let film_w_m2_k = self.settings.film_w_m2_k;
+        match &self.states.kinds[state] {
+            StateKind::OutsideFilm => {
+                Some(((LEAST_FILM_W_M2_K / film_w_m2_k).ln(), (LARGEST_FILM_W_M2_K / film_w_m2_k).ln()))
+            }
+            StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
+            StateKind::Parameter { sensor, parameter } => {
+                let parameter = &self.sensors[*sensor].parameters()[*parameter];
+                let (low, high) = parameter.domain();
+                (parameter.kind == ParameterKind::Coupling)
+                    .then(|| (low, high.min(parameter.mean + COUPLING_BOUND_SD * parameter.sd)))
+            }
+            _ => None,
         }
     }
 

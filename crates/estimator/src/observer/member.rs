@@ -10,9 +10,6 @@ use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Interval at which slow walks are added to the constants, s.
 const SLOW_WALK_S: f64 = 3600.0;
-/// Bounds on the logarithms of the film multipliers: outside, inside.
-const LN_OUTSIDE_BOUND: f64 = 2.5;
-const LN_INSIDE_BOUND: f64 = 1.5;
 
 /// What became of a reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -146,12 +143,11 @@ impl Member {
         }
         cylinder.suppose(&self.hypothesis);
         self.mechanism.finish(cylinder, &mut self.x, &mut self.p);
-        let states = cylinder.state_map();
         self.at_bound = false;
-        for (state, bound) in [(states.outside, LN_OUTSIDE_BOUND), (states.inside, LN_INSIDE_BOUND)] {
-            if let Some(state) = state {
-                self.at_bound |= self.x[state].abs() >= bound;
-                self.x[state] = self.x[state].clamp(-bound, bound);
+        for state in 0..cylinder.states() {
+            if let Some((low, high)) = cylinder.bounds(state) {
+                self.at_bound |= !(low..=high).contains(&self.x[state]);
+                self.x[state] = self.x[state].clamp(low, high);
             }
         }
         Ok(())
@@ -197,12 +193,13 @@ impl Member {
         Ok(Innovation { nu, s, outcome })
     }
 
-    /// Begin anew with all that another member knows, but a leak rate, kg/s, that may be anything.
-    pub fn begin_anew_from(&mut self, other: &Self, leak: usize, leak_sd_kg_s: f64) {
+    /// Begin anew with all that another member knows; a leak rate that may walk may be anything then.
+    pub fn begin_anew_from(&mut self, other: &Self, leak: usize) {
         self.x.clone_from(&other.x);
         self.p.clone_from(&other.p);
         self.mechanism.clone_from(&other.mechanism);
         self.x[leak] = 0.0;
+        let leak_sd_kg_s = if self.hypothesis.rate.is_known() { 0.0 } else { ANY_LEAK_SD_KG_S };
         self.mechanism.decorrelate_and_set(&mut self.p, leak, leak_sd_kg_s * leak_sd_kg_s);
         self.slow_s = other.slow_s;
         if let Some(pass) = &mut self.pass {
@@ -257,4 +254,4 @@ const FREE_MASS_SD_KG: f64 = 1.0;
 const FREE_GAS_SD_K: f64 = 20.0;
 
 /// What a leak rate may be once a slow member was wrong, kg/s: 20 g/h.
-pub(super) const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;
+const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;

@@ -42,7 +42,7 @@ use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
 pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
-use member::{ANY_LEAK_SD_KG_S, Member};
+use member::Member;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 use screen::Screen;
@@ -192,10 +192,7 @@ impl Observer {
         }
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
         commissioning.mass_kg(vessel, QUOTED_K)?;
-        let gate = {
-            use statrs::distribution::{ChiSquared, ContinuousCDF};
-            ChiSquared::new(1.0).expect("one degree of freedom").inverse_cdf(1.0 - settings.gate_probability)
-        };
+        let gate = settings.gate_sd * settings.gate_sd;
         Ok(Self {
             vessel: vessel.clone(),
             commissioning: *commissioning,
@@ -307,19 +304,24 @@ impl Observer {
         self.update(&without)
     }
 
-    /// Slow members that are out of the question begin anew from the free one.
+    /// Members that are out of the question begin anew from the freest one.
     fn replace_the_wrong(&mut self) {
-        let states = self.cylinder.state_map();
-        let Some((free, slow)) = self.members.split_first_mut() else { return };
-        if !free.hypothesis.rate.is_known() {
-            return;
-        }
-        for member in slow {
-            let belief = Belief::of(member.moments(states.mass), free.moments(states.mass));
-            if belief.is_out_of_the_question() {
-                member.begin_anew_from(free, states.leak, ANY_LEAK_SD_KG_S);
+        let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
+        let freest = self.freest_index();
+        for index in (0..self.members.len()).filter(|&index| index != freest) {
+            if let Ok([member, free]) = self.members.get_disjoint_mut([index, freest])
+                && Belief::of(member.moments(mass), free.moments(mass)).is_out_of_the_question()
+            {
+                member.begin_anew_from(free, leak);
             }
         }
+    }
+
+    /// The member whose mass walks most freely: it judges the others.
+    fn freest_index(&self) -> usize {
+        let bank = &self.cylinder.settings().bank;
+        let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
+        (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
     }
 
     /// Every member as the prior has it.
@@ -417,17 +419,18 @@ impl Observer {
         let (first, slow) = (&self.members[0], self.middle_slow_member());
         let states = self.cylinder.state_map();
         let sd = |member: &Member, state: usize| member.variance(state).sqrt();
-        let (gas_mean_k, gas_variance_k2) = match slow {
-            Some(slow) => Belief::of(slow.moments(states.mass), first.moments(states.mass))
-                .blend(slow.moments(states.gas), first.moments(states.gas)),
-            None => first.moments(states.gas),
+        let free = &self.members[self.freest_index()];
+        let blended = |member: &Member, state: usize| {
+            self.belief(member).blend(member.moments(state), free.moments(state))
         };
+        let (gas_mean_k, gas_variance_k2) = blended(slow.unwrap_or(first), states.gas);
+        let (mass_kg, mass_variance_kg2) = blended(first, states.mass);
         let mut estimate = Estimate {
             time_s,
             gas_mean_k,
             gas_mean_sd_k: gas_variance_k2.sqrt(),
-            mass_kg: first.x[states.mass],
-            mass_sd_kg: sd(first, states.mass),
+            mass_kg,
+            mass_sd_kg: mass_variance_kg2.sqrt(),
             leak_kg_s: slow.map_or(f64::NAN, |member| member.x[states.leak]),
             leak_sd_kg_s: slow.map_or(f64::NAN, |member| sd(member, states.leak)),
             pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
@@ -473,6 +476,12 @@ impl Observer {
             () if any(Outcome::Missing) || any(Outcome::Rejected) => Quality::Degraded,
             () => Quality::Good,
         }
+    }
+
+    /// What the freest member says of another one.
+    fn belief(&self, member: &Member) -> Belief {
+        let mass = self.cylinder.state_map().mass;
+        Belief::of(member.moments(mass), self.members[self.freest_index()].moments(mass))
     }
 
     /// The middle one of the members that have a leak rate, in the order of the bank.

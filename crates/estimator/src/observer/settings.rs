@@ -166,10 +166,12 @@ pub struct ObserverSettings {
     pub constants_memory_s: Option<f64>,
     /// Noise beside the sensors' own.
     pub model_error: ModelError,
-    /// The bank: the first member gives temperature and mass, each gives a leak rate.
+    /// The bank: the first member gives the mass, the middle one of those with a leak rate the gas temperature, as long as the
+    /// freest member agrees.
     pub bank: Vec<LeakHypothesis>,
-    /// Probability with which a good reading is rejected by its gate.
-    pub gate_probability: f64,
+    /// Innovation beyond which a reading is rejected, in its standard deviations: wide, because a step of the air is no
+    /// fault of a sensor.
+    pub gate_sd: f64,
     /// Rejections of one sensor in a row after which its next reading is taken whatever it says.
     pub rejections_in_a_row: u32,
 }
@@ -204,12 +206,12 @@ impl Default for ObserverSettings {
                 correlation_s: 60.0,
             },
             bank: vec![
-                LeakHypothesis::walking_mass(2.0),
+                LeakHypothesis::walking_mass(1.5),
                 LeakHypothesis::walking_rate(0.02),
                 LeakHypothesis::walking_rate(0.005),
-                LeakHypothesis::walking_rate(0.001),
+                LeakHypothesis::walking_mass(30.0),
             ],
-            gate_probability: 1e-7,
+            gate_sd: 10.0,
             rejections_in_a_row: 5,
         }
     }
@@ -266,8 +268,7 @@ impl ObserverSettings {
         positive("longest_step_s", self.longest_step_s)?;
         positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
         positive("constants_memory_s", self.constants_memory_s.unwrap_or(1.0))?;
-        let gate = self.gate_probability;
-        require(gate > 0.0 && gate < 1.0, "gate_probability", gate, "between 0 and 1")?;
+        positive("gate_sd", self.gate_sd)?;
         for (setting, value) in [
             ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
             ("gas_walk_k_per_sqrt_s", self.gas_walk_k_per_sqrt_s),

@@ -43,8 +43,8 @@ pub struct Smoother {
 struct Row {
     estimate: Estimate,
     reference_kg: Option<f64>,
-    /// Weights of the two members in the gas temperature.
-    belief: Belief,
+    /// Weights of the two members in the gas temperature, where there are two.
+    belief: Option<Belief>,
     passes: Vec<Pass>,
 }
 
@@ -148,8 +148,8 @@ impl Smoother {
             // A row at the same time has no interval of its own.
             pass.begin(0.0);
         }
-        let clock = &self.observer.clock;
-        Row { estimate, reference_kg: clock.reference_mass_kg, belief: clock.belief, passes }
+        let belief = self.observer.middle_slow_member().map(|slow| self.observer.belief(slow));
+        Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, belief, passes }
     }
 
     /// Smooth the whole record and hand out the oldest `count` rows.
@@ -193,9 +193,11 @@ impl Smoother {
         // A bank of slow members alone has its leak rate in the first.
         if let Some(slow) = self.smoothed.last().filter(|_| !filtered.leak_kg_s.is_nan()) {
             (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (slow.x[leak], sd(slow, leak));
-            let of = |smoothed: &Smoothed| (smoothed.x[gas], sd(smoothed, gas).powi(2));
-            let (mean_k, variance_k2) = belief.blend(of(slow), of(first));
-            (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (mean_k, variance_k2.sqrt());
+            if let Some(belief) = belief {
+                let of = |smoothed: &Smoothed| (smoothed.x[gas], sd(smoothed, gas).powi(2));
+                let (mean_k, variance_k2) = belief.blend(of(slow), of(first));
+                (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (mean_k, variance_k2.sqrt());
+            }
         }
         observer.reference_x.copy_from_slice(first.x.as_slice());
         match observer.add_pressures(&mut estimate, reference_kg) {
