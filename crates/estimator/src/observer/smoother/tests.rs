@@ -10,7 +10,7 @@ fn observer(engine: Engine) -> Observer {
     settings.ln_inside_film.per_sqrt_s = 0.0;
     settings.coupling_memory_s = None;
     settings.offset_walk_k_per_sqrt_s = 0.0;
-    settings.coefficient_walk_pa_k_per_sqrt_s = 0.0;
+    settings.coefficient_memory_s = None;
     settings.bank.truncate(2);
     let commissioning = Commissioning::filled(2e7, 288.15);
     Observer::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &commissioning, &settings).unwrap()

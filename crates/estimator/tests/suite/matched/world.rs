@@ -137,7 +137,7 @@ pub fn settings(member: LeakHypothesis) -> ObserverSettings {
         film_slope: Walk::constant(0.0),
         coupling_memory_s: None,
         offset_walk_k_per_sqrt_s: 0.0,
-        coefficient_walk_pa_k_per_sqrt_s: 0.0,
+        coefficient_memory_s: None,
         model_error: ModelError::NONE,
         bank: vec![member],
         ..ObserverSettings::default()
