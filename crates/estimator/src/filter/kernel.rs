@@ -71,7 +71,7 @@ pub(crate) fn multiply(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
 
 /// `N` rows of `A x` from row `first` on.
 #[inline]
-fn multiply_rows<const N: usize>(a: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; N] {
+pub(crate) fn multiply_rows<const N: usize>(a: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; N] {
     let mut sum = [0.0; N];
     for (column, c) in a.chunks_exact(rows).zip(x) {
         if let Some(values) = column[first..].first_chunk::<N>() {

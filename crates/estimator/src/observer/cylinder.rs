@@ -5,6 +5,7 @@
 //! ([`transition`]). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
 //! Intervals longer than the settings allow are divided. The noise goes to the filter as `Q = G diag(q) G^T`, one column for
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
+mod lanes;
 mod noise;
 mod transition;
 

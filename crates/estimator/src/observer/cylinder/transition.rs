@@ -13,7 +13,7 @@
 //! Source: scaling and squaring, Higham 2008, chapter 10; Simpson's rule for the noise integral of Van Loan 1978.
 use nalgebra::DMatrix;
 
-use crate::filter::kernel::{axpy, multiply, padded};
+use super::lanes::{Columns, Square, add_scaled};
 
 /// What the series leaves out, relative to its first term.
 const SERIES_TOLERANCE: f64 = 1e-14;
@@ -61,7 +61,7 @@ pub(super) struct Walking {
     pub rest: f64,
 }
 
-/// The step. Matrices have a column per block state, outer state, constant, and one for the mean, of padded block length.
+/// The step. Matrices have a column per block state, outer state, constant, and one for the mean, of block length.
 #[derive(Clone, Debug)]
 pub(super) struct Transition {
     /// State of each column but the last.
@@ -69,7 +69,6 @@ pub(super) struct Transition {
     /// Column of each state that has one.
     column_of: Vec<Option<usize>>,
     rows: usize,
-    high: usize,
     temperatures: usize,
     outer: Vec<Outer>,
     /// Positions among the outer states.
@@ -79,16 +78,16 @@ pub(super) struct Transition {
     mass_per_leak: f64,
     half_mass_per_leak: f64,
     /// Equations: `A`, `a_j`, `f`.
-    a: Vec<f64>,
+    a: Columns,
     /// Matrix of the scaled interval, or `P - 1` before a doubling.
-    z: Vec<f64>,
-    term: Vec<f64>,
-    next: Vec<f64>,
+    z: Square,
+    term: Columns,
+    next: Columns,
     /// `P - 1`, `s_j`, `s_f`, now and after half the step.
-    sum: Vec<f64>,
-    half: Vec<f64>,
-    /// Noise of the block: padded rows.
-    noise: Vec<f64>,
+    sum: Columns,
+    half: Columns,
+    /// Noise of the block.
+    noise: Columns,
 }
 
 impl Transition {
@@ -101,24 +100,23 @@ impl Transition {
         let position = |state: usize| {
             outer.iter().position(|&other| other == state).expect("mass and leak rate are outside the block")
         };
-        let (rows, high) = (block.len(), padded(block.len()));
-        let zeros = || vec![0.0; high * (columns.len() + 1)];
+        let rows = block.len();
+        let zeros = Columns::zeros(rows, columns.len() + 1);
         Self {
             rows,
-            high,
             temperatures: structure.temperatures,
             mass: position(structure.mass),
             leak: position(structure.leak),
             outer: outer.iter().map(|&state| Outer { state, ..Outer::default() }).collect(),
             mass_per_leak: 0.0,
             half_mass_per_leak: 0.0,
-            a: zeros(),
-            z: vec![0.0; high * rows],
-            term: zeros(),
-            next: zeros(),
-            sum: zeros(),
-            half: zeros(),
-            noise: vec![0.0; high * rows],
+            a: zeros.clone(),
+            z: Square::zeros(rows),
+            term: zeros.clone(),
+            next: zeros.clone(),
+            sum: zeros.clone(),
+            half: zeros,
+            noise: Columns::zeros(rows, rows),
             column_of,
             columns,
         }
@@ -126,14 +124,12 @@ impl Transition {
 
     /// By how much each row of the block changes per second and per unit of a state; `None`: the state acts on none.
     pub fn per_state_mut(&mut self, state: usize) -> Option<&mut [f64]> {
-        let (high, rows) = (self.high, self.rows);
-        self.column_of[state].map(|column| &mut self.a[column * high..column * high + rows])
+        self.column_of[state].map(|column| &mut self.a.flat_mut(column)[..self.rows])
     }
 
     /// Rate of change of each row of the block at the start.
     pub fn rate_mut(&mut self) -> &mut [f64] {
-        let start = self.high * self.columns.len();
-        &mut self.a[start..start + self.rows]
+        &mut self.a.flat_mut(self.columns.len())[..self.rows]
     }
 
     /// Solve the equations over `h` seconds from state `x`; `walking` holds the leading states.
@@ -142,31 +138,29 @@ impl Transition {
         let norm = h * rates.fold(self.norm(), f64::max);
         // At least one, for the middle of the step.
         let doublings = (norm / LARGEST_NORM).log2().ceil().clamp(1.0, 60.0) as i32;
-        let interval = h * 0.5_f64.powi(doublings);
+        let share = 0.5_f64.powi(doublings);
         for outer in &mut self.outer {
             let Walking { decay_per_s, rest, .. } = walking[outer.state];
             outer.away = x[outer.state] - rest;
-            outer.exponent = -decay_per_s * interval;
+            outer.exponent = -decay_per_s * h * share;
         }
-        self.sum_series(interval, terms(norm / h * interval));
-        for doubling in 1..=doublings {
-            if doubling == doublings {
-                self.half.copy_from_slice(&self.sum);
-                self.half_mass_per_leak = self.mass_per_leak;
-                self.outer.iter_mut().for_each(|outer| outer.half_change = outer.change);
-            }
+        self.sum_series(h * share, terms(norm * share));
+        for _ in 1..doublings {
             self.double();
         }
+        self.half.copy_from(&self.sum);
+        self.half_mass_per_leak = self.mass_per_leak;
+        self.outer.iter_mut().for_each(|outer| outer.half_change = outer.change);
+        self.double();
     }
 
     /// Bound on the eigenvalues of the block, 1/s. Driven rows add their own rate only: nothing comes back from them.
     fn norm(&self) -> f64 {
-        let entry = |row: usize, column: usize| self.a[column * self.high + row].abs();
         let own = |row: usize| {
             if row < self.temperatures {
-                (0..self.temperatures).map(|column| entry(row, column)).sum()
+                (0..self.temperatures).map(|column| self.a.at(row, column).abs()).sum()
             } else {
-                entry(row, row)
+                self.a.at(row, row).abs()
             }
         };
         (0..self.rows).map(own).fold(0.0, f64::max)
@@ -174,10 +168,9 @@ impl Transition {
 
     /// Terms of the series over the scaled interval.
     fn sum_series(&mut self, interval: f64, terms: usize) {
-        let (high, rows) = (self.high, self.rows);
-        self.term.iter_mut().zip(&self.a).for_each(|(term, a)| *term = interval * a);
-        self.z.copy_from_slice(&self.term[..high * rows]);
-        self.sum.copy_from_slice(&self.term);
+        self.term.set_scaled(interval, &self.a);
+        self.z.copy_from(&self.term, self.rows);
+        self.sum.copy_from(&self.term);
         let mut mass_term = -interval;
         self.mass_per_leak = mass_term;
         for outer in &mut self.outer {
@@ -186,10 +179,7 @@ impl Transition {
         }
         for k in 2..=terms {
             let inverse = 1.0 / k as f64;
-            for (to, from) in self.next.chunks_exact_mut(high).zip(self.term.chunks_exact(high)) {
-                multiply(&self.z, high, &from[..rows], to);
-                to.iter_mut().for_each(|to| *to *= inverse);
-            }
+            self.next.set_product(inverse, &self.z, &self.term, 0.0);
             self.add_forcing(interval * inverse, mass_term);
             mass_term = -interval * inverse * self.outer[self.leak].term;
             self.mass_per_leak += mass_term;
@@ -198,49 +188,40 @@ impl Transition {
                 outer.change += outer.term;
             }
             std::mem::swap(&mut self.term, &mut self.next);
-            self.sum.iter_mut().zip(&self.term).for_each(|(sum, term)| *sum += term);
+            self.sum.add(&self.term);
         }
     }
 
     /// What the outer states' own motion adds to the next term, in their columns and in the mean's.
     fn add_forcing(&mut self, scale: f64, mass_term: f64) {
-        let (high, first) = (self.high, self.rows);
-        let (others, mean) = self.next.split_at_mut(high * self.columns.len());
-        let acting = |position: usize| &self.a[(first + position) * high..(first + position + 1) * high];
-        let mut add = |position: usize, factor: f64, by: &[f64]| {
-            let column = first + position;
-            axpy(factor, by, &mut others[column * high..(column + 1) * high]);
-            axpy(factor * self.outer[position].away, by, mean);
-        };
+        let (first, mean) = (self.rows, self.columns.len());
         for (position, outer) in self.outer.iter().enumerate() {
             if outer.term != 0.0 {
-                add(position, scale * outer.term, acting(position));
+                let (by, factor) = (self.a.column(first + position), scale * outer.term);
+                add_scaled(factor, by, self.next.column_mut(first + position));
+                add_scaled(factor * outer.away, by, self.next.column_mut(mean));
             }
         }
-        add(self.leak, scale * mass_term, acting(self.mass));
+        let (by, factor) = (self.a.column(first + self.mass), scale * mass_term);
+        add_scaled(factor, by, self.next.column_mut(first + self.leak));
+        add_scaled(factor * self.outer[self.leak].away, by, self.next.column_mut(mean));
     }
 
     /// From an interval to twice as long a one.
     fn double(&mut self) {
-        let (high, rows) = (self.high, self.rows);
-        self.z.copy_from_slice(&self.sum[..high * rows]);
-        for (to, from) in self.next.chunks_exact_mut(high).zip(self.sum.chunks_exact(high)) {
-            multiply(&self.z, high, &from[..rows], to);
-            to.iter_mut().zip(from).for_each(|(to, from)| *to += 2.0 * from);
-        }
-        let (others, mean) = self.next.split_at_mut(high * self.columns.len());
-        let column = |position: usize| &self.sum[(rows + position) * high..(rows + position + 1) * high];
-        let mut add = |position: usize, factor: f64, by: &[f64]| {
-            let at = (rows + position) * high;
-            axpy(factor, by, &mut others[at..at + high]);
-            axpy(factor * self.outer[position].away, by, mean);
-        };
+        let (first, mean) = (self.rows, self.columns.len());
+        self.z.copy_from(&self.sum, self.rows);
+        self.next.set_product(1.0, &self.z, &self.sum, 2.0);
         for (position, outer) in self.outer.iter().enumerate() {
             if outer.change != 0.0 {
-                add(position, outer.change, column(position));
+                let by = self.sum.column(first + position);
+                add_scaled(outer.change, by, self.next.column_mut(first + position));
+                add_scaled(outer.change * outer.away, by, self.next.column_mut(mean));
             }
         }
-        add(self.leak, self.mass_per_leak, column(self.mass));
+        let (by, factor) = (self.sum.column(first + self.mass), self.mass_per_leak);
+        add_scaled(factor, by, self.next.column_mut(first + self.leak));
+        add_scaled(factor * self.outer[self.leak].away, by, self.next.column_mut(mean));
         self.mass_per_leak *= 2.0 + self.outer[self.leak].change;
         for outer in &mut self.outer {
             outer.change *= 2.0 + outer.change;
@@ -250,8 +231,7 @@ impl Transition {
 
     /// Move a state over the step.
     pub fn advance(&self, x: &mut [f64]) {
-        let mean = &self.sum[self.high * self.columns.len()..];
-        for (state, by) in self.columns[..self.rows].iter().zip(mean) {
+        for (state, by) in self.columns[..self.rows].iter().zip(self.sum.flat(self.columns.len())) {
             x[*state] += by;
         }
         for outer in &self.outer {
@@ -266,9 +246,9 @@ impl Transition {
         let leading = phi.nrows();
         let block = &self.columns[..self.rows];
         let phi = phi.as_mut_slice();
-        for (state, values) in self.columns.iter().zip(self.sum.chunks_exact(self.high)) {
+        for (j, state) in self.columns.iter().enumerate() {
             let column = &mut phi[state * leading..(state + 1) * leading];
-            block.iter().zip(values).for_each(|(&row, &value)| column[row] = value);
+            block.iter().zip(self.sum.flat(j)).for_each(|(&row, &value)| column[row] = value);
         }
         for &state in block {
             phi[state * leading + state] += 1.0;
@@ -280,72 +260,66 @@ impl Transition {
         phi[leak * leading + mass] = self.mass_per_leak;
     }
 
-    /// Noise covariance that the step of `h` seconds adds: (leading, leading), its upper triangle; the rest is zero.
+    /// Noise covariance that the step of `h` seconds adds: (leading, leading), its upper triangle. The rest has no meaning.
     pub fn write_noise(&mut self, walking: &[Walking], h: f64, q: &mut DMatrix<f64>) {
         q.fill(0.0);
-        self.noise.fill(0.0);
-        for column in 0..self.rows {
-            let intensity = h * walking[self.columns[column]].intensity;
+        let m = q.nrows();
+        let q = q.as_mut_slice();
+        self.noise.clear();
+        for source in 0..self.rows {
+            let intensity = h * walking[self.columns[source]].intensity;
             if intensity > 0.0 {
-                self.add_block_source(column, intensity);
+                self.add_block_source(source, intensity);
             }
         }
         for position in 0..self.outer.len() {
             let intensity = h * walking[self.outer[position].state].intensity;
             if intensity > 0.0 {
-                self.add_outer_source(position, intensity, q);
+                self.add_outer_source(position, intensity, q, m);
             }
         }
         let block = &self.columns[..self.rows];
-        for (values, &column) in self.noise.chunks_exact(self.high).zip(block) {
-            for (&row, value) in block.iter().zip(values).filter(|(row, _)| **row <= column) {
-                q[(row, column)] = *value;
-            }
+        for (j, &column) in block.iter().enumerate() {
+            let to = &mut q[column * m..(column + 1) * m];
+            block[..=j].iter().zip(self.noise.flat(j)).for_each(|(&row, value)| to[row] = *value);
         }
     }
 
     fn add_block_source(&mut self, source: usize, intensity: f64) {
-        let (high, rows) = (self.high, self.rows);
-        self.noise[source * high + source] += SIMPSON[0] * intensity;
+        self.noise.flat_mut(source)[source] += SIMPSON[0] * intensity;
         for (weight, points) in [(SIMPSON[1], &mut self.half), (SIMPSON[2], &mut self.sum)] {
-            let values = &mut points[source * high..(source + 1) * high];
-            values[source] += 1.0;
-            add_square(weight * intensity, values, rows, &mut self.noise);
-            values[source] -= 1.0;
+            points.flat_mut(source)[source] += 1.0;
+            self.noise.add_square(weight * intensity, points.column(source));
+            points.flat_mut(source)[source] -= 1.0;
         }
     }
 
-    fn add_outer_source(&mut self, position: usize, intensity: f64, q: &mut DMatrix<f64>) {
-        let (high, rows) = (self.high, self.rows);
+    fn add_outer_source(&mut self, position: usize, intensity: f64, q: &mut [f64], m: usize) {
         let (outer, mass) = (self.outer[position], self.outer[self.mass].state);
-        let (own, block) = (outer.state, &self.columns[..rows]);
-        q[(own, own)] += SIMPSON[0] * intensity;
+        let (own, block) = (outer.state, &self.columns[..self.rows]);
+        q[own * m + own] += SIMPSON[0] * intensity;
         let middle = (SIMPSON[1], &self.half, 1.0 + outer.half_change, self.half_mass_per_leak);
         let end = (SIMPSON[2], &self.sum, 1.0 + outer.change, self.mass_per_leak);
         for (weight, points, factor, per_leak) in [middle, end] {
             let weight = weight * intensity;
-            let values = &points[(rows + position) * high..(rows + position + 1) * high];
-            add_square(weight, values, rows, &mut self.noise);
-            let couple = |q: &mut DMatrix<f64>, state: usize, factor: f64| {
-                for (&row, value) in block.iter().zip(values) {
-                    q[(row.min(state), row.max(state))] += weight * factor * value;
-                }
-            };
-            couple(q, own, factor);
-            q[(own, own)] += weight * factor * factor;
+            let values = points.column(self.rows + position);
+            self.noise.add_square(weight, values);
+            let values = values.as_flattened();
+            couple(q, m, own, weight * factor, (block, values));
+            q[own * m + own] += weight * factor * factor;
             if position == self.leak {
-                couple(q, mass, per_leak);
-                q[(mass, mass)] += weight * per_leak * per_leak;
-                q[(mass, own)] += weight * per_leak * factor;
+                couple(q, m, mass, weight * per_leak, (block, values));
+                q[mass * m + mass] += weight * per_leak * per_leak;
+                q[own * m + mass] += weight * per_leak * factor;
             }
         }
     }
 }
 
-/// `to <- to + weight v v^T`.
-fn add_square(weight: f64, v: &[f64], rows: usize, to: &mut [f64]) {
-    for (to, value) in to.chunks_exact_mut(v.len()).zip(&v[..rows]) {
-        axpy(weight * value, v, to);
+/// Add `weight` times the block's values to the covariances of a state with the block, in the upper triangle.
+fn couple(q: &mut [f64], m: usize, state: usize, weight: f64, (block, values): (&[usize], &[f64])) {
+    for (&row, value) in block.iter().zip(values) {
+        q[row.max(state) * m + row.min(state)] += weight * value;
     }
 }
 
