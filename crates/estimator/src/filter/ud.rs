@@ -150,7 +150,7 @@ where
         let mut sum = 0.0;
         let columns = self.u.as_slice().chunks_exact(n.max(1)).enumerate();
         for (((j, u), d), f) in columns.zip(self.d.as_slice()).zip(self.f.as_mut_slice()) {
-            *f = dot(&u[..j], h) + h[j];
+            *f = dot(&u[..whole(j, n)], h);
             sum += *f * *f * d;
         }
         sum
@@ -182,12 +182,7 @@ where
             *d *= before / s;
             // Where no noise and no variance came before, the gain collected so far is zero.
             let p = if before > 0.0 { -f / before } else { 0.0 };
-            for (u, b) in u[..j].iter_mut().zip(gain.iter_mut()) {
-                let old = *u;
-                *u += *b * p;
-                *b += old * v;
-            }
-            gain[j] = v;
+            learn(&mut u[..whole(j, n)], gain, p, v);
         }
         if s > 0.0 {
             let inverse = 1.0 / s;
@@ -256,6 +251,22 @@ where
         explained.fill(0.0);
         let d = std::mem::replace(&mut self.d[i], variance);
         self.add_leading(d, i);
+    }
+}
+
+/// Length of column `j` of `U` down to the diagonal, rounded up to groups of four: the diagonal is 1 and what is below it 0,
+/// and so is a gain that has come as far, so that the loops may end with a group.
+fn whole(j: usize, n: usize) -> usize {
+    (j / 4 * 4 + 4).min(n)
+}
+
+/// Update a column of `U` by the gain so far, and the gain by the column.
+#[inline]
+fn learn(u: &mut [f64], gain: &mut [f64], p: f64, v: f64) {
+    for (u, b) in u.iter_mut().zip(gain) {
+        let old = *u;
+        *u += *b * p;
+        *b += old * v;
     }
 }
 

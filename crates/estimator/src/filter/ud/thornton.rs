@@ -3,7 +3,7 @@
 //! What is zero stays out: states that move by themselves have one element in their row of the transition, and a triangular
 //! noise input has zeros on one side. Each row of `[Phi_xx U_x, G]` keeps the range of its elements that may differ from zero; the
 //! product `Phi U` takes dense rows four at a time and the others by their elements.
-use crate::filter::kernel::{axpy, dot, multiply_rows, padded, weigh};
+use crate::filter::kernel::{Group, axpy, dot_groups, multiply_rows};
 use crate::filter::state_space::Linearisation;
 
 /// Rows of the transition that are multiplied together.
@@ -17,43 +17,55 @@ struct Element {
     value: f64,
 }
 
-/// Memory of the time update; it grows at the first use with more noise sources, then stays.
-#[derive(Clone, Debug, Default)]
+/// Memory of the time update; nothing in it outlives an update.
+#[derive(Debug, Default)]
 pub(super) struct TimeUpdate {
+    /// Moving states, all states, noise sources that there is room for.
+    sizes: (usize, usize, usize),
     /// First row of each dense group, and the elements of all other rows.
     dense: Vec<usize>,
     elements: Vec<Element>,
-    /// Sum of the elements of each row besides its diagonal, in absolute value.
-    besides: Vec<f64>,
     /// `Phi U`, rows of moving states: (m, n).
     moved: Vec<f64>,
-    /// Rows of `[Phi_xx U_x, G]` as columns, padded: (padded(m + k), m).
-    rows: Vec<f64>,
-    /// Range of each row outside of which it is zero.
+    /// Rows of `[Phi_xx U_x, G]` as columns, padded to whole groups: (groups of m + k, m).
+    rows: Vec<Group>,
+    /// Range of groups of each row outside of which it is zero.
     spans: Vec<(usize, usize)>,
     /// `[d_x, q]`, padded with zeros.
-    weights: Vec<f64>,
+    weights: Vec<Group>,
     /// A row times the weights.
-    weighted: Vec<f64>,
+    weighted: Vec<Group>,
+}
+
+impl Clone for TimeUpdate {
+    /// The same room: a copy does not allocate later where its original would not.
+    fn clone(&self) -> Self {
+        let mut room = Self::default();
+        let (m, n, k) = self.sizes;
+        room.reserve(n, m, k);
+        room
+    }
 }
 
 impl TimeUpdate {
     /// Zeroed room for `m` moving states of `n` and `k` noise sources.
     pub fn reserve(&mut self, n: usize, m: usize, k: usize) {
-        let width = padded(m + k);
-        if self.weights.len() == width && self.moved.len() == m * n {
+        if self.sizes == (m, n, k) {
             return;
         }
+        self.sizes = (m, n, k);
+        let width = (m + k).div_ceil(4);
+        self.dense.clear();
         self.dense.reserve(m);
+        self.elements.clear();
         self.elements.reserve(m * n);
-        self.besides.resize(m, 0.0);
         self.moved.resize(m * n, 0.0);
         self.rows.clear();
-        self.rows.resize(width * m, 0.0);
+        self.rows.resize(width * m, [0.0; 4]);
         self.spans.resize(m, (0, 0));
         self.weights.clear();
-        self.weights.resize(width, 0.0);
-        self.weighted.resize(width, 0.0);
+        self.weights.resize(width, [0.0; 4]);
+        self.weighted.resize(width, [0.0; 4]);
     }
 
     /// Move the factors `u` (n, n) and `d` (n).
@@ -64,39 +76,34 @@ impl TimeUpdate {
             return;
         }
         let phi = linear.phi.as_slice();
-        self.sort_rows(phi, n, m);
+        self.sort_rows(phi, m);
         self.transform(phi, u, n, m);
-        self.weights[..m].copy_from_slice(&d[..m]);
-        self.weights[m..m + k].copy_from_slice(linear.q.as_slice());
+        let weights = self.weights.as_flattened_mut();
+        weights[..m].copy_from_slice(&d[..m]);
+        weights[m..m + k].copy_from_slice(linear.q.as_slice());
         self.load_noise(linear.g.as_slice(), m);
         self.orthogonalise(u, d, n, m);
     }
 
     /// Which rows of the transition are dense, and where the others have elements.
-    fn sort_rows(&mut self, phi: &[f64], n: usize, m: usize) {
-        self.besides.fill(0.0);
-        for (j, column) in phi.chunks_exact(m).enumerate() {
-            let diagonal = j.min(m);
-            let (sums, column) = (&mut self.besides, column);
-            sums[..diagonal].iter_mut().zip(column).for_each(|(sum, v)| *sum += v.abs());
-            let after = (diagonal + 1).min(m);
-            sums[after..].iter_mut().zip(&column[after..]).for_each(|(sum, v)| *sum += v.abs());
-        }
+    fn sort_rows(&mut self, phi: &[f64], m: usize) {
         self.dense.clear();
         self.elements.clear();
         for first in (0..m).step_by(TOGETHER) {
             let group = first..(first + TOGETHER).min(m);
-            let coupled = self.besides[group.clone()].iter().filter(|sum| **sum != 0.0).count();
-            if group.len() == TOGETHER && coupled > 1 {
+            let coupled = |row: &usize| group.clone().any(|j| j != *row && phi[j * m + row] != 0.0);
+            if group.len() == TOGETHER && group.clone().filter(coupled).count() > 1 {
                 self.dense.push(first);
                 group.for_each(|row| self.spans[row] = (0, m));
                 continue;
             }
             for row in group {
-                let columns = if self.besides[row] == 0.0 { row..row + 1 } else { 0..n };
-                let elements = columns.filter(|&j| phi[j * m + row] != 0.0);
                 let before = self.elements.len();
-                self.elements.extend(elements.map(|column| Element { row, column, value: phi[column * m + row] }));
+                for (column, values) in phi.chunks_exact(m).enumerate() {
+                    if values[row] != 0.0 {
+                        self.elements.push(Element { row, column, value: values[row] });
+                    }
+                }
                 self.spans[row] = (self.elements.get(before).map_or(m, |first| first.column.min(m)), m);
             }
         }
@@ -114,14 +121,15 @@ impl TimeUpdate {
             }
         }
         for &Element { row, column, value } in elements.iter() {
-            let from = u[column * n + column..].iter().step_by(n);
-            let to = moved[column * m + row..].iter_mut().step_by(m);
-            to.zip(from).for_each(|(to, from)| *to += value * from);
+            let columns = moved.chunks_exact_mut(m).zip(u.chunks_exact(n)).skip(column);
+            columns.for_each(|(to, from)| to[row] += value * from[column]);
         }
-        let width = rows.len() / m;
+        let width = rows.len() / m * 4;
         let (moving, constant) = moved.split_at(m * m);
-        for (j, column) in moving.chunks_exact(m).enumerate() {
-            rows[j..].iter_mut().step_by(width).zip(column).for_each(|(to, from)| *to = *from);
+        for (i, row) in rows.as_flattened_mut().chunks_exact_mut(width).enumerate() {
+            for (to, column) in row.iter_mut().zip(moving.chunks_exact(m)) {
+                *to = column[i];
+            }
         }
         for (u, column) in u[m * n..].chunks_exact_mut(n).zip(constant.chunks_exact(m)) {
             u[..m].copy_from_slice(column);
@@ -130,16 +138,15 @@ impl TimeUpdate {
 
     /// `G` behind `Phi U`, and how far each row reaches.
     fn load_noise(&mut self, g: &[f64], m: usize) {
-        let width = self.weights.len();
-        for (index, column) in g.chunks_exact(m).enumerate() {
-            let (rows, spans) = (self.rows[m + index..].iter_mut().step_by(width), &mut self.spans);
-            for ((to, &from), span) in rows.zip(column).zip(spans) {
-                *to = from;
-                span.1 = if from == 0.0 { span.1 } else { m + index + 1 };
+        let width = self.weights.len() * 4;
+        let rows = self.rows.as_flattened_mut().chunks_exact_mut(width);
+        for ((i, row), span) in rows.enumerate().zip(&mut self.spans) {
+            let mut reach = span.1;
+            for (index, (to, column)) in row[m..].iter_mut().zip(g.chunks_exact(m)).enumerate() {
+                *to = column[i];
+                reach = if *to == 0.0 { reach } else { m + index + 1 };
             }
-        }
-        for span in &mut self.spans {
-            *span = (span.0 / 4 * 4, padded(span.1));
+            *span = (span.0 / 4, reach.div_ceil(4));
         }
     }
 
@@ -151,7 +158,11 @@ impl TimeUpdate {
             let (before, row) = rows[..(j + 1) * width].split_at_mut(j * width);
             let (low, high) = spans[j];
             let (row, weighted) = (&row[low..high], &mut weighted[low..high]);
-            let variance = weigh(row, &weights[low..high], weighted);
+            let products = row.as_flattened().iter().zip(weights[low..high].as_flattened());
+            for (to, (from, weight)) in weighted.as_flattened_mut().iter_mut().zip(products) {
+                *to = from * weight;
+            }
+            let variance = dot_groups(weighted, row);
             let u = &mut u[j * n..j * n + j];
             if variance < f64::MIN_POSITIVE {
                 d[j] = 0.0;
@@ -162,11 +173,9 @@ impl TimeUpdate {
             let inverse = 1.0 / variance;
             for ((other, u), span) in before.chunks_exact_mut(width).zip(u).zip(spans.iter_mut()) {
                 let other = &mut other[low..high];
-                *u = dot(weighted, other) * inverse;
-                if *u != 0.0 {
-                    axpy(-*u, row, other);
-                    *span = (span.0.min(low), span.1.max(high));
-                }
+                *u = dot_groups(weighted, other) * inverse;
+                axpy(-*u, row.as_flattened(), other.as_flattened_mut());
+                *span = (span.0.min(low), span.1.max(high));
             }
         }
     }

@@ -1,16 +1,14 @@
 //! Columns of few rows in groups of four: products of small matrices without loops that end in between.
-
-/// Four rows of a column.
-pub(super) type Group = [f64; 4];
+use crate::filter::kernel::{Group, axpy};
 
 /// `to <- to + c x`.
 #[inline(always)]
 pub(super) fn add_scaled(c: f64, x: &[Group], to: &mut [Group]) {
-    for (to, x) in to.iter_mut().zip(x) {
-        for lane in 0..4 {
-            to[lane] += c * x[lane];
-        }
+    if let ([x], [to]) = (x, &mut *to) {
+        *to = combined(1.0, *to, c, x);
+        return;
     }
+    axpy(c, x.as_flattened(), to.as_flattened_mut());
 }
 
 /// Columns of `rows` rows, padded with zeros to whole groups.
@@ -61,8 +59,8 @@ impl Columns {
 
     /// `self <- c other`.
     pub fn set_scaled(&mut self, c: f64, other: &Self) {
-        for (to, from) in self.values.iter_mut().zip(&other.values) {
-            *to = from.map(|value| c * value);
+        for (to, from) in self.values.as_flattened_mut().iter_mut().zip(other.values.as_flattened()) {
+            *to = c * from;
         }
     }
 
@@ -73,35 +71,53 @@ impl Columns {
 
     /// `self <- self + other`.
     pub fn add(&mut self, other: &Self) {
-        add_scaled(1.0, &other.values, &mut self.values);
+        axpy(1.0, other.values.as_flattened(), self.values.as_flattened_mut());
     }
 
     /// `self <- a Z B + c B` with a square `Z` of as many rows.
     pub fn set_product(&mut self, a: f64, z: &Square, b: &Self, c: f64) {
+        if let [block] = z.blocks.as_slice() {
+            for (to, from) in self.values.iter_mut().zip(&b.values) {
+                *to = combined(a, product(block, from), c, from);
+            }
+            return;
+        }
         let groups = self.groups;
         for (to, from) in self.values.chunks_exact_mut(groups).zip(b.values.chunks_exact(groups)) {
             for ((to, own), row) in to.iter_mut().zip(from).zip(z.blocks.chunks_exact(groups)) {
                 let mut sum = [0.0; 4];
                 for (block, part) in row.iter().zip(from) {
-                    for (column, value) in block.iter().zip(part) {
-                        for lane in 0..4 {
-                            sum[lane] += column[lane] * value;
-                        }
-                    }
+                    sum = combined(1.0, sum, 1.0, &product(block, part));
                 }
-                for lane in 0..4 {
-                    to[lane] = a * sum[lane] + c * own[lane];
-                }
+                *to = combined(a, sum, c, own);
             }
         }
     }
 
     /// `self <- self + c v v^T` for a square of columns as long as `v`.
     pub fn add_square(&mut self, c: f64, v: &[Group]) {
+        if let ([v], [x0, x1, x2, x3]) = (v, self.values.as_mut_slice()) {
+            for (to, value) in [x0, x1, x2, x3].into_iter().zip(v) {
+                *to = combined(1.0, *to, c * value, v);
+            }
+            return;
+        }
         for (to, value) in self.values.chunks_exact_mut(self.groups).zip(v.as_flattened()) {
             add_scaled(c * value, v, to);
         }
     }
+}
+
+/// `a x + b y`.
+#[inline(always)]
+fn combined(a: f64, x: Group, b: f64, y: &Group) -> Group {
+    std::array::from_fn(|lane| a * x[lane] + b * y[lane])
+}
+
+/// A block times four rows.
+#[inline(always)]
+fn product([c0, c1, c2, c3]: &[Group; 4], [v0, v1, v2, v3]: &Group) -> Group {
+    std::array::from_fn(|lane| (c0[lane] * v0 + c1[lane] * v1) + (c2[lane] * v2 + c3[lane] * v3))
 }
 
 /// A square matrix of 4 x 4 blocks, row of blocks by row of blocks; each block by columns.

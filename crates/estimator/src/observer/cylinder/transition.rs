@@ -244,13 +244,15 @@ impl Transition {
     pub fn write_phi(&self, phi: &mut DMatrix<f64>) {
         phi.fill(0.0);
         let leading = phi.nrows();
-        let block = &self.columns[..self.rows];
+        let (first, driven) = self.columns[..self.rows].split_at(self.temperatures);
         let phi = phi.as_mut_slice();
         for (j, state) in self.columns.iter().enumerate() {
             let column = &mut phi[state * leading..(state + 1) * leading];
-            block.iter().zip(self.sum.flat(j)).for_each(|(&row, &value)| column[row] = value);
+            let (temperatures, lags) = self.sum.flat(j).split_at(first.len());
+            column.iter_mut().zip(temperatures).for_each(|(to, &value)| *to = value);
+            driven.iter().zip(lags).for_each(|(&row, &value)| column[row] = value);
         }
-        for &state in block {
+        for &state in &self.columns[..self.rows] {
             phi[state * leading + state] += 1.0;
         }
         for outer in &self.outer {
@@ -317,9 +319,11 @@ impl Transition {
 }
 
 /// Add `weight` times the block's values to the covariances of a state with the block, in the upper triangle.
+#[inline(always)]
 fn couple(q: &mut [f64], m: usize, state: usize, weight: f64, (block, values): (&[usize], &[f64])) {
     for (&row, value) in block.iter().zip(values) {
-        q[row.max(state) * m + row.min(state)] += weight * value;
+        let (row, column) = if row < state { (row, state) } else { (state, row) };
+        q[column * m + row] += weight * value;
     }
 }
 
