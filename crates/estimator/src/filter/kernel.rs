@@ -27,15 +27,6 @@ pub(crate) fn axpy(c: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// `y_i <- x_i w_i`; returns `sum x_i^2 w_i`.
-#[inline]
-pub(crate) fn weigh(x: &[f64], w: &[f64], y: &mut [f64]) -> f64 {
-    for ((y, x), w) in y.iter_mut().zip(x).zip(w) {
-        *y = x * w;
-    }
-    dot(y, x)
-}
-
 /// Column `j` of a column-major matrix with `rows` rows.
 #[inline]
 pub(crate) fn column(a: &[f64], rows: usize, j: usize) -> &[f64] {
@@ -71,7 +62,7 @@ pub(crate) fn multiply(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
 
 /// `N` rows of `A x` from row `first` on.
 #[inline]
-fn multiply_rows<const N: usize>(a: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; N] {
+pub(crate) fn multiply_rows<const N: usize>(a: &[f64], rows: usize, first: usize, x: &[f64]) -> [f64; N] {
     let mut sum = [0.0; N];
     for (column, c) in a.chunks_exact(rows).zip(x) {
         if let Some(values) = column[first..].first_chunk::<N>() {
@@ -81,4 +72,19 @@ fn multiply_rows<const N: usize>(a: &[f64], rows: usize, first: usize, x: &[f64]
         }
     }
     sum
+}
+
+/// Four numbers side by side.
+pub(crate) type Group = [f64; 4];
+
+/// `sum a_i b_i` over groups.
+#[inline(always)]
+pub(crate) fn dot_groups(a: &[Group], b: &[Group]) -> f64 {
+    let mut sum = [0.0; 4];
+    for (x, y) in a.iter().zip(b) {
+        for lane in 0..4 {
+            sum[lane] += x[lane] * y[lane];
+        }
+    }
+    (sum[0] + sum[2]) + (sum[1] + sum[3])
 }

@@ -14,9 +14,12 @@ use nalgebra::allocator::Allocator;
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, U1};
 
 use super::factor::{factor_udu, mirror};
-use super::kernel::{axpy, column, column_mut, dot, multiply, padded, weigh};
+use super::kernel::{axpy, column, column_mut, dot};
 use super::state_space::Linearisation;
 use crate::EstimatorError;
+use thornton::TimeUpdate;
+
+mod thornton;
 
 /// Factors of a covariance of `n` states, with the memory that its updates work in.
 ///
@@ -31,34 +34,7 @@ where
     d: OVector<f64, D>,
     /// `U^T h` in an update, `v` in a rank-one update.
     f: OVector<f64, D>,
-    work: Work,
-}
-
-/// Memory of the time update; it grows at the first use with more noise sources, then stays.
-#[derive(Clone, Debug, Default)]
-struct Work {
-    /// Transition, rows padded: (padded(m), n).
-    phi: Vec<f64>,
-    /// One column of `F U`: (padded(m)).
-    moved: Vec<f64>,
-    /// Rows of `[Phi_xx U_x, G]` as columns, padded: (padded(m + k), m).
-    rows: Vec<f64>,
-    /// `[d_x, q]`, padded with zeros.
-    weights: Vec<f64>,
-    /// A row times the weights.
-    weighted: Vec<f64>,
-}
-
-impl Work {
-    /// Zeroed room for `m` moving states of `n` and `k` noise sources.
-    fn reserve(&mut self, n: usize, m: usize, k: usize) {
-        let width = padded(m + k);
-        self.phi.resize(padded(m) * n, 0.0);
-        self.moved.resize(padded(m), 0.0);
-        self.rows.resize(width * m, 0.0);
-        self.weights.resize(width, 0.0);
-        self.weighted.resize(width, 0.0);
-    }
+    work: TimeUpdate,
 }
 
 impl<D: Dim> UdFactors<D>
@@ -76,7 +52,7 @@ where
         let mut d = OVector::zeros_generic(p.shape_generic().0, U1);
         factor_udu(u.as_mut_slice(), d.as_mut_slice())?;
         let f = d.clone();
-        Ok(Self { u, d, f, work: Work::default() })
+        Ok(Self { u, d, f, work: TimeUpdate::default() })
     }
 
     /// Make room for a process with `leading` moving states and `noises` noise sources, so that not even the first
@@ -163,74 +139,21 @@ where
     /// # Panics
     /// The sizes of `linear` are not those of this covariance.
     pub fn predict(&mut self, linear: &Linearisation) {
-        let (n, m, k) = (self.states(), linear.phi.nrows(), linear.q.len());
+        let n = self.states();
         assert_eq!(linear.phi.ncols(), n, "the transition has as many columns as there are states");
-        self.work.reserve(n, m, k);
-        self.load(linear);
-        self.transform(m, k);
-        self.orthogonalise(m, k);
+        self.work.run(linear, self.u.as_mut_slice(), self.d.as_mut_slice());
     }
 
-    /// Padded copies of transition, noise input and weights: what the inner loops read.
-    fn load(&mut self, linear: &Linearisation) {
-        let (m, k) = (linear.phi.nrows(), linear.q.len());
-        let (high, width) = (padded(m), padded(m + k));
-        let work = &mut self.work;
-        if m == 0 {
-            return;
+    /// Variance `h^T P h` of a linear function of the state, kept for [`update_projected`](Self::update_projected); `h`: (n).
+    pub fn project(&mut self, h: &[f64]) -> f64 {
+        let n = self.d.len();
+        let mut sum = 0.0;
+        let columns = self.u.as_slice().chunks_exact(n.max(1)).enumerate();
+        for (((j, u), d), f) in columns.zip(self.d.as_slice()).zip(self.f.as_mut_slice()) {
+            *f = dot(&u[..whole(j, n)], h);
+            sum += *f * *f * d;
         }
-        for (to, from) in work.phi.chunks_exact_mut(high).zip(linear.phi.as_slice().chunks_exact(m)) {
-            to[..m].copy_from_slice(from);
-            to[m..].fill(0.0);
-        }
-        for (row, to) in work.rows.chunks_exact_mut(width).enumerate() {
-            for (to, from) in to[m..m + k].iter_mut().zip(linear.g.as_slice().iter().skip(row).step_by(m)) {
-                *to = *from;
-            }
-            to[m + k..].fill(0.0);
-        }
-        work.weights[..m].copy_from_slice(&self.d.as_slice()[..m]);
-        work.weights[m..m + k].copy_from_slice(linear.q.as_slice());
-        work.weights[m + k..].fill(0.0);
-    }
-
-    /// `F U`: its columns of moving states become rows to orthogonalise, those of constants are final.
-    fn transform(&mut self, m: usize, k: usize) {
-        let (n, high, width) = (self.states(), padded(m), padded(m + k));
-        let work = &mut self.work;
-        for j in 0..n {
-            let u = column_mut(self.u.as_mut_slice(), n, j);
-            multiply(&work.phi, high, &u[..=j], &mut work.moved);
-            if j < m {
-                for (to, from) in work.rows[j..].iter_mut().step_by(width).zip(&work.moved[..m]) {
-                    *to = *from;
-                }
-            } else {
-                u[..m].copy_from_slice(&work.moved[..m]);
-            }
-        }
-    }
-
-    /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
-    fn orthogonalise(&mut self, m: usize, k: usize) {
-        let (n, width) = (self.states(), padded(m + k));
-        let Work { rows, weights, weighted, .. } = &mut self.work;
-        for j in (0..m).rev() {
-            let (before, row) = rows[..(j + 1) * width].split_at_mut(j * width);
-            let d = weigh(row, weights, weighted);
-            let u = &mut column_mut(self.u.as_mut_slice(), n, j)[..j];
-            if d < f64::MIN_POSITIVE {
-                self.d[j] = 0.0;
-                u.fill(0.0);
-                continue;
-            }
-            self.d[j] = d;
-            let inverse = 1.0 / d;
-            for (other, u) in before.chunks_exact_mut(width).zip(u) {
-                *u = dot(weighted, other) * inverse;
-                axpy(-*u, row, other);
-            }
-        }
+        sum
     }
 
     /// Update by a scalar measurement `z = h^T x + v`, `v ~ N(0, r)` (Bierman); `h`: (n), `r >= 0`.
@@ -238,13 +161,18 @@ where
     /// Writes the gain `K = P h / S` into `gain` (n) and returns `S = h^T P h + r`. If `S = 0`, nothing was left to
     /// learn: the gain is zero.
     pub fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> f64 {
+        self.project(h);
+        self.update_projected(r, gain)
+    }
+
+    /// As [`update`](Self::update), with the `h` of the last [`project`](Self::project); nothing may have changed the
+    /// covariance since.
+    pub fn update_projected(&mut self, r: f64, gain: &mut [f64]) -> f64 {
         let n = self.states();
         gain.fill(0.0);
         let mut s = r;
         let columns = self.u.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate();
-        for ((j, u), d) in columns.zip(self.d.as_mut_slice()) {
-            let u = &mut u[..j];
-            let f = dot(u, h) + h[j];
+        for (((j, u), d), &f) in columns.zip(self.d.as_mut_slice()).zip(self.f.as_slice()) {
             let v = f * *d;
             let before = s;
             s += f * v;
@@ -254,12 +182,7 @@ where
             *d *= before / s;
             // Where no noise and no variance came before, the gain collected so far is zero.
             let p = if before > 0.0 { -f / before } else { 0.0 };
-            for (u, b) in u.iter_mut().zip(gain.iter_mut()) {
-                let old = *u;
-                *u += *b * p;
-                *b += old * v;
-            }
-            gain[j] = v;
+            learn(&mut u[..whole(j, n)], gain, p, v);
         }
         if s > 0.0 {
             let inverse = 1.0 / s;
@@ -328,6 +251,22 @@ where
         explained.fill(0.0);
         let d = std::mem::replace(&mut self.d[i], variance);
         self.add_leading(d, i);
+    }
+}
+
+/// Length of column `j` of `U` down to the diagonal, rounded up to groups of four: the diagonal is 1 and what is below it 0,
+/// and so is a gain that has come as far, so that the loops may end with a group.
+fn whole(j: usize, n: usize) -> usize {
+    (j / 4 * 4 + 4).min(n)
+}
+
+/// Update a column of `U` by the gain so far, and the gain by the column.
+#[inline]
+fn learn(u: &mut [f64], gain: &mut [f64], p: f64, v: f64) {
+    for (u, b) in u.iter_mut().zip(gain) {
+        let old = *u;
+        *u += *b * p;
+        *b += old * v;
     }
 }
 

@@ -1,12 +1,14 @@
 //! The cylinder as a [`StateSpace`]: transition from the thermal model's own equations, outputs from the sensors.
 //!
 //! One step is an exponential Rosenbrock-Euler step: with `f` and `A = df/dx` at its start,
-//! `x(t + h) = x + h phi_1(hA) f`, `F = exp(hA)`, of order 2 and exact where `f` is linear, whatever the step. The
-//! exponential is a Taylor series over the few rows that are coupled (wall, valve, gas, mass, sensor lags); walks
-//! with memory decay in closed form, constants stay. Process noise is integrated over the step,
-//! `Q = int exp(As) diag(q) exp(As)^T ds`, by Gauss's rule with two points, of order 4: two columns of
-//! [`Linearisation::g`] for each source. Intervals longer than the settings allow are divided, and the noise of
-//! the parts is gathered into the same number of columns.
+//! `x(t + h) = x + h phi_1(hA) f`, `F = exp(hA)`, of order 2 and exact where `f` is linear, whatever the step
+//! ([`transition`]). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
+//! Intervals longer than the settings allow are divided. The noise goes to the filter as `Q = G diag(q) G^T`, one column for
+//! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
+mod lanes;
+mod noise;
+mod transition;
+
 use nalgebra::DMatrix;
 
 use super::settings::{LeakHypothesis, ObserverSettings, Walk};
@@ -16,10 +18,9 @@ use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, ParameterKind, Sensor, SensorKind};
 use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
+use noise::Parts;
+use transition::{Structure, Transition, Walking};
 
-/// A term of the series below this part of the largest sum is the last.
-const SERIES_TOLERANCE: f64 = 1e-12;
-const MAX_TERMS: usize = 60;
 /// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
 const LEAST_FILM_W_M2_K: f64 = 4.0;
 const LARGEST_FILM_W_M2_K: f64 = 80.0;
@@ -27,8 +28,6 @@ const LARGEST_FILM_W_M2_K: f64 = 80.0;
 const LN_INSIDE_BOUND: f64 = 1.5;
 /// Bound on a coupling above its prior mean, in standard deviations of the prior.
 const COUPLING_BOUND_SD: f64 = 2.5;
-/// Points of Gauss's two-point rule on [0, 1].
-const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 /// What a sensor looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,47 +68,24 @@ pub struct Cylinder {
     targets: Vec<Target>,
     states: States,
     settings: ObserverSettings,
-    /// Variance that the noise adds to each leading state in a second.
-    intensity: Vec<f64>,
-    /// Inverse memory of each leading state that walks alone, 1/s.
-    decay: Vec<f64>,
-    /// Value that each leading state with a memory returns to.
-    rest: Vec<f64>,
-    /// Leading states with coupled rows of the transition, and the others.
-    coupled: Vec<usize>,
-    alone: Vec<usize>,
-    /// Leading states that noise drives.
-    sources: Vec<usize>,
+    /// How each leading state walks.
+    walking: Vec<Walking>,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
     interval_s: Vec<f64>,
     work: Work,
 }
 
-/// Reused memory of one step. Rows of a coupled state are `n + 1` long: the state's columns, then the mean's increment.
-#[derive(Clone, Debug, Default)]
+/// Reused memory of a step.
+#[derive(Clone, Debug)]
 struct Work {
     rate: Vec<f64>,
     jacobian: DMatrix<f64>,
-    /// `A` and right-hand side: coupled rows.
-    a: Vec<f64>,
-    /// Current term `(hA)^k / k!`: coupled rows.
-    term: Vec<f64>,
-    next: Vec<f64>,
-    /// Sum of the terms, and the same at the two Gauss points.
-    sum: Vec<f64>,
-    at_gauss: [Vec<f64>; 2],
-    /// Current term of the states that walk alone: of the transition, and of the mean.
-    alone_term: Vec<f64>,
-    alone_mean: Vec<f64>,
-    part: Option<Box<Parts>>,
-}
-
-/// Reused memory of a divided interval.
-#[derive(Clone, Debug)]
-struct Parts {
-    step: Linearisation,
-    phi: DMatrix<f64>,
+    transition: Transition,
+    /// Noise covariance of a step, upper triangle: (leading, leading).
     noise: DMatrix<f64>,
+    /// Gradient of a sensor behind a lag: (n).
+    gradient: Vec<f64>,
+    parts: Option<Box<Parts>>,
 }
 
 impl Cylinder {
@@ -132,41 +108,22 @@ impl Cylinder {
         {
             return Err(EstimatorError::SensorTwice { name: twice.1.name.clone() });
         }
-        let walks_alone = |kind: &StateKind| {
-            matches!(kind, StateKind::Leak | StateKind::Air | StateKind::OutsideFilm | StateKind::Sun)
-        };
-        let leading = &states.kinds[..states.leading];
-        let split = |alone: bool| -> Vec<usize> {
-            (0..leading.len()).filter(|&i| walks_alone(&leading[i]) == alone).collect()
-        };
-        let (coupled, alone) = (split(false), split(true));
-        let sources = (0..leading.len()).filter(|&i| !matches!(leading[i], StateKind::Lag { .. })).collect();
-        let (n, rows) = (states.count(), coupled.len());
-        let zeros = || vec![0.0; rows * (n + 1)];
+        let structure = structure(&model, &states);
         let work = Work {
             rate: vec![0.0; model.states()],
             jacobian: DMatrix::zeros(model.states(), model.states() + Unknowns::COUNT),
-            a: zeros(),
-            term: zeros(),
-            next: zeros(),
-            sum: zeros(),
-            at_gauss: [zeros(), zeros()],
-            alone_term: vec![0.0; alone.len()],
-            alone_mean: vec![0.0; alone.len()],
-            part: None,
+            transition: Transition::new(&structure, states.count()),
+            noise: DMatrix::zeros(states.leading, states.leading),
+            gradient: vec![0.0; states.count()],
+            parts: None,
         };
         let mut cylinder = Self {
             interval_s: vec![f64::INFINITY; sensors.len()],
-            intensity: vec![0.0; states.leading],
-            decay: vec![0.0; states.leading],
-            rest: vec![0.0; states.leading],
+            walking: vec![Walking::default(); states.leading],
             sensors: sensors.to_vec(),
             targets,
             states,
             settings: settings.clone(),
-            coupled,
-            alone,
-            sources,
             work,
             model,
         };
@@ -212,9 +169,9 @@ impl Cylinder {
 
     /// Let mass and leak rate walk as one member of the bank supposes.
     pub fn suppose(&mut self, leak: &LeakHypothesis) {
-        self.intensity[self.states.mass] = leak.mass_walk_kg_per_sqrt_s.powi(2);
-        self.intensity[self.states.leak] = leak.rate.per_sqrt_s.powi(2);
-        self.decay[self.states.leak] = leak.rate.decay_per_s();
+        self.walking[self.states.mass].intensity = leak.mass_walk_kg_per_sqrt_s.powi(2);
+        self.walking[self.states.leak].intensity = leak.rate.per_sqrt_s.powi(2);
+        self.walking[self.states.leak].decay_per_s = leak.rate.decay_per_s();
     }
 
     /// Whether a state has gas, at temperatures and a density that the equation of state knows.
@@ -287,9 +244,9 @@ impl Cylinder {
 
     fn set_walks(&mut self) {
         let s = &self.settings;
-        self.rest[self.states.air] = s.air_rest_k;
+        self.walking[self.states.air].rest = s.air_rest_k;
         for (i, kind) in self.states.kinds[..self.states.leading].iter().enumerate() {
-            let (walk, decay) = match kind {
+            let (walk, decay_per_s) = match kind {
                 StateKind::Wall(_) | StateKind::Valve => (s.temperature_walk_k_per_sqrt_s, 0.0),
                 StateKind::Gas => (s.gas_walk_k_per_sqrt_s, 0.0),
                 StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
@@ -297,8 +254,7 @@ impl Cylinder {
                 StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
                 _ => continue,
             };
-            self.intensity[i] = walk * walk;
-            self.decay[i] = decay;
+            self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };
         }
     }
 
@@ -315,15 +271,14 @@ impl Cylinder {
         }
     }
 
-    /// `A` and the right-hand side of the coupled rows at `x`.
+    /// The linearised equations at `x`.
     fn linearise(&mut self, x: &[f64]) -> Result<(), EstimatorError> {
-        let (n, physical) = (self.states.count(), self.model.states());
+        let physical = self.model.states();
         let unknowns = self.unknowns(x);
-        let Work { rate, jacobian, a, .. } = &mut self.work;
+        let Work { rate, jacobian, transition, .. } = &mut self.work;
         self.model.rates(&x[..physical], &unknowns, rate, Some(jacobian))?;
-        a.fill(0.0);
         let states = &self.states;
-        let columns = [
+        let of_unknowns = [
             Some(states.air),
             states.outside,
             states.inside,
@@ -332,38 +287,37 @@ impl Cylinder {
             states.slope,
             Some(states.leak),
         ];
-        for (row, &state) in a.chunks_exact_mut(n + 1).zip(&self.coupled) {
-            if state >= physical {
-                continue;
+        // The mass moves by itself: the temperatures are the states before it.
+        let temperatures = states.mass;
+        let of_states = (0..physical).map(Some);
+        for (column, state) in jacobian.column_iter().zip(of_states.chain(of_unknowns)) {
+            if let Some(to) = state.and_then(|state| transition.per_state_mut(state)) {
+                to[..temperatures].copy_from_slice(&column.as_slice()[..temperatures]);
             }
-            for (to, column) in row.iter_mut().zip(0..physical) {
-                *to = jacobian[(state, column)];
-            }
-            for (unknown, column) in columns.iter().enumerate() {
-                if let Some(column) = column {
-                    row[*column] = jacobian[(state, physical + unknown)];
-                }
-            }
-            row[n] = rate[state];
         }
+        transition.rate_mut()[..temperatures].copy_from_slice(&rate[..temperatures]);
         self.linearise_lags(x)
     }
 
     /// Rows of the sensors' lags: `dz/dt = (y - z) / tau`.
     fn linearise_lags(&mut self, x: &[f64]) -> Result<(), EstimatorError> {
-        let n = self.states.count();
+        let mut row = self.states.mass;
         for sensor in 0..self.sensors.len() {
-            let Some(state) = self.states.lag[sensor] else { continue };
+            let Some(lagged) = self.states.lag[sensor] else { continue };
             let rate = self.sensors[sensor].lag_s().recip();
-            let row = self.coupled.iter().position(|&i| i == state).expect("a lag is coupled");
-            let mut a = std::mem::take(&mut self.work.a);
-            let row = &mut a[row * (n + 1)..(row + 1) * (n + 1)];
-            let reading = self.static_reading(sensor, x, Some(row));
-            row[..n].iter_mut().for_each(|by| *by *= rate);
-            row[state] -= rate;
-            let outcome = reading.map(|reading| row[n] = rate * (reading - x[state]));
-            self.work.a = a;
+            let mut gradient = std::mem::take(&mut self.work.gradient);
+            let reading = self.static_reading(sensor, x, Some(&mut gradient));
+            gradient[lagged] -= 1.0;
+            let transition = &mut self.work.transition;
+            for (state, by) in gradient.iter().enumerate() {
+                if let Some(to) = transition.per_state_mut(state) {
+                    to[row] = rate * by;
+                }
+            }
+            let outcome = reading.map(|reading| transition.rate_mut()[row] = rate * (reading - x[lagged]));
+            self.work.gradient = gradient;
             outcome?;
+            row += 1;
         }
         Ok(())
     }
@@ -439,114 +393,19 @@ impl Cylinder {
         Ok(prediction.value)
     }
 
-    /// Sum the series of the exponential over a step of `h` seconds; noise points only where `noise`.
-    fn sum_series(&mut self, x: &[f64], h: f64, noise: bool) {
-        let stride = self.states.count() + 1;
-        let Work { a, term, next, sum, at_gauss, alone_term, alone_mean, .. } = &mut self.work;
-        for (to, from) in term.iter_mut().zip(a.iter()) {
-            *to = h * from;
-        }
-        for ((term, mean), &state) in alone_term.iter_mut().zip(alone_mean.iter_mut()).zip(&self.alone) {
-            *term = -h * self.decay[state];
-            *mean = *term * (x[state] - self.rest[state]);
-        }
-        sum.copy_from_slice(term);
-        for (points, at) in at_gauss.iter_mut().zip(GAUSS) {
-            points.iter_mut().zip(term.iter()).for_each(|(to, from)| *to = at * from);
-        }
-        for k in 2..MAX_TERMS {
-            let scale = h / k as f64;
-            for (to, a) in next.chunks_exact_mut(stride).zip(a.chunks_exact(stride)) {
-                to.fill(0.0);
-                for (from, &state) in term.chunks_exact(stride).zip(&self.coupled) {
-                    let factor = scale * a[state];
-                    if factor != 0.0 {
-                        to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
-                    }
-                }
-                for ((term, mean), &state) in alone_term.iter().zip(alone_mean.iter()).zip(&self.alone) {
-                    to[state] += scale * a[state] * term;
-                    to[stride - 1] += scale * a[state] * mean;
-                }
-            }
-            for ((term, mean), &state) in alone_term.iter_mut().zip(alone_mean.iter_mut()).zip(&self.alone) {
-                let factor = -scale * self.decay[state];
-                *term *= factor;
-                *mean *= factor;
-            }
-            std::mem::swap(term, next);
-            let mut largest = 0.0_f64;
-            for (to, from) in sum.iter_mut().zip(term.iter()) {
-                *to += from;
-                largest = largest.max(from.abs() - SERIES_TOLERANCE * to.abs());
-            }
-            if noise {
-                for (points, at) in at_gauss.iter_mut().zip(GAUSS) {
-                    let power = at.powi(k as i32);
-                    points.iter_mut().zip(term.iter()).for_each(|(to, from)| *to += power * from);
-                }
-            }
-            if largest <= 1e-16 {
-                break;
-            }
-        }
-    }
-
-    /// Transition and noise of the step just summed.
-    fn write_linearisation(&self, h: f64, linear: &mut Linearisation) {
-        let stride = self.states.count() + 1;
-        let Linearisation { phi, g, q } = linear;
-        phi.fill(0.0);
-        g.fill(0.0);
-        for (row, &state) in self.work.sum.chunks_exact(stride).zip(&self.coupled) {
-            for (column, value) in row[..stride - 1].iter().enumerate() {
-                phi[(state, column)] = *value;
-            }
-            phi[(state, state)] += 1.0;
-        }
-        for &state in &self.alone {
-            phi[(state, state)] = (-h * self.decay[state]).exp();
-        }
-        for (index, &source) in self.sources.iter().enumerate() {
-            for (point, at) in GAUSS.into_iter().enumerate() {
-                let column = 2 * index + point;
-                q[column] = 0.5 * h * self.intensity[source];
-                for (row, &state) in self.work.at_gauss[point].chunks_exact(stride).zip(&self.coupled) {
-                    g[(state, column)] = row[source];
-                }
-                if self.coupled.contains(&source) {
-                    g[(source, column)] += 1.0;
-                } else {
-                    g[(source, column)] = (-h * at * self.decay[source]).exp();
-                }
-            }
-        }
-    }
-
-    /// One undivided step.
-    fn step(
-        &mut self,
-        x: &mut [f64],
-        h: f64,
-        linear: Option<&mut Linearisation>,
-    ) -> Result<(), EstimatorError> {
+    /// One undivided step; its transition is in the work, and with `noise` its noise.
+    fn step(&mut self, x: &mut [f64], h: f64, noise: bool) -> Result<(), EstimatorError> {
         self.linearise(x)?;
-        self.sum_series(x, h, linear.is_some());
-        let stride = self.states.count() + 1;
-        for (row, &state) in self.work.sum.chunks_exact(stride).zip(&self.coupled) {
-            x[state] += row[stride - 1];
-        }
-        for &state in &self.alone {
-            let rest = self.rest[state];
-            x[state] = rest + (x[state] - rest) * (-h * self.decay[state]).exp();
-        }
-        if let Some(linear) = linear {
-            self.write_linearisation(h, linear);
+        let Work { transition, noise: q, .. } = &mut self.work;
+        transition.solve(x, &self.walking, h);
+        transition.advance(x);
+        if noise {
+            transition.write_noise(&self.walking, h, q);
         }
         Ok(())
     }
 
-    /// Several steps as one transition; the noise of the parts becomes a triangular factor.
+    /// Several steps as one transition, with the noise of all in the work.
     fn divided(
         &mut self,
         x: &mut [f64],
@@ -555,52 +414,35 @@ impl Cylinder {
         linear: &mut Linearisation,
     ) -> Result<(), EstimatorError> {
         let (n, leading) = (self.states.count(), self.states.leading);
-        let mut memory = self.work.part.take().unwrap_or_else(|| {
-            Box::new(Parts {
-                step: Linearisation::zeros(n, leading, 2 * self.sources.len()),
-                phi: DMatrix::zeros(leading, n),
-                noise: DMatrix::zeros(leading, leading),
-            })
+        let mut memory = self.work.parts.take().unwrap_or_else(|| Box::new(Parts::new(n, leading)));
+        memory.clear();
+        let outcome = (0..parts).try_for_each(|_| {
+            self.step(x, h, true)?;
+            self.work.transition.write_phi(&mut linear.phi);
+            memory.append(&linear.phi, &self.work.noise);
+            Ok(())
         });
-        let Parts { step, phi, noise } = memory.as_mut();
-        phi.fill_with_identity();
-        noise.fill(0.0);
-        for _ in 0..parts {
-            self.step(x, h, Some(step))?;
-            let moved = step.phi.columns(0, leading) * &*phi;
-            let constant = step.phi.columns(leading, n - leading).into_owned();
-            phi.copy_from(&moved);
-            let mut tail = phi.columns_mut(leading, n - leading);
-            tail += constant;
-            let spread = step.phi.columns(0, leading) * &*noise * step.phi.columns(0, leading).transpose();
-            *noise = spread + &step.g * DMatrix::from_diagonal(&step.q) * step.g.transpose();
-        }
-        linear.phi.copy_from(phi);
-        linear.g.fill(0.0);
-        linear.q.fill(0.0);
-        triangular_factor(noise, linear);
-        self.work.part = Some(memory);
-        Ok(())
+        linear.phi.copy_from(&memory.phi);
+        self.work.noise.copy_from(&memory.noise);
+        self.work.parts = Some(memory);
+        outcome
     }
 }
 
-/// `Q = L diag(q) L^T` with unit lower triangular `L`, columns without variance left zero.
-fn triangular_factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
-    let n = noise.nrows();
-    for j in 0..n {
-        let d = noise[(j, j)];
-        if d <= f64::MIN_POSITIVE {
-            continue;
-        }
-        linear.q[j] = d;
-        for i in j..n {
-            linear.g[(i, j)] = noise[(i, j)] / d;
-        }
-        for i in j..n {
-            for k in j..n {
-                noise[(i, k)] -= d * linear.g[(i, j)] * linear.g[(k, j)];
-            }
-        }
+/// Which rows of the transition are coupled, and what acts on them.
+fn structure(model: &ReducedModel, states: &States) -> Structure {
+    let lags = states.lag.iter().flatten().copied();
+    let block: Vec<usize> = (0..model.mass_index()).chain(lags).collect();
+    let lagged = |sensor: &usize| states.lag[*sensor].is_some();
+    let parameters = (0..states.lag.len()).filter(lagged).flat_map(|sensor| &states.parameters[sensor]);
+    let constants = [states.inside, states.capacity, states.slope];
+    Structure {
+        temperatures: model.mass_index(),
+        outer: (0..states.leading).filter(|state| !block.contains(state)).collect(),
+        mass: states.mass,
+        leak: states.leak,
+        constants: constants.into_iter().chain(parameters.copied()).flatten().collect(),
+        block,
     }
 }
 
@@ -627,7 +469,7 @@ impl StateSpace for Cylinder {
     }
 
     fn noises(&self) -> usize {
-        2 * self.sources.len()
+        self.states.leading
     }
 
     fn outputs(&self) -> usize {
@@ -642,11 +484,17 @@ impl StateSpace for Cylinder {
     ) -> Result<(), EstimatorError> {
         let parts = (dt_s / self.settings.longest_step_s).ceil().max(1.0) as usize;
         let h = dt_s / parts as f64;
-        match linear {
-            Some(linear) if parts > 1 => self.divided(x, h, parts, linear),
-            linear @ Some(_) => self.step(x, h, linear),
-            None => (0..parts).try_for_each(|_| self.step(x, h, None)),
+        let Some(linear) = linear else {
+            return (0..parts).try_for_each(|_| self.step(x, h, false));
+        };
+        if parts > 1 {
+            self.divided(x, h, parts, linear)?;
+        } else {
+            self.step(x, h, true)?;
+            self.work.transition.write_phi(&mut linear.phi);
         }
+        noise::factor(&mut self.work.noise, linear);
+        Ok(())
     }
 
     fn output(&mut self, j: usize, x: &[f64], h: Option<&mut [f64]>) -> Result<f64, EstimatorError> {

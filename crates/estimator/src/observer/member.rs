@@ -164,7 +164,7 @@ impl Member {
         let Predicted { value, mut r } =
             self.mechanism.expect(cylinder, shared, (&self.x, &self.p), sensor)?;
         let nu = reading - value;
-        let s = self.mechanism.innovation_variance(shared, &self.p, sensor, r);
+        let s = self.mechanism.innovation_variance(shared, &mut self.p, sensor, r);
         let mut outcome = Outcome::Accepted;
         if nu * nu > gate * s {
             self.rejected[sensor] += 1;
@@ -175,6 +175,7 @@ impl Member {
             outcome = Outcome::Reacquired;
             if cylinder.reads_pressure(sensor) {
                 self.open(cylinder, Some(sensor));
+                self.mechanism.innovation_variance(shared, &mut self.p, sensor, r);
             } else {
                 // Whatever moved the reading, the state may follow it half of the way at most.
                 r = r.max(nu * nu);

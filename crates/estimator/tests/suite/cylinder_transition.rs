@@ -126,7 +126,7 @@ fn fall_with(errors: &[f64], order: f64) -> bool {
 
 #[test]
 fn a_step_at_rest_is_two_half_steps() {
-    // At rest the point of linearisation stays where it is: the transition is exact, the noise up to Gauss's rule.
+    // At rest the point of linearisation stays where it is: the transition is exact, the noise up to Simpson's rule.
     let (mut whole, mut halves) = (cylinder(1e3, 0.0), cylinder(1e3, 0.0));
     let (x, typical) = state(&whole, false);
     let noise = [20.0, 10.0, 5.0, 2.5].map(|h| {
@@ -210,7 +210,7 @@ fn a_step_is_the_exponential_of_the_linearised_equations() {
         let van_loan = discretise(&a, &DMatrix::identity(n, n), &intensities(&cylinder, n), h).unwrap();
         noise_difference(&q, &van_loan.noise)
     });
-    println!("noise of 20, 10, 5, 2.5 s by Gauss's rule: {noise:?}");
+    println!("noise of 20, 10, 5, 2.5 s by Simpson's rule: {noise:?}");
     assert!(noise[0] < 1e-3 && fall_with(&noise[1..], 4.0), "{noise:?}");
 }
 

@@ -132,15 +132,22 @@ impl Mechanism {
     }
 
     /// Variance of the innovation of a sensor with the gradient `shared.h` and noise of variance `r`.
-    pub fn innovation_variance(&mut self, shared: &Shared, p: &UdFactors<Dyn>, sensor: usize, r: f64) -> f64 {
+    pub fn innovation_variance(
+        &mut self,
+        shared: &Shared,
+        p: &mut UdFactors<Dyn>,
+        sensor: usize,
+        r: f64,
+    ) -> f64 {
         match self {
             Self::Stationary(stationary) => stationary.innovation_variance(p, sensor, &shared.h, r),
-            _ => p.quadratic(&shared.h) + r,
+            _ => p.project(&shared.h) + r,
         }
     }
 
     /// Update the covariance by a reading with the gradient `shared.h` and noise of variance `r`; the gain goes to
     /// `shared.gain`. Returns the innovation's variance; with a constant gain it is of no meaning.
+    /// [`innovation_variance`](Self::innovation_variance) comes before, with the same gradient and covariance.
     pub fn update(
         &mut self,
         shared: &mut Shared,
@@ -156,7 +163,7 @@ impl Mechanism {
             Self::MovingHorizon(horizon) => horizon.take(sensor, reading),
             Self::Extended | Self::Unscented => {}
         }
-        p.update(&shared.h, r, &mut shared.gain)
+        p.update_projected(r, &mut shared.gain)
     }
 
     /// The sample is not as usual: a reading is missing or was rejected.

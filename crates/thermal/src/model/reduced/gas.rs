@@ -6,10 +6,11 @@
 //!
 //! `(m c_v + T p_T beta) dT/dt = Q - T p_T [alpha dT_w/dt + r (1/rho - gamma)]`, `dm/dt = -r`.
 //!
-//! Second derivatives of the Helmholtz energy come from dual numbers in (T, rho), so the linearisation is exact.
+//! Properties with their derivatives come from the [`Chart`].
 use num_dual::DualSVec64;
 
 use super::Pressure;
+use super::chart::{Chart, Properties, Property};
 use crate::ThermalError;
 use crate::fluid::{Fluid, Real};
 use crate::vessel::InnerVolume;
@@ -67,7 +68,7 @@ impl<D: Into<Slope>> GasState<D> {
 /// The gas node of a vessel.
 #[derive(Clone, Debug)]
 pub(super) struct GasNode {
-    fluid: Fluid,
+    chart: Chart,
     volume: InnerVolume,
     /// Last volume, m³: where Newton starts, without influence on where it ends.
     guess_m3: f64,
@@ -75,11 +76,11 @@ pub(super) struct GasNode {
 
 impl GasNode {
     pub fn new(fluid: Fluid, volume: InnerVolume) -> Self {
-        Self { fluid, volume, guess_m3: volume.volume_m3 }
+        Self { chart: Chart::new(fluid), volume, guess_m3: volume.volume_m3 }
     }
 
     pub fn fluid(&self) -> &Fluid {
-        &self.fluid
+        self.chart.fluid()
     }
 
     pub fn reference_volume_m3(&self) -> f64 {
@@ -103,13 +104,23 @@ impl GasNode {
         let sane = mass_kg > 0.0 && temperature_k > 0.0 && mass_kg.is_finite() && wall_k.is_finite();
         let mut v = self.guess_m3;
         if sane && temperature_k.is_finite() {
+            let mut isotherm = self.chart.isotherm(mass_kg / v, temperature_k);
             for _ in 0..MAX_ITERATIONS {
                 let rho = mass_kg / v;
-                let p = self.fluid.pressure_with_derivatives(rho, temperature_k);
-                let residual = v - self.volume.volume_m3(wall_k, p.pressure_pa);
-                let step = residual / (1.0 + v0 * b * p.dp_drho_pa_m3_kg * rho / v);
+                if isotherm.is_some_and(|isotherm| !isotherm.holds(rho)) {
+                    isotherm = self.chart.isotherm(rho, temperature_k);
+                }
+                let (pressure_pa, slope) = match &isotherm {
+                    Some(isotherm) => isotherm.pressure(rho),
+                    None => {
+                        let p = self.chart.fluid().pressure_with_derivatives(rho, temperature_k);
+                        (p.pressure_pa, p.dp_drho_pa_m3_kg)
+                    }
+                };
+                let elastic = v0 * b * slope * rho / v;
+                let step = (v - self.volume.volume_m3(wall_k, pressure_pa)) / (1.0 + elastic);
                 v -= step.clamp(-0.3 * v, 0.3 * v);
-                if step.abs() <= VOLUME_TOLERANCE.max(1e-6 * v0 * b * p.dp_drho_pa_m3_kg * rho / v) * v {
+                if step.abs() <= VOLUME_TOLERANCE.max(1e-6 * elastic) * v {
                     // The next Newton step would be smaller by the square of this one.
                     self.guess_m3 = v;
                     return Ok(v);
@@ -134,24 +145,19 @@ impl GasNode {
         derivatives: bool,
     ) -> Result<GasState<Slope>, ThermalError> {
         let v = self.volume_m3(t, m, wall_k)?;
-        if !derivatives {
-            let s = self.fluid.state(m / v, t);
-            return Ok(self
-                .combine(t, m, v, m / v, [s.pressure_pa, s.cv_j_kg_k, s.dp_dt_pa_k, s.dp_drho_pa_m3_kg])
-                .into_slopes());
-        }
         let rho = m / v;
-        let seed = |value: f64, index: usize| DualSVec64::<2>::from(value).derivative(index);
-        let s = self.fluid.state(seed(rho, 1), seed(t, 0));
-        let volume_by = self.volume_by(rho, v, s.dp_dt_pa_k.re, s.dp_drho_pa_m3_kg.re);
+        let Properties { p, cv, p_t, p_rho } = self.chart.properties(rho, t);
+        let properties = [p, cv, p_t, p_rho];
+        if !derivatives {
+            return Ok(self.combine(t, m, v, rho, properties.map(|property| property.value)).into_slopes());
+        }
+        let volume_by = self.volume_by(rho, v, p_t.value, p_rho.value);
         let rho_by = [-rho * volume_by[0] / v, (1.0 - rho * volume_by[1]) / v, -rho * volume_by[2] / v];
         let dual = |value: f64, by: [f64; 3]| Dual::new(value, num_dual::Derivative::some(by.into()));
-        let lift = |value: DualSVec64<2>| {
-            let [by_t, by_rho]: [f64; 2] =
-                value.eps.unwrap_generic(nalgebra::Const::<2>, nalgebra::U1).into();
-            dual(value.re, [by_t + by_rho * rho_by[0], by_rho * rho_by[1], by_rho * rho_by[2]])
+        let lift = |Property { value, by_t, by_rho }: Property| {
+            dual(value, [by_t + by_rho * rho_by[0], by_rho * rho_by[1], by_rho * rho_by[2]])
         };
-        let properties = [s.pressure_pa, s.cv_j_kg_k, s.dp_dt_pa_k, s.dp_drho_pa_m3_kg].map(lift);
+        let properties = properties.map(lift);
         let (t, m) = (dual(t, [1.0, 0.0, 0.0]), dual(m, [0.0, 1.0, 0.0]));
         Ok(self.combine(t, m, dual(v, volume_by), dual(rho, rho_by), properties).into_slopes())
     }
@@ -163,13 +169,13 @@ impl GasNode {
     pub fn pressure(&mut self, t: f64, m: f64, wall_k: f64) -> Result<Pressure, ThermalError> {
         let v = self.volume_m3(t, m, wall_k)?;
         let rho = m / v;
-        let p = self.fluid.pressure_with_derivatives(rho, t);
-        let by = self.volume_by(rho, v, p.dp_dt_pa_k, p.dp_drho_pa_m3_kg);
+        let Properties { p, p_t, p_rho, .. } = self.chart.properties(rho, t);
+        let by = self.volume_by(rho, v, p_t.value, p_rho.value);
         Ok(Pressure {
-            pressure_pa: p.pressure_pa,
-            per_gas_k: p.dp_dt_pa_k - p.dp_drho_pa_m3_kg * rho * by[0] / v,
-            per_mass_kg: p.dp_drho_pa_m3_kg * (1.0 - rho * by[1]) / v,
-            per_wall_k: -p.dp_drho_pa_m3_kg * rho * by[2] / v,
+            pressure_pa: p.value,
+            per_gas_k: p_t.value - p_rho.value * rho * by[0] / v,
+            per_mass_kg: p_rho.value * (1.0 - rho * by[1]) / v,
+            per_wall_k: -p_rho.value * rho * by[2] / v,
         })
     }
 

@@ -13,6 +13,7 @@
 //! convection and radiation together. [`ReducedModel::rates`] also gives the exact Jacobian with all states
 //! and unknowns.
 mod balance;
+mod chart;
 mod gas;
 mod spread;
 

@@ -1,0 +1,328 @@
+//! Compressibility and heat capacity of the gas as polynomials on cells of the plane of temperature and density.
+//!
+//! An observer asks for the same gas some ten times a sample, within a kelvin of the last time, and an equation of state with its
+//! third derivatives costs more than all the rest of the model. So `Z = p / (rho R T)` and `c_v` are interpolated at the
+//! Chebyshev nodes of a cell, 4 K wide and a 128th of the densest state high, by polynomials of degree 5 in each
+//! direction; their derivatives are those of the polynomials. Which polynomial holds depends on the state alone, never on what was
+//! asked before. A cell whose polynomials miss the equation between the nodes by more than 1e-9 (near saturation and the critical
+//! point) and states outside the fluid's domain are left to the equation itself.
+//!
+//! Source: interpolation at Chebyshev nodes, Trefethen 2013, chapters 2 and 15.
+use std::f64::consts::PI;
+
+use nalgebra::SMatrix;
+use num_dual::DualSVec64;
+
+use crate::fluid::Fluid;
+
+/// Coefficients in each direction.
+const ORDER: usize = 6;
+/// Width of a cell, K.
+const WIDTH_K: f64 = 4.0;
+/// Cells up to the densest state that the equation knows, a liquid at some four times the critical density.
+const CELLS_PER_DENSEST: f64 = 128.0;
+/// Relative error between the nodes up to which polynomials are used.
+const LARGEST_ERROR: f64 = 1e-9;
+/// Cells kept at a time, along each direction: a power of two.
+const KEPT: i32 = 8;
+
+type Coefficients = SMatrix<f64, ORDER, ORDER>;
+/// Value and derivatives `[f, f_T, f_rho, f_TT, f_Trho, f_rhorho]`.
+type Expansion = [f64; 6];
+
+/// A property with its derivatives by temperature and density.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Property {
+    pub value: f64,
+    pub by_t: f64,
+    pub by_rho: f64,
+}
+
+/// Properties of the gas.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Properties {
+    /// Pressure, Pa.
+    pub p: Property,
+    /// Isochoric heat capacity, J/(kg K).
+    pub cv: Property,
+    /// `(dp/dT)_rho`, Pa/K.
+    pub p_t: Property,
+    /// `(dp/drho)_T`, Pa m³/kg.
+    pub p_rho: Property,
+}
+
+/// Polynomials of one cell in the coordinates `(T - T_c) / h_T` (rows) and `(rho - rho_c) / h_rho` (columns).
+#[derive(Clone, Debug)]
+struct Cell {
+    index: (i32, i32),
+    middle: (f64, f64),
+    polynomials: Option<(Coefficients, Coefficients)>,
+}
+
+/// The cells of one fluid that were needed lately.
+#[derive(Clone, Debug)]
+pub(super) struct Chart {
+    fluid: Fluid,
+    gas_constant_j_kg_k: f64,
+    height_kg_m3: f64,
+    /// Nodes of the interpolation on [-1, 1], and the matrix from values there to coefficients.
+    nodes: [f64; ORDER],
+    to_coefficients: Coefficients,
+    cells: Vec<Option<Cell>>,
+}
+
+/// Pressure along an isotherm within a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Isotherm {
+    middle_kg_m3: f64,
+    half_kg_m3: f64,
+    rt: f64,
+    coefficients: [f64; ORDER],
+}
+
+impl Isotherm {
+    /// Whether a density, kg/m³, is within the cell.
+    #[inline]
+    pub fn holds(&self, rho: f64) -> bool {
+        (rho - self.middle_kg_m3).abs() <= self.half_kg_m3
+    }
+
+    /// Pressure, Pa, and its slope by density, Pa m³/kg.
+    #[inline]
+    pub fn pressure(&self, rho: f64) -> (f64, f64) {
+        let b = (rho - self.middle_kg_m3) / self.half_kg_m3;
+        let (mut z, mut slope) = (0.0, 0.0);
+        for coefficient in self.coefficients.iter().rev() {
+            slope = slope * b + z;
+            z = z * b + coefficient;
+        }
+        (rho * self.rt * z, self.rt * (z + rho * slope / self.half_kg_m3))
+    }
+}
+
+impl Chart {
+    pub fn new(fluid: Fluid) -> Self {
+        let nodes: [f64; ORDER] = std::array::from_fn(|k| (PI * (k as f64 + 0.5) / ORDER as f64).cos());
+        let powers = Coefficients::from_fn(|node, power| nodes[node].powi(power as i32));
+        Self {
+            gas_constant_j_kg_k: fluid.specific_gas_constant_j_kg_k(),
+            height_kg_m3: fluid.domain().highest_density_kg_m3 / CELLS_PER_DENSEST,
+            nodes,
+            to_coefficients: powers.try_inverse().expect("the nodes differ"),
+            cells: vec![None; (KEPT * KEPT) as usize],
+            fluid,
+        }
+    }
+
+    pub fn fluid(&self) -> &Fluid {
+        &self.fluid
+    }
+
+    /// All properties at a density, kg/m³, and temperature, K.
+    pub fn properties(&mut self, rho: f64, t: f64) -> Properties {
+        let (half, r) = ((0.5 * WIDTH_K, 0.5 * self.height_kg_m3), self.gas_constant_j_kg_k);
+        let Some((cell, (z, cv))) = self.polynomials(rho, t) else { return self.exact(rho, t) };
+        let at = ((t - cell.0) / half.0, (rho - cell.1) / half.1);
+        let [z, z_t, z_r, z_tt, z_tr, z_rr] = expand(z, at, half);
+        let [cv, cv_t, cv_r, ..] = expand(cv, at, half);
+        let (p_t, p_rho) = (rho * r * (z + t * z_t), r * t * (z + rho * z_r));
+        let p_trho = r * (z + t * z_t + rho * z_r + rho * t * z_tr);
+        Properties {
+            p: Property { value: rho * r * t * z, by_t: p_t, by_rho: p_rho },
+            cv: Property { value: cv, by_t: cv_t, by_rho: cv_r },
+            p_t: Property { value: p_t, by_t: rho * r * (2.0 * z_t + t * z_tt), by_rho: p_trho },
+            p_rho: Property { value: p_rho, by_t: p_trho, by_rho: r * t * (2.0 * z_r + rho * z_rr) },
+        }
+    }
+
+    /// Pressure about a density, kg/m³, at a temperature, K; `None` where the equation itself is to be used.
+    pub fn isotherm(&mut self, rho: f64, t: f64) -> Option<Isotherm> {
+        let (half_kg_m3, rt) = (0.5 * self.height_kg_m3, self.gas_constant_j_kg_k * t);
+        let (middle, (z, _)) = self.polynomials(rho, t)?;
+        let a = (t - middle.0) / (0.5 * WIDTH_K);
+        let mut coefficients = [0.0; ORDER];
+        for row in (0..ORDER).rev() {
+            for (power, coefficient) in coefficients.iter_mut().enumerate() {
+                *coefficient = *coefficient * a + z[(power, row)];
+            }
+        }
+        Some(Isotherm { middle_kg_m3: middle.1, half_kg_m3, rt, coefficients })
+    }
+
+    /// Middle of the cell of a state with its polynomials, found or made.
+    fn polynomials(&mut self, rho: f64, t: f64) -> Option<((f64, f64), &(Coefficients, Coefficients))> {
+        let (i, j) = ((t / WIDTH_K).floor(), (rho / self.height_kg_m3).floor());
+        let index = (i as i32, j as i32);
+        let slot = ((index.0 & (KEPT - 1)) * KEPT + (index.1 & (KEPT - 1))) as usize;
+        if self.cells[slot].as_ref().is_none_or(|cell| cell.index != index) {
+            let domain = self.fluid.domain();
+            let known = t >= domain.lowest_temperature_k
+                && t <= domain.highest_temperature_k
+                && rho > 0.0
+                && rho <= domain.highest_density_kg_m3;
+            if !known {
+                return None;
+            }
+            let middle = ((i + 0.5) * WIDTH_K, (j + 0.5) * self.height_kg_m3);
+            self.cells[slot] = Some(Cell { index, middle, polynomials: self.interpolate(middle) });
+        }
+        let cell = self.cells[slot].as_ref()?;
+        cell.polynomials.as_ref().map(|polynomials| (cell.middle, polynomials))
+    }
+
+    /// Polynomials of a cell; `None` where they are not good enough.
+    fn interpolate(&self, middle: (f64, f64)) -> Option<(Coefficients, Coefficients)> {
+        let half = (0.5 * WIDTH_K, 0.5 * self.height_kg_m3);
+        let state = |a: f64, b: f64| {
+            let state = self.fluid.state(middle.1 + b * half.1, middle.0 + a * half.0);
+            (state.compressibility, state.cv_j_kg_k)
+        };
+        let values: [[(f64, f64); ORDER]; ORDER] = self.nodes.map(|a| self.nodes.map(|b| state(a, b)));
+        // Stored by density along a column, so that a loop over it is one over neighbours.
+        let coefficients = |of: fn((f64, f64)) -> f64| {
+            let values = Coefficients::from_fn(|b, a| of(values[a][b]));
+            self.to_coefficients * values * self.to_coefficients.transpose()
+        };
+        let (z, cv) = (coefficients(|(z, _)| z), coefficients(|(_, cv)| cv));
+        let between = [(0.0, 0.0), (0.5, -0.9), (-0.9, 0.5), (0.95, 0.95), (-0.45, -1.0)];
+        let good = between.iter().all(|&(a, b)| {
+            let (z_exact, cv_exact) = state(a, b);
+            let close = |found: Expansion, exact: f64| (found[0] / exact - 1.0).abs() < LARGEST_ERROR;
+            close(expand(&z, (a, b), half), z_exact) && close(expand(&cv, (a, b), half), cv_exact)
+        });
+        good.then_some((z, cv))
+    }
+
+    /// By the equation of state itself.
+    fn exact(&self, rho: f64, t: f64) -> Properties {
+        let seed = |value: f64, index: usize| DualSVec64::<2>::from(value).derivative(index);
+        let state = self.fluid.state(seed(rho, 1), seed(t, 0));
+        let property = |dual: DualSVec64<2>| {
+            let [by_t, by_rho]: [f64; 2] = dual.eps.unwrap_generic(nalgebra::Const::<2>, nalgebra::U1).into();
+            Property { value: dual.re, by_t, by_rho }
+        };
+        Properties {
+            p: property(state.pressure_pa),
+            cv: property(state.cv_j_kg_k),
+            p_t: property(state.dp_dt_pa_k),
+            p_rho: property(state.dp_drho_pa_m3_kg),
+        }
+    }
+}
+
+/// A polynomial with its first and second derivatives at a point of the cell, half as wide and high as `half`.
+#[inline]
+fn expand(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> Expansion {
+    // Horner's rule along the temperature for all powers of the density at once; second derivatives are halves.
+    let (mut f, mut d, mut dd) = ([0.0; ORDER], [0.0; ORDER], [0.0; ORDER]);
+    for column in coefficients.column_iter().rev() {
+        for (power, coefficient) in column.iter().enumerate() {
+            dd[power] = dd[power] * a + d[power];
+            d[power] = d[power] * a + f[power];
+            f[power] = f[power] * a + coefficient;
+        }
+    }
+    let (mut sum, mut by_a, mut by_b) = (0.0, 0.0, 0.0);
+    let (mut by_aa, mut by_ab, mut by_bb) = (0.0, 0.0, 0.0);
+    for power in (0..ORDER).rev() {
+        by_bb = by_bb * b + by_b;
+        by_b = by_b * b + sum;
+        by_ab = by_ab * b + by_a;
+        sum = sum * b + f[power];
+        by_a = by_a * b + d[power];
+        by_aa = by_aa * b + dd[power];
+    }
+    [
+        sum,
+        by_a / half.0,
+        by_b / half.1,
+        2.0 * by_aa / (half.0 * half.0),
+        by_ab / (half.0 * half.1),
+        2.0 * by_bb / (half.1 * half.1),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Properties by polynomials and by the equation; the largest relative difference of each property and derivative.
+    fn differences(name: &str, temperatures_k: (f64, f64), pressures_pa: (f64, f64)) -> [f64; 3] {
+        let fluid = Fluid::named(name).unwrap();
+        let mut chart = Chart::new(fluid.clone());
+        let mut worst = [0.0_f64; 3];
+        let mut used = 0;
+        for step in 0..300_u32 {
+            // Incommensurable strides: everywhere in a cell, on either side of its edges.
+            let (u, v) = ((f64::from(step) * 0.618_034).fract(), (f64::from(step) * 0.754_878).fract());
+            let t = temperatures_k.0 + u * (temperatures_k.1 - temperatures_k.0);
+            let p = pressures_pa.0 * (pressures_pa.1 / pressures_pa.0).powf(v);
+            let rho = fluid.density_from_pressure_temperature(p, t).unwrap();
+            let exact = chart.exact(rho, t);
+            used += usize::from(chart.isotherm(rho, t).is_some());
+            let found = chart.properties(rho, t);
+            let pairs = [
+                (found.p, exact.p),
+                (found.cv, exact.cv),
+                (found.p_t, exact.p_t),
+                (found.p_rho, exact.p_rho),
+            ];
+            for (found, exact) in pairs {
+                let scale = exact.value.abs();
+                worst[0] = worst[0].max((found.value - exact.value).abs() / scale);
+                worst[1] = worst[1].max((found.by_t - exact.by_t).abs() * t / scale);
+                worst[2] = worst[2].max((found.by_rho - exact.by_rho).abs() * rho / scale);
+            }
+        }
+        println!("{name}: values {:.1e}, by T {:.1e}, by rho {:.1e}", worst[0], worst[1], worst[2]);
+        assert!(used == 300, "{name}: polynomials in {used} of 300 states");
+        worst
+    }
+
+    #[test]
+    fn polynomials_agree_with_the_equation_and_its_derivatives() {
+        for name in Fluid::names() {
+            let worst = differences(name, (220.0, 360.0), (1e5, 3e7));
+            assert!(worst[0] < 1e-9, "{name}: {worst:?}");
+            assert!(worst[1] < 1e-6 && worst[2] < 1e-6, "{name}: {worst:?}");
+        }
+    }
+
+    #[test]
+    fn an_isotherm_gives_pressure_and_slope() {
+        let mut chart = Chart::new(Fluid::named("nitrogen").unwrap());
+        for (rho, t) in [(5.0, 280.0), (222.0, 251.3), (310.0, 340.0)] {
+            let exact = chart.fluid().pressure_with_derivatives(rho, t);
+            let isotherm = chart.isotherm(rho, t).unwrap();
+            let (p, slope) = isotherm.pressure(rho);
+            assert!(isotherm.holds(rho) && !isotherm.holds(rho + 20.0));
+            approx::assert_relative_eq!(p, exact.pressure_pa, max_relative = 1e-11);
+            approx::assert_relative_eq!(slope, exact.dp_drho_pa_m3_kg, max_relative = 1e-9);
+        }
+    }
+
+    #[test]
+    fn states_without_a_good_polynomial_are_left_to_the_equation() {
+        // Beside the critical point, too hot, too dense, without gas.
+        let mut chart = Chart::new(Fluid::named("nitrogen").unwrap());
+        for (rho, t) in [(313.0, 126.5), (100.0, 2500.0), (2000.0, 300.0), (-1.0, 300.0), (f64::NAN, 300.0)] {
+            assert!(chart.isotherm(rho, t).is_none(), "{rho} kg/m³, {t} K");
+        }
+        let exact = chart.fluid().pressure_with_derivatives(313.0, 126.5);
+        let found = chart.properties(313.0, 126.5).p;
+        approx::assert_relative_eq!(found.value, exact.pressure_pa, max_relative = 1e-12);
+        approx::assert_relative_eq!(found.by_t, exact.dp_dt_pa_k, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn the_order_of_questions_does_not_matter() {
+        let states = [(222.0, 280.0), (222.0, 312.0), (222.0, 248.0), (300.0, 280.0), (222.0, 280.0)];
+        let mut chart = Chart::new(Fluid::named("nitrogen").unwrap());
+        let found = states.map(|(rho, t)| chart.properties(rho, t).p_rho.by_t);
+        assert_eq!(found[0], found[4]);
+        for ((rho, t), found) in states.into_iter().zip(found) {
+            let mut fresh = Chart::new(Fluid::named("nitrogen").unwrap());
+            assert_eq!(fresh.properties(rho, t).p_rho.by_t, found);
+        }
+    }
+}
