@@ -14,7 +14,7 @@
 //! A slow member that is out of the question begins anew from the free one, with a leak rate that may be anything.
 
 /// Prior probability that a slow member is right.
-const PRIOR: f64 = 0.999;
+const PRIOR: f64 = 0.9999;
 /// `d^2` beyond which a slow member is out of the question: 4.5 standard deviations.
 const OUT_OF_THE_QUESTION: f64 = 20.0;
 /// Least variance of the difference relative to that of the free mass.
