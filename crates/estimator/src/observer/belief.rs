@@ -1,22 +1,24 @@
-//! Whether a slow member of the bank can still be believed: one whose mass goes only as a slowly changing leak takes it.
+//! Whether a member of the bank can still be believed: one whose mass goes only as a slowly changing leak takes it, or walks a
+//! little.
 //!
-//! A slow member is the better thermometer as long as it is right, because a mass that stays ties the temperature to the
-//! pressure. In a fast leak it is wrong, and would explain the pressure by a colder gas. The free member, whose mass may walk
-//! at once, tells them apart: it is right either way, only less precise. With both masses the statistic of Hausman (1978),
+//! A member that allows little is the better thermometer as long as it is right, because a mass that stays ties the
+//! temperature to the pressure. In a fast leak it is wrong, and explains the pressure by a colder gas. The freest
+//! member, whose mass may walk far at once, tells them apart: it is right either way, only less precise. With both masses
+//! the statistic of Hausman (1978),
 //!
-//! `d^2 = (m_free - m_slow)^2 / (P_free - P_slow)`,
+//! `d^2 = (m_free - m)^2 / (P_free - P)`,
 //!
-//! is that of a standard normal number while the slow member is right. Its odds, with prior odds for how rare fast leaks are,
+//! is that of a standard normal number while the other member is right. Its odds, with prior odds for how rare fast leaks are,
 //!
 //! `w / (1 - w) = prior / (1 - prior) exp(-d^2 / 2)`,
 //!
-//! weigh the gas temperature: `x = w x_slow + (1 - w) x_free`, `P = w P_slow + (1 - w) P_free + w (1 - w) (x_slow - x_free)^2`.
-//! A slow member that is out of the question begins anew from the free one, with a leak rate that may be anything.
+//! weigh what both say: `x = w x_member + (1 - w) x_free`, `P = w P_member + (1 - w) P_free + w (1 - w) (x_member - x_free)^2`.
+//! A member that is out of the question begins anew from the freest one, its leak rate, if it has one, any that can be.
 
-/// Prior probability that a slow member is right.
+/// Prior probability that a member is right.
 const PRIOR: f64 = 0.9999;
-/// `d^2` beyond which a slow member is out of the question: 4.5 standard deviations.
-const OUT_OF_THE_QUESTION: f64 = 20.0;
+/// `d^2` beyond which a member is out of the question: five and a half standard deviations.
+const OUT_OF_THE_QUESTION: f64 = 30.0;
 /// Least variance of the difference relative to that of the free mass.
 const LEAST_PART: f64 = 0.25;
 
@@ -65,12 +67,15 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_of_three_standard_deviations_turns_the_odds() {
+    fn a_difference_of_five_standard_deviations_turns_the_odds() {
         let (slow, free): (Moments, Moments) = ((4.4, 1.9e-5), (4.4 + 0.009, 2.8e-5));
-        // exp(-4.5) times 19 is 0.21.
-        assert_relative_eq!(Belief::of(slow, free).weight(), 0.2111 / 1.2111, max_relative = 1e-3);
-        assert!(!Belief::of(slow, free).is_out_of_the_question());
-        assert!(Belief::of((4.4, 1.9e-5), (4.4 + 0.0135, 2.8e-5)).is_out_of_the_question());
+        // d is 3: exp(-4.5) times 9999 is 111.1.
+        assert_relative_eq!(Belief::of(slow, free).weight(), 111.1 / 112.1, max_relative = 1e-4);
+        // d is 4.5: exp(-10.125) times 9999 is 0.4006.
+        let doubted = Belief::of(slow, (4.4 + 0.0135, 2.8e-5));
+        assert_relative_eq!(doubted.weight(), 0.4006 / 1.4006, max_relative = 1e-3);
+        assert!(!doubted.is_out_of_the_question());
+        assert!(Belief::of(slow, (4.4 + 0.018, 2.8e-5)).is_out_of_the_question());
     }
 
     #[test]
