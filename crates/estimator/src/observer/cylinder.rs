@@ -7,6 +7,7 @@
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
 mod lanes;
 mod noise;
+mod structure;
 mod transition;
 
 use nalgebra::DMatrix;
@@ -19,7 +20,8 @@ use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
 use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 use noise::Parts;
-use transition::{Structure, Transition, Walking};
+use structure::Structure;
+use transition::{Transition, Walking};
 
 /// What a sensor looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +102,7 @@ impl Cylinder {
         {
             return Err(EstimatorError::SensorTwice { name: twice.1.name.clone() });
         }
-        let structure = structure(&model, &states);
+        let structure = Structure::of(&states);
         let work = Work {
             rate: vec![0.0; model.states()],
             jacobian: DMatrix::zeros(model.states(), model.states() + Unknowns::COUNT),
@@ -401,23 +403,6 @@ impl Cylinder {
         self.work.noise.copy_from(&memory.noise);
         self.work.parts = Some(memory);
         outcome
-    }
-}
-
-/// Which rows of the transition are coupled, and what acts on them.
-fn structure(model: &ReducedModel, states: &States) -> Structure {
-    let lags = states.lag.iter().flatten().copied();
-    let block: Vec<usize> = (0..model.mass_index()).chain(lags).collect();
-    let lagged = |sensor: &usize| states.lag[*sensor].is_some();
-    let parameters = (0..states.lag.len()).filter(lagged).flat_map(|sensor| &states.parameters[sensor]);
-    let constants = [states.inside, states.capacity, states.slope];
-    Structure {
-        temperatures: model.mass_index(),
-        outer: (0..states.leading).filter(|state| !block.contains(state)).collect(),
-        mass: states.mass,
-        leak: states.leak,
-        constants: constants.into_iter().chain(parameters.copied()).flatten().collect(),
-        block,
     }
 }
 
