@@ -1,66 +1,87 @@
-//! Which of two members to believe about the gas temperature: the free one, whose mass may walk at once, or a slow one, whose
-//! mass goes only as a slowly changing leak takes it.
+//! Whether a slow member of the bank can still be believed: one whose mass goes only as a slowly changing leak takes it.
 //!
-//! The slow member is the better thermometer as long as it is right: a mass that stays ties the temperature to the
-//! pressure. It is wrong in a fast leak. So both are hypotheses (Magill 1965, multiple model estimation) with
+//! A slow member is the better thermometer as long as it is right, because a mass that stays ties the temperature to the
+//! pressure. In a fast leak it is wrong, and would explain the pressure by a colder gas. The free member, whose mass may walk
+//! at once, tells them apart: it is right either way, only less precise. With both masses the statistic of Hausman (1978),
 //!
-//! `log odds += sum over the readings of (log N(nu_slow; 0, S_slow) - log N(nu_free; 0, S_free))`,
+//! `d^2 = (m_free - m_slow)^2 / (P_free - P_slow)`,
 //!
-//! which return to prior odds with a memory, so that a gas that leaks no more is trusted again:
-//! `odds` decays as `exp(-dt/memory)`. The estimate is the mixture's mean and variance,
-//! `x = w x_slow + (1 - w) x_free`, `P = w P_slow + (1 - w) P_free + w (1 - w) (x_slow - x_free)^2`.
-use super::member::Innovation;
+//! is that of a standard normal number while the slow member is right. Its odds, with prior odds for how rare fast leaks are,
+//!
+//! `w / (1 - w) = prior / (1 - prior) exp(-d^2 / 2)`,
+//!
+//! weigh the gas temperature: `x = w x_slow + (1 - w) x_free`, `P = w P_slow + (1 - w) P_free + w (1 - w) (x_slow - x_free)^2`.
+//! A slow member that is out of the question begins anew from the free one, with a leak rate that may be anything.
 
-/// Prior weight of the slow member: fast leaks are rare.
-const PRIOR: f64 = 0.95;
-/// Memory of the odds, s.
-const MEMORY_S: f64 = 7200.0;
-/// Bound on the log odds: what a change of hypothesis has to overcome.
-const LOG_ODDS_BOUND: f64 = 9.0;
-/// Normalised square of an innovation beyond which it says no more: a spike is no leak.
-const LARGEST_SQUARE: f64 = 25.0;
+/// Prior probability that a slow member is right.
+const PRIOR: f64 = 0.999;
+/// `d^2` beyond which a slow member is out of the question: 4.5 standard deviations.
+const OUT_OF_THE_QUESTION: f64 = 20.0;
+/// Least variance of the difference relative to that of the free mass.
+const LEAST_PART: f64 = 0.25;
 
-/// Weight of the slow member against the free one.
+/// Mean and variance.
+pub(super) type Moments = (f64, f64);
+
+/// What the masses, kg, of a slow and of the free member say about the slow one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Belief {
-    log_odds: f64,
+    square: f64,
 }
 
 impl Belief {
-    /// As before any reading.
-    pub fn new() -> Self {
-        Self { log_odds: prior_log_odds() }
+    pub fn of(slow: Moments, free: Moments) -> Self {
+        let variance = (free.1 - slow.1).max(LEAST_PART * free.1);
+        Self { square: (free.0 - slow.0).powi(2) / variance }
     }
 
-    /// Weight of the slow member.
-    pub fn weight(&self) -> f64 {
-        1.0 / (1.0 + (-self.log_odds).exp())
+    /// Probability that the slow member is right.
+    pub fn weight(self) -> f64 {
+        let odds = PRIOR / (1.0 - PRIOR) * (-0.5 * self.square).exp();
+        odds / (1.0 + odds)
     }
 
-    /// Take in the innovations of both members after `dt_s`, s.
-    pub fn update(&mut self, dt_s: f64, slow: &[Innovation], free: &[Innovation]) {
-        let prior = prior_log_odds();
-        self.log_odds = prior + (self.log_odds - prior) * (-dt_s / MEMORY_S).exp();
-        for (slow, free) in slow.iter().zip(free) {
-            if slow.s.is_finite() && free.s.is_finite() {
-                self.log_odds += log_likelihood(slow) - log_likelihood(free);
-            }
-        }
-        self.log_odds = self.log_odds.clamp(-LOG_ODDS_BOUND, LOG_ODDS_BOUND);
+    pub fn is_out_of_the_question(self) -> bool {
+        self.square > OUT_OF_THE_QUESTION
     }
 
-    /// Mean and variance of the mixture of `(mean, variance)` of the slow and the free member.
-    pub fn blend(&self, slow: (f64, f64), free: (f64, f64)) -> (f64, f64) {
+    /// Mixture of what both say of one quantity.
+    pub fn blend(self, slow: Moments, free: Moments) -> Moments {
         let w = self.weight();
         let apart = slow.0 - free.0;
         (free.0 + w * apart, w * slow.1 + (1.0 - w) * free.1 + w * (1.0 - w) * apart * apart)
     }
 }
 
-fn prior_log_odds() -> f64 {
-    (PRIOR / (1.0 - PRIOR)).ln()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
 
-fn log_likelihood(innovation: &Innovation) -> f64 {
-    -0.5 * (innovation.s.ln() + (innovation.nu * innovation.nu / innovation.s).min(LARGEST_SQUARE))
+    #[test]
+    fn members_that_agree_leave_the_prior() {
+        let belief = Belief::of((4.4, 1e-6), (4.4, 1e-5));
+        assert_relative_eq!(belief.weight(), PRIOR, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_difference_of_three_standard_deviations_turns_the_odds() {
+        let (slow, free): (Moments, Moments) = ((4.4, 1.9e-5), (4.4 + 0.009, 2.8e-5));
+        // exp(-4.5) times 19 is 0.21.
+        assert_relative_eq!(Belief::of(slow, free).weight(), 0.2111 / 1.2111, max_relative = 1e-3);
+        assert!(!Belief::of(slow, free).is_out_of_the_question());
+        assert!(Belief::of((4.4, 1.9e-5), (4.4 + 0.0135, 2.8e-5)).is_out_of_the_question());
+    }
+
+    #[test]
+    fn a_blend_lies_between_and_tells_their_difference() {
+        let belief = Belief::of((4.4, 1.9e-5), (4.408, 2.8e-5));
+        let (mean, variance) = belief.blend((280.0, 0.01), (281.0, 0.04));
+        let w = belief.weight();
+        assert_relative_eq!(mean, 281.0 - w, max_relative = 1e-12);
+        // Law of total variance.
+        let within = w * 0.01 + (1.0 - w) * 0.04;
+        let between = w * (280.0 - mean).powi(2) + (1.0 - w) * (281.0 - mean).powi(2);
+        assert_relative_eq!(variance, within + between, max_relative = 1e-12);
+    }
 }

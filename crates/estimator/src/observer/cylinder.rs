@@ -9,11 +9,12 @@ mod lanes;
 mod noise;
 mod structure;
 mod transition;
+mod walks;
 
 use nalgebra::DMatrix;
 
-use super::settings::{LeakHypothesis, ObserverSettings, Walk};
-use super::states::{StateKind, States};
+use super::settings::ObserverSettings;
+use super::states::States;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
@@ -22,6 +23,7 @@ use crate::thermal::vessel::Vessel;
 use noise::Parts;
 use structure::Structure;
 use transition::{Transition, Walking};
+pub use walks::SlowProcess;
 
 /// What a sensor looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,26 +34,6 @@ enum Target {
     Gas,
     Air,
     Pressure,
-}
-
-/// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlowProcess {
-    /// Variance gained in a second.
-    pub intensity: f64,
-    /// Inverse memory, 1/s; 0: a random walk.
-    pub decay_per_s: f64,
-    /// Value that it returns to.
-    pub rest: f64,
-}
-
-impl SlowProcess {
-    /// Factor on the departure from rest, and variance gained, over an interval, s.
-    pub fn over(&self, dt_s: f64) -> (f64, f64) {
-        let decay = self.decay_per_s * dt_s;
-        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
-        ((-decay).exp(), self.intensity * span_s)
-    }
 }
 
 /// The cylinder with its sensors in the variables of [`States`].
@@ -161,13 +143,6 @@ impl Cylinder {
         self.settings.longest_step_s = longest_step_s;
     }
 
-    /// Let mass and leak rate walk as one member of the bank supposes.
-    pub fn suppose(&mut self, leak: &LeakHypothesis) {
-        self.walking[self.states.mass].intensity = leak.mass_walk_kg_per_sqrt_s.powi(2);
-        self.walking[self.states.leak].intensity = leak.rate.per_sqrt_s.powi(2);
-        self.walking[self.states.leak].decay_per_s = leak.rate.decay_per_s();
-    }
-
     /// Whether a state has gas, at temperatures and a density that the equation of state knows.
     pub fn is_possible(&mut self, x: &[f64]) -> bool {
         let domain = self.model.fluid().domain();
@@ -196,43 +171,6 @@ impl Cylinder {
     pub fn pressure_pa(&mut self, x: &[f64]) -> Result<f64, EstimatorError> {
         let n = self.model.states();
         Ok(self.model.pressure(&x[..n])?.pressure_pa)
-    }
-
-    /// How a trailing state moves while nobody looks.
-    pub fn slow_process(&self, state: usize) -> SlowProcess {
-        let of = |walk: &Walk, rest| SlowProcess {
-            intensity: walk.per_sqrt_s * walk.per_sqrt_s,
-            decay_per_s: walk.decay_per_s(),
-            rest,
-        };
-        match &self.states.kinds[state] {
-            StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
-            StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
-            StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
-            StateKind::Parameter { sensor, parameter } => {
-                let parameter = &self.sensors[*sensor].parameters()[*parameter];
-                let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
-                of(&walk, parameter.mean)
-            }
-            _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
-        }
-    }
-
-    fn set_walks(&mut self) {
-        let s = &self.settings;
-        self.walking[self.states.air].rest = s.air_rest_k;
-        for (i, kind) in self.states.kinds[..self.states.leading].iter().enumerate() {
-            let (walk, decay_per_s) = match kind {
-                StateKind::Wall(_) | StateKind::Valve | StateKind::Gas => {
-                    (s.temperature_walk_k_per_sqrt_s, 0.0)
-                }
-                StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
-                StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
-                StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
-                _ => continue,
-            };
-            self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };
-        }
     }
 
     fn unknowns(&self, x: &[f64]) -> Unknowns {

@@ -1,4 +1,5 @@
 //! One member of the bank: a Kalman filter with its own view of how gas may leave.
+use super::belief::Moments;
 use super::cylinder::Cylinder;
 use super::engine::{Mechanism, Predicted, Shared};
 use super::pass::Pass;
@@ -9,9 +10,6 @@ use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Interval at which slow walks are added to the constants, s.
 const SLOW_WALK_S: f64 = 3600.0;
-/// Bounds on the logarithms of the film multipliers: outside, inside.
-const LN_OUTSIDE_BOUND: f64 = 2.5;
-const LN_INSIDE_BOUND: f64 = 1.5;
 
 /// What became of a reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -145,12 +143,11 @@ impl Member {
         }
         cylinder.suppose(&self.hypothesis);
         self.mechanism.finish(cylinder, &mut self.x, &mut self.p);
-        let states = cylinder.state_map();
         self.at_bound = false;
-        for (state, bound) in [(states.outside, LN_OUTSIDE_BOUND), (states.inside, LN_INSIDE_BOUND)] {
-            if let Some(state) = state {
-                self.at_bound |= self.x[state].abs() >= bound;
-                self.x[state] = self.x[state].clamp(-bound, bound);
+        for state in 0..cylinder.states() {
+            if let Some((low, high)) = cylinder.bounds(state) {
+                self.at_bound |= !(low..=high).contains(&self.x[state]);
+                self.x[state] = self.x[state].clamp(low, high);
             }
         }
         Ok(())
@@ -197,6 +194,25 @@ impl Member {
         Ok(Innovation { nu, s, outcome })
     }
 
+    /// Begin anew with all that another member knows; a leak rate that may walk may be anything then.
+    pub fn begin_anew_from(&mut self, other: &Self, leak: usize) {
+        self.x.clone_from(&other.x);
+        self.p.clone_from(&other.p);
+        self.mechanism.clone_from(&other.mechanism);
+        self.x[leak] = 0.0;
+        let leak_sd_kg_s = if self.hypothesis.rate.is_known() { 0.0 } else { ANY_LEAK_SD_KG_S };
+        self.mechanism.decorrelate_and_set(&mut self.p, leak, leak_sd_kg_s * leak_sd_kg_s);
+        self.slow_s = other.slow_s;
+        if let Some(pass) = &mut self.pass {
+            pass.begin_anew();
+        }
+    }
+
+    /// Mean and variance of a state.
+    pub fn moments(&self, state: usize) -> Moments {
+        (self.x[state], self.variance(state))
+    }
+
     /// Free mass and gas temperature of everything known about them; what has been learnt of the constants stays.
     /// It happens before the readings of a sample, or before that of one sensor.
     pub fn open(&mut self, cylinder: &Cylinder, before: Option<usize>) {
@@ -237,3 +253,6 @@ impl Member {
 /// What mass and gas temperature may be while gas is exchanged.
 const FREE_MASS_SD_KG: f64 = 1.0;
 const FREE_GAS_SD_K: f64 = 20.0;
+
+/// What a leak rate may be once a slow member was wrong, kg/s: 20 g/h.
+const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;

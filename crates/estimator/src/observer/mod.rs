@@ -2,8 +2,9 @@
 //!
 //! A bank of Kalman filters ([`Engine`]; [`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
 //! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
-//! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives temperature
-//! and mass. The others hold the mass and let a leak rate walk, each with its own bandwidth.
+//! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives the mass.
+//! The others hold the mass and let a leak rate walk, each with its own bandwidth. The gas temperature is a mixture of the
+//! first and the middle slow one, by what their readings speak for.
 //!
 //! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
 //! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
@@ -13,8 +14,8 @@
 //! Pressure, temperature and mass hang together by one equation, so constant errors of the sensors shift the mass for ever: 0.4 bar are
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
-pub mod belief;
-mod commissioning;
+mod belief;
+pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
 mod late;
@@ -148,7 +149,6 @@ struct Clock {
     screens: Vec<Screen>,
     /// Until then an estimate that has just begun or been opened is pulled by good readings too.
     pulled_until_s: f64,
-    belief: Belief,
 }
 
 /// Exchange of gas with the outside.
@@ -192,10 +192,7 @@ impl Observer {
         }
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
         commissioning.mass_kg(vessel, QUOTED_K)?;
-        let gate = {
-            use statrs::distribution::{ChiSquared, ContinuousCDF};
-            ChiSquared::new(1.0).expect("one degree of freedom").inverse_cdf(1.0 - settings.gate_probability)
-        };
+        let gate = settings.gate_sd * settings.gate_sd;
         Ok(Self {
             vessel: vessel.clone(),
             commissioning: *commissioning,
@@ -212,7 +209,6 @@ impl Observer {
                 restarts: 0,
                 screens: sensors.iter().map(Screen::new).collect(),
                 pulled_until_s: f64::INFINITY,
-                belief: Belief::new(),
             },
             usable: vec![f64::NAN; sensors.len()],
             gate,
@@ -253,9 +249,8 @@ impl Observer {
                 *reading = f64::NAN;
             }
         }
-        let last_s = self.clock.time_s.unwrap_or(time_s);
         let restarted = self.take(time_s, &usable);
-        self.weigh(time_s - last_s);
+        self.replace_the_wrong();
         for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
             if reading.is_finite() {
                 *last = time_s;
@@ -309,11 +304,24 @@ impl Observer {
         self.update(&without)
     }
 
-    /// Let the readings decide between the free member and the middle slow one.
-    fn weigh(&mut self, dt_s: f64) {
-        let Some(slow) = self.middle_slow_index() else { return };
-        let (slow, free) = (&self.members[slow], &self.members[0]);
-        self.clock.belief.update(dt_s, &slow.innovations, &free.innovations);
+    /// Members that are out of the question begin anew from the freest one.
+    fn replace_the_wrong(&mut self) {
+        let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
+        let freest = self.freest_index();
+        for index in (0..self.members.len()).filter(|&index| index != freest) {
+            if let Ok([member, free]) = self.members.get_disjoint_mut([index, freest])
+                && Belief::of(member.moments(mass), free.moments(mass)).is_out_of_the_question()
+            {
+                member.begin_anew_from(free, leak);
+            }
+        }
+    }
+
+    /// The member whose mass walks most freely: it judges the others.
+    fn freest_index(&self) -> usize {
+        let bank = &self.cylinder.settings().bank;
+        let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
+        (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
     }
 
     /// Every member as the prior has it.
@@ -340,7 +348,6 @@ impl Observer {
         self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
         self.clock.reference_mass_kg = None;
         self.clock.pulled_until_s = time_s + SETTLE_S;
-        self.clock.belief = Belief::new();
         for sensor in 0..readings.len() {
             self.cylinder.set_interval_s(sensor, f64::INFINITY);
         }
@@ -412,17 +419,18 @@ impl Observer {
         let (first, slow) = (&self.members[0], self.middle_slow_member());
         let states = self.cylinder.state_map();
         let sd = |member: &Member, state: usize| member.variance(state).sqrt();
-        let gas = |member: &Member| (member.x[states.gas], member.variance(states.gas));
-        let (gas_mean_k, gas_variance_k2) = match slow {
-            Some(slow) => self.clock.belief.blend(gas(slow), gas(first)),
-            None => gas(first),
+        let free = &self.members[self.freest_index()];
+        let blended = |member: &Member, state: usize| {
+            self.belief(member).blend(member.moments(state), free.moments(state))
         };
+        let (gas_mean_k, gas_variance_k2) = blended(slow.unwrap_or(first), states.gas);
+        let (mass_kg, mass_variance_kg2) = blended(first, states.mass);
         let mut estimate = Estimate {
             time_s,
             gas_mean_k,
             gas_mean_sd_k: gas_variance_k2.sqrt(),
-            mass_kg: first.x[states.mass],
-            mass_sd_kg: sd(first, states.mass),
+            mass_kg,
+            mass_sd_kg: mass_variance_kg2.sqrt(),
             leak_kg_s: slow.map_or(f64::NAN, |member| member.x[states.leak]),
             leak_sd_kg_s: slow.map_or(f64::NAN, |member| sd(member, states.leak)),
             pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
@@ -468,6 +476,12 @@ impl Observer {
             () if any(Outcome::Missing) || any(Outcome::Rejected) => Quality::Degraded,
             () => Quality::Good,
         }
+    }
+
+    /// What the freest member says of another one.
+    fn belief(&self, member: &Member) -> Belief {
+        let mass = self.cylinder.state_map().mass;
+        Belief::of(member.moments(mass), self.members[self.freest_index()].moments(mass))
     }
 
     /// The middle one of the members that have a leak rate, in the order of the bank.

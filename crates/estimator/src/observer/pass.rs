@@ -11,6 +11,8 @@ pub(super) struct Pass {
     /// Whether mass and gas temperature were freed before the sample's readings, and before each of them.
     pub opened: bool,
     pub opened_before: Vec<bool>,
+    /// Whether the member began anew after the readings: nothing links it with what it was.
+    pub begun_anew: bool,
     /// Factor by which each state came nearer to its rest before the readings: (n).
     pub relaxed: Vec<f64>,
     /// Memory of a product.
@@ -23,6 +25,7 @@ impl Pass {
         Self {
             step: PassStep::zeros(n, leading, sensors),
             opened: false,
+            begun_anew: false,
             opened_before: vec![false; sensors],
             relaxed: vec![1.0; n],
             product: DMatrix::zeros(leading, n),
@@ -35,6 +38,7 @@ impl Pass {
         self.step.phi.fill_with_identity();
         self.step.used.fill(false);
         self.opened = false;
+        self.begun_anew = false;
         self.relaxed.fill(1.0);
         self.opened_before.fill(false);
     }
@@ -63,6 +67,11 @@ impl Pass {
     /// A constant came nearer to its rest.
     pub fn relax(&mut self, state: usize, factor: f64) {
         self.relaxed[state] *= factor;
+    }
+
+    /// The member began anew.
+    pub fn begin_anew(&mut self) {
+        self.begun_anew = true;
     }
 
     /// Mass and gas temperature are freed before the readings, or before that of one sensor.

@@ -35,9 +35,9 @@ impl Walk {
         Self { prior_sd, per_sqrt_s: walk * PER_HOUR.sqrt(), memory_s: None }
     }
 
-    /// The same with a memory, h.
-    pub fn remembering_hours(self, memory_h: f64) -> Self {
-        Self { memory_s: Some(memory_h / PER_HOUR), ..self }
+    /// A quantity that is as uncertain for ever as its prior says, but stays about as it is for a memory, s.
+    pub fn forgetting(prior_sd: f64, memory_s: f64) -> Self {
+        Self { prior_sd, per_sqrt_s: prior_sd * (2.0 / memory_s).sqrt(), memory_s: Some(memory_s) }
     }
 
     /// Whether the quantity is known and constant, so that it needs no state.
@@ -140,8 +140,10 @@ pub struct ObserverSettings {
     pub film_w_m2_k: f64,
     /// Longest step of the transition, s; longer intervals are divided.
     pub longest_step_s: f64,
-    /// Random walk of wall, valve and gas temperatures, K/sqrt(s): heat that the model does not know.
+    /// Random walk of wall and valve temperatures, K/sqrt(s): heat that the model does not know.
     pub temperature_walk_k_per_sqrt_s: f64,
+    /// Random walk of the gas temperature, K/sqrt(s).
+    pub gas_walk_k_per_sqrt_s: f64,
     /// Temperature of the surroundings, K.
     pub air: Walk,
     /// Temperature that the surroundings return to where `air` has a memory, K.
@@ -159,57 +161,57 @@ pub struct ObserverSettings {
     /// Memory of a mounting coupling, s: with the wind and the place of the air it returns to its prior, and what is
     /// learnt of it lasts so long. `None`: it is constant.
     pub coupling_memory_s: Option<f64>,
-    /// Random walk that keeps sensor constants from being believed for ever: temperature offsets, K/sqrt(s).
-    pub offset_walk_k_per_sqrt_s: f64,
-    /// Memory of a transmitter's temperature coefficient, s, as for the couplings: the coefficient is hardly linear, and
-    /// coloured model error would make it certain of a wrong value.
-    pub coefficient_memory_s: Option<f64>,
+    /// The same for temperature offsets and a transmitter's temperature coefficient: coloured model error would else make
+    /// them certain of wrong values, and let combinations that the data do not tell apart drift away.
+    pub constants_memory_s: Option<f64>,
     /// Noise beside the sensors' own.
     pub model_error: ModelError,
-    /// The bank: the first member gives temperature and mass, each gives a leak rate.
+    /// The bank: the first member gives the mass, the middle one of those with a leak rate the gas temperature, as long as the
+    /// freest member agrees.
     pub bank: Vec<LeakHypothesis>,
-    /// Probability with which a good reading is rejected by its gate.
-    pub gate_probability: f64,
+    /// Innovation beyond which a reading is rejected, in its standard deviations: wide, because a step of the air is no
+    /// fault of a sensor.
+    pub gate_sd: f64,
     /// Rejections of one sensor in a row after which its next reading is taken whatever it says.
     pub rejections_in_a_row: u32,
 }
 
 impl Default for ObserverSettings {
     fn default() -> Self {
-        const DAY_S: f64 = 86_400.0;
-        const YEAR_S: f64 = 365.25 * DAY_S;
+        const HOUR_S: f64 = 3600.0;
+        const DAY_S: f64 = 24.0 * HOUR_S;
         Self {
             engine: Engine::default(),
             wall_nodes: 2,
             film_w_m2_k: 14.0,
             longest_step_s: 20.0,
-            temperature_walk_k_per_sqrt_s: PER_HOUR.sqrt(),
-            air: Walk::per_sqrt_hour(5.0, 60.0),
+            temperature_walk_k_per_sqrt_s: 1.75 * PER_HOUR.sqrt(),
+            gas_walk_k_per_sqrt_s: 1.75 * PER_HOUR.sqrt(),
+            air: Walk { prior_sd: 5.0, per_sqrt_s: 0.7, memory_s: None },
             air_rest_k: 283.15,
-            ln_outside_film: Walk::per_sqrt_hour(0.6, 0.6).remembering_hours(2.0),
-            ln_inside_film: Walk::per_sqrt_hour(0.25, 0.02),
-            ln_capacity: Walk::constant(0.12),
-            sun: Walk::per_sqrt_hour(2.0, 2.0).remembering_hours(0.5),
-            film_slope: Walk::constant(0.2),
+            ln_outside_film: Walk::forgetting(0.3, 2.0 * HOUR_S),
+            ln_inside_film: Walk::forgetting(0.25, 60.0 * DAY_S),
+            ln_capacity: Walk::forgetting(0.12, 60.0 * DAY_S),
+            sun: Walk::forgetting(6.0, 0.5 * HOUR_S),
+            film_slope: Walk::forgetting(0.2, 60.0 * DAY_S),
             coupling_memory_s: Some(DAY_S),
-            offset_walk_k_per_sqrt_s: 0.05 / YEAR_S.sqrt(),
-            coefficient_memory_s: Some(10.0 * DAY_S),
+            constants_memory_s: Some(60.0 * DAY_S),
             model_error: ModelError {
-                surface_k: 0.15,
-                surface_per_air_k: 0.05,
+                surface_k: 0.12,
+                surface_per_air_k: 0.04,
                 pressure_pa: 0.1e5,
-                pressure_per_wall_k: 0.5e5,
+                pressure_per_wall_k: 0.07e5,
                 gas_k: 0.5,
                 air_k: 0.5,
                 correlation_s: 60.0,
             },
             bank: vec![
-                LeakHypothesis::walking_mass(5.0),
+                LeakHypothesis::walking_mass(1.5),
                 LeakHypothesis::walking_rate(0.02),
                 LeakHypothesis::walking_rate(0.005),
-                LeakHypothesis::walking_rate(0.001),
+                LeakHypothesis::walking_mass(30.0),
             ],
-            gate_probability: 1e-7,
+            gate_sd: 10.0,
             rejections_in_a_row: 5,
         }
     }
@@ -237,8 +239,9 @@ impl ObserverSettings {
         };
         match (parameter.kind, quantity) {
             (ParameterKind::Coupling, _) => forgetting(self.coupling_memory_s),
-            (ParameterKind::TemperatureCoefficient, _) => forgetting(self.coefficient_memory_s),
-            (ParameterKind::Offset, Quantity::Temperature) => walk(self.offset_walk_k_per_sqrt_s, None),
+            (ParameterKind::TemperatureCoefficient, _) | (ParameterKind::Offset, Quantity::Temperature) => {
+                forgetting(self.constants_memory_s)
+            }
             (ParameterKind::Offset, Quantity::Pressure) | (ParameterKind::Span, _) => walk(0.0, None),
         }
     }
@@ -264,12 +267,11 @@ impl ObserverSettings {
         positive("air_rest_k", self.air_rest_k)?;
         positive("longest_step_s", self.longest_step_s)?;
         positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
-        positive("coefficient_memory_s", self.coefficient_memory_s.unwrap_or(1.0))?;
-        let gate = self.gate_probability;
-        require(gate > 0.0 && gate < 1.0, "gate_probability", gate, "between 0 and 1")?;
+        positive("constants_memory_s", self.constants_memory_s.unwrap_or(1.0))?;
+        positive("gate_sd", self.gate_sd)?;
         for (setting, value) in [
             ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
-            ("offset_walk_k_per_sqrt_s", self.offset_walk_k_per_sqrt_s),
+            ("gas_walk_k_per_sqrt_s", self.gas_walk_k_per_sqrt_s),
             ("model_error.surface_k", self.model_error.surface_k),
             ("model_error.surface_per_air_k", self.model_error.surface_per_air_k),
             ("model_error.pressure_pa", self.model_error.pressure_pa),

@@ -1,7 +1,8 @@
 //! Estimates given the samples before and after them.
 //!
 //! The observer's pass is recorded, sample by sample, and smoothed backwards (modified Bryson-Frazier recursion of
-//! [`crate::filter::smoother`]): the first member gives temperature and mass, the middle slow one the leak rate.
+//! [`crate::filter::smoother`]): the first member gives the mass, the middle slow one the leak rate, and both the gas temperature,
+//! with the weights that the filter gave them.
 //!
 //! A year of samples does not fit into memory, so the record has room for a number of rows, by default [`ROWS`]. A log of
 //! no more rows is smoothed over its whole length. When the record is full, it is smoothed from the newest row back, the older
@@ -12,6 +13,7 @@
 //! restart of the estimate ends one record and begins another.
 use std::collections::VecDeque;
 
+use super::belief::Belief;
 use super::engine::Engine;
 use super::pass::Pass;
 use super::{Estimate, Observer, Quality};
@@ -41,6 +43,8 @@ pub struct Smoother {
 struct Row {
     estimate: Estimate,
     reference_kg: Option<f64>,
+    /// Weights of the two members in the gas temperature, where there are two.
+    belief: Option<Belief>,
     passes: Vec<Pass>,
 }
 
@@ -144,7 +148,8 @@ impl Smoother {
             // A row at the same time has no interval of its own.
             pass.begin(0.0);
         }
-        Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, passes }
+        let belief = self.observer.middle_slow_member().map(|slow| self.observer.belief(slow));
+        Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, belief, passes }
     }
 
     /// Smooth the whole record and hand out the oldest `count` rows.
@@ -172,7 +177,7 @@ impl Smoother {
         {
             backward.estimate(&pass.step, smoothed);
         }
-        let (filtered, reference_kg) = (row.estimate, row.reference_kg);
+        let (filtered, reference_kg, belief) = (row.estimate, row.reference_kg, row.belief);
         let observer = &mut self.observer;
         let states = observer.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
@@ -188,6 +193,11 @@ impl Smoother {
         // A bank of slow members alone has its leak rate in the first.
         if let Some(slow) = self.smoothed.last().filter(|_| !filtered.leak_kg_s.is_nan()) {
             (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (slow.x[leak], sd(slow, leak));
+            if let Some(belief) = belief {
+                let of = |smoothed: &Smoothed| (smoothed.x[gas], sd(smoothed, gas).powi(2));
+                let (mean_k, variance_k2) = belief.blend(of(slow), of(first));
+                (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (mean_k, variance_k2.sqrt());
+            }
         }
         observer.reference_x.copy_from_slice(first.x.as_slice());
         match observer.add_pressures(&mut estimate, reference_kg) {
@@ -199,6 +209,10 @@ impl Smoother {
 
 /// From after a step to after the step before it.
 fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States) {
+    if pass.begun_anew {
+        backward.clear();
+        return;
+    }
     let freed = [states.mass, states.gas];
     for sensor in (0..pass.step.used.len()).rev() {
         if pass.step.used[sensor] {

@@ -233,3 +233,6 @@ fn summarise(truth: &Truth, pairs: &[Pair]) -> Score {
         nis: f64::NAN,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -213,7 +213,8 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
 fn intensities(cylinder: &Cylinder, n: usize) -> DMatrix<f64> {
     let (map, s) = (cylinder.state_map(), cylinder.settings());
     let mut sd = DVector::zeros(n);
-    sd.rows_mut(0, map.gas + 1).fill(s.temperature_walk_k_per_sqrt_s);
+    sd.rows_mut(0, map.gas).fill(s.temperature_walk_k_per_sqrt_s);
+    sd[map.gas] = s.gas_walk_k_per_sqrt_s;
     sd[map.mass] = s.bank[0].mass_walk_kg_per_sqrt_s;
     sd[map.leak] = s.bank[0].rate.per_sqrt_s;
     sd[map.air] = s.air.per_sqrt_s;

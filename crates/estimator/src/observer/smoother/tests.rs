@@ -7,10 +7,11 @@ use crate::thermal::vessel::presets;
 fn observer(engine: Engine) -> Observer {
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
     let mut settings = ObserverSettings { engine, ..ObserverSettings::default() };
-    settings.ln_inside_film.per_sqrt_s = 0.0;
     settings.coupling_memory_s = None;
-    settings.offset_walk_k_per_sqrt_s = 0.0;
-    settings.coefficient_memory_s = None;
+    settings.constants_memory_s = None;
+    for walk in [&mut settings.ln_inside_film, &mut settings.ln_capacity, &mut settings.film_slope] {
+        (walk.per_sqrt_s, walk.memory_s) = (0.0, None);
+    }
     settings.bank.truncate(2);
     let commissioning = Commissioning::filled(2e7, 288.15);
     Observer::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &commissioning, &settings).unwrap()

@@ -17,7 +17,7 @@ const INTERVALS_S: [f64; 5] = [60.0, 20.0, 45.0, 7.5, 300.0];
 fn observed(member: LeakHypothesis) -> ObserverSettings {
     ObserverSettings {
         longest_step_s: 20.0,
-        gate_probability: 1e-30,
+        gate_sd: 1e6,
         model_error: ModelError {
             correlation_s: 60.0,
             surface_k: 0.15,
