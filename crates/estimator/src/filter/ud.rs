@@ -21,6 +21,10 @@ use thornton::TimeUpdate;
 
 mod thornton;
 
+pub(crate) use thornton::USUAL as USUAL_SIZES;
+
+const USUAL_STATES: usize = USUAL_SIZES.0;
+
 /// Factors of a covariance of `n` states, with the memory that its updates work in.
 ///
 /// # Shapes
@@ -146,14 +150,12 @@ where
 
     /// Variance `h^T P h` of a linear function of the state, kept for [`update_projected`](Self::update_projected); `h`: (n).
     pub fn project(&mut self, h: &[f64]) -> f64 {
-        let n = self.d.len();
-        let mut sum = 0.0;
-        let columns = self.u.as_slice().chunks_exact(n.max(1)).enumerate();
-        for (((j, u), d), f) in columns.zip(self.d.as_slice()).zip(self.f.as_mut_slice()) {
-            *f = dot(&u[..whole(j, n)], h);
-            sum += *f * *f * d;
+        let (u, f) = (self.u.as_slice(), self.f.as_mut_slice());
+        match f.len() {
+            USUAL_STATES => project_sized(u, h, f, USUAL_STATES),
+            n => project_sized(u, h, f, n),
         }
-        sum
+        f.iter().zip(self.d.as_slice()).map(|(f, d)| f * f * d).sum()
     }
 
     /// Update by a scalar measurement `z = h^T x + v`, `v ~ N(0, r)` (Bierman); `h`: (n), `r >= 0`.
@@ -168,27 +170,8 @@ where
     /// As [`update`](Self::update), with the `h` of the last [`project`](Self::project); nothing may have changed the
     /// covariance since.
     pub fn update_projected(&mut self, r: f64, gain: &mut [f64]) -> f64 {
-        let n = self.states();
-        gain.fill(0.0);
-        let mut s = r;
-        let columns = self.u.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate();
-        for (((j, u), d), &f) in columns.zip(self.d.as_mut_slice()).zip(self.f.as_slice()) {
-            let v = f * *d;
-            let before = s;
-            s += f * v;
-            if v == 0.0 || s == 0.0 {
-                continue;
-            }
-            *d *= before / s;
-            // Where no noise and no variance came before, the gain collected so far is zero.
-            let p = if before > 0.0 { -f / before } else { 0.0 };
-            learn(&mut u[..whole(j, n)], gain, p, v);
-        }
-        if s > 0.0 {
-            let inverse = 1.0 / s;
-            gain.iter_mut().for_each(|b| *b *= inverse);
-        }
-        s
+        let (u, d, f) = (self.u.as_mut_slice(), self.d.as_mut_slice(), self.f.as_slice());
+        bierman(u, d, f, r, gain)
     }
 
     /// `P <- P + c v v^T` with `c >= 0` (Agee and Turner); `v`: (n).
@@ -254,10 +237,42 @@ where
     }
 }
 
-/// Length of column `j` of `U` down to the diagonal, rounded up to groups of four: the diagonal is 1 and what is below it 0,
-/// and so is a gain that has come as far, so that the loops may end with a group.
-fn whole(j: usize, n: usize) -> usize {
-    (j / 4 * 4 + 4).min(n)
+/// `f = U^T h` for `n` states, row by row, since a gradient has few elements. Of known size its loops are unrolled.
+#[inline(always)]
+fn project_sized(u: &[f64], h: &[f64], f: &mut [f64], n: usize) {
+    let (u, h, f) = (&u[..n * n], &h[..n], &mut f[..n]);
+    f.fill(0.0);
+    for (i, &h) in h.iter().enumerate() {
+        if h != 0.0 {
+            f.iter_mut().enumerate().skip(i).for_each(|(j, f)| *f += h * u[j * n + i]);
+        }
+    }
+}
+
+/// Bierman's update with `f = U^T h`; writes the gain and returns the innovation's variance.
+fn bierman(u: &mut [f64], d: &mut [f64], f: &[f64], r: f64, gain: &mut [f64]) -> f64 {
+    let n = d.len();
+    gain.fill(0.0);
+    let mut s = r;
+    for (((j, u), d), &f) in u.chunks_exact_mut(n.max(1)).enumerate().zip(d).zip(f) {
+        let v = f * *d;
+        let before = s;
+        s += f * v;
+        if v == 0.0 || s == 0.0 {
+            continue;
+        }
+        *d *= before / s;
+        // Where no noise and no variance came before, the gain collected so far is zero.
+        let p = if before > 0.0 { -f / before } else { 0.0 };
+        // The diagonal of U is 1 and what is below it 0, and so is the gain from here on: whole groups of four may take part.
+        let height = (j / 4 * 4 + 4).min(n);
+        learn(&mut u[..height], &mut gain[..height], p, v);
+    }
+    if s > 0.0 {
+        let inverse = 1.0 / s;
+        gain.iter_mut().for_each(|b| *b *= inverse);
+    }
+    s
 }
 
 /// Update a column of `U` by the gain so far, and the gain by the column.

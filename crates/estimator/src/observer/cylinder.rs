@@ -7,27 +7,23 @@
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
 mod lanes;
 mod noise;
+mod structure;
 mod transition;
+mod walks;
 
 use nalgebra::DMatrix;
 
-use super::settings::{LeakHypothesis, ObserverSettings, Walk};
-use super::states::{StateKind, States};
+use super::settings::ObserverSettings;
+use super::states::States;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
-use crate::sensor::{Exposure, MAX_PARAMETERS, ParameterKind, Sensor, SensorKind};
+use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
 use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 use noise::Parts;
-use transition::{Structure, Transition, Walking};
-
-/// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
-const LEAST_FILM_W_M2_K: f64 = 4.0;
-const LARGEST_FILM_W_M2_K: f64 = 80.0;
-/// Bound on the logarithm of the inside film's multiplier.
-const LN_INSIDE_BOUND: f64 = 1.5;
-/// Bound on a coupling above its prior mean, in standard deviations of the prior.
-const COUPLING_BOUND_SD: f64 = 2.5;
+use structure::Structure;
+use transition::{Transition, Walking};
+pub use walks::SlowProcess;
 
 /// What a sensor looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,26 +34,6 @@ enum Target {
     Gas,
     Air,
     Pressure,
-}
-
-/// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlowProcess {
-    /// Variance gained in a second.
-    pub intensity: f64,
-    /// Inverse memory, 1/s; 0: a random walk.
-    pub decay_per_s: f64,
-    /// Value that it returns to.
-    pub rest: f64,
-}
-
-impl SlowProcess {
-    /// Factor on the departure from rest, and variance gained, over an interval, s.
-    pub fn over(&self, dt_s: f64) -> (f64, f64) {
-        let decay = self.decay_per_s * dt_s;
-        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
-        ((-decay).exp(), self.intensity * span_s)
-    }
 }
 
 /// The cylinder with its sensors in the variables of [`States`].
@@ -108,7 +84,7 @@ impl Cylinder {
         {
             return Err(EstimatorError::SensorTwice { name: twice.1.name.clone() });
         }
-        let structure = structure(&model, &states);
+        let structure = Structure::of(&states);
         let work = Work {
             rate: vec![0.0; model.states()],
             jacobian: DMatrix::zeros(model.states(), model.states() + Unknowns::COUNT),
@@ -167,13 +143,6 @@ impl Cylinder {
         self.settings.longest_step_s = longest_step_s;
     }
 
-    /// Let mass and leak rate walk as one member of the bank supposes.
-    pub fn suppose(&mut self, leak: &LeakHypothesis) {
-        self.walking[self.states.mass].intensity = leak.mass_walk_kg_per_sqrt_s.powi(2);
-        self.walking[self.states.leak].intensity = leak.rate.per_sqrt_s.powi(2);
-        self.walking[self.states.leak].decay_per_s = leak.rate.decay_per_s();
-    }
-
     /// Whether a state has gas, at temperatures and a density that the equation of state knows.
     pub fn is_possible(&mut self, x: &[f64]) -> bool {
         let domain = self.model.fluid().domain();
@@ -202,60 +171,6 @@ impl Cylinder {
     pub fn pressure_pa(&mut self, x: &[f64]) -> Result<f64, EstimatorError> {
         let n = self.model.states();
         Ok(self.model.pressure(&x[..n])?.pressure_pa)
-    }
-
-    /// How a trailing state moves while nobody looks.
-    pub fn slow_process(&self, state: usize) -> SlowProcess {
-        let of = |walk: &Walk, rest| SlowProcess {
-            intensity: walk.per_sqrt_s * walk.per_sqrt_s,
-            decay_per_s: walk.decay_per_s(),
-            rest,
-        };
-        match &self.states.kinds[state] {
-            StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
-            StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
-            StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
-            StateKind::Parameter { sensor, parameter } => {
-                let parameter = &self.sensors[*sensor].parameters()[*parameter];
-                let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
-                of(&walk, parameter.mean)
-            }
-            _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
-        }
-    }
-
-    /// Values of a state that can be; beyond them an estimate has left what it knows.
-    pub fn bounds(&self, state: usize) -> Option<(f64, f64)> {
-        let film_w_m2_k = self.settings.film_w_m2_k;
-        match &self.states.kinds[state] {
-            StateKind::OutsideFilm => {
-                Some(((LEAST_FILM_W_M2_K / film_w_m2_k).ln(), (LARGEST_FILM_W_M2_K / film_w_m2_k).ln()))
-            }
-            StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
-            StateKind::Parameter { sensor, parameter } => {
-                let parameter = &self.sensors[*sensor].parameters()[*parameter];
-                let (low, high) = parameter.domain();
-                (parameter.kind == ParameterKind::Coupling)
-                    .then(|| (low, high.min(parameter.mean + COUPLING_BOUND_SD * parameter.sd)))
-            }
-            _ => None,
-        }
-    }
-
-    fn set_walks(&mut self) {
-        let s = &self.settings;
-        self.walking[self.states.air].rest = s.air_rest_k;
-        for (i, kind) in self.states.kinds[..self.states.leading].iter().enumerate() {
-            let (walk, decay_per_s) = match kind {
-                StateKind::Wall(_) | StateKind::Valve => (s.temperature_walk_k_per_sqrt_s, 0.0),
-                StateKind::Gas => (s.gas_walk_k_per_sqrt_s, 0.0),
-                StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
-                StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
-                StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
-                _ => continue,
-            };
-            self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };
-        }
     }
 
     fn unknowns(&self, x: &[f64]) -> Unknowns {
@@ -426,23 +341,6 @@ impl Cylinder {
         self.work.noise.copy_from(&memory.noise);
         self.work.parts = Some(memory);
         outcome
-    }
-}
-
-/// Which rows of the transition are coupled, and what acts on them.
-fn structure(model: &ReducedModel, states: &States) -> Structure {
-    let lags = states.lag.iter().flatten().copied();
-    let block: Vec<usize> = (0..model.mass_index()).chain(lags).collect();
-    let lagged = |sensor: &usize| states.lag[*sensor].is_some();
-    let parameters = (0..states.lag.len()).filter(lagged).flat_map(|sensor| &states.parameters[sensor]);
-    let constants = [states.inside, states.capacity, states.slope];
-    Structure {
-        temperatures: model.mass_index(),
-        outer: (0..states.leading).filter(|state| !block.contains(state)).collect(),
-        mass: states.mass,
-        leak: states.leak,
-        constants: constants.into_iter().chain(parameters.copied()).flatten().collect(),
-        block,
     }
 }
 

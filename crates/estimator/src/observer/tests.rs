@@ -54,3 +54,11 @@ fn a_restart_keeps_what_was_learnt_before_it() {
     assert_eq!(pupil.step(60.0, &[f64::NAN; 3]).unwrap().quality, Quality::Restarted);
     assert_eq!(pupil.learned().unwrap().mean, learned.mean);
 }
+
+#[test]
+fn the_usual_observer_has_the_sizes_that_the_filter_is_unrolled_for() {
+    let observer = observer(Engine::Extended);
+    let cylinder = &observer.cylinder;
+    let sizes = (cylinder.states(), cylinder.leading(), cylinder.noises());
+    assert_eq!(sizes, crate::filter::USUAL_SIZES);
+}

@@ -140,6 +140,41 @@ fn a_step_at_rest_is_two_half_steps() {
     assert!(noise[0] < 1e-5 && fall_with(&noise[1..], 4.0), "{noise:?}");
 }
 
+#[test]
+fn a_step_with_lagging_sensors_is_two_half_steps() {
+    // The time constant is about the step: the lags are the fastest of all. They have to be at rest with what they read.
+    let (mut whole, mut halves) = (cylinder(1e3, 12.0), cylinder(1e3, 12.0));
+    let (mut x, typical) = state(&whole, false);
+    for lagged in 0..x.len() {
+        if let StateKind::Lag { sensor } = whole.state_map().kinds[lagged] {
+            x[lagged] = reading_at_rest(sensor, &x);
+        }
+    }
+    for h in [40.0, 20.0, 5.0] {
+        let (_, f_whole, q_whole) = steps(&mut whole, &x, &[h]);
+        let (_, f_halves, q_halves) = steps(&mut halves, &x, &[0.5 * h, 0.5 * h]);
+        let (f, q) =
+            (transition_difference(&f_whole, &f_halves, &typical), noise_difference(&q_whole, &q_halves));
+        println!("{h} s with lags split in two: transition {f:e}, noise {q:e}");
+        assert!(f < 1e-12, "{h} s: {f:e}");
+    }
+}
+
+/// Reading without lag of a sensor.
+fn reading_at_rest(sensor: usize, x: &[f64]) -> f64 {
+    // The same states without those of the lags.
+    let mut prompt = cylinder(1e3, 0.0);
+    let lagging = cylinder(1e3, 12.0);
+    let kinds = &lagging.state_map().kinds;
+    let without: Vec<f64> = x
+        .iter()
+        .zip(kinds)
+        .filter(|(_, kind)| !matches!(kind, StateKind::Lag { .. }))
+        .map(|(x, _)| *x)
+        .collect();
+    prompt.output(sensor, &without, None).unwrap()
+}
+
 /// `A` and `dx/dt` of a cylinder without lags, from the thermal model's own Jacobian.
 fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     let (map, n) = (cylinder.state_map().clone(), x.len());
@@ -178,7 +213,8 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
 fn intensities(cylinder: &Cylinder, n: usize) -> DMatrix<f64> {
     let (map, s) = (cylinder.state_map(), cylinder.settings());
     let mut sd = DVector::zeros(n);
-    sd.rows_mut(0, map.gas + 1).fill(s.temperature_walk_k_per_sqrt_s);
+    sd.rows_mut(0, map.gas).fill(s.temperature_walk_k_per_sqrt_s);
+    sd[map.gas] = s.gas_walk_k_per_sqrt_s;
     sd[map.mass] = s.bank[0].mass_walk_kg_per_sqrt_s;
     sd[map.leak] = s.bank[0].rate.per_sqrt_s;
     sd[map.air] = s.air.per_sqrt_s;

@@ -213,3 +213,35 @@ fn static_and_dynamic_sizes_give_the_same_bits() {
     }
     assert_eq!(dynamic.covariance().as_slice(), fixed.covariance().as_slice());
 }
+
+/// Rows that move by themselves, one that another drives, constants that nothing depends on, triangular noise, also in the sizes
+/// that are unrolled.
+#[test]
+fn what_is_zero_in_transition_and_noise_makes_no_difference() {
+    let mut rng = ChaCha8Rng::seed_from_u64(21);
+    for (n, m) in [(18, 9), (13, 9), (21, 12), (7, 6), (9, 9)] {
+        let mut linear = transition(&mut rng, n, m, m);
+        for row in 4..m {
+            linear.phi.row_mut(row).fill(0.0);
+            linear.phi[(row, row)] = 0.9;
+        }
+        linear.phi[(4, 5)] = -3.0;
+        linear.phi.columns_mut(n - (n - m) / 2, (n - m) / 2).fill(0.0);
+        for (column, row) in (0..m).flat_map(|column| (m - column..m).map(move |row| (column, row))) {
+            linear.g[(row, column)] = 0.0;
+        }
+        // Rows may also start or end anywhere.
+        linear.phi[(m - 1, 0)] = if n == 13 { 0.4 } else { 0.0 };
+        linear.q[2] = 0.0;
+        let p = covariance(&mut rng, n, 3.0);
+        let mut ud = UdFactors::<Dyn>::from_covariance(&p).unwrap();
+        let (f, q) = dense_transition(&linear);
+        let expected = &f * ud.covariance() * f.transpose() + q;
+        ud.predict(&linear);
+        assert!(difference(&ud.covariance(), &expected) < 1e-12, "{n} states, {m} moving");
+        let again = ud.clone();
+        ud.predict(&linear);
+        let expected = &f * again.covariance() * f.transpose() + dense_transition(&linear).1;
+        assert!(difference(&ud.covariance(), &expected) < 1e-12, "{n} states, {m} moving, again");
+    }
+}

@@ -1,8 +1,8 @@
 //! Noise of a transition: gathered over the parts of a divided interval, and factored for the filter.
 use nalgebra::DMatrix;
 
-use crate::filter::Linearisation;
 use crate::filter::kernel::axpy;
+use crate::filter::{Linearisation, USUAL_SIZES};
 
 /// Transition and noise of the parts of an interval so far.
 #[derive(Clone, Debug)]
@@ -70,10 +70,18 @@ fn add_product(a: &[f64], b: &[f64], c: &mut [f64], m: usize) {
 ///
 /// A variance that the later states explain up to rounding counts as explained in full: its column stays zero.
 pub(super) fn factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
-    let m = noise.nrows();
-    linear.g.fill(0.0);
-    linear.q.fill(0.0);
-    let (noise, g) = (noise.as_mut_slice(), linear.g.as_mut_slice());
+    const USUAL: usize = USUAL_SIZES.1;
+    let (m, noise) = (noise.nrows(), noise.as_mut_slice());
+    let (g, q) = (linear.g.as_mut_slice(), linear.q.as_mut_slice());
+    if m == USUAL { factor_sized(noise, g, q, USUAL) } else { factor_sized(noise, g, q, m) }
+}
+
+/// Of known size its loops are unrolled.
+#[inline(always)]
+fn factor_sized(noise: &mut [f64], g: &mut [f64], q: &mut [f64], m: usize) {
+    let (noise, g, q) = (&mut noise[..m * m], &mut g[..m * m], &mut q[..m]);
+    g.fill(0.0);
+    q.fill(0.0);
     let rounding = m as f64 * f64::EPSILON;
     for (index, g) in g.chunks_exact_mut(m.max(1)).enumerate() {
         let j = m - 1 - index;
@@ -82,19 +90,66 @@ pub(super) fn factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
         if left <= f64::MIN_POSITIVE {
             continue;
         }
-        linear.q[index] = left;
+        q[index] = left;
         g[j] = 1.0;
         let inverse = 1.0 / left;
-        for ((g, &value), i) in g[..j].iter_mut().zip(&column[..j]).zip(0..) {
+        for (i, (target, &value)) in before.chunks_exact_mut(m).zip(column.iter()).enumerate() {
             if value == 0.0 {
                 continue;
             }
-            *g = value * inverse;
-            let diagonal = before[i * m + i];
-            axpy(-*g, &column[..=i], &mut before[i * m..=i * m + i]);
-            if before[i * m + i] <= rounding * diagonal {
-                before[i * m..=i * m + i].fill(0.0);
+            g[i] = value * inverse;
+            let diagonal = target[i];
+            axpy(-g[i], &column[..=i], &mut target[..=i]);
+            if target[i] <= rounding * diagonal {
+                target[..=i].fill(0.0);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DVector;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    #[test]
+    fn a_factored_noise_is_the_noise_singular_or_not() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for (m, rank) in [(9, 9), (9, 4), (12, 12), (5, 1), (1, 1), (4, 0)] {
+            let root =
+                DMatrix::from_fn(m, rank, |i, _| 10_f64.powi(i as i32 % 4) * rng.random_range(-1.0..1.0));
+            let expected = &root * root.transpose();
+            let mut linear = Linearisation::zeros(m, m, m);
+            factor(&mut expected.upper_triangle(), &mut linear);
+            let found = &linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose();
+            let sd = expected.diagonal().map(|d| d.sqrt().max(1e-100));
+            let worst = (&found - &expected).map_with_location(|i, j, e| (e / (sd[i] * sd[j])).abs());
+            assert!(worst.iter().all(|e| *e < 1e-12), "{m} states, rank {rank}: {worst}");
+            assert!(linear.q.iter().all(|q| *q >= 0.0));
+        }
+    }
+
+    #[test]
+    fn parts_of_an_interval_follow_each_other() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let (n, m) = (7, 4);
+        let mut parts = Parts::new(n, m);
+        parts.clear();
+        let (mut f, mut q) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
+        for _ in 0..3 {
+            let phi = DMatrix::from_fn(m, n, |_, _| rng.random_range(-1.0..1.0));
+            let noise = DMatrix::from_diagonal(&DVector::from_fn(m, |_, _| rng.random_range(0.1..1.0)));
+            parts.append(&phi, &noise);
+            let (mut step, mut added) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
+            step.rows_mut(0, m).copy_from(&phi);
+            added.view_mut((0, 0), (m, m)).copy_from(&noise);
+            q = &step * q * step.transpose() + added;
+            f = step * f;
+        }
+        assert!((&parts.phi - f.rows(0, m)).abs().max() < 1e-12);
+        let moving = q.view((0, 0), (m, m)).into_owned();
+        assert!((parts.noise.upper_triangle() - moving.upper_triangle()).abs().max() < 1e-12);
     }
 }

@@ -14,9 +14,10 @@
 use nalgebra::DMatrix;
 
 use super::lanes::{Columns, Square, add_scaled};
+use super::structure::Structure;
 
 /// What the series leaves out, relative to its first term.
-const SERIES_TOLERANCE: f64 = 1e-14;
+const SERIES_TOLERANCE: f64 = 1e-13;
 /// Norm of the scaled matrix: a doubling costs as much as a term and a half.
 const LARGEST_NORM: f64 = 0.12;
 /// Weights of Simpson's rule at start, middle and end.
@@ -34,20 +35,6 @@ struct Outer {
     /// `e_j - 1` after the interval, and after half the step.
     change: f64,
     half_change: f64,
-}
-
-/// Which states the equations have.
-#[derive(Clone, Debug)]
-pub(super) struct Structure {
-    /// States of the block; those before `temperatures` are coupled both ways, the others are driven only.
-    pub block: Vec<usize>,
-    pub temperatures: usize,
-    /// States outside the block.
-    pub outer: Vec<usize>,
-    pub mass: usize,
-    pub leak: usize,
-    /// Constants that act on the block.
-    pub constants: Vec<usize>,
 }
 
 /// How a leading state moves on its own.
@@ -242,10 +229,10 @@ impl Transition {
 
     /// Leading rows of the transition matrix: (leading, n).
     pub fn write_phi(&self, phi: &mut DMatrix<f64>) {
-        phi.fill(0.0);
         let leading = phi.nrows();
         let (first, driven) = self.columns[..self.rows].split_at(self.temperatures);
         let phi = phi.as_mut_slice();
+        phi.fill(0.0);
         for (j, state) in self.columns.iter().enumerate() {
             let column = &mut phi[state * leading..(state + 1) * leading];
             let (temperatures, lags) = self.sum.flat(j).split_at(first.len());
@@ -264,9 +251,9 @@ impl Transition {
 
     /// Noise covariance that the step of `h` seconds adds: (leading, leading), its upper triangle. The rest has no meaning.
     pub fn write_noise(&mut self, walking: &[Walking], h: f64, q: &mut DMatrix<f64>) {
-        q.fill(0.0);
         let m = q.nrows();
         let q = q.as_mut_slice();
+        q.fill(0.0);
         self.noise.clear();
         for source in 0..self.rows {
             let intensity = h * walking[self.columns[source]].intensity;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::observer::{Commissioning, ObserverSettings, Walk};
+use crate::observer::{Commissioning, ObserverSettings};
 use crate::sensor::Sensor;
 use crate::thermal::vessel::presets;
 
@@ -7,11 +7,11 @@ use crate::thermal::vessel::presets;
 fn observer(engine: Engine) -> Observer {
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
     let mut settings = ObserverSettings { engine, ..ObserverSettings::default() };
-    for constant in [&mut settings.ln_inside_film, &mut settings.ln_capacity, &mut settings.film_slope] {
-        *constant = Walk::constant(constant.prior_sd);
-    }
     settings.coupling_memory_s = None;
     settings.constants_memory_s = None;
+    for walk in [&mut settings.ln_inside_film, &mut settings.ln_capacity, &mut settings.film_slope] {
+        (walk.per_sqrt_s, walk.memory_s) = (0.0, None);
+    }
     settings.bank.truncate(2);
     let commissioning = Commissioning::filled(2e7, 288.15);
     Observer::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &commissioning, &settings).unwrap()

@@ -111,6 +111,7 @@ fn the_published_bound_is_met_where_paths_hardly_differ() {
     for settings in [&mut alike.truth, &mut alike.filter] {
         let s = settings;
         s.temperature_walk_k_per_sqrt_s *= 0.1;
+        s.gas_walk_k_per_sqrt_s *= 0.1;
         for walk in
             [&mut s.air, &mut s.ln_outside_film, &mut s.ln_inside_film, &mut s.ln_capacity, &mut s.sun]
         {

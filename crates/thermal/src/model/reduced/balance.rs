@@ -143,8 +143,8 @@ impl ReducedModel {
         let mean_energy_rate: f64 = rate[..nodes].iter().sum::<f64>() / (self.wall_capacity_j_k * stretch);
         self.mean_rate_k_s = mean_slope * mean_energy_rate;
         if let Some(j) = jacobian {
-            for (column, by) in self.mean_rate_by[..width].iter_mut().enumerate() {
-                *by = scale * j.column(column).rows(0, nodes).sum();
+            for (by, column) in self.mean_rate_by[..width].iter_mut().zip(j.as_slice().chunks_exact(n)) {
+                *by = scale * column[..nodes].iter().sum::<f64>();
             }
             self.mean_rate_by[n + Unknowns::CAPACITY] = -self.mean_rate_k_s;
             // The slope itself falls as the wall warms: d slope = -a slope^3 dx.
@@ -156,7 +156,8 @@ impl ReducedModel {
             for node in 0..self.gas_index() {
                 let (capacity, ln_slope) = self.node_capacity(node, x[node]);
                 let value = rate[node] / (capacity * stretch);
-                j.row_mut(node).iter_mut().for_each(|by| *by /= capacity * stretch);
+                let inverse = 1.0 / (capacity * stretch);
+                j.as_mut_slice()[node..].iter_mut().step_by(n).for_each(|by| *by *= inverse);
                 j[(node, node)] -= value * ln_slope;
                 j[(node, n + Unknowns::CAPACITY)] = -value;
             }
@@ -182,8 +183,8 @@ impl ReducedModel {
         rate[row] = heat_w / capacity;
         rate[mass] = -outflow;
         let Some(j) = jacobian else { return };
-        for (column, by) in self.mean_rate_by[..n + Unknowns::COUNT].iter().enumerate() {
-            j[(row, column)] -= gas.per_wall_j_k.value * by;
+        for (to, by) in j.as_mut_slice()[row..].iter_mut().step_by(n).zip(&self.mean_rate_by) {
+            *to -= gas.per_wall_j_k.value * by;
         }
         j[(row, n + Unknowns::OUTFLOW)] -= gas.per_outflow_j_kg.value;
         j[(mass, n + Unknowns::OUTFLOW)] = -1.0;
@@ -198,7 +199,8 @@ impl ReducedModel {
         for node in 0..self.wall_nodes() {
             j[(row, node)] -= own(2) * self.mean_wall_per_node(x, node);
         }
-        j.row_mut(row).iter_mut().for_each(|by| *by /= capacity);
+        let inverse = 1.0 / capacity;
+        j.as_mut_slice()[row..].iter_mut().step_by(n).for_each(|by| *by *= inverse);
     }
 
     fn half_cell(&self, node_k: f64, shape_m: f64) -> HalfCell {

@@ -51,12 +51,20 @@ pub(super) struct Properties {
     pub p_rho: Property,
 }
 
-/// Polynomials of one cell in the coordinates `(T - T_c) / h_T` (rows) and `(rho - rho_c) / h_rho` (columns).
+/// Polynomials of one cell in the coordinates `(rho - rho_c) / h_rho` (down a column) and `(T - T_c) / h_T` (along a row).
+#[derive(Clone, Debug)]
+struct Polynomials {
+    /// Temperature, K, and density, kg/m³, of the cell's middle.
+    middle: (f64, f64),
+    z: Coefficients,
+    cv: Coefficients,
+}
+
+/// A cell; without polynomials where they are not good enough.
 #[derive(Clone, Debug)]
 struct Cell {
     index: (i32, i32),
-    middle: (f64, f64),
-    polynomials: Option<(Coefficients, Coefficients)>,
+    polynomials: Option<Polynomials>,
 }
 
 /// The cells of one fluid that were needed lately.
@@ -121,8 +129,10 @@ impl Chart {
     /// All properties at a density, kg/m³, and temperature, K.
     pub fn properties(&mut self, rho: f64, t: f64) -> Properties {
         let (half, r) = ((0.5 * WIDTH_K, 0.5 * self.height_kg_m3), self.gas_constant_j_kg_k);
-        let Some((cell, (z, cv))) = self.polynomials(rho, t) else { return self.exact(rho, t) };
-        let at = ((t - cell.0) / half.0, (rho - cell.1) / half.1);
+        let Some(Polynomials { middle, z, cv }) = self.polynomials(rho, t) else {
+            return self.exact(rho, t);
+        };
+        let at = ((t - middle.0) / half.0, (rho - middle.1) / half.1);
         let [z, z_t, z_r, z_tt, z_tr, z_rr] = expand(z, at, half);
         let [cv, cv_t, cv_r, ..] = expand(cv, at, half);
         let (p_t, p_rho) = (rho * r * (z + t * z_t), r * t * (z + rho * z_r));
@@ -138,7 +148,7 @@ impl Chart {
     /// Pressure about a density, kg/m³, at a temperature, K; `None` where the equation itself is to be used.
     pub fn isotherm(&mut self, rho: f64, t: f64) -> Option<Isotherm> {
         let (half_kg_m3, rt) = (0.5 * self.height_kg_m3, self.gas_constant_j_kg_k * t);
-        let (middle, (z, _)) = self.polynomials(rho, t)?;
+        let Polynomials { middle, z, .. } = self.polynomials(rho, t)?;
         let a = (t - middle.0) / (0.5 * WIDTH_K);
         let mut coefficients = [0.0; ORDER];
         for row in (0..ORDER).rev() {
@@ -149,8 +159,8 @@ impl Chart {
         Some(Isotherm { middle_kg_m3: middle.1, half_kg_m3, rt, coefficients })
     }
 
-    /// Middle of the cell of a state with its polynomials, found or made.
-    fn polynomials(&mut self, rho: f64, t: f64) -> Option<((f64, f64), &(Coefficients, Coefficients))> {
+    /// Polynomials of a state's cell, found or made.
+    fn polynomials(&mut self, rho: f64, t: f64) -> Option<&Polynomials> {
         let (i, j) = ((t / WIDTH_K).floor(), (rho / self.height_kg_m3).floor());
         let index = (i as i32, j as i32);
         let slot = ((index.0 & (KEPT - 1)) * KEPT + (index.1 & (KEPT - 1))) as usize;
@@ -164,14 +174,13 @@ impl Chart {
                 return None;
             }
             let middle = ((i + 0.5) * WIDTH_K, (j + 0.5) * self.height_kg_m3);
-            self.cells[slot] = Some(Cell { index, middle, polynomials: self.interpolate(middle) });
+            self.cells[slot] = Some(Cell { index, polynomials: self.interpolate(middle) });
         }
-        let cell = self.cells[slot].as_ref()?;
-        cell.polynomials.as_ref().map(|polynomials| (cell.middle, polynomials))
+        self.cells[slot].as_ref()?.polynomials.as_ref()
     }
 
     /// Polynomials of a cell; `None` where they are not good enough.
-    fn interpolate(&self, middle: (f64, f64)) -> Option<(Coefficients, Coefficients)> {
+    fn interpolate(&self, middle: (f64, f64)) -> Option<Polynomials> {
         let half = (0.5 * WIDTH_K, 0.5 * self.height_kg_m3);
         let state = |a: f64, b: f64| {
             let state = self.fluid.state(middle.1 + b * half.1, middle.0 + a * half.0);
@@ -190,7 +199,7 @@ impl Chart {
             let close = |found: Expansion, exact: f64| (found[0] / exact - 1.0).abs() < LARGEST_ERROR;
             close(expand(&z, (a, b), half), z_exact) && close(expand(&cv, (a, b), half), cv_exact)
         });
-        good.then_some((z, cv))
+        good.then_some(Polynomials { middle, z, cv })
     }
 
     /// By the equation of state itself.
@@ -243,86 +252,4 @@ fn expand(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Properties by polynomials and by the equation; the largest relative difference of each property and derivative.
-    fn differences(name: &str, temperatures_k: (f64, f64), pressures_pa: (f64, f64)) -> [f64; 3] {
-        let fluid = Fluid::named(name).unwrap();
-        let mut chart = Chart::new(fluid.clone());
-        let mut worst = [0.0_f64; 3];
-        let mut used = 0;
-        for step in 0..300_u32 {
-            // Incommensurable strides: everywhere in a cell, on either side of its edges.
-            let (u, v) = ((f64::from(step) * 0.618_034).fract(), (f64::from(step) * 0.754_878).fract());
-            let t = temperatures_k.0 + u * (temperatures_k.1 - temperatures_k.0);
-            let p = pressures_pa.0 * (pressures_pa.1 / pressures_pa.0).powf(v);
-            let rho = fluid.density_from_pressure_temperature(p, t).unwrap();
-            let exact = chart.exact(rho, t);
-            used += usize::from(chart.isotherm(rho, t).is_some());
-            let found = chart.properties(rho, t);
-            let pairs = [
-                (found.p, exact.p),
-                (found.cv, exact.cv),
-                (found.p_t, exact.p_t),
-                (found.p_rho, exact.p_rho),
-            ];
-            for (found, exact) in pairs {
-                let scale = exact.value.abs();
-                worst[0] = worst[0].max((found.value - exact.value).abs() / scale);
-                worst[1] = worst[1].max((found.by_t - exact.by_t).abs() * t / scale);
-                worst[2] = worst[2].max((found.by_rho - exact.by_rho).abs() * rho / scale);
-            }
-        }
-        println!("{name}: values {:.1e}, by T {:.1e}, by rho {:.1e}", worst[0], worst[1], worst[2]);
-        assert!(used == 300, "{name}: polynomials in {used} of 300 states");
-        worst
-    }
-
-    #[test]
-    fn polynomials_agree_with_the_equation_and_its_derivatives() {
-        for name in Fluid::names() {
-            let worst = differences(name, (220.0, 360.0), (1e5, 3e7));
-            assert!(worst[0] < 1e-9, "{name}: {worst:?}");
-            assert!(worst[1] < 1e-6 && worst[2] < 1e-6, "{name}: {worst:?}");
-        }
-    }
-
-    #[test]
-    fn an_isotherm_gives_pressure_and_slope() {
-        let mut chart = Chart::new(Fluid::named("nitrogen").unwrap());
-        for (rho, t) in [(5.0, 280.0), (222.0, 251.3), (310.0, 340.0)] {
-            let exact = chart.fluid().pressure_with_derivatives(rho, t);
-            let isotherm = chart.isotherm(rho, t).unwrap();
-            let (p, slope) = isotherm.pressure(rho);
-            assert!(isotherm.holds(rho) && !isotherm.holds(rho + 20.0));
-            approx::assert_relative_eq!(p, exact.pressure_pa, max_relative = 1e-11);
-            approx::assert_relative_eq!(slope, exact.dp_drho_pa_m3_kg, max_relative = 1e-9);
-        }
-    }
-
-    #[test]
-    fn states_without_a_good_polynomial_are_left_to_the_equation() {
-        // Beside the critical point, too hot, too dense, without gas.
-        let mut chart = Chart::new(Fluid::named("nitrogen").unwrap());
-        for (rho, t) in [(313.0, 126.5), (100.0, 2500.0), (2000.0, 300.0), (-1.0, 300.0), (f64::NAN, 300.0)] {
-            assert!(chart.isotherm(rho, t).is_none(), "{rho} kg/m³, {t} K");
-        }
-        let exact = chart.fluid().pressure_with_derivatives(313.0, 126.5);
-        let found = chart.properties(313.0, 126.5).p;
-        approx::assert_relative_eq!(found.value, exact.pressure_pa, max_relative = 1e-12);
-        approx::assert_relative_eq!(found.by_t, exact.dp_dt_pa_k, max_relative = 1e-12);
-    }
-
-    #[test]
-    fn the_order_of_questions_does_not_matter() {
-        let states = [(222.0, 280.0), (222.0, 312.0), (222.0, 248.0), (300.0, 280.0), (222.0, 280.0)];
-        let mut chart = Chart::new(Fluid::named("nitrogen").unwrap());
-        let found = states.map(|(rho, t)| chart.properties(rho, t).p_rho.by_t);
-        assert_eq!(found[0], found[4]);
-        for ((rho, t), found) in states.into_iter().zip(found) {
-            let mut fresh = Chart::new(Fluid::named("nitrogen").unwrap());
-            assert_eq!(fresh.properties(rho, t).p_rho.by_t, found);
-        }
-    }
-}
+mod tests;

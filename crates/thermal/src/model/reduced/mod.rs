@@ -326,7 +326,7 @@ impl ReducedModel {
             jacobian.is_some(),
         )?;
         if let Some(jacobian) = jacobian.as_deref_mut() {
-            jacobian.fill(0.0);
+            jacobian.as_mut_slice().fill(0.0);
         }
         rate.fill(0.0);
         self.add_conduction(x, rate, jacobian.as_deref_mut());

@@ -1,0 +1,35 @@
+//! Which states the equations of a step couple.
+use super::super::states::States;
+
+/// Which states the equations have.
+#[derive(Clone, Debug)]
+pub(super) struct Structure {
+    /// States of the block; the first `temperatures` are coupled both ways, the others are driven only.
+    pub block: Vec<usize>,
+    pub temperatures: usize,
+    /// States outside the block.
+    pub outer: Vec<usize>,
+    pub mass: usize,
+    pub leak: usize,
+    /// Constants that act on the block.
+    pub constants: Vec<usize>,
+}
+
+impl Structure {
+    /// Temperatures are the states before the mass; lags are driven, and by what their sensors' parameters say.
+    pub fn of(states: &States) -> Self {
+        let lags = states.lag.iter().flatten().copied();
+        let block: Vec<usize> = (0..states.mass).chain(lags).collect();
+        let lagged = |sensor: &usize| states.lag[*sensor].is_some();
+        let parameters = (0..states.lag.len()).filter(lagged).flat_map(|sensor| &states.parameters[sensor]);
+        let constants = [states.inside, states.capacity, states.slope];
+        Self {
+            temperatures: states.mass,
+            outer: (0..states.leading).filter(|state| !block.contains(state)).collect(),
+            mass: states.mass,
+            leak: states.leak,
+            constants: constants.into_iter().chain(parameters.copied()).flatten().collect(),
+            block,
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! How states walk, and how far they may.
+use super::super::settings::{LeakHypothesis, Walk};
+use super::super::states::StateKind;
+use super::Cylinder;
+use super::transition::Walking;
+use crate::sensor::ParameterKind;
+
+/// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
+const LEAST_FILM_W_M2_K: f64 = 4.0;
+const LARGEST_FILM_W_M2_K: f64 = 80.0;
+/// Bound on the logarithm of the inside film's multiplier.
+const LN_INSIDE_BOUND: f64 = 1.5;
+/// Bound on a coupling above its prior mean, in standard deviations of the prior.
+const COUPLING_BOUND_SD: f64 = 2.5;
+
+/// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowProcess {
+    /// Variance gained in a second.
+    pub intensity: f64,
+    /// Inverse memory, 1/s; 0: a random walk.
+    pub decay_per_s: f64,
+    /// Value that it returns to.
+    pub rest: f64,
+}
+
+impl SlowProcess {
+    /// Factor on the departure from rest, and variance gained, over an interval, s.
+    pub fn over(&self, dt_s: f64) -> (f64, f64) {
+        let decay = self.decay_per_s * dt_s;
+        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
+        ((-decay).exp(), self.intensity * span_s)
+    }
+}
+
+impl Cylinder {
+    /// Let mass and leak rate walk as one member of the bank supposes.
+    pub fn suppose(&mut self, leak: &LeakHypothesis) {
+        self.walking[self.states.mass].intensity = leak.mass_walk_kg_per_sqrt_s.powi(2);
+        self.walking[self.states.leak].intensity = leak.rate.per_sqrt_s.powi(2);
+        self.walking[self.states.leak].decay_per_s = leak.rate.decay_per_s();
+    }
+
+    /// How a trailing state moves while nobody looks.
+    pub fn slow_process(&self, state: usize) -> SlowProcess {
+        let of = |walk: &Walk, rest| SlowProcess {
+            intensity: walk.per_sqrt_s * walk.per_sqrt_s,
+            decay_per_s: walk.decay_per_s(),
+            rest,
+        };
+        match &self.states.kinds[state] {
+            StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
+            StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
+            StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
+            StateKind::Parameter { sensor, parameter } => {
+                let parameter = &self.sensors[*sensor].parameters()[*parameter];
+                let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
+                of(&walk, parameter.mean)
+            }
+            _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
+        }
+    }
+
+    /// Values of a state that can be; beyond them an estimate has left what it knows.
+    pub fn bounds(&self, state: usize) -> Option<(f64, f64)> {
+        let film_w_m2_k = self.settings.film_w_m2_k;
+        match &self.states.kinds[state] {
+            StateKind::OutsideFilm => {
+                Some(((LEAST_FILM_W_M2_K / film_w_m2_k).ln(), (LARGEST_FILM_W_M2_K / film_w_m2_k).ln()))
+            }
+            StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
+            StateKind::Parameter { sensor, parameter } => {
+                let parameter = &self.sensors[*sensor].parameters()[*parameter];
+                let (low, high) = parameter.domain();
+                (parameter.kind == ParameterKind::Coupling)
+                    .then(|| (low, high.min(parameter.mean + COUPLING_BOUND_SD * parameter.sd)))
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn set_walks(&mut self) {
+        let s = &self.settings;
+        self.walking[self.states.air].rest = s.air_rest_k;
+        for (i, kind) in self.states.kinds[..self.states.leading].iter().enumerate() {
+            let (walk, decay_per_s) = match kind {
+                StateKind::Wall(_) | StateKind::Valve => (s.temperature_walk_k_per_sqrt_s, 0.0),
+                StateKind::Gas => (s.gas_walk_k_per_sqrt_s, 0.0),
+                StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
+                StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
+                StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
+                _ => continue,
+            };
+            self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };
+        }
+    }
+}
