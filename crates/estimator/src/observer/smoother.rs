@@ -1,8 +1,8 @@
 //! Estimates given the samples before and after them.
 //!
 //! The observer's pass is recorded, sample by sample, and smoothed backwards (modified Bryson-Frazier recursion of
-//! [`crate::filter::smoother`]): the first member gives the mass, the middle slow one the leak rate, and both the gas temperature,
-//! with the weights that the filter gave them.
+//! [`crate::filter::smoother`]): the first member gives the mass, the middle slow one leak rate and gas temperature, and the freest
+//! one takes part with the weight that the filter gave it.
 //!
 //! A year of samples does not fit into memory, so the record has room for a number of rows, by default [`ROWS`]. A log of
 //! no more rows is smoothed over its whole length. When the record is full, it is smoothed from the newest row back, the older
@@ -20,7 +20,7 @@ use super::{Estimate, Observer, Quality};
 use crate::EstimatorError;
 use crate::filter::{Backward, Smoothed, StateSpace};
 
-/// Rows of the record by default: at 17 states and two members some 75 MB; 23 hours at 10 s, 5.7 days at a minute.
+/// Rows of the record by default: at 18 states and three members some 120 MB; 23 hours at 10 s, 5.7 days at a minute.
 pub const ROWS: usize = 8192;
 
 /// An observer whose estimates are smoothed.
@@ -43,8 +43,8 @@ pub struct Smoother {
 struct Row {
     estimate: Estimate,
     reference_kg: Option<f64>,
-    /// Weights of the two members in the gas temperature, where there are two.
-    belief: Option<Belief>,
+    /// Weight of the first member in the mass, and of the slow one in the gas temperature, against the freest.
+    beliefs: (Belief, Belief),
     passes: Vec<Pass>,
 }
 
@@ -75,7 +75,11 @@ impl Smoother {
         }
         let n = observer.cylinder.states();
         let mut members = vec![0];
-        members.extend(observer.middle_slow_index().filter(|&index| index != 0));
+        for index in observer.middle_slow_index().into_iter().chain([observer.freest_index()]) {
+            if !members.contains(&index) {
+                members.push(index);
+            }
+        }
         let zeros = Smoothed { x: nalgebra::DVector::zeros(n), p: nalgebra::DMatrix::zeros(n, n) };
         Ok(Self {
             rows,
@@ -148,8 +152,17 @@ impl Smoother {
             // A row at the same time has no interval of its own.
             pass.begin(0.0);
         }
-        let belief = self.observer.middle_slow_member().map(|slow| self.observer.belief(slow));
-        Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, belief, passes }
+        let (first, slow, _) = self.roles();
+        let belief = |role: usize| self.observer.belief(&self.observer.members[self.members[role]]);
+        let beliefs = (belief(first), belief(slow));
+        Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, beliefs, passes }
+    }
+
+    /// Places of the first, the middle slow (or again the first) and the freest member among the recorded ones.
+    fn roles(&self) -> (usize, usize, usize) {
+        let place = |index: usize| self.members.iter().position(|&member| member == index).unwrap_or(0);
+        let slow = self.observer.middle_slow_index().map_or(0, place);
+        (0, slow, place(self.observer.freest_index()))
     }
 
     /// Smooth the whole record and hand out the oldest `count` rows.
@@ -177,30 +190,27 @@ impl Smoother {
         {
             backward.estimate(&pass.step, smoothed);
         }
-        let (filtered, reference_kg, belief) = (row.estimate, row.reference_kg, row.belief);
-        let observer = &mut self.observer;
-        let states = observer.cylinder.state_map();
+        let (filtered, reference_kg, beliefs) = (row.estimate, row.reference_kg, row.beliefs);
+        let (first, slow, freest) = self.roles();
+        let states = self.observer.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
-        let first = &self.smoothed[0];
-        let sd = |smoothed: &Smoothed, state: usize| smoothed.p[(state, state)].max(0.0).sqrt();
+        let (first, slow, freest) = (&self.smoothed[first], &self.smoothed[slow], &self.smoothed[freest]);
+        let of = |smoothed: &Smoothed, state: usize| (smoothed.x[state], smoothed.p[(state, state)].max(0.0));
+        let (mass_kg, mass_variance_kg2) = beliefs.0.blend(of(first, mass), of(freest, mass));
+        let (gas_mean_k, gas_variance_k2) = beliefs.1.blend(of(slow, gas), of(freest, gas));
         let mut estimate = Estimate {
-            gas_mean_k: first.x[gas],
-            gas_mean_sd_k: sd(first, gas),
-            mass_kg: first.x[mass],
-            mass_sd_kg: sd(first, mass),
+            gas_mean_k,
+            gas_mean_sd_k: gas_variance_k2.sqrt(),
+            mass_kg,
+            mass_sd_kg: mass_variance_kg2.sqrt(),
             ..filtered
         };
-        // A bank of slow members alone has its leak rate in the first.
-        if let Some(slow) = self.smoothed.last().filter(|_| !filtered.leak_kg_s.is_nan()) {
-            (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (slow.x[leak], sd(slow, leak));
-            if let Some(belief) = belief {
-                let of = |smoothed: &Smoothed| (smoothed.x[gas], sd(smoothed, gas).powi(2));
-                let (mean_k, variance_k2) = belief.blend(of(slow), of(first));
-                (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (mean_k, variance_k2.sqrt());
-            }
+        if !filtered.leak_kg_s.is_nan() {
+            let (leak_kg_s, variance) = of(slow, leak);
+            (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (leak_kg_s, variance.sqrt());
         }
-        observer.reference_x.copy_from_slice(first.x.as_slice());
-        match observer.add_pressures(&mut estimate, reference_kg) {
+        self.observer.reference_x.copy_from_slice(first.x.as_slice());
+        match self.observer.add_pressures(&mut estimate, reference_kg) {
             Ok(()) => estimate,
             Err(_) => filtered,
         }

@@ -1,6 +1,6 @@
 use super::super::{Engine, Mechanism};
 use super::*;
-use crate::observer::{Commissioning, Observer, ObserverSettings};
+use crate::observer::{Commissioning, LeakHypothesis, Observer, ObserverSettings};
 use crate::sensor::Sensor;
 use crate::thermal::vessel::presets;
 
@@ -8,7 +8,8 @@ const REST: [f64; 3] = [288.15, 288.15, 2e7];
 
 fn observer(sensors: &[&str], engine: Engine) -> Observer {
     let sensors: Vec<Sensor> = sensors.iter().map(|name| Sensor::typical(name).unwrap()).collect();
-    let settings = ObserverSettings { engine, ..ObserverSettings::single() };
+    let bank = vec![LeakHypothesis::walking_mass(5.0)];
+    let settings = ObserverSettings { engine, bank, ..ObserverSettings::default() };
     let commissioning = Commissioning::filled(2e7, 288.15);
     Observer::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &commissioning, &settings).unwrap()
 }
