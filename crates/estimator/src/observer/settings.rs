@@ -1,9 +1,9 @@
 //! What the observer assumes: resolution, priors, random walks, model error.
 //!
-//! The defaults are those of a study with the 20 L cylinder under a train. They are tuned for the estimate, not for the
-//! statistics of the innovations: model error is coloured, and a filter that treats it as white noise of its actual size
-//! trusts its parameters too much. So the noise of the outputs is stated two to five times too large and grows
-//! with the temperature differences that the reduced model resolves worst.
+//! The defaults are tuned on drawn cylinders under a train ([`crate::truth`]; seeds 1 to 12, others judge). They are tuned for the
+//! estimate, not for the statistics of the innovations: model error is coloured, and a filter that treats it as
+//! white noise of its actual size trusts its parameters too much. So the noise of the outputs is stated too large, grows with
+//! the temperature differences that the reduced model resolves worst, and what is learnt fades.
 use serde::{Deserialize, Serialize};
 
 use super::engine::Engine;
