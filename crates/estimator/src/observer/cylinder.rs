@@ -2,7 +2,7 @@
 //!
 //! One step is an exponential Rosenbrock-Euler step: with `f` and `A = df/dx` at its start,
 //! `x(t + h) = x + h phi_1(hA) f`, `F = exp(hA)`, of order 2 and exact where `f` is linear, whatever the step
-//! ([`transition`]). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
+//! (`transition`, in this folder). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
 //! Intervals longer than the settings allow are divided. The noise goes to the filter as `Q = G diag(q) G^T`, one column for
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
 mod lanes;
