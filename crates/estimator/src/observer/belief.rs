@@ -13,7 +13,7 @@
 //! `w / (1 - w) = prior / (1 - prior) exp(-d^2 / 2)`,
 //!
 //! weigh what both say: `x = w x_member + (1 - w) x_free`, `P = w P_member + (1 - w) P_free + w (1 - w) (x_member - x_free)^2`.
-//! A member that is out of the question begins anew from the freest one, its leak rate, if it has one, any that can be.
+//! A member that is out of the question begins anew from the freest one; if that has less mass, with any leak rate that can be.
 
 /// Prior probability that a member is right.
 const PRIOR: f64 = 0.9999;

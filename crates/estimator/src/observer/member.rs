@@ -194,13 +194,15 @@ impl Member {
         Ok(Innovation { nu, s, outcome })
     }
 
-    /// Begin anew with all that another member knows; a leak rate that may walk may be anything then.
-    pub fn begin_anew_from(&mut self, other: &Self, leak: usize) {
+    /// Begin anew with all that another member knows. Where that is less mass than supposed, a leak rate that may walk may
+    /// be anything then; more mass is no leak, but tells that one was supposed in vain.
+    pub fn begin_anew_from(&mut self, other: &Self, (mass, leak): (usize, usize)) {
+        let lost = other.x[mass] < self.x[mass];
         self.x.clone_from(&other.x);
         self.p.clone_from(&other.p);
         self.mechanism.clone_from(&other.mechanism);
         self.x[leak] = 0.0;
-        let leak_sd_kg_s = if self.hypothesis.rate.is_known() { 0.0 } else { ANY_LEAK_SD_KG_S };
+        let leak_sd_kg_s = if lost && !self.hypothesis.rate.is_known() { ANY_LEAK_SD_KG_S } else { 0.0 };
         self.mechanism.decorrelate_and_set(&mut self.p, leak, leak_sd_kg_s * leak_sd_kg_s);
         self.slow_s = other.slow_s;
         if let Some(pass) = &mut self.pass {

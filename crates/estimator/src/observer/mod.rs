@@ -312,7 +312,7 @@ impl Observer {
             if let Ok([member, free]) = self.members.get_disjoint_mut([index, freest])
                 && Belief::of(member.moments(mass), free.moments(mass)).is_out_of_the_question()
             {
-                member.begin_anew_from(free, leak);
+                member.begin_anew_from(free, (mass, leak));
             }
         }
     }

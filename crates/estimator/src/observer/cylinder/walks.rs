@@ -3,15 +3,16 @@ use super::super::settings::{LeakHypothesis, Walk};
 use super::super::states::StateKind;
 use super::Cylinder;
 use super::transition::Walking;
-use crate::sensor::ParameterKind;
 
 /// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
 const LEAST_FILM_W_M2_K: f64 = 4.0;
 const LARGEST_FILM_W_M2_K: f64 = 80.0;
 /// Bound on the logarithm of the inside film's multiplier.
 const LN_INSIDE_BOUND: f64 = 1.5;
-/// Bound on a coupling above its prior mean, in standard deviations of the prior.
-const COUPLING_BOUND_SD: f64 = 2.5;
+/// Bounds on constants of the model and of sensors about the means of their priors, in standard deviations of the prior:
+/// coloured model error would carry a combination that the data do not tell apart further and further.
+const MODEL_BOUND_SD: f64 = 4.0;
+const SENSOR_BOUND_SD: f64 = 3.0;
 
 /// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,11 +70,13 @@ impl Cylinder {
                 Some(((LEAST_FILM_W_M2_K / film_w_m2_k).ln(), (LARGEST_FILM_W_M2_K / film_w_m2_k).ln()))
             }
             StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
+            StateKind::Capacity => Some(within(0.0, MODEL_BOUND_SD * self.settings.ln_capacity.prior_sd)),
+            StateKind::FilmSlope => Some(within(0.0, MODEL_BOUND_SD * self.settings.film_slope.prior_sd)),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
                 let (low, high) = parameter.domain();
-                (parameter.kind == ParameterKind::Coupling)
-                    .then(|| (low, high.min(parameter.mean + COUPLING_BOUND_SD * parameter.sd)))
+                let (least, most) = within(parameter.mean, SENSOR_BOUND_SD * parameter.sd);
+                Some((low.max(least), high.min(most)))
             }
             _ => None,
         }
@@ -94,4 +97,8 @@ impl Cylinder {
             self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };
         }
     }
+}
+
+fn within(mean: f64, by: f64) -> (f64, f64) {
+    (mean - by, mean + by)
 }
