@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::thermal::vessel::presets;
 use cylwatch_estimator::truth::Truth;
-use cylwatch_estimator::truth::score::{Score, score, score_transfer_function};
+use cylwatch_estimator::truth::score::{Score, TransferFunction, score, score_transfer_function};
 use rayon::prelude::*;
 
 type Fault = Box<dyn Error + Send + Sync>;
@@ -32,8 +32,8 @@ fn judge(path: &PathBuf, sensors: &[&str], settings: &ObserverSettings) -> Resul
     let nominal = presets::load("nitrogen-20l")?;
     Ok([
         score(&truth, &nominal, sensors, settings)?,
-        score_transfer_function(&truth, &nominal, 0.003121 / 0.003021, 0.003021)?,
-        score_transfer_function(&truth, &nominal, 1.0, 0.002988)?,
+        score_transfer_function(&truth, &nominal, TransferFunction::PUBLISHED)?,
+        score_transfer_function(&truth, &nominal, TransferFunction::new(1.0, 0.002988))?,
     ])
 }
 

@@ -25,19 +25,19 @@ const LEAST_PART: f64 = 0.25;
 /// Mean and variance.
 pub(super) type Moments = (f64, f64);
 
-/// What the masses, kg, of a slow and of the free member say about the slow one.
+/// What the masses, kg, of a member and of the freest one say about the member.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Belief {
     square: f64,
 }
 
 impl Belief {
-    pub fn of(slow: Moments, free: Moments) -> Self {
-        let variance = (free.1 - slow.1).max(LEAST_PART * free.1);
-        Self { square: (free.0 - slow.0).powi(2) / variance }
+    pub fn of(member: Moments, free: Moments) -> Self {
+        let variance = (free.1 - member.1).max(LEAST_PART * free.1);
+        Self { square: (free.0 - member.0).powi(2) / variance }
     }
 
-    /// Probability that the slow member is right.
+    /// Probability that the member is right.
     pub fn weight(self) -> f64 {
         let odds = PRIOR / (1.0 - PRIOR) * (-0.5 * self.square).exp();
         odds / (1.0 + odds)
@@ -48,10 +48,10 @@ impl Belief {
     }
 
     /// Mixture of what both say of one quantity.
-    pub fn blend(self, slow: Moments, free: Moments) -> Moments {
+    pub fn blend(self, member: Moments, free: Moments) -> Moments {
         let w = self.weight();
-        let apart = slow.0 - free.0;
-        (free.0 + w * apart, w * slow.1 + (1.0 - w) * free.1 + w * (1.0 - w) * apart * apart)
+        let apart = member.0 - free.0;
+        (free.0 + w * apart, w * member.1 + (1.0 - w) * free.1 + w * (1.0 - w) * apart * apart)
     }
 }
 

@@ -46,6 +46,8 @@ pub struct Cylinder {
     settings: ObserverSettings,
     /// How each leading state walks.
     walking: Vec<Walking>,
+    /// Bounded states with their bounds.
+    bounds: Vec<(usize, f64, f64)>,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
     interval_s: Vec<f64>,
     work: Work,
@@ -96,6 +98,7 @@ impl Cylinder {
         let mut cylinder = Self {
             interval_s: vec![f64::INFINITY; sensors.len()],
             walking: vec![Walking::default(); states.leading],
+            bounds: Vec::new(),
             sensors: sensors.to_vec(),
             targets,
             states,
@@ -104,6 +107,7 @@ impl Cylinder {
             model,
         };
         cylinder.set_walks();
+        cylinder.set_bounds();
         cylinder.suppose(&settings.bank[0]);
         Ok(cylinder)
     }

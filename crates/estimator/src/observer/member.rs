@@ -53,7 +53,7 @@ pub(super) struct Member {
     /// Change of each sensor's expected reading by its last reading.
     pub pulled: Vec<f64>,
     slow_s: f64,
-    /// Whether a film multiplier stood at its bound after the last step.
+    /// Whether a constant or a film stood at its bound after the last step.
     pub at_bound: bool,
     pub mechanism: Mechanism,
     /// The last step, for a smoother.
@@ -144,11 +144,9 @@ impl Member {
         cylinder.suppose(&self.hypothesis);
         self.mechanism.finish(cylinder, &mut self.x, &mut self.p);
         self.at_bound = false;
-        for state in 0..cylinder.states() {
-            if let Some((low, high)) = cylinder.bounds(state) {
-                self.at_bound |= !(low..=high).contains(&self.x[state]);
-                self.x[state] = self.x[state].clamp(low, high);
-            }
+        for &(state, low, high) in cylinder.bounds() {
+            self.at_bound |= !(low..=high).contains(&self.x[state]);
+            self.x[state] = self.x[state].clamp(low, high);
         }
         Ok(())
     }

@@ -2,9 +2,9 @@
 //!
 //! A bank of Kalman filters ([`Engine`]; [`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
 //! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
-//! leave ([`settings::LeakHypothesis`]): the first lets the mass itself walk and so follows fast losses; it gives the mass.
-//! The others hold the mass and let a leak rate walk, each with its own bandwidth. The gas temperature is a mixture of the
-//! first and the middle slow one, by what their readings speak for.
+//! leave ([`settings::LeakHypothesis`]): in the first the mass itself walks a little; it gives the mass. Slow ones hold the mass
+//! but for a leak rate that walks, each with its own bandwidth; the middle one gives leak rate and gas temperature. The freest,
+//! whose mass walks far, judges the others and takes the place of those that cannot be right (`belief`).
 //!
 //! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
 //! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
@@ -15,9 +15,11 @@
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
 mod belief;
+mod clock;
 pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
+mod estimate;
 mod late;
 mod learned;
 mod member;
@@ -36,16 +38,17 @@ use crate::sensor::Sensor;
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use belief::Belief;
+use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
 use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
+pub use estimate::{Estimate, Leak, Quality};
 pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
 use member::Member;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
-use screen::Screen;
 pub use screen::{Fault, FaultCount};
 pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
 pub use smoother::Smoother;
@@ -60,103 +63,12 @@ const SETTLE_S: f64 = 1200.0;
 /// Interval as which that between two rows of one time counts, s.
 const SHORTEST_S: f64 = 1e-3;
 
-/// How far an estimate can be relied on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quality {
-    /// Every sensor was heard.
-    Good,
-    /// A sensor had no reading, or its reading was rejected.
-    Degraded,
-    /// No reading at all: the model alone.
-    Predicted,
-    /// Gas is or was just exchanged, or a reading was taken after many rejections: mass and gas temperature are free.
-    Open,
-    /// The estimate could not go on and began again from its prior.
-    Restarted,
-}
-
-impl Quality {
-    /// One word for a table.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Good => "good",
-            Self::Degraded => "degraded",
-            Self::Predicted => "predicted",
-            Self::Open => "open",
-            Self::Restarted => "restarted",
-        }
-    }
-}
-
-/// Estimate after a sample. SI; `sd` is a standard deviation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// Time, s.
-    pub time_s: f64,
-    /// Mean gas temperature, K.
-    pub gas_mean_k: f64,
-    /// Its sd, K.
-    pub gas_mean_sd_k: f64,
-    /// Gas mass, kg.
-    pub mass_kg: f64,
-    /// Its sd, kg.
-    pub mass_sd_kg: f64,
-    /// Leak rate, kg/s, by the middle one of the members that have one; NaN without such a member.
-    pub leak_kg_s: f64,
-    /// Its sd, kg/s.
-    pub leak_sd_kg_s: f64,
-    /// Pressure as read, Pa; NaN: missing.
-    pub pressure_pa: f64,
-    /// Pressure that the transmitter would show now with the reference mass, Pa: with the mass a day after commissioning or
-    /// after the last exchange of gas, before that with the mass as estimated.
-    pub pressure_expected_pa: f64,
-    /// Pressure of the estimated mass settled at 15 °C, Pa.
-    pub p15_pa: f64,
-    /// How far to rely on it.
-    pub quality: Quality,
-}
-
-/// Leak rate in the eyes of one member.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leak {
-    /// Leak rate, kg/s.
-    pub rate_kg_s: f64,
-    /// Its standard deviation, kg/s.
-    pub sd_kg_s: f64,
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Its standard deviation, kg.
-    pub mass_sd_kg: f64,
-}
-
 /// The members as they were after a sample: what a late sample goes back to.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     members: Vec<Member>,
     clock: Clock,
     warm_start: WarmStart,
-}
-
-/// Times that the observer keeps.
-#[derive(Clone, Debug)]
-struct Clock {
-    time_s: Option<f64>,
-    last_reading_s: Vec<f64>,
-    reference_due_s: f64,
-    reference_mass_kg: Option<f64>,
-    exchange: Exchange,
-    restarts: u64,
-    screens: Vec<Screen>,
-    /// Until then an estimate that has just begun or been opened is pulled by good readings too.
-    pulled_until_s: f64,
-}
-
-/// Exchange of gas with the outside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Exchange {
-    None,
-    Open,
-    Settling { until_s: f64 },
 }
 
 /// The observer of one cylinder.
@@ -171,6 +83,10 @@ pub struct Observer {
     prior: DMatrix<f64>,
     clock: Clock,
     gate: f64,
+    /// The middle one of the members that have a leak rate, in the order of the bank.
+    slow: Option<usize>,
+    /// The member whose mass walks most freely: it judges the others.
+    freest: usize,
     reference_x: Vec<f64>,
     /// The readings of the present sample without the faulty ones.
     usable: Vec<f64>,
@@ -200,18 +116,11 @@ impl Observer {
             members: Vec::new(),
             learned: None,
             prior: DMatrix::zeros(0, 0),
-            clock: Clock {
-                time_s: None,
-                last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
-                reference_due_s: f64::INFINITY,
-                reference_mass_kg: None,
-                exchange: Exchange::None,
-                restarts: 0,
-                screens: sensors.iter().map(Screen::new).collect(),
-                pulled_until_s: f64::INFINITY,
-            },
+            clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
             gate,
+            slow: middle_slow(&settings.bank),
+            freest: freest(&settings.bank),
             reference_x: vec![0.0; cylinder.states()],
             cylinder,
         })
@@ -250,7 +159,6 @@ impl Observer {
             }
         }
         let restarted = self.take(time_s, &usable);
-        self.replace_the_wrong();
         for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
             if reading.is_finite() {
                 *last = time_s;
@@ -259,6 +167,7 @@ impl Observer {
         self.mark_faulty(time_s, readings, &usable);
         self.usable = usable;
         let restarted = restarted?;
+        self.replace_the_wrong();
         self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
     }
@@ -307,7 +216,7 @@ impl Observer {
     /// Members that are out of the question begin anew from the freest one.
     fn replace_the_wrong(&mut self) {
         let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
-        let freest = self.freest_index();
+        let freest = self.freest;
         for index in (0..self.members.len()).filter(|&index| index != freest) {
             if let Ok([member, free]) = self.members.get_disjoint_mut([index, freest])
                 && Belief::of(member.moments(mass), free.moments(mass)).is_out_of_the_question()
@@ -315,13 +224,6 @@ impl Observer {
                 member.begin_anew_from(free, (mass, leak));
             }
         }
-    }
-
-    /// The member whose mass walks most freely: it judges the others.
-    fn freest_index(&self) -> usize {
-        let bank = &self.cylinder.settings().bank;
-        let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
-        (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
     }
 
     /// Every member as the prior has it.
@@ -360,7 +262,7 @@ impl Observer {
                 member.predict(&mut self.cylinder, &mut self.shared, dt_s)?;
             }
         }
-        if self.exchanging(time_s) {
+        if self.clock.exchanging(time_s) {
             self.clock.pulled_until_s = time_s + SETTLE_S;
             for member in &mut self.members {
                 member.open(&self.cylinder, None);
@@ -383,19 +285,6 @@ impl Observer {
         self.members.iter().all(|member| member.is_possible(&mut self.cylinder))
     }
 
-    /// Whether gas is exchanged at a time; ends the settling that is over.
-    fn exchanging(&mut self, time_s: f64) -> bool {
-        match self.clock.exchange {
-            Exchange::None => false,
-            Exchange::Open => true,
-            Exchange::Settling { until_s } if time_s <= until_s => true,
-            Exchange::Settling { .. } => {
-                self.clock.exchange = Exchange::None;
-                false
-            }
-        }
-    }
-
     /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends.
     pub fn begin_exchange(&mut self) {
         self.clock.exchange = Exchange::Open;
@@ -416,10 +305,10 @@ impl Observer {
         readings: &[f64],
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
-        let (first, slow) = (&self.members[0], self.middle_slow_member());
+        let (first, slow) = (&self.members[0], self.slow.map(|index| &self.members[index]));
         let states = self.cylinder.state_map();
         let sd = |member: &Member, state: usize| member.variance(state).sqrt();
-        let free = &self.members[self.freest_index()];
+        let free = &self.members[self.freest];
         let blended = |member: &Member, state: usize| {
             self.belief(member).blend(member.moments(state), free.moments(state))
         };
@@ -481,18 +370,7 @@ impl Observer {
     /// What the freest member says of another one.
     fn belief(&self, member: &Member) -> Belief {
         let mass = self.cylinder.state_map().mass;
-        Belief::of(member.moments(mass), self.members[self.freest_index()].moments(mass))
-    }
-
-    /// The middle one of the members that have a leak rate, in the order of the bank.
-    fn middle_slow_member(&self) -> Option<&Member> {
-        self.middle_slow_index().map(|index| &self.members[index])
-    }
-
-    fn middle_slow_index(&self) -> Option<usize> {
-        let bank = &self.cylinder.settings().bank;
-        let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
-        slow().nth(slow().count() / 2)
+        Belief::of(member.moments(mass), self.members[self.freest].moments(mass))
     }
 
     /// Innovation of each sensor at the last sample, by the first member.
@@ -534,7 +412,7 @@ impl Observer {
         self.members.iter().map(Member::fallbacks).sum()
     }
 
-    /// Whether a film multiplier of the first member stands at the bound of what is plausible.
+    /// Whether a constant or a film of the first member stands at the bound of what is plausible.
     pub fn at_bound(&self) -> bool {
         self.members.first().is_some_and(|member| member.at_bound)
     }
@@ -574,6 +452,17 @@ impl Observer {
         let states = self.cylinder.state_map();
         Some(observability::given_constants(&member.covariance(), states.mass, states.leading).sqrt())
     }
+}
+
+fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
+    let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
+    slow().nth(slow().count() / 2)
+}
+
+/// The first of those whose mass walks farthest.
+fn freest(bank: &[LeakHypothesis]) -> usize {
+    let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
+    (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -75,7 +75,7 @@ impl Smoother {
         }
         let n = observer.cylinder.states();
         let mut members = vec![0];
-        for index in observer.middle_slow_index().into_iter().chain([observer.freest_index()]) {
+        for index in observer.slow.into_iter().chain([observer.freest]) {
             if !members.contains(&index) {
                 members.push(index);
             }
@@ -161,8 +161,8 @@ impl Smoother {
     /// Places of the first, the middle slow (or again the first) and the freest member among the recorded ones.
     fn roles(&self) -> (usize, usize, usize) {
         let place = |index: usize| self.members.iter().position(|&member| member == index).unwrap_or(0);
-        let slow = self.observer.middle_slow_index().map_or(0, place);
-        (0, slow, place(self.observer.freest_index()))
+        let slow = self.observer.slow.map_or(0, place);
+        (0, slow, place(self.observer.freest))
     }
 
     /// Smooth the whole record and hand out the oldest `count` rows.

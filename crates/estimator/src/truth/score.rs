@@ -133,19 +133,17 @@ impl TransferFunction {
     }
 }
 
-/// The paper's way: a [`TransferFunction`] from the shoulder's reading in °C to the mean gas temperature (gain, pole in
-/// 1/s), and the mass from the measured pressure at that temperature.
+/// The paper's way: a [`TransferFunction`] that has seen nothing yet for the mean gas temperature, and the mass from the measured pressure at that temperature.
 ///
 /// # Errors
 /// The pressure is outside the fluid's domain.
 pub fn score_transfer_function(
     truth: &Truth,
     nominal: &Vessel,
-    gain: f64,
-    pole_per_s: f64,
+    mut filter: TransferFunction,
 ) -> Result<Score, EstimatorError> {
     let columns = columns(truth, &["shoulder", "pressure"]);
-    let (mut pairs, mut filter) = (Vec::new(), TransferFunction::new(gain, pole_per_s));
+    let mut pairs = Vec::new();
     for (index, (time_s, row)) in truth.log.rows().enumerate() {
         let (input, pressure_pa) = (row[columns[0]] - ZERO_CELSIUS_K, row[columns[1]]);
         let gas_degc = filter.step(time_s, input);

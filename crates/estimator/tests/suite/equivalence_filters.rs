@@ -3,32 +3,13 @@ use cylwatch_estimator::filter::{
     CovarianceForm, ExtendedKalman, Information, Joseph, KalmanSettings, Outcome, SquareRoot, UdFactors,
 };
 use nalgebra::{DMatrix, DVector, Dyn};
-use rand::RngExt;
 
-use crate::linear_model::{
-    DenseFilter, LinearModel, covariance, covariance_difference, normal, rng, state_difference,
-};
-
-/// A process, its start, and irregular samples of which about every fourth reading is missing.
-struct Case {
-    model: LinearModel,
-    x0: DVector<f64>,
-    p0: DMatrix<f64>,
-    dt_s: Vec<f64>,
-    z: Vec<Vec<f64>>,
-}
+use crate::linear_model::{Case, DenseFilter, LinearModel, covariance_difference, rng, state_difference};
 
 fn cases(seed: u64) -> Vec<Case> {
     let mut rng = rng(seed);
     [(1, 1, 1), (4, 4, 2), (8, 5, 3), (12, 12, 4), (15, 9, 3)]
-        .map(|(n, leading, outputs)| {
-            let model = LinearModel::random(&mut rng, n, leading, outputs);
-            let p0 = covariance(&mut rng, n);
-            let x0 = normal(&mut rng, n) * 3.0;
-            let dt_s: Vec<f64> = (0..40).map(|_| rng.random_range(0.05..1.5)).collect();
-            let z = model.readings(&mut rng, &x0, &dt_s, 0.25);
-            Case { model, x0, p0, dt_s, z }
-        })
+        .map(|sizes| Case::random(&mut rng, sizes, 40))
         .into()
 }
 

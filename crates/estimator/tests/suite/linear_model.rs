@@ -35,6 +35,26 @@ pub fn covariance(rng: &mut ChaCha8Rng, n: usize) -> DMatrix<f64> {
     &a * a.transpose() + DMatrix::identity(n, n) * 0.1
 }
 
+/// A process, its start, and irregular samples of which about every fourth reading is missing.
+pub struct Case {
+    pub model: LinearModel,
+    pub x0: DVector<f64>,
+    pub p0: DMatrix<f64>,
+    pub dt_s: Vec<f64>,
+    pub z: Vec<Vec<f64>>,
+}
+
+impl Case {
+    pub fn random(rng: &mut ChaCha8Rng, (n, leading, outputs): (usize, usize, usize), steps: usize) -> Self {
+        let model = LinearModel::random(rng, n, leading, outputs);
+        let p0 = covariance(rng, n);
+        let x0 = normal(rng, n) * 3.0;
+        let dt_s: Vec<f64> = (0..steps).map(|_| rng.random_range(0.05..1.5)).collect();
+        let z = model.readings(rng, &x0, &dt_s, 0.25);
+        Self { model, x0, p0, dt_s, z }
+    }
+}
+
 impl LinearModel {
     /// A stable random process of `n` states, of which `leading` move, with `outputs` outputs.
     pub fn random(rng: &mut ChaCha8Rng, n: usize, leading: usize, outputs: usize) -> Self {

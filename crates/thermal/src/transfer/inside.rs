@@ -283,7 +283,6 @@ mod tests {
                 worst[0] = worst[0].max((groups.ln_k[0] - ln_k).abs());
                 worst[1] = worst[1].max((groups.ln_r[0] - ln_r).abs());
             }
-            println!("{name}: ln k {:.1e}, ln R {:.1e}", worst[0], worst[1]);
             assert!(worst[0] < 1e-5 && worst[1] < 1e-5, "{name}: {worst:?}");
         }
     }

@@ -62,8 +62,17 @@ impl Cylinder {
         }
     }
 
-    /// Values of a state that can be; beyond them an estimate has left what it knows.
-    pub fn bounds(&self, state: usize) -> Option<(f64, f64)> {
+    /// States with the lowest and the highest value that can be; beyond them an estimate has left what it knows.
+    pub fn bounds(&self) -> &[(usize, f64, f64)] {
+        &self.bounds
+    }
+
+    pub(super) fn set_bounds(&mut self) {
+        let of = |state| self.bounds_of(state).map(|(low, high)| (state, low, high));
+        self.bounds = (0..self.states.count()).filter_map(of).collect();
+    }
+
+    fn bounds_of(&self, state: usize) -> Option<(f64, f64)> {
         let film_w_m2_k = self.settings.film_w_m2_k;
         match &self.states.kinds[state] {
             StateKind::OutsideFilm => {

@@ -201,7 +201,8 @@ fn the_transfer_function_answers_a_step_as_its_closed_form() {
         for (t_s, gas_k) in truth.time_s.iter().zip(&mut truth.gas_mean_k) {
             *gas_k = 273.15 + GAIN * from_degc + height_k * step_response(t_s - at_s, step_s);
         }
-        let score = score_transfer_function(&truth, &nominal, GAIN, POLE_PER_S).unwrap();
+        let score =
+            score_transfer_function(&truth, &nominal, TransferFunction::new(GAIN, POLE_PER_S)).unwrap();
         assert!(score.gas_max_k < 1e-9, "{} K at {step_s} s", score.gas_max_k);
         assert!(score.nis.is_nan() && score.gas_stated_k.is_nan());
     }
@@ -214,7 +215,7 @@ fn the_transfer_function_reaches_63_percent_after_331_seconds() {
     // A sample each second, judged against the end of the step: the mean error over it is the response's area.
     let mut truth = truth(Course::Scenario1, 1.0, shoulder);
     truth.gas_mean_k.fill(273.15 + 10.0);
-    let score = score_transfer_function(&truth, &nominal, 1.0, POLE_PER_S).unwrap();
+    let score = score_transfer_function(&truth, &nominal, TransferFunction::new(1.0, POLE_PER_S)).unwrap();
     // Of a first-order lag the area above the response is height times time constant, 331 s; the jump took a second.
     let area_k_s = -score.gas_bias_k * 10_801.0;
     assert_relative_eq!(area_k_s, 10.0 * (1.0 / POLE_PER_S + 0.5 + 0.5), max_relative = 2e-3);
@@ -230,7 +231,7 @@ fn the_transfer_functions_mass_is_that_of_pressure_and_temperature() {
     let pressure_pa = nominal.fluid.pressure_pa(rho, gas_k);
     truth.log.values.chunks_mut(2).for_each(|row| row[0] = pressure_pa);
     truth.mass_kg.fill(rho * nominal.volume.volume_m3(gas_k, pressure_pa) - 0.01);
-    let score = score_transfer_function(&truth, &nominal, 1.0, POLE_PER_S).unwrap();
+    let score = score_transfer_function(&truth, &nominal, TransferFunction::new(1.0, POLE_PER_S)).unwrap();
     assert!(score.gas_max_k < 1e-9);
     assert_relative_eq!(score.mass_bias_kg, 0.01, max_relative = 1e-8);
 }

@@ -1,0 +1,54 @@
+//! What the observer keeps of time: samples, events and the sensors' faults.
+use super::screen::Screen;
+use crate::sensor::Sensor;
+
+/// Times that the observer keeps.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    pub time_s: Option<f64>,
+    pub last_reading_s: Vec<f64>,
+    pub reference_due_s: f64,
+    pub reference_mass_kg: Option<f64>,
+    pub exchange: Exchange,
+    pub restarts: u64,
+    pub screens: Vec<Screen>,
+    /// Until then an estimate that has just begun or been opened is pulled by good readings too.
+    pub pulled_until_s: f64,
+}
+
+/// Exchange of gas with the outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Exchange {
+    None,
+    Open,
+    Settling { until_s: f64 },
+}
+
+impl Clock {
+    /// Before the first sample.
+    pub fn new(sensors: &[Sensor]) -> Self {
+        Self {
+            time_s: None,
+            last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
+            reference_due_s: f64::INFINITY,
+            reference_mass_kg: None,
+            exchange: Exchange::None,
+            restarts: 0,
+            screens: sensors.iter().map(Screen::new).collect(),
+            pulled_until_s: f64::INFINITY,
+        }
+    }
+
+    /// Whether gas is exchanged at a time; ends the settling that is over.
+    pub fn exchanging(&mut self, time_s: f64) -> bool {
+        match self.exchange {
+            Exchange::None => false,
+            Exchange::Open => true,
+            Exchange::Settling { until_s } if time_s <= until_s => true,
+            Exchange::Settling { .. } => {
+                self.exchange = Exchange::None;
+                false
+            }
+        }
+    }
+}
