@@ -32,7 +32,7 @@ fn an_impossible_state_restarts_the_estimate_which_says_so() {
             }
             t += 60.0;
             // Without readings nothing could pull the state back.
-            observer.members[1].x[state] = value;
+            observer.bank.members[1].x[state] = value;
             let estimate = observer.step(t, &[f64::NAN; 3]).unwrap();
             assert_eq!(estimate.quality, Quality::Restarted, "{word}: state {state} = {value}");
             assert!(estimate.gas_mean_k.is_finite() && estimate.mass_sd_kg.is_finite());
@@ -50,7 +50,7 @@ fn a_restart_keeps_what_was_learnt_before_it() {
     let learned = teacher.learned().unwrap();
     let mut pupil = observer(Engine::Extended).with_learned(learned.clone());
     pupil.step(0.0, &[f64::NAN; 3]).unwrap();
-    pupil.members[0].x[0] = f64::NAN;
+    pupil.bank.members[0].x[0] = f64::NAN;
     assert_eq!(pupil.step(60.0, &[f64::NAN; 3]).unwrap().quality, Quality::Restarted);
     assert_eq!(pupil.learned().unwrap().mean, learned.mean);
 }
