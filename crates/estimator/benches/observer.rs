@@ -1,34 +1,38 @@
 //! Cost of a step of the cylinder's observer: by engine, by size of the bank, by interval of the samples.
 //!
-//! A cylinder of 20 L with shoulder, valve and pressure sensors in a chamber whose air swings by 20 K in two hours; the readings are
-//! those of a wall and gas that follow with one time constant each. One step includes the estimate.
+//! A cylinder of 20 L with shoulder, valve and pressure sensors through one day of a railway week
+//! ([`cylwatch_estimator::truth`], six tunnels), again and again. One step includes the estimate.
 //!
 //! `cargo bench -p cylwatch-estimator --bench observer`
+use std::sync::OnceLock;
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use cylwatch_estimator::observer::{
     Commissioning, Engine, LateSamples, MovingHorizonSettings, Observer, ObserverSettings, Smoother,
 };
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
+use cylwatch_estimator::truth::{Course, generate};
 
+const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
+const INTERVAL_S: f64 = 10.0;
 const FILL_K: f64 = 288.15;
 const FILL_PA: f64 = 2e7;
 
-/// Readings at a time: a wall that follows the air with 20 min, a gas with 26 min, hash noise of the sensors' size.
+/// Readings at a time: one day, sampled every 10 s, that repeats itself.
 fn readings(time_s: f64) -> [f64; 3] {
-    let swing = |lag_s: f64| 10.0 * (std::f64::consts::TAU * (time_s - lag_s) / 7200.0).sin();
-    let noise = |seed: f64| ((time_s * 12.9898 + seed).sin() * 43_758.545_3).fract();
-    let (wall, gas) = (swing(1200.0), swing(1560.0));
-    [
-        FILL_K + wall + 0.05 * noise(1.0),
-        FILL_K + 1.1 * wall + 0.05 * noise(2.0),
-        FILL_PA + 0.75e5 * gas + 1e3 * noise(3.0),
-    ]
+    static DAY: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
+    let day = DAY.get_or_init(|| {
+        let truth = generate(&Course::RailwayWeeks { days: 1.0 }, 1, INTERVAL_S).expect("sound course");
+        let column = |name: &str| truth.log.channels.iter().position(|channel| channel.name == name);
+        let columns = SENSORS.map(|name| column(name).expect("its own sensor"));
+        truth.log.rows().map(|(_, row)| columns.map(|column| row[column])).collect()
+    });
+    day[(time_s / INTERVAL_S).round() as usize % day.len()]
 }
 
 fn observer(settings: &ObserverSettings) -> Observer {
-    let sensors =
-        ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).expect("typical sensor"));
+    let sensors = SENSORS.map(|name| Sensor::typical(name).expect("typical sensor"));
     let vessel = presets::load("nitrogen-20l").expect("built-in vessel");
     let commissioning = Commissioning::filled(FILL_PA, FILL_K);
     Observer::new(&vessel, &sensors, &commissioning, settings).expect("sound settings")

@@ -17,52 +17,62 @@ mod transition;
 pub use pattern::Pattern;
 pub use transition::BankTransition;
 
+/// States and moving states of the cylinder's observer with its usual sensors: of known size its loops are unrolled.
+const USUAL: (usize, usize) = (18, 9);
+
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
 #[derive(Clone, Debug)]
 pub struct UdBank {
     n: usize,
     /// Vector registers of this machine.
     arch: Arch,
-    /// Columns of `U`: (n, n).
+    /// Length of a column of `U` in memory, whole groups of four; what is below `U` is zero.
+    stride: usize,
+    /// Columns of `U`: (stride, n).
     u: Vec<Lanes>,
     /// (n).
     d: Vec<Lanes>,
-    /// `U^T h` in an update, `v` in a rank-one update.
+    /// `U^T h` in an update, `v` in a rank-one update: (n).
     f: Vec<Lanes>,
+    /// Factors on gain and covariance by which each column changes the other in an update: (n).
+    factors: Vec<(Lanes, Lanes)>,
     /// Columns of moving states of `Phi U` and the noise behind them, row by row: (m, 2 m).
     rows: Vec<Lanes>,
     /// Elements of a row that may differ from zero.
     spans: Vec<(usize, usize)>,
     weights: Vec<Lanes>,
     weighted: Vec<Lanes>,
-    moved: Vec<Lanes>,
+    moved: Vec<[Lanes; 2]>,
 }
 
 impl UdBank {
     /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
     pub fn new(n: usize, leading: usize) -> Self {
-        let mut u = vec![Lanes::ZERO; n * n];
-        u.iter_mut().step_by(n + 1).for_each(|one| *one = Lanes::splat(1.0));
+        let stride = n.next_multiple_of(4);
+        let mut u = vec![Lanes::ZERO; stride * n];
+        u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
         Self {
             n,
+            stride,
             arch: Arch::new(),
             u,
             d: vec![Lanes::ZERO; n],
             f: vec![Lanes::ZERO; n],
+            factors: vec![(Lanes::ZERO, Lanes::ZERO); n],
             rows: vec![Lanes::ZERO; 2 * leading * leading],
             spans: vec![(0, 0); leading],
             weights: vec![Lanes::ZERO; 2 * leading],
             weighted: vec![Lanes::ZERO; 2 * leading],
-            moved: vec![Lanes::ZERO; leading],
+            moved: vec![[Lanes::ZERO; 2]; leading],
         }
     }
 
     /// Let a lane have the covariance of `factors`, of as many states.
     pub fn set(&mut self, lane: usize, factors: &UdFactors<Dyn>) {
-        let from = factors.unit_upper().iter().chain(factors.diagonal());
-        for (to, &from) in self.u.iter_mut().chain(&mut self.d).zip(from) {
-            to.0[lane] = from;
+        for (to, from) in self.u.chunks_exact_mut(self.stride).zip(factors.unit_upper().column_iter()) {
+            to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
         }
+        self.d.iter_mut().zip(factors.diagonal()).for_each(|(to, &from)| to.0[lane] = from);
     }
 
     /// Let a lane have the covariance of another one.
@@ -88,9 +98,8 @@ impl UdBank {
 
     /// Write the covariance of a lane: (n, n).
     pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
-        let n = self.n;
         p.fill(0.0);
-        for (l, (u, d)) in self.u.chunks_exact(n).zip(&self.d).enumerate() {
+        for (l, (u, d)) in self.u.chunks_exact(self.stride).zip(&self.d).enumerate() {
             for j in 0..=l {
                 let factor = d.0[lane] * u[j].0[lane];
                 for i in 0..=j {
@@ -101,18 +110,27 @@ impl UdBank {
         p.fill_lower_triangle_with_upper_triangle();
     }
 
-    /// Variances of state `i`.
-    pub fn variances(&self, i: usize) -> Lanes {
-        let mut sum = Lanes::ZERO;
-        for (u, &d) in self.u.chunks_exact(self.n).zip(&self.d).skip(i) {
-            sum += d * u[i] * u[i];
+    /// Variance of state `i` of a lane.
+    pub fn variance(&self, lane: usize, i: usize) -> f64 {
+        let mut sum = 0.0;
+        for (u, d) in self.u.chunks_exact(self.stride).zip(&self.d).skip(i) {
+            sum += d.0[lane] * u[i].0[lane] * u[i].0[lane];
         }
         sum
     }
 
+    /// Variance of state `i` of every lane.
+    pub fn variances(&self, i: usize) -> Lanes {
+        let mut sum = [Lanes::ZERO; 2];
+        for (j, (u, &d)) in self.u.chunks_exact(self.stride).zip(&self.d).enumerate().skip(i) {
+            sum[j % 2] += d * u[i] * u[i];
+        }
+        sum[0] + sum[1]
+    }
+
     /// Whether every variance is a number.
     pub fn is_finite(&self) -> bool {
-        self.d.iter().flat_map(|d| d.0).all(f64::is_finite)
+        self.d.iter().fold(Lanes::ZERO, |sum, &d| sum + d).0.iter().all(|sum| sum.is_finite())
     }
 
     /// Time update of every lane.
@@ -122,58 +140,71 @@ impl UdBank {
 
     #[inline(always)]
     fn predict_in_lanes(&mut self, transition: &mut BankTransition) {
-        let m = transition.leading();
-        self.transform(transition);
+        match (self.n, transition.leading()) {
+            USUAL => self.predict_sized(transition, USUAL),
+            sizes => self.predict_sized(transition, sizes),
+        }
+    }
+
+    /// Of known size its loops are unrolled.
+    #[inline(always)]
+    fn predict_sized(&mut self, transition: &mut BankTransition, (n, m): (usize, usize)) {
+        self.transform(transition, (n, m));
         self.weights[..m].copy_from_slice(&self.d[..m]);
-        transition.factor_noise(&mut self.rows, &mut self.spans, &mut self.weights[m..]);
-        self.orthogonalise(m);
+        transition.factor_noise(m, &mut self.rows, &mut self.spans, &mut self.weights[m..]);
+        self.orthogonalise((n, m));
     }
 
     /// `Phi U`: its columns of moving states become rows to orthogonalise, those of constants are final.
     #[inline(always)]
-    fn transform(&mut self, transition: &BankTransition) {
-        let (n, m) = (self.n, transition.leading());
+    fn transform(&mut self, transition: &BankTransition, (n, m): (usize, usize)) {
+        let stride = stride(n);
         let Self { u, rows, moved, spans, .. } = self;
-        for (j, u) in u.chunks_exact_mut(n).enumerate() {
-            transition.multiply(&u[..=j], moved);
-            if j >= m {
-                u[..m].copy_from_slice(moved);
-                continue;
-            }
-            for (row, &value) in rows.chunks_exact_mut(2 * m).zip(moved.iter()) {
-                row[j] = value;
+        // An odd last column goes alone.
+        for (pair, u) in u.chunks_mut(2 * stride).enumerate() {
+            let (left, right) = u.split_at_mut(stride);
+            let last = (2 * pair + 1).min(n - 1);
+            let both = [&*left, if right.is_empty() { &*left } else { &*right }];
+            transition.multiply(both, last, moved);
+            for (j, to) in [left, right].into_iter().enumerate().filter(|(_, u)| !u.is_empty()) {
+                let column = 2 * pair + j;
+                if column < m {
+                    rows.chunks_exact_mut(2 * m)
+                        .zip(moved.iter())
+                        .for_each(|(row, moved)| row[column] = moved[j]);
+                } else {
+                    to.iter_mut().zip(moved.iter()).for_each(|(to, moved)| *to = moved[j]);
+                }
             }
         }
-        for (row, span) in spans.iter_mut().enumerate() {
-            *span = (transition.first(row), m);
+        for (span, &first) in spans.iter_mut().zip(transition.firsts()) {
+            *span = (first, m);
         }
     }
 
     /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
     #[inline(always)]
-    fn orthogonalise(&mut self, m: usize) {
-        let Self { n, u, d, rows, weights, weighted, spans, .. } = self;
+    fn orthogonalise(&mut self, (n, m): (usize, usize)) {
+        let stride = stride(n);
+        let Self { u, d, rows, weights, weighted, spans, .. } = self;
         for j in (0..m).rev() {
             let (before, row) = rows[..(j + 1) * 2 * m].split_at_mut(j * 2 * m);
-            let (low, high) = spans[j];
+            let span = spans[j];
+            // What is outside the span is zero: whole pairs may take part.
+            let (low, high) = (span.0 & !1, span.1.next_multiple_of(2));
             let (row, weighted) = (&row[low..high], &mut weighted[low..high]);
-            let mut variance = Lanes::ZERO;
             for ((to, &value), &weight) in weighted.iter_mut().zip(row).zip(&weights[low..high]) {
                 *to = value * weight;
-                variance += *to * value;
             }
-            d[j] = variance;
-            let inverse = Lanes::splat(1.0).divided_where(variance, f64::MIN_POSITIVE, Lanes::ZERO);
-            for ((other, u), span) in
-                before.chunks_exact_mut(2 * m).zip(&mut u[j * *n..]).zip(spans.iter_mut())
-            {
+            d[j] = dot(weighted, row);
+            let inverse = d[j].inverse();
+            let u = &mut u[j * stride..j * stride + j];
+            for ((other, u), other_span) in before.chunks_exact_mut(2 * m).zip(u).zip(spans.iter_mut()) {
                 let other = &mut other[low..high];
                 let share = dot(weighted, other) * inverse;
                 *u = share;
-                for (other, &value) in other.iter_mut().zip(row) {
-                    *other -= share * value;
-                }
-                *span = (span.0.min(low), span.1.max(high));
+                subtract(share, row, other);
+                *other_span = (other_span.0.min(span.0), other_span.1.max(span.1));
             }
         }
     }
@@ -185,17 +216,27 @@ impl UdBank {
 
     #[inline(always)]
     fn project_in_lanes(&mut self, h: &[Lanes]) -> Lanes {
-        let n = self.n;
-        self.f.fill(Lanes::ZERO);
-        for (i, &h) in h.iter().enumerate() {
+        match self.n {
+            n if n == USUAL.0 => self.project_sized(h, USUAL.0),
+            n => self.project_sized(h, n),
+        }
+    }
+
+    #[inline(always)]
+    fn project_sized(&mut self, h: &[Lanes], n: usize) -> Lanes {
+        let stride = stride(n);
+        let (u, d, f) = (&self.u[..stride * n], &self.d[..n], &mut self.f[..n]);
+        f.fill(Lanes::ZERO);
+        // A gradient has few elements: row by row.
+        for (i, &h) in h[..n].iter().enumerate() {
             if !h.is_zero() {
-                for (f, u) in self.f[i..].iter_mut().zip(self.u[i * n + i..].iter().step_by(n)) {
-                    *f += h * *u;
+                for (f, u) in f[i..].iter_mut().zip(u[i * stride..].chunks_exact(stride)) {
+                    *f += h * u[i];
                 }
             }
         }
         let mut sum = Lanes::ZERO;
-        for (&f, &d) in self.f.iter().zip(&self.d) {
+        for (&f, &d) in f.iter().zip(d) {
             sum += f * f * d;
         }
         sum
@@ -209,27 +250,46 @@ impl UdBank {
 
     #[inline(always)]
     fn update_in_lanes(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
-        let n = self.n;
+        match self.n {
+            n if n == USUAL.0 => self.update_sized(r, used, gain, USUAL.0),
+            n => self.update_sized(r, used, gain, n),
+        }
+    }
+
+    #[inline(always)]
+    fn update_sized(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes], n: usize) -> Lanes {
+        let stride = stride(n);
+        let gain = &mut gain[..n];
         let mask = Lanes(used.map(|used| if used { 1.0 } else { 0.0 }));
-        gain.fill(Lanes::ZERO);
+        let Self { u, d, f, factors, .. } = self;
+        let (u, d, f, factors) = (&mut u[..stride * n], &mut d[..n], &f[..n], &mut factors[..n]);
         let mut s = r;
-        for (j, (u, d)) in self.u.chunks_exact_mut(n).zip(&mut self.d).enumerate() {
-            let f = self.f[j] * mask;
+        // Where no noise and no variance came before, it is zero, and so is the gain collected so far.
+        let mut inverse = r.inverse();
+        for ((d, &f), factors) in d.iter_mut().zip(f).zip(factors.iter_mut()) {
+            let f = f * mask;
             let v = f * *d;
+            *factors = (-f * inverse, v);
             let before = s;
             s += f * v;
-            *d = *d * before.divided_where(s, f64::MIN_POSITIVE, Lanes::splat(1.0));
-            // Where no noise and no variance came before, the gain collected so far is zero.
-            let p = (-f).divided_where(before, f64::MIN_POSITIVE, Lanes::ZERO);
-            for (u, gain) in u[..j].iter_mut().zip(gain.iter_mut()) {
-                let old = *u;
-                *u += *gain * p;
-                *gain += old * v;
-            }
-            gain[j] = v;
+            inverse = s.inverse();
+            *d = *d * s.choose(before * inverse, Lanes::splat(1.0));
         }
-        let inverse = mask.divided_where(s, f64::MIN_POSITIVE, Lanes::ZERO);
-        gain.iter_mut().for_each(|gain| *gain = *gain * inverse);
+        let inverse = mask * inverse;
+        // Four rows at a time: their gain stays in registers. Below the diagonal of U all is zero, and the gain there too.
+        for (block, gain) in gain.chunks_mut(4).enumerate() {
+            let mut sum = [Lanes::ZERO; 4];
+            for (u, &(p, v)) in u.chunks_exact_mut(stride).zip(&*factors).skip(4 * block) {
+                if let Some(u) = u.as_chunks_mut::<4>().0.get_mut(block) {
+                    for (u, sum) in u.iter_mut().zip(&mut sum) {
+                        let old = *u;
+                        *u += *sum * p;
+                        *sum += old * v;
+                    }
+                }
+            }
+            gain.iter_mut().zip(sum).for_each(|(to, sum)| *to = sum * inverse);
+        }
         s
     }
 
@@ -242,21 +302,24 @@ impl UdBank {
 
     /// Multiply state `i` by a positive factor in every lane: its variances by the square, its covariances by the factor.
     pub fn scale(&mut self, i: usize, factor: f64) {
-        let n = self.n;
-        self.u[i * n..i * n + i].iter_mut().for_each(|above| *above = *above * factor.recip());
-        self.u[(i + 1) * n..].iter_mut().skip(i).step_by(n).for_each(|right| *right = *right * factor);
+        for (j, u) in self.u.chunks_exact_mut(self.stride).enumerate().skip(i) {
+            if j == i {
+                u[..i].iter_mut().for_each(|above| *above = *above * factor.recip());
+            } else {
+                u[i] = u[i] * factor;
+            }
+        }
         self.d[i] = self.d[i] * (factor * factor);
     }
 
     /// Make state `i` of a lane independent of all others, with the given variance: an event has reset it.
     pub fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
-        let n = self.n;
-        for right in self.u[(i + 1) * n..].iter_mut().skip(i).step_by(n) {
-            right.0[lane] = 0.0;
+        for u in self.u.chunks_exact_mut(self.stride).skip(i + 1) {
+            u[i].0[lane] = 0.0;
         }
         // What state i explained in the states before it remains theirs.
         self.f.fill(Lanes::ZERO);
-        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * n..i * n + i]) {
+        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * self.stride..][..i]) {
             f.0[lane] = std::mem::take(&mut above.0[lane]);
         }
         let mut left = Lanes::ZERO;
@@ -266,19 +329,19 @@ impl UdBank {
 
     /// Rank-one update (Agee and Turner) of the leading block of `size` states by `c v v^T` with `v = f[..size]`.
     fn add_leading(&mut self, mut c: Lanes, size: usize) {
-        let n = self.n;
         for j in (0..size).rev() {
             let (v, s) = self.f.split_at_mut(j);
             let (s, old) = (s[0], self.d[j]);
             let new = old + c * s * s;
-            let b = (c * s).divided_where(new, f64::MIN_POSITIVE, Lanes::ZERO);
-            for (u, v) in self.u[j * n..j * n + j].iter_mut().zip(v) {
+            let inverse = new.inverse();
+            let b = c * s * inverse;
+            for (u, v) in self.u[j * self.stride..][..j].iter_mut().zip(v) {
                 *v -= s * *u;
                 *u += b * *v;
             }
             self.d[j] = new;
             // Where nothing is left to add to, nothing was added.
-            c = c * old.divided_where(new, f64::MIN_POSITIVE, Lanes::splat(1.0));
+            c = c * new.choose(old * inverse, Lanes::splat(1.0));
         }
     }
 }
@@ -328,17 +391,34 @@ impl WithSimd for Update<'_> {
     }
 }
 
-/// `sum a_i b_i`.
+/// Length of a column in memory.
+#[inline(always)]
+const fn stride(n: usize) -> usize {
+    n.next_multiple_of(4)
+}
+
+/// `sum a_i b_i` over whole pairs, in four sums that do not wait for each other.
 #[inline(always)]
 fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
-    let ((a2, a1), (b2, b1)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
-    let mut sum = [Lanes::ZERO; 2];
-    for (a, b) in a2.iter().zip(b2) {
-        sum[0] += a[0] * b[0];
-        sum[1] += a[1] * b[1];
+    let ((a4, a2), (b4, b2)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sum = [Lanes::ZERO; 4];
+    for (a, b) in a4.iter().zip(b4) {
+        for ((sum, &a), &b) in sum.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
     }
-    for (&a, &b) in a1.iter().zip(b1) {
-        sum[0] += a * b;
+    if let ([a0, a1], [b0, b1]) = (a2, b2) {
+        sum[0] += *a0 * *b0;
+        sum[1] += *a1 * *b1;
     }
-    sum[0] + sum[1]
+    (sum[0] + sum[2]) + (sum[1] + sum[3])
+}
+
+/// `y <- y - c x` over whole pairs.
+#[inline(always)]
+fn subtract(c: Lanes, x: &[Lanes], y: &mut [Lanes]) {
+    for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
+        y[0] -= c * x[0];
+        y[1] -= c * x[1];
+    }
 }

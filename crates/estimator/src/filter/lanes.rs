@@ -25,15 +25,35 @@ impl Lanes {
         self.0 == [0.0; LANES]
     }
 
-    /// `self / by` in the lanes where `by` is at least `least`, else `otherwise`.
+    /// Let some lanes be as in `from`.
     #[inline(always)]
-    pub fn divided_where(self, by: Self, least: f64, otherwise: Self) -> Self {
-        let quotient = self / by;
-        Self(std::array::from_fn(
-            |lane| {
-                if by.0[lane] >= least { quotient.0[lane] } else { otherwise.0[lane] }
-            },
-        ))
+    pub fn put(&mut self, lanes: [bool; LANES], from: Self) {
+        if lanes == [true; LANES] {
+            *self = from;
+        } else {
+            (0..LANES).filter(|&lane| lanes[lane]).for_each(|lane| self.0[lane] = from.0[lane]);
+        }
+    }
+
+    /// Whether a lane is at most as in `other`.
+    #[inline(always)]
+    pub fn any_at_most(self, other: Self) -> bool {
+        self.0.iter().zip(other.0).fold(false, |any, (own, other)| any | (*own <= other))
+    }
+
+    /// `normal` in the lanes where this is a normal positive number, else `otherwise`.
+    #[inline(always)]
+    pub fn choose(self, mut normal: Self, otherwise: Self) -> Self {
+        for ((normal, own), otherwise) in normal.0.iter_mut().zip(self.0).zip(otherwise.0) {
+            *normal = if own >= f64::MIN_POSITIVE { *normal } else { otherwise };
+        }
+        normal
+    }
+
+    /// `1 / self` in the lanes where this is a normal positive number, else 0.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        self.choose(Self::splat(1.0) / self, Self::ZERO)
     }
 }
 

@@ -255,7 +255,7 @@ impl Bank {
             Covariances::Separate(all) => all.iter().all(Separate::is_finite),
         };
         let possible =
-            |member: &Member| member.x.iter().all(|x| x.is_finite()) && cylinder.is_possible(&member.x);
+            |member: &Member| member.x.iter().sum::<f64>().is_finite() && cylinder.is_possible(&member.x);
         finite && self.members.iter().all(possible)
     }
 
@@ -264,7 +264,7 @@ impl Bank {
         match &self.covariances {
             Covariances::Together(packs) => {
                 let (pack, lane) = place(index);
-                packs[pack].variances(state).0[lane]
+                packs[pack].variance(lane, state)
             }
             Covariances::Separate(all) => all[index].variance(state),
         }
@@ -273,6 +273,25 @@ impl Bank {
     /// Mean and variance of a state.
     pub fn moments(&self, index: usize, state: usize) -> Moments {
         (self.members[index].x[state], self.variance(index, state))
+    }
+
+    /// Mean and variance of a state, member by member.
+    pub fn write_moments(&self, state: usize, moments: &mut Vec<Moments>) {
+        moments.clear();
+        match &self.covariances {
+            Covariances::Together(packs) => {
+                for (pack, members) in packs.iter().zip(self.members.chunks(Together::SIZE)) {
+                    let variances = pack.variances(state);
+                    moments.extend(
+                        members.iter().zip(variances.0).map(|(of, variance)| (of.x[state], variance)),
+                    );
+                }
+            }
+            Covariances::Separate(all) => {
+                moments
+                    .extend(self.members.iter().zip(all).map(|(of, own)| (of.x[state], own.variance(state))));
+            }
+        }
     }
 
     /// Covariance of all states: (n, n).

@@ -20,9 +20,10 @@ use super::states::States;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
+use crate::thermal::model::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 pub(super) use crossing::Crossing;
+pub(super) use near::HARDLY;
 use noise::Parts;
 use structure::Structure;
 use transition::{Transition, Walking};
@@ -51,8 +52,8 @@ pub struct Cylinder {
     walking: Vec<Walking>,
     /// Bounded states with their bounds.
     bounds: Vec<(usize, f64, f64)>,
-    /// How far two states may be apart, state by state, and share a linearisation.
-    near: Vec<f64>,
+    /// States in which the equations are not linear, with the inverse of the difference for which a linearisation serves.
+    near: Vec<(usize, f64)>,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
     interval_s: Vec<f64>,
     work: Work,
@@ -114,7 +115,8 @@ impl Cylinder {
         };
         cylinder.set_walks();
         cylinder.set_bounds();
-        cylinder.near = cylinder.states.kinds.iter().map(|kind| cylinder.near_limit(kind)).collect();
+        let limit = |(state, kind)| cylinder.nearness(kind).map(|limit| (state, limit));
+        cylinder.near = cylinder.states.kinds.iter().enumerate().filter_map(limit).collect();
         cylinder.suppose(&settings.bank[0]);
         Ok(cylinder)
     }
@@ -181,7 +183,7 @@ impl Cylinder {
     /// The state has no gas.
     pub fn pressure_pa(&mut self, x: &[f64]) -> Result<f64, EstimatorError> {
         let n = self.model.states();
-        Ok(self.model.pressure(&x[..n])?.pressure_pa)
+        Ok(self.model.pressure_pa(&x[..n])?)
     }
 
     fn unknowns(&self, x: &[f64]) -> Unknowns {
@@ -262,12 +264,14 @@ impl Cylinder {
         x: &[f64],
         gradient: Option<&mut [f64]>,
     ) -> Result<f64, EstimatorError> {
-        let (states, target) = (&self.states, self.targets[sensor]);
-        let electronics = states.valve.unwrap_or(states.wall - 1);
+        let target = self.targets[sensor];
         let pressure = match target {
-            Target::Pressure => Some(self.model.pressure(&x[..self.model.states()])?),
+            Target::Pressure if gradient.is_some() => Some(self.model.pressure(&x[..self.model.states()])?),
+            Target::Pressure => Some(Pressure { pressure_pa: self.pressure_pa(x)?, ..Pressure::default() }),
             _ => None,
         };
+        let states = &self.states;
+        let electronics = states.valve.unwrap_or(states.wall - 1);
         let exposure = Exposure {
             body_k: match target {
                 Target::Surface(place) => self.surface_k(place, x),

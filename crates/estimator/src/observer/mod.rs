@@ -39,7 +39,7 @@ use crate::sensor::Sensor;
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use bank::Bank;
-use belief::Belief;
+use belief::{Belief, Moments};
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
@@ -89,6 +89,8 @@ pub struct Observer {
     /// The member whose mass walks most freely: it judges the others.
     freest: usize,
     reference_x: Vec<f64>,
+    /// Mass of each member at the present sample.
+    masses: Vec<Moments>,
     /// The readings of the present sample without the faulty ones.
     usable: Vec<f64>,
 }
@@ -123,6 +125,7 @@ impl Observer {
             slow: middle_slow(&settings.bank),
             freest: freest(&settings.bank),
             reference_x: vec![0.0; cylinder.states()],
+            masses: Vec::with_capacity(settings.bank.len()),
             cylinder,
         })
     }
@@ -218,9 +221,11 @@ impl Observer {
     fn replace_the_wrong(&mut self) {
         let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
         let freest = self.freest;
-        for index in (0..self.bank.members.len()).filter(|&index| index != freest) {
-            if self.belief(index).is_out_of_the_question() {
+        self.bank.write_moments(mass, &mut self.masses);
+        for index in (0..self.masses.len()).filter(|&index| index != freest) {
+            if Belief::of(self.masses[index], self.masses[freest]).is_out_of_the_question() {
                 self.bank.begin_anew(index, freest, (mass, leak));
+                self.masses[index] = self.masses[freest];
             }
         }
     }
@@ -294,11 +299,11 @@ impl Observer {
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
-        let blended = |index: usize, state: usize| {
-            self.belief(index).blend(bank.moments(index, state), bank.moments(self.freest, state))
-        };
-        let (gas_mean_k, gas_variance_k2) = blended(self.slow.unwrap_or(0), states.gas);
-        let (mass_kg, mass_variance_kg2) = blended(0, states.mass);
+        let (slow, freest) = (self.slow.unwrap_or(0), self.freest);
+        let [first_mass, slow_mass, free_mass] = [0, slow, freest].map(|index| self.masses[index]);
+        let (mass_kg, mass_variance_kg2) = Belief::of(first_mass, free_mass).blend(first_mass, free_mass);
+        let (gas_mean_k, gas_variance_k2) = Belief::of(slow_mass, free_mass)
+            .blend(bank.moments(slow, states.gas), bank.moments(freest, states.gas));
         let (leak_kg_s, leak_variance) =
             self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
         let mut estimate = Estimate {

@@ -11,7 +11,7 @@
 //! Sources: McAdams, Heat Transmission (1954), 0.13 Ra^(1/3); Daney, Cryogenics 16 (1976) 345, 0.104 Ra^0.352
 //! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / D.
 use std::array::from_fn;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
 use crate::ThermalError;
@@ -26,6 +26,8 @@ const FLAT_BELOW_K: f64 = 0.01;
 /// Factor and exponent of a plate that stirs the gas (hot floor, cold ceiling) and of one that does not, length D/4.
 const PLATE_STIRRED: (f64, f64) = (0.15, 1.0 / 3.0);
 const PLATE_RESTING: (f64, f64) = (0.27, 0.25);
+/// Plates count with a quarter of the length.
+const LN_QUARTER: f64 = -2.0 * std::f64::consts::LN_2;
 /// Spacing of the grid in temperature, K.
 const STEP_K: f64 = 4.0;
 /// Spacing of the grid in the logarithm of the pressure.
@@ -71,6 +73,13 @@ fn catmull_rom(u: f64) -> ([f64; 4], [f64; 4]) {
     )
 }
 
+/// Whole part, rounded down, and the rest. Without a call of the library for the floor, which costs as much as the interpolation.
+fn cell_of(x: f64) -> (i32, f64) {
+    let truncated = x as i32;
+    let index = if f64::from(truncated) > x { truncated - 1 } else { truncated };
+    (index, x - f64::from(index))
+}
+
 type GridIndex = (i32, i32);
 /// `[group][temperature][pressure]`
 type Patch = [[[f64; 4]; 4]; 2];
@@ -82,38 +91,57 @@ pub struct FilmGrid {
     nodes: RefCell<HashMap<GridIndex, [f64; 2]>>,
     patches: RefCell<HashMap<GridIndex, Patch>>,
     last: RefCell<Option<(GridIndex, Patch)>>,
+    /// Last pressure, Pa, and its logarithm.
+    last_pressure: Cell<(f64, f64)>,
 }
 
 impl FilmGrid {
     /// An empty grid.
     pub fn new(fluid: Fluid) -> Self {
-        Self { fluid, nodes: RefCell::default(), patches: RefCell::default(), last: RefCell::new(None) }
+        Self {
+            fluid,
+            nodes: RefCell::default(),
+            patches: RefCell::default(),
+            last: RefCell::new(None),
+            last_pressure: Cell::new((1.0, 0.0)),
+        }
     }
 
     /// Interpolated property groups. NaN where the fluid has no single phase within 40 K above the state.
     pub fn groups(&self, temperature_k: f64, pressure_pa: f64) -> FilmGroups {
-        let (x, y) = (temperature_k / STEP_K, pressure_pa.ln() / STEP_LN_P);
-        let (i, j) = (x.floor(), y.floor());
-        let ((wt, dt), (wp, dp)) = (catmull_rom(x - i), catmull_rom(y - j));
-        let index = (i as i32, j as i32);
+        let (i, u) = cell_of(temperature_k / STEP_K);
+        let (j, v) = cell_of(self.ln_pressure(pressure_pa) / STEP_LN_P);
+        let ((wt, dt), (wp, dp), index) = (catmull_rom(u), catmull_rom(v), (i, j));
         if self.last.borrow().as_ref().is_none_or(|(known, _)| *known != index) {
             let patch = *self.patches.borrow_mut().entry(index).or_insert_with(|| self.patch(index));
             *self.last.borrow_mut() = Some((index, patch));
         }
         let last = self.last.borrow();
         let Some((_, patch)) = last.as_ref() else { unreachable!("the last patch was just set") };
+        // First along the temperature, four pressures side by side.
         let interpolate = |values: &[[f64; 4]; 4]| {
-            let mut sum = [0.0; 3];
-            for (a, row) in values.iter().enumerate() {
-                let along: f64 = row.iter().zip(&wp).map(|(v, w)| v * w).sum();
-                let slope: f64 = row.iter().zip(&dp).map(|(v, w)| v * w).sum();
-                sum[0] += wt[a] * along;
-                sum[1] += dt[a] * along / STEP_K;
-                sum[2] += wt[a] * slope / STEP_LN_P;
+            let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
+            for ((row, w), d) in values.iter().zip(wt).zip(dt) {
+                for b in 0..4 {
+                    value[b] += w * row[b];
+                    slope[b] += d * row[b];
+                }
             }
-            sum
+            let dot = |a: &[f64; 4], b: &[f64; 4]| (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
+            [dot(&value, &wp), dot(&slope, &wp) / STEP_K, dot(&value, &dp) / STEP_LN_P]
         };
         FilmGroups { ln_k: interpolate(&patch[0]), ln_r: interpolate(&patch[1]) }
+    }
+
+    /// Surfaces of one vessel ask for one pressure, one after the other.
+    fn ln_pressure(&self, pressure_pa: f64) -> f64 {
+        let (known_pa, ln) = self.last_pressure.get();
+        if pressure_pa == known_pa {
+            return ln;
+        }
+        let ln = pressure_pa.ln();
+        self.last_pressure.set((pressure_pa, ln));
+        ln
     }
 
     fn patch(&self, (i, j): GridIndex) -> Patch {
@@ -153,14 +181,14 @@ pub struct InsideFlux {
 #[derive(Clone, Debug)]
 pub struct InsideConvection {
     law: InsideFilm,
-    length_m: f64,
+    ln_length: f64,
     grid: FilmGrid,
 }
 
 impl InsideConvection {
     /// Film law `law` of a vessel of characteristic length `length_m` (its inner diameter; irrelevant for n = 1/3).
     pub fn new(law: InsideFilm, length_m: f64, fluid: Fluid) -> Self {
-        Self { law, length_m, grid: FilmGrid::new(fluid) }
+        Self { law, ln_length: length_m.ln(), grid: FilmGrid::new(fluid) }
     }
 
     /// Heat flux from a surface at `surface_k` to gas at `gas_k` and `pressure_pa`, with `jet_w_m2_k` added for
@@ -182,13 +210,13 @@ impl InsideConvection {
                 per_pressure: 0.0,
             },
             (InsideFilm::Rayleigh { factor, exponent, multiplier }, Facing::Side) => {
-                self.natural(multiplier * factor, exponent, self.length_m, theta, surface_k, pressure_pa)
+                self.natural(multiplier * factor, exponent, self.ln_length, theta, surface_k, pressure_pa)
             }
             (InsideFilm::Rayleigh { multiplier, .. }, plate) => {
                 let stirs = (theta > 0.0) == (plate == Facing::Floor);
                 let (factor, exponent) = if stirs { PLATE_STIRRED } else { PLATE_RESTING };
-                let length = 0.25 * self.length_m;
-                self.natural(multiplier * factor, exponent, length, theta, surface_k, pressure_pa)
+                let ln_length = self.ln_length + LN_QUARTER;
+                self.natural(multiplier * factor, exponent, ln_length, theta, surface_k, pressure_pa)
             }
         };
         InsideFlux {
@@ -204,18 +232,18 @@ impl InsideConvection {
         &self,
         factor: f64,
         n: f64,
-        length_m: f64,
+        ln_length: f64,
         theta: f64,
         surface_k: f64,
         pressure_pa: f64,
     ) -> InsideFlux {
         let groups = self.grid.groups(surface_k - 0.5 * theta, pressure_pa);
-        let ln_length = (3.0 * n - 1.0) * length_m.ln();
-        let b = factor * (groups.ln_k[0] + n * groups.ln_r[0] + ln_length).exp();
         let square = theta * theta + FLAT_BELOW_K * FLAT_BELOW_K;
-        let s = square.powf(0.5 * n);
-        let flux_w_m2 = b * s * theta;
-        let per_theta = b * s * (1.0 + n * theta * theta / square);
+        let ln_film =
+            groups.ln_k[0] + n * groups.ln_r[0] + (3.0 * n - 1.0) * ln_length + 0.5 * n * square.ln();
+        let film = factor * ln_film.exp();
+        let flux_w_m2 = film * theta;
+        let per_theta = film * (1.0 + n * theta * theta / square);
         let per_film_k = flux_w_m2 * (groups.ln_k[1] + n * groups.ln_r[1]);
         InsideFlux {
             flux_w_m2,

@@ -1,50 +1,76 @@
 //! Where a transition may differ from zero.
 
-/// Columns of each leading row of a transition that may differ from zero.
-///
-/// Neighbouring rows with the same columns are kept together, up to four: they are multiplied at once.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pattern {
-    pub(super) groups: Vec<Group>,
-    /// Number of leading rows.
-    pub(super) leading: usize,
-    /// Number of elements.
-    pub(super) elements: usize,
-}
-
-/// Rows of the same columns.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Group {
-    pub first_row: usize,
-    pub rows: usize,
-    pub columns: Vec<usize>,
-    /// Place of the first element; elements go column by column.
-    pub start: usize,
-}
-
 /// Rows that are multiplied together.
 pub(super) const TOGETHER: usize = 4;
+
+/// Columns of each leading row of a transition that may differ from zero.
+///
+/// Four neighbouring rows with the same columns are multiplied at once, the others element by element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// Number of leading rows.
+    pub(super) leading: usize,
+    pub(super) blocks: Vec<Block>,
+    /// Row and column of the elements of all other rows.
+    pub(super) elements: Vec<(usize, usize)>,
+    /// First column of each row.
+    pub(super) firsts: Vec<usize>,
+    /// Earlier states whose noise each state's noise may be correlated with.
+    pub(super) noise: Vec<Vec<usize>>,
+}
+
+/// Four rows of the same columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Block {
+    pub first_row: usize,
+    pub columns: Vec<usize>,
+}
 
 impl Pattern {
     /// Columns of each row, in any order.
     pub fn new(rows: &[Vec<usize>]) -> Self {
-        let mut groups: Vec<Group> = Vec::new();
-        let mut elements = 0;
-        for (row, columns) in rows.iter().enumerate() {
+        let sorted = |columns: &Vec<usize>| {
             let mut columns = columns.clone();
             columns.sort_unstable();
             columns.dedup();
-            elements += columns.len();
-            match groups.last_mut() {
-                Some(last) if last.columns == columns && last.rows < TOGETHER => last.rows += 1,
-                _ => groups.push(Group { first_row: row, rows: 1, columns, start: 0 }),
+            columns
+        };
+        let rows: Vec<Vec<usize>> = rows.iter().map(sorted).collect();
+        let first = |columns: &Vec<usize>| columns.first().map_or(rows.len(), |&c| c.min(rows.len()));
+        let (mut blocks, mut elements) = (Vec::new(), Vec::new());
+        let mut row = 0;
+        while let Some(columns) = rows.get(row) {
+            let alike = rows[row..].iter().take_while(|other| *other == columns).count();
+            if alike >= TOGETHER && columns.len() > 1 {
+                blocks.push(Block { first_row: row, columns: columns.clone() });
+                row += TOGETHER;
+            } else {
+                elements.extend(columns.iter().map(|&column| (row, column)));
+                row += 1;
             }
         }
-        let mut start = 0;
-        for group in &mut groups {
-            group.start = start;
-            start += group.rows * group.columns.len();
+        Self {
+            leading: rows.len(),
+            blocks,
+            elements,
+            firsts: rows.iter().map(first).collect(),
+            noise: (0..rows.len()).map(|state| (0..state).collect()).collect(),
         }
-        Self { groups, leading: rows.len(), elements }
+    }
+
+    /// The same where noise of two leading states is correlated only if `correlated` says so, or by what a later state has in common
+    /// with both.
+    pub fn with_noise(mut self, correlated: impl Fn(usize, usize) -> bool) -> Self {
+        let m = self.leading;
+        let mut linked: Vec<Vec<bool>> =
+            (0..m).map(|j| (0..m).map(|i| i < j && correlated(i, j)).collect()).collect();
+        for j in (0..m).rev() {
+            let own = linked[j].clone();
+            for (i, linked) in linked.iter_mut().enumerate().filter(|(i, _)| own[*i]) {
+                (0..i).filter(|&k| own[k]).for_each(|k| linked[k] = true);
+            }
+        }
+        self.noise = linked.iter().map(|row| (0..m).filter(|&i| row[i]).collect()).collect();
+        self
     }
 }

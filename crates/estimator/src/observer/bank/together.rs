@@ -1,16 +1,16 @@
 //! Up to four members with the extended filter, side by side.
 //!
-//! They see one cylinder and differ in what they suppose of its leak: their means are near each other, mostly by much less than what
-//! would bend the equations. Members near a reference share its linearisation: `x_k' = f(x) + Phi (x_k - x)`, and likewise for a
-//! reading. Near means that the second-order remainder of a step is negligible ([`Cylinder::is_near`]). A member that is not, after
-//! a leak that it does not allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
+//! They see one cylinder and differ in what they suppose of its leak: their means are near each other. Members near a reference use its
+//! derivatives, `x_k' = f(x) + Phi (x_k - x)` and likewise for a reading; where they are not so near that the curvature of the
+//! equations would not show ([`HARDLY`]), by their own rates and readings. A member that is far away, after a leak that it does not
+//! allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
 use nalgebra::{DMatrix, Dyn};
 
 use crate::EstimatorError;
 use crate::filter::bank::{BankTransition, UdBank};
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::{StateSpace, UdFactors};
-use crate::observer::cylinder::{Crossing, Cylinder};
+use crate::observer::cylinder::{Crossing, Cylinder, HARDLY};
 use crate::observer::engine::Shared;
 use crate::observer::member::{Member, Outcome, freed};
 
@@ -18,6 +18,8 @@ use crate::observer::member::{Member, Outcome, freed};
 #[derive(Clone, Debug)]
 pub(super) struct Together {
     bank: UdBank,
+    /// Who shares derivatives, found at each time update; readings hardly change it.
+    groups: Vec<Group>,
 }
 
 /// Memory that all share. Nothing in it outlives a step.
@@ -27,10 +29,12 @@ pub(in crate::observer) struct Memory {
     transition: BankTransition,
     /// Departure of each member from its reference, and where the transition takes it: (n), (leading).
     away: Vec<Lanes>,
-    moved: Vec<Lanes>,
+    moved: Vec<[Lanes; 1]>,
     /// The reference before a step (n), and its moving states after it.
     before: Vec<f64>,
     after: Vec<f64>,
+    /// The same with what curvature adds for one member.
+    bent: Vec<f64>,
     /// Gradient and gain: (n).
     h: Vec<Lanes>,
     gain: Vec<Lanes>,
@@ -46,9 +50,10 @@ impl Memory {
             crossing: Crossing::new(n, m),
             transition: BankTransition::new(cylinder.pattern()),
             away: vec![Lanes::ZERO; n],
-            moved: vec![Lanes::ZERO; m],
+            moved: vec![[Lanes::ZERO]; m],
             before: vec![0.0; n],
             after: vec![0.0; m],
+            bent: vec![0.0; m],
             h: vec![Lanes::ZERO; n],
             gain: vec![Lanes::ZERO; n],
             one_h: vec![0.0; n],
@@ -71,7 +76,7 @@ impl Together {
         for lane in 0..LANES {
             bank.set(lane, factors.get(lane).unwrap_or(&factors[0]));
         }
-        Self { bank }
+        Self { bank, groups: Vec::with_capacity(LANES) }
     }
 
     /// Time update over an interval, in steps no longer than the settings allow.
@@ -89,6 +94,14 @@ impl Together {
         Ok(())
     }
 
+    fn group(&mut self, cylinder: &Cylinder, members: &[Member]) {
+        self.groups.clear();
+        let mut left = [true; LANES];
+        while let Some(group) = Group::next(cylinder, members, &mut left) {
+            self.groups.push(group);
+        }
+    }
+
     fn move_on(
         &mut self,
         cylinder: &mut Cylinder,
@@ -97,13 +110,13 @@ impl Together {
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
         memory.away.fill(Lanes::ZERO);
-        let mut left = [true; LANES];
-        while let Some((reference, group)) = next_group(cylinder, members, &mut left) {
-            memory.cross(cylinder, members, (reference, group), dt_s)?;
+        self.group(cylinder, members);
+        for group in &self.groups {
+            memory.cross(cylinder, members, group, dt_s)?;
         }
-        memory.transition.multiply(&memory.away, &mut memory.moved);
+        memory.transition.multiply([&memory.away], cylinder.states() - 1, &mut memory.moved);
         for (lane, member) in members.iter_mut().enumerate() {
-            for (x, by) in member.x.iter_mut().zip(&memory.moved) {
+            for (x, [by]) in member.x.iter_mut().zip(&memory.moved) {
                 *x += by.0[lane];
             }
         }
@@ -123,15 +136,27 @@ impl Together {
         let h = &mut shared.h;
         let memory = &mut shared.memory;
         let (mut nu, mut r) = (Lanes::ZERO, Lanes::splat(1.0));
-        let mut left = [true; LANES];
-        while let Some((reference, group)) = next_group(cylinder, members, &mut left) {
-            let x = &members[reference].x;
+        if self.groups.is_empty() {
+            self.group(cylinder, members);
+        }
+        for group in &self.groups {
+            let x = &members[group.reference].x;
             let value = cylinder.output(sensor, x, Some(h))?;
             let noise = cylinder.noise_variance(sensor, x);
-            put(&mut memory.h, group, h);
-            for (lane, member) in members.iter().enumerate().filter(|(lane, _)| group[*lane]) {
-                let apart: f64 = h.iter().zip(member.x.iter().zip(x)).map(|(h, (a, b))| h * (a - b)).sum();
-                nu.0[lane] = reading - value - apart;
+            let mut expected = [value; LANES];
+            for (state, (to, &h)) in memory.h.iter_mut().zip(&*h).enumerate() {
+                to.put(group.lanes, Lanes::splat(h));
+                if h != 0.0 {
+                    for (expected, member) in expected.iter_mut().zip(&*members) {
+                        *expected += h * (member.x[state] - x[state]);
+                    }
+                }
+            }
+            for (lane, member) in members.iter().enumerate().filter(|(lane, _)| group.lanes[*lane]) {
+                if group.distance[lane] > HARDLY {
+                    expected[lane] = cylinder.output(sensor, &member.x, None)?;
+                }
+                nu.0[lane] = reading - expected[lane];
                 r.0[lane] = noise;
             }
         }
@@ -217,7 +242,12 @@ impl Together {
         self.bank.is_finite()
     }
 
-    /// Variances of a state.
+    /// Variance of a state of a lane.
+    pub fn variance(&self, lane: usize, state: usize) -> f64 {
+        self.bank.variance(lane, state)
+    }
+
+    /// Variance of a state in each lane.
     pub fn variances(&self, state: usize) -> Lanes {
         self.bank.variances(state)
     }
@@ -234,26 +264,31 @@ impl Memory {
         &mut self,
         cylinder: &mut Cylinder,
         members: &mut [Member],
-        (reference, group): (usize, Some4),
+        group: &Group,
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
-        let m = self.moved.len();
+        let (m, reference) = (self.moved.len(), group.reference);
         self.before.copy_from_slice(&members[reference].x);
         cylinder.suppose(&members[reference].hypothesis);
         cylinder.cross(&mut members[reference].x, dt_s, &mut self.crossing)?;
-        self.transition.set(group, self.crossing.phi.as_slice());
-        self.set_noise(group, members);
+        self.transition.set(group.lanes, self.crossing.phi.as_slice());
+        self.set_noise(group.lanes, members);
         self.after.copy_from_slice(&members[reference].x[..m]);
-        for (lane, member) in lanes_of(group, members) {
-            if lane != reference {
-                for ((away, x), before) in self.away.iter_mut().zip(&member.x).zip(&self.before) {
-                    away.0[lane] = x - before;
-                }
-                member.x[..m].copy_from_slice(&self.after);
-            }
+        for (lane, member) in lanes_of(group.lanes, members) {
             if let Some(pass) = &mut member.pass {
                 pass.move_on(&self.crossing.phi);
             }
+            if lane == reference {
+                continue;
+            }
+            for ((away, x), before) in self.away.iter_mut().zip(&member.x).zip(&self.before) {
+                away.0[lane] = x - before;
+            }
+            self.bent.copy_from_slice(&self.after);
+            if group.distance[lane] > HARDLY {
+                cylinder.bend(&self.before, &member.x, dt_s, &self.crossing, &mut self.bent)?;
+            }
+            member.x[..m].copy_from_slice(&self.bent);
         }
         Ok(())
     }
@@ -266,47 +301,43 @@ impl Memory {
         let mass = supposed(|member| member.hypothesis.mass_walk_kg_per_sqrt_s.powi(2));
         let leak = supposed(|member| member.hypothesis.rate.per_sqrt_s.powi(2));
         let Crossing { noise, by_mass, by_leak, .. } = &self.crossing;
-        let parts = noise.iter().zip(by_mass).zip(by_leak);
-        for (to, ((&common, &by_mass), &by_leak)) in self.transition.noise.iter_mut().zip(parts) {
-            let value = Lanes::splat(common) + mass * by_mass + leak * by_leak;
-            if group == [true; LANES] {
-                *to = value;
-                continue;
-            }
-            (0..LANES).filter(|&lane| group[lane]).for_each(|lane| to.0[lane] = value.0[lane]);
-        }
+        self.transition.set_noise(group, |place| {
+            Lanes::splat(noise[place]) + mass * by_mass[place] + leak * by_leak[place]
+        });
     }
 }
 
-/// The next reference and the lanes that are near it, among those that are left; lanes without a member join the first group.
-fn next_group(cylinder: &Cylinder, members: &[Member], left: &mut Some4) -> Option<(usize, Some4)> {
-    let candidates = || (0..members.len()).filter(|&lane| left[lane]);
-    let leaks = |lane: &usize| !members[*lane].hypothesis.rate.is_known();
-    let reference = candidates().find(leaks).or_else(|| candidates().next())?;
-    let of = &members[reference];
-    let group = std::array::from_fn(|lane| {
-        let near = |member: &Member| {
-            lane == reference || cylinder.is_near((&of.hypothesis, &of.x), (&member.hypothesis, &member.x))
-        };
-        left[lane] && members.get(lane).is_none_or(near)
-    });
-    left.iter_mut().zip(group).for_each(|(left, taken)| *left &= !taken);
-    Some((reference, group))
+/// Members that share the derivatives of one.
+#[derive(Clone, Copy, Debug)]
+struct Group {
+    reference: usize,
+    lanes: Some4,
+    /// Distance of each from the reference.
+    distance: [f64; LANES],
+}
+
+impl Group {
+    /// The next reference with all that are near it, among the lanes that are left; lanes without a member join the first group.
+    fn next(cylinder: &Cylinder, members: &[Member], left: &mut Some4) -> Option<Self> {
+        let candidates = || (0..members.len()).filter(|&lane| left[lane]);
+        let leaks = |lane: &usize| !members[*lane].hypothesis.rate.is_known();
+        let reference = candidates().find(leaks).or_else(|| candidates().next())?;
+        let mut group = Self { reference, lanes: *left, distance: [0.0; LANES] };
+        let of = &members[reference];
+        for lane in candidates().filter(|&lane| lane != reference) {
+            let member = &members[lane];
+            group.distance[lane] =
+                cylinder.distance((&of.hypothesis, &of.x), (&member.hypothesis, &member.x));
+            group.lanes[lane] = group.distance[lane] <= 1.0;
+        }
+        left.iter_mut().zip(group.lanes).for_each(|(left, taken)| *left &= !taken);
+        Some(group)
+    }
 }
 
 /// The members of some lanes.
 fn lanes_of(group: Some4, members: &mut [Member]) -> impl Iterator<Item = (usize, &mut Member)> {
     members.iter_mut().enumerate().filter(move |(lane, _)| group[*lane])
-}
-
-fn put(to: &mut [Lanes], group: Some4, from: &[f64]) {
-    for (to, &from) in to.iter_mut().zip(from) {
-        if group == [true; LANES] {
-            *to = Lanes::splat(from);
-            continue;
-        }
-        (0..LANES).filter(|&lane| group[lane]).for_each(|lane| to.0[lane] = from);
-    }
 }
 
 fn one_lane(lane: usize, from: &[Lanes], to: &mut [f64]) {

@@ -1,5 +1,6 @@
 //! A step of the cylinder with its noise in parts, for filters that suppose different things of mass and leak.
 use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::Cylinder;
 use crate::EstimatorError;
@@ -29,6 +30,33 @@ impl Crossing {
     }
 }
 
+/// What follows the linearisation, compiled for the vector registers of the machine.
+struct Cross<'a> {
+    cylinder: &'a mut Cylinder,
+    x: &'a mut [f64],
+    h: f64,
+    crossing: &'a mut Crossing,
+}
+
+impl WithSimd for Cross<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { cylinder, x, h, crossing } = self;
+        let (mass, leak, walking) = (cylinder.states.mass, cylinder.states.leak, &cylinder.walking);
+        let transition = &mut cylinder.work.transition;
+        transition.solve(x, walking, h);
+        transition.advance(x);
+        transition.write_phi(&mut crossing.phi);
+        let common =
+            |state: usize| if state == mass || state == leak { 0.0 } else { walking[state].intensity };
+        transition.write_noise(common, h, &mut crossing.noise);
+        transition.write_noise(|state| f64::from(state == mass), h, &mut crossing.by_mass);
+        transition.write_noise(|state| f64::from(state == leak), h, &mut crossing.by_leak);
+    }
+}
+
 impl Cylinder {
     /// Move a state by one undivided step and write what the step is.
     ///
@@ -40,16 +68,8 @@ impl Cylinder {
         h: f64,
         crossing: &mut Crossing,
     ) -> Result<(), EstimatorError> {
-        self.step(x, h, false)?;
-        let (mass, leak, walking) = (self.states.mass, self.states.leak, &self.walking);
-        let transition = &mut self.work.transition;
-        transition.write_phi(&mut crossing.phi);
-        let common =
-            |state: usize| if state == mass || state == leak { 0.0 } else { walking[state].intensity };
-        transition.write_noise(common, h, &mut crossing.noise);
-        let only = |of: usize| move |state: usize| f64::from(state == of);
-        transition.write_noise(only(mass), h, &mut crossing.by_mass);
-        transition.write_noise(only(leak), h, &mut crossing.by_leak);
+        self.linearise(x)?;
+        Arch::new().dispatch(Cross { cylinder: self, x, h, crossing });
         Ok(())
     }
 
@@ -71,6 +91,9 @@ impl Cylinder {
             _ if state == states.mass => vec![state, states.leak],
             _ => vec![state],
         };
-        Pattern::new(&(0..states.leading).map(row).collect::<Vec<_>>())
+        // Noise spreads within the block, from outside of it into the block, and from the leak rate to the mass.
+        let block = |state: usize| temperatures.contains(&state) || lags.contains(&state);
+        let correlated = |i: usize, j: usize| block(i) || block(j) || (i, j) == (states.mass, states.leak);
+        Pattern::new(&(0..states.leading).map(row).collect::<Vec<_>>()).with_noise(correlated)
     }
 }

@@ -38,26 +38,31 @@ impl Columns {
     }
 
     /// Column `j` with its padding, number by number.
+    #[inline(always)]
     pub fn flat(&self, j: usize) -> &[f64] {
         self.column(j).as_flattened()
     }
 
     /// Column `j` with its padding, number by number.
+    #[inline(always)]
     pub fn flat_mut(&mut self, j: usize) -> &mut [f64] {
         self.column_mut(j).as_flattened_mut()
     }
 
     /// Element of row `i` and column `j`.
+    #[inline(always)]
     pub fn at(&self, i: usize, j: usize) -> f64 {
         self.flat(j)[i]
     }
 
     /// All zero.
+    #[inline(always)]
     pub fn clear(&mut self) {
         self.values.fill([0.0; 4]);
     }
 
     /// `self <- c other`.
+    #[inline(always)]
     pub fn set_scaled(&mut self, c: f64, other: &Self) {
         for (to, from) in self.values.as_flattened_mut().iter_mut().zip(other.values.as_flattened()) {
             *to = c * from;
@@ -65,16 +70,19 @@ impl Columns {
     }
 
     /// `self <- other`.
+    #[inline(always)]
     pub fn copy_from(&mut self, other: &Self) {
         self.values.copy_from_slice(&other.values);
     }
 
     /// `self <- self + other`.
+    #[inline(always)]
     pub fn add(&mut self, other: &Self) {
         axpy(1.0, other.values.as_flattened(), self.values.as_flattened_mut());
     }
 
     /// `self <- a Z B + c B` with a square `Z` of as many rows.
+    #[inline(always)]
     pub fn set_product(&mut self, a: f64, z: &Square, b: &Self, c: f64) {
         if let [block] = z.blocks.as_slice() {
             for (to, from) in self.values.iter_mut().zip(&b.values) {
@@ -95,6 +103,7 @@ impl Columns {
     }
 
     /// `self <- self + c v v^T` for a square of columns as long as `v`.
+    #[inline(always)]
     pub fn add_square(&mut self, c: f64, v: &[Group]) {
         if let ([v], [x0, x1, x2, x3]) = (v, self.values.as_mut_slice()) {
             for (to, value) in [x0, x1, x2, x3].into_iter().zip(v) {
@@ -134,6 +143,7 @@ impl Square {
     }
 
     /// The first `rows` columns of `from`.
+    #[inline(always)]
     pub fn copy_from(&mut self, from: &Columns, rows: usize) {
         let groups = from.groups;
         for j in 0..rows {

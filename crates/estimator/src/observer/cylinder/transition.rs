@@ -17,7 +17,7 @@ use super::lanes::{Columns, Square, add_scaled};
 use super::structure::Structure;
 
 /// What the series leaves out, relative to its first term.
-const SERIES_TOLERANCE: f64 = 1e-13;
+const SERIES_TOLERANCE: f64 = 1e-12;
 /// Norm of the scaled matrix: a doubling costs as much as a term and a half.
 const LARGEST_NORM: f64 = 0.12;
 /// Weights of Simpson's rule at start, middle and end.
@@ -119,7 +119,21 @@ impl Transition {
         &mut self.a.flat_mut(self.columns.len())[..self.rows]
     }
 
+    /// Subtract what the linearisation at `a` makes of a state `b` from its `rate`, row by row of the block.
+    pub fn subtract_linear(&self, a: &[f64], b: &[f64], rate: &mut [f64]) {
+        let mut linear = |away: f64, column: usize| {
+            for (rate, by) in rate.iter_mut().zip(self.a.flat(column)) {
+                *rate -= away * by;
+            }
+        };
+        linear(1.0, self.columns.len());
+        for (column, &state) in self.columns.iter().enumerate() {
+            linear(b[state] - a[state], column);
+        }
+    }
+
     /// Solve the equations over `h` seconds from state `x`; `walking` holds the leading states.
+    #[inline(always)]
     pub fn solve(&mut self, x: &[f64], walking: &[Walking], h: f64) {
         let rates = self.outer.iter().map(|outer| walking[outer.state].decay_per_s);
         let norm = h * rates.fold(self.norm(), f64::max);
@@ -142,6 +156,7 @@ impl Transition {
     }
 
     /// Bound on the eigenvalues of the block, 1/s. Driven rows add their own rate only: nothing comes back from them.
+    #[inline(always)]
     fn norm(&self) -> f64 {
         let own = |row: usize| {
             if row < self.temperatures {
@@ -154,6 +169,7 @@ impl Transition {
     }
 
     /// Terms of the series over the scaled interval.
+    #[inline(always)]
     fn sum_series(&mut self, interval: f64, terms: usize) {
         self.term.set_scaled(interval, &self.a);
         self.z.copy_from(&self.term, self.rows);
@@ -180,6 +196,7 @@ impl Transition {
     }
 
     /// What the outer states' own motion adds to the next term, in their columns and in the mean's.
+    #[inline(always)]
     fn add_forcing(&mut self, scale: f64, mass_term: f64) {
         let (first, mean) = (self.rows, self.columns.len());
         for (position, outer) in self.outer.iter().enumerate() {
@@ -195,6 +212,7 @@ impl Transition {
     }
 
     /// From an interval to twice as long a one.
+    #[inline(always)]
     fn double(&mut self) {
         let (first, mean) = (self.rows, self.columns.len());
         self.z.copy_from(&self.sum, self.rows);
@@ -217,6 +235,7 @@ impl Transition {
     }
 
     /// Move a state over the step.
+    #[inline(always)]
     pub fn advance(&self, x: &mut [f64]) {
         for (state, by) in self.columns[..self.rows].iter().zip(self.sum.flat(self.columns.len())) {
             x[*state] += by;
@@ -228,6 +247,7 @@ impl Transition {
     }
 
     /// Leading rows of the transition matrix: (leading, n).
+    #[inline(always)]
     pub fn write_phi(&self, phi: &mut DMatrix<f64>) {
         let leading = phi.nrows();
         let (first, driven) = self.columns[..self.rows].split_at(self.temperatures);
@@ -251,6 +271,7 @@ impl Transition {
 
     /// Noise covariance that the step of `h` seconds adds where each leading state gains `intensity` in a second: (leading, leading),
     /// its upper triangle. The rest has no meaning.
+    #[inline(always)]
     pub fn write_noise(&mut self, intensity: impl Fn(usize) -> f64, h: f64, q: &mut DMatrix<f64>) {
         let m = q.nrows();
         let q = q.as_mut_slice();
@@ -275,6 +296,7 @@ impl Transition {
         }
     }
 
+    #[inline(always)]
     fn add_block_source(&mut self, source: usize, intensity: f64) {
         self.noise.flat_mut(source)[source] += SIMPSON[0] * intensity;
         for (weight, points) in [(SIMPSON[1], &mut self.half), (SIMPSON[2], &mut self.sum)] {
@@ -284,6 +306,7 @@ impl Transition {
         }
     }
 
+    #[inline(always)]
     fn add_outer_source(&mut self, position: usize, intensity: f64, q: &mut [f64], m: usize) {
         let (outer, mass) = (self.outer[position], self.outer[self.mass].state);
         let (own, block) = (outer.state, &self.columns[..self.rows]);
@@ -316,6 +339,7 @@ fn couple(q: &mut [f64], m: usize, state: usize, weight: f64, (block, values): (
 }
 
 /// Terms after which a series of this norm leaves out no more than the tolerance.
+#[inline(always)]
 fn terms(norm: f64) -> usize {
     let (mut count, mut left) = (1, norm / 2.0);
     while left > SERIES_TOLERANCE && count < 60 {

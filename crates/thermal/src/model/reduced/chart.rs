@@ -134,7 +134,7 @@ impl Chart {
         };
         let at = ((t - middle.0) / half.0, (rho - middle.1) / half.1);
         let [z, z_t, z_r, z_tt, z_tr, z_rr] = expand(z, at, half);
-        let [cv, cv_t, cv_r, ..] = expand(cv, at, half);
+        let [cv, cv_t, cv_r] = slopes(cv, at, half);
         let (p_t, p_rho) = (rho * r * (z + t * z_t), r * t * (z + rho * z_r));
         let p_trho = r * (z + t * z_t + rho * z_r + rho * t * z_tr);
         Properties {
@@ -142,6 +142,24 @@ impl Chart {
             cv: Property { value: cv, by_t: cv_t, by_rho: cv_r },
             p_t: Property { value: p_t, by_t: rho * r * (2.0 * z_t + t * z_tt), by_rho: p_trho },
             p_rho: Property { value: p_rho, by_t: p_trho, by_rho: r * t * (2.0 * z_r + rho * z_rr) },
+        }
+    }
+
+    /// Pressure at a density, kg/m³, and temperature, K, with its derivatives.
+    pub fn pressure(&mut self, rho: f64, t: f64) -> Property {
+        let (half, r) = ((0.5 * WIDTH_K, 0.5 * self.height_kg_m3), self.gas_constant_j_kg_k);
+        let Some(Polynomials { middle, z, .. }) = self.polynomials(rho, t) else {
+            return self.exact(rho, t).p;
+        };
+        let [z, z_t, z_r] = slopes(z, ((t - middle.0) / half.0, (rho - middle.1) / half.1), half);
+        Property { value: rho * r * t * z, by_t: rho * r * (z + t * z_t), by_rho: r * t * (z + rho * z_r) }
+    }
+
+    /// The same without derivatives, Pa.
+    pub fn pressure_pa(&mut self, rho: f64, t: f64) -> f64 {
+        match self.isotherm(rho, t) {
+            Some(isotherm) => isotherm.pressure(rho).0,
+            None => self.exact(rho, t).p.value,
         }
     }
 
@@ -161,8 +179,8 @@ impl Chart {
 
     /// Polynomials of a state's cell, found or made.
     fn polynomials(&mut self, rho: f64, t: f64) -> Option<&Polynomials> {
-        let (i, j) = ((t / WIDTH_K).floor(), (rho / self.height_kg_m3).floor());
-        let index = (i as i32, j as i32);
+        // Both are positive inside the domain; what is outside of it is not looked up.
+        let index = ((t / WIDTH_K) as i32, (rho / self.height_kg_m3) as i32);
         let slot = ((index.0 & (KEPT - 1)) * KEPT + (index.1 & (KEPT - 1))) as usize;
         if self.cells[slot].as_ref().is_none_or(|cell| cell.index != index) {
             let domain = self.fluid.domain();
@@ -173,7 +191,8 @@ impl Chart {
             if !known {
                 return None;
             }
-            let middle = ((i + 0.5) * WIDTH_K, (j + 0.5) * self.height_kg_m3);
+            let middle =
+                ((f64::from(index.0) + 0.5) * WIDTH_K, (f64::from(index.1) + 0.5) * self.height_kg_m3);
             self.cells[slot] = Some(Cell { index, polynomials: self.interpolate(middle) });
         }
         self.cells[slot].as_ref()?.polynomials.as_ref()
@@ -249,6 +268,25 @@ fn expand(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> 
         by_ab / (half.0 * half.1),
         2.0 * by_bb / (half.1 * half.1),
     ]
+}
+
+/// A polynomial with its first derivatives `[f, f_T, f_rho]`.
+#[inline]
+fn slopes(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> [f64; 3] {
+    let (mut f, mut d) = ([0.0; ORDER], [0.0; ORDER]);
+    for column in coefficients.column_iter().rev() {
+        for (power, coefficient) in column.iter().enumerate() {
+            d[power] = d[power] * a + f[power];
+            f[power] = f[power] * a + coefficient;
+        }
+    }
+    let (mut sum, mut by_a, mut by_b) = (0.0, 0.0, 0.0);
+    for power in (0..ORDER).rev() {
+        by_b = by_b * b + sum;
+        sum = sum * b + f[power];
+        by_a = by_a * b + d[power];
+    }
+    [sum, by_a / half.0, by_b / half.1]
 }
 
 #[cfg(test)]

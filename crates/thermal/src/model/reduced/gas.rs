@@ -70,13 +70,20 @@ impl<D: Into<Slope>> GasState<D> {
 pub(super) struct GasNode {
     chart: Chart,
     volume: InnerVolume,
-    /// Last volume, m³: where Newton starts, without influence on where it ends.
+    /// Last volume, m³: where Newton starts.
     guess_m3: f64,
+    /// The same for settled gas.
+    settled_guess_m3: f64,
 }
 
 impl GasNode {
     pub fn new(fluid: Fluid, volume: InnerVolume) -> Self {
-        Self { chart: Chart::new(fluid), volume, guess_m3: volume.volume_m3 }
+        Self {
+            chart: Chart::new(fluid),
+            volume,
+            guess_m3: volume.volume_m3,
+            settled_guess_m3: volume.volume_m3,
+        }
     }
 
     pub fn fluid(&self) -> &Fluid {
@@ -87,12 +94,13 @@ impl GasNode {
         self.volume.volume_m3
     }
 
-    pub fn guess_m3(&self) -> f64 {
-        self.guess_m3
+    /// Where Newton starts: for the gas, and for settled gas.
+    pub fn guesses_m3(&self) -> [f64; 2] {
+        [self.guess_m3, self.settled_guess_m3]
     }
 
-    pub fn set_guess_m3(&mut self, guess_m3: f64) {
-        self.guess_m3 = guess_m3;
+    pub fn set_guesses_m3(&mut self, guesses_m3: [f64; 2]) {
+        [self.guess_m3, self.settled_guess_m3] = guesses_m3;
     }
 
     /// Volume at a gas temperature, mass and mean wall temperature, m³.
@@ -120,8 +128,8 @@ impl GasNode {
                 let elastic = v0 * b * slope * rho / v;
                 let step = (v - self.volume.volume_m3(wall_k, pressure_pa)) / (1.0 + elastic);
                 v -= step.clamp(-0.3 * v, 0.3 * v);
-                if step.abs() <= VOLUME_TOLERANCE.max(1e-6 * elastic) * v {
-                    // The next Newton step would be smaller by the square of this one.
+                // The next Newton step would be some `elastic (step / v)^2`, a few times more in dense gas.
+                if 10.0 * elastic * step * step <= VOLUME_TOLERANCE * v * v {
                     self.guess_m3 = v;
                     return Ok(v);
                 }
@@ -162,6 +170,26 @@ impl GasNode {
         Ok(self.combine(t, m, dual(v, volume_by), dual(rho, rho_by), properties).into_slopes())
     }
 
+    /// Pressure alone, Pa.
+    ///
+    /// # Errors
+    /// As [`GasNode::volume_m3`].
+    pub fn pressure_pa(&mut self, t: f64, m: f64, wall_k: f64) -> Result<f64, ThermalError> {
+        let rho = m / self.volume_m3(t, m, wall_k)?;
+        Ok(self.chart.pressure_pa(rho, t))
+    }
+
+    /// Pressure, Pa, of gas that has settled with the wall at one temperature.
+    ///
+    /// # Errors
+    /// As [`GasNode::volume_m3`].
+    pub fn settled_pressure_pa(&mut self, t: f64, m: f64) -> Result<f64, ThermalError> {
+        let guess_m3 = std::mem::replace(&mut self.guess_m3, self.settled_guess_m3);
+        let pressure_pa = self.pressure_pa(t, m, t);
+        self.settled_guess_m3 = std::mem::replace(&mut self.guess_m3, guess_m3);
+        pressure_pa
+    }
+
     /// Pressure with its derivatives.
     ///
     /// # Errors
@@ -169,13 +197,13 @@ impl GasNode {
     pub fn pressure(&mut self, t: f64, m: f64, wall_k: f64) -> Result<Pressure, ThermalError> {
         let v = self.volume_m3(t, m, wall_k)?;
         let rho = m / v;
-        let Properties { p, p_t, p_rho, .. } = self.chart.properties(rho, t);
-        let by = self.volume_by(rho, v, p_t.value, p_rho.value);
+        let Property { value, by_t, by_rho } = self.chart.pressure(rho, t);
+        let by = self.volume_by(rho, v, by_t, by_rho);
         Ok(Pressure {
-            pressure_pa: p.value,
-            per_gas_k: p_t.value - p_rho.value * rho * by[0] / v,
-            per_mass_kg: p_rho.value * (1.0 - rho * by[1]) / v,
-            per_wall_k: -p_rho.value * rho * by[2] / v,
+            pressure_pa: value,
+            per_gas_k: by_t - by_rho * rho * by[0] / v,
+            per_mass_kg: by_rho * (1.0 - rho * by[1]) / v,
+            per_wall_k: -by_rho * rho * by[2] / v,
         })
     }
 

@@ -82,7 +82,7 @@ impl Unknowns {
 }
 
 /// Pressure with its derivatives by gas temperature, mass and mean wall temperature.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pressure {
     /// Pressure, Pa.
     pub pressure_pa: f64,
@@ -97,7 +97,7 @@ pub struct Pressure {
 /// Start of the iterations inside a [`ReducedModel`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct WarmStart {
-    volume_m3: f64,
+    volumes_m3: [f64; 2],
     skin_k: Vec<f64>,
 }
 
@@ -200,12 +200,12 @@ impl ReducedModel {
     /// Where the iterative solutions of the next evaluation start. The solutions depend on it in their last digits, so
     /// a computation that must repeat to the last digit starts from the same.
     pub fn warm_start(&self) -> WarmStart {
-        WarmStart { volume_m3: self.gas.guess_m3(), skin_k: self.skin_k.clone() }
+        WarmStart { volumes_m3: self.gas.guesses_m3(), skin_k: self.skin_k.clone() }
     }
 
     /// Start the next evaluation as another one did.
     pub fn set_warm_start(&mut self, start: &WarmStart) {
-        self.gas.set_guess_m3(start.volume_m3);
+        self.gas.set_guesses_m3(start.volumes_m3);
         self.skin_k.clone_from(&start.skin_k);
     }
 
@@ -261,12 +261,21 @@ impl ReducedModel {
         self.gas.pressure(x[self.gas_index()], x[self.mass_index()], wall_k)
     }
 
+    /// Pressure at a state without derivatives, Pa.
+    ///
+    /// # Errors
+    /// As [`ReducedModel::pressure`].
+    pub fn pressure_pa(&mut self, x: &[f64]) -> Result<f64, ThermalError> {
+        let wall_k = self.mean_wall_k(x);
+        self.gas.pressure_pa(x[self.gas_index()], x[self.mass_index()], wall_k)
+    }
+
     /// Pressure at which the gas mass of a state would settle with wall and gas at one temperature, Pa.
     ///
     /// # Errors
     /// As [`ReducedModel::pressure`].
     pub fn settled_pressure_pa(&mut self, mass_kg: f64, temperature_k: f64) -> Result<f64, ThermalError> {
-        Ok(self.gas.pressure(temperature_k, mass_kg, temperature_k)?.pressure_pa)
+        self.gas.settled_pressure_pa(temperature_k, mass_kg)
     }
 
     /// Density of the gas at a state, kg/m³.
