@@ -14,6 +14,7 @@
 //! Pressure, temperature and mass hang together by one equation, so constant errors of the sensors shift the mass for ever: 0.4 bar are
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
+mod band;
 mod belief;
 mod clock;
 pub mod commissioning;
@@ -37,7 +38,9 @@ use crate::filter::StateSpace;
 use crate::sensor::Sensor;
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
-use belief::Belief;
+use band::Band;
+pub use band::BandSettings;
+use belief::{Belief, Moments};
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
@@ -77,6 +80,7 @@ pub struct Observer {
     vessel: Vessel,
     commissioning: Commissioning,
     cylinder: Cylinder,
+    band: Band,
     members: Vec<Member>,
     shared: Shared,
     learned: Option<Learned>,
@@ -113,6 +117,7 @@ impl Observer {
             vessel: vessel.clone(),
             commissioning: *commissioning,
             shared: Shared::new(&cylinder),
+            band: Band::new(cylinder.state_map(), cylinder.sensors(), settings),
             members: Vec::new(),
             learned: None,
             prior: DMatrix::zeros(0, 0),
@@ -228,17 +233,18 @@ impl Observer {
 
     /// Every member as the prior has it.
     fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        // Where the estimate has to begin again, nothing says that the cylinder is settled then.
+        let settled = self.commissioning.settled && self.clock.time_s.is_none();
         let prior = commissioning::prior(
             self.cylinder.state_map(),
             self.cylinder.sensors(),
             self.cylinder.settings(),
-            &self.commissioning,
+            &Commissioning { settled, ..self.commissioning },
             &self.vessel,
             readings,
         )?;
-        let mut mean = prior.mean;
-        let mut covariance = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(prior.variance));
-        self.prior = covariance.clone();
+        let (mut mean, mut covariance) = (prior.mean, prior.covariance);
+        self.prior.clone_from(&covariance);
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
@@ -309,11 +315,11 @@ impl Observer {
         let states = self.cylinder.state_map();
         let sd = |member: &Member, state: usize| member.variance(state).sqrt();
         let free = &self.members[self.freest];
-        let blended = |member: &Member, state: usize| {
-            self.belief(member).blend(member.moments(state), free.moments(state))
-        };
-        let (gas_mean_k, gas_variance_k2) = blended(slow.unwrap_or(first), states.gas);
-        let (mass_kg, mass_variance_kg2) = blended(first, states.mass);
+        let thermometer = slow.unwrap_or(first);
+        let (gas_mean_k, gas_variance_k2) =
+            self.belief(thermometer).blend(self.stated_gas(thermometer), free.moments(states.gas));
+        let (mass_kg, mass_variance_kg2) =
+            self.belief(first).blend(first.moments(states.mass), free.moments(states.mass));
         let mut estimate = Estimate {
             time_s,
             gas_mean_k,
@@ -371,6 +377,12 @@ impl Observer {
     fn belief(&self, member: &Member) -> Belief {
         let mass = self.cylinder.state_map().mass;
         Belief::of(member.moments(mass), self.members[self.freest].moments(mass))
+    }
+
+    /// Mean gas temperature of a member, K, with the variance that is stated of it, K².
+    fn stated_gas(&self, member: &Member) -> Moments {
+        let (mean_k, variance_k2) = member.moments(self.cylinder.state_map().gas);
+        (mean_k, self.band.stated_k2(variance_k2, |state| member.variance(state)))
     }
 
     /// Innovation of each sensor at the last sample, by the first member.
