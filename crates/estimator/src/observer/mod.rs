@@ -40,7 +40,7 @@ use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use band::Band;
 pub use band::BandSettings;
-use belief::{Belief, Moments};
+use belief::Belief;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
@@ -317,7 +317,8 @@ impl Observer {
         let free = &self.members[self.freest];
         let thermometer = slow.unwrap_or(first);
         let (gas_mean_k, gas_variance_k2) =
-            self.belief(thermometer).blend(self.stated_gas(thermometer), free.moments(states.gas));
+            self.belief(thermometer).blend(thermometer.moments(states.gas), free.moments(states.gas));
+        let gas_variance_k2 = self.band.stated_k2(gas_variance_k2, |state| thermometer.variance(state));
         let (mass_kg, mass_variance_kg2) =
             self.belief(first).blend(first.moments(states.mass), free.moments(states.mass));
         let mut estimate = Estimate {
@@ -377,12 +378,6 @@ impl Observer {
     fn belief(&self, member: &Member) -> Belief {
         let mass = self.cylinder.state_map().mass;
         Belief::of(member.moments(mass), self.members[self.freest].moments(mass))
-    }
-
-    /// Mean gas temperature of a member, K, with the variance that is stated of it, K².
-    fn stated_gas(&self, member: &Member) -> Moments {
-        let (mean_k, variance_k2) = member.moments(self.cylinder.state_map().gas);
-        (mean_k, self.band.stated_k2(variance_k2, |state| member.variance(state)))
     }
 
     /// Innovation of each sensor at the last sample, by the first member.

@@ -201,7 +201,7 @@ impl Default for ObserverSettings {
             gas_walk_k_per_sqrt_s: 2.0 * PER_HOUR.sqrt(),
             air: Walk { prior_sd: 5.0, per_sqrt_s: 0.7, memory_s: None },
             air_rest_k: 283.15,
-            ln_outside_film: Walk::forgetting(0.25, 2.0 * HOUR_S),
+            ln_outside_film: Walk::forgetting(0.8, 2.0 * HOUR_S),
             ln_inside_film: Walk::forgetting(0.25, 120.0 * DAY_S),
             ln_capacity: Walk::forgetting(0.12, 120.0 * DAY_S),
             sun: Walk::forgetting(6.0, 0.5 * HOUR_S),

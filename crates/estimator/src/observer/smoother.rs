@@ -192,18 +192,18 @@ impl Smoother {
         }
         let (filtered, reference_kg, beliefs) = (row.estimate, row.reference_kg, row.beliefs);
         let (first, slow, freest) = self.roles();
+        let learnt = &row.passes[slow].step.p;
         let states = self.observer.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
         let (first, slow, freest) = (&self.smoothed[first], &self.smoothed[slow], &self.smoothed[freest]);
         let of = |smoothed: &Smoothed, state: usize| (smoothed.x[state], smoothed.p[(state, state)].max(0.0));
         let (mass_kg, mass_variance_kg2) = beliefs.0.blend(of(first, mass), of(freest, mass));
-        let (gas_k, filter_k2) = of(slow, gas);
-        let stated_k2 = self.observer.band.stated_k2(filter_k2, |state| of(slow, state).1);
-        let (gas_mean_k, gas_variance_k2) = beliefs.1.blend((gas_k, stated_k2), of(freest, gas));
+        let (gas_mean_k, gas_variance_k2) = beliefs.1.blend(of(slow, gas), of(freest, gas));
+        // What the filter had learnt at this row: with what later rows tell too, more of them could widen the band.
+        let gas_variance_k2 = self.observer.band.stated_k2(gas_variance_k2, |state| learnt[(state, state)]);
         let mut estimate = Estimate {
             gas_mean_k,
-            // A film that later rows tell makes the band no wider than it was without them.
-            gas_mean_sd_k: gas_variance_k2.sqrt().min(filtered.gas_mean_sd_k),
+            gas_mean_sd_k: gas_variance_k2.sqrt(),
             mass_kg,
             mass_sd_kg: mass_variance_kg2.sqrt(),
             ..filtered
