@@ -2,6 +2,7 @@
 //!
 //! A problem is a [`StateSpace`]: how the state moves between samples and what each output reads. Every filter
 //! here works on any of them.
+pub mod bank;
 pub(crate) mod dense;
 mod factor;
 pub mod failure;
@@ -10,6 +11,7 @@ pub mod gate;
 pub mod horizon;
 pub mod kalman;
 pub(crate) mod kernel;
+pub mod lanes;
 pub mod report;
 pub mod riccati;
 pub mod ring;

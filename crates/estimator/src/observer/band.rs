@@ -46,7 +46,7 @@ impl BandSettings {
 
 impl Default for BandSettings {
     fn default() -> Self {
-        Self { overstated_k: 0.36, model_k: 0.12 }
+        Self { overstated_k: 0.4, model_k: 0.1 }
     }
 }
 
@@ -112,8 +112,8 @@ mod tests {
     #[test]
     fn a_cold_cylinder_is_stated_better_than_the_filter_says_and_a_learnt_one_as_it_says() {
         let stated = |film_sd: f64| usual().stated_k2(0.3, |_| film_sd * film_sd);
-        assert_relative_eq!(stated(FILM_SD), 0.3 - 0.36 * 0.36, max_relative = 1e-12);
-        assert_relative_eq!(stated(0.5 * FILM_SD), 0.3 - 0.25 * 0.36 * 0.36, max_relative = 1e-12);
+        assert_relative_eq!(stated(FILM_SD), 0.3 - 0.16, max_relative = 1e-12);
+        assert_relative_eq!(stated(0.5 * FILM_SD), 0.3 - 0.25 * 0.16, max_relative = 1e-12);
         assert_relative_eq!(stated(0.0), 0.3, max_relative = 1e-12);
         // A film that walks further than its prior tells no more than one that has not been learnt.
         assert_relative_eq!(stated(2.0 * FILM_SD), stated(FILM_SD), max_relative = 1e-12);
@@ -122,11 +122,11 @@ mod tests {
     #[test]
     fn no_band_is_narrower_than_thermometers_and_model_allow_or_wider_than_the_filters() {
         // Two thermometers: half of the variance of one.
-        let least = 0.5 * OFFSET_K2 + 0.12 * 0.12;
+        let least = 0.5 * OFFSET_K2 + 0.01;
         let stated = |gas_k2: f64| usual().stated_k2(gas_k2, |_| FILM_SD * FILM_SD);
         assert_relative_eq!(stated(0.12), least, max_relative = 1e-12);
         assert_relative_eq!(stated(0.02), 0.02, max_relative = 1e-12);
-        assert_relative_eq!(stated(100.0), 100.0 - 0.36 * 0.36, max_relative = 1e-12);
+        assert_relative_eq!(stated(100.0), 100.0 - 0.16, max_relative = 1e-12);
     }
 
     #[test]

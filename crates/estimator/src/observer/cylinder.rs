@@ -5,7 +5,9 @@
 //! (`transition`, in this folder). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
 //! Intervals longer than the settings allow are divided. The noise goes to the filter as `Q = G diag(q) G^T`, one column for
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
+mod crossing;
 mod lanes;
+mod near;
 mod noise;
 mod structure;
 mod transition;
@@ -20,6 +22,7 @@ use crate::filter::{Linearisation, StateSpace};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
 use crate::thermal::model::reduced::{ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
+pub(super) use crossing::Crossing;
 use noise::Parts;
 use structure::Structure;
 use transition::{Transition, Walking};
@@ -48,6 +51,8 @@ pub struct Cylinder {
     walking: Vec<Walking>,
     /// Bounded states with their bounds.
     bounds: Vec<(usize, f64, f64)>,
+    /// How far two states may be apart, state by state, and share a linearisation.
+    near: Vec<f64>,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
     interval_s: Vec<f64>,
     work: Work,
@@ -99,6 +104,7 @@ impl Cylinder {
             interval_s: vec![f64::INFINITY; sensors.len()],
             walking: vec![Walking::default(); states.leading],
             bounds: Vec::new(),
+            near: Vec::new(),
             sensors: sensors.to_vec(),
             targets,
             states,
@@ -108,6 +114,7 @@ impl Cylinder {
         };
         cylinder.set_walks();
         cylinder.set_bounds();
+        cylinder.near = cylinder.states.kinds.iter().map(|kind| cylinder.near_limit(kind)).collect();
         cylinder.suppose(&settings.bank[0]);
         Ok(cylinder)
     }
@@ -148,7 +155,7 @@ impl Cylinder {
     }
 
     /// Whether a state has gas, at temperatures and a density that the equation of state knows.
-    pub fn is_possible(&mut self, x: &[f64]) -> bool {
+    pub fn is_possible(&self, x: &[f64]) -> bool {
         let domain = self.model.fluid().domain();
         let temperatures = domain.lowest_temperature_k..=domain.highest_temperature_k;
         let warm = |state: usize| temperatures.contains(&x[state]);
@@ -319,7 +326,8 @@ impl Cylinder {
         transition.solve(x, &self.walking, h);
         transition.advance(x);
         if noise {
-            transition.write_noise(&self.walking, h, q);
+            let walking = &self.walking;
+            transition.write_noise(|state| walking[state].intensity, h, q);
         }
         Ok(())
     }

@@ -15,6 +15,7 @@
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
 mod band;
+mod bank;
 mod belief;
 mod clock;
 pub mod commissioning;
@@ -40,6 +41,7 @@ use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use band::Band;
 pub use band::BandSettings;
+use bank::Bank;
 use belief::Belief;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
@@ -49,7 +51,6 @@ pub use engine::{Engine, MovingHorizonSettings};
 pub use estimate::{Estimate, Leak, Quality};
 pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
-use member::Member;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 pub use screen::{Fault, FaultCount};
@@ -69,7 +70,7 @@ const SHORTEST_S: f64 = 1e-3;
 /// The members as they were after a sample: what a late sample goes back to.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    members: Vec<Member>,
+    bank: Bank,
     clock: Clock,
     warm_start: WarmStart,
 }
@@ -81,7 +82,7 @@ pub struct Observer {
     commissioning: Commissioning,
     cylinder: Cylinder,
     band: Band,
-    members: Vec<Member>,
+    bank: Bank,
     shared: Shared,
     learned: Option<Learned>,
     prior: DMatrix<f64>,
@@ -118,7 +119,7 @@ impl Observer {
             commissioning: *commissioning,
             shared: Shared::new(&cylinder),
             band: Band::new(cylinder.state_map(), cylinder.sensors(), settings),
-            members: Vec::new(),
+            bank: Bank::default(),
             learned: None,
             prior: DMatrix::zeros(0, 0),
             clock: Clock::new(sensors),
@@ -193,14 +194,14 @@ impl Observer {
 
     /// What the screens have sorted out counts as rejected.
     fn mark_faulty(&mut self, time_s: f64, readings: &[f64], usable: &[f64]) {
-        for member in &mut self.members {
+        for member in &mut self.bank.members {
             for (sensor, innovation) in member.innovations.iter_mut().enumerate() {
                 if readings[sensor].is_finite() && !usable[sensor].is_finite() {
                     innovation.outcome = Outcome::Rejected;
                 }
             }
         }
-        if let Some(first) = self.members.first()
+        if let Some(first) = self.bank.members.first()
             && time_s > self.clock.pulled_until_s
         {
             self.clock.screens.iter_mut().zip(&first.pulled).for_each(|(screen, &by)| screen.pull(by));
@@ -222,11 +223,9 @@ impl Observer {
     fn replace_the_wrong(&mut self) {
         let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
         let freest = self.freest;
-        for index in (0..self.members.len()).filter(|&index| index != freest) {
-            if let Ok([member, free]) = self.members.get_disjoint_mut([index, freest])
-                && Belief::of(member.moments(mass), free.moments(mass)).is_out_of_the_question()
-            {
-                member.begin_anew_from(free, (mass, leak));
+        for index in (0..self.bank.members.len()).filter(|&index| index != freest) {
+            if self.belief(index).is_out_of_the_question() {
+                self.bank.begin_anew(index, freest, (mass, leak));
             }
         }
     }
@@ -248,11 +247,7 @@ impl Observer {
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
-        let bank = self.cylinder.settings().bank.clone();
-        self.members = bank
-            .into_iter()
-            .map(|hypothesis| Member::new(&mut self.cylinder, hypothesis, &mean, &covariance))
-            .collect::<Result<_, _>>()?;
+        self.bank = Bank::new(&mut self.cylinder, &mean, &covariance)?;
         self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
         self.clock.reference_mass_kg = None;
         self.clock.pulled_until_s = time_s + SETTLE_S;
@@ -264,15 +259,11 @@ impl Observer {
 
     fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         if dt_s > 0.0 {
-            for member in &mut self.members {
-                member.predict(&mut self.cylinder, &mut self.shared, dt_s)?;
-            }
+            self.bank.predict(&mut self.cylinder, &mut self.shared, dt_s)?;
         }
         if self.clock.exchanging(time_s) {
             self.clock.pulled_until_s = time_s + SETTLE_S;
-            for member in &mut self.members {
-                member.open(&self.cylinder, None);
-            }
+            self.bank.open(&self.cylinder);
         }
         for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
             self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
@@ -281,14 +272,11 @@ impl Observer {
     }
 
     fn update(&mut self, readings: &[f64]) -> Result<(), EstimatorError> {
-        for member in &mut self.members {
-            member.update(&mut self.cylinder, &mut self.shared, readings, self.gate)?;
-        }
-        Ok(())
+        self.bank.update(&mut self.cylinder, &mut self.shared, readings, self.gate)
     }
 
     fn is_possible(&mut self) -> bool {
-        self.members.iter().all(|member| member.is_possible(&mut self.cylinder))
+        self.bank.is_possible(&self.cylinder)
     }
 
     /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends.
@@ -311,24 +299,25 @@ impl Observer {
         readings: &[f64],
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
-        let (first, slow) = (&self.members[0], self.slow.map(|index| &self.members[index]));
-        let states = self.cylinder.state_map();
-        let sd = |member: &Member, state: usize| member.variance(state).sqrt();
-        let free = &self.members[self.freest];
-        let thermometer = slow.unwrap_or(first);
-        let (gas_mean_k, gas_variance_k2) =
-            self.belief(thermometer).blend(thermometer.moments(states.gas), free.moments(states.gas));
-        let gas_variance_k2 = self.band.stated_k2(gas_variance_k2, |state| thermometer.variance(state));
-        let (mass_kg, mass_variance_kg2) =
-            self.belief(first).blend(first.moments(states.mass), free.moments(states.mass));
+        let (bank, states) = (&self.bank, self.cylinder.state_map());
+        let blended = |index: usize, state: usize| {
+            self.belief(index).blend(bank.moments(index, state), bank.moments(self.freest, state))
+        };
+        let thermometer = self.slow.unwrap_or(0);
+        let (gas_mean_k, gas_variance_k2) = blended(thermometer, states.gas);
+        let gas_variance_k2 =
+            self.band.stated_k2(gas_variance_k2, |state| bank.moments(thermometer, state).1);
+        let (mass_kg, mass_variance_kg2) = blended(0, states.mass);
+        let (leak_kg_s, leak_variance) =
+            self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
         let mut estimate = Estimate {
             time_s,
             gas_mean_k,
             gas_mean_sd_k: gas_variance_k2.sqrt(),
             mass_kg,
             mass_sd_kg: mass_variance_kg2.sqrt(),
-            leak_kg_s: slow.map_or(f64::NAN, |member| member.x[states.leak]),
-            leak_sd_kg_s: slow.map_or(f64::NAN, |member| sd(member, states.leak)),
+            leak_kg_s,
+            leak_sd_kg_s: leak_variance.sqrt(),
             pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
             pressure_expected_pa: f64::NAN,
             p15_pa: f64::NAN,
@@ -337,7 +326,7 @@ impl Observer {
         if self.clock.reference_mass_kg.is_none() && time_s >= self.clock.reference_due_s {
             self.clock.reference_mass_kg = Some(estimate.mass_kg);
         }
-        self.reference_x.copy_from_slice(&first.x);
+        self.reference_x.copy_from_slice(&self.bank.members[0].x);
         self.add_pressures(&mut estimate, self.clock.reference_mass_kg)?;
         Ok(estimate)
     }
@@ -375,32 +364,31 @@ impl Observer {
     }
 
     /// What the freest member says of another one.
-    fn belief(&self, member: &Member) -> Belief {
+    fn belief(&self, index: usize) -> Belief {
         let mass = self.cylinder.state_map().mass;
-        Belief::of(member.moments(mass), self.members[self.freest].moments(mass))
+        Belief::of(self.bank.moments(index, mass), self.bank.moments(self.freest, mass))
     }
 
     /// Innovation of each sensor at the last sample, by the first member.
     pub fn innovations(&self) -> &[Innovation] {
-        self.members.first().map_or(&[], |member| &member.innovations)
+        self.bank.members.first().map_or(&[], |member| &member.innovations)
     }
 
     /// Leak rate and mass of every member, in the order of the bank; empty before the first sample.
     pub fn leaks(&self) -> Vec<Leak> {
         let states = self.cylinder.state_map();
-        let of = |member: &Member| Leak {
-            rate_kg_s: member.x[states.leak],
-            sd_kg_s: member.variance(states.leak).sqrt(),
-            mass_kg: member.x[states.mass],
-            mass_sd_kg: member.variance(states.mass).sqrt(),
+        let of = |index: usize| {
+            let (rate_kg_s, rate_variance) = self.bank.moments(index, states.leak);
+            let (mass_kg, mass_variance) = self.bank.moments(index, states.mass);
+            Leak { rate_kg_s, sd_kg_s: rate_variance.sqrt(), mass_kg, mass_sd_kg: mass_variance.sqrt() }
         };
-        self.members.iter().map(of).collect()
+        (0..self.bank.members.len()).map(of).collect()
     }
 
     /// Mean and covariance of a member's state, in the order of [`states::States`]; `None` before the first sample or
     /// beyond the bank.
     pub fn state(&self, member: usize) -> Option<(nalgebra::DVector<f64>, DMatrix<f64>)> {
-        self.members.get(member).map(|member| (member.mean(), member.covariance()))
+        self.bank.members.get(member).map(|of| (of.mean(), self.bank.covariance(member)))
     }
 
     /// Faulty readings of each sensor so far.
@@ -416,18 +404,18 @@ impl Observer {
     /// Samples, of all members, at which the engine could not do its own and fell back on the extended filter inside it:
     /// windows of the moving horizon without a solution inside the constraints.
     pub fn fallbacks(&self) -> u64 {
-        self.members.iter().map(Member::fallbacks).sum()
+        self.bank.fallbacks()
     }
 
     /// Whether a constant or a film of the first member stands at the bound of what is plausible.
     pub fn at_bound(&self) -> bool {
-        self.members.first().is_some_and(|member| member.at_bound)
+        self.bank.members.first().is_some_and(|member| member.at_bound)
     }
 
     /// The observer as it is now.
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {
-            members: self.members.clone(),
+            bank: self.bank.clone(),
             clock: self.clock.clone(),
             warm_start: self.cylinder.warm_start(),
         }
@@ -435,29 +423,31 @@ impl Observer {
 
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
-        self.members.clone_from(&snapshot.members);
+        self.bank.clone_from(&snapshot.bank);
         self.clock.clone_from(&snapshot.clock);
         self.cylinder.model().set_warm_start(&snapshot.warm_start);
     }
 
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.
     pub fn learned(&self) -> Option<Learned> {
-        let member = self.members.first()?;
-        Some(Learned::of(&self.vessel.name, self.cylinder.state_map(), &member.x, &member.covariance()))
+        let first = self.bank.members.first()?;
+        let covariance = self.bank.covariance(0);
+        Some(Learned::of(&self.vessel.name, self.cylinder.state_map(), &first.x, &covariance))
     }
 
     /// Which combinations of states the data have not separated. `None` before the first sample.
     pub fn observability(&self) -> Option<Observability> {
-        let member = self.members.first()?;
-        Some(Observability::of(self.cylinder.state_map(), &self.prior, &member.covariance()))
+        self.bank.members.first()?;
+        Some(Observability::of(self.cylinder.state_map(), &self.prior, &self.bank.covariance(0)))
     }
 
     /// Standard deviation of the mass relative to commissioning, kg: of the mass where every constant error of a sensor is
     /// taken as it is, since it was the same at commissioning. `None` before the first sample.
     pub fn mass_change_sd_kg(&self) -> Option<f64> {
-        let member = self.members.first()?;
+        self.bank.members.first()?;
         let states = self.cylinder.state_map();
-        Some(observability::given_constants(&member.covariance(), states.mass, states.leading).sqrt())
+        let covariance = self.bank.covariance(0);
+        Some(observability::given_constants(&covariance, states.mass, states.leading).sqrt())
     }
 }
 

@@ -141,19 +141,21 @@ impl Smoother {
         let sensors = self.observer.cylinder.outputs();
         let mut passes = Vec::with_capacity(self.members.len());
         for &index in &self.members {
-            let member = &mut self.observer.members[index];
+            let bank = &mut self.observer.bank;
+            let member = &mut bank.members[index];
             if restarted {
                 member.pass = None;
             }
             let pass = member.pass.get_or_insert_with(|| Box::new(Pass::new(n, m, sensors)));
             pass.step.x.as_mut_slice().copy_from_slice(&member.x);
-            member.p.covariance_into(&mut pass.step.p);
-            passes.push(pass.as_ref().clone());
+            let mut row = pass.as_ref().clone();
             // A row at the same time has no interval of its own.
             pass.begin(0.0);
+            bank.covariance_into(index, &mut row.step.p);
+            passes.push(row);
         }
         let (first, slow, _) = self.roles();
-        let belief = |role: usize| self.observer.belief(&self.observer.members[self.members[role]]);
+        let belief = |role: usize| self.observer.belief(self.members[role]);
         let beliefs = (belief(first), belief(slow));
         Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, beliefs, passes }
     }

@@ -249,20 +249,21 @@ impl Transition {
         phi[leak * leading + mass] = self.mass_per_leak;
     }
 
-    /// Noise covariance that the step of `h` seconds adds: (leading, leading), its upper triangle. The rest has no meaning.
-    pub fn write_noise(&mut self, walking: &[Walking], h: f64, q: &mut DMatrix<f64>) {
+    /// Noise covariance that the step of `h` seconds adds where each leading state gains `intensity` in a second: (leading, leading),
+    /// its upper triangle. The rest has no meaning.
+    pub fn write_noise(&mut self, intensity: impl Fn(usize) -> f64, h: f64, q: &mut DMatrix<f64>) {
         let m = q.nrows();
         let q = q.as_mut_slice();
         q.fill(0.0);
         self.noise.clear();
         for source in 0..self.rows {
-            let intensity = h * walking[self.columns[source]].intensity;
+            let intensity = h * intensity(self.columns[source]);
             if intensity > 0.0 {
                 self.add_block_source(source, intensity);
             }
         }
         for position in 0..self.outer.len() {
-            let intensity = h * walking[self.outer[position].state].intensity;
+            let intensity = h * intensity(self.outer[position].state);
             if intensity > 0.0 {
                 self.add_outer_source(position, intensity, q, m);
             }

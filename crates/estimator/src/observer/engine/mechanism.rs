@@ -1,6 +1,7 @@
 //! An engine at work: how mean `x` (n) and covariance `p` (n, n) of a member move in time and take a reading.
 use nalgebra::{DMatrix, Dyn};
 
+use super::super::bank::Memory;
 use super::super::cylinder::Cylinder;
 use super::super::pass::Pass;
 use super::Engine;
@@ -13,7 +14,6 @@ use crate::filter::{Linearisation, StateSpace, UdFactors};
 /// An engine with its memory of the past beside mean and covariance.
 #[derive(Clone, Debug)]
 pub(in crate::observer) enum Mechanism {
-    Extended,
     Unscented,
     Stationary(Box<Stationary>),
     MovingHorizon(Box<Horizon>),
@@ -35,6 +35,7 @@ pub(in crate::observer) struct Shared {
     pub h: Vec<f64>,
     pub gain: Vec<f64>,
     points: SigmaPoints,
+    pub memory: Memory,
 }
 
 impl Shared {
@@ -45,6 +46,7 @@ impl Shared {
             h: vec![0.0; n],
             gain: vec![0.0; n],
             points: SigmaPoints::new(cylinder),
+            memory: Memory::new(cylinder),
         }
     }
 }
@@ -61,8 +63,7 @@ impl Mechanism {
     ) -> Result<Self, EstimatorError> {
         p.reserve(cylinder.leading(), cylinder.noises());
         Ok(match engine {
-            Engine::Extended => Self::Extended,
-            Engine::Unscented => {
+            Engine::Extended | Engine::Unscented => {
                 p.reserve(cylinder.leading(), SigmaPoints::noises(cylinder));
                 Self::Unscented
             }
@@ -161,7 +162,7 @@ impl Mechanism {
                 return f64::NAN;
             }
             Self::MovingHorizon(horizon) => horizon.take(sensor, reading),
-            Self::Extended | Self::Unscented => {}
+            Self::Unscented => {}
         }
         p.update_projected(r, &mut shared.gain)
     }
@@ -170,7 +171,7 @@ impl Mechanism {
     pub fn interrupt(&mut self, p: &mut UdFactors<Dyn>) {
         match self {
             Self::Stationary(stationary) => stationary.miss(p),
-            Self::MovingHorizon(_) | Self::Extended | Self::Unscented => {}
+            Self::MovingHorizon(_) | Self::Unscented => {}
         }
     }
 
@@ -186,7 +187,7 @@ impl Mechanism {
         match self {
             Self::Stationary(stationary) => stationary.forget(p, state),
             Self::MovingHorizon(horizon) => horizon.clear(),
-            Self::Extended | Self::Unscented => {}
+            Self::Unscented => {}
         }
         p.decorrelate_and_set(state, variance);
     }
@@ -196,7 +197,7 @@ impl Mechanism {
         match self {
             Self::Stationary(stationary) => return stationary.relax(state, factor),
             Self::MovingHorizon(horizon) => horizon.relax(state, factor, rest),
-            Self::Extended | Self::Unscented => {}
+            Self::Unscented => {}
         }
         p.scale(state, factor);
     }
@@ -209,7 +210,7 @@ impl Mechanism {
                 horizon.inflate(state, variance);
                 p.inflate(state, variance);
             }
-            Self::Extended | Self::Unscented => p.inflate(state, variance),
+            Self::Unscented => p.inflate(state, variance),
         }
     }
 
@@ -218,7 +219,7 @@ impl Mechanism {
         match self {
             Self::Stationary(stationary) => stationary.settle(cylinder, x, p),
             Self::MovingHorizon(horizon) => horizon.refine(x, p),
-            Self::Extended | Self::Unscented => {}
+            Self::Unscented => {}
         }
     }
 

@@ -49,10 +49,12 @@ fn smoothed_constants_are_those_of_the_end_at_every_time() {
         for index in (0..smoother.record.len()).rev() {
             smoother.smoothed_estimate(index);
             for (member, smoothed) in smoother.members.iter().zip(&smoother.smoothed) {
-                let member = &smoother.observer.members[*member];
-                for c in leading..n {
-                    let (sd, prior) = (member.p.variance(c).sqrt(), smoother.observer.prior[(c, c)].sqrt());
-                    let error = (smoothed.x[c] - member.x[c]).abs();
+                let bank = &smoother.observer.bank;
+                let x = &bank.members[*member].x;
+                for (c, x) in x.iter().enumerate().take(n).skip(leading) {
+                    let (sd, prior) =
+                        (bank.variance(*member, c).sqrt(), smoother.observer.prior[(c, c)].sqrt());
+                    let error = (smoothed.x[c] - x).abs();
                     assert!(error <= 1e-6 * prior, "{engine:?}: row {index}, state {c}: {error}, sd {sd}");
                     assert!((smoothed.p[(c, c)].sqrt() - sd).abs() <= 1e-6 * prior, "row {index}, sd of {c}");
                 }

@@ -15,7 +15,7 @@ fn observer(sensors: &[&str], engine: Engine) -> Observer {
 }
 
 fn phase(observer: &Observer) -> Phase {
-    match &observer.members[0].mechanism {
+    match observer.bank.mechanism(0).unwrap() {
         Mechanism::Stationary(stationary) => stationary.phase,
         _ => panic!("another engine"),
     }

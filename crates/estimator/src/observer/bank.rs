@@ -1,0 +1,318 @@
+//! The members of the bank with their covariances, and what happens to all of them alike: gates, re-acquisition, events, bounds, slow
+//! walks of the constants.
+//!
+//! Members with the extended filter move [`together`](Together), in four lanes and mostly by one linearisation. Those with another
+//! engine move one by one.
+use nalgebra::DMatrix;
+
+use super::belief::Moments;
+use super::cylinder::Cylinder;
+use super::engine::{Engine, Shared};
+use super::member::{Innovation, Member, freed};
+use super::settings::LeakHypothesis;
+use crate::EstimatorError;
+use crate::filter::{StateSpace, UdFactors};
+use separate::Separate;
+use together::Together;
+
+mod separate;
+mod together;
+
+pub(super) use together::Memory;
+
+/// Interval at which slow walks are added to the constants, s.
+const SLOW_WALK_S: f64 = 3600.0;
+
+/// What a leak rate may be once a slow member was wrong, kg/s: 20 g/h.
+const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;
+
+/// The members in the order of the settings.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Bank {
+    pub members: Vec<Member>,
+    covariances: Covariances,
+    /// Time since slow walks were added, s.
+    slow_s: f64,
+}
+
+#[derive(Clone, Debug)]
+enum Covariances {
+    Together(Vec<Together>),
+    Separate(Vec<Separate>),
+}
+
+impl Default for Covariances {
+    fn default() -> Self {
+        Self::Together(Vec::new())
+    }
+}
+
+impl Bank {
+    /// Members that start at one mean and covariance, but for the leak rate, of which each has its own prior.
+    ///
+    /// # Errors
+    /// The covariance is none.
+    pub fn new(
+        cylinder: &mut Cylinder,
+        mean: &[f64],
+        covariance: &DMatrix<f64>,
+    ) -> Result<Self, EstimatorError> {
+        let settings = cylinder.settings();
+        let (bank, engine) = (settings.bank.clone(), settings.engine);
+        let leak = cylinder.state_map().leak;
+        let factors = |hypothesis: &LeakHypothesis| {
+            let mut covariance = covariance.clone();
+            covariance.row_mut(leak).fill(0.0);
+            covariance.column_mut(leak).fill(0.0);
+            covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
+            UdFactors::from_covariance(&covariance)
+        };
+        let factors = bank.iter().map(factors).collect::<Result<Vec<_>, _>>()?;
+        let covariances = if engine == Engine::Extended {
+            Covariances::Together(
+                factors.chunks(Together::SIZE).map(|some| Together::new(cylinder, some)).collect(),
+            )
+        } else {
+            let one = |(hypothesis, p): (&LeakHypothesis, UdFactors<_>)| {
+                cylinder.suppose(hypothesis);
+                Separate::new(engine, cylinder, p)
+            };
+            Covariances::Separate(bank.iter().zip(factors).map(one).collect::<Result<_, _>>()?)
+        };
+        let sensors = cylinder.outputs();
+        let members = bank.into_iter().map(|hypothesis| Member::new(hypothesis, mean, sensors)).collect();
+        Ok(Self { members, covariances, slow_s: 0.0 })
+    }
+
+    /// Time update over an interval, in steps no longer than the settings allow.
+    ///
+    /// # Errors
+    /// The process refuses the state.
+    pub fn predict(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        dt_s: f64,
+    ) -> Result<(), EstimatorError> {
+        for pass in self.members.iter_mut().filter_map(|member| member.pass.as_mut()) {
+            pass.begin(dt_s);
+        }
+        match &mut self.covariances {
+            Covariances::Together(packs) => {
+                for (pack, members) in packs.iter_mut().zip(self.members.chunks_mut(Together::SIZE)) {
+                    pack.predict(cylinder, shared, members, dt_s)?;
+                }
+            }
+            Covariances::Separate(all) => {
+                for (separate, member) in all.iter_mut().zip(&mut self.members) {
+                    separate.predict(cylinder, shared, member, dt_s)?;
+                }
+            }
+        }
+        self.slow_s += dt_s;
+        if self.slow_s >= SLOW_WALK_S {
+            self.walk_slowly(cylinder);
+            self.slow_s = 0.0;
+        }
+        Ok(())
+    }
+
+    /// Motion of the constants since the last time.
+    fn walk_slowly(&mut self, cylinder: &Cylinder) {
+        for state in cylinder.leading()..cylinder.states() {
+            let process = cylinder.slow_process(state);
+            let (factor, variance) = process.over(self.slow_s);
+            if factor < 1.0 {
+                for member in &mut self.members {
+                    member.x[state] = process.rest + factor * (member.x[state] - process.rest);
+                    if let Some(pass) = &mut member.pass {
+                        pass.relax(state, factor);
+                    }
+                }
+                match &mut self.covariances {
+                    Covariances::Together(packs) => packs.iter_mut().for_each(|p| p.scale(state, factor)),
+                    Covariances::Separate(all) => {
+                        all.iter_mut().for_each(|p| p.relax(state, factor, process.rest));
+                    }
+                }
+            }
+            if variance > 0.0 {
+                match &mut self.covariances {
+                    Covariances::Together(packs) => packs.iter_mut().for_each(|p| p.inflate(state, variance)),
+                    Covariances::Separate(all) => all.iter_mut().for_each(|p| p.inflate(state, variance)),
+                }
+            }
+        }
+    }
+
+    /// Measurement update with one reading per sensor (NaN: missing), sensor by sensor.
+    ///
+    /// # Errors
+    /// A state has no such reading.
+    pub fn update(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        readings: &[f64],
+        gate: f64,
+    ) -> Result<(), EstimatorError> {
+        self.members.iter_mut().for_each(|member| member.pulled.fill(0.0));
+        for (sensor, &reading) in readings.iter().enumerate() {
+            if reading.is_finite() {
+                self.take(cylinder, shared, (sensor, reading), gate)?;
+                continue;
+            }
+            self.members.iter_mut().for_each(|member| member.innovations[sensor] = Innovation::MISSING);
+            if let Covariances::Separate(all) = &mut self.covariances {
+                all.iter_mut().for_each(Separate::interrupt);
+            }
+        }
+        if let Covariances::Separate(all) = &mut self.covariances {
+            all.iter_mut().zip(&mut self.members).for_each(|(one, member)| one.finish(cylinder, member));
+        }
+        self.members.iter_mut().for_each(|member| member.bound(cylinder));
+        Ok(())
+    }
+
+    fn take(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        reading: (usize, f64),
+        gate: f64,
+    ) -> Result<(), EstimatorError> {
+        match &mut self.covariances {
+            Covariances::Together(packs) => packs
+                .iter_mut()
+                .zip(self.members.chunks_mut(Together::SIZE))
+                .try_for_each(|(pack, members)| pack.update(cylinder, shared, members, reading, gate)),
+            Covariances::Separate(all) => all
+                .iter_mut()
+                .zip(&mut self.members)
+                .try_for_each(|(one, member)| one.update(cylinder, shared, member, reading, gate)),
+        }
+    }
+
+    /// Let a member begin anew with all that another one knows. Where that is less mass than supposed, a leak rate that may walk
+    /// may be anything then; more mass is no leak, but tells that one was supposed in vain.
+    pub fn begin_anew(&mut self, index: usize, from: usize, (mass, leak): (usize, usize)) {
+        let Ok([member, other]) = self.members.get_disjoint_mut([index, from]) else { return };
+        let lost = other.x[mass] < member.x[mass];
+        member.x.clone_from(&other.x);
+        member.x[leak] = 0.0;
+        if let Some(pass) = &mut member.pass {
+            pass.begin_anew();
+        }
+        let sd_kg_s = if lost && !member.hypothesis.rate.is_known() { ANY_LEAK_SD_KG_S } else { 0.0 };
+        self.copy_covariance(from, index);
+        self.decorrelate_and_set(index, leak, sd_kg_s * sd_kg_s);
+    }
+
+    fn copy_covariance(&mut self, from: usize, to: usize) {
+        match &mut self.covariances {
+            Covariances::Together(packs) => {
+                let ((from, from_lane), (to, to_lane)) = (place(from), place(to));
+                if from == to {
+                    packs[to].copy_lane(from_lane, to_lane);
+                } else if let Ok([from, to]) = packs.get_disjoint_mut([from, to]) {
+                    to.copy_lane_of(from, from_lane, to_lane);
+                }
+            }
+            Covariances::Separate(all) => {
+                if let Ok([from, to]) = all.get_disjoint_mut([from, to]) {
+                    to.clone_from(from);
+                }
+            }
+        }
+    }
+
+    fn decorrelate_and_set(&mut self, index: usize, state: usize, variance: f64) {
+        match &mut self.covariances {
+            Covariances::Together(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].decorrelate_and_set(lane, state, variance);
+            }
+            Covariances::Separate(all) => all[index].decorrelate_and_set(state, variance),
+        }
+    }
+
+    /// Free mass and gas temperature of everything known about them.
+    pub fn open(&mut self, cylinder: &Cylinder) {
+        for index in 0..self.members.len() {
+            for (state, variance) in freed(cylinder.state_map()) {
+                self.decorrelate_and_set(index, state, variance);
+            }
+            if let Some(pass) = &mut self.members[index].pass {
+                pass.open(None);
+            }
+        }
+    }
+
+    /// Whether every mean and covariance is made of numbers, and the mean a state of the cylinder.
+    pub fn is_possible(&self, cylinder: &Cylinder) -> bool {
+        let finite = match &self.covariances {
+            Covariances::Together(packs) => packs.iter().all(|pack| pack.is_finite()),
+            Covariances::Separate(all) => all.iter().all(Separate::is_finite),
+        };
+        let possible =
+            |member: &Member| member.x.iter().all(|x| x.is_finite()) && cylinder.is_possible(&member.x);
+        finite && self.members.iter().all(possible)
+    }
+
+    /// Variance of a state.
+    pub fn variance(&self, index: usize, state: usize) -> f64 {
+        match &self.covariances {
+            Covariances::Together(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].variances(state).0[lane]
+            }
+            Covariances::Separate(all) => all[index].variance(state),
+        }
+    }
+
+    /// Mean and variance of a state.
+    pub fn moments(&self, index: usize, state: usize) -> Moments {
+        (self.members[index].x[state], self.variance(index, state))
+    }
+
+    /// Covariance of all states: (n, n).
+    pub fn covariance(&self, index: usize) -> DMatrix<f64> {
+        let n = self.members[index].x.len();
+        let mut p = DMatrix::zeros(n, n);
+        self.covariance_into(index, &mut p);
+        p
+    }
+
+    /// The same, into a matrix of that size.
+    pub fn covariance_into(&self, index: usize, p: &mut DMatrix<f64>) {
+        match &self.covariances {
+            Covariances::Together(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].covariance_into(lane, p);
+            }
+            Covariances::Separate(all) => p.copy_from(&all[index].covariance()),
+        }
+    }
+
+    /// The engine of a member that moves by itself.
+    #[cfg(test)]
+    pub fn mechanism(&self, index: usize) -> Option<&super::engine::Mechanism> {
+        match &self.covariances {
+            Covariances::Together(_) => None,
+            Covariances::Separate(all) => all.get(index).map(Separate::mechanism),
+        }
+    }
+
+    /// Samples at which an engine could not do its own and fell back on the extended filter inside it.
+    pub fn fallbacks(&self) -> u64 {
+        match &self.covariances {
+            Covariances::Together(_) => 0,
+            Covariances::Separate(all) => all.iter().map(Separate::fallbacks).sum(),
+        }
+    }
+}
+
+/// Pack and lane of a member.
+fn place(index: usize) -> (usize, usize) {
+    (index / Together::SIZE, index % Together::SIZE)
+}

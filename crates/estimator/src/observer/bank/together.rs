@@ -1,0 +1,314 @@
+//! Up to four members with the extended filter, side by side.
+//!
+//! They see one cylinder and differ in what they suppose of its leak: their means are near each other, mostly by much less than what
+//! would bend the equations. Members near a reference share its linearisation: `x_k' = f(x) + Phi (x_k - x)`, and likewise for a
+//! reading. Near means that the second-order remainder of a step is negligible ([`Cylinder::is_near`]). A member that is not, after
+//! a leak that it does not allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
+use nalgebra::{DMatrix, Dyn};
+
+use crate::EstimatorError;
+use crate::filter::bank::{BankTransition, UdBank};
+use crate::filter::lanes::{LANES, Lanes};
+use crate::filter::{StateSpace, UdFactors};
+use crate::observer::cylinder::{Crossing, Cylinder};
+use crate::observer::engine::Shared;
+use crate::observer::member::{Member, Outcome, freed};
+
+/// Covariances of up to four members.
+#[derive(Clone, Debug)]
+pub(super) struct Together {
+    bank: UdBank,
+}
+
+/// Memory that all share. Nothing in it outlives a step.
+#[derive(Debug)]
+pub(in crate::observer) struct Memory {
+    crossing: Crossing,
+    transition: BankTransition,
+    /// Departure of each member from its reference, and where the transition takes it: (n), (leading).
+    away: Vec<Lanes>,
+    moved: Vec<Lanes>,
+    /// The reference before a step (n), and its moving states after it.
+    before: Vec<f64>,
+    after: Vec<f64>,
+    /// Gradient and gain: (n).
+    h: Vec<Lanes>,
+    gain: Vec<Lanes>,
+    /// One lane of them, for a smoother.
+    one_h: Vec<f64>,
+    one_gain: Vec<f64>,
+}
+
+impl Memory {
+    pub fn new(cylinder: &Cylinder) -> Self {
+        let (n, m) = (cylinder.states(), cylinder.leading());
+        Self {
+            crossing: Crossing::new(n, m),
+            transition: BankTransition::new(cylinder.pattern()),
+            away: vec![Lanes::ZERO; n],
+            moved: vec![Lanes::ZERO; m],
+            before: vec![0.0; n],
+            after: vec![0.0; m],
+            h: vec![Lanes::ZERO; n],
+            gain: vec![Lanes::ZERO; n],
+            one_h: vec![0.0; n],
+            one_gain: vec![0.0; n],
+        }
+    }
+}
+
+/// Some of the lanes.
+type Some4 = [bool; LANES];
+
+impl Together {
+    /// Members per pack.
+    pub const SIZE: usize = LANES;
+
+    /// Members with these covariances.
+    pub fn new(cylinder: &Cylinder, factors: &[UdFactors<Dyn>]) -> Self {
+        let mut bank = UdBank::new(cylinder.states(), cylinder.leading());
+        // A lane without a member does as the first one.
+        for lane in 0..LANES {
+            bank.set(lane, factors.get(lane).unwrap_or(&factors[0]));
+        }
+        Self { bank }
+    }
+
+    /// Time update over an interval, in steps no longer than the settings allow.
+    pub fn predict(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        members: &mut [Member],
+        dt_s: f64,
+    ) -> Result<(), EstimatorError> {
+        let parts = (dt_s / cylinder.settings().longest_step_s).ceil().max(1.0);
+        for _ in 0..parts as usize {
+            self.move_on(cylinder, &mut shared.memory, members, dt_s / parts)?;
+        }
+        Ok(())
+    }
+
+    fn move_on(
+        &mut self,
+        cylinder: &mut Cylinder,
+        memory: &mut Memory,
+        members: &mut [Member],
+        dt_s: f64,
+    ) -> Result<(), EstimatorError> {
+        memory.away.fill(Lanes::ZERO);
+        let mut left = [true; LANES];
+        while let Some((reference, group)) = next_group(cylinder, members, &mut left) {
+            memory.cross(cylinder, members, (reference, group), dt_s)?;
+        }
+        memory.transition.multiply(&memory.away, &mut memory.moved);
+        for (lane, member) in members.iter_mut().enumerate() {
+            for (x, by) in member.x.iter_mut().zip(&memory.moved) {
+                *x += by.0[lane];
+            }
+        }
+        self.bank.predict(&mut memory.transition);
+        Ok(())
+    }
+
+    /// Take a reading of a sensor.
+    pub fn update(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        members: &mut [Member],
+        (sensor, reading): (usize, f64),
+        gate: f64,
+    ) -> Result<(), EstimatorError> {
+        let h = &mut shared.h;
+        let memory = &mut shared.memory;
+        let (mut nu, mut r) = (Lanes::ZERO, Lanes::splat(1.0));
+        let mut left = [true; LANES];
+        while let Some((reference, group)) = next_group(cylinder, members, &mut left) {
+            let x = &members[reference].x;
+            let value = cylinder.output(sensor, x, Some(h))?;
+            let noise = cylinder.noise_variance(sensor, x);
+            put(&mut memory.h, group, h);
+            for (lane, member) in members.iter().enumerate().filter(|(lane, _)| group[*lane]) {
+                let apart: f64 = h.iter().zip(member.x.iter().zip(x)).map(|(h, (a, b))| h * (a - b)).sum();
+                nu.0[lane] = reading - value - apart;
+                r.0[lane] = noise;
+            }
+        }
+        let s = self.bank.project(&memory.h) + r;
+        let used = self.judge(cylinder, memory, members, sensor, (nu, s, &mut r), gate);
+        let used_s = self.bank.update(r, used, &mut memory.gain);
+        for (lane, member) in lanes_of(used, members) {
+            if let Some(pass) = &mut member.pass {
+                one_lane(lane, &memory.h, &mut memory.one_h);
+                one_lane(lane, &memory.gain, &mut memory.one_gain);
+                pass.take(sensor, &memory.one_h, &memory.one_gain, (nu.0[lane], used_s.0[lane]));
+            }
+            member.pulled[sensor] = (1.0 - r.0[lane] / s.0[lane]) * nu.0[lane];
+            for (x, gain) in member.x.iter_mut().zip(&memory.gain) {
+                *x += gain.0[lane] * nu.0[lane];
+            }
+        }
+        Ok(())
+    }
+
+    /// Which members use a reading; its noise grows, or the covariance opens, for those that had refused it too often.
+    fn judge(
+        &mut self,
+        cylinder: &Cylinder,
+        memory: &Memory,
+        members: &mut [Member],
+        sensor: usize,
+        (nu, s, r): (Lanes, Lanes, &mut Lanes),
+        gate: f64,
+    ) -> Some4 {
+        let mut used = [false; LANES];
+        let mut opened = false;
+        for (lane, member) in members.iter_mut().enumerate() {
+            let (nu, s) = (nu.0[lane], s.0[lane]);
+            let outcome = member.judge(sensor, (nu, s), gate, cylinder.settings().rejections_in_a_row);
+            used[lane] = outcome != Outcome::Rejected;
+            if outcome != Outcome::Reacquired {
+                continue;
+            }
+            if cylinder.reads_pressure(sensor) {
+                for (state, variance) in freed(cylinder.state_map()) {
+                    self.bank.decorrelate_and_set(lane, state, variance);
+                }
+                if let Some(pass) = &mut member.pass {
+                    pass.open(Some(sensor));
+                }
+                opened = true;
+            } else {
+                // Whatever moved the reading, the state may follow it half of the way at most.
+                r.0[lane] = r.0[lane].max(nu * nu);
+            }
+        }
+        if opened {
+            self.bank.project(&memory.h);
+        }
+        used
+    }
+
+    /// Multiply a constant by a positive factor.
+    pub fn scale(&mut self, state: usize, factor: f64) {
+        self.bank.scale(state, factor);
+    }
+
+    /// Add a variance to a constant.
+    pub fn inflate(&mut self, state: usize, variance: f64) {
+        self.bank.inflate(state, Lanes::splat(variance));
+    }
+
+    /// Make a state of a lane independent of all others, with the given variance.
+    pub fn decorrelate_and_set(&mut self, lane: usize, state: usize, variance: f64) {
+        self.bank.decorrelate_and_set(lane, state, variance);
+    }
+
+    pub fn copy_lane(&mut self, from: usize, to: usize) {
+        self.bank.copy_lane(from, to);
+    }
+
+    pub fn copy_lane_of(&mut self, other: &Self, from: usize, to: usize) {
+        self.bank.copy_lane_of(&other.bank, from, to);
+    }
+
+    pub fn is_finite(&self) -> bool {
+        self.bank.is_finite()
+    }
+
+    /// Variances of a state.
+    pub fn variances(&self, state: usize) -> Lanes {
+        self.bank.variances(state)
+    }
+
+    /// Write the covariance of a lane: (n, n).
+    pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
+        self.bank.covariance_into(lane, p);
+    }
+}
+
+impl Memory {
+    /// Move the reference of a group; the others of the group to where it is then, with how far they were from it in `away`.
+    fn cross(
+        &mut self,
+        cylinder: &mut Cylinder,
+        members: &mut [Member],
+        (reference, group): (usize, Some4),
+        dt_s: f64,
+    ) -> Result<(), EstimatorError> {
+        let m = self.moved.len();
+        self.before.copy_from_slice(&members[reference].x);
+        cylinder.suppose(&members[reference].hypothesis);
+        cylinder.cross(&mut members[reference].x, dt_s, &mut self.crossing)?;
+        self.transition.set(group, self.crossing.phi.as_slice());
+        self.set_noise(group, members);
+        self.after.copy_from_slice(&members[reference].x[..m]);
+        for (lane, member) in lanes_of(group, members) {
+            if lane != reference {
+                for ((away, x), before) in self.away.iter_mut().zip(&member.x).zip(&self.before) {
+                    away.0[lane] = x - before;
+                }
+                member.x[..m].copy_from_slice(&self.after);
+            }
+            if let Some(pass) = &mut member.pass {
+                pass.move_on(&self.crossing.phi);
+            }
+        }
+        Ok(())
+    }
+
+    /// Noise that all share, and that of mass and leak rate as each member supposes.
+    fn set_noise(&mut self, group: Some4, members: &[Member]) {
+        let supposed = |of: fn(&Member) -> f64| {
+            Lanes(std::array::from_fn(|lane| of(members.get(lane).unwrap_or(&members[0]))))
+        };
+        let mass = supposed(|member| member.hypothesis.mass_walk_kg_per_sqrt_s.powi(2));
+        let leak = supposed(|member| member.hypothesis.rate.per_sqrt_s.powi(2));
+        let Crossing { noise, by_mass, by_leak, .. } = &self.crossing;
+        let parts = noise.iter().zip(by_mass).zip(by_leak);
+        for (to, ((&common, &by_mass), &by_leak)) in self.transition.noise.iter_mut().zip(parts) {
+            let value = Lanes::splat(common) + mass * by_mass + leak * by_leak;
+            if group == [true; LANES] {
+                *to = value;
+                continue;
+            }
+            (0..LANES).filter(|&lane| group[lane]).for_each(|lane| to.0[lane] = value.0[lane]);
+        }
+    }
+}
+
+/// The next reference and the lanes that are near it, among those that are left; lanes without a member join the first group.
+fn next_group(cylinder: &Cylinder, members: &[Member], left: &mut Some4) -> Option<(usize, Some4)> {
+    let candidates = || (0..members.len()).filter(|&lane| left[lane]);
+    let leaks = |lane: &usize| !members[*lane].hypothesis.rate.is_known();
+    let reference = candidates().find(leaks).or_else(|| candidates().next())?;
+    let of = &members[reference];
+    let group = std::array::from_fn(|lane| {
+        let near = |member: &Member| {
+            lane == reference || cylinder.is_near((&of.hypothesis, &of.x), (&member.hypothesis, &member.x))
+        };
+        left[lane] && members.get(lane).is_none_or(near)
+    });
+    left.iter_mut().zip(group).for_each(|(left, taken)| *left &= !taken);
+    Some((reference, group))
+}
+
+/// The members of some lanes.
+fn lanes_of(group: Some4, members: &mut [Member]) -> impl Iterator<Item = (usize, &mut Member)> {
+    members.iter_mut().enumerate().filter(move |(lane, _)| group[*lane])
+}
+
+fn put(to: &mut [Lanes], group: Some4, from: &[f64]) {
+    for (to, &from) in to.iter_mut().zip(from) {
+        if group == [true; LANES] {
+            *to = Lanes::splat(from);
+            continue;
+        }
+        (0..LANES).filter(|&lane| group[lane]).for_each(|lane| to.0[lane] = from);
+    }
+}
+
+fn one_lane(lane: usize, from: &[Lanes], to: &mut [f64]) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to = from.0[lane]);
+}
