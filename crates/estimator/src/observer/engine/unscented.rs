@@ -95,8 +95,6 @@ impl SigmaPoints {
         let (leading, k) = (self.moved.nrows(), self.tangent.q.len());
         let step = self.draw(x, p, j);
         let inside = step > 0.0
-            && cylinder.is_possible(&self.plus)
-            && cylinder.is_possible(&self.minus)
             && cylinder.propagate(&mut self.plus, dt_s, None).is_ok()
             && cylinder.propagate(&mut self.minus, dt_s, None).is_ok();
         if !(inside && is_finite(&self.plus) && is_finite(&self.minus)) {
