@@ -220,7 +220,7 @@ impl Bank {
             }
             Covariances::Separate(all) => {
                 if let Ok([from, to]) = all.get_disjoint_mut([from, to]) {
-                    to.clone_from(from);
+                    to.copy_from(from);
                 }
             }
         }

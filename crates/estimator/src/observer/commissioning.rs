@@ -1,4 +1,6 @@
 //! What is known when the observer starts.
+use nalgebra::{DMatrix, DVector};
+
 use super::settings::ObserverSettings;
 use super::states::{StateKind, States};
 use crate::EstimatorError;
@@ -11,6 +13,13 @@ const ASSUMED_K: f64 = 288.15;
 const ASSUMED_SD_K: f64 = 20.0;
 /// Rate and coefficient that a fill of 200 bar and 15 °C knows: 1 K and 1 bar are 19 g each.
 const DEFAULT_MASS_SD_KG: f64 = 0.045;
+/// How far what the first sample reads may be from the temperature of a cylinder, K,
+const BODY_SD_K: f64 = 1.0;
+/// and wall, valve and gas of a settled one from each other: the turbulence of the air and a shoulder in the wind.
+const SETTLED_SD_K: f64 = 0.2;
+/// The same of wall and valve, and of the gas, of a cylinder that is not settled.
+const UNSETTLED_SD_K: f64 = 5.0;
+const UNSETTLED_GAS_SD_K: f64 = 10.0;
 
 /// What is known of the cylinder at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,13 +64,44 @@ impl Commissioning {
     }
 }
 
-/// Mean and variances of the state before the first sample.
+/// Mean and covariance of the state before the first sample.
 #[derive(Clone, Debug)]
 pub(super) struct Prior {
     /// Mean: (n).
     pub mean: Vec<f64>,
-    /// Variances: (n); the prior has no correlations.
-    pub variance: Vec<f64>,
+    /// Covariance: (n, n); only the temperatures of a settled cylinder hang together.
+    pub covariance: DMatrix<f64>,
+}
+
+/// Standard deviations of the temperatures at the start: of all together, and of each by itself, K.
+#[derive(Clone, Copy)]
+struct Spread {
+    together_k: f64,
+    wall_k: f64,
+    gas_k: f64,
+}
+
+impl Spread {
+    fn of(settled: bool, measured: bool) -> Self {
+        let together_k = match (measured, settled) {
+            (false, _) => ASSUMED_SD_K,
+            (true, true) => BODY_SD_K,
+            (true, false) => 0.0,
+        };
+        let (wall_k, gas_k) =
+            if settled { (SETTLED_SD_K, SETTLED_SD_K) } else { (UNSETTLED_SD_K, UNSETTLED_GAS_SD_K) };
+        Self { together_k, wall_k, gas_k }
+    }
+
+    /// Add what the temperatures of wall, valve and gas have together.
+    fn couple(self, states: &States, covariance: &mut DMatrix<f64>) {
+        let is_body =
+            |kind: &StateKind| matches!(kind, StateKind::Wall(_) | StateKind::Valve | StateKind::Gas);
+        let body = || (0..states.count()).filter(|&state| is_body(&states.kinds[state]));
+        for (i, j) in body().flat_map(|i| body().map(move |j| (i, j))) {
+            covariance[(i, j)] += self.together_k * self.together_k;
+        }
+    }
 }
 
 /// The prior of the member that supposes nothing of its own, from the first readings (NaN: missing).
@@ -85,22 +125,21 @@ pub(super) fn prior(
     let surface = mean_of(|kind| matches!(kind, SensorKind::Surface { .. }));
     let gas = mean_of(|kind| matches!(kind, SensorKind::Gas { .. }));
     let air = mean_of(|kind| matches!(kind, SensorKind::Ambient));
-    let body_k = surface.or(gas).or(air);
-    let (body_k, body_sd) = match (body_k, commissioning.settled) {
-        (Some(body_k), true) => (body_k, 1.0),
-        (Some(body_k), false) => (body_k, 5.0),
-        (None, _) => (ASSUMED_K, ASSUMED_SD_K),
-    };
-    let gas_sd = if commissioning.settled { body_sd } else { 10.0 };
+    let measured_k = surface.or(gas).or(air);
+    let body_k = measured_k.unwrap_or(ASSUMED_K);
+    let spread = Spread::of(commissioning.settled, measured_k.is_some());
     let mass_kg = commissioning.mass_kg(vessel, gas.unwrap_or(body_k))?;
-    let mut out = Prior { mean: Vec::new(), variance: Vec::new() };
+    let mut mean = Vec::new();
+    let mut sd = Vec::new();
     for kind in &states.kinds {
-        let (mean, sd) = match *kind {
-            StateKind::Wall(_) | StateKind::Valve => (body_k, body_sd),
-            StateKind::Gas => (gas.unwrap_or(body_k), gas_sd),
+        let (of_mean, of_sd) = match *kind {
+            StateKind::Wall(_) | StateKind::Valve => (body_k, spread.wall_k),
+            StateKind::Gas => (gas.unwrap_or(body_k), spread.gas_k),
             StateKind::Mass => (mass_kg, commissioning.mass_sd_kg),
             StateKind::Leak => (0.0, 0.0),
-            StateKind::Air => (air.unwrap_or(body_k), settings.air.prior_sd.max(body_sd)),
+            StateKind::Air => {
+                (air.unwrap_or(body_k), settings.air.prior_sd.max(spread.together_k.max(spread.wall_k)))
+            }
             StateKind::OutsideFilm => (0.0, settings.ln_outside_film.prior_sd),
             StateKind::Sun => (0.0, settings.sun.prior_sd),
             StateKind::InsideFilm => (0.0, settings.ln_inside_film.prior_sd),
@@ -112,10 +151,12 @@ pub(super) fn prior(
                 (parameter.mean, parameter.sd)
             }
         };
-        out.mean.push(mean);
-        out.variance.push(sd * sd);
+        mean.push(of_mean);
+        sd.push(of_sd);
     }
-    Ok(out)
+    let mut covariance = DMatrix::from_diagonal(&DVector::from_vec(sd).map(|sd| sd * sd));
+    spread.couple(states, &mut covariance);
+    Ok(Prior { mean, covariance })
 }
 
 /// What a lagging sensor shows at the start: its own reading, if it has one.
@@ -124,4 +165,47 @@ fn lagged(sensors: &[Sensor], readings: &[f64], sensor: usize, body_k: f64) -> (
     let (assumed, sd) = if pressure { (2e7, 1e7) } else { (body_k, ASSUMED_SD_K) };
     let reading = readings[sensor];
     if reading.is_finite() { (reading, if pressure { 1e5 } else { 1.0 }) } else { (assumed, sd) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observer::cylinder::Cylinder;
+    use crate::thermal::vessel::presets;
+    use approx::assert_relative_eq;
+
+    fn prior_of(settled: bool, readings: &[f64]) -> (Prior, States) {
+        let vessel = presets::load("nitrogen-20l").unwrap();
+        let sensors: Vec<Sensor> =
+            ["shoulder", "valve", "pressure"].iter().map(|name| Sensor::typical(name).unwrap()).collect();
+        let settings = ObserverSettings::default();
+        let cylinder = Cylinder::new(&vessel, &sensors, &settings).unwrap();
+        let commissioning = Commissioning { settled, ..Commissioning::filled(2e7, 288.15) };
+        let states = cylinder.state_map().clone();
+        let prior = prior(&states, &sensors, &settings, &commissioning, &vessel, readings).unwrap();
+        (prior, states)
+    }
+
+    #[test]
+    fn a_settled_cylinder_has_one_temperature_that_is_known_less_well_than_its_differences() {
+        let (Prior { mean, covariance: p }, states) = prior_of(true, &[280.0, 281.0, 2e7]);
+        let (gas, valve) = (states.gas, states.valve.unwrap());
+        assert_eq!((mean[gas], mean[valve], mean[0]), (280.5, 280.5, 280.5));
+        // One kelvin together, and 0.2 K each.
+        assert_relative_eq!(p[(gas, gas)], 1.04, max_relative = 1e-12);
+        for other in [valve, 0, states.wall - 1] {
+            let difference = p[(gas, gas)] + p[(other, other)] - 2.0 * p[(gas, other)];
+            assert_relative_eq!(difference, 0.08, max_relative = 1e-12);
+        }
+        assert!(p.row(states.mass).iter().enumerate().all(|(j, &v)| (v != 0.0) == (j == states.mass)));
+    }
+
+    #[test]
+    fn a_cylinder_that_is_not_settled_may_have_any_temperatures() {
+        let (Prior { covariance: p, .. }, states) = prior_of(false, &[280.0, 281.0, 2e7]);
+        assert_eq!((p[(0, 0)], p[(states.gas, states.gas)], p[(0, states.gas)]), (25.0, 100.0, 0.0));
+        // Without a thermometer not even the level is known.
+        let (Prior { covariance: p, .. }, _) = prior_of(false, &[f64::NAN, f64::NAN, 2e7]);
+        assert_eq!((p[(0, 0)], p[(0, states.gas)]), (425.0, 400.0));
+    }
 }

@@ -14,6 +14,7 @@
 //! Pressure, temperature and mass hang together by one equation, so constant errors of the sensors shift the mass for ever: 0.4 bar are
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
+mod band;
 mod bank;
 mod belief;
 mod clock;
@@ -38,6 +39,8 @@ use crate::filter::StateSpace;
 use crate::sensor::Sensor;
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
+use band::Band;
+pub use band::BandSettings;
 use bank::Bank;
 use belief::{Belief, Moments};
 use clock::{Clock, Exchange};
@@ -78,6 +81,7 @@ pub struct Observer {
     vessel: Vessel,
     commissioning: Commissioning,
     cylinder: Cylinder,
+    band: Band,
     bank: Bank,
     shared: Shared,
     learned: Option<Learned>,
@@ -116,6 +120,7 @@ impl Observer {
             vessel: vessel.clone(),
             commissioning: *commissioning,
             shared: Shared::new(&cylinder),
+            band: Band::new(cylinder.state_map(), cylinder.sensors(), settings),
             bank: Bank::default(),
             learned: None,
             prior: DMatrix::zeros(0, 0),
@@ -232,17 +237,18 @@ impl Observer {
 
     /// Every member as the prior has it.
     fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        // Where the estimate has to begin again, nothing says that the cylinder is settled then.
+        let settled = self.commissioning.settled && self.clock.time_s.is_none();
         let prior = commissioning::prior(
             self.cylinder.state_map(),
             self.cylinder.sensors(),
             self.cylinder.settings(),
-            &self.commissioning,
+            &Commissioning { settled, ..self.commissioning },
             &self.vessel,
             readings,
         )?;
-        let mut mean = prior.mean;
-        let mut covariance = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(prior.variance));
-        self.prior = covariance.clone();
+        let (mut mean, mut covariance) = (prior.mean, prior.covariance);
+        self.prior.clone_from(&covariance);
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
@@ -299,11 +305,13 @@ impl Observer {
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
-        let (slow, freest) = (self.slow.unwrap_or(0), self.freest);
-        let [first_mass, slow_mass, free_mass] = [0, slow, freest].map(|index| self.masses[index]);
+        let (thermometer, freest) = (self.slow.unwrap_or(0), self.freest);
+        let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
         let (mass_kg, mass_variance_kg2) = Belief::of(first_mass, free_mass).blend(first_mass, free_mass);
         let (gas_mean_k, gas_variance_k2) = Belief::of(slow_mass, free_mass)
-            .blend(bank.moments(slow, states.gas), bank.moments(freest, states.gas));
+            .blend(bank.moments(thermometer, states.gas), bank.moments(freest, states.gas));
+        let gas_variance_k2 =
+            self.band.stated_k2(gas_variance_k2, |state| bank.moments(thermometer, state).1);
         let (leak_kg_s, leak_variance) =
             self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
         let mut estimate = Estimate {

@@ -6,6 +6,7 @@
 //! the temperature differences that the reduced model resolves worst, and what is learnt fades.
 use serde::{Deserialize, Serialize};
 
+use super::band::BandSettings;
 use super::engine::Engine;
 use crate::EstimatorError;
 use crate::log::Quantity;
@@ -43,6 +44,14 @@ impl Walk {
     /// Whether the quantity is known and constant, so that it needs no state.
     pub fn is_known(&self) -> bool {
         self.prior_sd == 0.0 && self.per_sqrt_s == 0.0
+    }
+
+    /// Whether it never becomes more uncertain than its prior: a constant, or a walk whose memory holds it back.
+    pub(super) fn stays_within_prior(&self) -> bool {
+        const ROUNDING: f64 = 1e-9;
+        let lasting = |memory_s: f64| self.per_sqrt_s * (0.5 * memory_s).sqrt();
+        self.per_sqrt_s == 0.0
+            || self.memory_s.is_some_and(|m| lasting(m) <= self.prior_sd * (1.0 + ROUNDING))
     }
 
     fn check(&self, setting: &'static str) -> Result<(), EstimatorError> {
@@ -166,6 +175,9 @@ pub struct ObserverSettings {
     pub constants_memory_s: Option<f64>,
     /// Noise beside the sensors' own.
     pub model_error: ModelError,
+    /// Stated uncertainty of the gas temperature.
+    #[serde(default)]
+    pub band: BandSettings,
     /// The bank: the first member gives the mass, the middle one of those with a leak rate the gas temperature, as long as the
     /// freest member agrees.
     pub bank: Vec<LeakHypothesis>,
@@ -189,7 +201,7 @@ impl Default for ObserverSettings {
             gas_walk_k_per_sqrt_s: 2.0 * PER_HOUR.sqrt(),
             air: Walk { prior_sd: 5.0, per_sqrt_s: 0.7, memory_s: None },
             air_rest_k: 283.15,
-            ln_outside_film: Walk::forgetting(0.25, 2.0 * HOUR_S),
+            ln_outside_film: Walk::forgetting(0.8, 2.0 * HOUR_S),
             ln_inside_film: Walk::forgetting(0.25, 120.0 * DAY_S),
             ln_capacity: Walk::forgetting(0.12, 120.0 * DAY_S),
             sun: Walk::forgetting(6.0, 0.5 * HOUR_S),
@@ -205,6 +217,7 @@ impl Default for ObserverSettings {
                 air_k: 0.5,
                 correlation_s: 60.0,
             },
+            band: BandSettings::default(),
             bank: vec![
                 LeakHypothesis::walking_mass(1.5),
                 LeakHypothesis::walking_rate(0.02),
@@ -261,6 +274,7 @@ impl ObserverSettings {
             require(value >= 0.0 && value.is_finite(), setting, value, "finite and at least 0")
         };
         self.engine.validate()?;
+        self.band.validate()?;
         require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
         require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
         positive("film_w_m2_k", self.film_w_m2_k)?;

@@ -194,12 +194,15 @@ impl Smoother {
         }
         let (filtered, reference_kg, beliefs) = (row.estimate, row.reference_kg, row.beliefs);
         let (first, slow, freest) = self.roles();
+        let learnt = &row.passes[slow].step.p;
         let states = self.observer.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
         let (first, slow, freest) = (&self.smoothed[first], &self.smoothed[slow], &self.smoothed[freest]);
         let of = |smoothed: &Smoothed, state: usize| (smoothed.x[state], smoothed.p[(state, state)].max(0.0));
         let (mass_kg, mass_variance_kg2) = beliefs.0.blend(of(first, mass), of(freest, mass));
         let (gas_mean_k, gas_variance_k2) = beliefs.1.blend(of(slow, gas), of(freest, gas));
+        // What the filter had learnt at this row: with what later rows tell too, more of them could widen the band.
+        let gas_variance_k2 = self.observer.band.stated_k2(gas_variance_k2, |state| learnt[(state, state)]);
         let mut estimate = Estimate {
             gas_mean_k,
             gas_mean_sd_k: gas_variance_k2.sqrt(),

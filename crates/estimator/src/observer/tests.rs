@@ -62,3 +62,44 @@ fn the_usual_observer_has_the_sizes_that_the_filter_is_unrolled_for() {
     let sizes = (cylinder.states(), cylinder.leading(), cylinder.noises());
     assert_eq!(sizes, crate::filter::USUAL_SIZES);
 }
+
+#[test]
+fn a_constant_beyond_its_bound_is_put_back_and_the_observer_says_so() {
+    let mut observer = observer(Engine::Extended);
+    observer.step(0.0, &REST).unwrap();
+    assert!(!observer.at_bound());
+    let mut time_s = 0.0;
+    for (state, low, high) in observer.cylinder.bounds().to_vec() {
+        for (bound, by) in [(low, -1.0), (high, 1.0)] {
+            let inside = observer.bank.members[0].x[state];
+            observer.bank.members[0].x[state] = bound + by * (high - low);
+            time_s += 10.0;
+            // Without readings nothing else pulls it back.
+            observer.step(time_s, &[f64::NAN; 3]).unwrap();
+            let name = observer.cylinder.state_map().names[state].clone();
+            assert_eq!(observer.bank.members[0].x[state], bound, "{name}");
+            assert!(observer.at_bound(), "{name}");
+            observer.bank.members[0].x[state] = inside;
+            time_s += 10.0;
+            observer.step(time_s, &[f64::NAN; 3]).unwrap();
+            assert!(!observer.at_bound(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_is_stated_of_the_gas_is_narrower_than_the_filters_variance_only_as_long_as_nothing_is_learnt() {
+    let mut observer = observer(Engine::Extended);
+    let mut stated_k2 = 0.0;
+    for k in 0..120 {
+        stated_k2 = observer.step(60.0 * f64::from(k), &REST).unwrap().gas_mean_sd_k.powi(2);
+    }
+    let slow = observer.slow.unwrap();
+    let filter_k2 = |state: usize| observer.bank.variance(slow, state);
+    let (film, gas) = (observer.cylinder.state_map().inside.unwrap(), observer.cylinder.state_map().gas);
+    assert!(filter_k2(film) > 0.9 * 0.0625, "a cylinder at rest tells nothing of its film");
+    // Two thermometers of class B at 20 degC, and 0.1 K.
+    let least_k2 = 0.16 / 6.0 + 0.01;
+    approx::assert_relative_eq!(stated_k2, least_k2, max_relative = 0.01);
+    assert!(filter_k2(gas) > 1.5 * least_k2);
+}

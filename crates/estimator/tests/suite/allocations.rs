@@ -126,7 +126,7 @@ fn no_step_of_the_observer_allocates_with_any_engine_but_the_moving_horizon() {
             match k % 13 {
                 5 => z[1] = f64::NAN,
                 8 => z = [f64::NAN; 3],
-                11 => z[0] += 60.0,
+                11 => z[0] += 100.0,
                 _ => {}
             }
             z

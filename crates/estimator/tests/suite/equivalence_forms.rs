@@ -95,3 +95,20 @@ fn information_refuses_what_has_no_inverse() {
     ));
     assert_eq!(form.to_dense(), DMatrix::identity(2, 2));
 }
+
+#[test]
+fn scaling_a_state_of_ud_factors_scales_its_row_and_column_of_the_covariance() {
+    let mut rng = rng(29);
+    for n in [1, 2, 7, 19] {
+        let mut dense = covariance(&mut rng, n);
+        let mut factors = UdFactors::<Dyn>::from_covariance(&dense).unwrap();
+        for (step, i) in (0..n).chain((0..n).rev()).enumerate() {
+            let factor = 0.3 + 0.5 * (step % 4) as f64;
+            factors.scale(i, factor);
+            let mut scaling = DMatrix::identity(n, n);
+            scaling[(i, i)] = factor;
+            dense = &scaling * dense * &scaling;
+            assert!(covariance_difference(&factors.to_dense(), &dense) < 1e-12, "n = {n}, state {i}");
+        }
+    }
+}

@@ -15,6 +15,12 @@ pub(super) struct Separate {
 }
 
 impl Separate {
+    /// Take over covariance and engine of another member; nothing is allocated for an engine without memory of its own.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.p.copy_from(&other.p);
+        self.mechanism.clone_from(&other.mechanism);
+    }
+
     /// An engine at a covariance; the cylinder supposes what the member does.
     pub fn new(
         engine: Engine,

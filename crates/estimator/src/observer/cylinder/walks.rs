@@ -10,7 +10,8 @@ const LARGEST_FILM_W_M2_K: f64 = 80.0;
 /// Bound on the logarithm of the inside film's multiplier.
 const LN_INSIDE_BOUND: f64 = 1.5;
 /// Bounds on constants of the model and of sensors about the means of their priors, in standard deviations of the prior:
-/// coloured model error would carry a combination that the data do not tell apart further and further.
+/// coloured model error would carry a combination that the data do not tell apart further and further. What walks away from
+/// its prior by itself, such as a transmitter that drifts, has none.
 const MODEL_BOUND_SD: f64 = 4.0;
 const SENSOR_BOUND_SD: f64 = 3.0;
 
@@ -79,12 +80,15 @@ impl Cylinder {
                 Some(((LEAST_FILM_W_M2_K / film_w_m2_k).ln(), (LARGEST_FILM_W_M2_K / film_w_m2_k).ln()))
             }
             StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
-            StateKind::Capacity => Some(within(0.0, MODEL_BOUND_SD * self.settings.ln_capacity.prior_sd)),
-            StateKind::FilmSlope => Some(within(0.0, MODEL_BOUND_SD * self.settings.film_slope.prior_sd)),
+            StateKind::Capacity => within_prior(&self.settings.ln_capacity),
+            StateKind::FilmSlope => within_prior(&self.settings.film_slope),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
                 let (low, high) = parameter.domain();
-                let (least, most) = within(parameter.mean, SENSOR_BOUND_SD * parameter.sd);
+                let (least, most) = match parameter.walk_per_sqrt_s {
+                    0.0 => within(parameter.mean, SENSOR_BOUND_SD * parameter.sd),
+                    _ => (f64::NEG_INFINITY, f64::INFINITY),
+                };
                 Some((low.max(least), high.min(most)))
             }
             _ => None,
@@ -108,6 +112,14 @@ impl Cylinder {
     }
 }
 
+/// Bounds of a constant of the model whose prior has the mean 0, unless its walk leads away from the prior.
+fn within_prior(walk: &Walk) -> Option<(f64, f64)> {
+    walk.stays_within_prior().then(|| within(0.0, MODEL_BOUND_SD * walk.prior_sd))
+}
+
 fn within(mean: f64, by: f64) -> (f64, f64) {
     (mean - by, mean + by)
 }
+
+#[cfg(test)]
+mod tests;

@@ -51,10 +51,10 @@ fn smoothed_constants_are_those_of_the_end_at_every_time() {
             for (member, smoothed) in smoother.members.iter().zip(&smoother.smoothed) {
                 let bank = &smoother.observer.bank;
                 let x = &bank.members[*member].x;
-                for c in leading..n {
+                for (c, x) in x.iter().enumerate().take(n).skip(leading) {
                     let (sd, prior) =
                         (bank.variance(*member, c).sqrt(), smoother.observer.prior[(c, c)].sqrt());
-                    let error = (smoothed.x[c] - x[c]).abs();
+                    let error = (smoothed.x[c] - x).abs();
                     assert!(error <= 1e-6 * prior, "{engine:?}: row {index}, state {c}: {error}, sd {sd}");
                     assert!((smoothed.p[(c, c)].sqrt() - sd).abs() <= 1e-6 * prior, "row {index}, sd of {c}");
                 }

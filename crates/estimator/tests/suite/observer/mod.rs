@@ -2,6 +2,7 @@
 mod bad_input;
 mod engines;
 mod events;
+mod fast_leak;
 mod late;
 mod smoothing;
 
