@@ -6,7 +6,7 @@ use super::parametrisation::{Coefficients, Parametrisation};
 use super::problem::Problem;
 use super::solve::Search;
 use super::start;
-use super::{Data, DeadTime, IdentifyError, Parameter, Settings, Structure};
+use super::{Data, DeadTime, Derived, IdentifyError, Parameter, Settings, Structure};
 
 /// A pole faster than this many times the sampling rate has died out between two samples.
 const FASTEST: f64 = 10.0;
@@ -50,6 +50,19 @@ pub(super) fn check_parameters(
         }
     }
     check_dead_time(parametrisation, theta, units.time_s)
+}
+
+/// Every pole must lie in the left half plane with its whole interval.
+pub(super) fn check_derived(derived: &Derived) -> Result<(), IdentifyError> {
+    match derived
+        .poles
+        .iter()
+        .map(|pole| pole.real_per_s)
+        .find(|real| real.sd.is_nan() || real.sd > -0.5 * real.value)
+    {
+        Some(real) => Err(IdentifyError::PoleNotDetermined { real_per_s: real.value, sd_per_s: real.sd }),
+        None => Ok(()),
+    }
 }
 
 fn check_dead_time(

@@ -1,6 +1,6 @@
-//! What white sensor noise adds to the moments of the regressors.
+//! What white sensor noise adds to the moments of instruments and regressors.
 //!
-//! Regressors and errors are linear in the noise of both sensors: `w` and `v` of the response carry that of the input,
+//! Instruments, regressors and errors are linear in the noise of both sensors: `w` and `v` of the response carry that of the input,
 //! the filtered errors that of both. Their joint covariance follows the same exact recursion as the signals,
 //! `P <- M P M^T + N`, sample by sample, whatever the intervals, hold and order; so the compensation is exact too.
 //! For first-order models with regular samples it is the closed form of the state-variable filter's noise gain.
@@ -21,13 +21,22 @@ const SETTLED_SAMPLES: usize = 4;
 /// Relative change that counts as none.
 const SETTLED: f64 = 1e-15;
 
-/// Sums over the samples of expectations.
+/// Sums over the samples of expectations, with the noise in instruments `z`, regressors `phi` and errors `e`.
 #[derive(Clone, Debug)]
 pub(super) struct NoiseMoments {
-    /// `sum E[phi phi^T]`: (width, width).
+    /// `sum E[z phi^T]`: (width, width).
     pub square: DMatrix<f64>,
-    /// `sum E[phi e]`: (width).
+    /// `sum E[z e]`: (width).
     pub with_error: DVector<f64>,
+}
+
+/// Where the instruments come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Instruments {
+    /// They are the regressors.
+    Regressors,
+    /// The model's response: they hold the noise of the input alone.
+    Model,
 }
 
 /// Moments of the noise in regressors and errors.
@@ -36,11 +45,12 @@ pub(super) fn noise_moments(
     schedule: &Schedule,
     k: &Coefficients,
     variances: Variances,
+    instruments: Instruments,
 ) -> NoiseMoments {
     match k.order {
-        1 => Recursion::<1, 3>::new(problem, k, variances).run(schedule),
-        2 => Recursion::<2, 6>::new(problem, k, variances).run(schedule),
-        _ => Recursion::<3, 9>::new(problem, k, variances).run(schedule),
+        1 => Recursion::<1, 3>::new(problem, k, variances, instruments).run(schedule),
+        2 => Recursion::<2, 6>::new(problem, k, variances, instruments).run(schedule),
+        _ => Recursion::<3, 9>::new(problem, k, variances, instruments).run(schedule),
     }
 }
 
@@ -54,9 +64,10 @@ struct Recursion<'a, const N: usize, const D: usize> {
     covariance: DMatrix<f64>,
     /// What the state becomes, linear in what it was at the last sample.
     transition: DMatrix<f64>,
-    /// Rows: `[phi; e]` of the state.
+    /// Rows: `z`, and `[phi; e]`, of the state.
+    instruments: DMatrix<f64>,
     readout: DMatrix<f64>,
-    /// Moments of `[phi; e]` at the last sample, and their sum.
+    /// Moments of `z` with `[phi; e]` at the last sample, and their sum.
     moments: DMatrix<f64>,
     sum: DMatrix<f64>,
     last: Option<usize>,
@@ -68,7 +79,12 @@ impl<'a, const N: usize, const D: usize> Recursion<'a, N, D> {
     const ERROR: usize = 3 * N + 2;
     const SIZE: usize = 3 * N + 3;
 
-    fn new(problem: &'a Problem, k: &'a Coefficients, variances: Variances) -> Self {
+    fn new(
+        problem: &'a Problem,
+        k: &'a Coefficients,
+        variances: Variances,
+        instruments: Instruments,
+    ) -> Self {
         let ((f, g), (fq, gq)) = (cascade::<D>(k), companion::<N>(k));
         let mut readout = DMatrix::zeros(2 * N + 1, Self::SIZE);
         for i in 0..N {
@@ -77,6 +93,10 @@ impl<'a, const N: usize, const D: usize> Recursion<'a, N, D> {
             readout[(N + i, i)] = 1.0;
         }
         readout[(2 * N, Self::ERROR)] = 1.0;
+        let mut chosen = readout.rows(0, 2 * N).into_owned();
+        if instruments == Instruments::Model {
+            (0..N).for_each(|i| chosen[(i, 2 * N + i)] = 0.0);
+        }
         let mut covariance = DMatrix::zeros(Self::SIZE, Self::SIZE);
         // The first input sample is the present and, until the first bend, the next one.
         for (i, j) in [
@@ -95,9 +115,10 @@ impl<'a, const N: usize, const D: usize> Recursion<'a, N, D> {
             chain: Propagators::new(fq, gq),
             covariance,
             transition: DMatrix::identity(Self::SIZE, Self::SIZE),
+            instruments: chosen,
             readout,
-            moments: DMatrix::zeros(2 * N + 1, 2 * N + 1),
-            sum: DMatrix::zeros(2 * N + 1, 2 * N + 1),
+            moments: DMatrix::zeros(2 * N, 2 * N + 1),
+            sum: DMatrix::zeros(2 * N, 2 * N + 1),
             last: None,
         }
     }
@@ -185,7 +206,7 @@ impl<'a, const N: usize, const D: usize> Recursion<'a, N, D> {
         self.transition = step * &self.transition;
         self.settle();
         self.covariance += &noise * noise.transpose() * self.variances.output;
-        self.moments = &self.readout * &self.covariance * self.readout.transpose();
+        self.moments = &self.instruments * &self.covariance * self.readout.transpose();
         self.sum += &self.moments;
     }
 

@@ -7,7 +7,8 @@
 //! | output error (Gauss-Newton) | derivatives of `x` | derivatives of `x` | none |
 //! | refined instrumental variables | derivatives of `x` | from the measured output | none |
 //! | instruments from a second input | derivatives of `x` for the second input | from the measured output | none |
-//! | bias-compensated least squares | from the measured output | from the measured output | noise moments |
+//! | bias-compensated least squares | from the measured output | from the measured output | moments of both noises |
+//! | bias-compensated instruments | derivatives of `x` | from the measured output | moments of the input's noise |
 //!
 //! *From the measured output*: the derivative by `a_i` is `-s^i/a(s)` of the measured output. That output is known at its samples
 //! only; between them it is taken as the model's response plus a straight line of what the model leaves,
@@ -19,7 +20,7 @@
 //! Source: Young and Jakeman 1980, Garnier, Mensler and Richard 2003, Söderström 2007.
 use nalgebra::{DMatrix, DVector};
 
-use super::compensation::noise_moments;
+use super::compensation::{Instruments, NoiseMoments, noise_moments};
 use super::parametrisation::{Coefficients, Parametrisation};
 use super::problem::Problem;
 use super::response::{filter_output, respond};
@@ -38,7 +39,9 @@ pub(super) enum Scheme {
     OutputError,
     RefinedInstruments,
     SecondInput,
-    Compensated(Variances),
+    CompensatedSquares(Variances),
+    /// The variance of the input's noise.
+    CompensatedInstruments(f64),
 }
 
 /// The system at some parameters.
@@ -80,14 +83,23 @@ impl Equations {
                 let columns = respond(problem, &schedule, second, &k).columns;
                 Self::assemble(&measured, derivatives(&columns), errors)
             }
-            Scheme::Compensated(variances) => {
-                let noise = noise_moments(problem, &schedule, &k, variances);
-                let mut equations = Self::assemble(&measured, measured.clone(), errors);
-                equations.matrix -= transform.tr_mul(&(noise.square * &transform));
-                equations.rhs -= transform.tr_mul(&noise.with_error);
-                equations
+            Scheme::CompensatedSquares(variances) => {
+                let noise = noise_moments(problem, &schedule, &k, variances, Instruments::Regressors);
+                Self::assemble(&measured, measured.clone(), errors).less(noise, &transform)
+            }
+            Scheme::CompensatedInstruments(input) => {
+                let variances = Variances { input, output: 0.0 };
+                let noise = noise_moments(problem, &schedule, &k, variances, Instruments::Model);
+                Self::assemble(&measured, ideal, errors).less(noise, &transform)
             }
         }
+    }
+
+    /// Take the noise's part off.
+    fn less(mut self, noise: NoiseMoments, transform: &DMatrix<f64>) -> Self {
+        self.matrix -= transform.tr_mul(&(noise.square * transform));
+        self.rhs -= transform.tr_mul(&noise.with_error);
+        self
     }
 
     fn assemble(regressors: &DMatrix<f64>, instruments: DMatrix<f64>, errors: DVector<f64>) -> Self {

@@ -97,6 +97,17 @@ pub enum IdentifyError {
         /// Its standard deviation; infinite if nothing is known.
         sd: f64,
     },
+    /// A pole that the data do not determine.
+    #[error(
+        "the real part {real_per_s} 1/s of a pole has a standard deviation of {sd_per_s} 1/s, so that its 95 % interval includes \
+         zero: excite the input more, record longer, or lower the order"
+    )]
+    PoleNotDetermined {
+        /// Real part, 1/s.
+        real_per_s: f64,
+        /// Its standard deviation, 1/s.
+        sd_per_s: f64,
+    },
     /// The output comes before the input.
     #[error(
         "the input follows from the output (fit {backward_percent} %) rather than the output from the input \

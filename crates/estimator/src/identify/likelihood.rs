@@ -31,9 +31,11 @@ const DIFFUSE: f64 = 1e7;
 /// Halvings of a step that does not raise the likelihood.
 const HALVINGS: usize = 12;
 /// A relative step this small is the last: the differences do not resolve a smaller one.
-const LAST_STEP: f64 = 1e-9;
-/// Steps this small may end at the differences' rounding.
-const ROUNDING: f64 = 1e-6;
+const LAST_STEP: f64 = 1e-10;
+/// Near the maximum a step that is not below this share of the one before it is rounding.
+const SHRINKING: f64 = 0.5;
+/// A gain of the logarithm of the likelihood this small is a ten-thousandth of a standard deviation.
+const RESOLVED: f64 = 1e-8;
 
 /// Innovation and its variance of every reading.
 type Innovations = Vec<(f64, f64)>;
@@ -67,26 +69,21 @@ impl Likelihood<'_> {
         let mut size = f64::INFINITY;
         for iterations in 1..=self.search.settings.iterations {
             let (gradient, information) = self.derivatives(&theta, &free, &here)?;
-            let step = solve(&information, &-gradient).ok_or_else(|| self.undetermined(&theta))?;
+            let step = solve(&information, &(-&gradient)).ok_or_else(|| self.undetermined(&theta))?;
             let mut full = DVector::zeros(theta.len());
             free.iter().zip(step.iter()).for_each(|(&i, &step)| full[i] = step);
-            size = relative(&full, &theta);
-            let accepted = if size <= LAST_STEP { None } else { self.descend(&theta, &full, &here) };
-            match accepted {
-                Some(better) => (theta, here) = better,
-                None if size <= ROUNDING => {
-                    let covariance = invert(&information).ok_or_else(|| self.undetermined(&theta))?;
-                    let covariance = spread_out(&covariance, &free, theta.len());
-                    return Ok(Maximum { theta, covariance, iterations });
-                }
-                None => break,
+            let last = std::mem::replace(&mut size, relative(&full, &theta));
+            // Half the decrease that the step promises; too small a one drowns in the rounding of the cost.
+            let close = -0.5 * gradient.dot(&step) <= RESOLVED;
+            if size <= LAST_STEP || (close && size > SHRINKING * last) {
+                let covariance = invert(&information).ok_or_else(|| self.undetermined(&theta))?;
+                let covariance = spread_out(&covariance, &free, theta.len());
+                return Ok(Maximum { theta, covariance, iterations });
             }
+            let bound = if close { f64::INFINITY } else { cost(&here) };
+            (theta, here) = self.descend(&theta, &full, bound).ok_or_else(|| unsettled(iterations, size))?;
         }
-        Err(IdentifyError::NotConverged {
-            method: "maximum likelihood",
-            iterations: self.search.settings.iterations,
-            step: size,
-        })
+        Err(unsettled(self.search.settings.iterations, size))
     }
 
     fn undetermined(&self, theta: &[f64]) -> IdentifyError {
@@ -95,18 +92,12 @@ impl Likelihood<'_> {
         IdentifyError::NotDetermined { parameter, value: theta[at], sd: f64::INFINITY }
     }
 
-    /// Parameters along a step at which the likelihood is higher.
-    fn descend(
-        &self,
-        theta: &[f64],
-        step: &DVector<f64>,
-        here: &Innovations,
-    ) -> Option<(Vec<f64>, Innovations)> {
-        let cost = cost(here);
+    /// Parameters along a step at which the cost is below a bound.
+    fn descend(&self, theta: &[f64], step: &DVector<f64>, bound: f64) -> Option<(Vec<f64>, Innovations)> {
         (0..HALVINGS).find_map(|halvings| {
             let moved = self.search.moved(theta, step, 0.5_f64.powi(halvings as i32));
             let trial = self.innovations(&moved)?;
-            (self::cost(&trial) < cost).then_some((moved, trial))
+            (cost(&trial) < bound).then_some((moved, trial))
         })
     }
 
@@ -262,6 +253,10 @@ fn cost(innovations: &Innovations) -> f64 {
     0.5 * innovations.iter().map(|(nu, s)| s.ln() + nu * nu / s).sum::<f64>()
 }
 
+fn unsettled(iterations: usize, step: f64) -> IdentifyError {
+    IdentifyError::NotConverged { method: "maximum likelihood", iterations, step }
+}
+
 /// A covariance of some parameters among all; the others have none.
 fn spread_out(covariance: &DMatrix<f64>, free: &[usize], length: usize) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(length, length);
@@ -283,6 +278,30 @@ struct Process<const N: usize> {
     input_time: Vec<f64>,
     chain: Propagators<N>,
     piece: Piece,
+    /// Transition of the last piece: regular records have the same one over and over.
+    last: Option<(Kind, Linearisation)>,
+}
+
+/// What the transition over a piece depends on.
+#[derive(Clone, Copy, Debug)]
+struct Kind {
+    duration: f64,
+    from: f64,
+    to: f64,
+    fresh: Option<(usize, f64)>,
+}
+
+impl Kind {
+    /// Equal but for the rounding of the times.
+    fn is(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs();
+        let fresh = match (self.fresh, other.fresh) {
+            (Some((place, a)), Some((other, b))) => place == other && near(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        fresh && near(self.duration, other.duration) && near(self.from, other.from) && near(self.to, other.to)
+    }
 }
 
 impl<const N: usize> Process<N> {
@@ -298,6 +317,7 @@ impl<const N: usize> Process<N> {
             input_time: likelihood.search.problem.input_time.clone(),
             chain: Propagators::new(f, g),
             piece,
+            last: None,
         }
     }
 
@@ -378,13 +398,21 @@ impl<const N: usize> StateSpace for Process<N> {
         _dt: f64,
         linear: Option<&mut Linearisation>,
     ) -> Result<(), EstimatorError> {
-        let (load, g, q) = self.load();
-        let run = self.run();
-        let phi = &run * load;
-        let moved = &phi * DVector::from_column_slice(x);
-        x.copy_from_slice(moved.as_slice());
-        if let Some(linear) = linear {
-            (linear.phi, linear.g, linear.q) = (phi, run * g, q);
+        let Piece { duration, from, to, .. } = self.piece;
+        let kind = Kind { duration, from, to, fresh: self.fresh() };
+        if self.last.as_ref().is_none_or(|(last, _)| !last.is(&kind)) {
+            let (load, g, q) = self.load();
+            let run = self.run();
+            self.last = Some((kind, Linearisation { phi: &run * load, g: run * g, q }));
+        }
+        if let Some((_, last)) = &self.last {
+            let moved = &last.phi * DVector::from_column_slice(x);
+            x.copy_from_slice(moved.as_slice());
+            if let Some(linear) = linear {
+                linear.phi.copy_from(&last.phi);
+                linear.g.copy_from(&last.g);
+                linear.q.copy_from(&last.q);
+            }
         }
         Ok(())
     }

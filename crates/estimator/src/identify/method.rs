@@ -29,6 +29,12 @@ pub enum Method {
         /// Variance of the output sensor's noise, in the output's unit squared.
         output_variance: f64,
     },
+    /// Refined instrumental variables with the bias of white input noise taken off. The output's noise need not be known: the model's
+    /// response, which the instruments come from, does not hold it.
+    CompensatedInstruments {
+        /// Variance of the input sensor's noise, in the input's unit squared.
+        input_variance: f64,
+    },
     /// Instrumental variables from a second sensor of the input.
     SecondSensor {
         /// Its samples, at the times of the data; NaN is a missing value.

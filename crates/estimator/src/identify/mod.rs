@@ -8,10 +8,11 @@
 //! | output error | least squares of the simulation's error (what MATLAB's `tfest` does) | noise on the output alone |
 //! | refined instrumental variables | SRIVC: filters and instruments from the model, repeated | the same, of any colour |
 //! | bias-compensated | least squares through the model's filters, less what sensor noise adds to the moments | white noise of known variances |
+//! | compensated instruments | refined instruments, less what the input's noise adds to the moments | white input noise of known variance |
 //! | second sensor | instruments from another sensor of the input | noises of both sensors independent |
 //! | maximum likelihood | Kalman filter of model and input together | white noise of known variances, a random walk as input |
 //!
-//! The last three are for noise on the input too (errors in variables), which slows the pole that the others find. Without knowledge of
+//! The last four are for noise on the input too (errors in variables), which slows the pole that the others find. Without knowledge of
 //! the noise or a second sensor such a model cannot be identified at all (Söderström 2007).
 //!
 //! The record is brought to units of its own before anything is estimated, so that no result depends on the units it came in.

@@ -1,8 +1,8 @@
 //! From data to a model: start, iterate, judge, report.
 use nalgebra::DMatrix;
 
-use super::checks::{check_direction, check_parameters, check_poles};
-use super::equations::{Scheme, Variances};
+use super::checks::{check_derived, check_direction, check_parameters, check_poles};
+use super::equations::{Equations, Scheme, Variances};
 use super::identified::{derive, quantile};
 use super::likelihood::{Likelihood, without_intensity};
 use super::model::poles;
@@ -12,7 +12,7 @@ use super::schedule::Schedule;
 use super::solve::{Search, Solution};
 use super::start;
 use super::statistics::{Residuals, Statistics};
-use super::uncertainty::{sandwich, white};
+use super::uncertainty::{coloured as coloured_covariance, white};
 use super::{
     Caution, Data, DeadTime, ErrorModel, Estimate, Identified, IdentifyError, InitialState, Interval, Method,
     Model, Parameter, Settings, StartMethod, Structure,
@@ -49,16 +49,20 @@ pub fn identify(
     let found = found?;
     check_poles(&problem, &parametrisation.expand(&found.solution.theta))?;
     check_parameters(&search, &found.solution.theta, &found.covariance)?;
-    Ok(report(data, &search, found))
+    let identified = report(data, &search, found);
+    check_derived(&identified.derived)?;
+    Ok(identified)
 }
 
 fn check_support(structure: &Structure, method: &Method) -> Result<(), IdentifyError> {
     match (structure.dead_time, method) {
-        (DeadTime::Free(_), Method::BiasCompensated { .. }) => Err(IdentifyError::Unsupported {
-            method: "bias-compensated least squares",
-            what: "a free dead time",
-            remedy: "find it by output error, then fix it",
-        }),
+        (DeadTime::Free(_), Method::BiasCompensated { .. } | Method::CompensatedInstruments { .. }) => {
+            Err(IdentifyError::Unsupported {
+                method: "bias compensation",
+                what: "a free dead time",
+                remedy: "find it by output error, then fix it",
+            })
+        }
         _ => Ok(()),
     }
 }
@@ -105,31 +109,35 @@ fn estimate(search: &Search<'_>, start: Vec<f64>, method: &Method) -> Result<Fou
             coloured(search, search.fixed_point(start, Scheme::SecondInput, "second sensor")?)
         }
         Method::BiasCompensated { input_variance, output_variance } => {
-            coloured(search, compensated(search, start, scaled(input_variance, output_variance))?)
+            let scheme = Scheme::CompensatedSquares(scaled(input_variance, output_variance));
+            coloured(search, compensated(search, start, scheme)?)
+        }
+        Method::CompensatedInstruments { input_variance } => {
+            let scheme = Scheme::CompensatedInstruments(scaled(input_variance, 0.0).input);
+            coloured(search, compensated(search, start, scheme)?)
         }
         Method::MaximumLikelihood { input_variance, output_variance, course } => {
             let variances = scaled(input_variance, output_variance);
             let first = match search.parametrisation.structure.dead_time {
                 DeadTime::Free(_) => search.output_error(start)?,
-                _ => compensated(search, start, variances)?,
+                _ => compensated(search, start, Scheme::CompensatedInstruments(variances.input))?,
             };
             most_likely(search, &Likelihood { search: *search, variances, course }, &first)
         }
     }
 }
 
-fn compensated(
-    search: &Search<'_>,
-    start: Vec<f64>,
-    variances: Variances,
-) -> Result<Solution, IdentifyError> {
+/// Fixed point of compensated equations from the least output error.
+fn compensated(search: &Search<'_>, start: Vec<f64>, scheme: Scheme) -> Result<Solution, IdentifyError> {
     let start = search.output_error(start)?.theta;
-    let solution =
-        search.fixed_point(start, Scheme::Compensated(variances), "bias-compensated least squares")?;
     // Where the stated noise is more than the data hold, what is left is no covariance.
-    if solution.equations.matrix.clone().cholesky().is_none() {
-        return Err(IdentifyError::VarianceTooLarge);
-    }
+    let left = |equations: &Equations| {
+        let symmetric = (&equations.matrix + equations.matrix.transpose()) * 0.5;
+        symmetric.cholesky().map(|_| ()).ok_or(IdentifyError::VarianceTooLarge)
+    };
+    left(&Equations::new(search.problem, search.parametrisation, &start, scheme))?;
+    let solution = search.fixed_point(start, scheme, "bias compensation")?;
+    left(&solution.equations)?;
     Ok(solution)
 }
 
@@ -154,7 +162,7 @@ fn coloured(search: &Search<'_>, solution: Solution) -> Result<Found, IdentifyEr
     let k = search.parametrisation.expand(&solution.theta);
     let slowest = poles(&k.a[..k.order])[0].norm();
     let interval = search.problem.duration() / search.problem.samples() as f64;
-    let covariance = sandwich(&solution.equations, 1.0 / (slowest * interval))
+    let covariance = coloured_covariance(&solution.equations, 1.0 / (slowest * interval))
         .ok_or_else(|| undetermined(search, &solution.theta))?;
     Ok(Found { solution, covariance, intensity: None, coloured: true })
 }

@@ -16,6 +16,7 @@ fn methods(data: &Data) -> Vec<(&'static str, Method)> {
         ("output error", Method::OutputError),
         ("refined instruments", Method::RefinedInstruments),
         ("bias-compensated", Method::BiasCompensated { input_variance: 0.0, output_variance: 0.0 }),
+        ("compensated instruments", Method::CompensatedInstruments { input_variance: 0.0 }),
         ("second sensor", Method::SecondSensor { input: second.collect() }),
         (
             "maximum likelihood",
