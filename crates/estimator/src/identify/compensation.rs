@@ -219,3 +219,6 @@ impl<'a, const N: usize, const D: usize> Recursion<'a, N, D> {
         moments
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -72,7 +72,13 @@ impl Equations {
         let derivatives = |columns: &DMatrix<f64>| transform.tr_mul(columns);
         let ideal = derivatives(&response.columns);
         if scheme == Scheme::OutputError {
-            return Self::assemble(&ideal, ideal.clone(), errors);
+            return Self {
+                matrix: &ideal * ideal.transpose(),
+                rhs: &ideal * &errors,
+                sse: errors.norm_squared(),
+                instruments: ideal,
+                errors,
+            };
         }
         add_filtered_errors(problem, &k, &errors, &mut response.columns);
         let measured = derivatives(&response.columns);

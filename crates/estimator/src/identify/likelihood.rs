@@ -1,6 +1,6 @@
 //! Maximum likelihood with noise on input and output, by the Kalman filter.
 //!
-//! The true input is a random walk at its samples (or an integrated one) and runs between them by the hold, as the model
+//! Input samples that act after the last output sample have no part in it. The true input is a random walk at its samples (or an integrated one) and runs between them by the hold, as the model
 //! assumes. A Wiener process *between* the samples would contradict the hold and bias coarse records. The state is
 //! `[w, u now, u next, (slope)]` with `w = [1, s, ..] / a(s) u`; input and output are read with known variances. The innovations `nu`
 //! and their variances `S` give the likelihood
@@ -443,3 +443,6 @@ impl<const N: usize> StateSpace for Process<N> {
 pub(super) fn without_intensity<'a>(parametrisation: &Parametrisation, maximum: &'a Maximum) -> &'a [f64] {
     &maximum.theta[..parametrisation.parameters.len()]
 }
+
+#[cfg(test)]
+mod tests;

@@ -16,6 +16,8 @@ pub(super) struct Coefficients {
     pub c: [f64; HIGHEST],
     pub offset: f64,
     pub dead_time: f64,
+    /// Whether derivatives by the dead time are wanted.
+    pub delay_free: bool,
     /// Whether the model is settled at the first input.
     pub settled: bool,
 }
@@ -98,6 +100,7 @@ impl Parametrisation {
             c: [0.0; HIGHEST],
             offset: 0.0,
             dead_time: if let DeadTime::Fixed(time) = structure.dead_time { time } else { 0.0 },
+            delay_free: matches!(structure.dead_time, DeadTime::Free(_)),
             settled: structure.initial == InitialState::Settled,
         };
         let mut initial = [0.0; HIGHEST];

@@ -8,9 +8,12 @@
 //! Source: Higham 2008 (section 10.7.4) for the functions.
 use nalgebra::{SMatrix, SVector};
 
-/// Largest 1-norm of `F h` where the series are summed; the first term left out is below 0.5^15/15! = 2e-17.
+/// Largest 1-norm of `F h` where the series are summed.
 const BASE_NORM: f64 = 0.5;
-const TERMS: usize = 14;
+/// The first term left out is below this.
+const LEFT_OUT: f64 = 2e-17;
+/// As many terms are enough for the largest norm: 0.5^15/15! = 2e-17.
+const TERMS: i32 = 14;
 
 /// Intervals within this share of each other count as one.
 const SAME: f64 = 1e-13;
@@ -39,10 +42,10 @@ impl<const D: usize> Propagator<D> {
         let identity = SMatrix::<f64, D, D>::identity();
         // Horner: e^z = 1 + z (1 + z/2 (1 + z/3 (...))), and likewise for the others, applied to g.
         let (mut phi, mut one, mut two) = (identity, *g, g * 0.5);
-        for k in (1..=TERMS).rev() {
-            phi = identity + z * phi / k as f64;
-            one = g + z * one / (k + 1) as f64;
-            two = g * 0.5 + z * two / (k + 2) as f64;
+        for k in (1..=terms(norm)).rev() {
+            phi = identity + z * phi / f64::from(k);
+            one = g + z * one / f64::from(k + 1);
+            two = g * 0.5 + z * two / f64::from(k + 2);
         }
         for _ in 0..doublings {
             two = (phi * two + one + two) * 0.25;
@@ -51,6 +54,16 @@ impl<const D: usize> Propagator<D> {
         }
         Self { interval, phi, constant: one * interval, rise: two * interval }
     }
+}
+
+/// Terms of the series for a norm.
+fn terms(norm: f64) -> i32 {
+    let (mut left_out, mut terms) = (norm, 0);
+    while left_out > LEFT_OUT && terms < TERMS {
+        terms += 1;
+        left_out *= norm / f64::from(terms + 1);
+    }
+    terms
 }
 
 /// Propagators of one system, each interval computed once as long as few different ones come.

@@ -100,6 +100,9 @@ impl<'a, const D: usize> Run<'a, D> {
         let (from, rise) = (from - self.base, to - from);
         let p = self.propagators.over(piece.duration);
         self.state = p.phi * self.state + p.constant * from + p.rise * rise;
+        if !self.k.delay_free {
+            return;
+        }
         if piece.fresh && piece.left > 0 && piece.to == 0.0 {
             // A held input jumps where its sample acts.
             self.delayed[n - 1] -= self.u[piece.left] - self.u[piece.left - 1];
@@ -164,3 +167,6 @@ fn chain<const N: usize>(problem: &Problem, k: &Coefficients, signal: &[f64]) ->
     }
     filtered
 }
+
+#[cfg(test)]
+mod tests;

@@ -43,13 +43,20 @@ pub fn identify(
     let start = first_model(&mut problem, structure)?;
     let parametrisation = Parametrisation::new(structure, &problem.units);
     let search = Search { problem: &problem, parametrisation: &parametrisation, settings };
-    let found = estimate(&search, start.theta, method);
-    let error = found.as_ref().map_or(start.sse, |found| found.solution.equations.sse);
-    check_direction(data, structure, settings, (error / problem.samples() as f64).sqrt())?;
-    let found = found?;
-    check_poles(&problem, &parametrisation.expand(&found.solution.theta))?;
-    check_parameters(&search, &found.solution.theta, &found.covariance)?;
-    let identified = report(data, &search, found);
+    let found = estimate(&search, start.theta, method).and_then(|found| {
+        check_poles(&problem, &parametrisation.expand(&found.solution.theta))?;
+        check_parameters(&search, &found.solution.theta, &found.covariance)?;
+        Ok(found)
+    });
+    // A right direction leaves errors that do not foretell the input.
+    let (sse, suspect) = match &found {
+        Ok(found) => (found.solution.equations.sse, feedback(&found.residuals).is_some()),
+        Err(_) => (start.sse, true),
+    };
+    if suspect {
+        check_direction(data, structure, settings, (sse / problem.samples() as f64).sqrt())?;
+    }
+    let identified = report(data, &search, found?);
     check_derived(&identified.derived)?;
     Ok(identified)
 }
@@ -83,6 +90,7 @@ fn first_model(problem: &mut Problem, structure: &Structure) -> Result<start::St
 struct Found {
     solution: Solution,
     covariance: DMatrix<f64>,
+    residuals: Residuals,
     /// Logarithm of the intensity of the input's course.
     intensity: Option<f64>,
     coloured: bool,
@@ -106,15 +114,15 @@ fn estimate(search: &Search<'_>, start: Vec<f64>, method: &Method) -> Result<Fou
         }
         Method::SecondSensor { .. } => {
             let start = search.output_error(start)?.theta;
-            coloured(search, search.fixed_point(start, Scheme::SecondInput, "second sensor")?)
+            correlated(search, search.fixed_point(start, Scheme::SecondInput, "second sensor")?)
         }
         Method::BiasCompensated { input_variance, output_variance } => {
             let scheme = Scheme::CompensatedSquares(scaled(input_variance, output_variance));
-            coloured(search, compensated(search, start, scheme)?)
+            correlated(search, compensated(search, start, scheme)?)
         }
         Method::CompensatedInstruments { input_variance } => {
             let scheme = Scheme::CompensatedInstruments(scaled(input_variance, 0.0).input);
-            coloured(search, compensated(search, start, scheme)?)
+            correlated(search, compensated(search, start, scheme)?)
         }
         Method::MaximumLikelihood { input_variance, output_variance, course } => {
             let variances = scaled(input_variance, output_variance);
@@ -151,20 +159,26 @@ fn judged(search: &Search<'_>, solution: Solution) -> Result<Found, IdentifyErro
         ErrorModel::Judged => exact || residuals.is_white(),
     };
     if !white_errors {
-        return coloured(search, solution);
+        return coloured(search, solution, residuals);
     }
     let covariance = white(&solution.equations).ok_or_else(|| undetermined(search, &solution.theta))?;
-    Ok(Found { solution, covariance, intensity: None, coloured: false })
+    Ok(Found { solution, covariance, residuals, intensity: None, coloured: false })
+}
+
+/// A result whose errors are correlated whatever a test says.
+fn correlated(search: &Search<'_>, solution: Solution) -> Result<Found, IdentifyError> {
+    let residuals = residuals(search, &solution);
+    coloured(search, solution, residuals)
 }
 
 /// A result whose errors are correlated over the slowest time constant.
-fn coloured(search: &Search<'_>, solution: Solution) -> Result<Found, IdentifyError> {
+fn coloured(search: &Search<'_>, solution: Solution, residuals: Residuals) -> Result<Found, IdentifyError> {
     let k = search.parametrisation.expand(&solution.theta);
     let slowest = poles(&k.a[..k.order])[0].norm();
     let interval = search.problem.duration() / search.problem.samples() as f64;
     let covariance = coloured_covariance(&solution.equations, 1.0 / (slowest * interval))
         .ok_or_else(|| undetermined(search, &solution.theta))?;
-    Ok(Found { solution, covariance, intensity: None, coloured: true })
+    Ok(Found { solution, covariance, residuals, intensity: None, coloured: true })
 }
 
 fn undetermined(search: &Search<'_>, theta: &[f64]) -> IdentifyError {
@@ -185,8 +199,10 @@ fn most_likely(
         .ok_or_else(|| undetermined(search, &theta))?;
     let equations =
         super::equations::Equations::new(search.problem, search.parametrisation, &theta, Scheme::OutputError);
+    let solution = Solution { theta, iterations: maximum.iterations, equations };
     Ok(Found {
-        solution: Solution { theta, iterations: maximum.iterations, equations },
+        residuals: residuals(search, &solution),
+        solution,
         covariance: maximum.covariance,
         intensity: maximum.theta.last().copied(),
         coloured: true,
@@ -243,7 +259,7 @@ fn report(data: &Data, search: &Search<'_>, found: Found) -> Identified {
         .collect();
     let model = model(search, &solution.theta);
     let kinds: Vec<Parameter> = listed.iter().map(|(parameter, ..)| *parameter).collect();
-    let residuals = residuals(search, solution);
+    let residuals = &found.residuals;
     let output: Vec<f64> = problem.y.iter().map(|y| y * units.output).collect();
     Identified {
         derived: derive(&model, &kinds, &covariance, t),
@@ -251,10 +267,10 @@ fn report(data: &Data, search: &Search<'_>, found: Found) -> Identified {
         parameters,
         statistics: Statistics::new(&output, &residuals.values, parametrisation.parameters.len()),
         initial: initial(search, &solution.theta),
-        cautions: cautions(data, problem, &residuals, found.coloured),
+        cautions: cautions(data, problem, residuals, found.coloured),
         model,
         iterations: solution.iterations,
-        residuals,
+        residuals: found.residuals,
     }
 }
 
@@ -296,24 +312,35 @@ fn cautions(data: &Data, problem: &Problem, residuals: &Residuals, coloured: boo
     if coloured && !residuals.is_white() {
         cautions.push(Caution::ColouredErrors { whiteness: residuals.whiteness });
     }
-    let (lags, bound) = (residuals.autocorrelation.len() - 1, residuals.input_correlation_bound);
-    let largest = |range: std::ops::Range<usize>| {
-        range
-            .map(|at| (at, residuals.input_correlation[at]))
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-            .filter(|(_, correlation)| correlation.abs() > ALL_LAGS * bound)
-    };
     if coloured || !residuals.is_white() {
-        if let Some((at, correlation)) = largest(lags..2 * lags + 1) {
-            cautions.push(Caution::DynamicsLeft { lag: at - lags, correlation, bound });
-        }
-        if let Some((at, correlation)) = largest(0..lags) {
-            cautions.push(Caution::Feedback { lead: lags - at, correlation, bound });
-        }
+        cautions.extend(dynamics_left(residuals));
+        cautions.extend(feedback(residuals));
     }
     let rows = data.time_s().len() - problem.samples();
     if rows > 0 {
         cautions.push(Caution::SamplesLeftOut { rows });
     }
     cautions
+}
+
+/// Largest correlation with the input over a range of positions, if it is beyond chance.
+fn largest(residuals: &Residuals, range: std::ops::Range<usize>) -> Option<(usize, f64)> {
+    range
+        .map(|at| (at, residuals.input_correlation[at]))
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        .filter(|(_, correlation)| correlation.abs() > ALL_LAGS * residuals.input_correlation_bound)
+}
+
+/// Whether the errors follow from the input.
+fn dynamics_left(residuals: &Residuals) -> Option<Caution> {
+    let (lags, bound) = (residuals.autocorrelation.len() - 1, residuals.input_correlation_bound);
+    let (at, correlation) = largest(residuals, lags..2 * lags + 1)?;
+    Some(Caution::DynamicsLeft { lag: at - lags, correlation, bound })
+}
+
+/// Whether the errors foretell the input.
+fn feedback(residuals: &Residuals) -> Option<Caution> {
+    let (lags, bound) = (residuals.autocorrelation.len() - 1, residuals.input_correlation_bound);
+    let (at, correlation) = largest(residuals, 0..lags)?;
+    Some(Caution::Feedback { lead: lags - at, correlation, bound })
 }

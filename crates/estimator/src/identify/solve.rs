@@ -17,6 +17,10 @@ const LAST_DAMPING: f64 = 1e9;
 /// A relative step this small may be the last one where rounding keeps the errors from falling.
 const ROUNDING: f64 = 1e-8;
 
+/// Steps of instrumental variables before another method, and the relative step that needs none.
+const FIRST_STEPS: usize = 4;
+const NEAR: f64 = 1e-3;
+
 /// Halvings of a step that leaves the stable models.
 const HALVINGS: usize = 30;
 
@@ -158,20 +162,19 @@ impl Search<'_> {
 
     /// A few steps of refined instrumental variables as far as they lower the errors.
     pub fn improve_by_instruments(&self, start: Vec<f64>) -> Vec<f64> {
-        let mut theta = start;
-        let mut sse = self.at(&theta, Scheme::OutputError).sse;
-        for _ in 0..4 {
-            let equations = self.at(&theta, Scheme::RefinedInstruments);
-            let Some(step) = solve(&equations.matrix, &equations.rhs) else { break };
+        let scheme = Scheme::RefinedInstruments;
+        let (mut theta, mut here) = (start.clone(), self.at(&start, scheme));
+        for _ in 0..FIRST_STEPS {
+            let Some(step) = solve(&here.matrix, &here.rhs) else { break };
             let moved = self.moved(&theta, &step, 1.0);
-            if !self.stable(&moved) {
+            if relative(&step, &theta) < NEAR || !self.stable(&moved) {
                 break;
             }
-            let trial = self.at(&moved, Scheme::OutputError).sse;
-            if trial.is_nan() || trial >= sse {
+            let trial = self.at(&moved, scheme);
+            if trial.sse.is_nan() || trial.sse >= here.sse {
                 break;
             }
-            (theta, sse) = (moved, trial);
+            (theta, here) = (moved, trial);
         }
         theta
     }

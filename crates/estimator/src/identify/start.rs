@@ -2,8 +2,8 @@
 //!
 //! With `E(s) = (s + lambda)^n`, `A(s)/E(s) y = B(s)/E(s) u + C(s)/E(s) + A(s)/E(s) d` is linear in the coefficients; the
 //! signals through `s^i/E(s)` need no derivatives of the data. Bandwidths `lambda` over all that the record can show are tried, each
-//! estimate is simulated, and the one with the least output error is taken. The filter itself with the best numerator is a candidate
-//! too, so that there always is a stable one.
+//! estimate is simulated, and the one with the least output error is taken. In the place of an unstable estimate stands the filter
+//! itself with the best numerator, so that there always is a stable one.
 //!
 //! Source: Young 1981, Garnier, Mensler and Richard 2003.
 use nalgebra::{DMatrix, DVector};
@@ -16,7 +16,7 @@ use super::schedule::Schedule;
 use super::{DeadTime, Gain, IdentifyError, InitialState, Parameter};
 
 /// Bandwidths tried.
-const BANDWIDTHS: usize = 9;
+const BANDWIDTHS: usize = 6;
 /// Dead times tried, the ends of the range included.
 const DEAD_TIMES: usize = 25;
 /// The slowest bandwidth has its time constant in the record, the fastest in the sampling interval, this many times.
@@ -41,8 +41,8 @@ pub(super) fn best(problem: &Problem, parametrisation: &Parametrisation) -> Resu
     let bandwidths: Vec<f64> = (0..BANDWIDTHS).map(|i| slow * ratio.powi(i as i32)).collect();
     let over = |bandwidths: &[f64], dead_time: f64| {
         let schedule = Schedule::new(problem, dead_time);
-        let candidate = |&lambda: &f64| candidates(problem, parametrisation, &schedule, lambda, dead_time);
-        least(bandwidths.iter().flat_map(candidate).collect())
+        let one = |&lambda: &f64| candidate(problem, parametrisation, &schedule, lambda, dead_time);
+        least(bandwidths.iter().filter_map(one).collect())
     };
     let longest = match parametrisation.structure.dead_time {
         DeadTime::None => return over(&bandwidths, 0.0),
@@ -65,27 +65,23 @@ fn least(candidates: Vec<Start>) -> Result<Start, IdentifyError> {
     })
 }
 
-/// The estimate through one filter, and the filter itself.
-fn candidates(
+/// The estimate through one filter.
+fn candidate(
     problem: &Problem,
     parametrisation: &Parametrisation,
     schedule: &Schedule,
     bandwidth: f64,
     dead_time: f64,
-) -> Vec<Start> {
+) -> Option<Start> {
     let n = parametrisation.structure.order;
     let mut filter = [0.0; HIGHEST];
     let binomials: &[f64] = [&[1.0][..], &[1.0, 2.0], &[1.0, 3.0, 3.0]][n - 1];
     for (i, binomial) in binomials.iter().enumerate() {
         filter[i] = binomial * bandwidth.powi((n - i) as i32);
     }
-    let estimate = denominator(problem, parametrisation, schedule, filter);
-    [Some(filter), estimate]
-        .into_iter()
-        .flatten()
-        .filter_map(|a| with_denominator(problem, parametrisation, schedule, a, dead_time))
-        .map(|(theta, sse)| Start { theta, bandwidth, sse })
-        .collect()
+    let a = denominator(problem, parametrisation, schedule, filter).unwrap_or(filter);
+    let (theta, sse) = with_denominator(problem, parametrisation, schedule, a, dead_time)?;
+    Some(Start { theta, bandwidth, sse })
 }
 
 /// Denominator by least squares through the filter.
@@ -104,6 +100,7 @@ fn denominator(
         c: [0.0; HIGHEST],
         offset: 0.0,
         dead_time: 0.0,
+        delay_free: false,
         settled: false,
     };
     let signals = respond(problem, schedule, &problem.u, &k).columns;

@@ -72,7 +72,8 @@ fn lags(width: usize) -> Vec<(usize, f64)> {
     let weight = |i: usize| match i {
         0 => 1.0,
         _ if i < last => 0.5 * (apart(i) + apart(i + 1)),
-        _ => 0.5 * (apart(i) + 1.0),
+        // The window ends at zero.
+        _ => 0.5 * (apart(i) + (width - lags[i]) as f64),
     };
     (0..=last).map(|i| (lags[i], weight(i))).collect()
 }
