@@ -31,6 +31,7 @@ mod parametrisation;
 mod problem;
 mod propagator;
 pub mod published;
+mod report;
 mod response;
 mod run;
 mod schedule;
