@@ -8,7 +8,7 @@ use cylwatch_estimator::identify::{InputCourse, Method};
 use super::noisy::{CASES, Case, Study, study};
 
 /// Runs of each record: few of the long ones, whose runs hardly differ.
-const RUNS: [u64; 6] = [20, 10, 80, 120, 240, 160];
+const RUNS: [u64; 6] = [12, 6, 60, 120, 240, 160];
 
 fn all(method: impl Fn(&Case, &[f64]) -> Method + Sync) -> Vec<Study> {
     let studies: Vec<Study> = CASES
@@ -41,7 +41,7 @@ fn check(studies: &[Study]) {
         assert!(study.gain.bias().0.abs() < 0.01, "{}: gain {}", case.name, study.gain.bias().0);
         coverage.merge(&study.pole.coverage);
     }
-    // 630 runs: a true coverage of 95 % is seen with a standard deviation of 0.9 %.
+    // 600 runs: a true coverage of 95 % is seen with a standard deviation of 0.9 %.
     let band = coverage.interval(Significance::FIVE_PERCENT).unwrap();
     println!("poles covered: {:.3} in [{:.3}, {:.3}]", coverage.share(), band.low, band.high);
     assert!((0.92..=0.98).contains(&coverage.share()), "{band:?}");
@@ -76,10 +76,10 @@ fn instruments_from_a_second_sensor_need_no_variance() {
 #[test]
 fn the_likelihood_of_a_random_walk_is_not_biased_where_the_input_wanders() {
     let case = &CASES[3];
-    let found = study(case, 0..40, |_| case.likely(InputCourse::RandomWalk));
+    let found = study(case, 0..36, |_| case.likely(InputCourse::RandomWalk));
     assert!(found.failures.is_empty(), "{:?}", found.failures);
     let ((mean, error, sd), compensated) =
-        (found.pole.bias(), study(case, 0..40, |_| case.compensated()).pole.bias());
+        (found.pole.bias(), study(case, 0..36, |_| case.compensated()).pole.bias());
     assert!(mean.abs() < 0.01, "{mean} ± {error}");
     // It uses what it knows of the input: less spread than any method that does not.
     assert!(sd < compensated.2, "{sd} against {}", compensated.2);
@@ -89,10 +89,13 @@ fn the_likelihood_of_a_random_walk_is_not_biased_where_the_input_wanders() {
 
 #[test]
 fn the_likelihood_of_a_smooth_input_is_that_of_an_integrated_walk() {
-    // A day's wave is no random walk: that prior is biased, the smooth one is not.
+    // A day's wave is no random walk: that prior slows the pole of every record, the smooth one does not.
     let case = &CASES[5];
-    let smooth = study(case, 0..40, |_| case.likely(InputCourse::IntegratedRandomWalk));
-    let rough = study(case, 0..40, |_| case.likely(InputCourse::RandomWalk));
+    let smooth = study(case, 0..8, |_| case.likely(InputCourse::IntegratedRandomWalk));
+    let rough = study(case, 0..8, |_| case.likely(InputCourse::RandomWalk));
     assert!(smooth.failures.is_empty() && rough.failures.is_empty());
-    assert!(smooth.pole.bias().0.abs() < 0.5 * rough.pole.bias().0.abs());
+    for (smooth, rough) in smooth.pole.relative.iter().zip(&rough.pole.relative) {
+        println!("pole {:+.2} % smooth, {:+.2} % rough", 100.0 * smooth, 100.0 * rough);
+        assert!(smooth - rough > 0.01);
+    }
 }
