@@ -9,9 +9,9 @@
 #![allow(clippy::print_stdout)]
 
 use anyhow::Context;
+use cylwatch::estimator::identify::published::TransferFunction;
 use cylwatch::estimator::observer::{Commissioning, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::estimator::truth::score::TransferFunction;
 use cylwatch::estimator::truth::{Course, Truth, generate};
 use cylwatch::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
 use cylwatch::report::{Provenance, aligned};

@@ -9,10 +9,11 @@ use std::fs::{self, File};
 use std::io::{BufReader, Write as _};
 use std::path::PathBuf;
 
+use cylwatch_estimator::identify::published::TransferFunction;
 use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::thermal::vessel::presets;
 use cylwatch_estimator::truth::Truth;
-use cylwatch_estimator::truth::score::{Score, TransferFunction, score, score_transfer_function};
+use cylwatch_estimator::truth::score::{Score, score, score_transfer_function};
 use rayon::prelude::*;
 
 type Fault = Box<dyn Error + Send + Sync>;

@@ -343,4 +343,7 @@ pub enum EstimatorError {
     /// A bound without paths.
     #[error("the bound needs at least one true path")]
     NoPaths,
+    /// Nothing could be identified.
+    #[error(transparent)]
+    Identify(#[from] crate::identify::IdentifyError),
 }

@@ -1,5 +1,5 @@
 //! Estimation for gas cylinders on top of [`cylwatch_thermal`]: sensors, filters, the cylinder's observer,
-//! and the means to judge an estimator.
+//! identification of transfer functions, and the means to judge an estimator.
 //!
 //! A trajectory (simulated) becomes a [`log::Log`] through [`sensor`]; an observer turns a log, row by row,
 //! into the mean gas temperature, the gas mass and the leak rate, each with its standard deviation.
@@ -7,6 +7,7 @@ pub mod bound;
 pub mod consistency;
 pub mod error;
 pub mod filter;
+pub mod identify;
 pub mod log;
 pub mod observer;
 pub mod sensor;

@@ -5,6 +5,7 @@
 //! constant error of the transmitter shifts the mass for ever.
 use super::{Course, Truth};
 use crate::EstimatorError;
+use crate::identify::published::TransferFunction;
 use crate::observer::{Commissioning, Estimate, Observer, ObserverSettings};
 use crate::sensor::Sensor;
 use crate::thermal::units::ZERO_CELSIUS_K;
@@ -94,43 +95,6 @@ pub fn score_observer(
         }
     }
     Ok(Score { nis: nis.0 / nis.1, ..summarise(truth, &pairs) })
-}
-
-/// The paper's estimator of the mean gas temperature: a first-order transfer function from the shoulder's reading,
-/// `dT/dt = pole (gain u - T)` in °C, exact for a reading that is linear between samples, started settled.
-#[derive(Clone, Copy, Debug)]
-pub struct TransferFunction {
-    gain: f64,
-    pole_per_s: f64,
-    gas_degc: f64,
-    /// Time, s, and input, °C, of the last sample.
-    before: Option<(f64, f64)>,
-}
-
-impl TransferFunction {
-    /// The one that the paper publishes: `0.003121 / (s + 0.003021)`.
-    pub const PUBLISHED: Self = Self::new(0.003121 / 0.003021, 0.003021);
-
-    /// Of a gain and a pole, 1/s.
-    pub const fn new(gain: f64, pole_per_s: f64) -> Self {
-        Self { gain, pole_per_s, gas_degc: f64::NAN, before: None }
-    }
-
-    /// Mean gas temperature, °C, after a reading of the shoulder, °C.
-    pub fn step(&mut self, time_s: f64, input_degc: f64) -> f64 {
-        let gain = self.gain;
-        self.gas_degc = match self.before {
-            None => gain * input_degc,
-            Some((before_s, before_degc)) => {
-                let dt = time_s - before_s;
-                let decay = (-self.pole_per_s * dt).exp();
-                let late = (1.0 - (1.0 - decay) / (self.pole_per_s * dt)) * gain;
-                decay * self.gas_degc + gain * (1.0 - decay) * before_degc + late * (input_degc - before_degc)
-            }
-        };
-        self.before = Some((time_s, input_degc));
-        self.gas_degc
-    }
 }
 
 /// The paper's way: a [`TransferFunction`] that has seen nothing yet for the mean gas temperature, and the mass from the measured pressure at that temperature.

@@ -11,6 +11,7 @@ mod equivalence_smoother;
 mod equivalence_steady;
 mod equivalence_unscented;
 mod horizon;
+mod identify;
 mod ill_conditioned;
 mod late_samples;
 mod linear_model;
