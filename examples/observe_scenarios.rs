@@ -151,7 +151,7 @@ impl Comparison {
             },
         ];
         let marks = vec![Mark { at: self.truth.course.change_s(), name: "the air changes".into() }];
-        Figure { title: title.into(), horizontal: Horizontal::Time, panels, marks }
+        Figure { title: title.into(), horizontal: Horizontal::Time, panels, marks, below: None }
     }
 }
 

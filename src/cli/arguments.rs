@@ -1,5 +1,6 @@
 //! The raw arguments: they mirror the command line and decide nothing.
 use super::fill::GivenFill;
+use super::identify::IdentifyArguments;
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cylwatch::estimator::EstimatorError;
@@ -24,6 +25,7 @@ const EXAMPLES: &str = "\
 Examples:
   cylwatch simulate nitrogen-20l shock-cold -o run.csv --plot run.svg
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
+  cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
@@ -39,6 +41,8 @@ pub enum Command {
     Simulate(SimulateArguments),
     /// Estimate gas temperature, mass and leak rate from a log of sensors outside.
     Estimate(Box<EstimateArguments>),
+    /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.
+    Identify(Box<IdentifyArguments>),
     /// Print the properties of a gas, at one state or for every row of a file.
     Properties(PropertiesArguments),
     /// Write start files vessel.toml and scenario.toml, with comments, to edit.

@@ -5,6 +5,7 @@ mod arguments;
 mod completions;
 mod estimate;
 mod fill;
+mod identify;
 mod init;
 mod input;
 mod message;
@@ -45,6 +46,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<()> {
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
+        Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

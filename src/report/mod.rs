@@ -1,6 +1,7 @@
 //! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal. Pure functions; nothing here reads or writes.
 pub mod estimate;
 pub mod figure;
+pub mod identify;
 mod provenance;
 mod readings;
 pub mod simulation;

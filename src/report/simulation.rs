@@ -103,7 +103,7 @@ pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
         panels.push(Panel { quantity: "gas mass in kg".into(), items: vec![mass], height: 0.55 });
     }
     let marks = run.events.iter().map(|event| Mark { at: event.time_s, name: event_name(event) }).collect();
-    Figure { title: title(run), horizontal: Horizontal::Time, panels, marks }
+    Figure { title: title(run), horizontal: Horizontal::Time, panels, marks, below: None }
 }
 
 /// The air, and what sensors read of it.

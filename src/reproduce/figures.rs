@@ -21,6 +21,7 @@ pub fn tight(tight: &TightCylinder) -> Figure {
         horizontal: Horizontal::Quantity("gas temperature in °C".into()),
         panels: vec![Panel { quantity: "pressure in bar".into(), items, height: 1.3 }],
         marks: Vec::new(),
+        below: None,
     }
 }
 
@@ -61,6 +62,7 @@ pub fn blowdown(study: &Blowdown) -> Figure {
             Panel { quantity: "inner wall in °C".into(), items: wall_items, height: 0.9 },
         ],
         marks: Vec::new(),
+        below: None,
     }
 }
 

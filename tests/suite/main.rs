@@ -5,6 +5,7 @@
 mod estimate;
 mod examples;
 mod files;
+mod identify;
 mod log;
 #[cfg(feature = "parquet")]
 mod log_parquet;

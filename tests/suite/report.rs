@@ -34,6 +34,7 @@ fn example() -> Figure {
             Mark { at: 3600.0, name: "leak opens".into() },
             Mark { at: 9000.0, name: "below 160 bar".into() },
         ],
+        below: None,
     }
 }
 

@@ -124,6 +124,7 @@ pub fn figure(title: &str, data: &FigureData) -> Figure {
         horizontal: Horizontal::Time,
         panels: panels.into_iter().flatten().collect(),
         marks: Vec::new(),
+        below: None,
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Figure {
     pub panels: Vec<Panel>,
     /// Instants (or values of the horizontal axis) marked in all panels, named in the first.
     pub marks: Vec<Mark>,
+    /// Another figure below, with a title and a horizontal axis of its own.
+    pub below: Option<Box<Figure>>,
 }
 
 /// The horizontal axis.

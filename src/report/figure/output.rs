@@ -24,8 +24,13 @@ fn fonts() -> Result<(), ReportError> {
 }
 
 impl Figure {
-    /// Height in figure units.
+    /// Height in figure units, with all that stands below.
     fn height(&self) -> f64 {
+        self.own_height() + self.below.as_ref().map_or(0.0, |below| below.height())
+    }
+
+    /// Height of title, panels and axis in figure units.
+    pub(super) fn own_height(&self) -> f64 {
         let panels: f64 = self.panels.iter().map(|panel| panel.height * style::PANEL_HEIGHT).sum();
         style::TOP + panels + style::GAP * (self.panels.len().max(1) - 1) as f64 + style::BOTTOM
     }

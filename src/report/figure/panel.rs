@@ -38,13 +38,23 @@ struct Frame<'a> {
     y: Scale,
 }
 
-/// Draws the whole figure.
+/// Draws the whole figure with what stands below it.
 pub(super) fn draw<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>) -> Result<(), ReportError> {
     canvas.paper()?;
+    let mut at = Some((figure, 0.0));
+    while let Some((part, from)) = at {
+        draw_part(part, canvas, from)?;
+        at = part.below.as_deref().map(|below| (below, from + part.own_height()));
+    }
+    Ok(())
+}
+
+/// Draws title, panels and axis of one figure from a place downwards.
+fn draw_part<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>, from: f64) -> Result<(), ReportError> {
     let title = Text { size: style::LARGE, bold: true, ..PLAIN };
-    canvas.text(&figure.title, (style::LEFT, 0.5 * style::TOP), title)?;
+    canvas.text(&figure.title, (style::LEFT, from + 0.5 * style::TOP), title)?;
     let x = abscissa(figure);
-    let mut top = style::TOP;
+    let mut top = from + style::TOP;
     for (index, panel) in figure.panels.iter().enumerate() {
         let bottom = top + panel.height * style::PANEL_HEIGHT;
         let named: &[Mark] = if index == 0 { &figure.marks } else { &[] };

@@ -73,7 +73,7 @@ pub enum IdentifyError {
     },
     /// A hole in the input that cannot be bridged.
     #[error(
-        "the input is missing from {from_s} s to {to_s} s, longer than {limit_s} s: identify the parts before and after it \
+        "the input is missing from {from_s} s to {to_s} s, longer than {limit_s:.1} s: identify the parts before and after it \
          on their own, or allow a longer gap"
     )]
     Gap {
@@ -86,7 +86,7 @@ pub enum IdentifyError {
     },
     /// A parameter that the data do not determine.
     #[error(
-        "{parameter} = {value} has a standard deviation of {sd}, so that its 95 % interval includes zero: \
+        "{parameter} = {value:.4e} has a standard deviation of {sd:.1e}, so that its 95 % interval includes zero: \
          excite the input more, record longer, or lower the order"
     )]
     NotDetermined {
@@ -99,7 +99,7 @@ pub enum IdentifyError {
     },
     /// A pole that the data do not determine.
     #[error(
-        "the real part {real_per_s} 1/s of a pole has a standard deviation of {sd_per_s} 1/s, so that its 95 % interval includes \
+        "the real part {real_per_s:.4e} 1/s of a pole has a standard deviation of {sd_per_s:.1e} 1/s, so that its 95 % interval includes \
          zero: excite the input more, record longer, or lower the order"
     )]
     PoleNotDetermined {
@@ -110,8 +110,8 @@ pub enum IdentifyError {
     },
     /// The output comes before the input.
     #[error(
-        "the input follows from the output (fit {backward_percent} %) rather than the output from the input \
-         (fit {forward_percent} %): swap the columns, or correct their times"
+        "the input follows from the output (fit {backward_percent:.1} %) rather than the output from the input \
+         (fit {forward_percent:.1} %): swap the columns, or correct their times"
     )]
     Acausal {
         /// Fit of the model that was asked for, %.
@@ -121,7 +121,7 @@ pub enum IdentifyError {
     },
     /// A pole too fast for the samples.
     #[error(
-        "a pole of {pole_per_s} 1/s is beyond the {bound_per_s} 1/s that the samples can show: sample faster, or lower the order"
+        "a pole of {pole_per_s:.3e} 1/s is beyond the {bound_per_s:.3e} 1/s that the samples can show: sample faster, or lower the order"
     )]
     PoleTooFast {
         /// Largest pole by size, 1/s.
@@ -131,7 +131,7 @@ pub enum IdentifyError {
     },
     /// A pole too slow for the record.
     #[error(
-        "a pole of {pole_per_s} 1/s is below the {bound_per_s} 1/s that the record can show: record longer, or lower the order"
+        "a pole of {pole_per_s:.3e} 1/s is below the {bound_per_s:.3e} 1/s that the record can show: record longer, or lower the order"
     )]
     PoleTooSlow {
         /// Smallest pole by size, 1/s.
@@ -149,7 +149,7 @@ pub enum IdentifyError {
     },
     /// The iteration did not settle.
     #[error(
-        "{method} did not settle in {iterations} iterations (last relative step {step}): start from output error, \
+        "{method} did not settle in {iterations} iterations (last relative step {step:.1e}): start from output error, \
          lower the order, or give more excited data"
     )]
     NotConverged {

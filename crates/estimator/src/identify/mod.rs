@@ -19,6 +19,7 @@
 //!
 //! Source: Garnier and Young 2008, Ljung 1999, Söderström 2007.
 mod checks;
+mod comparison;
 mod compensation;
 mod data;
 mod equations;
@@ -41,6 +42,7 @@ mod statistics;
 mod structure;
 mod uncertainty;
 
+pub use comparison::Comparison;
 pub use data::{Data, Hold};
 pub use error::IdentifyError;
 pub use identified::{Caution, Derived, Estimate, Identified, Interval, Pole};

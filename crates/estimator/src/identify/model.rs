@@ -7,8 +7,6 @@ use super::parametrisation::Parametrisation;
 use super::problem::{Problem, Units};
 use super::response::respond;
 use super::schedule::Schedule;
-use super::start::with_initial_response;
-use super::statistics::fit_percent;
 use super::{Data, DeadTime, Gain, Hold, IdentifyError, InitialState, Parameter, Structure};
 
 /// `y = e^(-s delta) num(s)/den(s) u + offset`.
@@ -66,24 +64,8 @@ impl Model {
         Ok(respond(&problem, &schedule, &problem.u, &parametrisation.expand(&theta)).y)
     }
 
-    /// Fit to data, %, with an initial state estimated for them (MATLAB's `compare`).
-    ///
-    /// # Errors
-    /// The model is no stable one of order 1 to 3, or the data hold nothing to compare with.
-    pub fn compare(&self, data: &Data) -> Result<f64, IdentifyError> {
-        let mut problem = Problem::new(data, None, Some(f64::INFINITY), self.order())?;
-        problem.rescale(1.0 / problem.units.time_s);
-        let (parametrisation, theta) = self.parameters(InitialState::Estimated, &problem.units)?;
-        let theta = with_initial_response(&problem, &parametrisation, &theta)
-            .ok_or(IdentifyError::TooFewSamples { samples: problem.samples(), parameters: self.order() })?;
-        let k = parametrisation.expand(&theta);
-        let y = respond(&problem, &Schedule::new(&problem, k.dead_time), &problem.u, &k).y;
-        let errors: Vec<f64> = problem.y.iter().zip(&y).map(|(y, model)| y - model).collect();
-        Ok(fit_percent(&problem.y, &errors))
-    }
-
     /// The model as parameters in the units of a record.
-    fn parameters(
+    pub(super) fn parameters(
         &self,
         initial: InitialState,
         units: &Units,

@@ -2,6 +2,7 @@
 use nalgebra::DMatrix;
 
 use super::identified::{derive, quantile};
+use super::parametrisation::Parametrisation;
 use super::problem::Problem;
 use super::run::Found;
 use super::schedule::Schedule;
@@ -14,7 +15,11 @@ const ALL_LAGS: f64 = 1.5;
 
 /// Errors of the simulation in the units of the data, with the input at their times.
 pub(super) fn residuals(search: &Search<'_>, solution: &Solution) -> Residuals {
-    let problem = search.problem;
+    simulated_residuals(search.problem, solution.equations.errors.as_slice(), search.settings.lags)
+}
+
+/// The same of errors in the record's units.
+pub(super) fn simulated_residuals(problem: &Problem, errors: &[f64], lags: usize) -> Residuals {
     let units = &problem.units;
     let mut input = vec![problem.u[0]; problem.samples()];
     for piece in &Schedule::new(problem, 0.0).pieces {
@@ -23,8 +28,8 @@ pub(super) fn residuals(search: &Search<'_>, solution: &Solution) -> Residuals {
         }
     }
     let time_s = problem.output_time.iter().map(|time| units.start_s + time * units.time_s).collect();
-    let values = solution.equations.errors.iter().map(|error| error * units.output).collect();
-    Residuals::new(time_s, values, &input, search.settings.lags)
+    let values = errors.iter().map(|error| error * units.output).collect();
+    Residuals::new(time_s, values, &input, lags)
 }
 
 /// The result in the units of the data.
@@ -42,7 +47,7 @@ pub(super) fn report(data: &Data, search: &Search<'_>, found: Found) -> Identifi
         covariance: covariance.row_iter().map(|row| row.iter().copied().collect()).collect(),
         parameters,
         statistics: Statistics::new(&output, &residuals.values, parametrisation.parameters.len()),
-        initial: initial(search, &solution.theta),
+        initial: initial(problem, parametrisation, &solution.theta),
         cautions: cautions(data, problem, residuals, found.coloured),
         model,
         iterations: solution.iterations,
@@ -101,8 +106,8 @@ fn model(search: &Search<'_>, theta: &[f64]) -> Model {
 }
 
 /// Free response and its derivatives at the start, in SI units.
-fn initial(search: &Search<'_>, theta: &[f64]) -> Vec<f64> {
-    let (parametrisation, units) = (search.parametrisation, &search.problem.units);
+pub(super) fn initial(problem: &Problem, parametrisation: &Parametrisation, theta: &[f64]) -> Vec<f64> {
+    let units = &problem.units;
     let order = parametrisation.structure.order;
     let value = |i: usize| match &parametrisation.structure.initial {
         InitialState::Given(values) => values[i],
@@ -112,7 +117,7 @@ fn initial(search: &Search<'_>, theta: &[f64]) -> Vec<f64> {
         InitialState::Zero => 0.0,
         InitialState::Settled if i == 0 => {
             let k = parametrisation.expand(theta);
-            k.b[0] / k.a[0] * search.problem.u[0]
+            k.b[0] / k.a[0] * problem.u[0]
         }
         InitialState::Settled => 0.0,
     };

@@ -31,20 +31,22 @@ pub(super) fn coloured(equations: &Equations, memory: f64) -> Option<DMatrix<f64
     let width = ((WINDOW * memory).ceil() as usize + 2).min(samples / 4).max(1);
     let bread = invert(&equations.matrix)?;
     let degrees = samples as f64 / (samples - parameters) as f64;
-    let of = |flat: f64| {
-        let meat = long_run(equations, width, flat);
+    let of = |flat: f64, lags: &[(usize, f64)]| {
+        let meat = long_run(equations, width, flat, lags);
         valid(&bread * meat * bread.transpose() * degrees)
     };
-    // The flat window may make a variance negative, the triangular one never does by more than rounding.
-    of(0.5).or_else(|| of(0.0))
+    let (some, every) = (lags(width), || (0..width).map(|lag| (lag, 1.0)).collect::<Vec<_>>());
+    // The flat window may make a variance negative, and so may lags far apart if errors alternate; a triangle over every lag
+    // never does.
+    of(0.5, &some).or_else(|| of(0.0, &some)).or_else(|| of(0.0, &every()))
 }
 
 /// `V`, with a window that is flat over a share of its width.
-fn long_run(equations: &Equations, width: usize, flat: f64) -> DMatrix<f64> {
+fn long_run(equations: &Equations, width: usize, flat: f64, lags: &[(usize, f64)]) -> DMatrix<f64> {
     let (z, e) = (&equations.instruments, &equations.errors);
     let (parameters, samples) = z.shape();
     let mut sum = DMatrix::zeros(parameters, parameters);
-    for (lag, weight) in lags(width) {
+    for &(lag, weight) in lags {
         let share = lag as f64 / width as f64;
         let window = if share <= flat { 1.0 } else { (1.0 - share) / (1.0 - flat) };
         let overlap = samples - lag;
@@ -100,6 +102,24 @@ mod tests {
     }
 
     #[test]
+    fn errors_that_alternate_with_a_period_have_a_variance_too() {
+        let square = |k: usize| ((k * 7 % 5) as f64 - 2.0) + 0.5 * ((k * 11 % 7) as f64 - 3.0);
+        let instruments = DMatrix::from_fn(2, 400, |i, k| if i == 0 { 1.0 } else { (k / 40 % 5) as f64 });
+        let errors = DVector::from_fn(400, |k, _| square(k));
+        let matrix = &instruments * instruments.transpose();
+        let equations = Equations {
+            rhs: &instruments * &errors,
+            sse: errors.norm_squared(),
+            matrix,
+            instruments,
+            errors,
+        };
+        for memory in [1.0, 5.0, 20.0, 60.0] {
+            assert!(coloured(&equations, memory).is_some(), "{memory}");
+        }
+    }
+
+    #[test]
     fn the_sum_over_lags_is_the_dense_double_sum() {
         let (equations, width) = (equations(60), 20);
         let (z, e) = (&equations.instruments, &equations.errors);
@@ -112,7 +132,11 @@ mod tests {
                 dense += z.column(k) * z.column(l).transpose() * (window * covariance(lag));
             }
         }
-        assert_relative_eq!(long_run(&equations, width, 0.5), dense, epsilon = 1e-10 * dense.amax());
+        assert_relative_eq!(
+            long_run(&equations, width, 0.5, &lags(width)),
+            dense,
+            epsilon = 1e-10 * dense.amax()
+        );
     }
 
     #[test]

@@ -7,3 +7,4 @@ mod noisy;
 mod peer;
 mod structure;
 mod system;
+mod table_1;

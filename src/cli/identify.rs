@@ -1,0 +1,198 @@
+//! `cylwatch identify`: a transfer function from one column of a log to another.
+use super::arguments::Format;
+use super::input::Inputs;
+use super::message::Messages;
+use super::output::Target;
+use super::plot::Plot;
+use super::progress::Progress;
+use anyhow::{Context, bail};
+use cylwatch::estimator::identify::{Data, Method, Settings, Structure, identify};
+use cylwatch::log::{LogOptions, Mapping};
+use cylwatch::report::identify as report;
+use cylwatch::report::identify::{Signal, Study};
+use serde_json::{Value, json};
+use std::path::Path;
+
+mod amounts;
+mod arguments;
+mod choice;
+mod record;
+
+use amounts::Amounts;
+pub use arguments::IdentifyArguments;
+use choice::{Choice, Validation};
+use record::Record;
+
+/// Validated options.
+struct Options {
+    log: String,
+    columns: Vec<String>,
+    choice: Choice,
+    amounts: Amounts,
+    structure: Structure,
+    settings: Settings,
+    validation: Option<Validation>,
+    mappings: Vec<Mapping>,
+    data: Target,
+    format: Option<Format>,
+    plot: Option<Plot>,
+}
+
+/// Identifies and writes.
+pub fn run(arguments: IdentifyArguments, messages: &Messages) -> anyhow::Result<()> {
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let record = options.read(&options.log, &inputs, messages)?;
+    let (study, asked) = options.study(record, &inputs, messages)?;
+    for caution in report::cautions(&study) {
+        messages.caution(&caution);
+    }
+    options.write(&study, &asked, &inputs, messages)
+}
+
+impl Options {
+    fn checked(arguments: IdentifyArguments) -> anyhow::Result<Self> {
+        let choice = Choice::checked(&arguments)?;
+        let validation = arguments.validate.as_deref().map(Validation::checked).transpose()?;
+        let mut inputs = vec![Path::new(&arguments.log)];
+        if let Some(Validation::Log(log)) = &validation {
+            if log == "-" && arguments.log == "-" {
+                bail!("stdin can be one of the logs, not both: give the other one as a file");
+            }
+            inputs.push(Path::new(log));
+        }
+        let data = Target::checked(arguments.out.as_deref(), &inputs)?;
+        let plot =
+            arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &[&data])).transpose()?;
+        let for_people = arguments.format.is_none() && matches!(data, Target::Stdout);
+        let structure = arguments.structure(&arguments.amounts)?;
+        Ok(Self {
+            columns: [&arguments.input, &arguments.output]
+                .into_iter()
+                .chain(&arguments.second)
+                .map(|name| name.to_ascii_lowercase())
+                .collect(),
+            structure,
+            settings: arguments.settings(&arguments.amounts)?,
+            format: (!for_people)
+                .then(|| arguments.format.unwrap_or_else(|| Format::of(arguments.out.as_deref()))),
+            log: arguments.log,
+            amounts: arguments.amounts,
+            mappings: arguments.mappings,
+            choice,
+            validation,
+            data,
+            plot,
+        })
+    }
+
+    /// Reads the columns of a log.
+    fn read(&self, name: &str, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Record> {
+        let options = LogOptions {
+            mappings: self.mappings.clone(),
+            sensors: self.columns.clone(),
+            ..LogOptions::default()
+        };
+        let mut log = inputs.log(name, &options)?;
+        let progress = Progress::new(messages);
+        let read = Record::read(&mut log, &self.columns, |fraction| progress.show(name, fraction));
+        drop(progress);
+        // What was strange about the log may explain an error.
+        for caution in log.reader.cautions() {
+            messages.caution(&caution.to_string());
+        }
+        inputs.record_log(&log);
+        read
+    }
+
+    /// Identifies, and compares with the published model and on what was held out. Returns what was asked for, too.
+    fn study(&self, record: Record, inputs: &Inputs, messages: &Messages) -> anyhow::Result<(Study, Value)> {
+        let name = shown(&self.log);
+        let (record, held_out) = match &self.validation {
+            None => (record, None),
+            Some(Validation::Fraction(fraction)) => {
+                let (before, after) = record.split(*fraction)?;
+                (before, Some((format!("last {} % of {name}", 100.0 * fraction), after)))
+            }
+            Some(Validation::Log(log)) => (record, Some((shown(log), self.read(log, inputs, messages)?))),
+        };
+        let held_out = held_out.map(|(name, other)| Ok::<_, anyhow::Error>((name, self.data(&other)?)));
+        let held_out = held_out.transpose()?;
+        let method = self.choice.method(&record, &self.amounts)?;
+        let data = self.data(&record)?;
+        let signals = self.signals(&record);
+        let between = format!("from {} to {}", signals.0.name, signals.1.name);
+        let progress = Progress::new(messages);
+        progress.show("identifying", 0.0);
+        let identified = identify(&data, &self.structure, &method, &self.settings);
+        drop(progress);
+        let identified = identified.with_context(|| format!("{name}, {between}"))?;
+        let asked = self.asked(&method);
+        let words = self.choice.words(&self.structure);
+        let study = Study::new(signals, words, identified, (name, data), held_out, self.settings.lags)
+            .context("what was held out")?;
+        Ok((study, asked))
+    }
+
+    fn data(&self, record: &Record) -> anyhow::Result<Data> {
+        let column = |at: usize| record.columns[at].values.clone();
+        Ok(Data::try_new(record.time_s.clone(), column(0), column(1), self.choice.hold)?)
+    }
+
+    fn signals(&self, record: &Record) -> (Signal, Signal) {
+        (record.columns[0].signal.clone(), record.columns[1].signal.clone())
+    }
+
+    /// What was asked for, as JSON; a second sensor is named, not listed.
+    fn asked(&self, method: &Method) -> Value {
+        let method = match method {
+            Method::SecondSensor { .. } => json!({ "second_sensor": { "input": self.columns.get(2) } }),
+            method => json!(method),
+        };
+        json!({
+            "structure": self.structure,
+            "method": method,
+            "hold": self.choice.hold,
+            "settings": self.settings,
+        })
+    }
+
+    fn write(
+        &self,
+        study: &Study,
+        asked: &Value,
+        inputs: &Inputs,
+        messages: &Messages,
+    ) -> anyhow::Result<()> {
+        let provenance = inputs.provenance();
+        let words = report::text(study);
+        // Everything is made before any file appears.
+        let picture = self.plot.as_ref().map(|plot| plot.draw(&report::figure(study), &provenance));
+        let picture = picture.transpose()?;
+        let text = match self.format {
+            None => words.clone(),
+            Some(Format::Csv) => {
+                let remarks: Vec<String> =
+                    words.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+                report::table(study).to_csv(&provenance, &remarks)
+            }
+            Some(Format::Json) => {
+                let document = report::document(study, asked, &provenance);
+                serde_json::to_string_pretty(&document)? + "\n"
+            }
+        };
+        self.data.write(text.as_bytes())?;
+        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
+            plot.write(&bytes)?;
+        }
+        if self.format.is_some() {
+            messages.say(&words);
+        }
+        Ok(())
+    }
+}
+
+/// What a message calls a log.
+fn shown(log: &str) -> String {
+    if log == "-" { "stdin".to_owned() } else { log.to_owned() }
+}

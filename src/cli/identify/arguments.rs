@@ -1,0 +1,225 @@
+//! The raw arguments of `identify`.
+use super::amounts::Amounts;
+use crate::cli::arguments::Format;
+use clap::{Args, ValueEnum};
+use cylwatch::estimator::identify::{
+    DeadTime, ErrorModel, Gain, InitialState, InputCourse, Settings, StartMethod, Structure,
+};
+use cylwatch::log::Mapping;
+use std::path::PathBuf;
+
+/// Arguments of `identify`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct IdentifyArguments {
+    /// Log: a CSV or Parquet file, or - for CSV on stdin.
+    pub log: String,
+    /// Column of the input, without its unit.
+    #[arg(long, value_name = "COLUMN")]
+    pub input: String,
+    /// Column of the output, without its unit.
+    #[arg(long, value_name = "COLUMN")]
+    pub output: String,
+    /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
+    #[arg(long = "map", value_name = "OURS=THEIRS")]
+    pub mappings: Vec<Mapping>,
+    /// Method.
+    #[arg(long, value_enum, default_value = "output-error")]
+    pub method: MethodName,
+    /// Number of poles, 1 to 3.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub order: usize,
+    /// Number of zeros, below the order [default: one less than the order].
+    #[arg(long, value_name = "NUMBER")]
+    pub zeros: Option<usize>,
+    /// How the input runs between its samples.
+    #[arg(long, value_enum, default_value = "first")]
+    pub hold: HoldName,
+    /// State at the start: estimated, zero, settled, or the free response there and its derivatives per s, separated by commas
+    /// (for order 1 the output less the offset), in the output's unit.
+    #[arg(long, value_name = "STATE", default_value = "estimated", allow_hyphen_values = true, value_parser = initial)]
+    pub initial: InitialState,
+    /// Steady-state gain: free, or a number to hold it at.
+    #[arg(long, value_name = "GAIN", default_value = "free", allow_hyphen_values = true, value_parser = gain)]
+    pub gain: Gain,
+    /// Add a constant to the output, to be estimated.
+    #[arg(long)]
+    pub offset: bool,
+    /// Column of another sensor of the input, for the method second-sensor.
+    #[arg(long, value_name = "COLUMN")]
+    pub second: Option<String>,
+    /// Times and noises.
+    #[command(flatten)]
+    pub amounts: Amounts,
+    /// How the true input wanders, for the method maximum-likelihood.
+    #[arg(long, value_enum, default_value = "random-walk")]
+    pub course: CourseName,
+    /// What the intervals of output-error and refined-instruments suppose of the errors.
+    #[arg(long, value_enum, default_value = "judged")]
+    pub errors: ErrorsName,
+    /// First model of the iterations.
+    #[arg(long, value_enum, default_value = "instrumental-variables")]
+    pub start: StartName,
+    /// Most iterations.
+    #[arg(long, value_name = "NUMBER", default_value_t = Settings::default().iterations)]
+    pub iterations: usize,
+    /// Largest lag of the errors' correlations, samples.
+    #[arg(long, value_name = "NUMBER", default_value_t = Settings::default().lags)]
+    pub lags: usize,
+    /// Judge the model on data it was not identified from: the last part of the log, as a fraction between 0 and 1, or another
+    /// log with the same columns.
+    #[arg(long, value_name = "FRACTION|LOG2")]
+    pub validate: Option<String>,
+    /// File for the result: all of it as JSON, or data, model and errors row by row as CSV; - is stdout [default: a summary on
+    /// stdout].
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Format of the result [default: json for a file that ends in .json, else csv].
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// Figure of data, model, errors and their correlations; the ending .svg or .png decides the format.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+The model is y = e^(-s d) (b_m s^m + ... + b0)/(s^n + ... + a0) u + offset with time in s,
+temperatures in degC and pressures in bar. In a simulated log a column is what the sensor read
+(measured_shoulder_degc) where there is such a column, else what is true (gas_mean_degc). From
+temperature to temperature, the model that the paper publishes stands beside the identified one.
+
+Noise on the input, too, slows the pole that output-error and refined-instruments find. The other
+methods take it off: by --input-sd-k (and --output-sd-k), or by a second sensor of the input.
+
+Examples:
+  cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
+  cylwatch identify run.csv --input shoulder --output gas_mean --gain 1 --validate 0.3
+  cylwatch identify run.csv --input shoulder --output gas_mean --order 2 --out model.json
+  cylwatch identify run.csv --input shoulder --output gas_mean --method compensated-instruments \\
+      --input-sd-k 0.05
+  cylwatch identify logger.csv --map time=Timestamp --map shoulder_degc=T1 --map gas_top_degc=T2 \\
+      --input shoulder --output gas_top";
+
+/// Method of identification.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// Least squares of the simulation's errors, as MATLAB's tfest.
+    OutputError,
+    /// Simplified refined instrumental variables (SRIVC).
+    RefinedInstruments,
+    /// Least squares less the bias of known noise; needs --input-sd and --output-sd.
+    BiasCompensated,
+    /// Refined instruments less the bias of known noise of the input; needs --input-sd.
+    CompensatedInstruments,
+    /// Instruments from another sensor of the input; needs --second.
+    SecondSensor,
+    /// Maximum likelihood of both readings by a Kalman filter; needs --input-sd and --output-sd.
+    MaximumLikelihood,
+}
+
+/// Course of the input between its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum HoldName {
+    /// Straight from sample to sample.
+    First,
+    /// Constant from a sample to the next one.
+    Zero,
+}
+
+/// Course of the true input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CourseName {
+    /// Random walk.
+    RandomWalk,
+    /// Integrated random walk: smooth.
+    IntegratedRandomWalk,
+}
+
+impl From<CourseName> for InputCourse {
+    fn from(name: CourseName) -> Self {
+        match name {
+            CourseName::RandomWalk => Self::RandomWalk,
+            CourseName::IntegratedRandomWalk => Self::IntegratedRandomWalk,
+        }
+    }
+}
+
+/// What is supposed of the errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ErrorsName {
+    /// White unless a test at 1 % rejects it.
+    Judged,
+    /// White.
+    White,
+    /// Correlated.
+    Coloured,
+}
+
+/// First model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StartName {
+    /// State-variable filter, then instruments as far as they help.
+    InstrumentalVariables,
+    /// State-variable filter alone.
+    StateVariableFilter,
+}
+
+impl IdentifyArguments {
+    /// Structure of the model.
+    pub fn structure(&self, amounts: &Amounts) -> anyhow::Result<Structure> {
+        Ok(Structure {
+            order: self.order,
+            zeros: self.zeros.unwrap_or(self.order.saturating_sub(1)),
+            dead_time: match amounts.dead_time()? {
+                (None, None) => DeadTime::None,
+                (Some(fixed_s), None) => DeadTime::Fixed(fixed_s),
+                (None, Some(longest_s)) => DeadTime::Free(longest_s),
+                _ => anyhow::bail!("--dead-time fixes what --longest-dead-time leaves free: keep one"),
+            },
+            gain: self.gain,
+            offset: self.offset,
+            initial: self.initial.clone(),
+        })
+    }
+
+    /// Settings of the search.
+    pub fn settings(&self, amounts: &Amounts) -> anyhow::Result<Settings> {
+        Ok(Settings {
+            iterations: self.iterations,
+            start: match self.start {
+                StartName::InstrumentalVariables => StartMethod::InstrumentalVariables,
+                StartName::StateVariableFilter => StartMethod::StateVariableFilter,
+            },
+            errors: match self.errors {
+                ErrorsName::Judged => ErrorModel::Judged,
+                ErrorsName::White => ErrorModel::White,
+                ErrorsName::Coloured => ErrorModel::Coloured,
+            },
+            longest_gap_s: amounts.longest_gap_s()?,
+            lags: self.lags,
+            ..Settings::default()
+        })
+    }
+}
+
+fn initial(text: &str) -> Result<InitialState, String> {
+    match text {
+        "estimated" => Ok(InitialState::Estimated),
+        "zero" => Ok(InitialState::Zero),
+        "settled" => Ok(InitialState::Settled),
+        numbers => {
+            let values = numbers.split(',').map(|number| number.trim().parse::<f64>());
+            let values = values.collect::<Result<Vec<_>, _>>();
+            values
+                .map(InitialState::Given)
+                .map_err(|_| "write estimated, zero, settled, or numbers".to_owned())
+        }
+    }
+}
+
+fn gain(text: &str) -> Result<Gain, String> {
+    match text {
+        "free" => Ok(Gain::Free),
+        number => number.parse().map(Gain::Fixed).map_err(|_| "write free, or a number".to_owned()),
+    }
+}

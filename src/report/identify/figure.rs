@@ -1,0 +1,106 @@
+//! The figure of an identification: data and model, errors, what is left in the errors.
+use super::{Part, Study};
+use crate::estimator::identify::Residuals;
+use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+
+/// Data, model and errors against time; below, the errors' correlations against the lag.
+pub fn figure(study: &Study) -> Figure {
+    let fitted = over_time(study, &study.fitted, &study.identified.residuals, study.title());
+    let correlations = correlations(&study.identified.residuals, &study.input.name);
+    let held_out = study.held_out.as_ref().and_then(|part| {
+        let title = format!("held out: {}", part.name);
+        Some(over_time(study, part, &part.identified()?.residuals, title))
+    });
+    let below = match held_out {
+        Some(held_out) => Figure { below: Some(Box::new(correlations)), ..held_out },
+        None => correlations,
+    };
+    Figure { below: Some(Box::new(below)), ..fitted }
+}
+
+/// Data with the models, and their errors.
+fn over_time(study: &Study, part: &Part, residuals: &Residuals, title: String) -> Figure {
+    // A log whose clock began long ago is drawn from its first row.
+    let (from_s, to_s) = (part.data.time_s()[0], *part.data.time_s().last().unwrap_or(&0.0));
+    let origin_s = if from_s < 0.0 || from_s > to_s - from_s { from_s } else { 0.0 };
+    let shifted = |times: &[f64]| times.iter().map(|time_s| time_s - origin_s).collect::<Vec<_>>();
+    let all = shifted(part.data.time_s());
+    let at = shifted(&residuals.time_s);
+    let mut values = vec![
+        Item::line(&study.input.name, &all, part.data.input().iter().copied(), style::SHOULDER),
+        Item::line(&study.output.name, &all, part.data.output().iter().copied(), style::GAS_MEAN),
+    ];
+    if study.input.unit != study.output.unit {
+        values.remove(0);
+    }
+    let mut errors = Vec::new();
+    if let Some(published) = part.published() {
+        let simulated = part.simulated(&published.residuals);
+        let x = shifted(&published.residuals.time_s);
+        values.push(Item::line("published", &x, simulated, style::THIRD));
+        let missed = published.residuals.values.iter().copied();
+        errors.push(Item::line("published", &x, missed, style::THIRD));
+    }
+    values.push(Item::line("identified", &at, part.simulated(residuals), style::FIRST));
+    errors.push(Item::line("identified", &at, residuals.values.iter().copied(), style::FIRST));
+    let mut panels = Vec::new();
+    if study.input.unit != study.output.unit {
+        let input = Item::line(&study.input.name, &all, part.data.input().iter().copied(), style::SHOULDER);
+        let quantity = format!("input in {}", study.input.unit);
+        panels.push(Panel { quantity, items: vec![input], height: 0.7 });
+    }
+    panels.push(Panel { quantity: format!("data in {}", study.output.unit), items: values, height: 1.0 });
+    panels.push(Panel {
+        quantity: format!("error in {}", study.output.difference),
+        items: errors,
+        height: 0.7,
+    });
+    Figure { title, horizontal: Horizontal::Time, panels, marks: Vec::new(), below: None }
+}
+
+/// Correlation of the errors with themselves and with the input, with 99 % bands.
+fn correlations(residuals: &Residuals, input: &str) -> Figure {
+    let lags = residuals.autocorrelation.len() as i64 - 1;
+    let both: Vec<f64> = (-lags..=lags).map(|lag| lag as f64).collect();
+    let after: Vec<f64> = (0..=lags).map(|lag| lag as f64).collect();
+    let ends = [-(lags as f64), lags as f64];
+    let band = |bound: f64| Item::Band {
+        name: "99 % by chance".into(),
+        x: ends.to_vec(),
+        low: vec![-bound; 2],
+        high: vec![bound; 2],
+    };
+    let panel = |name: String, x: &[f64], values: &[f64], bound: f64| Panel {
+        quantity: "correlation".into(),
+        items: vec![band(bound), stems(x, values), points(name, x, values)],
+        height: 0.6,
+    };
+    let auto = &residuals.autocorrelation;
+    let with_input = &residuals.input_correlation;
+    Figure {
+        title: "What is left in the errors".into(),
+        horizontal: Horizontal::Quantity("lag in samples".into()),
+        panels: vec![
+            panel("errors with\nthemselves".into(), &after, auto, residuals.autocorrelation_bound),
+            panel(
+                format!("errors with\n{input}, lag\nsamples before"),
+                &both,
+                with_input,
+                residuals.input_correlation_bound,
+            ),
+        ],
+        marks: Vec::new(),
+        below: None,
+    }
+}
+
+fn points(name: String, x: &[f64], values: &[f64]) -> Item {
+    Item::Points { name, x: x.to_vec(), y: values.to_vec(), stroke: style::MEASURED }
+}
+
+/// A line from zero to each value.
+fn stems(x: &[f64], values: &[f64]) -> Item {
+    let corners = x.iter().zip(values).flat_map(|(&x, &y)| [(x, 0.0), (x, y), (f64::NAN, f64::NAN)]);
+    let (x, y) = corners.unzip();
+    Item::Line { name: String::new(), x, y, stroke: style::MEASURED }
+}

@@ -1,0 +1,138 @@
+//! An identification in a few lines for people.
+use super::{Part, Study};
+use crate::estimator::identify::{Interval, Parameter, Pole, Residuals, Statistics};
+use crate::report::{aligned, number};
+
+/// Digits of values that people compare.
+const DIGITS: usize = 5;
+
+/// The study in words and tables.
+pub fn text(study: &Study) -> String {
+    let mut text = format!("{}\n{}\n{}\n\n", study.title(), log(&study.fitted), study.method);
+    text.push_str(&aligned(&["", "value", "95 % low", "95 % high", "unit"], &parameters(study)));
+    text.push('\n');
+    text.push_str(&merits(study));
+    text.push('\n');
+    text.push_str(&errors(&study.identified.residuals));
+    text
+}
+
+fn log(part: &Part) -> String {
+    let times = part.data.time_s();
+    let length_s = times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0);
+    format!("{}: {} rows in {} h", part.name, times.len(), number(length_s / 3600.0, 4))
+}
+
+/// Poles and gain, then the parameters themselves.
+fn parameters(study: &Study) -> Vec<Vec<String>> {
+    let (u, y) = (study.input.difference, study.output.difference);
+    let derived = &study.identified.derived;
+    let mut rows = Vec::new();
+    for (index, pole) in derived.poles.iter().enumerate() {
+        rows.extend(of_pole(pole, index, derived.poles.len()));
+    }
+    let unit = if u == y { "1".to_owned() } else { format!("{y}/{u}") };
+    rows.push(row("steady-state gain", &derived.gain, &unit));
+    for estimate in &study.identified.parameters {
+        let (name, unit) = name_and_unit(study, estimate.parameter);
+        rows.push(row(&name, &estimate.interval, &unit));
+    }
+    rows
+}
+
+fn of_pole(pole: &Pole, index: usize, count: usize) -> Vec<Vec<String>> {
+    let suffix = if count > 1 { format!(" {}", index + 1) } else { String::new() };
+    let mut rows = vec![row(&format!("pole{suffix}"), &pole.real_per_s, "1/s")];
+    if pole.imaginary_per_s.value != 0.0 {
+        rows.push(row(&format!("pole{suffix}, imaginary"), &pole.imaginary_per_s, "1/s"));
+    }
+    rows.push(row(&format!("time constant{suffix}"), &pole.time_constant_s, "s"));
+    rows
+}
+
+/// Name of a parameter in `(b1 s + b0)/(s^n + ... + a0)`, with its unit.
+fn name_and_unit(study: &Study, parameter: Parameter) -> (String, String) {
+    let order = study.identified.model.order();
+    let (u, y) = (study.input.difference, study.output.difference);
+    let per_time = |power: usize| match power {
+        0 => "1".to_owned(),
+        1 => "1/s".to_owned(),
+        _ => format!("1/s^{power}"),
+    };
+    match parameter {
+        Parameter::Denominator(i) => (format!("denominator a{i}"), per_time(order - i)),
+        Parameter::Numerator(j) if u == y => (format!("numerator b{j}"), per_time(order - j)),
+        Parameter::Numerator(j) => (format!("numerator b{j}"), format!("{y}/{u} {}", per_time(order - j))),
+        Parameter::Initial(0) => ("free response at the start".to_owned(), study.output.unit.to_owned()),
+        Parameter::Initial(1) => ("its slope at the start".to_owned(), format!("{y}/s")),
+        Parameter::Initial(k) => (format!("its derivative {k} at the start"), format!("{y}/s^{k}")),
+        Parameter::Offset => ("offset".to_owned(), study.output.unit.to_owned()),
+        Parameter::DeadTime => ("dead time".to_owned(), "s".to_owned()),
+        Parameter::LogIntensity => ("logarithm of the input's intensity".to_owned(), String::new()),
+    }
+}
+
+fn row(name: &str, interval: &Interval, unit: &str) -> Vec<String> {
+    let mut cells = vec![name.to_owned()];
+    cells.push(number(interval.value, DIGITS));
+    match interval.sd {
+        0.0 => cells.extend(["".to_owned(), "".to_owned()]),
+        _ => cells.extend([interval.low, interval.high].map(|edge| number(edge, DIGITS))),
+    }
+    cells.push(unit.to_owned());
+    cells
+}
+
+/// Figures of merit of all models on all data.
+fn merits(study: &Study) -> String {
+    let squared = format!("MSE / {}^2", study.output.difference);
+    let rms = format!("rms / {}", study.output.difference);
+    let header =
+        ["model", "data", "start", "samples", "fit / %", &rms, &squared, "FPE", "AIC", "AICc", "BIC"];
+    let line = |model: &str, data: &str, start: &str, statistics: &Statistics| {
+        let s = statistics;
+        let mut cells = [model, data, start].map(str::to_owned).to_vec();
+        cells.push(s.samples.to_string());
+        cells.push(format!("{:.2}", s.fit_percent));
+        cells.extend([s.mse.sqrt(), s.mse, s.fpe].map(|value| number(value, 4)));
+        cells.extend([s.aic, s.aicc, s.bic].map(|value| format!("{value:.1}")));
+        cells
+    };
+    let mut rows = vec![line("identified", "the log", "as above", &study.identified.statistics)];
+    let parts = [("the log", Some(&study.fitted)), ("held out", study.held_out.as_ref())];
+    for (data, part) in parts {
+        for judged in part.iter().flat_map(|part| &part.judged) {
+            rows.push(line(judged.model, data, judged.start.words(), &judged.comparison.statistics));
+        }
+    }
+    let mut text = aligned(&header, &rows);
+    if let Some(part) = &study.held_out {
+        text.push_str(&format!("held out: {}\n", log(part)));
+    }
+    if study.fitted.published().is_some() {
+        text.push_str("published: G(s) = 0.003121/(s + 0.003021), shoulder to gas in °C, gain 1.0331\n");
+    }
+    text
+}
+
+/// What is left in the errors.
+fn errors(residuals: &Residuals) -> String {
+    let lags = residuals.autocorrelation.len() - 1;
+    let largest =
+        |values: &[f64]| values.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+    let auto = largest(&residuals.autocorrelation[1..]);
+    let with_input = largest(&residuals.input_correlation);
+    let white = if residuals.is_white() { "may be white" } else { "are not white" };
+    format!(
+        "errors {white} (probability {}); over {lags} lags their largest autocorrelation is {auto:+.2} \
+         (99 % bound {:.2}),\ntheir largest correlation with the input {with_input:+.2} (99 % bound {:.2})\n",
+        probability(residuals.whiteness),
+        residuals.autocorrelation_bound,
+        residuals.input_correlation_bound
+    )
+}
+
+/// A probability, as far as it matters.
+pub(super) fn probability(value: f64) -> String {
+    if value < 0.001 { "below 0.001".to_owned() } else { format!("{value:.3}") }
+}
