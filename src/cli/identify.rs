@@ -70,7 +70,7 @@ impl Options {
             columns: [&arguments.input, &arguments.output]
                 .into_iter()
                 .chain(&arguments.second)
-                .map(|name| name.to_ascii_lowercase())
+                .map(|name| record::base_name(name))
                 .collect(),
             structure,
             settings: arguments.settings(&arguments.amounts)?,

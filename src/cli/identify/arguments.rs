@@ -14,10 +14,10 @@ use std::path::PathBuf;
 pub struct IdentifyArguments {
     /// Log: a CSV or Parquet file, or - for CSV on stdin.
     pub log: String,
-    /// Column of the input, without its unit.
+    /// Column of the input, with or without its unit.
     #[arg(long, value_name = "COLUMN")]
     pub input: String,
-    /// Column of the output, without its unit.
+    /// Column of the output, with or without its unit.
     #[arg(long, value_name = "COLUMN")]
     pub output: String,
     /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.

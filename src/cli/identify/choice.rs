@@ -1,5 +1,6 @@
 //! Method, and what is held out, as checked options.
 use super::arguments::{HoldName, IdentifyArguments, MethodName};
+use super::record::base_name;
 use super::{Amounts, Record};
 use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputCourse, Method, Structure};
@@ -16,7 +17,7 @@ impl Choice {
     /// Checks that the options fit each other.
     pub fn checked(arguments: &IdentifyArguments) -> anyhow::Result<Self> {
         let IdentifyArguments { input, output, second, method, .. } = arguments;
-        let same = |a: &str, b: &str| a.eq_ignore_ascii_case(b);
+        let same = |a: &str, b: &str| base_name(a) == base_name(b);
         if same(input, output) {
             bail!("--input and --output name the same column {input}: choose two");
         }

@@ -2,9 +2,10 @@
 use crate::cli::input::LogInput;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::Quantity;
+use cylwatch::log::columns::TruthQuantity;
 use cylwatch::log::{LogReader, Row};
 use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::ZERO_CELSIUS_K;
+use cylwatch::thermal::units::{Dimension, ZERO_CELSIUS_K, units_of};
 
 const PASCAL_PER_BAR: f64 = 1e5;
 
@@ -34,25 +35,29 @@ enum Source {
     GasMean,
 }
 
+/// Name of a column as it was asked for, without its unit and in small letters.
+pub fn base_name(asked: &str) -> String {
+    let name = asked.to_ascii_lowercase();
+    let name = name.strip_prefix("measured_").unwrap_or(&name);
+    let units = units_of(Dimension::Temperature).chain(units_of(Dimension::Pressure));
+    let bases = units.filter_map(|unit| name.strip_suffix(unit.suffix)?.strip_suffix('_'));
+    bases.min_by_key(|base| base.len()).unwrap_or(name).to_owned()
+}
+
 impl Source {
-    /// Finds a column by its name, with or without its unit.
+    /// Finds a column by its name without unit.
     fn find(reader: &LogReader, name: &str) -> anyhow::Result<Self> {
         let channels = reader.channels();
-        let headers = reader.columns().readings.iter().map(|column| &column.header);
-        let named = |(channel, header): (&String, &String)| {
-            channel.eq_ignore_ascii_case(name) || header.eq_ignore_ascii_case(name)
-        };
-        let names = channels.iter().map(|channel| &channel.name);
-        if let Some(at) = names.zip(headers).position(named) {
+        if let Some(at) = channels.iter().position(|channel| channel.name.eq_ignore_ascii_case(name)) {
             return Ok(Self::Channel(at, channels[at].quantity));
         }
-        let truth = reader.columns().truth.iter().map(|column| column.header.as_str());
-        let gas = truth.clone().find(|header| header.to_ascii_lowercase().starts_with(GAS_MEAN));
-        if gas.is_some_and(|header| name == GAS_MEAN || header.eq_ignore_ascii_case(name)) {
+        let truth = &reader.columns().truth;
+        let knows_gas = truth.iter().any(|column| column.meaning == TruthQuantity::GasMean);
+        if knows_gas && name == GAS_MEAN {
             return Ok(Self::GasMean);
         }
         let mut known: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
-        known.extend(gas.map(|_| GAS_MEAN));
+        known.extend(knows_gas.then_some(GAS_MEAN));
         bail!("the log has no column {name}; it has {}: choose one of them, or give --map", known.join(", "))
     }
 

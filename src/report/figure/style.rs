@@ -106,6 +106,11 @@ pub fn innovation(name: &str, number: usize) -> Stroke {
     Stroke { color, width: 1.1, dash: &[] }
 }
 
+/// The same stroke for a curve with noise, which would blur dashes: thin and full.
+pub fn noisy(stroke: Stroke) -> Stroke {
+    Stroke { width: 1.1, dash: &[], ..stroke }
+}
+
 /// Width of a figure; an SVG opens at this many pixels.
 pub const WIDTH: f64 = 860.0;
 /// Height of a panel of weight 1.

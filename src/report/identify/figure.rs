@@ -20,9 +20,7 @@ pub fn figure(study: &Study) -> Figure {
 
 /// Data with the models, and their errors.
 fn over_time(study: &Study, part: &Part, residuals: &Residuals, title: String) -> Figure {
-    // A log whose clock began long ago is drawn from its first row.
-    let (from_s, to_s) = (part.data.time_s()[0], *part.data.time_s().last().unwrap_or(&0.0));
-    let origin_s = if from_s < 0.0 || from_s > to_s - from_s { from_s } else { 0.0 };
+    let origin_s = origin_s(&study.fitted, part);
     let shifted = |times: &[f64]| times.iter().map(|time_s| time_s - origin_s).collect::<Vec<_>>();
     let all = shifted(part.data.time_s());
     let at = shifted(&residuals.time_s);
@@ -39,10 +37,11 @@ fn over_time(study: &Study, part: &Part, residuals: &Residuals, title: String) -
         let x = shifted(&published.residuals.time_s);
         values.push(Item::line("published", &x, simulated, style::THIRD));
         let missed = published.residuals.values.iter().copied();
-        errors.push(Item::line("published", &x, missed, style::THIRD));
+        errors.push(Item::line("published", &x, missed, style::noisy(style::THIRD)));
     }
     values.push(Item::line("identified", &at, part.simulated(residuals), style::FIRST));
-    errors.push(Item::line("identified", &at, residuals.values.iter().copied(), style::FIRST));
+    let missed = residuals.values.iter().copied();
+    errors.push(Item::line("identified", &at, missed, style::noisy(style::FIRST)));
     let mut panels = Vec::new();
     if study.input.unit != study.output.unit {
         let input = Item::line(&study.input.name, &all, part.data.input().iter().copied(), style::SHOULDER);
@@ -58,6 +57,20 @@ fn over_time(study: &Study, part: &Part, residuals: &Residuals, title: String) -
     Figure { title, horizontal: Horizontal::Time, panels, marks: Vec::new(), below: None }
 }
 
+/// Where a part's time axis begins, s: at the clock's zero, or, if that was long ago, at the first row. What was held out of a
+/// log goes on with its axis.
+fn origin_s(fitted: &Part, part: &Part) -> f64 {
+    let span = |part: &Part| {
+        let times = part.data.time_s();
+        let [from_s, to_s] = [times.first(), times.last()].map(|time_s| time_s.copied().unwrap_or(0.0));
+        (from_s, to_s)
+    };
+    let own = |(from_s, to_s): (f64, f64)| if from_s < 0.0 || from_s > to_s - from_s { from_s } else { 0.0 };
+    let ((first_s, end_s), (from_s, to_s)) = (span(fitted), span(part));
+    let goes_on = from_s > end_s && from_s - end_s < end_s - first_s;
+    if goes_on { own((first_s, end_s)) } else { own((from_s, to_s)) }
+}
+
 /// Correlation of the errors with themselves and with the input, with 99 % bands.
 fn correlations(residuals: &Residuals, input: &str) -> Figure {
     let lags = residuals.autocorrelation.len() as i64 - 1;
@@ -67,16 +80,16 @@ fn correlations(residuals: &Residuals, input: &str) -> Figure {
     let band = |bound: f64| Item::Band {
         name: "99 % by chance".into(),
         x: ends.to_vec(),
-        low: vec![-bound; 2],
-        high: vec![bound; 2],
+        low: vec![-100.0 * bound; 2],
+        high: vec![100.0 * bound; 2],
     };
     let panel = |name: String, x: &[f64], values: &[f64], bound: f64| Panel {
-        quantity: "correlation".into(),
+        quantity: "correlation in %".into(),
         items: vec![band(bound), stems(x, values), points(name, x, values)],
         height: 0.6,
     };
-    let auto = &residuals.autocorrelation;
-    let with_input = &residuals.input_correlation;
+    let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value).collect::<Vec<_>>();
+    let (auto, with_input) = (&percent(&residuals.autocorrelation), &percent(&residuals.input_correlation));
     Figure {
         title: "What is left in the errors".into(),
         horizontal: Horizontal::Quantity("lag in samples".into()),

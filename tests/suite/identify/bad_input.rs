@@ -97,7 +97,7 @@ fn structures_settings_and_columns_that_cannot_be_are_refused_with_what_would_be
     );
     refused(
         &rows,
-        &["--method", "second-sensor", "--second", "valve"],
+        &["--method", "second-sensor", "--second", "valve_degc"],
         &["no column valve", "shoulder, gas_top"],
     );
     refused(

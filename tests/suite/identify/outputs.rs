@@ -91,7 +91,7 @@ fn places_and_options_that_contradict_each_other_are_found_before_the_run() {
     with(&["--dead-time-s", "-10"], &["--dead-time-s = -10", "above 0"]);
     with(&["--initial", "warm"], &["--initial", "estimated, zero, settled, or numbers"]);
     with(&["--gain", "one"], &["--gain", "free, or a number"]);
-    refused(folder.path(), &["identify", "-", "--input", "a", "--output", "a"], &["same column a"]);
+    refused(folder.path(), &["identify", "-", "--input", "a", "--output", "A_k"], &["same column a"]);
     let both = ["identify", "-", "--input", "a", "--output", "b", "--validate", "-"];
     refused(folder.path(), &both, &["stdin", "not both"]);
     assert_eq!(files(folder.path()), ["log.csv"]);

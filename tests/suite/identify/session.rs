@@ -42,8 +42,16 @@ fn a_simulated_scenario_gives_a_gain_of_one_beside_the_papers_and_a_model_that_h
     let folder = tempdir().unwrap();
     simulate(folder.path(), "tunnel-winter", "run.csv");
     simulate(folder.path(), "ramp-warm", "ramp.csv");
-    let arguments =
-        ["identify", "run.csv", "--input", "shoulder", "--output", "gas_mean", "--validate", "ramp.csv"];
+    let arguments = [
+        "identify",
+        "run.csv",
+        "--input",
+        "shoulder_degC",
+        "--output",
+        "gas_mean_k",
+        "--validate",
+        "ramp.csv",
+    ];
     let outcome = run(folder.path(), &[&arguments[..], &["-o", "m.json", "--plot", "m.svg"]].concat());
     assert_eq!((outcome.code, outcome.stdout.as_str()), (Some(0), ""), "{}", outcome.stderr);
     let [gain, ..] = shown(&outcome.stderr, "steady-state gain");
