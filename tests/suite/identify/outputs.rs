@@ -48,6 +48,21 @@ fn missing_values_are_left_out_with_a_caution_and_change_nothing_else() {
 }
 
 #[test]
+fn a_logger_with_dates_foreign_names_and_kelvins_gives_the_model_of_ours() {
+    let folder = tempdir().unwrap();
+    let ours = lagged(300);
+    let line = |[time_s, shoulder, gas]: &[f64; 3]| {
+        let (hours, minutes) = ((time_s / 3600.0) as u32, (time_s / 60.0) as u32 % 60);
+        format!("2026-01-05T{hours:02}:{minutes:02}:00Z,{:.4},{:.4}\n", shoulder + 273.15, gas + 273.15)
+    };
+    let theirs = String::from("Timestamp,T1,T2\n") + &ours.iter().map(line).collect::<String>();
+    let maps = ["--map", "time=Timestamp", "--map", "shoulder_k=T1", "--map", "gas_top_k=T2"];
+    let [ours, theirs] = [document(folder.path(), &log(&ours), &[]), document(folder.path(), &theirs, &maps)]
+        .map(|document| document["identified"]["model"]["den"][1].as_f64().unwrap());
+    assert!((ours / theirs - 1.0).abs() < 1e-6, "{ours} {theirs}");
+}
+
+#[test]
 fn a_column_that_is_a_pressure_has_its_own_units_and_no_published_model() {
     let folder = tempdir().unwrap();
     let text: String = lagged(400)
