@@ -99,9 +99,14 @@ impl Course {
 
     /// Scenarios 1 and 2, the second from the next minute on.
     pub fn of_table_1(couplings: [f64; 2]) -> Result<Self, Box<dyn Error>> {
+        Self::joined(couplings, 60.0)
+    }
+
+    /// Scenarios 1 and 2, the second after a gap, s. Over it the input is taken as straight, though it jumps with the air.
+    fn joined(couplings: [f64; 2], gap_s: f64) -> Result<Self, Box<dyn Error>> {
         let mut record = Self::simulated("shock-cold", couplings)?;
         let other = Self::simulated("tunnel-winter", couplings)?;
-        let start_s = record.time_s.last().map_or(0.0, |end_s| end_s + 60.0);
+        let start_s = record.time_s.last().map_or(0.0, |end_s| end_s + gap_s);
         record.time_s.extend(other.time_s.iter().map(|time_s| start_s + time_s));
         record.shoulder.extend(&other.shoulder);
         record.valve.extend(&other.valve);
@@ -259,6 +264,8 @@ fn choices(course: &Course) -> Result<(), Box<dyn Error>> {
         let alone = Course::simulated(scenario, [COUPLING; 2])?;
         line(name, &alone, first, InitialState::Estimated, Gain::Free)?;
     }
+    let jumping = Course::joined([COUPLING; 2], 0.01)?;
+    line("joined without a minute between them", &jumping, first, InitialState::Estimated, Gain::Free)?;
     for coupling in [0.1, 0.2] {
         let mounted = Course::of_table_1([coupling; 2])?;
         let name = format!("reading {:.0} % of the way to the air", 100.0 * coupling);
