@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Dyn};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::lanes::Lanes;
-use super::ud::UdFactors;
+use super::ud::{USUAL_SIZES, UdFactors};
 
 mod pattern;
 #[cfg(test)]
@@ -18,7 +18,7 @@ pub use pattern::Pattern;
 pub use transition::BankTransition;
 
 /// States and moving states of the cylinder's observer with its usual sensors: of known size its loops are unrolled.
-const USUAL: (usize, usize) = (18, 9);
+const USUAL: (usize, usize) = (USUAL_SIZES.0, USUAL_SIZES.1);
 
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
 #[derive(Clone, Debug)]
