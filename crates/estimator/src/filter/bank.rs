@@ -2,12 +2,15 @@
 //!
 //! The steps are those of [`UdFactors`] (Bierman's and Thornton's), each in four lanes at once, which costs little more than one filter:
 //! small matrices keep a processor waiting for the last result, and four independent ones fill the wait. What is zero by
-//! structure stays out: a transition has a [`Pattern`], and its rows keep the range of their elements that may differ from zero.
+//! structure stays out: a transition has a [`Pattern`], and its rows keep the range of their elements that may differ from zero. Results do
+//! not depend on the registers that a machine has.
+//!
+//! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
 use nalgebra::{DMatrix, Dyn};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::lanes::Lanes;
-use super::ud::UdFactors;
+use super::ud::{USUAL_SIZES, UdFactors};
 
 mod pattern;
 #[cfg(test)]
@@ -18,7 +21,7 @@ pub use pattern::Pattern;
 pub use transition::BankTransition;
 
 /// States and moving states of the cylinder's observer with its usual sensors: of known size its loops are unrolled.
-const USUAL: (usize, usize) = (18, 9);
+const USUAL: (usize, usize) = (USUAL_SIZES.0, USUAL_SIZES.1);
 
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
 #[derive(Clone, Debug)]
@@ -26,9 +29,7 @@ pub struct UdBank {
     n: usize,
     /// Vector registers of this machine.
     arch: Arch,
-    /// Length of a column of `U` in memory, whole groups of four; what is below `U` is zero.
-    stride: usize,
-    /// Columns of `U`: (stride, n).
+    /// Columns of `U`, each in whole groups of four numbers; what is below `U` is zero.
     u: Vec<Lanes>,
     /// (n).
     d: Vec<Lanes>,
@@ -48,12 +49,11 @@ pub struct UdBank {
 impl UdBank {
     /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
     pub fn new(n: usize, leading: usize) -> Self {
-        let stride = n.next_multiple_of(4);
+        let stride = stride(n);
         let mut u = vec![Lanes::ZERO; stride * n];
         u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
         Self {
             n,
-            stride,
             arch: Arch::new(),
             u,
             d: vec![Lanes::ZERO; n],
@@ -69,7 +69,7 @@ impl UdBank {
 
     /// Let a lane have the covariance of `factors`, of as many states.
     pub fn set(&mut self, lane: usize, factors: &UdFactors<Dyn>) {
-        for (to, from) in self.u.chunks_exact_mut(self.stride).zip(factors.unit_upper().column_iter()) {
+        for (to, from) in self.u.chunks_exact_mut(stride(self.n)).zip(factors.unit_upper().column_iter()) {
             to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
         }
         self.d.iter_mut().zip(factors.diagonal()).for_each(|(to, &from)| to.0[lane] = from);
@@ -99,7 +99,7 @@ impl UdBank {
     /// Write the covariance of a lane: (n, n).
     pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
         p.fill(0.0);
-        for (l, (u, d)) in self.u.chunks_exact(self.stride).zip(&self.d).enumerate() {
+        for (l, (u, d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate() {
             for j in 0..=l {
                 let factor = d.0[lane] * u[j].0[lane];
                 for i in 0..=j {
@@ -113,7 +113,7 @@ impl UdBank {
     /// Variance of state `i` of a lane.
     pub fn variance(&self, lane: usize, i: usize) -> f64 {
         let mut sum = 0.0;
-        for (u, d) in self.u.chunks_exact(self.stride).zip(&self.d).skip(i) {
+        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(i) {
             sum += d.0[lane] * u[i].0[lane] * u[i].0[lane];
         }
         sum
@@ -122,7 +122,7 @@ impl UdBank {
     /// Variance of state `i` of every lane.
     pub fn variances(&self, i: usize) -> Lanes {
         let mut sum = [Lanes::ZERO; 2];
-        for (j, (u, &d)) in self.u.chunks_exact(self.stride).zip(&self.d).enumerate().skip(i) {
+        for (j, (u, &d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate().skip(i) {
             sum[j % 2] += d * u[i] * u[i];
         }
         sum[0] + sum[1]
@@ -142,6 +142,7 @@ impl UdBank {
     fn predict_in_lanes(&mut self, transition: &mut BankTransition) {
         match (self.n, transition.leading()) {
             USUAL => self.predict_sized(transition, USUAL),
+            (_, 0) => {}
             sizes => self.predict_sized(transition, sizes),
         }
     }
@@ -302,7 +303,7 @@ impl UdBank {
 
     /// Multiply state `i` by a positive factor in every lane: its variances by the square, its covariances by the factor.
     pub fn scale(&mut self, i: usize, factor: f64) {
-        for (j, u) in self.u.chunks_exact_mut(self.stride).enumerate().skip(i) {
+        for (j, u) in self.u.chunks_exact_mut(stride(self.n)).enumerate().skip(i) {
             if j == i {
                 u[..i].iter_mut().for_each(|above| *above = *above * factor.recip());
             } else {
@@ -314,12 +315,12 @@ impl UdBank {
 
     /// Make state `i` of a lane independent of all others, with the given variance: an event has reset it.
     pub fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
-        for u in self.u.chunks_exact_mut(self.stride).skip(i + 1) {
+        for u in self.u.chunks_exact_mut(stride(self.n)).skip(i + 1) {
             u[i].0[lane] = 0.0;
         }
         // What state i explained in the states before it remains theirs.
         self.f.fill(Lanes::ZERO);
-        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * self.stride..][..i]) {
+        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * stride(self.n)..][..i]) {
             f.0[lane] = std::mem::take(&mut above.0[lane]);
         }
         let mut left = Lanes::ZERO;
@@ -335,7 +336,7 @@ impl UdBank {
             let new = old + c * s * s;
             let inverse = new.inverse();
             let b = c * s * inverse;
-            for (u, v) in self.u[j * self.stride..][..j].iter_mut().zip(v) {
+            for (u, v) in self.u[j * stride(self.n)..][..j].iter_mut().zip(v) {
                 *v -= s * *u;
                 *u += b * *v;
             }

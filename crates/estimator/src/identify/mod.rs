@@ -17,7 +17,7 @@
 //!
 //! The record is brought to units of its own before anything is estimated, so that no result depends on the units it came in.
 //!
-//! Source: Garnier and Young 2008, Ljung 1999, Söderström 2007.
+//! Source: Garnier and Wang 2008, Ljung 1999, Söderström 2007.
 mod checks;
 mod comparison;
 mod compensation;

@@ -6,9 +6,9 @@
 //! | engine | what it does | what it costs |
 //! |---|---|---|
 //! | extended | linearises along the estimate; learns all that can be learnt | the default |
-//! | unscented | linearises statistically over the spread of the estimate | some 25 times as much |
+//! | unscented | linearises statistically over the spread of the estimate | some twelve times as much |
 //! | stationary | constant gain; learns no constants | as much: no covariance moves, but the model's equations cost most |
-//! | moving horizon | best trajectory through a window of samples, inside constraints | some 200 times as much |
+//! | moving horizon | best trajectory through a window of samples, inside constraints | some 250 times as much |
 mod horizon;
 mod mechanism;
 mod stationary;

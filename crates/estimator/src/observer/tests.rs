@@ -3,10 +3,16 @@ use crate::thermal::vessel::presets;
 
 const REST: [f64; 3] = [288.15, 288.15, 2e7];
 
+const FILL_K: f64 = 288.15;
+
 fn observer(engine: Engine) -> Observer {
+    observer_of(engine, ObserverSettings::default().bank)
+}
+
+fn observer_of(engine: Engine, bank: Vec<LeakHypothesis>) -> Observer {
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
-    let settings = ObserverSettings { engine, ..ObserverSettings::default() };
-    let commissioning = Commissioning::filled(2e7, 288.15);
+    let settings = ObserverSettings { engine, bank, ..ObserverSettings::default() };
+    let commissioning = Commissioning::filled(2e7, FILL_K);
     Observer::new(&presets::load("nitrogen-20l").unwrap(), &sensors, &commissioning, &settings).unwrap()
 }
 
@@ -102,4 +108,73 @@ fn what_is_stated_of_the_gas_is_narrower_than_the_filters_variance_only_as_long_
     let least_k2 = 0.16 / 6.0 + 0.01;
     approx::assert_relative_eq!(stated_k2, least_k2, max_relative = 0.01);
     assert!(filter_k2(gas) > 1.5 * least_k2);
+}
+
+/// Readings, every minute, of a cylinder of the observer's own kind, but with other films and couplings, that goes through tunnels
+/// and nights; noise of the sensors' size.
+fn readings_of_a_day() -> Vec<[f64; 3]> {
+    let mut observer = observer(Engine::Extended);
+    let cylinder = observer.cylinder();
+    let states = cylinder.state_map().clone();
+    let mut x = vec![0.0; states.names.len()];
+    x[..states.mass].fill(FILL_K);
+    x[states.mass] = 4.4;
+    for (state, value) in [(states.inside, -0.3), (states.outside, 0.25), (states.capacity, 0.1)] {
+        x[state.unwrap()] = value;
+    }
+    for (index, parameter) in states.parameters.iter().flatten().copied().flatten().enumerate() {
+        x[parameter] = [0.15, 0.1, -0.1, 0.07, 3e4, 1500.0][index];
+    }
+    let row = |k: usize| {
+        let hours = k as f64 / 60.0;
+        let tunnel = if hours % 6.0 > 5.5 { 30.0 } else { 0.0 };
+        x[states.air] = FILL_K - 8.0 * (hours * std::f64::consts::PI / 12.0).sin() + tunnel;
+        cylinder.propagate(&mut x, 60.0, None).unwrap();
+        let noise = |seed: f64| ((k as f64 * 12.9898 + seed).sin() * 43_758.545_3).fract();
+        std::array::from_fn(|sensor| {
+            let size = [0.05, 0.05, 1e3][sensor];
+            cylinder.output(sensor, &x, None).unwrap() + size * noise(sensor as f64)
+        })
+    };
+    (0..24 * 60).map(row).collect()
+}
+
+#[test]
+fn members_that_share_a_linearisation_are_what_each_would_be_alone() {
+    let bank = ObserverSettings::default().bank;
+    let mut together = observer(Engine::Extended);
+    let mut alone: Vec<Observer> =
+        bank.iter().map(|member| observer_of(Engine::Extended, vec![*member])).collect();
+    let states = together.cylinder.state_map().clone();
+    let (mut farthest, mut worst, mut worst_freest) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for (k, z) in readings_of_a_day().iter().enumerate() {
+        if k == 600 {
+            for x in [&mut together.bank.members[3].x, &mut alone[3].bank.members[0].x] {
+                x[states.outside.unwrap()] += 0.3;
+                x[states.inside.unwrap()] += 0.3;
+            }
+        }
+        if let [_, first, _, freest] = together.bank.members.as_slice() {
+            let (first, freest) =
+                ((&first.hypothesis, first.x.as_slice()), (&freest.hypothesis, freest.x.as_slice()));
+            farthest = farthest.max(together.cylinder.distance(first, freest));
+        }
+        let time_s = 60.0 * k as f64;
+        together.step(time_s, z).unwrap();
+        for (index, alone) in alone.iter_mut().enumerate() {
+            alone.step(time_s, z).unwrap();
+            let worst = if index == 3 { &mut worst_freest } else { &mut worst };
+            for state in 0..together.cylinder.states() {
+                let (x, variance) = together.bank.moments(index, state);
+                let (y, own) = alone.bank.moments(0, state);
+                if own > 0.0 {
+                    *worst = worst.max((x - y).abs() / own.sqrt()).max((variance / own).sqrt().ln().abs());
+                }
+            }
+        }
+    }
+    // Far enough apart that curvature counts, near enough that derivatives are shared.
+    assert!((0.6..1.0).contains(&farthest), "{farthest}");
+    assert!(worst < 0.06, "{worst}");
+    assert!(worst_freest < 0.4, "{worst_freest}");
 }

@@ -146,3 +146,10 @@ fn a_state_known_exactly_stays_so_until_noise_comes() {
     bank.predict(&mut transition);
     assert_eq!([0, 1, 2, 3].map(|lane| bank.variance(lane, 1)), [0.0, 4.0, 0.0, 0.0]);
 }
+
+#[test]
+fn constants_alone_do_not_move() {
+    let mut case = Case::new(40, (3, 0, 0));
+    case.bank.predict(&mut BankTransition::new(Pattern::new(&[])));
+    case.assert_equal();
+}

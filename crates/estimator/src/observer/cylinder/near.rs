@@ -64,10 +64,10 @@ impl Cylinder {
             StateKind::Wall(_) | StateKind::Valve | StateKind::Gas => 2.0,
             StateKind::Mass => 0.05,
             StateKind::Air => 10.0,
-            StateKind::OutsideFilm => 0.3,
+            StateKind::OutsideFilm => 0.5,
             StateKind::Sun => 40.0,
             StateKind::InsideFilm => 0.5,
-            StateKind::Capacity => 0.1,
+            StateKind::Capacity => 0.3,
             StateKind::FilmSlope => 0.2,
             StateKind::Leak | StateKind::Lag { .. } => return None,
             StateKind::Parameter { sensor, parameter } => {
@@ -78,5 +78,49 @@ impl Cylinder {
             }
         };
         Some(1.0 / limit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::filter::StateSpace;
+    use crate::observer::ObserverSettings;
+    use crate::sensor::Sensor;
+    use crate::thermal::vessel::presets;
+
+    #[test]
+    fn curvature_takes_a_near_state_where_its_own_equations_do() {
+        let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+        let settings = ObserverSettings::default();
+        let vessel = presets::load("nitrogen-20l").unwrap();
+        let mut cylinder = Cylinder::new(&vessel, &sensors, &settings).unwrap();
+        let (n, m, states) = (cylinder.states(), cylinder.leading(), cylinder.states.clone());
+        let mut a = vec![0.0; n];
+        a[..states.mass].copy_from_slice(&[270.0, 271.0, 273.0, 268.0]);
+        (a[states.mass], a[states.air]) = (4.4, 305.0);
+        let mut b = a.clone();
+        b[states.air] += 4.0;
+        b[states.gas] -= 0.5;
+        b[states.outside.unwrap()] += 0.3;
+        b[states.inside.unwrap()] -= 0.3;
+        b[states.capacity.unwrap()] += 0.1;
+        let leak = settings.bank[0];
+        let distance = cylinder.distance((&leak, &a), (&leak, &b));
+        assert!((HARDLY..1.0).contains(&distance), "{distance}");
+
+        let mut own = b.clone();
+        cylinder.propagate(&mut own, 10.0, None).unwrap();
+        let (before, mut crossing) = (a.clone(), Crossing::new(n, m));
+        cylinder.cross(&mut a, 10.0, &mut crossing).unwrap();
+        let away = nalgebra::DVector::from_fn(n, |i, _| b[i] - before[i]);
+        let mut by = (&crossing.phi * away).as_slice().to_vec();
+        by.iter_mut().zip(&a).for_each(|(by, a)| *by += a);
+        let error = |x: &[f64]| (0..states.mass).map(|i| (x[i] - own[i]).abs()).fold(0.0, f64::max);
+        let linear_k = error(&by);
+        cylinder.bend(&before, &b, 10.0, &crossing, &mut by).unwrap();
+        let bent_k = error(&by);
+        assert!(linear_k > 0.01, "{linear_k}");
+        assert!(bent_k < 0.15 * linear_k, "{bent_k} of {linear_k}");
     }
 }
