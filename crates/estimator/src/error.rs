@@ -346,4 +346,7 @@ pub enum EstimatorError {
     /// Nothing could be identified.
     #[error(transparent)]
     Identify(#[from] crate::identify::IdentifyError),
+    /// Nothing could be calibrated.
+    #[error(transparent)]
+    Calibrate(#[from] crate::calibrate::CalibrateError),
 }

@@ -4,10 +4,12 @@
 //! A trajectory (simulated) becomes a [`log::Log`] through [`sensor`]; an observer turns a log, row by row,
 //! into the mean gas temperature, the gas mass and the leak rate, each with its standard deviation.
 pub mod bound;
+pub mod calibrate;
 pub mod consistency;
 pub mod error;
 pub mod filter;
 pub mod identify;
+mod least_squares;
 pub mod log;
 pub mod observer;
 pub mod sensor;

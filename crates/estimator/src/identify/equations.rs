@@ -133,23 +133,3 @@ fn add_filtered_errors(
         }
     }
 }
-
-/// Solve `matrix x = rhs` after scaling rows and columns by the matrix' diagonal; `None` if there is no finite solution.
-pub(super) fn solve(matrix: &DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
-    let scale = scales(matrix);
-    let scaled = matrix.map_with_location(|i, j, value| value / (scale[i] * scale[j]));
-    let solution = scaled.lu().solve(&rhs.component_div(&scale))?.component_div(&scale);
-    solution.iter().all(|value| value.is_finite()).then_some(solution)
-}
-
-/// Inverse by the same scaling.
-pub(super) fn invert(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale = scales(matrix);
-    let scaled = matrix.map_with_location(|i, j, value| value / (scale[i] * scale[j]));
-    let inverse = scaled.try_inverse()?.map_with_location(|i, j, value| value / (scale[i] * scale[j]));
-    inverse.iter().all(|value| value.is_finite()).then_some(inverse)
-}
-
-fn scales(matrix: &DMatrix<f64>) -> DVector<f64> {
-    matrix.diagonal().map(|d| if d == 0.0 { 1.0 } else { d.abs().sqrt() })
-}

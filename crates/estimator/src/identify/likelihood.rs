@@ -13,7 +13,7 @@
 //! Source: Söderström 2007 (section 8); Ljung 1999 (section 10.1).
 use nalgebra::{DMatrix, DVector, Dyn};
 
-use super::equations::{Variances, invert, solve};
+use super::equations::Variances;
 use super::parametrisation::{Coefficients, Parametrisation};
 use super::problem::Problem;
 use super::response::respond;
@@ -22,6 +22,7 @@ use super::solve::{Search, Solution, relative};
 use super::{Hold, IdentifyError, InitialState, InputCourse, Parameter};
 use crate::EstimatorError;
 use crate::filter::{ExtendedKalman, KalmanSettings, StateSpace, UdFactors};
+use crate::least_squares::{invert, solve};
 use process::Process;
 
 mod process;

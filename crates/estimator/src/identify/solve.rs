@@ -4,15 +4,11 @@
 use nalgebra::DVector;
 
 use super::checks::check_poles;
-use super::equations::{Equations, Scheme, solve};
+use super::equations::{Equations, Scheme};
 use super::parametrisation::Parametrisation;
 use super::problem::Problem;
 use super::{DeadTime, IdentifyError, Parameter, Settings};
-
-/// First damping, and the ones from which on there is none, or no hope.
-const FIRST_DAMPING: f64 = 1e-3;
-const NO_DAMPING: f64 = 1e-9;
-const LAST_DAMPING: f64 = 1e9;
+use crate::least_squares::{Damping, solve};
 
 /// A relative step this small may be the last one where rounding keeps the errors from falling.
 const ROUNDING: f64 = 1e-8;
@@ -93,12 +89,12 @@ impl Search<'_> {
     pub fn output_error(&self, start: Vec<f64>) -> Result<Solution, IdentifyError> {
         let scheme = Scheme::OutputError;
         let (mut theta, mut here) = (start.clone(), self.at(&start, scheme));
-        let (mut damping, mut last_step) = (FIRST_DAMPING, f64::INFINITY);
+        let (mut damping, mut last_step) = (Damping::first(), f64::INFINITY);
         for iterations in 1..=self.settings.iterations {
             let mut bounded = here.clone();
             self.hold_at_bound(&theta, &mut bounded);
-            let Some(step) = damped(&bounded, damping) else {
-                damping = (10.0 * damping).max(FIRST_DAMPING);
+            let Some(step) = damping.step(&bounded.matrix, &bounded.rhs) else {
+                damping.tighten();
                 continue;
             };
             let moved = self.moved(&theta, &step, 1.0);
@@ -107,15 +103,15 @@ impl Search<'_> {
             match trial {
                 Some(trial) if trial.sse <= here.sse || last_step <= self.settings.tolerance => {
                     (theta, here) = (moved, trial);
-                    if last_step <= self.settings.tolerance && damping <= 1.0 {
+                    if last_step <= self.settings.tolerance && damping.share() <= 1.0 {
                         return Ok(Solution { theta, iterations, equations: here });
                     }
-                    damping = if damping < NO_DAMPING { 0.0 } else { 0.1 * damping };
+                    damping.relax();
                 }
                 _ if last_step < ROUNDING => return Ok(Solution { theta, iterations, equations: here }),
-                _ => damping = (10.0 * damping).max(FIRST_DAMPING),
+                _ => damping.tighten(),
             }
-            if damping > LAST_DAMPING {
+            if damping.is_hopeless() {
                 break;
             }
         }
@@ -178,13 +174,4 @@ impl Search<'_> {
         }
         theta
     }
-}
-
-/// Gauss-Newton step with a share of the diagonal added.
-fn damped(equations: &Equations, damping: f64) -> Option<DVector<f64>> {
-    let mut matrix = equations.matrix.clone();
-    for i in 0..matrix.nrows() {
-        matrix[(i, i)] *= 1.0 + damping;
-    }
-    solve(&matrix, &equations.rhs)
 }

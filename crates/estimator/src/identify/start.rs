@@ -8,12 +8,12 @@
 //! Source: Young 1981, Garnier, Mensler and Richard 2003.
 use nalgebra::{DMatrix, DVector};
 
-use super::equations::solve;
 use super::parametrisation::{Coefficients, HIGHEST, Parametrisation};
 use super::problem::Problem;
 use super::response::{Response, filter_output, respond};
 use super::schedule::Schedule;
 use super::{DeadTime, Gain, IdentifyError, InitialState, Parameter};
+use crate::least_squares::solve;
 
 /// Bandwidths tried.
 const BANDWIDTHS: usize = 6;

@@ -9,7 +9,8 @@
 //! Source: Ljung 1999 (section 9.2), Politis and Romano 1995 (the window).
 use nalgebra::DMatrix;
 
-use super::equations::{Equations, invert};
+use super::equations::Equations;
+use crate::least_squares::invert;
 
 /// Window in multiples of the errors' memory.
 const WINDOW: f64 = 6.0;

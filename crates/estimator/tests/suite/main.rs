@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod allocations;
 mod bound_linear;
+mod calibrate;
 mod consistency_rates;
 mod copying_model;
 mod cylinder_transition;

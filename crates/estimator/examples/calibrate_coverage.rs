@@ -1,0 +1,79 @@
+//! How often the intervals of six properties that are 30 % off hold the truth, how much better the calibrated vessel
+//! predicts a scenario that was not recorded, and how long a calibration takes on a day of readings every 10 s.
+//!
+//! `cargo run --release -p cylwatch-estimator --example calibrate_coverage -- [seeds]`
+//!
+//! `seeds`: 50 by default. Class B sensors on shoulder and valve, a pressure transmitter of 0.25 %; their offsets, the
+//! valve's coupling and the transmitter's temperature coefficient are unknown too. Recorded: `tunnel-step`, predicted: `shock-cold`.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+use std::time::Instant;
+
+use cylwatch_estimator::consistency::{Coverage, Significance};
+use rayon::prelude::*;
+
+#[allow(dead_code)]
+#[path = "../tests/suite/calibrate/study.rs"]
+mod study;
+
+use study::{Case, kinds, preset};
+
+/// What one seed gives.
+struct Outcome {
+    covered: [bool; 6],
+    sd: [f64; 6],
+    gain: f64,
+}
+
+fn outcome(seed: u64) -> Outcome {
+    let case = Case::new(seed);
+    let calibrated = case.calibration(&preset("tunnel-step")).run().unwrap();
+    let (before, after) = case.prediction(&calibrated, &preset("shock-cold"));
+    let sd = std::array::from_fn(|i| calibrated.estimates[i].sd / calibrated.estimates[i].value);
+    Outcome { covered: case.covered(&calibrated), sd, gain: before / after }
+}
+
+fn coverage(seeds: u64) {
+    let outcomes: Vec<Outcome> = (1..=seeds).into_par_iter().map(outcome).collect();
+    for (i, kind) in kinds().iter().enumerate() {
+        let inside = outcomes.iter().filter(|outcome| outcome.covered[i]).count() as u64;
+        let band = Coverage { inside, samples: seeds }.interval(Significance::FIVE_PERCENT).unwrap();
+        let sd = outcomes.iter().map(|outcome| outcome.sd[i]).sum::<f64>() / seeds as f64;
+        println!(
+            "{kind}: inside {inside} of {seeds} [{:.1} %, {:.1} %], mean standard deviation {:.2} %",
+            100.0 * band.low,
+            100.0 * band.high,
+            100.0 * sd
+        );
+    }
+    let mut gains: Vec<f64> = outcomes.iter().map(|outcome| outcome.gain).collect();
+    gains.sort_by(f64::total_cmp);
+    println!(
+        "gas temperature of the next scenario: {:.0} times better, at least {:.1}",
+        gains[gains.len() / 2],
+        gains[0]
+    );
+}
+
+fn day(name: &str) {
+    let mut scenario = preset(name);
+    (scenario.duration_s, scenario.sample_time_s) = (86_400.0, 10.0);
+    let mut calibration = Case::new(1).calibration(&scenario);
+    let clock = Instant::now();
+    let all = calibration.run().map(|found| found.iterations);
+    println!(
+        "a day of {name} every 10 s, {} parameters: {:.1?}, steps {all:?}",
+        calibration.parameters.len(),
+        clock.elapsed()
+    );
+    calibration.parameters.truncate(6);
+    let clock = Instant::now();
+    let six = calibration.run().map(|found| found.iterations);
+    println!("a day of {name} every 10 s, 6 parameters: {:.1?}, steps {six:?}", clock.elapsed());
+}
+
+fn main() {
+    let seeds = std::env::args().nth(1).map_or(50, |text| text.parse().unwrap());
+    day("tunnel-step");
+    day("railway-week");
+    coverage(seeds);
+}

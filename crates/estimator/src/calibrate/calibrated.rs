@@ -1,0 +1,294 @@
+//! What a calibration finds.
+use cylwatch_thermal::ThermalError;
+use cylwatch_thermal::scenario::Scenario;
+use cylwatch_thermal::vessel::Vessel;
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+use super::fit::Fit;
+use super::identifiability::{check_determined, identifiability};
+use super::parameter::Stage;
+use super::residuals::{channel_residuals, check_misfit};
+use super::solve::{Solution, search};
+use super::uncertainty::covariance;
+use super::{CalibrateError, ChannelResiduals, Identifiability, ParameterKind, Scope};
+use crate::sensor::Sensor;
+
+/// A parameter as found, in its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// What it is.
+    pub parameter: ParameterKind,
+    /// Experiments that share it.
+    pub scope: Scope,
+    /// Value.
+    pub value: f64,
+    /// Standard deviation.
+    pub sd: f64,
+    /// Interval of the settings' confidence; that of a positive parameter is symmetric in its logarithm.
+    pub interval: (f64, f64),
+    /// Share of the variance of the prior that is left, 0 to 1: near 1 the logs say nothing; `None` without prior.
+    pub prior_share: Option<f64>,
+}
+
+impl Estimate {
+    /// Whether the interval holds a value.
+    pub fn holds(&self, value: f64) -> bool {
+        (self.interval.0..=self.interval.1).contains(&value)
+    }
+}
+
+/// A finished calibration.
+#[derive(Clone, Debug)]
+pub struct Calibrated {
+    /// The parameters, in the order of the calibration.
+    pub estimates: Vec<Estimate>,
+    /// Covariance of the estimates in their units, (parameters, parameters).
+    pub covariance: DMatrix<f64>,
+    /// Which combinations the logs cannot separate.
+    pub identifiability: Identifiability,
+    /// What is left of each channel.
+    pub channels: Vec<ChannelResiduals>,
+    /// Weighted sum of squares, priors included.
+    pub sum_of_squares: f64,
+    /// Readings less parameters.
+    pub degrees_of_freedom: usize,
+    /// Steps of the search.
+    pub iterations: usize,
+    pub(super) fit: Fit,
+    pub(super) solution: Solution,
+}
+
+/// Where a parameter belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PartOf {
+    /// The vessel.
+    Vessel,
+    /// What happens to it.
+    Scenario,
+    /// A sensor.
+    Sensor,
+}
+
+/// One line of a [`Record`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FittedParameter {
+    /// Name.
+    pub name: String,
+    /// Where it belongs; only the vessel's change the vessel.
+    pub part_of: PartOf,
+    /// Value, in its unit.
+    pub value: f64,
+    /// Standard deviation.
+    pub sd: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end of its interval.
+    pub high: f64,
+}
+
+/// What was fitted, from which logs, and when.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Record {
+    /// The vessel's name.
+    pub vessel: String,
+    /// Everything that was fitted for it.
+    pub fitted: Vec<FittedParameter>,
+    /// Sources of the experiments.
+    pub sources: Vec<String>,
+    /// When, as the caller states it.
+    pub calibrated_at: String,
+    /// Probability with which an interval holds the truth.
+    pub confidence: f64,
+}
+
+/// A vessel with fitted properties.
+#[derive(Clone, Debug)]
+pub struct CalibratedVessel {
+    /// The vessel.
+    pub vessel: Vessel,
+    /// Where its properties come from.
+    pub record: Record,
+}
+
+/// Search, then judge.
+pub(super) fn calibrate(fit: &Fit) -> Result<Calibrated, CalibrateError> {
+    let start: Vec<f64> = fit.specs.iter().map(|spec| spec.coordinate(spec.start)).collect();
+    let solution = search(fit, start, &fit.absent())?;
+    let channels = channel_residuals(fit, &solution.evaluation);
+    check_misfit(fit, &channels)?;
+    let identifiability = identifiability(fit, &solution);
+    check_determined(fit, &identifiability)?;
+    check_bounds(fit, &solution, &identifiability)?;
+    let Some(covariance) = covariance(fit, &solution, &channels) else {
+        let combination = "all parameters together".to_owned();
+        return Err(CalibrateError::Undetermined { combination, deviation: f64::INFINITY });
+    };
+    let slope =
+        |i: usize| if fit.specs[i].kind.is_positive() { fit.specs[i].value(solution.z[i]) } else { 1.0 };
+    Ok(Calibrated {
+        estimates: estimates(fit, &solution, &covariance),
+        covariance: covariance.map_with_location(|i, j, value| value * slope(i) * slope(j)),
+        identifiability,
+        channels,
+        sum_of_squares: solution.cost,
+        degrees_of_freedom: fit.samples().saturating_sub(fit.specs.len()),
+        iterations: solution.iterations,
+        fit: fit.clone(),
+        solution,
+    })
+}
+
+/// At a bound a parameter has no interval. Where the logs do not tell it from others, that is why it ran there.
+fn check_bounds(fit: &Fit, solution: &Solution, found: &Identifiability) -> Result<(), CalibrateError> {
+    for (i, spec) in fit.specs.iter().enumerate().filter(|(i, _)| !solution.held[*i]) {
+        let (low, high) = spec.bounds_coordinate();
+        let bounds = spec.bounds();
+        let reached = match solution.z[i] {
+            z if z <= low => Some(bounds.0),
+            z if z >= high => Some(bounds.1),
+            _ => None,
+        };
+        let Some(bound) = reached else { continue };
+        let takes_part = |one: &&super::Combination| one.parts.iter().any(|(part, _)| *part == i);
+        if let Some(combination) = found.inseparable.iter().find(takes_part) {
+            let (combination, deviation) = (combination.to_string(), combination.deviation);
+            return Err(CalibrateError::Undetermined { combination, deviation });
+        }
+        return Err(CalibrateError::AtBound { parameter: spec.kind.to_string(), bound });
+    }
+    Ok(())
+}
+
+fn estimates(fit: &Fit, solution: &Solution, covariance: &DMatrix<f64>) -> Vec<Estimate> {
+    let quantile = fit.settings.quantile();
+    let estimate = |(i, spec): (usize, &super::ParameterSpec)| {
+        let (z, sd) = (solution.z[i], covariance[(i, i)].sqrt());
+        let value = spec.value(z);
+        Estimate {
+            parameter: spec.kind.clone(),
+            scope: spec.scope.clone(),
+            value,
+            sd: if spec.kind.is_positive() { value * sd } else { sd },
+            interval: (spec.value(z - quantile * sd), spec.value(z + quantile * sd)),
+            prior_share: spec.prior_coordinate().map(|(_, prior)| (sd / prior).powi(2).min(1.0)),
+        }
+    };
+    fit.specs.iter().enumerate().map(estimate).collect()
+}
+
+impl Calibrated {
+    /// The estimate of a parameter; the first one where experiments have their own.
+    pub fn estimate(&self, parameter: &ParameterKind) -> Option<&Estimate> {
+        self.estimates.iter().find(|estimate| estimate.parameter == *parameter)
+    }
+
+    /// Correlation of the estimates, (parameters, parameters); NaN for parameters that no log has.
+    pub fn correlation(&self) -> DMatrix<f64> {
+        let c = &self.covariance;
+        DMatrix::from_fn(c.nrows(), c.ncols(), |i, j| c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt())
+    }
+
+    /// The vessel of an experiment (0 is the first) with what was fitted, and a record of it. `calibrated_at` is the
+    /// time to be recorded, e.g. of RFC 3339. The factors hold for any vessel of the same kind: a smaller one takes them as well.
+    ///
+    /// # Errors
+    /// [`CalibrateError::ScopeUnknown`] for an experiment that took no part.
+    pub fn calibrated_vessel(
+        &self,
+        experiment: usize,
+        calibrated_at: &str,
+    ) -> Result<CalibratedVessel, CalibrateError> {
+        let case = self.case(experiment)?;
+        let vessel = self.applied(experiment, &case.base.vessel);
+        let concerned = self.estimates.iter().filter(|estimate| estimate.scope.contains(experiment));
+        let sources = self.fit.cases.iter().map(|case| case.source.clone()).collect();
+        let record = Record {
+            vessel: vessel.name.clone(),
+            fitted: concerned.map(FittedParameter::from).collect(),
+            sources,
+            calibrated_at: calibrated_at.to_owned(),
+            confidence: self.fit.settings.confidence,
+        };
+        Ok(CalibratedVessel { vessel, record })
+    }
+
+    /// Another vessel with the factors that were fitted to the vessel of an experiment.
+    pub fn applied(&self, experiment: usize, vessel: &Vessel) -> Vessel {
+        let mut vessel = vessel.clone();
+        for estimate in self.estimates.iter().filter(|estimate| estimate.scope.contains(experiment)) {
+            super::apply::apply_to_vessel(&mut vessel, &estimate.parameter, estimate.value);
+        }
+        vessel
+    }
+
+    /// A scenario of the calibrated kind: its outside film and discharge coefficients as found; fill and initial
+    /// temperature are those of the scenario given, since they belong to one experiment.
+    ///
+    /// # Errors
+    /// A film that cannot be scaled.
+    pub fn applied_to_scenario(
+        &self,
+        experiment: usize,
+        scenario: &Scenario,
+    ) -> Result<Scenario, ThermalError> {
+        let lasting = |kind: &ParameterKind| {
+            matches!(kind, ParameterKind::OutsideFilm | ParameterKind::DischargeCoefficient { .. })
+        };
+        let (specs, values): (Vec<_>, Vec<_>) = self
+            .fit
+            .specs
+            .iter()
+            .zip(self.fit.values(&self.solution.z))
+            .filter(|(spec, _)| lasting(&spec.kind))
+            .map(|(spec, value)| (spec.clone(), value))
+            .unzip();
+        let mut setup = self.fit.cases[0].base.clone();
+        setup.scenario = scenario.clone();
+        Ok(setup.with(&specs, &values, experiment)?.scenario)
+    }
+
+    /// The sensors of an experiment with their numbers as found.
+    ///
+    /// # Errors
+    /// [`CalibrateError::ScopeUnknown`] for an experiment that took no part.
+    pub fn calibrated_sensors(&self, experiment: usize) -> Result<Vec<Sensor>, CalibrateError> {
+        let values = self.fit.values(&self.solution.z);
+        Ok(self.case(experiment)?.base.sensors_with(&self.fit.specs, &values, experiment))
+    }
+
+    fn case(&self, experiment: usize) -> Result<&super::fit::Case, CalibrateError> {
+        self.fit.cases.iter().find(|case| case.experiment == experiment).ok_or_else(|| {
+            CalibrateError::ScopeUnknown {
+                parameter: "calibrated vessel".into(),
+                experiment,
+                experiments: self.fit.cases.len(),
+            }
+        })
+    }
+}
+
+impl From<&Estimate> for FittedParameter {
+    fn from(estimate: &Estimate) -> Self {
+        let part_of = match (&estimate.parameter, estimate.parameter.stage()) {
+            (
+                ParameterKind::OutsideFilm
+                | ParameterKind::DischargeCoefficient { .. }
+                | ParameterKind::FillMass
+                | ParameterKind::InitialTemperature,
+                _,
+            ) => PartOf::Scenario,
+            (_, Stage::Course) => PartOf::Vessel,
+            (_, Stage::LinearReading | Stage::Reading) => PartOf::Sensor,
+        };
+        Self {
+            name: estimate.parameter.to_string(),
+            part_of,
+            value: estimate.value,
+            sd: estimate.sd,
+            low: estimate.interval.0,
+            high: estimate.interval.1,
+        }
+    }
+}

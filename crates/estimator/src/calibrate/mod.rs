@@ -1,0 +1,71 @@
+//! Calibration: physical parameters of a vessel, its exposure and its sensors from recorded logs.
+//!
+//! Weighted least squares on the simulation, with the sensors' models applied to it:
+//!
+//! `sum_k [(y_k - y(theta, t_k)) / sigma_k]^2 + sum_i [(z_i - m_i) / s_i]^2  ->  min`
+//!
+//! with readings `y_k` of all channels of all experiments, the standard deviations `sigma_k` of the sensors' noise, and
+//! priors `N(m_i, s_i^2)` as further residuals. A positive parameter is sought as `z = ln theta`, others as
+//! themselves; bounds are kept by projection. The search is Gauss-Newton with damping; it ends where a
+//! step would be a small share of a standard deviation in every direction.
+//!
+//! Sensitivities to numbers of the sensors that the reading is linear in (offset, coupling, span, temperature
+//! coefficient) are exact, from differences at the same simulated course. All others are **central
+//! differences of the simulation** with a step of the cube root of its relative error, where the error of the
+//! difference and that of the solver balance (Nocedal and Wright 2006, section 8.1); about 1e-3 of the sensitivity.
+//!
+//! The covariance is the sandwich `A^-1 (sum_c f_c J_c^T J_c + prior) A^-1` with one factor per channel `f_c >= 1`: the
+//! mean square of its weighted residuals times their integrated autocorrelation time, 1 for white residuals
+//! of the stated noise. A model that does not fit to the noise thus gets wider intervals, never narrower ones.
+//!
+//! Source: Ljung 1999 (sections 9 and 10), Seber and Wild 1989 (sections 5.9 and 14), Raue et al. 2009 for the profile.
+mod apply;
+mod calibrated;
+mod error;
+mod experiment;
+mod fit;
+mod identifiability;
+mod parameter;
+mod profile;
+mod residuals;
+mod sensitivity;
+mod settings;
+mod solve;
+mod uncertainty;
+mod validation;
+
+pub use calibrated::{Calibrated, CalibratedVessel, Estimate, FittedParameter, PartOf, Record};
+pub use error::CalibrateError;
+pub use experiment::Experiment;
+pub use identifiability::{Combination, Identifiability};
+pub use parameter::{ParameterKind, ParameterSpec, Prior, Scope};
+pub use profile::Profile;
+pub use residuals::ChannelResiduals;
+pub use settings::CalibrationSettings;
+pub use validation::{ChannelScore, HoldOut, Validation};
+
+use cylwatch_thermal::vessel::Vessel;
+
+/// What is to be calibrated, from what.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// Vessel of all experiments that do not have one of their own.
+    pub vessel: Vessel,
+    /// What was recorded, and under which circumstances.
+    pub experiments: Vec<Experiment>,
+    /// What is unknown; everything else is as vessel, scenarios and sensors say.
+    pub parameters: Vec<ParameterSpec>,
+    /// How it is sought.
+    pub settings: CalibrationSettings,
+}
+
+impl Calibration {
+    /// Fits the parameters to all experiments.
+    ///
+    /// # Errors
+    /// See [`CalibrateError`]: a log that cannot be used, a parameter that it does not determine or that runs to a bound.
+    pub fn run(&self) -> Result<Calibrated, CalibrateError> {
+        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
+        calibrated::calibrate(&fit)
+    }
+}

@@ -1,0 +1,6 @@
+//! Calibration against simulated logs of known truth, against a published experiment, and on logs that cannot be used.
+mod blowdown;
+mod coverage;
+mod refusals;
+mod study;
+mod together;
