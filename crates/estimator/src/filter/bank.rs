@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, Dyn};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::lanes::Lanes;
-use super::ud::{USUAL_SIZES, UdFactors};
+use super::ud::UdFactors;
 
 mod pattern;
 #[cfg(test)]
@@ -21,7 +21,7 @@ pub use pattern::Pattern;
 pub use transition::BankTransition;
 
 /// States and moving states of the cylinder's observer with its usual sensors: of known size its loops are unrolled.
-const USUAL: (usize, usize) = (USUAL_SIZES.0, USUAL_SIZES.1);
+pub(crate) const USUAL: (usize, usize) = (18, 9);
 
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
 #[derive(Clone, Debug)]

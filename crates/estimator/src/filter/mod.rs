@@ -35,7 +35,6 @@ pub(crate) use smoother::Backward;
 pub use smoother::{FixedLag, PassStep, Smoothed, smooth_fixed_interval};
 pub use state_space::{Linearisation, StateSpace};
 pub use stationary::{Stationary, StationarySettings, StationarySnapshot};
-pub(crate) use ud::USUAL_SIZES;
 pub use ud::UdFactors;
 pub use unscented::{Unscented, UnscentedSettings, UnscentedSnapshot};
 pub use van_loan::{Discrete, discretise};

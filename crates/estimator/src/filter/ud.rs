@@ -21,10 +21,6 @@ use thornton::TimeUpdate;
 
 mod thornton;
 
-pub(crate) use thornton::USUAL as USUAL_SIZES;
-
-const USUAL_STATES: usize = USUAL_SIZES.0;
-
 /// Factors of a covariance of `n` states, with the memory that its updates work in.
 ///
 /// # Shapes
@@ -150,10 +146,12 @@ where
 
     /// Variance `h^T P h` of a linear function of the state, kept for [`update_projected`](Self::update_projected); `h`: (n).
     pub fn project(&mut self, h: &[f64]) -> f64 {
+        let n = self.states();
         let (u, f) = (self.u.as_slice(), self.f.as_mut_slice());
-        match f.len() {
-            USUAL_STATES => project_sized(u, h, f, USUAL_STATES),
-            n => project_sized(u, h, f, n),
+        f.fill(0.0);
+        // A gradient has few elements: row by row.
+        for (i, &h) in h.iter().enumerate().filter(|(_, h)| **h != 0.0) {
+            f.iter_mut().enumerate().skip(i).for_each(|(j, f)| *f += h * u[j * n + i]);
         }
         f.iter().zip(self.d.as_slice()).map(|(f, d)| f * f * d).sum()
     }
@@ -234,18 +232,6 @@ where
         explained.fill(0.0);
         let d = std::mem::replace(&mut self.d[i], variance);
         self.add_leading(d, i);
-    }
-}
-
-/// `f = U^T h` for `n` states, row by row, since a gradient has few elements. Of known size its loops are unrolled.
-#[inline(always)]
-fn project_sized(u: &[f64], h: &[f64], f: &mut [f64], n: usize) {
-    let (u, h, f) = (&u[..n * n], &h[..n], &mut f[..n]);
-    f.fill(0.0);
-    for (i, &h) in h.iter().enumerate() {
-        if h != 0.0 {
-            f.iter_mut().enumerate().skip(i).for_each(|(j, f)| *f += h * u[j * n + i]);
-        }
     }
 }
 

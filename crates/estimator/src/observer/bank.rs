@@ -11,6 +11,7 @@ use super::engine::{Engine, Shared};
 use super::member::{Innovation, Member, freed};
 use super::settings::LeakHypothesis;
 use crate::EstimatorError;
+use crate::filter::lanes::Lanes;
 use crate::filter::{StateSpace, UdFactors};
 use separate::Separate;
 use together::Together;
@@ -130,7 +131,9 @@ impl Bank {
                     }
                 }
                 match &mut self.covariances {
-                    Covariances::Together(packs) => packs.iter_mut().for_each(|p| p.scale(state, factor)),
+                    Covariances::Together(packs) => {
+                        packs.iter_mut().for_each(|p| p.bank.scale(state, factor))
+                    }
                     Covariances::Separate(all) => {
                         all.iter_mut().for_each(|p| p.relax(state, factor, process.rest));
                     }
@@ -138,7 +141,9 @@ impl Bank {
             }
             if variance > 0.0 {
                 match &mut self.covariances {
-                    Covariances::Together(packs) => packs.iter_mut().for_each(|p| p.inflate(state, variance)),
+                    Covariances::Together(packs) => {
+                        packs.iter_mut().for_each(|p| p.bank.inflate(state, Lanes::splat(variance)));
+                    }
                     Covariances::Separate(all) => all.iter_mut().for_each(|p| p.inflate(state, variance)),
                 }
             }
@@ -213,9 +218,9 @@ impl Bank {
             Covariances::Together(packs) => {
                 let ((from, from_lane), (to, to_lane)) = (place(from), place(to));
                 if from == to {
-                    packs[to].copy_lane(from_lane, to_lane);
+                    packs[to].bank.copy_lane(from_lane, to_lane);
                 } else if let Ok([from, to]) = packs.get_disjoint_mut([from, to]) {
-                    to.copy_lane_of(from, from_lane, to_lane);
+                    to.bank.copy_lane_of(&from.bank, from_lane, to_lane);
                 }
             }
             Covariances::Separate(all) => {
@@ -230,7 +235,7 @@ impl Bank {
         match &mut self.covariances {
             Covariances::Together(packs) => {
                 let (pack, lane) = place(index);
-                packs[pack].decorrelate_and_set(lane, state, variance);
+                packs[pack].bank.decorrelate_and_set(lane, state, variance);
             }
             Covariances::Separate(all) => all[index].decorrelate_and_set(state, variance),
         }
@@ -251,7 +256,7 @@ impl Bank {
     /// Whether every mean and covariance is made of numbers, and the mean a state of the cylinder.
     pub fn is_possible(&self, cylinder: &Cylinder) -> bool {
         let finite = match &self.covariances {
-            Covariances::Together(packs) => packs.iter().all(|pack| pack.is_finite()),
+            Covariances::Together(packs) => packs.iter().all(|pack| pack.bank.is_finite()),
             Covariances::Separate(all) => all.iter().all(Separate::is_finite),
         };
         let possible =
@@ -264,7 +269,7 @@ impl Bank {
         match &self.covariances {
             Covariances::Together(packs) => {
                 let (pack, lane) = place(index);
-                packs[pack].variance(lane, state)
+                packs[pack].bank.variance(lane, state)
             }
             Covariances::Separate(all) => all[index].variance(state),
         }
@@ -281,7 +286,7 @@ impl Bank {
         match &self.covariances {
             Covariances::Together(packs) => {
                 for (pack, members) in packs.iter().zip(self.members.chunks(Together::SIZE)) {
-                    let variances = pack.variances(state);
+                    let variances = pack.bank.variances(state);
                     moments.extend(
                         members.iter().zip(variances.0).map(|(of, variance)| (of.x[state], variance)),
                     );
@@ -307,7 +312,7 @@ impl Bank {
         match &self.covariances {
             Covariances::Together(packs) => {
                 let (pack, lane) = place(index);
-                packs[pack].covariance_into(lane, p);
+                packs[pack].bank.covariance_into(lane, p);
             }
             Covariances::Separate(all) => p.copy_from(&all[index].covariance()),
         }

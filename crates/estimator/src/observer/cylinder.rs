@@ -151,6 +151,12 @@ impl Cylinder {
         self.targets[sensor] == Target::Pressure
     }
 
+    /// Number and length, s, of the steps that an interval is divided into.
+    pub(super) fn parts(&self, dt_s: f64) -> (usize, f64) {
+        let parts = (dt_s / self.settings.longest_step_s).ceil().max(1.0);
+        (parts as usize, dt_s / parts)
+    }
+
     /// Longest step of the transition, s.
     pub fn set_longest_step_s(&mut self, longest_step_s: f64) {
         self.settings.longest_step_s = longest_step_s;
@@ -396,8 +402,7 @@ impl StateSpace for Cylinder {
         dt_s: f64,
         linear: Option<&mut Linearisation>,
     ) -> Result<(), EstimatorError> {
-        let parts = (dt_s / self.settings.longest_step_s).ceil().max(1.0) as usize;
-        let h = dt_s / parts as f64;
+        let (parts, h) = self.parts(dt_s);
         let Some(linear) = linear else {
             return (0..parts).try_for_each(|_| self.step(x, h, false));
         };

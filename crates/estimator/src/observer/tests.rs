@@ -65,8 +65,8 @@ fn a_restart_keeps_what_was_learnt_before_it() {
 fn the_usual_observer_has_the_sizes_that_the_filter_is_unrolled_for() {
     let observer = observer(Engine::Extended);
     let cylinder = &observer.cylinder;
-    let sizes = (cylinder.states(), cylinder.leading(), cylinder.noises());
-    assert_eq!(sizes, crate::filter::USUAL_SIZES);
+    assert_eq!((cylinder.states(), cylinder.leading()), crate::filter::bank::USUAL);
+    assert_eq!(cylinder.noises(), cylinder.leading());
 }
 
 #[test]

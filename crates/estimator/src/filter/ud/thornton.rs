@@ -6,9 +6,6 @@
 use crate::filter::kernel::{Group, axpy, dot_groups, multiply_rows};
 use crate::filter::state_space::Linearisation;
 
-/// States, moving states and noise sources of the cylinder's observer with its usual sensors: with known lengths loops are
-/// unrolled, which saves a sixth of the time.
-pub(crate) const USUAL: (usize, usize, usize) = (18, 9, 9);
 /// Rows of the transition that are multiplied together.
 const TOGETHER: usize = 4;
 
@@ -73,22 +70,10 @@ impl TimeUpdate {
 
     /// Move the factors `u` (n, n) and `d` (n).
     pub fn run(&mut self, linear: &Linearisation, u: &mut [f64], d: &mut [f64]) {
-        let sizes = (d.len(), linear.phi.nrows(), linear.q.len());
-        if sizes == USUAL {
-            self.run_sized(linear, u, d, USUAL);
-        } else if sizes.1 > 0 {
-            self.run_sized(linear, u, d, sizes);
+        let (n, m, k) = (d.len(), linear.phi.nrows(), linear.q.len());
+        if m == 0 {
+            return;
         }
-    }
-
-    #[inline(always)]
-    fn run_sized(
-        &mut self,
-        linear: &Linearisation,
-        u: &mut [f64],
-        d: &mut [f64],
-        (n, m, k): (usize, usize, usize),
-    ) {
         self.reserve(n, m, k);
         let (phi, g, q) = (linear.phi.as_slice(), linear.g.as_slice(), linear.q.as_slice());
         let (u, phi, g) = (&mut u[..n * n], &phi[..m * n], &g[..m * k]);
@@ -103,7 +88,6 @@ impl TimeUpdate {
     }
 
     /// Which rows of the transition are dense, and where the others have elements.
-    #[inline(always)]
     fn sort_rows(&mut self, phi: &[f64], m: usize) {
         self.dense.clear();
         self.elements.clear();
@@ -128,7 +112,6 @@ impl TimeUpdate {
     }
 
     /// `Phi U`: its columns of moving states become rows to orthogonalise, those of constants are final.
-    #[inline(always)]
     fn transform(&mut self, phi: &[f64], u: &mut [f64], n: usize, m: usize, width: usize) {
         let Self { dense, elements, moved, rows, .. } = self;
         let used = n - phi.rchunks_exact(m).take_while(|column| column.iter().all(|v| *v == 0.0)).count();
@@ -156,7 +139,6 @@ impl TimeUpdate {
     }
 
     /// `G` behind `Phi U`, and how far each row reaches.
-    #[inline(always)]
     fn load_noise(&mut self, g: &[f64], m: usize, k: usize) {
         let width = (m + k).div_ceil(4) * 4;
         let rows = self.rows.as_flattened_mut().chunks_exact_mut(width);
@@ -171,7 +153,6 @@ impl TimeUpdate {
     }
 
     /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
-    #[inline(always)]
     fn orthogonalise(&mut self, u: &mut [f64], d: &mut [f64], n: usize, m: usize, width: usize) {
         let Self { rows, weights, weighted, spans, .. } = self;
         for j in (0..m).rev() {

@@ -4,7 +4,7 @@
 //! derivatives, `x_k' = f(x) + Phi (x_k - x)` and likewise for a reading; where they are not so near that the curvature of the
 //! equations would not show ([`HARDLY`]), by their own rates and readings. A member that is far away, after a leak that it does not
 //! allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::Dyn;
 
 use crate::EstimatorError;
 use crate::filter::bank::{BankTransition, UdBank};
@@ -17,7 +17,7 @@ use crate::observer::member::{Member, Outcome, freed};
 /// Covariances of up to four members.
 #[derive(Clone, Debug)]
 pub(super) struct Together {
-    bank: UdBank,
+    pub bank: UdBank,
     /// Who shares derivatives, found at each time update; readings hardly change it.
     groups: Vec<Group>,
 }
@@ -87,9 +87,9 @@ impl Together {
         members: &mut [Member],
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
-        let parts = (dt_s / cylinder.settings().longest_step_s).ceil().max(1.0);
-        for _ in 0..parts as usize {
-            self.move_on(cylinder, &mut shared.memory, members, dt_s / parts)?;
+        let (parts, part_s) = cylinder.parts(dt_s);
+        for _ in 0..parts {
+            self.move_on(cylinder, &mut shared.memory, members, part_s)?;
         }
         Ok(())
     }
@@ -213,48 +213,6 @@ impl Together {
             self.bank.project(&memory.h);
         }
         used
-    }
-
-    /// Multiply a constant by a positive factor.
-    pub fn scale(&mut self, state: usize, factor: f64) {
-        self.bank.scale(state, factor);
-    }
-
-    /// Add a variance to a constant.
-    pub fn inflate(&mut self, state: usize, variance: f64) {
-        self.bank.inflate(state, Lanes::splat(variance));
-    }
-
-    /// Make a state of a lane independent of all others, with the given variance.
-    pub fn decorrelate_and_set(&mut self, lane: usize, state: usize, variance: f64) {
-        self.bank.decorrelate_and_set(lane, state, variance);
-    }
-
-    pub fn copy_lane(&mut self, from: usize, to: usize) {
-        self.bank.copy_lane(from, to);
-    }
-
-    pub fn copy_lane_of(&mut self, other: &Self, from: usize, to: usize) {
-        self.bank.copy_lane_of(&other.bank, from, to);
-    }
-
-    pub fn is_finite(&self) -> bool {
-        self.bank.is_finite()
-    }
-
-    /// Variance of a state of a lane.
-    pub fn variance(&self, lane: usize, state: usize) -> f64 {
-        self.bank.variance(lane, state)
-    }
-
-    /// Variance of a state in each lane.
-    pub fn variances(&self, state: usize) -> Lanes {
-        self.bank.variances(state)
-    }
-
-    /// Write the covariance of a lane: (n, n).
-    pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
-        self.bank.covariance_into(lane, p);
     }
 }
 

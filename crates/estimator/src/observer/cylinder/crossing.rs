@@ -3,6 +3,7 @@ use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::Cylinder;
+use super::structure::Structure;
 use crate::EstimatorError;
 use crate::filter::bank::Pattern;
 
@@ -75,25 +76,16 @@ impl Cylinder {
 
     /// Where the leading rows of a transition may differ from zero.
     pub(in crate::observer) fn pattern(&self) -> Pattern {
-        let states = &self.states;
-        let lags: Vec<usize> = states.lag.iter().flatten().copied().collect();
-        let temperatures = 0..states.mass;
-        let others = (temperatures.end..states.leading).filter(|state| !lags.contains(state));
-        let films = [states.inside, states.capacity, states.slope].into_iter().flatten();
-        let physical: Vec<usize> = temperatures.clone().chain(others).chain(films).collect();
+        let Structure { block, outer, constants, mass, leak, .. } = Structure::of(&self.states);
+        let coupled = [block.as_slice(), &outer, &constants].concat();
         let row = |state: usize| match state {
-            _ if temperatures.contains(&state) => physical.clone(),
-            _ if lags.contains(&state) => {
-                let sensor = states.lag.iter().position(|lag| *lag == Some(state));
-                let parameters = sensor.map_or(&[][..], |sensor| &states.parameters[sensor]);
-                physical.iter().copied().chain([state]).chain(parameters.iter().copied().flatten()).collect()
-            }
-            _ if state == states.mass => vec![state, states.leak],
+            _ if block.contains(&state) => coupled.clone(),
+            _ if state == mass => vec![mass, leak],
             _ => vec![state],
         };
         // Noise spreads within the block, from outside of it into the block, and from the leak rate to the mass.
-        let block = |state: usize| temperatures.contains(&state) || lags.contains(&state);
-        let correlated = |i: usize, j: usize| block(i) || block(j) || (i, j) == (states.mass, states.leak);
-        Pattern::new(&(0..states.leading).map(row).collect::<Vec<_>>()).with_noise(correlated)
+        let correlated =
+            |i: usize, j: usize| block.contains(&i) || block.contains(&j) || (i, j) == (mass, leak);
+        Pattern::new(&(0..self.states.leading).map(row).collect::<Vec<_>>()).with_noise(correlated)
     }
 }

@@ -1,8 +1,8 @@
 //! Noise of a transition: gathered over the parts of a divided interval, and factored for the filter.
 use nalgebra::DMatrix;
 
+use crate::filter::Linearisation;
 use crate::filter::kernel::axpy;
-use crate::filter::{Linearisation, USUAL_SIZES};
 
 /// Transition and noise of the parts of an interval so far.
 #[derive(Clone, Debug)]
@@ -70,16 +70,8 @@ fn add_product(a: &[f64], b: &[f64], c: &mut [f64], m: usize) {
 ///
 /// A variance that the later states explain up to rounding counts as explained in full: its column stays zero.
 pub(super) fn factor(noise: &mut DMatrix<f64>, linear: &mut Linearisation) {
-    const USUAL: usize = USUAL_SIZES.1;
     let (m, noise) = (noise.nrows(), noise.as_mut_slice());
     let (g, q) = (linear.g.as_mut_slice(), linear.q.as_mut_slice());
-    if m == USUAL { factor_sized(noise, g, q, USUAL) } else { factor_sized(noise, g, q, m) }
-}
-
-/// Of known size its loops are unrolled.
-#[inline(always)]
-fn factor_sized(noise: &mut [f64], g: &mut [f64], q: &mut [f64], m: usize) {
-    let (noise, g, q) = (&mut noise[..m * m], &mut g[..m * m], &mut q[..m]);
     g.fill(0.0);
     q.fill(0.0);
     let rounding = m as f64 * f64::EPSILON;

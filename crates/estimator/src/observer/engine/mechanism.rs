@@ -86,12 +86,11 @@ impl Mechanism {
         mut pass: Option<&mut Pass>,
         dt_s: f64,
     ) -> Result<(), EstimatorError> {
-        let parts = (dt_s / cylinder.settings().longest_step_s).ceil().max(1.0);
-        let part_s = dt_s / parts;
+        let (parts, part_s) = cylinder.parts(dt_s);
         if let Self::Stationary(stationary) = self {
             stationary.begin(p, dt_s);
         }
-        for _ in 0..parts as usize {
+        for _ in 0..parts {
             if let Self::Unscented = self {
                 shared.points.predict(cylinder, x, p, part_s)?;
                 if let Some(pass) = &mut pass {

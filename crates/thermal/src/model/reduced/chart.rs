@@ -134,7 +134,7 @@ impl Chart {
         };
         let at = ((t - middle.0) / half.0, (rho - middle.1) / half.1);
         let [z, z_t, z_r, z_tt, z_tr, z_rr] = expand(z, at, half);
-        let [cv, cv_t, cv_r] = slopes(cv, at, half);
+        let [cv, cv_t, cv_r, ..] = expand(cv, at, half);
         let (p_t, p_rho) = (rho * r * (z + t * z_t), r * t * (z + rho * z_r));
         let p_trho = r * (z + t * z_t + rho * z_r + rho * t * z_tr);
         Properties {
@@ -151,7 +151,7 @@ impl Chart {
         let Some(Polynomials { middle, z, .. }) = self.polynomials(rho, t) else {
             return self.exact(rho, t).p;
         };
-        let [z, z_t, z_r] = slopes(z, ((t - middle.0) / half.0, (rho - middle.1) / half.1), half);
+        let [z, z_t, z_r, ..] = expand(z, ((t - middle.0) / half.0, (rho - middle.1) / half.1), half);
         Property { value: rho * r * t * z, by_t: rho * r * (z + t * z_t), by_rho: r * t * (z + rho * z_r) }
     }
 
@@ -238,8 +238,9 @@ impl Chart {
     }
 }
 
-/// A polynomial with its first and second derivatives at a point of the cell, half as wide and high as `half`.
-#[inline]
+/// A polynomial with its first and second derivatives at a point of the cell, half as wide and high as `half`. Inlined, so that
+/// derivatives that are not asked for cost nothing.
+#[inline(always)]
 fn expand(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> Expansion {
     // Horner's rule along the temperature for all powers of the density at once; second derivatives are halves.
     let (mut f, mut d, mut dd) = ([0.0; ORDER], [0.0; ORDER], [0.0; ORDER]);
@@ -268,25 +269,6 @@ fn expand(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> 
         by_ab / (half.0 * half.1),
         2.0 * by_bb / (half.1 * half.1),
     ]
-}
-
-/// A polynomial with its first derivatives `[f, f_T, f_rho]`.
-#[inline]
-fn slopes(coefficients: &Coefficients, (a, b): (f64, f64), half: (f64, f64)) -> [f64; 3] {
-    let (mut f, mut d) = ([0.0; ORDER], [0.0; ORDER]);
-    for column in coefficients.column_iter().rev() {
-        for (power, coefficient) in column.iter().enumerate() {
-            d[power] = d[power] * a + f[power];
-            f[power] = f[power] * a + coefficient;
-        }
-    }
-    let (mut sum, mut by_a, mut by_b) = (0.0, 0.0, 0.0);
-    for power in (0..ORDER).rev() {
-        by_b = by_b * b + sum;
-        sum = sum * b + f[power];
-        by_a = by_a * b + d[power];
-    }
-    [sum, by_a / half.0, by_b / half.1]
 }
 
 #[cfg(test)]
