@@ -280,7 +280,7 @@ impl From<&Estimate> for FittedParameter {
                 _,
             ) => PartOf::Scenario,
             (_, Stage::Course) => PartOf::Vessel,
-            (_, Stage::LinearReading | Stage::Reading) => PartOf::Sensor,
+            (_, Stage::Reading) => PartOf::Sensor,
         };
         Self {
             name: estimate.parameter.to_string(),

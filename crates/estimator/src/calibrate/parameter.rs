@@ -60,8 +60,6 @@ pub enum ParameterKind {
 pub(super) enum Stage {
     /// The simulation.
     Course,
-    /// The sensors' readings, which are linear in it.
-    LinearReading,
     /// The sensors' readings.
     Reading,
 }
@@ -72,8 +70,8 @@ impl ParameterKind {
             Self::SensorOffset { .. }
             | Self::SensorCoupling { .. }
             | Self::SensorSpan { .. }
-            | Self::SensorTemperatureCoefficient { .. } => Stage::LinearReading,
-            Self::SensorLag { .. } => Stage::Reading,
+            | Self::SensorLag { .. }
+            | Self::SensorTemperatureCoefficient { .. } => Stage::Reading,
             _ => Stage::Course,
         }
     }

@@ -87,3 +87,7 @@ pub fn run(vessel: &Vessel, scenario: &Scenario, relative_tolerance: f64) -> Tra
     let settings = SimulationSettings { relative_tolerance, ..SimulationSettings::default() };
     simulate(vessel, scenario, &settings, &mut |_| {}).unwrap()
 }
+
+pub fn insulated(fluid: Fluid) -> Vessel {
+    Vessel { fluid, inside_film: InsideFilm::Coefficient { film_w_m2_k: 1e-9 }, ..closed_bottle() }
+}
