@@ -223,19 +223,17 @@ impl Calibrated {
         vessel
     }
 
-    /// A scenario of the calibrated kind: its outside film and discharge coefficients as found; fill and initial
-    /// temperature are those of the scenario given, since they belong to one experiment.
+    /// A scenario of the calibrated kind: its discharge coefficients as found; fill and initial temperature are those of the
+    /// scenario given, since they belong to one experiment, and the factor on the outside film is the vessel's.
     ///
     /// # Errors
-    /// A film that cannot be scaled.
+    /// A model that cannot be made.
     pub fn applied_to_scenario(
         &self,
         experiment: usize,
         scenario: &Scenario,
     ) -> Result<Scenario, ThermalError> {
-        let lasting = |kind: &ParameterKind| {
-            matches!(kind, ParameterKind::OutsideFilm | ParameterKind::DischargeCoefficient { .. })
-        };
+        let lasting = |kind: &ParameterKind| matches!(kind, ParameterKind::DischargeCoefficient { .. });
         let (specs, values): (Vec<_>, Vec<_>) = self
             .fit
             .specs
@@ -273,8 +271,7 @@ impl From<&Estimate> for FittedParameter {
     fn from(estimate: &Estimate) -> Self {
         let part_of = match (&estimate.parameter, estimate.parameter.stage()) {
             (
-                ParameterKind::OutsideFilm
-                | ParameterKind::DischargeCoefficient { .. }
+                ParameterKind::DischargeCoefficient { .. }
                 | ParameterKind::FillMass
                 | ParameterKind::InitialTemperature,
                 _,

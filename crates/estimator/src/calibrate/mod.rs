@@ -25,12 +25,14 @@ mod error;
 mod experiment;
 mod fit;
 mod identifiability;
+mod name;
 mod parameter;
 mod profile;
 mod residuals;
 mod sensitivity;
 mod settings;
 mod solve;
+mod specification;
 mod uncertainty;
 mod validation;
 
@@ -38,6 +40,7 @@ pub use calibrated::{Calibrated, CalibratedVessel, Estimate, FittedParameter, Pa
 pub use error::CalibrateError;
 pub use experiment::Experiment;
 pub use identifiability::{Combination, Identifiability};
+pub use name::ParameterNameError;
 pub use parameter::{ParameterKind, ParameterSpec, Prior, Scope};
 pub use profile::Profile;
 pub use residuals::ChannelResiduals;

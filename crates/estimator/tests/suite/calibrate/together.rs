@@ -129,7 +129,7 @@ fn record_says_what_was_fitted_from_which_log_and_when() {
     assert_eq!(record.calibrated_at, "2026-03-01T12:00:00Z");
     assert_eq!(
         record.fitted.iter().map(|one| one.part_of).collect::<Vec<_>>(),
-        [PartOf::Vessel, PartOf::Scenario]
+        [PartOf::Vessel, PartOf::Vessel]
     );
     assert_eq!(record.fitted[1].value, calibrated.estimates[2].value);
 }
