@@ -7,7 +7,7 @@ use super::plot::Plot;
 use super::progress::Progress;
 use super::selection;
 use anyhow::{Context, bail};
-use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut};
+use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut, SearchStep};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::log::Mapping;
 use cylwatch::report::Input;
@@ -148,8 +148,11 @@ impl Options {
             starts: &arguments.starts,
             profiles: &arguments.profiles,
         };
-        let settings =
+        let mut settings =
             CalibrationSettings { iterations: arguments.iterations, ..CalibrationSettings::default() };
+        if let Some(tolerance) = arguments.relative_tolerance {
+            settings.simulation.relative_tolerance = tolerance;
+        }
         settings.validate()?;
         Ok(Self {
             wanted: Wanted::checked(&words)?,
@@ -221,10 +224,14 @@ impl Options {
             settings: self.settings,
         };
         let progress = Progress::open_ended(messages, "calibrating");
+        let mut watch = |step: SearchStep| {
+            let SearchStep { number, distance_sd } = step;
+            progress.say(&format!("step {number}: {distance_sd:.2} standard deviations from the minimum"));
+        };
         let (calibrated, scores) = match &held_out {
-            None => (calibration.run()?, Vec::new()),
+            None => (calibration.run_watched(&mut watch)?, Vec::new()),
             Some((hold_out, _)) => {
-                let validation = calibration.validate(hold_out)?;
+                let validation = calibration.validate_watched(hold_out, &mut watch)?;
                 (validation.calibrated, validation.scores)
             }
         };

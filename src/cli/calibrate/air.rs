@@ -1,108 +1,148 @@
-//! The air from readings with noise: a line with few bends, each of which costs the simulation a step.
+//! The air from readings with noise: straight pieces, as few as the noise allows, since each costs the simulation a step.
+//!
+//! A piece is cut where two lines by least squares fit it better than one, by more than noise could: the sum of squares falls
+//! by [`CUT`] variances of the noise. A step of the air is a cut, too, and stays as steep as it was read.
 
-/// Knots of a line through points, with bends where the points leave a straight line by more than a tolerance (Ramer,
-/// Douglas and Peucker), and with the values at the knots that are nearest to all points by least squares, so that
-/// their noise averages out.
-pub fn drawn(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
-    let places = bends(points, tolerance);
-    let values = fitted(points, &places);
-    places.into_iter().map(|place| points[place].0).zip(values).collect()
-}
+/// Fall of the sum of squares, in variances of the noise, that is no chance: two numbers and a place among a day of readings.
+const CUT: f64 = 30.0;
 
-/// Places of the first point, the last one, and the bends between.
-fn bends(points: &[(f64, f64)], tolerance: f64) -> Vec<usize> {
-    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
-    let mut places = vec![0, last];
-    let mut pieces = vec![(0, last)];
-    while let Some((from, to)) = pieces.pop() {
-        let ((t0, y0), (t1, y1)) = (points[from], points[to]);
-        let off = |k: usize| {
-            let (t, y) = points[k];
-            (y - y0 - (y1 - y0) * (t - t0) / (t1 - t0)).abs()
-        };
-        let farthest = (from + 1..to).map(|k| (k, off(k))).max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((k, _)) = farthest.filter(|(_, off)| *off > tolerance) {
-            places.push(k);
-            pieces.extend([(from, k), (k, to)]);
+/// Knots of the pieces' lines: each point belongs to one piece, whose ends are the first and the last of its points.
+/// `least_sd` is the least noise, as of readings that are rounded.
+pub fn drawn(points: &[(f64, f64)], least_sd: f64) -> Vec<(f64, f64)> {
+    let sums = Sums::new(points);
+    let variance = noise(points).max(least_sd).powi(2);
+    let mut knots = Vec::new();
+    let mut waiting = vec![(0, points.len())];
+    while let Some((from, to)) = waiting.pop() {
+        match sums.cut(from, to, CUT * variance) {
+            // The first half is next.
+            Some(place) => waiting.extend([(place, to), (from, place)]),
+            None => knots.extend(sums.line(points, from, to)),
         }
     }
-    places.sort_unstable();
-    places.dedup();
-    places
+    knots
 }
 
-/// Values at the knots by least squares: the normal equations of hat functions are tridiagonal, and since every knot is a
-/// point, positive definite.
-fn fitted(points: &[(f64, f64)], places: &[usize]) -> Vec<f64> {
-    let count = places.len();
-    let (mut diagonal, mut beside, mut rhs) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-    let mut piece = 0;
-    for (k, &(t, y)) in points.iter().enumerate() {
-        while piece + 2 < count && k >= places[piece + 1] {
-            piece += 1;
+/// Standard deviation of the noise by the median of the second differences, which a course with few bends leaves alone:
+/// that of white noise is the 0.6745th part of their deviation, `sqrt(6)` times its own.
+fn noise(points: &[(f64, f64)]) -> f64 {
+    let mut differences: Vec<f64> =
+        points.windows(3).map(|three| (three[0].1 - 2.0 * three[1].1 + three[2].1).abs()).collect();
+    if differences.is_empty() {
+        return 0.0;
+    }
+    let middle = differences.len() / 2;
+    *differences.select_nth_unstable_by(middle, f64::total_cmp).1 / (0.6745 * 6.0_f64.sqrt())
+}
+
+/// Sums of `1, t, y, t^2, t y, y^2` over the points before each, from means so that they stay small.
+struct Sums {
+    before: Vec<[f64; 6]>,
+    means: (f64, f64),
+}
+
+impl Sums {
+    fn new(points: &[(f64, f64)]) -> Self {
+        let count = points.len().max(1) as f64;
+        let (t, y) = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0, sum.1 + point.1));
+        let means = (t / count, y / count);
+        let mut sum = [0.0; 6];
+        let mut before = vec![sum];
+        for point in points {
+            let (t, y) = (point.0 - means.0, point.1 - means.1);
+            for (sum, term) in sum.iter_mut().zip([1.0, t, y, t * t, t * y, y * y]) {
+                *sum += term;
+            }
+            before.push(sum);
         }
-        let Some(&next) = places.get(piece + 1) else {
-            diagonal[piece] += 1.0;
-            rhs[piece] += y;
-            continue;
+        Self { before, means }
+    }
+
+    /// Mean time, mean value, slope and sum of squares of the line through points `from..to`.
+    fn fit(&self, from: usize, to: usize) -> [f64; 4] {
+        let [n, t, y, tt, ty, yy] = std::array::from_fn(|k| self.before[to][k] - self.before[from][k]);
+        let (spread, along) = (tt - t * t / n, ty - t * y / n);
+        let slope = if to - from > 1 { along / spread } else { 0.0 };
+        [t / n, y / n, slope, (yy - y * y / n - slope * along).max(0.0)]
+    }
+
+    /// The place that divides points into two with lines of their own, if that is worth it.
+    fn cut(&self, from: usize, to: usize, worth: f64) -> Option<usize> {
+        let of_both = |place: usize| self.fit(from, place)[3] + self.fit(place, to)[3];
+        let best = (from + 1..to).map(|place| (place, of_both(place))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let whole = if from < to { self.fit(from, to)[3] } else { 0.0 };
+        best.filter(|(_, both)| whole - both > worth).map(|(place, _)| place)
+    }
+
+    /// Ends of the line through points `from..to`.
+    fn line(&self, points: &[(f64, f64)], from: usize, to: usize) -> Vec<(f64, f64)> {
+        if from == to {
+            return Vec::new();
+        }
+        let [mean_t, mean_y, slope, _] = self.fit(from, to);
+        let at = |k: usize| {
+            let t = points[k].0;
+            (t, self.means.1 + mean_y + slope * (t - self.means.0 - mean_t))
         };
-        let (t0, t1) = (points[places[piece]].0, points[next].0);
-        let share = (t - t0) / (t1 - t0);
-        diagonal[piece] += (1.0 - share) * (1.0 - share);
-        diagonal[piece + 1] += share * share;
-        beside[piece] += share * (1.0 - share);
-        rhs[piece] += (1.0 - share) * y;
-        rhs[piece + 1] += share * y;
+        if to - from == 1 { vec![at(from)] } else { vec![at(from), at(to - 1)] }
     }
-    // Elimination without pivots, which a positive definite matrix does not need.
-    for k in 1..count {
-        let factor = beside[k - 1] / diagonal[k - 1];
-        diagonal[k] -= factor * beside[k - 1];
-        rhs[k] -= factor * rhs[k - 1];
-    }
-    for k in (0..count).rev() {
-        let known = if k + 1 < count { beside[k] * rhs[k + 1] } else { 0.0 };
-        rhs[k] = (rhs[k] - known) / diagonal[k];
-    }
-    rhs
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn near(found: &[(f64, f64)], expected: &[(f64, f64)]) -> bool {
-        let close = |(a, b): (&(f64, f64), &(f64, f64))| a.0 == b.0 && (a.1 - b.1).abs() < 1e-9;
-        found.len() == expected.len() && found.iter().zip(expected).all(close)
+    const SD: f64 = 0.05;
+
+    /// Readings of a course each 10 s, with nearly normal noise.
+    fn readings(rows: u32, course: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let mut seed = 7_u64;
+        let mut uniform = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut noise = || SD * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0);
+        (0..rows).map(|k| (10.0 * f64::from(k), course(10.0 * f64::from(k)) + noise())).collect()
+    }
+
+    /// Value of the knots' line.
+    fn at(knots: &[(f64, f64)], t: f64) -> f64 {
+        let next = knots.partition_point(|knot| knot.0 <= t).clamp(1, knots.len() - 1);
+        let [(t0, y0), (t1, y1)] = [knots[next - 1], knots[next]];
+        y0 + (y1 - y0) * (t - t0) / (t1 - t0)
     }
 
     #[test]
-    fn a_ramp_keeps_its_ends_and_a_step_its_two_sides() {
+    fn a_ramp_is_one_piece_and_a_step_two() {
         let ramp: Vec<(f64, f64)> = (0..100).map(|k| (f64::from(k), 0.5 * f64::from(k))).collect();
-        assert!(near(&drawn(&ramp, 0.1), &[(0.0, 0.0), (99.0, 49.5)]));
-        let step: Vec<(f64, f64)> =
-            (0..100).map(|k| (f64::from(k), if k < 50 { 0.0 } else { 5.0 })).collect();
-        assert!(near(&drawn(&step, 0.1), &[(0.0, 0.0), (49.0, 0.0), (50.0, 5.0), (99.0, 5.0)]));
-        assert!(near(&drawn(&[(3.0, 1.0)], 0.1), &[(3.0, 1.0)]));
-        assert!(drawn(&[], 0.1).is_empty());
-    }
-
-    #[test]
-    fn noise_within_the_tolerance_averages_out() {
-        // Noise of 0.05 with the mean 0 on a constant: the line is nearer to the constant than its end points are.
-        let noise = |k: u32| 0.05 * if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let points: Vec<(f64, f64)> = (0..200).map(|k| (f64::from(k), 40.0 + noise(k))).collect();
-        let knots = drawn(&points, 0.11);
+        let knots = drawn(&ramp, 0.03);
         assert_eq!(knots.len(), 2);
-        assert!(knots.iter().all(|(_, y)| (y - 40.0).abs() < 2e-3), "{knots:?}");
+        assert!((knots[0].1 - 0.0).abs() < 1e-9 && (knots[1].1 - 49.5).abs() < 1e-9);
+        let step = readings(200, |t| if t < 1000.0 { 20.0 } else { -10.0 });
+        let knots = drawn(&step, 0.03);
+        let times: Vec<f64> = knots.iter().map(|knot| knot.0).collect();
+        assert_eq!(times, [0.0, 990.0, 1000.0, 1990.0]);
+        assert_eq!(drawn(&[(3.0, 1.0)], 0.03), [(3.0, 1.0)]);
+        assert!(drawn(&[], 0.03).is_empty());
     }
 
     #[test]
-    fn a_curve_is_followed_by_few_knots() {
-        let curve = |t: f64| 10.0 * (t / 40.0).sin();
-        let points: Vec<(f64, f64)> = (0..500).map(|k| (f64::from(k), curve(f64::from(k)))).collect();
-        let knots = drawn(&points, 0.1);
-        assert!(knots.len() < 60, "{}", knots.len());
-        assert!(knots.iter().all(|(t, y)| (y - curve(*t)).abs() < 0.1));
+    fn the_noise_of_readings_is_found_and_averages_out() {
+        let points = readings(500, |_| 40.0);
+        assert!((noise(&points) / SD - 1.0).abs() < 0.1, "{}", noise(&points));
+        let knots = drawn(&points, 0.03);
+        assert_eq!(knots.len(), 2);
+        // A line's ends are known to two standard deviations over the root of the number.
+        assert!(knots.iter().all(|(_, y)| (y - 40.0).abs() < 5.0 * SD / 500.0_f64.sqrt()), "{knots:?}");
+    }
+
+    #[test]
+    fn a_day_of_noisy_waves_is_followed_nearer_than_its_readings_by_few_pieces() {
+        let course = |t: f64| 10.0 + 12.0 * (t / 86_400.0 * std::f64::consts::TAU).sin();
+        let knots = drawn(&readings(8640, course), 0.03);
+        assert!(knots.len() < 80, "{}", knots.len());
+        let errors = (0..8639).map(|k| 10.0 * f64::from(k)).map(|t| (at(&knots, t) - course(t)).powi(2));
+        let rms = (errors.sum::<f64>() / 8639.0).sqrt();
+        assert!(rms < 0.4 * SD, "{rms} K");
     }
 }

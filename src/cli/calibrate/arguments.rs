@@ -62,6 +62,9 @@ pub struct CalibrateArguments {
     /// Most steps of the search.
     #[arg(long, value_name = "NUMBER", default_value_t = 40)]
     pub iterations: usize,
+    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-9].
+    #[arg(long, value_name = "NUMBER")]
+    pub relative_tolerance: Option<f64>,
     /// Date that the vessel file records, in the form of RFC 3339 [default: SOURCE_DATE_EPOCH if it is set, else now].
     #[arg(long, value_name = "DATE")]
     pub date: Option<String>,

@@ -14,8 +14,8 @@ use cylwatch::thermal::vessel::Vessel;
 
 /// Gaps up to so many usual intervals are bridged.
 const BRIDGED_INTERVALS: f64 = 20.0;
-/// The air bends where its readings leave a straight line by more than this, K: what is less is the noise of a thermometer.
-const AIR_TOLERANCE_K: f64 = 0.1;
+/// Least noise of a reading of the air, K: that of a logger that rounds to 0.1 K.
+const AIR_SD_K: f64 = 0.03;
 /// Difference of air and cylinder in the first row that is no rest, K.
 const REST_K: f64 = 2.0;
 /// Change of the air between two rows that is a jump, K.
@@ -182,7 +182,7 @@ impl Exposure<'_> {
                  there, give a scenario, or allow the gap by --longest-gap-min"
             );
         }
-        let (time_s, air_k) = drawn(readings, AIR_TOLERANCE_K).into_iter().unzip();
+        let (time_s, air_k) = drawn(readings, AIR_SD_K).into_iter().unzip();
         Series::try_new(time_s, air_k).with_context(|| name.clone())
     }
 }

@@ -9,7 +9,7 @@ use super::fit::Fit;
 use super::identifiability::{check_determined, identifiability};
 use super::parameter::Stage;
 use super::residuals::{channel_residuals, check_misfit};
-use super::solve::{Solution, search};
+use super::solve::{SearchStep, Solution, search_watched};
 use super::uncertainty::covariance;
 use super::{CalibrateError, ChannelResiduals, Identifiability, ParameterKind, Scope};
 use crate::sensor::Sensor;
@@ -113,9 +113,9 @@ pub struct CalibratedVessel {
 }
 
 /// Search, then judge.
-pub(super) fn calibrate(fit: &Fit) -> Result<Calibrated, CalibrateError> {
+pub(super) fn calibrate(fit: &Fit, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
     let start: Vec<f64> = fit.specs.iter().map(|spec| spec.coordinate(spec.start)).collect();
-    let solution = search(fit, start, &fit.absent())?;
+    let solution = search_watched(fit, start, &fit.absent(), watch)?;
     let channels = channel_residuals(fit, &solution.evaluation);
     check_misfit(fit, &channels)?;
     let identifiability = identifiability(fit, &solution);

@@ -45,6 +45,7 @@ pub use parameter::{ParameterKind, ParameterSpec, Prior, Scope};
 pub use profile::Profile;
 pub use residuals::ChannelResiduals;
 pub use settings::CalibrationSettings;
+pub use solve::SearchStep;
 pub use validation::{ChannelScore, HoldOut, Validation};
 
 use cylwatch_thermal::vessel::Vessel;
@@ -63,12 +64,20 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// [`Calibration::run`], telling each step of the search to `watch`.
+    ///
+    /// # Errors
+    /// Those of [`Calibration::run`].
+    pub fn run_watched(&self, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
+        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
+        calibrated::calibrate(&fit, watch)
+    }
+
     /// Fits the parameters to all experiments.
     ///
     /// # Errors
     /// See [`CalibrateError`]: a log that cannot be used, a parameter that it does not determine or that runs to a bound.
     pub fn run(&self) -> Result<Calibrated, CalibrateError> {
-        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
-        calibrated::calibrate(&fit)
+        self.run_watched(&mut |_| ())
     }
 }

@@ -153,3 +153,15 @@ fn residuals_of_the_true_model_are_white_and_of_the_noise() {
         );
     }
 }
+
+#[test]
+fn a_watched_search_tells_its_steps_down_to_the_minimum() {
+    let mut calibration = two_vessels();
+    calibration.experiments.truncate(1);
+    calibration.parameters.truncate(2);
+    let mut steps = Vec::new();
+    let calibrated = calibration.run_watched(&mut |step| steps.push(step)).unwrap();
+    assert_eq!(steps.len(), calibrated.iterations);
+    assert!(steps.iter().enumerate().all(|(k, step)| step.number == k + 1));
+    assert!(steps[0].distance_sd > 1.0 && steps.last().unwrap().distance_sd < 0.3, "{steps:?}");
+}
