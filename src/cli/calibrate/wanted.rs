@@ -155,7 +155,18 @@ fn free(kind: &ParameterKind, subjects: &[Subject<'_>]) -> anyhow::Result<Parame
         ParameterKind::InitialTemperature => 0.0,
         _ => 1.0,
     };
-    let Some(name) = kind.sensor() else { return Ok(ParameterSpec::new(kind.clone(), start)) };
+    let Some(name) = kind.sensor() else {
+        let spec = ParameterSpec::new(kind.clone(), start);
+        let acts = |subject: &Subject<'_>| match kind {
+            ParameterKind::ValveCapacity | ParameterKind::ValveContact => subject.vessel.valve.is_some(),
+            ParameterKind::DischargeCoefficient { flow } => {
+                subject.circumstances.scenario.flows.iter().any(|known| known.name == *flow)
+            }
+            _ => true,
+        };
+        // Where it acts on nothing at all, the fit says so.
+        return Ok(if subjects.iter().any(acts) { scoped(spec, subjects, acts) } else { spec });
+    };
     let sensors = || subjects.iter().flat_map(|subject| &subject.recording.sensors);
     let Some(sensor) = sensors().find(|sensor| sensor.name == name) else {
         let mut known: Vec<&str> = sensors().map(|sensor| sensor.name.as_str()).collect();

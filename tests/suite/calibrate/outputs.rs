@@ -125,7 +125,21 @@ fn a_log_with_foreign_names_dates_and_a_known_mass_needs_no_pressure() {
 }
 
 #[test]
-fn a_smaller_vessel_joins_with_the_same_factors() {
+fn a_vessel_without_a_valve_joins_in_what_it_has() {
+    let folder = tempdir().unwrap();
+    log(folder.path()).without("valve_degc").write(folder.path(), "b.csv");
+    let plain = vessel::presets::text("nitrogen-20l").unwrap();
+    let (before, rest) = plain.split_once("[valve]").unwrap();
+    let (_, after) = rest.split_once("[surface]").unwrap();
+    std::fs::write(folder.path().join("bare.toml"), format!("{before}[surface]{after}")).unwrap();
+    let arguments = ["log.csv", "b.csv", "--vessel-of", "b.csv=bare.toml", "-q"];
+    let outcome = calibrate(folder.path(), &arguments);
+    super::shown(&outcome.stdout, "valve-contact (log.csv)");
+    super::shown(&outcome.stdout, "outside-film");
+}
+
+#[test]
+fn a_log_of_another_vessel_takes_the_same_factors_with_sensors_of_its_own() {
     let folder = tempdir().unwrap();
     log(folder.path()).write(folder.path(), "b.csv");
     let arguments = ["log.csv", "b.csv", "--vessel-of", "b.csv=nitrogen-20l", "--fit", "outside-film", "-q"];
