@@ -175,5 +175,8 @@ fn an_output_that_cannot_be_written_is_refused_before_the_run() {
     std::fs::write(folder.path().join("own.toml"), before).unwrap();
     let outcome = run(folder.path(), &["calibrate", "own.toml", "log.csv", "-o", "own.toml"]);
     assert_refused(folder.path(), outcome, &["own.toml is an input", "choose another output"]);
+    let arguments = ["calibrate", "nitrogen-20l", "log.csv", "--scenario", "own.toml", "-o", "own.toml"];
+    let outcome = run(folder.path(), &arguments);
+    assert_refused(folder.path(), outcome, &["own.toml is an input"]);
     assert_eq!(std::fs::read_to_string(folder.path().join("own.toml")).unwrap(), before);
 }
