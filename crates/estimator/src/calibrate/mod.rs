@@ -23,12 +23,14 @@ mod error;
 mod experiment;
 mod fit;
 mod identifiability;
+mod name;
 mod parameter;
 mod profile;
 mod residuals;
 mod sensitivity;
 mod settings;
 mod solve;
+mod specification;
 mod uncertainty;
 mod validation;
 
@@ -36,10 +38,12 @@ pub use calibrated::{Calibrated, CalibratedVessel, Estimate, FittedParameter, Pa
 pub use error::CalibrateError;
 pub use experiment::Experiment;
 pub use identifiability::{Combination, Identifiability};
+pub use name::ParameterNameError;
 pub use parameter::{ParameterKind, ParameterSpec, Prior, Scope};
 pub use profile::Profile;
 pub use residuals::ChannelResiduals;
 pub use settings::CalibrationSettings;
+pub use solve::SearchStep;
 pub use validation::{ChannelScore, HoldOut, Validation};
 
 use cylwatch_thermal::vessel::Vessel;
@@ -58,12 +62,20 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// [`Calibration::run`], telling each step of the search to `watch`.
+    ///
+    /// # Errors
+    /// Those of [`Calibration::run`].
+    pub fn run_watched(&self, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
+        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
+        calibrated::calibrate(&fit, watch)
+    }
+
     /// Fits the parameters to all experiments.
     ///
     /// # Errors
     /// See [`CalibrateError`]: a log that cannot be used, a parameter that it does not determine or that runs to a bound.
     pub fn run(&self) -> Result<Calibrated, CalibrateError> {
-        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
-        calibrated::calibrate(&fit)
+        self.run_watched(&mut |_| ())
     }
 }

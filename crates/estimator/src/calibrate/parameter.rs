@@ -7,7 +7,7 @@ use crate::sensor::{ParameterKind as SensorParameterKind, Sensor};
 /// What a parameter is. *Factor*: relative to what the vessel or the scenario says, so that it transfers to others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterKind {
-    /// Factor on the outside film: the coefficient, or the law for wind and natural convection.
+    /// Factor on the outside film, be it a coefficient or the law for wind and natural convection; a number of the vessel.
     OutsideFilm,
     /// Factor on the inside film.
     InsideFilm,

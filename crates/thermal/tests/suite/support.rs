@@ -43,7 +43,7 @@ pub fn closed_bottle() -> Vessel {
         volume: rigid(geometry.contour_volume_m3()),
         geometry,
         valve: None,
-        surface: Surface { emissivity: 0.0, solar_absorptivity: 0.0 },
+        surface: Surface { emissivity: 0.0, solar_absorptivity: 0.0, film_factor: 1.0 },
         inside_film: MCADAMS,
         gas: GasResolution::WellMixed,
     }
