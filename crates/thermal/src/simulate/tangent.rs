@@ -37,7 +37,7 @@ const WEIGHTS: [[f64; 4]; 5] = [
     [25.0 / 24.0, -49.0 / 48.0, 125.0 / 16.0, -85.0 / 12.0],
 ];
 /// Time over which the rate of the pressure is taken, s.
-const PRESSURE_STEP_S: f64 = 0.05;
+const PRESSURE_STEP_S: f64 = 2e-3;
 
 /// A vessel and a scenario on either side of the run's own.
 #[derive(Clone, Debug)]
