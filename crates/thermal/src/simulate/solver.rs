@@ -355,7 +355,6 @@ pub fn with_stepper<R>(
     x0: Vec<f64>,
     absolute_tolerance: Vec<f64>,
     settings: &SimulationSettings,
-    method: Method,
     work: impl FnOnce(&mut dyn Stepper) -> Result<R, ThermalError>,
 ) -> Result<R, ThermalError> {
     let n = x0.len();
@@ -379,7 +378,7 @@ pub fn with_stepper<R>(
         let state = problem.rk_state_and_consistent::<LS>(&tableau)?;
         Sdirk::new(&problem, state, tableau, BorderedLu::new(border))
     };
-    match method {
+    match settings.method {
         Method::TrBdf2 => {
             let solver = one_step(Tableau::tr_bdf2()).map_err(failed)?;
             work(&mut Wrapper::new(solver, equations, buffer, rate, true))
@@ -388,7 +387,7 @@ pub fn with_stepper<R>(
             let solver = one_step(Tableau::esdirk34()).map_err(failed)?;
             work(&mut Wrapper::new(solver, equations, buffer, rate, true))
         }
-        Method::Automatic | Method::Bdf => {
+        Method::Bdf => {
             let state = problem.bdf_state::<LS>().map_err(failed)?;
             let solver: Bdf<'_, _, LS> =
                 Bdf::new(&problem, state, BorderedLu::new(border)).map_err(failed)?;

@@ -31,14 +31,14 @@ fn vessel_for(scenario: &str) -> Vessel {
 #[test]
 fn ledger_closes_over_every_preset_at_the_default_tolerance() {
     for name in scenario::presets::names() {
-        assert_closed(name, &run(&vessel_for(name), name, 1e-6, Method::Automatic), 1e-9);
+        assert_closed(name, &run(&vessel_for(name), name, 1e-6, Method::Bdf), 1e-9);
     }
 }
 
 #[test]
 fn ledger_closes_to_1e_8_at_tolerance_1e_10() {
     for name in scenario::presets::names().filter(|name| *name != "railway-week") {
-        assert_closed(name, &run(&vessel_for(name), name, 1e-10, Method::Automatic), 1e-8);
+        assert_closed(name, &run(&vessel_for(name), name, 1e-10, Method::Bdf), 1e-8);
     }
 }
 
@@ -59,7 +59,7 @@ fn ledger_closes_for_stacked_gas_standing_and_lying() {
         vessel.gas = GasResolution::Stratified(constants);
         vessel.geometry.orientation = orientation;
         for scenario in ["tunnel-winter", "haque-i1"] {
-            assert_closed(scenario, &run(&vessel, scenario, 1e-6, Method::Automatic), 1e-8);
+            assert_closed(scenario, &run(&vessel, scenario, 1e-6, Method::Bdf), 1e-8);
         }
     }
 }
@@ -69,6 +69,6 @@ fn ledger_closes_for_every_gas() {
     for name in Fluid::names() {
         let mut vessel = vessel::presets::load("nitrogen-20l").unwrap();
         vessel.fluid = Fluid::named(name).unwrap();
-        assert_closed(name, &run(&vessel, "leak-after-tunnel", 1e-6, Method::Automatic), 1e-9);
+        assert_closed(name, &run(&vessel, "leak-after-tunnel", 1e-6, Method::Bdf), 1e-9);
     }
 }
