@@ -122,8 +122,7 @@ impl Options {
         let data = self.data(&record)?;
         let signals = self.signals(&record);
         let between = format!("from {} to {}", signals.0.name, signals.1.name);
-        let progress = Progress::new(messages);
-        progress.show("identifying", 0.0);
+        let progress = Progress::open_ended(messages, "identifying");
         let identified = identify(&data, &self.structure, &method, &self.settings);
         drop(progress);
         let identified = identified.with_context(|| format!("{name}, {between}"))?;

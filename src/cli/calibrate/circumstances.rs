@@ -168,8 +168,8 @@ impl Exposure<'_> {
         let (name, readings) = (&recording.name, &recording.air);
         let Some((&(first_s, _), &(last_s, _))) = readings.first().zip(readings.last()) else {
             bail!(
-                "{name}: nothing says what the air does: the log has no column {AMBIENT}, and there is no scenario; \
-                 give --map {AMBIENT}_degc=THEIRS, or --scenario"
+                "{name}: nothing says what the air does: the log has no reading {AMBIENT}, and there is no scenario; \
+                 give --map {AMBIENT}_degc=THEIRS (of a simulated log its {AMBIENT}_degc), or --scenario"
             );
         };
         let usual_s = BRIDGED_INTERVALS * recording.interval_s;

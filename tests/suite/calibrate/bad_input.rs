@@ -105,7 +105,7 @@ fn too_few_rows_are_refused_with_both_numbers() {
 
 #[test]
 fn what_nobody_says_is_asked_for() {
-    let words = ["no column ambient", "--map ambient_degc=THEIRS", "--scenario"];
+    let words = ["no reading ambient", "--map ambient_degc=THEIRS", "--scenario"];
     refused(|log| log.without("ambient_degc"), &[], &words);
     let words = ["no pressure", "how much gas", "--fill-mass-kg"];
     refused(|log| log.without("pressure_bar"), &[], &words);
