@@ -1,29 +1,31 @@
 //! Options that say what is known of the cylinder at the first row of a log.
-use super::unit_options::{self, Choice, Quantity};
+use super::unit_options::{Choice, Choices, Given};
 use anyhow::{anyhow, bail};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use clap::Args;
 use cylwatch::estimator::observer::{Commissioning, ObserverSettings};
 use cylwatch::thermal::scenario::Fill;
 use cylwatch::thermal::units::{Dimension, ZERO_CELSIUS_K};
 use cylwatch::thermal::vessel::Vessel;
 
 /// Quantities that fix the mass.
-const QUANTITIES: &[Choice] = &[
-    (
-        "fill-pressure",
-        Dimension::Pressure,
-        "Pressure that the cylinder was filled to [default: the first pressure of the log]",
-    ),
-    (
-        "fill-temperature",
-        Dimension::Temperature,
-        "Temperature at which it had that pressure, at rest [default: that of the first row]",
-    ),
-    ("fill-mass", Dimension::Mass, "Gas mass, instead of pressure and temperature"),
-];
+#[derive(Clone, Debug)]
+pub struct OfFill;
 
-const MASS_SD: &str = "fill-sd-percent";
-const SETTLED: &str = "settled";
+impl Choices for OfFill {
+    const CHOICES: &'static [Choice] = &[
+        (
+            "fill-pressure",
+            Dimension::Pressure,
+            "Pressure that the cylinder was filled to [default: the first pressure of the log]",
+        ),
+        (
+            "fill-temperature",
+            Dimension::Temperature,
+            "Temperature at which it had that pressure, at rest [default: that of the first row]",
+        ),
+        ("fill-mass", Dimension::Mass, "Gas mass, instead of pressure and temperature"),
+    ];
+}
 
 /// Standard deviation of the mass of a fill of known pressure and temperature, %: 1.7 K and 1.7 bar together at 200 bar.
 const MASS_SD_PERCENT: f64 = 1.0;
@@ -35,10 +37,18 @@ const UNSETTLED_SD_K: f64 = 5.0;
 const UNSETTLED_AIR_SD_K: f64 = 20.0;
 
 /// Fill as given.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Args)]
 pub struct GivenFill {
-    given: Vec<Quantity>,
+    #[command(flatten)]
+    given: Given<OfFill>,
+
+    /// Standard deviation of the gas mass that the fill stands for, in % of it [default: 1, and what 5 K are where the
+    /// temperature is that of the first row; 1 K with --settled]
+    #[arg(long = "fill-sd-percent", value_name = "NUMBER")]
     mass_sd_percent: Option<f64>,
+
+    /// Gas, wall and air have one temperature at the first row, within 1 K [default: they may differ]
+    #[arg(long)]
     settled: bool,
 }
 
@@ -54,18 +64,9 @@ pub enum FillSource {
 impl GivenFill {
     /// What fixes the mass.
     pub fn source(&self) -> anyhow::Result<FillSource> {
-        let si = |dimension| -> anyhow::Result<Option<f64>> {
-            let mut given = self.given.iter().filter(|quantity| quantity.dimension == dimension);
-            match (given.next(), given.next()) {
-                (Some(first), Some(second)) => {
-                    bail!("{} says again what {} says: keep one", second.name, first.name)
-                }
-                (first, _) => first.map(Quantity::si).transpose(),
-            }
-        };
-        let pressure_pa = si(Dimension::Pressure)?;
-        let temperature_k = si(Dimension::Temperature)?;
-        let mass_kg = si(Dimension::Mass)?;
+        let pressure_pa = self.given.si("fill-pressure", Dimension::Pressure)?;
+        let temperature_k = self.given.si("fill-temperature", Dimension::Temperature)?;
+        let mass_kg = self.given.si("fill-mass", Dimension::Mass)?;
         Ok(match (mass_kg, pressure_pa, temperature_k) {
             (Some(mass_kg), None, None) => FillSource::Given(Fill::Mass { mass_kg }),
             (Some(_), _, _) => bail!("--fill-mass fixes the mass: leave out pressure and temperature"),
@@ -84,7 +85,7 @@ impl GivenFill {
     pub fn commissioning(&self, fill: Fill, vessel: &Vessel, first_k: f64) -> anyhow::Result<Commissioning> {
         let percent = self.mass_sd_percent.unwrap_or(MASS_SD_PERCENT);
         if !(percent > 0.0 && percent <= 100.0) {
-            bail!("--{MASS_SD} = {percent} must be above 0 and at most 100");
+            bail!("--fill-sd-percent = {percent} must be above 0 and at most 100");
         }
         let one = Commissioning { fill, mass_sd_kg: 1.0, settled: self.settled };
         let mass_kg = one.mass_kg(vessel, first_k)?;
@@ -128,38 +129,4 @@ pub fn misfit(
          {read_bar:.1} bar: look at vessel, fill and unit of the pressure"
     );
     if ratio > 3.0 { Err(anyhow!(words)) } else { Ok(Some(words)) }
-}
-
-impl Args for GivenFill {
-    fn augment_args(command: Command) -> Command {
-        let percent = Arg::new(MASS_SD)
-            .long(MASS_SD)
-            .value_name("NUMBER")
-            .value_parser(value_parser!(f64))
-            .help("Standard deviation of the gas mass that the fill stands for, in % of it [default: 1, and what 5 K are where the \
-                   temperature is that of the first row; 1 K with --settled]");
-        let settled = Arg::new(SETTLED).long(SETTLED).action(ArgAction::SetTrue).help(
-            "Gas, wall and air have one temperature at the first row, within 1 K [default: they may differ]",
-        );
-        unit_options::augment(command, QUANTITIES, |arg| arg).arg(percent).arg(settled)
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for GivenFill {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self {
-            given: unit_options::given(matches, QUANTITIES),
-            mass_sd_percent: matches.get_one(MASS_SD).copied(),
-            settled: matches.get_flag(SETTLED),
-        })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
 }

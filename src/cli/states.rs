@@ -1,36 +1,42 @@
 //! Quantities that fix a state, from options (`--pressure-bar 200`) or from the columns of a CSV file.
 use super::message::Messages;
-use super::unit_options::{self, Choice, Quantity};
+use super::unit_options::{Choice, Choices, Given as GivenOptions, Quantity};
 use anyhow::{Context, anyhow, bail};
-use clap::{ArgMatches, Args, Command, FromArgMatches};
+use clap::Arg;
 use cylwatch::properties::Given;
 use cylwatch::thermal::units::{self, Dimension, Unit};
 
 /// Quantities that can be given.
-const QUANTITIES: &[Choice] = &[
-    ("temperature", Dimension::Temperature, "Temperature"),
-    ("pressure", Dimension::Pressure, "Pressure"),
-    ("density", Dimension::Density, "Density in kg/m³"),
-];
+#[derive(Clone, Debug)]
+pub struct OfState;
 
-/// The quantities given as options, each in any unit of its dimension.
-#[derive(Clone, Debug, Default)]
-pub struct GivenQuantities {
-    given: Vec<Quantity>,
+impl Choices for OfState {
+    const CHOICES: &'static [Choice] = &[
+        ("temperature", Dimension::Temperature, "Temperature"),
+        ("pressure", Dimension::Pressure, "Pressure"),
+        ("density", Dimension::Density, "Density in kg/m³"),
+    ];
+
+    fn finish(option: Arg) -> Arg {
+        option.conflicts_with("states")
+    }
 }
+
+/// The quantities given as options.
+pub type GivenQuantities = GivenOptions<OfState>;
 
 impl GivenQuantities {
     /// The state that exactly two quantities fix.
     pub fn state(&self) -> anyhow::Result<Given> {
-        let names: Vec<&str> = self.given.iter().map(|q| q.name.as_str()).collect();
-        if self.given.len() != 2 || self.given[0].dimension == self.given[1].dimension {
+        let names: Vec<&str> = self.quantities.iter().map(|q| q.name.as_str()).collect();
+        if self.quantities.len() != 2 || self.quantities[0].dimension == self.quantities[1].dimension {
             let found = if names.is_empty() { "none".to_owned() } else { names.join(" and ") };
             bail!(
                 "a state takes two of temperature, pressure and density, and {found} was given: \
                  write e.g. --temperature-degc 15 --pressure-bar 200, or --states FILE"
             );
         }
-        from_quantities(&self.given)?.ok_or_else(|| anyhow!("two quantities fix a state"))
+        from_quantities(&self.quantities)?.ok_or_else(|| anyhow!("two quantities fix a state"))
     }
 }
 
@@ -44,27 +50,6 @@ fn from_quantities(given: &[Quantity]) -> anyhow::Result<Option<Given>> {
         (None, Some(p), Some(rho)) => Some(Given::PressureDensity(p, rho)),
         _ => None,
     })
-}
-
-impl Args for GivenQuantities {
-    fn augment_args(command: Command) -> Command {
-        unit_options::augment(command, QUANTITIES, |arg| arg.conflicts_with("states"))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for GivenQuantities {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self { given: unit_options::given(matches, QUANTITIES) })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        self.given.extend(unit_options::given(matches, QUANTITIES));
-        Ok(())
-    }
 }
 
 /// A state of a file with the line it stands in.
@@ -126,7 +111,8 @@ fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyho
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
         let (base, unit) = units::split(name).map_or((name, None), |(base, unit)| (base, Some(unit)));
-        let Some(&(_, dimension, _)) = QUANTITIES.iter().find(|(quantity, _, _)| *quantity == base) else {
+        let Some(&(_, dimension, _)) = OfState::CHOICES.iter().find(|(quantity, _, _)| *quantity == base)
+        else {
             ignored.push(name);
             continue;
         };

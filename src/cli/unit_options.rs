@@ -3,8 +3,9 @@
 //! The help shows the customary unit and names the others.
 use anyhow::bail;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use cylwatch::thermal::units::{self, Dimension, Unit};
+use std::marker::PhantomData;
 
 /// A quantity that can be given: name, what it measures, words of its help, with the unit if it is the only one.
 pub type Choice = (&'static str, Dimension, &'static str);
@@ -47,7 +48,7 @@ fn options(known: &'static [Choice]) -> impl Iterator<Item = (&'static Choice, S
 }
 
 /// Adds the options to a command; `finish` may change each.
-pub fn augment(command: Command, known: &'static [Choice], finish: impl Fn(Arg) -> Arg) -> Command {
+fn augment(command: Command, known: &'static [Choice], finish: impl Fn(Arg) -> Arg) -> Command {
     options(known).fold(command, |command, (&(quantity, dimension, words), name, unit, first)| {
         let others: Vec<&str> = units::units_of(dimension).skip(1).map(|unit| unit.suffix).collect();
         let absolute = if quantity.ends_with("pressure") { "absolute; " } else { "" };
@@ -67,7 +68,7 @@ pub fn augment(command: Command, known: &'static [Choice], finish: impl Fn(Arg) 
 }
 
 /// The quantities that were given.
-pub fn given(matches: &ArgMatches, known: &'static [Choice]) -> Vec<Quantity> {
+fn given(matches: &ArgMatches, known: &'static [Choice]) -> Vec<Quantity> {
     let given = options(known).filter_map(|(&(_, dimension, _), name, unit, _)| {
         if matches.value_source(&name) != Some(ValueSource::CommandLine) {
             return None;
@@ -76,4 +77,65 @@ pub fn given(matches: &ArgMatches, known: &'static [Choice]) -> Vec<Quantity> {
         Some(Quantity { name: format!("--{name}"), unit, dimension, value })
     });
     given.collect()
+}
+
+/// The quantities of a command.
+pub trait Choices {
+    /// Every quantity that can be given.
+    const CHOICES: &'static [Choice];
+
+    /// May change each option.
+    fn finish(option: Arg) -> Arg {
+        option
+    }
+}
+
+/// Quantities given as options, each in any unit of its dimension.
+#[derive(Clone, Debug)]
+pub struct Given<C> {
+    /// In the order of the choices.
+    pub quantities: Vec<Quantity>,
+    choices: PhantomData<C>,
+}
+
+impl<C: Choices> Given<C> {
+    /// Quantities of an option's name that measure something of this kind.
+    pub fn of<'a>(&'a self, option: &str, dimension: Dimension) -> impl Iterator<Item = &'a Quantity> {
+        let start = format!("--{option}-");
+        self.quantities
+            .iter()
+            .filter(move |given| given.dimension == dimension && given.name.starts_with(&start))
+    }
+
+    /// SI value of an option; given twice, in two units, it is refused.
+    pub fn si(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
+        let mut given = self.of(option, dimension);
+        match (given.next(), given.next()) {
+            (Some(first), Some(second)) => {
+                bail!("{} says again what {} says: keep one", second.name, first.name)
+            }
+            (first, _) => first.map(Quantity::si).transpose(),
+        }
+    }
+}
+
+impl<C: Choices> Args for Given<C> {
+    fn augment_args(command: Command) -> Command {
+        augment(command, C::CHOICES, C::finish)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<C: Choices> FromArgMatches for Given<C> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self { quantities: given(matches, C::CHOICES), choices: PhantomData })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }

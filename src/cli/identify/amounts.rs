@@ -1,47 +1,49 @@
 //! Options of `identify` that have a unit: dead times, gaps, noises.
-use crate::cli::unit_options::{self, Choice, Quantity};
+use crate::cli::unit_options::{Choice, Choices, Given};
 use anyhow::bail;
-use clap::{ArgMatches, Args, Command, FromArgMatches};
 use cylwatch::report::identify::Signal;
 use cylwatch::thermal::units::Dimension;
 
-const QUANTITIES: &[Choice] = &[
-    ("dead-time", Dimension::Time, "Known dead time [default: none]"),
-    ("longest-dead-time", Dimension::Time, "Estimate a dead time up to this one"),
-    (
-        "longest-gap",
-        Dimension::Time,
-        "Longest gap of the input that is bridged [default: 20 usual intervals]",
-    ),
-    (
-        "input-sd",
-        Dimension::TemperatureDifference,
-        "Standard deviation of the noise of an input that is a temperature, in k",
-    ),
-    (
-        "input-sd",
-        Dimension::PressureDifference,
-        "Standard deviation of the noise of an input that is a pressure",
-    ),
-    (
-        "output-sd",
-        Dimension::TemperatureDifference,
-        "Standard deviation of the noise of an output that is a temperature, in k",
-    ),
-    (
-        "output-sd",
-        Dimension::PressureDifference,
-        "Standard deviation of the noise of an output that is a pressure",
-    ),
-];
-
 const PASCAL_PER_BAR: f64 = 1e5;
 
-/// Quantities as given.
-#[derive(Clone, Debug, Default)]
-pub struct Amounts {
-    given: Vec<Quantity>,
+/// What can be given.
+#[derive(Clone, Debug)]
+pub struct Known;
+
+impl Choices for Known {
+    const CHOICES: &'static [Choice] = &[
+        ("dead-time", Dimension::Time, "Known dead time [default: none]"),
+        ("longest-dead-time", Dimension::Time, "Estimate a dead time up to this one"),
+        (
+            "longest-gap",
+            Dimension::Time,
+            "Longest gap of the input that is bridged [default: 20 usual intervals]",
+        ),
+        (
+            "input-sd",
+            Dimension::TemperatureDifference,
+            "Standard deviation of the noise of an input that is a temperature, in k",
+        ),
+        (
+            "input-sd",
+            Dimension::PressureDifference,
+            "Standard deviation of the noise of an input that is a pressure",
+        ),
+        (
+            "output-sd",
+            Dimension::TemperatureDifference,
+            "Standard deviation of the noise of an output that is a temperature, in k",
+        ),
+        (
+            "output-sd",
+            Dimension::PressureDifference,
+            "Standard deviation of the noise of an output that is a pressure",
+        ),
+    ];
 }
+
+/// Quantities as given.
+pub type Amounts = Given<Known>;
 
 impl Amounts {
     /// Known and longest dead time, s.
@@ -74,42 +76,6 @@ impl Amounts {
 
     /// Whether any noise was given.
     pub fn has_noise(&self) -> bool {
-        self.given.iter().any(|quantity| quantity.dimension != Dimension::Time)
-    }
-
-    fn of<'a>(&'a self, option: &'a str, dimension: Dimension) -> impl Iterator<Item = &'a Quantity> {
-        let start = format!("--{option}-");
-        self.given.iter().filter(move |given| given.dimension == dimension && given.name.starts_with(&start))
-    }
-
-    fn si(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
-        let mut given = self.of(option, dimension);
-        match (given.next(), given.next()) {
-            (Some(first), Some(second)) => {
-                bail!("{} says again what {} says: keep one", second.name, first.name)
-            }
-            (first, _) => first.map(Quantity::si).transpose(),
-        }
-    }
-}
-
-impl Args for Amounts {
-    fn augment_args(command: Command) -> Command {
-        unit_options::augment(command, QUANTITIES, |arg| arg)
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for Amounts {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(Self { given: unit_options::given(matches, QUANTITIES) })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
+        self.quantities.iter().any(|quantity| quantity.dimension != Dimension::Time)
     }
 }
