@@ -1,5 +1,11 @@
-//! Leak detection for gas cylinders: change statistics, thresholds from false-alarm rates,
-//! the monitor and its prognosis, on top of [`cylwatch_estimator`].
+//! Leak detection for gas cylinders on top of [`cylwatch_estimator`]: change statistics and thresholds from
+//! false-alarm rates.
 //!
-//! This crate so far holds only this page: the thermal solver and the observer come first.
+//! [`statistic`] turns residuals, one by one, into a number that grows when their mean has changed;
+//! [`calibrate`] turns a mean time between false alarms into the threshold of that number, and states the
+//! shortest delay that any detector can have.
+pub mod error;
+pub mod statistic;
+
 pub use cylwatch_estimator as estimator;
+pub use error::DetectorError;

@@ -1,0 +1,2 @@
+//! The tests of this crate in one binary, modules by kind.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
