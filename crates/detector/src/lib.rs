@@ -4,6 +4,7 @@
 //! [`statistic`] turns residuals, one by one, into a number that grows when their mean has changed;
 //! [`calibrate`] turns a mean time between false alarms into the threshold of that number, and states the
 //! shortest delay that any detector can have.
+pub mod calibrate;
 pub mod error;
 pub mod statistic;
 

@@ -37,6 +37,7 @@ pub use glr::{Finding, Glr, GlrSettings, OnsetGrid, OnsetHypothesis, Refined, Sh
 pub use noise::{Noise, Whitened, Whitener};
 pub use shewhart::Shewhart;
 pub use shiryaev_roberts::ShiryaevRoberts;
+pub(crate) use shiryaev_roberts::softplus;
 pub use sprt::{Sprt, SprtDecision};
 
 /// A statistic of scalar residuals.

@@ -3,7 +3,7 @@
 //! "`m` of the last `n` exceed `h`" is the same as "the `m`-th largest of the last `n` exceeds `h`", so the statistic
 //! is that order statistic, and the limit stays with the alarm. `m = n` is the rule "`m` in a row" (debouncing).
 //!
-//! Assumes independent samples of unit variance for the run lengths of [`crate::calibrate::run_rule_arl`].
+//! Assumes independent samples of unit variance for the run lengths of [`crate::calibrate::RunRule`].
 //! Detects changes of several standard deviations at once, small ones late.
 //!
 //! Source: W. A. Shewhart, Economic Control of Quality of Manufactured Product, 1931; run rules: Western Electric,

@@ -3,7 +3,7 @@
 //! `L_n = L_{n-1} + ln f1(x_n)/f0(x_n)`; there is one at `L_n >= a`, none at `L_n <= -b`. For the error
 //! probabilities `alpha` (step claimed, none there) and `beta` (step missed) Wald's bounds are
 //! `a = ln((1 - beta)/alpha)`, `b = ln((1 - alpha)/beta)`; they ignore the overshoot and so keep below the stated
-//! errors; [`crate::calibrate::sprt_bounds`] takes it into account.
+//! errors; [`crate::calibrate::sprt_bounds`] finds the bounds that have them.
 //!
 //! Assumes independent normal samples of unit variance. Of all tests with its errors it needs the fewest samples.
 //!

@@ -1,2 +1,9 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
+mod correlated;
+mod data_calibration;
+mod delay;
+mod likelihood_ratio;
+mod monte_carlo;
+mod run_lengths;
+mod state;
