@@ -89,6 +89,8 @@ impl MovingBlocks {
 }
 
 impl ResidualSource for MovingBlocks {
+    type Sample = Residual;
+
     fn begin(&mut self, run: u64) {
         self.random = ChaCha8Rng::seed_from_u64(self.seed);
         self.random.set_stream(run);

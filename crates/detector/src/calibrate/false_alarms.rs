@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::ResidualSource;
-use crate::statistic::Residual;
 
 /// Alarms counted without a change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -45,8 +44,8 @@ impl FalseAlarms {
 
 /// Alarms at `threshold` over so many samples. Detector and source start anew after each alarm, so that the mean is that
 /// of the time to a first alarm also for residuals that remember the last one.
-pub fn count_alarms<D: FnMut(Residual) -> f64>(
-    source: &mut impl ResidualSource,
+pub fn count_alarms<S: ResidualSource, D: FnMut(S::Sample) -> f64>(
+    source: &mut S,
     detector: impl Fn() -> D,
     threshold: f64,
     samples: u64,

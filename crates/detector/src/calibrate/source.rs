@@ -9,13 +9,16 @@ use rand_distr::StandardNormal;
 use crate::statistic::{Noise, Residual};
 use crate::{DetectorError, error::positive};
 
-/// An endless supply of residuals without a change.
+/// An endless supply of residuals without a change, or of whatever else a detector is fed with.
 pub trait ResidualSource {
+    /// What a detector is fed with.
+    type Sample;
+
     /// Begin run number `run`: the same residuals for the same number, independent ones for another.
     fn begin(&mut self, run: u64);
 
     /// The next residual of the run.
-    fn next_residual(&mut self) -> Residual;
+    fn next_residual(&mut self) -> Self::Sample;
 }
 
 /// Residuals of a noise model at even intervals.
@@ -41,6 +44,8 @@ impl SimulatedNoise {
 }
 
 impl ResidualSource for SimulatedNoise {
+    type Sample = Residual;
+
     fn begin(&mut self, run: u64) {
         self.random = ChaCha8Rng::seed_from_u64(self.seed);
         self.random.set_stream(run);

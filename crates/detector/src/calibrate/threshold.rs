@@ -16,7 +16,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::{FalseAlarms, ResidualSource};
-use crate::statistic::Residual;
 use crate::{DetectorError, error::positive};
 
 /// From the longest mean time that is run to the shorter one that gives the slope.
@@ -67,8 +66,8 @@ pub struct Calibrated {
 ///
 /// # Errors
 /// The wished mean time is not above 1, there are no runs, or the statistic does not reach two different values in them.
-pub fn calibrate_threshold<D: FnMut(Residual) -> f64>(
-    source: &mut impl ResidualSource,
+pub fn calibrate_threshold<S: ResidualSource, D: FnMut(S::Sample) -> f64>(
+    source: &mut S,
     detector: impl Fn() -> D,
     settings: &CalibrationSettings,
 ) -> Result<Calibrated, DetectorError> {
@@ -95,8 +94,8 @@ pub fn calibrate_threshold<D: FnMut(Residual) -> f64>(
 }
 
 /// First alarms at a threshold over runs cut off at `horizon` samples.
-fn first_alarms<D: FnMut(Residual) -> f64>(
-    source: &mut impl ResidualSource,
+fn first_alarms<S: ResidualSource, D: FnMut(S::Sample) -> f64>(
+    source: &mut S,
     detector: &impl Fn() -> D,
     threshold: f64,
     runs: std::ops::Range<u64>,
@@ -121,8 +120,8 @@ struct Records {
 }
 
 impl Records {
-    fn of_run<D: FnMut(Residual) -> f64>(
-        source: &mut impl ResidualSource,
+    fn of_run<S: ResidualSource, D: FnMut(S::Sample) -> f64>(
+        source: &mut S,
         detector: &impl Fn() -> D,
         run: u64,
         length: u64,

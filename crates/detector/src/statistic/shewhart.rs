@@ -25,12 +25,14 @@ pub struct Shewhart {
     count: usize,
     of: usize,
     last: VecDeque<f64>,
+    /// The same in ascending order.
+    sorted: Vec<f64>,
 }
 
 impl Shewhart {
     /// A single residual decides.
     pub fn new(side: Side) -> Self {
-        Self { side, count: 1, of: 1, last: VecDeque::with_capacity(1) }
+        Self { side, count: 1, of: 1, last: VecDeque::with_capacity(1), sorted: Vec::with_capacity(1) }
     }
 
     /// `count` of the last `of` residuals decide; equal numbers: `count` in a row.
@@ -45,7 +47,7 @@ impl Shewhart {
         if of > LONGEST_RUN {
             return Err(DetectorError::Setting { setting: "of", value: of as f64, bound: "at most 1000" });
         }
-        Ok(Self { side, count, of, last: VecDeque::with_capacity(of) })
+        Ok(Self { side, count, of, last: VecDeque::with_capacity(of), sorted: Vec::with_capacity(of) })
     }
 }
 
@@ -54,23 +56,26 @@ impl Statistic for Shewhart {
 
     fn update(&mut self, value: f64) -> f64 {
         if value.is_finite() {
-            if self.last.len() == self.of {
-                self.last.pop_front();
+            let gone = if self.last.len() == self.of { self.last.pop_front() } else { None };
+            if let Some(gone) = gone {
+                self.sorted.remove(self.sorted.partition_point(|kept| *kept < gone));
             }
-            self.last.push_back(self.side.of(value));
+            let seen = self.side.of(value);
+            self.sorted.insert(self.sorted.partition_point(|kept| *kept < seen), seen);
+            self.last.push_back(seen);
         }
         self.value()
     }
 
     /// Minus infinity as long as there are fewer than `count` samples.
     fn value(&self) -> f64 {
-        // The count-th largest is the largest of those that at least `count` samples reach.
-        let reached = |limit: f64| self.last.iter().filter(|value| **value >= limit).count() >= self.count;
-        self.last.iter().copied().filter(|value| reached(*value)).fold(f64::NEG_INFINITY, f64::max)
+        let index = self.sorted.len().checked_sub(self.count);
+        index.map_or(f64::NEG_INFINITY, |index| self.sorted[index])
     }
 
     fn reset(&mut self) {
         self.last.clear();
+        self.sorted.clear();
     }
 }
 

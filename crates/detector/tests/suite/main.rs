@@ -3,6 +3,8 @@
 mod correlated;
 mod data_calibration;
 mod delay;
+mod equivalence;
+mod failure_alarms;
 mod likelihood_ratio;
 mod monte_carlo;
 mod run_lengths;

@@ -140,14 +140,7 @@ impl FailureGlr {
     pub fn update(&mut self, step: &FilterStep) -> Result<f64, DetectorError> {
         self.check(step)?;
         let whitening = Whitening::try_new(step)?;
-        let mut fresh = self.spare.pop().unwrap_or_default();
-        let begins_s = match self.failure {
-            Failure::StateRamp(_) => step.time_s - step.interval_s,
-            Failure::StateStep(_) | Failure::OutputOffset(_) => step.time_s,
-        };
-        fresh.begin(begins_s, self.states);
-        let spare = &mut self.spare;
-        self.onsets.push(fresh, |left| spare.push(left));
+        self.begin_onset(step);
         self.value = 0.0;
         for onset in self.onsets.iter_mut() {
             onset.add(&self.failure, self.side, step, &whitening);
@@ -176,6 +169,18 @@ impl FailureGlr {
     pub fn reset(&mut self) {
         self.onsets.clear();
         self.value = 0.0;
+    }
+
+    /// A failure may have begun just before this sample, a ramp at the one before.
+    fn begin_onset(&mut self, step: &FilterStep) {
+        let ramp = matches!(self.failure, Failure::StateRamp(_));
+        if ramp && step.interval_s <= 0.0 {
+            return;
+        }
+        let mut fresh = self.spare.pop().unwrap_or_default();
+        fresh.begin(if ramp { step.time_s - step.interval_s } else { step.time_s }, self.states);
+        let spare = &mut self.spare;
+        self.onsets.push(fresh, |left| spare.push(left));
     }
 
     fn check(&self, step: &FilterStep) -> Result<(), DetectorError> {
