@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use super::approximation::discreteness;
 use super::solve::threshold_for;
-use super::{normal_density, normal_probability};
+use super::{Change, normal_density, normal_probability};
 use crate::DetectorError;
 use crate::statistic::{Noise, Shape, Side};
 
@@ -79,6 +79,24 @@ impl GlrChart {
         let b = (2.0 * self.threshold).sqrt();
         let signs = if self.side == Side::Both { 2.0 } else { 1.0 };
         b / (signs * normal_density(b) * self.summits(b))
+    }
+
+    /// Mean delay, s, of a change of its own shape.
+    ///
+    /// The maximum over size and onset runs ahead of the information `J`, the overshoot behind: a ramp is found at
+    /// `J = threshold - 1.5` and half an interval later, a step of `d` standard deviations at
+    /// `J = threshold - 2.4 + 1.55 d`. The three numbers are fitted to simulated delays.
+    ///
+    /// # Validity
+    /// Ramps of white or Ornstein-Uhlenbeck noise, steps of 0.3 to 1.5 standard deviations in white noise, found within
+    /// the window, at thresholds of about 11: 6 % of simulated delays.
+    pub fn delay_s(&self, change: Change) -> f64 {
+        let (ahead, later_s) = match change {
+            Change::Ramp(_) => (1.5, 0.5 * self.interval_s),
+            Change::Step(size) => (2.4 - 1.55 * (size / self.noise.sd).abs(), 0.0),
+        };
+        let needed = (self.threshold - ahead).max(0.0);
+        change.time_to_information(self.noise, self.interval_s, needed) + later_s
     }
 
     /// `sum_l F_n(l) F_k(l)`.
