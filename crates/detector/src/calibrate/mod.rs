@@ -11,6 +11,33 @@
 //! * [`Change::delay_bound`] is the delay that no detector can go below.
 //!
 //! All run lengths are numbers of samples; times in seconds are named so.
+//!
+//! A leak of 0.05 bar/h in hourly residuals that wander by 0.3 bar over 3 h, one false alarm in ten years:
+//!
+//! ```
+//! use cylwatch_detector::calibrate::{Change, GlrChart};
+//! use cylwatch_detector::statistic::{Glr, GlrSettings, Noise, Residual, Shape, Side, Statistic};
+//!
+//! let hour_s = 3600.0;
+//! let noise = Noise::ornstein_uhlenbeck(0.3, 3.0 * hour_s);
+//! let (shape, side, window) = (Shape::Ramp, Side::Below, 720);
+//! let chart = GlrChart { shape, side, noise, interval_s: hour_s, window, threshold: 0.0 };
+//! let chart = chart.for_arl(10.0 * 8766.0)?;
+//!
+//! let leak = Change::Ramp(-0.05 / hour_s);
+//! let shortest_h = leak.delay_bound(noise, hour_s, 10.0 * 8766.0 * hour_s) / hour_s;
+//! assert!(shortest_h < 21.0 && chart.delay_s(leak) / hour_s < 22.0);
+//!
+//! let mut glr = Glr::try_new(GlrSettings { side, window, ..GlrSettings::new(shape, noise) })?;
+//! let alarm = (0..100).map(f64::from).find(|hour| {
+//!     let lost_bar = 0.05 * (hour - 50.0).max(0.0);
+//!     glr.update(Residual { time_s: hour * hour_s, value: -lost_bar }) >= chart.threshold
+//! });
+//! assert!(alarm.is_some());
+//! let leak = glr.finding().and_then(|finding| finding.refined).expect("a ramp was found");
+//! assert!((leak.size * hour_s + 0.05).abs() < 1e-6 && (leak.onset_s / hour_s - 50.0).abs() < 1e-3);
+//! # Ok::<(), cylwatch_detector::DetectorError>(())
+//! ```
 mod approximation;
 mod blocks;
 mod bound;

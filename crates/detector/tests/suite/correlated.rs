@@ -1,7 +1,10 @@
 //! What correlation does to a design for independent samples.
 use cylwatch_detector::statistic::{Cusum, Noise, Residual, Statistic, Whitener};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 
-use crate::monte_carlo::run_length;
+use crate::monte_carlo::{Mean, run_length};
 
 #[test]
 fn correlated_samples_shorten_the_run_length_as_published() {
@@ -66,4 +69,29 @@ fn whitening_gives_the_run_length_of_independent_samples_back() {
         let found = run_length(|| whitened.clone(), 5.0, (0.0, phi), 2500, 7);
         assert!(found.agrees(930.9, 0.1), "{phi}: {found:?}");
     }
+}
+
+#[test]
+fn whitening_gives_it_back_at_uneven_intervals_with_gaps_too() {
+    let noise = Noise::ornstein_uhlenbeck(0.3, 10_800.0);
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let lengths: Vec<f64> = (0..2500)
+        .map(|_| {
+            let mut whitener = Whitener::try_new(noise).unwrap();
+            let mut sum = Cusum::try_new(0.5).unwrap();
+            let (mut time_s, mut e, mut n) = (0.0, 0.3 * random.sample::<f64, _>(StandardNormal), 1.0);
+            while sum.update(whitener.whiten(Residual { time_s, value: e }).unwrap().value) < 5.0 {
+                // Seconds to a quarter of an hour, and now and then a day without a sample.
+                let gap = random.random::<f64>() < 0.01;
+                let interval_s = if gap { 86_400.0 } else { 1.0 + 900.0 * random.random::<f64>() };
+                let phi = noise.correlation(interval_s);
+                e = phi * e + 0.3 * (1.0 - phi * phi).sqrt() * random.sample::<f64, _>(StandardNormal);
+                time_s += interval_s;
+                n += 1.0;
+            }
+            n
+        })
+        .collect();
+    let found = Mean::of(&lengths);
+    assert!(found.agrees(930.9, 0.1), "{found:?}");
 }
