@@ -23,7 +23,7 @@ mod tests;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use self::hypothesis::{FailureOnset, Whitening};
+use self::hypothesis::{FailureOnset, Signatures};
 use super::{OnsetGrid, Side};
 use crate::DetectorError;
 
@@ -93,9 +93,7 @@ pub struct FailureGlr {
     side: Side,
     onsets: OnsetGrid<FailureOnset>,
     value: f64,
-    /// Hypotheses that have left the grid: their memory is used again.
-    #[serde(skip)]
-    spare: Vec<FailureOnset>,
+    signatures: Signatures,
 }
 
 impl FailureGlr {
@@ -129,7 +127,7 @@ impl FailureGlr {
             return Err(DetectorError::Setting { setting: "window", value, bound });
         }
         let onsets = OnsetGrid::new(window, per_octave);
-        Ok(Self { failure, states, side, onsets, value: 0.0, spare: Vec::new() })
+        Ok(Self { failure, states, side, onsets, value: 0.0, signatures: Signatures::new(states) })
     }
 
     /// Take what the filter did with a sample; the statistic after it.
@@ -139,11 +137,14 @@ impl FailureGlr {
     /// positive definite; the statistic is then as before.
     pub fn update(&mut self, step: &FilterStep) -> Result<f64, DetectorError> {
         self.check(step)?;
-        let whitening = Whitening::try_new(step)?;
-        self.begin_onset(step);
+        let covariance =
+            step.innovation_covariance.clone().cholesky().ok_or(DetectorError::InnovationCovariance)?;
+        let fresh = self.begin_onset(step);
+        let innovation = self.signatures.add(&self.failure, step, &covariance, fresh);
         self.value = 0.0;
         for onset in self.onsets.iter_mut() {
-            onset.add(&self.failure, self.side, step, &whitening);
+            let signature = self.signatures.signature(onset.column, innovation.len());
+            onset.add(self.side, signature, innovation.as_slice());
             self.value = self.value.max(onset.log_likelihood_ratio);
         }
         Ok(self.value)
@@ -156,8 +157,14 @@ impl FailureGlr {
 
     /// The most likely failure; `None` as long as nothing speaks for one.
     pub fn finding(&self) -> Option<FailureFinding> {
-        let best = self.onsets.best()?;
-        (best.log_likelihood_ratio > 0.0).then(|| best.finding())
+        let best = self.onsets.best().filter(|best| best.log_likelihood_ratio > 0.0)?;
+        Some(FailureFinding {
+            onset_s: best.onset_s,
+            size: best.correlation / best.information,
+            size_variance: best.information.recip(),
+            log_likelihood_ratio: best.log_likelihood_ratio,
+            deviation: self.signatures.deviation(best.column).to_vec(),
+        })
     }
 
     /// What is looked for.
@@ -168,19 +175,21 @@ impl FailureGlr {
     /// Forget all samples, as after the estimate was put right.
     pub fn reset(&mut self) {
         self.onsets.clear();
+        self.signatures.clear();
         self.value = 0.0;
     }
 
-    /// A failure may have begun just before this sample, a ramp at the one before.
-    fn begin_onset(&mut self, step: &FilterStep) {
+    /// The failure may have begun just before this sample, a ramp at the sample before: the column of its signature.
+    fn begin_onset(&mut self, step: &FilterStep) -> Option<usize> {
         let ramp = matches!(self.failure, Failure::StateRamp(_));
         if ramp && step.interval_s <= 0.0 {
-            return;
+            return None;
         }
-        let mut fresh = self.spare.pop().unwrap_or_default();
-        fresh.begin(if ramp { step.time_s - step.interval_s } else { step.time_s }, self.states);
-        let spare = &mut self.spare;
-        self.onsets.push(fresh, |left| spare.push(left));
+        let onset_s = if ramp { step.time_s - step.interval_s } else { step.time_s };
+        let column = self.signatures.begin();
+        let signatures = &mut self.signatures;
+        self.onsets.push(FailureOnset::at(onset_s, column), |left| signatures.end(left.column));
+        Some(column)
     }
 
     fn check(&self, step: &FilterStep) -> Result<(), DetectorError> {
