@@ -3,7 +3,7 @@
 //! All rest on the mean overshoot of a normal random walk over a far barrier, `-zeta(1/2)/sqrt(2 pi) = 0.5826` standard
 //! deviations: a walk in discrete time behaves like Brownian motion with a barrier that much farther away.
 //!
-//! Source: D. Siegmund, Sequential Analysis, 1985, sections 2.6, 10.2; M. Pollak, Ann. Stat. 15 (1987) 749; D. Siegmund
+//! Source: D. Siegmund, Sequential Analysis, 1985; M. Pollak, Ann. Stat. 15 (1987) 749; D. Siegmund
 //! and E. S. Venkatraman, Ann. Stat. 23 (1995) 255.
 use super::solve::threshold_for;
 use super::{normal_density, normal_probability};
@@ -32,7 +32,7 @@ pub fn shiryaev_roberts_arl(shift: f64, threshold: f64) -> f64 {
 /// Share of the clusters of exceedances of a normal random walk, drift `-x^2/2` and variance `x^2`, that its discrete
 /// time leaves: `nu(x) = (2/x) [Phi(x/2) - 1/2]/[(x/2) Phi(x/2) + phi(x/2)]`, nearly `exp(-0.583 x)`.
 ///
-/// Source: D. Siegmund and B. Yakir, The Statistics of Gene Mapping, 2007, eq. (3.9).
+/// Source: D. Siegmund and B. Yakir, The Statistics of Gene Mapping, 2007.
 pub(super) fn discreteness(x: f64) -> f64 {
     if x < 1e-6 {
         return 1.0 - MEAN_OVERSHOOT * x;

@@ -6,7 +6,7 @@
 //!
 //! Assumes a stationary Ornstein-Uhlenbeck process, seen without a noise of its own for each sample.
 //!
-//! Source: P. J. Brockwell and R. A. Davis, Time Series: Theory and Methods, 1991, section 8.7.
+//! Source: P. J. Brockwell and R. A. Davis, Time Series: Theory and Methods, 1991.
 use serde::{Deserialize, Serialize};
 
 use super::blocks::check;

@@ -18,7 +18,7 @@
 //! correlation of 0.9. Such a threshold is refused here; [`super::calibrate_threshold`] finds it.
 //!
 //! Source: D. Siegmund and E. S. Venkatraman, Ann. Stat. 23 (1995) 255; D. Siegmund and B. Yakir, The Statistics of Gene
-//! Mapping, 2007, chapter 3; smooth fields: S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46.
+//! Mapping, 2007; smooth fields: S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46.
 use serde::{Deserialize, Serialize};
 
 use super::approximation::discreteness;

@@ -7,8 +7,8 @@
 //!
 //! Assumes independent normal samples of unit variance.
 //!
-//! Source: A. Wald, Ann. Math. Stat. 16 (1945) 117; D. Siegmund, Sequential Analysis, 1985, section 3.1; the integral
-//! equations: J. H. B. Kemp, J. R. Stat. Soc. B 20 (1958) 379.
+//! Source: A. Wald, Ann. Math. Stat. 16 (1945) 117; D. Siegmund, Sequential Analysis, 1985; the integral
+//! equations: K. W. Kemp, J. R. Stat. Soc. B 20 (1958) 379.
 use serde::{Deserialize, Serialize};
 
 use super::approximation::MEAN_OVERSHOOT;

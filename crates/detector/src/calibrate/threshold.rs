@@ -11,8 +11,8 @@
 //!
 //! Assumes that times to an alarm are nearly exponential, as they are for thresholds that are seldom reached.
 //!
-//! Source: run lengths from records: M. Pollak and D. Siegmund, J. Appl. Probab. 23 (1986) 131; censored exponential times: J. F.
-//! Lawless, Statistical Models and Methods for Lifetime Data, 2003, section 4.1.
+//! Source: censored exponential times: J. F. Lawless, Statistical Models and Methods for Lifetime Data, 2003, section
+//! 4.1; nearly exponential run lengths: D. Siegmund and E. S. Venkatraman, Ann. Stat. 23 (1995) 255.
 use serde::{Deserialize, Serialize};
 
 use super::{FalseAlarms, ResidualSource};

@@ -6,7 +6,7 @@
 //! The first sample has no predecessor: `phi = 0`. White noise is `tau = 0`.
 //!
 //! Source: G. E. Uhlenbeck and L. S. Ornstein, Phys. Rev. 36 (1930) 823; P. J. Brockwell and R. A. Davis, Time
-//! Series: Theory and Methods, 1991, sections 3.1 and 9.5.
+//! Series: Theory and Methods, 1991.
 use serde::{Deserialize, Serialize};
 
 use super::Residual;

@@ -60,7 +60,6 @@ fn the_integral_equation_holds_for_whitened_residuals() {
 #[test]
 fn simulation_of_fitted_noise_calibrates_a_sum_of_raw_residuals() {
     for phi in [0.0, 0.9, 0.99] {
-        // A year of hourly values' worth of residuals to learn from.
         let fitted = fit_noise(&record(phi, 31, 60_000)).unwrap().noise;
         let mut source = SimulatedNoise::try_new(fitted, INTERVAL_S, 32).unwrap();
         let settings = CalibrationSettings::new(WISHED);
