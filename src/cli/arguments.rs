@@ -1,4 +1,5 @@
 //! The raw arguments: they mirror the command line and decide nothing.
+use super::calibrate::CalibrateArguments;
 use super::fill::GivenFill;
 use super::identify::IdentifyArguments;
 use super::states::GivenQuantities;
@@ -26,6 +27,7 @@ Examples:
   cylwatch simulate nitrogen-20l shock-cold -o run.csv --plot run.svg
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
+  cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
@@ -43,6 +45,8 @@ pub enum Command {
     Estimate(Box<EstimateArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.
     Identify(Box<IdentifyArguments>),
+    /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.
+    Calibrate(Box<CalibrateArguments>),
     /// Print the properties of a gas, at one state or for every row of a file.
     Properties(PropertiesArguments),
     /// Write start files vessel.toml and scenario.toml, with comments, to edit.

@@ -6,8 +6,9 @@ use super::message::Messages;
 use super::output::Target;
 use super::plot::Plot;
 use super::progress::Progress;
+use super::selection::{self, Selection};
 use anyhow::{Context, bail};
-use cylwatch::estimator::log::{Channel, Quantity};
+use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::log::{LogOptions, LogReader, Mapping, Row};
@@ -19,11 +20,9 @@ use std::path::{Path, PathBuf};
 
 mod pass;
 mod rows;
-mod selection;
 
 use pass::Pass;
 use rows::Rows;
-use selection::Selection;
 
 /// Rows that are looked through for the first pressure.
 const LONGEST_WAIT: usize = 10_000;
@@ -121,7 +120,7 @@ fn estimate(
     log: &mut LogInput,
     messages: &Messages,
 ) -> anyhow::Result<report::Summary> {
-    let selection = Selection::new(&mut log.reader, sensors, vessel, messages)?;
+    let selection = Selection::new(&mut log.reader, sensors, vessel, &[], messages)?;
     let (first, fill) = first_rows(&mut log.reader, &selection, options.source)?;
     let first_k = selection.mean_temperature_k(first.first());
     let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));

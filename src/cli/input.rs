@@ -4,7 +4,7 @@ use anyhow::{Context, bail};
 use cylwatch::log::{LogOptions, LogReader, is_parquet};
 use cylwatch::report::{Fingerprint, Input, Provenance};
 use cylwatch::thermal::scenario::{self, Scenario};
-use cylwatch::thermal::vessel::{self, Vessel};
+use cylwatch::thermal::vessel::{self, Vessel, VesselSpec};
 use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{Read, Seek};
@@ -52,6 +52,20 @@ impl Inputs {
         let document =
             self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
         Ok(vessel::read_vessel(&document.text, &document.shown)?)
+    }
+
+    /// A vessel as of [`Inputs::vessel`] with the content of its file, and where it comes from.
+    pub fn vessel_specification(&self, name: &str) -> anyhow::Result<(VesselSpec, Vessel, Input)> {
+        let document =
+            self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
+        let (specification, vessel) = vessel::read_specification(&document.text, &document.shown)?;
+        let origin = self.records.borrow().last().cloned().context("what was read is recorded")?;
+        Ok((specification, vessel, origin))
+    }
+
+    /// The record of something that was read by its name.
+    pub fn record_of(&self, name: &str) -> Option<Input> {
+        self.records.borrow().iter().find(|record| record.name == name).cloned()
     }
 
     /// A scenario by file name, by built-in name, or from stdin; the tables it names lie beside it.

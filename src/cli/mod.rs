@@ -2,6 +2,7 @@
 //!
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error.
 mod arguments;
+mod calibrate;
 mod completions;
 mod estimate;
 mod fill;
@@ -15,6 +16,7 @@ mod progress;
 mod properties;
 mod reproduce;
 mod schema;
+mod selection;
 mod simulate;
 mod states;
 mod unit_options;
@@ -47,6 +49,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<()> {
         Command::Simulate(arguments) => simulate::run(arguments, messages),
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
+        Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

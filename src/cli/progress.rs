@@ -1,8 +1,11 @@
 //! A progress bar, on a terminal only.
 use super::message::Messages;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::Duration;
 
 const PARTS: u64 = 1000;
+/// How often a bar without a known length moves.
+const TICK: Duration = Duration::from_millis(120);
 
 /// A bar that is cleared when it is dropped.
 pub struct Progress {
@@ -19,6 +22,22 @@ impl Progress {
             bar.set_style(style.progress_chars("=> "));
         }
         Self { bar }
+    }
+
+    /// The same for work of unknown length: what is being done, and for how long.
+    pub fn open_ended(messages: &Messages, what: &str) -> Self {
+        let progress = Self::new(messages);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+            progress.bar.set_style(style);
+        }
+        progress.say(what);
+        progress.bar.enable_steady_tick(TICK);
+        progress
+    }
+
+    /// Says what is being done.
+    pub fn say(&self, what: &str) {
+        self.bar.set_message(what.to_owned());
     }
 
     /// Shows what is being done and which share of it is done.

@@ -53,7 +53,17 @@ fn every_command_has_help_and_the_shells_their_completions() {
     let folder = tempdir().unwrap();
     let help = run(folder.path(), &["--help"]);
     assert_eq!((help.code, help.stderr.as_str()), (Some(0), ""));
-    for command in ["reproduce", "simulate", "properties", "init", "schema", "completions"] {
+    for command in [
+        "reproduce",
+        "simulate",
+        "estimate",
+        "identify",
+        "calibrate",
+        "properties",
+        "init",
+        "schema",
+        "completions",
+    ] {
         assert!(help.stdout.contains(command));
         assert_eq!(run(folder.path(), &[command, "--help"]).code, Some(0));
     }

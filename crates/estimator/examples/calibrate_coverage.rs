@@ -1,13 +1,12 @@
-//! How often the intervals of six properties that are 30 % off hold the truth, how much better the calibrated vessel
-//! predicts a scenario that was not recorded, and how long a calibration takes on a day of readings every 10 s.
+//! How often the intervals of six numbers that are 30 % off hold the truth, and how much better the calibrated vessel predicts
+//! a scenario that was not recorded.
 //!
 //! `cargo run --release -p cylwatch-estimator --example calibrate_coverage -- [seeds]`
 //!
-//! `seeds`: 50 by default. Class B sensors on shoulder and valve, a pressure transmitter of 0.25 %; their offsets, the
-//! valve's coupling and the transmitter's temperature coefficient are unknown too. Recorded: `tunnel-step`, predicted: `shock-cold`.
+//! `seeds`: how many, 50 by default, from 101 on; the study was set up on seeds below. Class B sensors on shoulder and valve, a
+//! pressure transmitter of 0.25 %; unknown too are their offsets, the transmitter's temperature coefficient, and the valve's contact,
+//! with a prior of a factor of two. Recorded: `tunnel-step`, predicted: `shock-cold`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
-use std::time::Instant;
-
 use cylwatch_estimator::consistency::{Coverage, Significance};
 use rayon::prelude::*;
 
@@ -16,6 +15,9 @@ use rayon::prelude::*;
 mod study;
 
 use study::{Case, kinds, preset};
+
+/// First seed that was not looked at before.
+const FIRST_SEED: u64 = 101;
 
 /// What one seed gives.
 struct Outcome {
@@ -34,8 +36,10 @@ fn outcome(seed: u64) -> Result<Outcome, String> {
 }
 
 fn coverage(seeds: u64) {
-    let (outcomes, failures): (Vec<Outcome>, Vec<String>) =
-        (1..=seeds).into_par_iter().map(outcome).partition_map(|outcome| match outcome {
+    let (outcomes, failures): (Vec<Outcome>, Vec<String>) = (FIRST_SEED..FIRST_SEED + seeds)
+        .into_par_iter()
+        .map(outcome)
+        .partition_map(|outcome| match outcome {
             Ok(outcome) => rayon::iter::Either::Left(outcome),
             Err(error) => rayon::iter::Either::Right(error),
         });
@@ -61,21 +65,7 @@ fn coverage(seeds: u64) {
     );
 }
 
-fn day(name: &str) {
-    let mut scenario = preset(name);
-    (scenario.duration_s, scenario.sample_time_s) = (86_400.0, 10.0);
-    let calibration = Case::new(1).calibration(&scenario);
-    let clock = Instant::now();
-    let all = calibration.run().map(|found| found.iterations);
-    println!(
-        "a day of {name} every 10 s, {} parameters: {:.1?}, steps {all:?}",
-        calibration.parameters.len(),
-        clock.elapsed()
-    );
-}
-
 fn main() {
     let seeds = std::env::args().nth(1).map_or(50, |text| text.parse().unwrap());
     coverage(seeds);
-    day("tunnel-step");
 }

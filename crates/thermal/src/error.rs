@@ -266,6 +266,14 @@ pub enum ThermalError {
         /// What it said.
         reason: String,
     },
+    /// A neighbour has another mesh or number of gas cells than the run.
+    #[error(
+        "neighbour {index} of the run has another mesh or number of gas cells: change values, not shapes"
+    )]
+    NeighbourOfAnotherShape {
+        /// Its place in the list, from 0.
+        index: usize,
+    },
     /// The solver cannot go on.
     #[error(
         "the integration stops at {time_s:.3} s (gas {gas_k:.2} K, {pressure_pa:.0} Pa): {reason}; \

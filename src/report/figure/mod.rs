@@ -3,12 +3,14 @@
 //! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. plotters is named in this folder only.
 //! Looks are decided in [`style`] alone.
 mod canvas;
+mod correlation;
 mod output;
 mod panel;
 mod path;
 pub mod style;
 mod ticks;
 
+pub use correlation::correlation;
 use style::Stroke;
 
 /// A figure of panels above one another.

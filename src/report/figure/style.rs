@@ -77,6 +77,8 @@ pub const SECOND: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
 pub const THIRD: Stroke = stroke(Rgb::GREEN, 1.8, &[2.0, 2.2]);
 /// Middle of a measured band.
 pub const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
+/// A model over readings.
+pub const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
 /// Measured points.
 pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
@@ -109,6 +111,11 @@ pub fn innovation(name: &str, number: usize) -> Stroke {
 /// The same stroke for a curve with noise, which would blur dashes: thin and full.
 pub fn noisy(stroke: Stroke) -> Stroke {
     Stroke { width: 1.1, dash: &[], ..stroke }
+}
+
+/// The same stroke for readings that a model is drawn over: broad, so that they show on both sides of it.
+pub fn below_model(stroke: Stroke) -> Stroke {
+    Stroke { width: 3.4, ..stroke }
 }
 
 /// Width of a figure; an SVG opens at this many pixels.

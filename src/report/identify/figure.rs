@@ -1,7 +1,7 @@
 //! The figure of an identification: data and model, errors, what is left in the errors.
 use super::{Part, Study};
 use crate::estimator::identify::Residuals;
-use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+use crate::report::figure::{Figure, Horizontal, Item, Panel, correlation, style};
 
 /// Data, model and errors against time; below, the errors' correlations against the lag.
 pub fn figure(study: &Study) -> Figure {
@@ -76,44 +76,24 @@ fn correlations(residuals: &Residuals, input: &str) -> Figure {
     let lags = residuals.autocorrelation.len() as i64 - 1;
     let both: Vec<f64> = (-lags..=lags).map(|lag| lag as f64).collect();
     let after: Vec<f64> = (0..=lags).map(|lag| lag as f64).collect();
-    let ends = [-(lags as f64), lags as f64];
-    let band = |bound: f64| Item::Band {
-        name: "99 % by chance".into(),
-        x: ends.to_vec(),
-        low: vec![-100.0 * bound; 2],
-        high: vec![100.0 * bound; 2],
-    };
-    let panel = |name: String, x: &[f64], values: &[f64], bound: f64| Panel {
-        quantity: "correlation in %".into(),
-        items: vec![band(bound), stems(x, values), points(name, x, values)],
-        height: 0.6,
-    };
-    let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value).collect::<Vec<_>>();
-    let (auto, with_input) = (&percent(&residuals.autocorrelation), &percent(&residuals.input_correlation));
     Figure {
         title: "What is left in the errors".into(),
         horizontal: Horizontal::Quantity("lag in samples".into()),
         panels: vec![
-            panel("errors with\nthemselves".into(), &after, auto, residuals.autocorrelation_bound),
-            panel(
-                format!("errors with\n{input}, lag\nsamples before"),
+            correlation(
+                "errors with\nthemselves",
+                &after,
+                &residuals.autocorrelation,
+                residuals.autocorrelation_bound,
+            ),
+            correlation(
+                &format!("errors with\n{input}, lag\nsamples before"),
                 &both,
-                with_input,
+                &residuals.input_correlation,
                 residuals.input_correlation_bound,
             ),
         ],
         marks: Vec::new(),
         below: None,
     }
-}
-
-fn points(name: String, x: &[f64], values: &[f64]) -> Item {
-    Item::Points { name, x: x.to_vec(), y: values.to_vec(), stroke: style::MEASURED }
-}
-
-/// A line from zero to each value.
-fn stems(x: &[f64], values: &[f64]) -> Item {
-    let corners = x.iter().zip(values).flat_map(|(&x, &y)| [(x, 0.0), (x, y), (f64::NAN, f64::NAN)]);
-    let (x, y) = corners.unzip();
-    Item::Line { name: String::new(), x, y, stroke: style::MEASURED }
 }

@@ -2,7 +2,7 @@
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::FlowKind;
 use cylwatch_thermal::model::Model;
-use cylwatch_thermal::scenario::{Fill, OutsideFilm, Scenario};
+use cylwatch_thermal::scenario::{Fill, Scenario};
 use cylwatch_thermal::vessel::{InsideFilm, Vessel};
 
 use super::{CalibrateError, ParameterKind, ParameterSpec};
@@ -60,10 +60,6 @@ impl Setup {
     fn apply(&mut self, kind: &ParameterKind, value: f64) -> Result<(), ThermalError> {
         let Self { vessel, scenario, sensors } = self;
         match kind {
-            ParameterKind::OutsideFilm => match &mut scenario.surroundings.film {
-                OutsideFilm::Coefficient { film_w_m2_k } => *film_w_m2_k = film_w_m2_k.scaled(value)?,
-                OutsideFilm::Convection { multiplier, .. } => *multiplier *= value,
-            },
             ParameterKind::DischargeCoefficient { flow } => {
                 for flow in scenario.flows.iter_mut().filter(|known| known.name == *flow) {
                     if let FlowKind::Orifice { discharge_coefficient, .. } = &mut flow.kind {
@@ -75,7 +71,8 @@ impl Setup {
                 scenario.initial.wall_temperature_k += value;
                 scenario.initial.gas_temperature_k += value;
             }
-            ParameterKind::InsideFilm
+            ParameterKind::OutsideFilm
+            | ParameterKind::InsideFilm
             | ParameterKind::WallCapacity
             | ParameterKind::ValveCapacity
             | ParameterKind::ValveContact
@@ -141,6 +138,7 @@ impl Setup {
 
 pub(super) fn apply_to_vessel(vessel: &mut Vessel, kind: &ParameterKind, factor: f64) {
     match kind {
+        ParameterKind::OutsideFilm => vessel.surface.film_factor *= factor,
         ParameterKind::InsideFilm => match &mut vessel.inside_film {
             InsideFilm::Rayleigh { multiplier, .. } => *multiplier *= factor,
             InsideFilm::Coefficient { film_w_m2_k } => *film_w_m2_k *= factor,

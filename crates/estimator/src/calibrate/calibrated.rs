@@ -9,7 +9,7 @@ use super::fit::Fit;
 use super::identifiability::{check_determined, identifiability};
 use super::parameter::Stage;
 use super::residuals::{channel_residuals, check_misfit};
-use super::solve::{Solution, search};
+use super::solve::{SearchStep, Solution, search_watched};
 use super::uncertainty::covariance;
 use super::{CalibrateError, ChannelResiduals, Identifiability, ParameterKind, Scope};
 use crate::sensor::Sensor;
@@ -113,9 +113,9 @@ pub struct CalibratedVessel {
 }
 
 /// Search, then judge.
-pub(super) fn calibrate(fit: &Fit) -> Result<Calibrated, CalibrateError> {
+pub(super) fn calibrate(fit: &Fit, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
     let start: Vec<f64> = fit.specs.iter().map(|spec| spec.coordinate(spec.start)).collect();
-    let solution = search(fit, start, &fit.absent())?;
+    let solution = search_watched(fit, start, &fit.absent(), watch)?;
     let channels = channel_residuals(fit, &solution.evaluation);
     check_misfit(fit, &channels)?;
     let identifiability = identifiability(fit, &solution);
@@ -223,19 +223,17 @@ impl Calibrated {
         vessel
     }
 
-    /// A scenario of the calibrated kind: its outside film and discharge coefficients as found; fill and initial
-    /// temperature are those of the scenario given, since they belong to one experiment.
+    /// A scenario of the calibrated kind: its discharge coefficients as found; fill and initial temperature are those of the
+    /// scenario given, since they belong to one experiment, and the factor on the outside film is the vessel's.
     ///
     /// # Errors
-    /// A film that cannot be scaled.
+    /// A model that cannot be made.
     pub fn applied_to_scenario(
         &self,
         experiment: usize,
         scenario: &Scenario,
     ) -> Result<Scenario, ThermalError> {
-        let lasting = |kind: &ParameterKind| {
-            matches!(kind, ParameterKind::OutsideFilm | ParameterKind::DischargeCoefficient { .. })
-        };
+        let lasting = |kind: &ParameterKind| matches!(kind, ParameterKind::DischargeCoefficient { .. });
         let (specs, values): (Vec<_>, Vec<_>) = self
             .fit
             .specs
@@ -273,14 +271,13 @@ impl From<&Estimate> for FittedParameter {
     fn from(estimate: &Estimate) -> Self {
         let part_of = match (&estimate.parameter, estimate.parameter.stage()) {
             (
-                ParameterKind::OutsideFilm
-                | ParameterKind::DischargeCoefficient { .. }
+                ParameterKind::DischargeCoefficient { .. }
                 | ParameterKind::FillMass
                 | ParameterKind::InitialTemperature,
                 _,
             ) => PartOf::Scenario,
             (_, Stage::Course) => PartOf::Vessel,
-            (_, Stage::LinearReading | Stage::Reading) => PartOf::Sensor,
+            (_, Stage::Reading) => PartOf::Sensor,
         };
         Self {
             name: estimate.parameter.to_string(),

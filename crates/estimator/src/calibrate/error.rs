@@ -128,7 +128,7 @@ pub enum CalibrateError {
     },
     /// A channel without usable readings.
     #[error(
-        "channel `{channel}` of `{experiment}` has no usable readings between {low} and {high}: leave it out"
+        "channel `{channel}` of `{experiment}` has no usable readings between {low} and {high} (K or Pa): leave it out"
     )]
     NoReadings {
         /// Source of the experiment.
@@ -142,7 +142,7 @@ pub enum CalibrateError {
     },
     /// A channel that always reads the same.
     #[error(
-        "channel `{channel}` of `{experiment}` reads {value} throughout: the sensor is stuck, leave it out"
+        "channel `{channel}` of `{experiment}` reads {value} (K or Pa) throughout: the sensor is stuck, leave it out"
     )]
     ConstantChannel {
         /// Source of the experiment.
@@ -191,7 +191,7 @@ pub enum CalibrateError {
     },
     /// A log that the vessel cannot have made.
     #[error(
-        "channel `{channel}` of `{experiment}` deviates by {deviation:.4} from the calibrated model, as much as it \
+        "channel `{channel}` of `{experiment}` deviates by {deviation:.4} (K or Pa) from the calibrated model, as much as it \
          moves ({spread:.4}): the log is not of this vessel and scenario, or a channel is mapped wrongly"
     )]
     Misfit {
@@ -206,8 +206,8 @@ pub enum CalibrateError {
     },
     /// The search did not end.
     #[error(
-        "no minimum after {iterations} steps, the last one of {step:.3} standard deviations: begin nearer to it, or \
-         add priors"
+        "no minimum after {iterations} steps, the last one of {step:.3} standard deviations: begin nearer to it, \
+         add priors, or look whether the log is of this vessel and scenario"
     )]
     NotConverged {
         /// Steps.

@@ -9,10 +9,8 @@
 //! themselves; bounds are kept by projection. The search is Gauss-Newton with damping; it ends where a
 //! step would be a small share of a standard deviation in every direction.
 //!
-//! Sensitivities to numbers of the sensors that the reading is linear in (offset, coupling, span, temperature
-//! coefficient) are exact, from differences at the same simulated course. All others are **central
-//! differences of the simulation** with a step of the cube root of its relative error, where the error of the
-//! difference and that of the solver balance (Nocedal and Wright 2006, section 8.1); about 1e-3 of the sensitivity.
+//! Sensitivities are exact: those of the course by the tangent equations of the simulation with its exact Jacobian, those
+//! to numbers of the sensors from the readings of one course, in which all but a lag are linear.
 //!
 //! The covariance is the sandwich `A^-1 (sum_c f_c J_c^T J_c + prior) A^-1` with one factor per channel `f_c >= 1`: the
 //! mean square of its weighted residuals times their integrated autocorrelation time, 1 for white residuals
@@ -25,12 +23,14 @@ mod error;
 mod experiment;
 mod fit;
 mod identifiability;
+mod name;
 mod parameter;
 mod profile;
 mod residuals;
 mod sensitivity;
 mod settings;
 mod solve;
+mod specification;
 mod uncertainty;
 mod validation;
 
@@ -38,10 +38,12 @@ pub use calibrated::{Calibrated, CalibratedVessel, Estimate, FittedParameter, Pa
 pub use error::CalibrateError;
 pub use experiment::Experiment;
 pub use identifiability::{Combination, Identifiability};
+pub use name::ParameterNameError;
 pub use parameter::{ParameterKind, ParameterSpec, Prior, Scope};
 pub use profile::Profile;
 pub use residuals::ChannelResiduals;
 pub use settings::CalibrationSettings;
+pub use solve::SearchStep;
 pub use validation::{ChannelScore, HoldOut, Validation};
 
 use cylwatch_thermal::vessel::Vessel;
@@ -60,12 +62,20 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// [`Calibration::run`], telling each step of the search to `watch`.
+    ///
+    /// # Errors
+    /// Those of [`Calibration::run`].
+    pub fn run_watched(&self, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
+        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
+        calibrated::calibrate(&fit, watch)
+    }
+
     /// Fits the parameters to all experiments.
     ///
     /// # Errors
     /// See [`CalibrateError`]: a log that cannot be used, a parameter that it does not determine or that runs to a bound.
     pub fn run(&self) -> Result<Calibrated, CalibrateError> {
-        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
-        calibrated::calibrate(&fit)
+        self.run_watched(&mut |_| ())
     }
 }

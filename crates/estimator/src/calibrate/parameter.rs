@@ -7,7 +7,7 @@ use crate::sensor::{ParameterKind as SensorParameterKind, Sensor};
 /// What a parameter is. *Factor*: relative to what the vessel or the scenario says, so that it transfers to others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterKind {
-    /// Factor on the outside film: the coefficient, or the law for wind and natural convection.
+    /// Factor on the outside film, be it a coefficient or the law for wind and natural convection; a number of the vessel.
     OutsideFilm,
     /// Factor on the inside film.
     InsideFilm,
@@ -60,8 +60,6 @@ pub enum ParameterKind {
 pub(super) enum Stage {
     /// The simulation.
     Course,
-    /// The sensors' readings, which are linear in it.
-    LinearReading,
     /// The sensors' readings.
     Reading,
 }
@@ -72,8 +70,8 @@ impl ParameterKind {
             Self::SensorOffset { .. }
             | Self::SensorCoupling { .. }
             | Self::SensorSpan { .. }
-            | Self::SensorTemperatureCoefficient { .. } => Stage::LinearReading,
-            Self::SensorLag { .. } => Stage::Reading,
+            | Self::SensorLag { .. }
+            | Self::SensorTemperatureCoefficient { .. } => Stage::Reading,
             _ => Stage::Course,
         }
     }

@@ -55,11 +55,6 @@ impl CalibrationSettings {
         check("undetermined_beyond", self.undetermined_beyond, (0.0, f64::INFINITY))
     }
 
-    /// Relative error of a simulated temperature change, 20 to 100 times the solver's tolerance.
-    pub(super) fn simulation_error(&self) -> f64 {
-        100.0 * self.simulation.relative_tolerance
-    }
-
     /// Normal quantile of half the confidence interval.
     pub(super) fn quantile(&self) -> f64 {
         use statrs::distribution::{ContinuousCDF, Normal};

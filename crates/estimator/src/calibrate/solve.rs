@@ -61,8 +61,27 @@ fn cost(fit: &Fit, z: &[f64], evaluation: &Evaluation) -> f64 {
     readings + priors
 }
 
+/// A step of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchStep {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Distance to the minimum before it, in standard deviations of the estimate.
+    pub distance_sd: f64,
+}
+
 /// Least squares from a start, with some coordinates held.
 pub(super) fn search(fit: &Fit, start: Vec<f64>, held: &[bool]) -> Result<Solution, CalibrateError> {
+    search_watched(fit, start, held, &mut |_| ())
+}
+
+/// [`search`], telling each step.
+pub(super) fn search_watched(
+    fit: &Fit,
+    start: Vec<f64>,
+    held: &[bool],
+    watch: &mut dyn FnMut(SearchStep),
+) -> Result<Solution, CalibrateError> {
     let mut here = Solution::at(fit, start, held)?;
     // What the model misses now is no information on the parameters: the first step trusts the widths as much.
     let mut damping = Damping::starting_at(here.cost / fit.samples() as f64);
@@ -79,6 +98,7 @@ pub(super) fn search(fit: &Fit, start: Vec<f64>, held: &[bool]) -> Result<Soluti
         here.check_influence(fit)?;
         let normal = Normal::new(fit, &here);
         let distance = normal.distance();
+        watch(SearchStep { number: iterations, distance_sd: distance });
         if distance <= fit.settings.tolerance_sd {
             return Ok(here);
         }

@@ -2,7 +2,7 @@
 use super::calibrated::calibrate;
 use super::fit::{Fit, Selection};
 use super::residuals::channel_residuals;
-use super::{CalibrateError, Calibrated, Calibration, ParameterSpec};
+use super::{CalibrateError, Calibrated, Calibration, ParameterSpec, SearchStep};
 
 /// What is held out of the fit and scored afterwards.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,9 +62,21 @@ impl Calibration {
     /// # Errors
     /// [`CalibrateError::HoldOut`] if one of the parts is empty, and as [`Calibration::run`].
     pub fn validate(&self, hold_out: &HoldOut) -> Result<Validation, CalibrateError> {
+        self.validate_watched(hold_out, &mut |_| ())
+    }
+
+    /// [`Calibration::validate`], telling each step of the search to `watch`.
+    ///
+    /// # Errors
+    /// Those of [`Calibration::validate`].
+    pub fn validate_watched(
+        &self,
+        hold_out: &HoldOut,
+        watch: &mut dyn FnMut(SearchStep),
+    ) -> Result<Validation, CalibrateError> {
         let (fitted, scored) = hold_out.selections();
         let fit = self.part(hold_out, &fitted, "fit")?;
-        let calibrated = calibrate(&fit)?;
+        let calibrated = calibrate(&fit, watch)?;
         // Scoring needs readings, not as many as there are parameters or any excitation.
         let rest = self.part(hold_out, &scored, "score")?;
         let start: Vec<f64> = rest.specs.iter().map(start_coordinate).collect();

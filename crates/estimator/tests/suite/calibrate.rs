@@ -1,6 +1,7 @@
 //! Calibration against simulated logs of known truth, against a published experiment, and on logs that cannot be used.
 mod blowdown;
 mod coverage;
+mod cylinder;
 mod refusals;
 mod study;
 mod together;

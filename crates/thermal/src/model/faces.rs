@@ -13,7 +13,7 @@ pub(crate) const TOP: f64 = 0.5;
 /// Air and film at one height.
 struct Exposure {
     air_k: f64,
-    /// Film relative to that in the middle.
+    /// Film relative to what the scenario says.
     film_factor: f64,
 }
 
@@ -65,7 +65,7 @@ impl Model {
     fn exposure(&self, above_middle: f64, inputs: &Inputs) -> Exposure {
         Exposure {
             air_k: inputs.air_k + above_middle * inputs.air_difference_k,
-            film_factor: 1.0 + self.film_slope * above_middle,
+            film_factor: self.surface.film_factor * (1.0 + self.film_slope * above_middle),
         }
     }
 

@@ -7,18 +7,21 @@ mod bordered;
 mod events;
 mod samples;
 mod solver;
+mod tangent;
 
 use std::cell::{Cell, RefCell};
 
 use crate::ThermalError;
+use crate::model::Model;
 use crate::model::inputs::{InputPieces, edges_s};
-use crate::model::{Model, Output};
 use crate::scenario::Scenario;
-use crate::trajectory::{Event, EventKind, Ledger, Place, SolverStatistics, Trajectory};
+use crate::trajectory::{Event, EventKind, Ledger, SolverStatistics, Trajectory};
 use crate::vessel::Vessel;
 use events::{FlowStates, Monitors};
 use samples::Samples;
 use solver::{Drive, Step, Stepper, with_stepper};
+pub use tangent::Neighbours;
+use tangent::Tangents;
 
 /// Integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,10 +109,40 @@ pub fn simulate(
     settings: &SimulationSettings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Trajectory, ThermalError> {
+    Ok(run(vessel, scenario, &[], settings, progress)?.0)
+}
+
+/// A run with its neighbours to first order, below and above, for sensitivities: half of their difference is the
+/// derivative times the half distance of the parameter. Their events, ledger and statistics are those of the run itself.
+///
+/// Derivatives are as precise as the run's tolerance times some hundred, and as the square of the distance.
+///
+/// # Errors
+/// As [`simulate`]; a neighbour whose mesh or number of gas cells differs.
+pub fn simulate_with_neighbours(
+    vessel: &Vessel,
+    scenario: &Scenario,
+    neighbours: &[Neighbours],
+    settings: &SimulationSettings,
+) -> Result<(Trajectory, Vec<[Trajectory; 2]>), ThermalError> {
+    run(vessel, scenario, neighbours, settings, &mut |_| {})
+}
+
+fn run(
+    vessel: &Vessel,
+    scenario: &Scenario,
+    neighbours: &[Neighbours],
+    settings: &SimulationSettings,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(Trajectory, Vec<[Trajectory; 2]>), ThermalError> {
     settings.validate()?;
     let model = Model::new(vessel, scenario)?;
     let x0 = model.initial_state(vessel, &scenario.initial)?;
     let edges = edges_s(scenario);
+    let tangents = match neighbours {
+        [] => None,
+        _ => Some(Tangents::new(neighbours, &model, edges[0])?),
+    };
     let drive = Drive {
         pieces: Cell::new(InputPieces::new(scenario, 0.0, edges[0])),
         open: RefCell::new(vec![false; scenario.flows.len()]),
@@ -128,6 +161,7 @@ pub fn simulate(
         events: Vec::new(),
         segments: 0,
         x: x0.clone(),
+        tangents,
         progress,
     };
     let statistics = with_stepper(&model, &drive, x0.clone(), absolute, settings, method, |stepper| {
@@ -136,7 +170,7 @@ pub fn simulate(
     })?;
     let end = run.x.clone();
     let ledger = ledger(&model, &x0, &end);
-    Ok(run.into_trajectory(vessel, ledger, statistics))
+    Ok(run.into_trajectories(vessel, ledger, statistics))
 }
 
 /// Tolerances in the states' own units: kelvin for the wall, the same error in kelvin for the gas energy.
@@ -195,6 +229,8 @@ struct Run<'a> {
     segments: usize,
     /// Current state.
     x: Vec<f64>,
+    /// Neighbours, if there are any.
+    tangents: Option<Tangents>,
     progress: &'a mut dyn FnMut(f64),
 }
 
@@ -230,6 +266,9 @@ impl Run<'_> {
         self.segments += 1;
         let before = self.drive.pieces.get().at(from);
         self.drive.pieces.set(InputPieces::new(self.scenario, from, to));
+        if let Some(tangents) = &mut self.tangents {
+            tangents.begin_segment(from, to);
+        }
         let jumped = self.drive.pieces.get().at(from).jumped_from(&before);
         let changed = self.flows.at_time(from, self.pressure(from)?);
         Ok(self.record_flows(from, changed)? || jumped)
@@ -248,11 +287,11 @@ impl Run<'_> {
             let now = if step == Step::Stop { to } else { stepper.time_s() };
             self.check(now, stepper.statistics().steps)?;
             if let Some(at) = self.locate_events(stepper, before, now)? {
+                self.advance_tangents(stepper, before, at)?;
                 self.sample_until(stepper, at, false)?;
                 stepper.back_to(at).map_err(|reason| self.cannot_go_on(at, reason))?;
                 stepper.state(&mut self.x);
-                let changed = self.flows.at_pressure(&self.monitors.take_fired());
-                self.record_flows(at, changed)?;
+                self.switch_flows(at)?;
                 stepper.restart(at, self.settings.first_step_s.min(to - at).max(1e-9));
                 if at >= to {
                     return Ok(());
@@ -260,11 +299,39 @@ impl Run<'_> {
                 self.arm(at, stepper, to)?;
                 continue;
             }
+            self.advance_tangents(stepper, before, now)?;
             self.sample_until(stepper, now, false)?;
             if step == Step::Stop {
                 return Ok(());
             }
         }
+    }
+
+    fn advance_tangents(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        before: f64,
+        now: f64,
+    ) -> Result<(), ThermalError> {
+        let Some(tangents) = &mut self.tangents else { return Ok(()) };
+        tangents
+            .advance(self.model, self.drive, (before, now), &mut |t, x| stepper.interpolate(t, x))
+            .map_err(|error| error.at_time(now))
+    }
+
+    /// Open and close the flows whose pressure was reached; neighbours do so a little earlier or later.
+    fn switch_flows(&mut self, at: f64) -> Result<(), ThermalError> {
+        let inputs = self.drive.pieces.get().at(at);
+        let delays = self
+            .tangents
+            .as_ref()
+            .map(|tangents| tangents.delays(self.model, &inputs, &self.drive.open.borrow(), &self.x));
+        let changed = self.flows.at_pressure(&self.monitors.take_fired());
+        self.record_flows(at, changed)?;
+        if let (Some(delays), Some(tangents)) = (delays.transpose()?, &mut self.tangents) {
+            tangents.jump(&delays, self.model, &inputs, &self.drive.open.borrow(), &self.x)?;
+        }
+        Ok(())
     }
 
     fn arm(&mut self, now: f64, stepper: &mut dyn Stepper, to: f64) -> Result<(), ThermalError> {
@@ -327,8 +394,10 @@ impl Run<'_> {
             let inputs = self.drive.pieces.get().at(t);
             let open = self.drive.open.borrow();
             let output = self.model.output(&x, &inputs, &open).map_err(|error| error.at_time(t))?;
-            drop(open);
             self.samples.push(t, inputs.air_k, output);
+            if let Some(tangents) = &mut self.tangents {
+                tangents.sample(t, &x, &open).map_err(|error| error.at_time(t))?;
+            }
         }
         Ok(())
     }
@@ -352,33 +421,28 @@ impl Run<'_> {
         ThermalError::Integration { time_s, gas_k, pressure_pa, reason }
     }
 
-    fn into_trajectory(self, vessel: &Vessel, ledger: Ledger, statistics: SolverStatistics) -> Trajectory {
-        let Samples { time_s, ambient_k, outputs, .. } = self.samples;
-        let pick = |value: fn(&Output) -> f64| outputs.iter().map(value).collect::<Vec<f64>>();
-        let mesh = self.model.mesh();
-        let places = ["bottom", "middle", "shoulder", "neck"]
-            .into_iter()
-            .filter_map(|name| Some(Place { name, axial_cell: mesh.column_of(name)? }))
-            .collect();
-        Trajectory {
-            vessel: vessel.clone(),
-            scenario: self.scenario.clone(),
-            gas_mean_k: pick(|o| o.gas_mean_k),
-            wall_mean_k: pick(|o| o.wall_mean_k),
-            valve_k: outputs.iter().map(|o| o.valve_k).collect(),
-            pressure_pa: pick(|o| o.pressure_pa),
-            mass_kg: pick(|o| o.mass_kg),
-            outflow_kg_s: pick(|o| o.outflow_kg_s),
-            heat_to_gas_w: pick(|o| o.heat_to_gas_w),
-            gas_cells_k: outputs.iter().map(|o| o.gas_cells_k.clone()).collect(),
-            wall_outer_k: outputs.iter().map(|o| o.wall_outer_k.clone()).collect(),
-            wall_inner_k: outputs.into_iter().map(|o| o.wall_inner_k).collect(),
-            time_s,
-            ambient_k,
-            places,
-            events: self.events,
+    /// The run and its neighbours.
+    fn into_trajectories(
+        self,
+        vessel: &Vessel,
+        ledger: Ledger,
+        statistics: SolverStatistics,
+    ) -> (Trajectory, Vec<[Trajectory; 2]>) {
+        let run = Trajectory {
             ledger,
             statistics,
-        }
+            ..self.samples.into_trajectory(vessel, self.scenario, self.model.mesh())
+        };
+        let neighbours = self.tangents.into_iter().flat_map(Tangents::into_sides);
+        let neighbours = neighbours.map(|pair| {
+            pair.map(|(vessel, scenario, samples, model)| Trajectory {
+                events: self.events.clone(),
+                ledger,
+                statistics,
+                ..samples.into_trajectory(&vessel, &scenario, model.mesh())
+            })
+        });
+        let neighbours = neighbours.collect();
+        (Trajectory { events: self.events, ..run }, neighbours)
     }
 }

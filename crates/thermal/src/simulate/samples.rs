@@ -1,6 +1,9 @@
 //! The output samples of a run: at multiples of the sample time, and at the end.
 use crate::model::Output;
 use crate::scenario::Scenario;
+use crate::trajectory::{Ledger, Place, SolverStatistics, Trajectory};
+use crate::vessel::Vessel;
+use crate::wall::mesh::Mesh;
 
 /// The samples taken so far.
 pub struct Samples {
@@ -40,5 +43,35 @@ impl Samples {
         self.time_s.push(time_s);
         self.ambient_k.push(ambient_k);
         self.outputs.push(output);
+    }
+
+    /// The samples of a vessel's run, so far without events and balance.
+    pub fn into_trajectory(self, vessel: &Vessel, scenario: &Scenario, mesh: &Mesh) -> Trajectory {
+        let Self { time_s, ambient_k, outputs, .. } = self;
+        let pick = |value: fn(&Output) -> f64| outputs.iter().map(value).collect::<Vec<f64>>();
+        let places = ["bottom", "middle", "shoulder", "neck"]
+            .into_iter()
+            .filter_map(|name| Some(Place { name, axial_cell: mesh.column_of(name)? }))
+            .collect();
+        Trajectory {
+            vessel: vessel.clone(),
+            scenario: scenario.clone(),
+            gas_mean_k: pick(|o| o.gas_mean_k),
+            wall_mean_k: pick(|o| o.wall_mean_k),
+            valve_k: outputs.iter().map(|o| o.valve_k).collect(),
+            pressure_pa: pick(|o| o.pressure_pa),
+            mass_kg: pick(|o| o.mass_kg),
+            outflow_kg_s: pick(|o| o.outflow_kg_s),
+            heat_to_gas_w: pick(|o| o.heat_to_gas_w),
+            gas_cells_k: outputs.iter().map(|o| o.gas_cells_k.clone()).collect(),
+            wall_outer_k: outputs.iter().map(|o| o.wall_outer_k.clone()).collect(),
+            wall_inner_k: outputs.into_iter().map(|o| o.wall_inner_k).collect(),
+            time_s,
+            ambient_k,
+            places,
+            events: Vec::new(),
+            ledger: Ledger::default(),
+            statistics: SolverStatistics::default(),
+        }
     }
 }

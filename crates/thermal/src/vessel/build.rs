@@ -23,6 +23,9 @@ impl VesselSpec {
         }
         let geometry = self.geometry()?;
         let volume = volume(&self.volume, &geometry)?;
+        if let Some(calibration) = &self.calibration {
+            calibration.check()?;
+        }
         let valve = self.valve.as_ref().map(|valve| self.valve(valve)).transpose()?;
         Ok(Vessel {
             name: self.name.clone(),
@@ -67,8 +70,9 @@ impl VesselSpec {
         let layer = |(i, spec): (usize, &super::spec::LayerSpec)| {
             let path = format!("layer[{i}]");
             let remedy = "give the thickness of this layer of the wall";
+            let material = self.material(&format!("{path}.material"), &spec.material)?;
             Ok(Layer {
-                material: self.material(&format!("{path}.material"), &spec.material)?,
+                material: scaled(material, &path, spec.heat_capacity_factor)?,
                 thickness_m: check::within(
                     &format!("{path}.thickness_m"),
                     check::positive(&format!("{path}.thickness_m"), spec.thickness_m, remedy)?,
@@ -116,6 +120,7 @@ impl VesselSpec {
 
     fn valve(&self, spec: &ValveSpec) -> Result<Valve, ThermalError> {
         let material = self.material("valve.material", spec.material.as_deref().unwrap_or("brass"))?;
+        let material = scaled(material, "valve", spec.heat_capacity_factor)?;
         let mass_kg =
             check::positive("valve.mass_kg", spec.mass_kg, "give the mass of the valve, or no [valve]")?;
         let diameter_m = length("valve.diameter_m", spec.diameter_m.unwrap_or(0.05))?;
@@ -149,6 +154,14 @@ fn named_fluid(name: &str, equation: EquationChoice) -> Result<Fluid, ThermalErr
     Ok(fluid.with_equation(equation))
 }
 
+/// A material with a factor on its heat capacity.
+fn scaled(mut material: Material, path: &str, factor: Option<f64>) -> Result<Material, ThermalError> {
+    let remedy = "1 is the material as the library or the file states it";
+    let path = format!("{path}.heat_capacity_factor");
+    material.heat_capacity_j_kg_k *= check::positive(&path, factor.unwrap_or(1.0), remedy)?;
+    Ok(material)
+}
+
 fn surface(spec: &SurfaceSpec) -> Result<Surface, ThermalError> {
     let emissivity = spec.emissivity.unwrap_or(0.9);
     let absorptivity = spec.solar_absorptivity.unwrap_or(0.6);
@@ -162,6 +175,11 @@ fn surface(spec: &SurfaceSpec) -> Result<Surface, ThermalError> {
             "surface.solar_absorptivity",
             absorptivity,
             "white paint has about 0.25, dark paint 0.9",
+        )?,
+        film_factor: check::positive(
+            "surface.film_factor",
+            spec.film_factor.unwrap_or(1.0),
+            "1 is the film as the scenario states it",
         )?,
     })
 }

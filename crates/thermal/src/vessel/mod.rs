@@ -2,6 +2,7 @@
 //!
 //! [`VesselSpec`] is the raw content of a vessel file; [`VesselSpec::build`] checks it and gives a [`Vessel`].
 mod build;
+mod calibration;
 mod contour;
 pub mod presets;
 mod read;
@@ -27,7 +28,7 @@ pub struct Vessel {
     pub volume: InnerVolume,
     /// The valve body on the neck, if modelled.
     pub valve: Option<Valve>,
-    /// Radiative properties of the outer surface.
+    /// Radiation and film of the outer surface.
     pub surface: Surface,
     /// Heat transfer between wall and gas.
     pub inside_film: InsideFilm,
@@ -68,13 +69,15 @@ pub struct Valve {
     pub film_factor: f64,
 }
 
-/// Radiative properties of the outer surface (cylinder and valve).
+/// The outer surface (cylinder and valve).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Long-wave emissivity, 0 to 1.
     pub emissivity: f64,
     /// Absorptivity for sunlight, 0 to 1.
     pub solar_absorptivity: f64,
+    /// Factor on the outside film that a scenario says, 1 unless calibrated.
+    pub film_factor: f64,
 }
 
 /// Film law between the inner surface and the gas, `Nu_L = c Ra_L^n`, times a multiplier; or a fixed coefficient.

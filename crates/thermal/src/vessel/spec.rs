@@ -4,6 +4,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::calibration::{CalibrationSpec, FittedSpec, OriginSpec, PriorSpec};
+
 /// Raw content of a vessel file.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct VesselSpec {
@@ -30,7 +32,7 @@ pub struct VesselSpec {
     pub volume: VolumeSpec,
     /// Valve body on the neck; none by default.
     pub valve: Option<ValveSpec>,
-    /// Radiative properties of the outer surface.
+    /// The outer surface: radiation, film.
     #[serde(default)]
     pub surface: SurfaceSpec,
     /// Heat transfer between wall and gas.
@@ -39,6 +41,8 @@ pub struct VesselSpec {
     /// How the gas is resolved.
     #[serde(default)]
     pub gas: GasSpec,
+    /// Where fitted values of this file come from; none for a file that nobody has calibrated.
+    pub calibration: Option<CalibrationSpec>,
 }
 
 /// Equation of state.
@@ -136,6 +140,8 @@ pub struct LayerSpec {
     pub thickness_m: f64,
     /// Radial wall cells, 3 by default.
     pub cells: Option<usize>,
+    /// Factor on the heat capacity of the material, 1 by default; a calibration sets it.
+    pub heat_capacity_factor: Option<f64>,
 }
 
 /// A material of the file's own.
@@ -192,15 +198,20 @@ pub struct ValveSpec {
     pub area_m2: Option<f64>,
     /// Outside film relative to the cylinder's where that is a coefficient, 1 by default.
     pub film_factor: Option<f64>,
+    /// Factor on the heat capacity of the material, 1 by default; a calibration sets it.
+    pub heat_capacity_factor: Option<f64>,
 }
 
-/// Radiative properties of the outer surface.
+/// The outer surface.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub struct SurfaceSpec {
     /// Long-wave emissivity, 0.9 by default (paint).
     pub emissivity: Option<f64>,
     /// Absorptivity for sunlight, 0.6 by default (medium paint).
     pub solar_absorptivity: Option<f64>,
+    /// Factor on the outside film that a scenario states or that follows from its wind, of cylinder and valve alike, 1 by
+    /// default; a calibration sets it.
+    pub film_factor: Option<f64>,
 }
 
 /// Film law inside.

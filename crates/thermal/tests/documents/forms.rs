@@ -2,11 +2,12 @@
 use approx::assert_relative_eq;
 use cylwatch_thermal::scenario::{Fill, OutsideFilm};
 use cylwatch_thermal::vessel::{
-    GasResolution, InsideFilm, VesselSpec, presets, read_specification, read_vessel, spec::GeometrySpec,
+    GasResolution, InsideFilm, Vessel, VesselSpec, presets, read_specification, read_vessel,
+    spec::GeometrySpec,
 };
 use cylwatch_thermal::wall::geometry::EndShape;
 
-use super::scenario_with;
+use super::{CALIBRATION, scenario_with};
 
 const LEAST: &str = "name = 'x'\nfluid = 'nitrogen'\n[geometry]\ninner_diameter_cm = 20\ncylinder_length_m = 0.5\n\
                      [[layer]]\nmaterial = 'aluminium-6061'\nthickness_mm = 8\n";
@@ -45,6 +46,36 @@ fn a_specification_written_and_read_again_is_the_same() {
 }
 
 #[test]
+fn factors_of_a_calibration_scale_what_they_are_named_after() {
+    let plain = presets::text("nitrogen-20l").unwrap();
+    let text = plain
+        .replace("thickness_mm = 5.8", "thickness_mm = 5.8\nheat_capacity_factor = 1.2")
+        .replace("mass_kg = 1.2", "mass_kg = 1.2\nheat_capacity_factor = 0.8")
+        .replace("emissivity = 0.9", "emissivity = 0.9\nfilm_factor = 1.3");
+    let [before, after] = [plain, &text].map(|text| read_vessel(text, "x.toml").unwrap());
+    let wall = |vessel: &Vessel| vessel.geometry.layers[0].material.heat_capacity_j_kg_k;
+    assert_relative_eq!(wall(&after), 1.2 * wall(&before), max_relative = 1e-15);
+    let valve = |vessel: &Vessel| vessel.valve.as_ref().unwrap().capacity_j_k();
+    assert_relative_eq!(valve(&after), 0.8 * valve(&before), max_relative = 1e-15);
+    assert_eq!((before.surface.film_factor, after.surface.film_factor), (1.0, 1.3));
+}
+
+#[test]
+fn the_record_of_a_calibration_is_read_and_written_and_changes_nothing() {
+    let plain = presets::text("nitrogen-20l").unwrap();
+    let (mut specification, vessel) = read_specification(plain, "x.toml").unwrap();
+    let (again, same) = read_specification(&format!("{plain}{CALIBRATION}"), "x.toml").unwrap();
+    let record = again.calibration.clone().unwrap();
+    assert_eq!((record.log.len(), record.fitted.len()), (1, 2));
+    assert_eq!(record.fitted[1].of_log.as_deref(), Some("run.csv"));
+    specification.calibration = Some(record);
+    assert_eq!(again, specification);
+    assert_eq!((same.geometry, same.volume), (vessel.geometry, vessel.volume));
+    let written = again.to_toml().unwrap();
+    assert_eq!(read_specification(&written, "x.toml").unwrap().0, again, "{written}");
+}
+
+#[test]
 fn a_material_of_the_file_hides_the_library() {
     let own = "[[material]]\nname = 'aluminium-6061'\ndensity_kg_m3 = 2600\nheat_capacity_j_kg_k = 900\n\
                conductivity_w_m_k = 150\n";
@@ -67,6 +98,7 @@ fn a_specification_without_a_file_names_the_path() {
         material: "brass".into(),
         thickness_m: 0.01,
         cells: None,
+        heat_capacity_factor: None,
     }];
     let specification = VesselSpec {
         name: "x".into(),
@@ -81,6 +113,7 @@ fn a_specification_without_a_file_names_the_path() {
         surface: Default::default(),
         inside_film: Default::default(),
         gas: Default::default(),
+        calibration: None,
     };
     let message = specification.build().unwrap_err().to_string();
     assert_eq!(message, "geometry inner_diameter_m = -0.2 must be positive: check the unit, _mm or _m");

@@ -40,6 +40,37 @@ fn files(name: &str) -> std::io::Result<String> {
     }
 }
 
+/// Record of a calibration, to stand below a vessel.
+const CALIBRATION: &str = r#"
+[calibration]
+date = "2026-03-01T12:00:00Z"
+program = "cylwatch 0.1.0"
+settings = "air of the log"
+confidence = 0.95
+[calibration.vessel]
+name = "x.toml"
+sha256 = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+[[calibration.log]]
+name = "run.csv"
+sha256 = "BA7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+[[calibration.fitted]]
+parameter = "wall-capacity"
+unit = "1"
+value = 1.2
+sd = 0.01
+low = 1.18
+high = 1.22
+[[calibration.fitted]]
+parameter = "initial-temperature"
+of_log = "run.csv"
+unit = "K"
+value = 0.2
+sd = 0.1
+low = 0.0
+high = 0.4
+prior = { mean = 0.0, sd = 1.0 }
+"#;
+
 const SCENARIO: &str = r#"name = "x"
 duration_h = 2
 [initial]

@@ -1,7 +1,7 @@
 //! Every message about a vessel file, one broken input at a time.
 use cylwatch_thermal::fluid::Fluid;
 
-use super::{vessel_message, vessel_with};
+use super::{CALIBRATION, vessel_message, vessel_with};
 
 #[test]
 fn each_fault_of_a_vessel_names_line_key_and_remedy() {
@@ -29,7 +29,8 @@ fn each_fault_of_a_vessel_names_line_key_and_remedy() {
         (
             "thickness_mm = 5.8",
             "thicknes_mm = 6",
-            "34: unknown key layer thicknes_mm, did you mean thickness_mm?; known here: material, thickness_mm, cells",
+            "34: unknown key layer thicknes_mm, did you mean thickness_mm?; known here: material, thickness_mm, cells, \
+             heat_capacity_factor",
         ),
         (
             "thickness_mm = 5.8",
@@ -83,7 +84,8 @@ fn each_fault_of_a_vessel_names_line_key_and_remedy() {
         (
             "emissivity = 0.9",
             "emisivity = 0.9",
-            "52: unknown key surface emisivity, did you mean emissivity?; known here: emissivity, solar_absorptivity",
+            "52: unknown key surface emisivity, did you mean emissivity?; known here: emissivity, solar_absorptivity, \
+             film_factor",
         ),
         (
             "law = \"mcadams\"",
@@ -119,7 +121,8 @@ fn each_fault_of_a_vessel_names_line_key_and_remedy() {
         (
             "[surface]",
             "[srface]",
-            "51: unknown key srface, did you mean surface?; known here: name, fluid, equation, orientation, geometry, layer, material, volume, valve, surface, inside_film, gas",
+            "51: unknown key srface, did you mean surface?; known here: name, fluid, equation, orientation, geometry, layer, material, volume, valve, surface, inside_film, gas, \
+             calibration",
         ),
         ("depth_mm = 90", "depth_mm = 90\nshape = 3", "23: the text cannot be read: duplicate key"),
         (
@@ -149,4 +152,35 @@ fn a_gas_that_the_fluids_do_not_know_is_refused_at_its_line() {
     let Err(refusal) = Fluid::named("nitrogn") else { return };
     let message = vessel_message(&vessel_with("fluid = \"nitrogen\"", "fluid = \"nitrogn\""));
     assert_eq!(message, format!("vessels/x.toml:5: fluid = \"nitrogn\" must be a known gas: {refusal}"));
+}
+
+#[test]
+fn a_record_that_claims_what_cannot_be_is_refused() {
+    let plain = cylwatch_thermal::vessel::presets::text("nitrogen-20l").unwrap();
+    let cases = [
+        (
+            "date = \"2026-03-01T12:00:00Z\"",
+            "date = \"yesterday\"",
+            "calibration date = \"yesterday\" must be a date",
+        ),
+        ("confidence = 0.95", "confidence = 95", "calibration confidence = 95 must be below 1"),
+        ("sha256 = \"BA7816", "sha256 = \"", "calibration.log sha256 = \"bf8f01"),
+        (
+            "value = 1.2",
+            "value = 1.3",
+            "calibration.fitted value = 1.3 must be between low = 1.18 and high = 1.22",
+        ),
+        ("sd = 1.0", "sd = 0.0", "prior sd = 0.0 must be positive"),
+    ];
+    for (from, to, expected) in cases {
+        assert_eq!(CALIBRATION.matches(from).count(), 1, "{from}");
+        let message = vessel_message(&format!("{plain}{}", CALIBRATION.replace(from, to)));
+        assert!(message.contains(expected), "`{expected}` is not in {message}");
+    }
+    for (from, to) in [
+        ("thickness_mm = 5.8", "thickness_mm = 5.8\nheat_capacity_factor = 0"),
+        ("emissivity = 0.9", "emissivity = 0.9\nfilm_factor = -1"),
+    ] {
+        assert!(vessel_message(&vessel_with(from, to)).contains("_factor = "), "{to}");
+    }
 }

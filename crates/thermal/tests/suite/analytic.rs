@@ -6,9 +6,8 @@ use cylwatch_thermal::fluid::{Equation, Fluid};
 use cylwatch_thermal::scenario::{Fill, OutsideFilm, Series, Sun};
 use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::EventKind;
-use cylwatch_thermal::vessel::{InsideFilm, Vessel};
 
-use crate::support::{closed_bottle, run, still};
+use crate::support::{closed_bottle, insulated, run, still};
 
 /// Reference: HydDown 0.50 on the same bottle (project reference "peers", section 3): end pressure 219.71 bar,
 /// 63 % of the gas's temperature rise after 3942 s.
@@ -32,10 +31,6 @@ fn tight_full_cylinder_at_minus_25_degc_reads_160_bar() {
     for &p in &trajectory.pressure_pa {
         assert_relative_eq!(p, 160.09e5, epsilon = 0.02e5);
     }
-}
-
-fn insulated(fluid: Fluid) -> Vessel {
-    Vessel { fluid, inside_film: InsideFilm::Coefficient { film_w_m2_k: 1e-9 }, ..closed_bottle() }
 }
 
 #[test]

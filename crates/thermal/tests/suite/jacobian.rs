@@ -50,7 +50,7 @@ fn full() -> Vessel {
             diameter_m: 0.06,
             film_factor: 1.25,
         }),
-        surface: Surface { emissivity: 0.9, solar_absorptivity: 0.5 },
+        surface: Surface { emissivity: 0.9, solar_absorptivity: 0.5, film_factor: 1.2 },
         geometry: Geometry {
             cylinder_cells: 3,
             bottom: end,

@@ -8,3 +8,4 @@ mod jacobian;
 mod preset_runs;
 mod support;
 mod surroundings;
+mod tangents;

@@ -43,7 +43,7 @@ pub fn closed_bottle() -> Vessel {
         volume: rigid(geometry.contour_volume_m3()),
         geometry,
         valve: None,
-        surface: Surface { emissivity: 0.0, solar_absorptivity: 0.0 },
+        surface: Surface { emissivity: 0.0, solar_absorptivity: 0.0, film_factor: 1.0 },
         inside_film: MCADAMS,
         gas: GasResolution::WellMixed,
     }
@@ -86,4 +86,8 @@ pub fn still(air_k: f64, start_k: f64, film_w_m2_k: f64, hours: f64) -> Scenario
 pub fn run(vessel: &Vessel, scenario: &Scenario, relative_tolerance: f64) -> Trajectory {
     let settings = SimulationSettings { relative_tolerance, ..SimulationSettings::default() };
     simulate(vessel, scenario, &settings, &mut |_| {}).unwrap()
+}
+
+pub fn insulated(fluid: Fluid) -> Vessel {
+    Vessel { fluid, inside_film: InsideFilm::Coefficient { film_w_m2_k: 1e-9 }, ..closed_bottle() }
 }

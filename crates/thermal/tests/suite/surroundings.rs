@@ -2,7 +2,7 @@
 use approx::assert_relative_eq;
 use cylwatch_thermal::model::Model;
 use cylwatch_thermal::model::inputs::{FilmInput, Inputs};
-use cylwatch_thermal::scenario::{AxialVariation, Scenario, Series};
+use cylwatch_thermal::scenario::{AxialVariation, OutsideFilm, Scenario, Series};
 use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::vessel::Vessel;
@@ -98,25 +98,23 @@ fn film_slope_scales_the_loss_of_each_height() {
         assert_relative_eq!(loss_w_m2, 200.0 * (1.0 + 0.4 * (height - 0.5)), max_relative = 1e-6);
     }
 }
+
+/// A vessel's factor on its film does what the same factor on the scenario's film does.
 #[test]
-fn zz() {
-    for method in [Method::TrBdf2, Method::Esdirk34] {
-        for spacing in [60.0, 120.0, 600.0, 3600.0] {
-            for tol in [1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
-                let s =
-                    SimulationSettings { method, relative_tolerance: tol, ..SimulationSettings::default() };
-                let b = std::time::Instant::now();
-                let r = simulate(&closed_bottle(), &waves(spacing, 24.0 * 21.0), &s, &mut |_| {});
-                println!(
-                    "{method:?} {spacing} {tol:e} {:.2} {:?}",
-                    b.elapsed().as_secs_f64(),
-                    r.map(|t| t.statistics.steps).map_err(|e| e
-                        .to_string()
-                        .chars()
-                        .take(150)
-                        .collect::<String>())
-                );
-            }
-        }
-    }
+fn film_factor_of_the_vessel_acts_as_one_on_the_film_of_the_scenario() {
+    let settings = SimulationSettings::default();
+    let gas_k = |vessel: &Vessel, scenario: &Scenario| {
+        *simulate(vessel, scenario, &settings, &mut |_| {}).unwrap().gas_mean_k.last().unwrap()
+    };
+    let mut vessel = closed_bottle();
+    let plain = vessel.clone();
+    vessel.surface.film_factor = 1.3;
+    let coefficient = gas_k(&plain, &still(253.15, 288.15, 13.0, 0.5));
+    assert_relative_eq!(gas_k(&vessel, &still(253.15, 288.15, 10.0, 0.5)), coefficient, epsilon = 1e-6);
+    let mut windy = still(253.15, 288.15, 10.0, 0.5);
+    windy.surroundings.film = OutsideFilm::Convection { wind_m_s: Series::constant(3.0), multiplier: 1.0 };
+    let mut scaled = windy.clone();
+    scaled.surroundings.film = OutsideFilm::Convection { wind_m_s: Series::constant(3.0), multiplier: 1.3 };
+    assert_relative_eq!(gas_k(&vessel, &windy), gas_k(&plain, &scaled), epsilon = 1e-6);
+    assert!(gas_k(&vessel, &windy) < gas_k(&plain, &windy) - 0.5);
 }

@@ -129,7 +129,7 @@ fn record_says_what_was_fitted_from_which_log_and_when() {
     assert_eq!(record.calibrated_at, "2026-03-01T12:00:00Z");
     assert_eq!(
         record.fitted.iter().map(|one| one.part_of).collect::<Vec<_>>(),
-        [PartOf::Vessel, PartOf::Scenario]
+        [PartOf::Vessel, PartOf::Vessel]
     );
     assert_eq!(record.fitted[1].value, calibrated.estimates[2].value);
 }
@@ -152,4 +152,16 @@ fn residuals_of_the_true_model_are_white_and_of_the_noise() {
             channel.whiteness_p_value
         );
     }
+}
+
+#[test]
+fn a_watched_search_tells_its_steps_down_to_the_minimum() {
+    let mut calibration = two_vessels();
+    calibration.experiments.truncate(1);
+    calibration.parameters.truncate(2);
+    let mut steps = Vec::new();
+    let calibrated = calibration.run_watched(&mut |step| steps.push(step)).unwrap();
+    assert_eq!(steps.len(), calibrated.iterations);
+    assert!(steps.iter().enumerate().all(|(k, step)| step.number == k + 1));
+    assert!(steps[0].distance_sd > 1.0 && steps.last().unwrap().distance_sd < 0.3, "{steps:?}");
 }

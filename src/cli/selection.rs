@@ -1,10 +1,16 @@
-//! Which columns of a log the observer uses, and as which sensors.
-use super::*;
-use cylwatch::estimator::sensor::read_sensors;
+//! Which columns of a log are used, and as which sensors.
+use super::input::Inputs;
+use super::message::Messages;
+use anyhow::{Context, bail};
+use cylwatch::estimator::log::{Channel, Quantity};
+use cylwatch::estimator::sensor::{Sensor, read_sensors};
+use cylwatch::log::{LogReader, Row};
+use cylwatch::thermal::vessel::Vessel;
+use std::path::Path;
 
 /// Sensors with their channels in the log.
 pub struct Selection {
-    /// Sensors in the order in which the observer gets them.
+    /// Sensors in the order in which they are used.
     pub sensors: Vec<Sensor>,
     /// Channel of each.
     channels: Vec<usize>,
@@ -12,17 +18,18 @@ pub struct Selection {
 
 impl Selection {
     /// The sensors of a file, or typical ones on all columns outside of the gas; narrows what the log takes as a reading
-    /// to what the sensors can read.
+    /// to what the sensors can read. Columns that are `known` serve another purpose: no sensor, no caution.
     pub fn new(
         reader: &mut LogReader,
         sensors: Option<Vec<Sensor>>,
         vessel: &Vessel,
+        known: &[&str],
         messages: &Messages,
     ) -> anyhow::Result<Self> {
         let channels = reader.channels();
         let selection = match sensors {
             Some(sensors) => Self::of(sensors, channels)?,
-            None => Self::typical(channels, vessel, messages)?,
+            None => Self::typical(channels, vessel, known, messages)?,
         };
         for (sensor, &channel) in selection.sensors.iter().zip(&selection.channels) {
             let (low, high) = sensor.plausible();
@@ -50,10 +57,16 @@ impl Selection {
         Ok(Self { sensors, channels })
     }
 
-    fn typical(channels: &[Channel], vessel: &Vessel, messages: &Messages) -> anyhow::Result<Self> {
+    fn typical(
+        channels: &[Channel],
+        vessel: &Vessel,
+        known: &[&str],
+        messages: &Messages,
+    ) -> anyhow::Result<Self> {
         let mut selection = Self { sensors: Vec::new(), channels: Vec::new() };
         let mut left_out = Vec::new();
-        for (index, channel) in channels.iter().enumerate() {
+        let others = |channel: &Channel| !known.contains(&channel.name.as_str());
+        for (index, channel) in channels.iter().enumerate().filter(|(_, channel)| others(channel)) {
             match typical(channel, vessel) {
                 Ok(sensor) => {
                     selection.sensors.push(sensor);
@@ -63,7 +76,10 @@ impl Selection {
             }
         }
         if selection.sensors.is_empty() {
-            bail!("no column can be used: {}; name sensors with --sensors", left_out.join(", "));
+            let reasons = if left_out.is_empty() { known.join(", ") } else { left_out.join(", ") };
+            bail!(
+                "no column can be used as a reading of the cylinder: {reasons}; name sensors with --sensors"
+            );
         }
         if !left_out.is_empty() {
             messages.caution(&format!("not used: {}", left_out.join(", ")));

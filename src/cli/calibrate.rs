@@ -1,0 +1,235 @@
+//! `cylwatch calibrate`: physical parameters of a vessel from logs, as a new vessel file.
+use super::fill::GivenFill;
+use super::input::Inputs;
+use super::message::Messages;
+use super::output::Target;
+use super::plot::Plot;
+use super::progress::Progress;
+use super::selection;
+use anyhow::{Context, bail};
+use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut, SearchStep};
+use cylwatch::estimator::sensor::Sensor;
+use cylwatch::log::Mapping;
+use cylwatch::report::Input;
+use cylwatch::report::calibrate as report;
+use cylwatch::report::calibrate::Study;
+use cylwatch::thermal::vessel::{Vessel, VesselSpec};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+mod air;
+mod amounts;
+mod arguments;
+mod circumstances;
+mod date;
+mod options;
+mod recording;
+mod vessel_file;
+mod wanted;
+
+use amounts::Amounts;
+pub use arguments::CalibrateArguments;
+use arguments::CalibrationFormat;
+use circumstances::{Circumstances, Exposure};
+use recording::{Reading, Recording, shown};
+use wanted::{Subject, Wanted, Words};
+
+/// Validated options.
+struct Options {
+    vessel: String,
+    /// Logs that are fitted, then the one that is held out.
+    logs: Vec<String>,
+    /// Scenario of each log; none: its own air.
+    scenarios: BTreeMap<String, String>,
+    /// Vessels of logs that are not of the main one.
+    vessels: BTreeMap<String, String>,
+    mappings: Vec<Mapping>,
+    sensors: Option<PathBuf>,
+    wanted: Wanted,
+    validation: Option<Validation>,
+    settings: CalibrationSettings,
+    amounts: Amounts,
+    fill: GivenFill,
+    date: String,
+    vessel_file: Option<Target>,
+    format: CalibrationFormat,
+    plot: Option<Plot>,
+}
+
+/// What is held out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Validation {
+    /// The last part of the only log, between 0 and 1.
+    Fraction(f64),
+    /// The last log of the list.
+    LastLog,
+}
+
+/// The vessel that is calibrated.
+struct Start {
+    specification: VesselSpec,
+    vessel: Vessel,
+    origin: Input,
+}
+
+/// Logs with vessels and circumstances, in the order of the options.
+struct Case {
+    vessel: Option<Vessel>,
+    recording: Recording,
+    circumstances: Circumstances,
+}
+
+/// Calibrates and writes.
+pub fn run(arguments: CalibrateArguments, messages: &Messages) -> anyhow::Result<()> {
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let (specification, vessel, origin) = inputs.vessel_specification(&options.vessel)?;
+    let start = Start { specification, vessel, origin };
+    let cases = options.cases(&start.vessel, &inputs, messages)?;
+    let study = options.study(&start, cases, messages)?;
+    for caution in report::cautions(&study) {
+        messages.caution(&caution);
+    }
+    options.write(&start, &study, &inputs, messages)
+}
+
+impl Options {
+    /// Reads all logs with their vessels and scenarios.
+    fn cases(&self, main: &Vessel, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Vec<Case>> {
+        let sensors: Option<Vec<Sensor>> =
+            self.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
+        let reading = Reading { inputs, mappings: &self.mappings, sensors: sensors.as_deref(), messages };
+        let exposure = Exposure { amounts: &self.amounts, fill: &self.fill, source: self.fill.source()? };
+        let case = |log: &String| -> anyhow::Result<Case> {
+            let vessel = self.vessels.get(log).map(|name| inputs.vessel(name)).transpose()?;
+            let of_log = vessel.as_ref().unwrap_or(main);
+            let recording = reading.read(log, of_log)?;
+            let (recording, circumstances) = match self.scenarios.get(log) {
+                Some(scenario) => {
+                    let circumstances =
+                        exposure.of_scenario(&recording, inputs.scenario(scenario)?, of_log)?;
+                    (recording, circumstances)
+                }
+                None => {
+                    let recording = recording.beginning_at_zero();
+                    let circumstances = exposure.of_log(&recording, of_log)?;
+                    (recording, circumstances)
+                }
+            };
+            messages.say(&circumstances.words);
+            circumstances.doubts.iter().for_each(|doubt| messages.caution(doubt));
+            Ok(Case { vessel, recording, circumstances })
+        };
+        self.logs.iter().map(case).collect()
+    }
+
+    /// Fits, scores what was held out, and computes profiles.
+    fn study(&self, start: &Start, cases: Vec<Case>, messages: &Messages) -> anyhow::Result<Study> {
+        let subjects: Vec<Subject<'_>> = cases
+            .iter()
+            .map(|case| Subject {
+                vessel: case.vessel.as_ref().unwrap_or(&start.vessel),
+                recording: &case.recording,
+                circumstances: &case.circumstances,
+                is_main: case.vessel.is_none(),
+            })
+            .collect();
+        let parameters = self.wanted.parameters(&subjects)?;
+        let profiles = self.wanted.profiles(&parameters)?;
+        let held_out = self.hold_out(&cases);
+        let circumstances = cases.iter().map(|case| case.circumstances.words.clone()).collect();
+        let calibration = Calibration {
+            vessel: start.vessel.clone(),
+            experiments: cases.into_iter().map(Case::experiment).collect(),
+            parameters,
+            settings: self.settings,
+        };
+        let progress = Progress::open_ended(messages, "calibrating");
+        let mut watch = |step: SearchStep| {
+            let SearchStep { number, distance_sd } = step;
+            progress.say(&format!("step {number}: {distance_sd:.2} standard deviations from the minimum"));
+        };
+        let (calibrated, scores) = match &held_out {
+            None => (calibration.run_watched(&mut watch)?, Vec::new()),
+            Some((hold_out, _)) => {
+                let validation = calibration.validate_watched(hold_out, &mut watch)?;
+                (validation.calibrated, validation.scores)
+            }
+        };
+        progress.say("profiles");
+        let profiles =
+            profiles.into_iter().map(|place| calibrated.profile(place)).collect::<Result<_, _>>()?;
+        drop(progress);
+        let held_out = held_out.map(|(_, words)| words);
+        Ok(Study { calibration, calibrated, circumstances, scores, held_out, profiles })
+    }
+
+    fn hold_out(&self, cases: &[Case]) -> Option<(HoldOut, String)> {
+        match self.validation? {
+            Validation::Fraction(fraction) => {
+                let recording = &cases.first()?.recording;
+                let first_s = recording.log.time_s.first().copied().unwrap_or(0.0);
+                let time_s = recording.end_s() - fraction * (recording.end_s() - first_s);
+                Some((
+                    HoldOut::After { time_s },
+                    format!("last {} % of {}", 100.0 * fraction, recording.name),
+                ))
+            }
+            Validation::LastLog => {
+                let last = cases.len() - 1;
+                Some((HoldOut::Experiments(vec![last]), cases[last].recording.name.clone()))
+            }
+        }
+    }
+
+    fn write(
+        &self,
+        start: &Start,
+        study: &Study,
+        inputs: &Inputs,
+        messages: &Messages,
+    ) -> anyhow::Result<()> {
+        let provenance = inputs.provenance();
+        let words = report::text(study);
+        // Everything is made before any file appears.
+        let logs = self.logs.iter().map(|log| (shown(log), inputs.record_of(log)));
+        let logs: Vec<(String, Input)> = logs.filter_map(|(name, input)| Some((name, input?))).collect();
+        let record = vessel_file::record(study, &start.origin, &logs, &self.date);
+        let vessel = vessel_file::text(study, &start.specification, record, &provenance)?;
+        let picture = self.plot.as_ref().map(|plot| plot.draw(&report::figure(study), &provenance));
+        let picture = picture.transpose()?;
+        if let Some(target) = &self.vessel_file {
+            target.write(vessel.as_bytes())?;
+        }
+        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
+            plot.write(&bytes)?;
+        }
+        match (self.format, &self.vessel_file) {
+            (CalibrationFormat::Json, _) => {
+                let document = report::document(study, &self.date, &provenance);
+                Target::Stdout.write((serde_json::to_string_pretty(&document)? + "\n").as_bytes())?;
+                messages.say(&words);
+            }
+            (CalibrationFormat::Text, Some(Target::Stdout)) => messages.say(&words),
+            (CalibrationFormat::Text, _) => Target::Stdout.write(words.as_bytes())?,
+        }
+        match &self.vessel_file {
+            Some(Target::File(path)) => messages.say(&format!("wrote {}", path.display())),
+            Some(_) => {}
+            None => messages.say("no vessel file was asked for: -o NEW.toml writes one"),
+        }
+        Ok(())
+    }
+}
+
+impl Case {
+    fn experiment(self) -> Experiment {
+        Experiment {
+            source: self.recording.name,
+            vessel: self.vessel,
+            scenario: self.circumstances.scenario,
+            log: self.recording.log,
+            channels: self.recording.sensors,
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! The calibrated vessel as a file.
+use cylwatch::report::calibrate::Study;
+use cylwatch::report::{Input, Provenance, number, rounded};
+use cylwatch::thermal::vessel::VesselSpec;
+use cylwatch::thermal::vessel::spec::{CalibrationSpec, FittedSpec, OriginSpec, PriorSpec};
+
+/// Significant digits of what was fitted.
+const DIGITS: usize = 6;
+/// Those of a number that was converted to SI.
+const CONVERTED_DIGITS: usize = 12;
+
+/// Where the fitted values come from.
+pub fn record(study: &Study, vessel: &Input, logs: &[(String, Input)], date: &str) -> CalibrationSpec {
+    let origin =
+        |name: &str, input: &Input| OriginSpec { name: name.to_owned(), sha256: input.sha256.clone() };
+    let fitted: Vec<&str> = study.fitted_sources();
+    let took_part = |(name, _): &&(String, Input)| fitted.contains(&name.as_str());
+    CalibrationSpec {
+        date: date.to_owned(),
+        program: format!("cylwatch {}", Provenance::VERSION),
+        settings: study.settings_in_words(),
+        confidence: study.calibration.settings.confidence,
+        vessel: origin(&vessel.name, vessel),
+        log: logs.iter().filter(took_part).map(|(name, input)| origin(name, input)).collect(),
+        fitted: study.fitted_lines().into_iter().map(tidy).collect(),
+    }
+}
+
+/// The file.
+pub fn text(
+    study: &Study,
+    specification: &VesselSpec,
+    record: CalibrationSpec,
+    provenance: &Provenance,
+) -> anyhow::Result<String> {
+    let place = study.main_experiment();
+    let mut specification = study.calibrated.applied_to_specification(place, specification)?;
+    specification.calibration = Some(record);
+    let text: String = specification.to_toml()?.lines().map(|line| tidy_line(line) + "\n").collect();
+    Ok(provenance.comment_lines() + "\n" + &text)
+}
+
+/// A number without the rounding of its conversion to SI.
+fn tidy_line(line: &str) -> String {
+    let parsed = line.split_once(" = ").and_then(|(key, text)| Some((key, text.parse::<f64>().ok()?)));
+    match parsed {
+        Some((key, value)) if line.contains('.') => format!("{key} = {}", number(value, CONVERTED_DIGITS)),
+        _ => line.to_owned(),
+    }
+}
+
+fn tidy(line: FittedSpec) -> FittedSpec {
+    let [value, sd, low, high] = [line.value, line.sd, line.low, line.high].map(|x| rounded(x, DIGITS));
+    let prior = line
+        .prior
+        .map(|prior| PriorSpec { mean: rounded(prior.mean, DIGITS), sd: rounded(prior.sd, DIGITS) });
+    FittedSpec { value, sd, low, high, prior, ..line }
+}

@@ -1,0 +1,62 @@
+//! What to know before a calibrated vessel is used, in words.
+use super::Study;
+use crate::estimator::calibrate::{Combination, ParameterKind};
+
+/// Ratio of residuals and noise from which on the model is said to miss something.
+const MISSES: f64 = 2.0;
+/// Share of the prior's variance from which on the logs say nothing of a parameter.
+const UNLEARNT: f64 = 0.9;
+
+/// Cautions of a calibration as sentences.
+pub fn cautions(study: &Study) -> Vec<String> {
+    let found = &study.calibrated.identifiability;
+    let mut cautions: Vec<String> = found.inseparable.iter().map(inseparable).collect();
+    cautions.extend(misfits(study));
+    let of_vessel = |kind: &ParameterKind| kind.sensor().is_none() && !is_of_start(kind);
+    for line in
+        study.lines().iter().filter(|line| of_vessel(&line.spec.kind) && 1.0 - line.learnt() > UNLEARNT)
+    {
+        cautions.push(format!("the logs say little of {}: its value is that of the prior", study.name(line)));
+    }
+    for score in study.scores.iter().filter(|score| score.rms_after > score.rms_before) {
+        cautions.push(format!(
+            "{} of {} is predicted worse than before: what was fitted does not hold for what was held out",
+            score.channel, score.experiment
+        ));
+    }
+    cautions
+}
+
+fn is_of_start(kind: &ParameterKind) -> bool {
+    matches!(kind, ParameterKind::InitialTemperature | ParameterKind::FillMass)
+}
+
+fn inseparable(combination: &Combination) -> String {
+    let names: Vec<String> = combination.names.iter().map(ParameterKind::name).collect();
+    match &names[..] {
+        [one] => format!(
+            "the logs hardly show {one}: give it a prior, hold it, or record what it acts on (a larger or faster change of \
+             the air, a pressure, a sensor nearer to it)"
+        ),
+        _ => format!(
+            "the logs do not separate {}: together they are known to {:.1} times what such parameters are usually off; \
+             give one a prior, hold it, or record an experiment that tells them apart",
+            names.join(" and "),
+            combination.deviation
+        ),
+    }
+}
+
+fn misfits(study: &Study) -> impl Iterator<Item = String> + '_ {
+    let missed = |channel: &&crate::estimator::calibrate::ChannelResiduals| channel.rms_over_noise > MISSES;
+    study.calibrated.channels.iter().filter(missed).map(|channel| {
+        format!(
+            "{} of {} misses the model by {:.1} times its noise: something is not in the model; the intervals are \
+             widened by up to {:.1}",
+            channel.channel,
+            channel.experiment,
+            channel.rms_over_noise,
+            channel.variance_factor.sqrt()
+        )
+    })
+}

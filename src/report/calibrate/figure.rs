@@ -1,0 +1,86 @@
+//! The figure of a calibration: for each log readings and model, residuals, and the residuals' autocorrelation.
+use super::Study;
+use super::summary::unit;
+use crate::estimator::calibrate::ChannelResiduals;
+use crate::report::figure::{Figure, Horizontal, Item, Panel, correlation, style};
+use crate::thermal::units::ZERO_CELSIUS_K;
+
+/// Two-sided normal quantile of 99 %.
+const QUANTILE_99: f64 = 2.576;
+const PASCAL_PER_BAR: f64 = 1e5;
+
+/// All logs, one below the other.
+pub fn figure(study: &Study) -> Figure {
+    let mut parts: Vec<Figure> = Vec::new();
+    for log in study.fitted_sources() {
+        let of_log = |one: &&ChannelResiduals| one.experiment == log;
+        let channels: Vec<&ChannelResiduals> = study.calibrated.channels.iter().filter(of_log).collect();
+        parts.push(over_time(study, log, &channels));
+        parts.push(correlations(log, &channels));
+    }
+    let stacked =
+        parts.into_iter().rev().reduce(|below, above| Figure { below: Some(Box::new(below)), ..above });
+    stacked.unwrap_or_else(|| Figure {
+        title: String::new(),
+        horizontal: Horizontal::Time,
+        panels: Vec::new(),
+        marks: Vec::new(),
+        below: None,
+    })
+}
+
+/// Readings with the model, and residuals; temperatures, then pressures.
+fn over_time(study: &Study, log: &str, channels: &[&ChannelResiduals]) -> Figure {
+    let mut panels = Vec::new();
+    for pressure in [false, true] {
+        let of_quantity = |one: &&&ChannelResiduals| study.is_pressure(log, &one.channel) == pressure;
+        let these: Vec<&ChannelResiduals> = channels.iter().filter(of_quantity).copied().collect();
+        if these.is_empty() {
+            continue;
+        }
+        let (quantity, zero, scale) = if pressure {
+            ("pressure in bar", 0.0, PASCAL_PER_BAR)
+        } else {
+            ("temperature in °C", ZERO_CELSIUS_K, 1.0)
+        };
+        let shown = |si: f64| (si - zero) / scale;
+        let (mut data, mut models, mut residuals) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, one) in these.iter().enumerate() {
+            let readings = study.readings(one);
+            let stroke = style::innovation(&one.channel, number);
+            let model = readings.iter().zip(&one.residuals).map(|(y, r)| shown(y - r));
+            let name = if number == 0 { "model" } else { "" };
+            models.push(Item::line(name, &one.time_s, model, style::MODEL));
+            let readings = readings.iter().map(|y| shown(*y));
+            data.push(Item::line(&one.channel, &one.time_s, readings, style::below_model(stroke)));
+            let left = one.residuals.iter().map(|r| r / scale);
+            residuals.push(Item::line(&one.channel, &one.time_s, left, stroke));
+        }
+        data.extend(models);
+        let symbol = unit(study, log, &these[0].channel).0;
+        panels.push(Panel { quantity: quantity.into(), items: data, height: 1.0 });
+        panels.push(Panel { quantity: format!("residual in {symbol}"), items: residuals, height: 0.6 });
+    }
+    Figure {
+        title: format!("{}: readings and calibrated model", log),
+        horizontal: Horizontal::Time,
+        panels,
+        marks: Vec::new(),
+        below: None,
+    }
+}
+
+fn correlations(log: &str, channels: &[&ChannelResiduals]) -> Figure {
+    let panel = |one: &&ChannelResiduals| {
+        let lags: Vec<f64> = (1..=one.autocorrelation.len()).map(|lag| lag as f64).collect();
+        let bound = QUANTILE_99 / (one.residuals.len() as f64).sqrt();
+        correlation(&format!("residuals of\n{}", one.channel), &lags, &one.autocorrelation, bound)
+    };
+    Figure {
+        title: format!("{log}: what is left in the residuals"),
+        horizontal: Horizontal::Quantity("lag in samples".into()),
+        panels: channels.iter().map(panel).collect(),
+        marks: Vec::new(),
+        below: None,
+    }
+}
