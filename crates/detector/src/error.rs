@@ -1,7 +1,7 @@
 //! Everything that can go wrong in this crate.
 
 /// What went wrong, with the offending value, the bound and the remedy.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DetectorError {
     /// A setting is out of its bounds.
@@ -71,6 +71,21 @@ pub enum DetectorError {
         index: usize,
         /// Its time, s.
         time_s: f64,
+    },
+    /// The gas has no such state.
+    #[error(transparent)]
+    Gas(#[from] cylwatch_estimator::thermal::ThermalError),
+    /// A mass has no pressure in the vessel at a temperature.
+    #[error(
+        "{mass_kg} kg have no pressure at {temperature_k} K in {volume_m3} m3: give a mass that fits the vessel"
+    )]
+    NoPressure {
+        /// Mass, kg.
+        mass_kg: f64,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Volume, m³.
+        volume_m3: f64,
     },
 }
 
