@@ -9,6 +9,8 @@ use crate::DetectorError;
 
 /// Temperature that a filling is quoted at, K.
 pub const QUOTED_K: f64 = 288.15;
+/// Loss of pressure, corrected for temperature, at which ISO 14520 has an inert gas container refilled or replaced.
+pub const ISO_14520_LOSS: f64 = 0.05;
 
 /// Gas and volume.
 #[derive(Clone, Debug)]
@@ -59,8 +61,8 @@ impl Contents {
         Err(DetectorError::NoPressure { mass_kg, temperature_k, volume_m3 })
     }
 
-    /// Mass, kg, at which the pressure at 15 °C has fallen by `share` of that of a full cylinder: 0.05 is the limit of ISO 14520 for inert
-    /// gases.
+    /// Mass, kg, at which the pressure at 15 °C has fallen by `share` of that of a full cylinder, e.g.
+    /// [`ISO_14520_LOSS`].
     ///
     /// # Errors
     /// `share` is not between 0 and 1; a state is outside the gas's domain.
@@ -93,7 +95,7 @@ mod tests {
         // CoolProp 8.0: 223.187 kg/m3 at 200 bar, 15 degC; 5 % of the pressure are 4.35 % of the mass, 160 bar 18.0 %.
         let full_kg = rigid().mass_kg(200e5, 288.15).unwrap();
         assert_relative_eq!(full_kg, 4.46374, max_relative = 1e-5);
-        let five_kg = rigid().limit_after_loss_kg(full_kg, 0.05).unwrap();
+        let five_kg = rigid().limit_after_loss_kg(full_kg, ISO_14520_LOSS).unwrap();
         assert!((1.0 - five_kg / full_kg - 0.0435).abs() < 5e-5, "{five_kg} kg");
         let low_kg = rigid().mass_kg(160e5, 288.15).unwrap();
         assert!((1.0 - low_kg / full_kg - 0.180).abs() < 5e-4, "{low_kg} kg");

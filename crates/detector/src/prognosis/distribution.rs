@@ -184,7 +184,7 @@ fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Vec<
     let mut ends = vec![low, 0.0, peak, high];
     for level in STEP {
         for side in [low, high] {
-            ends.push(crossing(&concave, level * sd, (side, peak)));
+            ends.extend(crossing(&concave, level * sd, 0.1 * sd, (side, peak)));
         }
     }
     ends.retain(|end| (low..=high).contains(end));
@@ -205,14 +205,26 @@ fn maximum(concave: &impl Fn(f64) -> f64, (mut low, mut high): (f64, f64)) -> f6
     0.5 * (low + high)
 }
 
-/// Where a function passes a level between two points, by halving; the second point if it does not.
-fn crossing(f: &impl Fn(f64) -> f64, level: f64, (mut from, mut to): (f64, f64)) -> f64 {
+/// Where a function passes a level, to a tolerance of the level, between two points; `None` if it does not.
+fn crossing(
+    f: &impl Fn(f64) -> f64,
+    level: f64,
+    tolerance: f64,
+    (mut from, mut to): (f64, f64),
+) -> Option<f64> {
     let start = f(from) > level;
+    if (f(to) > level) == start {
+        return None;
+    }
     for _ in 0..45 {
         let middle = 0.5 * (from + to);
-        if (f(middle) > level) == start { from = middle } else { to = middle }
+        let value = f(middle);
+        if (value - level).abs() <= tolerance {
+            return Some(middle);
+        }
+        if (value > level) == start { from = middle } else { to = middle }
     }
-    0.5 * (from + to)
+    Some(0.5 * (from + to))
 }
 
 /// `P(x <= bound)` of a normal `x`, whose standard deviation may be zero.

@@ -10,7 +10,7 @@ pub fn lambert_w(x: f64) -> f64 {
     if x == 0.0 || x == f64::INFINITY {
         return x;
     }
-    // In the logarithm, ln w + w = ln x, nothing overflows; for small x Halley's steps on w exp(w) are the better ones.
+    // Halley's steps on w - x exp(-w), where nothing overflows, from a start that is right to the second order at 0.
     let mut w = x.ln_1p();
     w *= 1.0 - w.ln_1p() / (2.0 + w);
     for _ in 0..20 {

@@ -38,7 +38,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use contents::{Contents, QUOTED_K};
+pub use contents::{Contents, ISO_14520_LOSS, QUOTED_K};
 pub use distribution::{Passage, Prognosis, Quantiles};
 pub use lambert::lambert_w;
 pub use reaction::{Advice, Reaction, ReactionSettings};

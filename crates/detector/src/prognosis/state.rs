@@ -21,7 +21,7 @@ impl LossLaw {
         let lost_kg = leak_kg_s * time_s;
         match self {
             Self::Linear => limit_kg + lost_kg,
-            // m ln(m/limit) = r t, solved by m = limit exp(W(r t/limit)) = r t/W; limit (1 + ...) keeps small losses exact.
+            // m ln(m/limit) = r t.
             Self::Choked => limit_kg * lambert_w(lost_kg / limit_kg).exp(),
         }
     }

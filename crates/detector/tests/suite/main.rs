@@ -8,5 +8,6 @@ mod equivalence;
 mod failure_alarms;
 mod likelihood_ratio;
 mod monte_carlo;
+mod prognosis;
 mod run_lengths;
 mod state;
