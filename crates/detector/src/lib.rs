@@ -1,5 +1,16 @@
-//! Leak detection for gas cylinders: change statistics, thresholds from false-alarm rates,
-//! the monitor and its prognosis, on top of [`cylwatch_estimator`].
+//! Leak detection for gas cylinders on top of [`cylwatch_estimator`]: change statistics, thresholds from
+//! false-alarm rates, detectors to compare with, and the time that is left.
 //!
-//! This crate so far holds only this page: the thermal solver and the observer come first.
+//! [`statistic`] turns residuals, one by one, into a number that grows when their mean has changed;
+//! [`calibrate`] turns a mean time between false alarms into the threshold of that number, and states the
+//! shortest delay that any detector can have. [`baseline`] holds the paper's detector and others without an observer.
+//! [`prognosis`] turns mass and leak rate with their joint uncertainty into the time until a limit and the reaction that
+//! is due.
+pub mod baseline;
+pub mod calibrate;
+pub mod error;
+pub mod prognosis;
+pub mod statistic;
+
 pub use cylwatch_estimator as estimator;
+pub use error::DetectorError;

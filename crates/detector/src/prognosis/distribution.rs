@@ -1,0 +1,271 @@
+//! Distribution of the time until a limit.
+//!
+//! Mass `m` and leak rate `r` are jointly normal, `r >= 0`. The limit has been reached by the time `t` if the mass now is at most the
+//! mass `m*(r, t)` that is at the limit then: `limit + r t` if the rate stays, `limit exp(W(r t/limit))` if the leak is choked. So
+//!
+//! `F(t) = int_0^inf f(r) Phi((m*(r, t) - E[m | r])/sd[m | r]) dr / P(r >= 0)`,
+//!
+//! one smooth integral, to 1e-9. With a known mass or a known rate it is a normal distribution function; with a straight
+//! loss and a rate that is surely positive it is that of a ratio of normal variables. A leak that is there only with a
+//! probability mixes in what happens without one: the mass stays.
+//!
+//! Source: D. V. Hinkley, Biometrika 56 (1969) 635 (ratio); T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145 (root).
+use serde::{Deserialize, Serialize};
+
+use super::quadrature::integrate;
+use super::{LossLaw, MassAndLeak};
+use crate::calibrate::normal_probability;
+use crate::{DetectorError, error::positive};
+
+/// Absolute accuracy of a probability.
+const TOLERANCE: f64 = 1e-10;
+/// Densities below `exp(-40)` of the largest are left out.
+const NEGLIGIBLE: f64 = 80.0;
+/// Multiples of the standard deviation between which a normal distribution function rises.
+const STEP: [f64; 5] = [-7.0, -2.0, 0.0, 2.0, 7.0];
+/// Longest horizon, s: thirty million years.
+const LONGEST_S: f64 = 1e15;
+/// Earliest time that is told from now, as a part of the horizon.
+const EARLIEST: f64 = 1e-12;
+
+/// When a limit is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Passage {
+    /// It has been.
+    Reached,
+    /// After so many seconds.
+    In(f64),
+    /// Not within the horizon, perhaps never.
+    BeyondHorizon,
+}
+
+/// The time left in quantiles: the limit is reached before `p5` with a probability of 5 %.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quantiles {
+    /// 5 %.
+    pub p5: Passage,
+    /// Median.
+    pub p50: Passage,
+    /// 95 %.
+    pub p95: Passage,
+    /// What lies beyond it is not told apart, s.
+    pub horizon_s: f64,
+}
+
+/// Time until the mass is at a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Prognosis {
+    state: MassAndLeak,
+    limit_kg: f64,
+    law: LossLaw,
+    leak_probability: f64,
+}
+
+impl Prognosis {
+    /// From mass and leak rate now to a limit of the mass, given that there is a leak.
+    ///
+    /// # Errors
+    /// The limit is not positive.
+    pub fn try_new(state: MassAndLeak, limit_kg: f64, law: LossLaw) -> Result<Self, DetectorError> {
+        Ok(Self { state, limit_kg: positive("limit_kg", limit_kg)?, law, leak_probability: 1.0 })
+    }
+
+    /// The same where a leak is there only with a probability; without one the mass stays.
+    ///
+    /// # Errors
+    /// It is not between 0 and 1.
+    pub fn with_leak_probability(self, leak_probability: f64) -> Result<Self, DetectorError> {
+        if !(0.0..=1.0).contains(&leak_probability) {
+            let (setting, bound) = ("leak_probability", "between 0 and 1");
+            return Err(DetectorError::Setting { setting, value: leak_probability, bound });
+        }
+        Ok(Self { leak_probability, ..self })
+    }
+
+    /// Probability that the limit is reached within a time, s.
+    pub fn probability_within(&self, time_s: f64) -> f64 {
+        let time_s = time_s.max(0.0);
+        let mut probability = 0.0;
+        if self.leak_probability > 0.0 {
+            probability += self.leak_probability * self.with_leak(time_s);
+        }
+        if self.leak_probability < 1.0 {
+            let MassAndLeak { mass_kg, mass_sd_kg, .. } = self.state;
+            probability += (1.0 - self.leak_probability) * below(mass_kg, mass_sd_kg, self.limit_kg);
+        }
+        probability.clamp(0.0, 1.0)
+    }
+
+    /// Time by which the limit is reached with a probability. A horizon above 1e15 s counts as that.
+    pub fn quantile(&self, probability: f64, horizon_s: f64) -> Passage {
+        if self.probability_within(0.0) >= probability {
+            return Passage::Reached;
+        }
+        if horizon_s.is_nan() || horizon_s <= 0.0 {
+            return Passage::BeyondHorizon;
+        }
+        let horizon_s = horizon_s.min(LONGEST_S);
+        let at_horizon = self.probability_within(horizon_s) - probability;
+        if at_horizon < 0.0 {
+            return Passage::BeyondHorizon;
+        }
+        let earliest_s = EARLIEST * horizon_s;
+        let at_earliest = self.probability_within(earliest_s) - probability;
+        if at_earliest >= 0.0 {
+            return Passage::In(earliest_s);
+        }
+        let excess = |ln_s: f64| self.probability_within(ln_s.exp()) - probability;
+        let ends = [(earliest_s.ln(), at_earliest), (horizon_s.ln(), at_horizon)];
+        Passage::In(root(excess, ends).exp())
+    }
+
+    /// 5, 50 and 95 % quantile.
+    pub fn quantiles(&self, horizon_s: f64) -> Quantiles {
+        let [p5, p50, p95] = [0.05, 0.5, 0.95].map(|probability| self.quantile(probability, horizon_s));
+        Quantiles { p5, p50, p95, horizon_s }
+    }
+
+    /// The limit, kg.
+    pub fn limit_kg(&self) -> f64 {
+        self.limit_kg
+    }
+
+    /// `F(t)`, given that there is a leak.
+    fn with_leak(&self, time_s: f64) -> f64 {
+        let MassAndLeak { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, .. } = self.state;
+        if leak_sd_kg_s == 0.0 {
+            let needed_kg = self.law.mass_that_reaches_kg(self.limit_kg, leak_kg_s.max(0.0), time_s);
+            return below(mass_kg, mass_sd_kg, needed_kg);
+        }
+        if mass_sd_kg == 0.0 {
+            return self.with_known_mass(time_s);
+        }
+        self.over_leak_rates(time_s)
+    }
+
+    /// `P(r >= r*)/P(r >= 0)`, where the known mass needs the rate `r*`.
+    fn with_known_mass(&self, time_s: f64) -> f64 {
+        let MassAndLeak { mass_kg, leak_kg_s, leak_sd_kg_s, .. } = self.state;
+        // The time is inversely proportional to the rate under either law.
+        let needed_kg_s = self.law.time_s(mass_kg, 1.0, self.limit_kg) / time_s;
+        if mass_kg <= self.limit_kg {
+            return 1.0;
+        }
+        let tail = |rate: f64| ln_upper_tail((rate - leak_kg_s) / leak_sd_kg_s);
+        (tail(needed_kg_s) - tail(0.0)).exp()
+    }
+
+    /// The integral over the rate in standard deviations, `z = (r - E[r])/sd[r]`.
+    fn over_leak_rates(&self, time_s: f64) -> f64 {
+        let MassAndLeak { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, correlation } = self.state;
+        let no_leak = -leak_kg_s / leak_sd_kg_s;
+        let mode = no_leak.max(0.0);
+        let (low, high) = (no_leak.max(-NEGLIGIBLE.sqrt()), (mode * mode + NEGLIGIBLE).sqrt());
+        let sd_kg = mass_sd_kg * ((1.0 - correlation) * (1.0 + correlation)).sqrt();
+        // How far the mass that is at the limit by then lies above the mass to be expected with this rate.
+        let above_kg = |z: f64| {
+            let rate_kg_s = (leak_kg_s + leak_sd_kg_s * z).max(0.0);
+            let needed_kg = self.law.mass_that_reaches_kg(self.limit_kg, rate_kg_s, time_s);
+            needed_kg - mass_kg - correlation * mass_sd_kg * z
+        };
+        let integrand = |z: f64| (-0.5 * (z - mode) * (z + mode)).exp() * below(0.0, sd_kg, above_kg(z));
+        // P(r >= 0) on the scale of the density above.
+        let all = (ln_upper_tail(no_leak) + 0.5 * mode * mode).exp() * std::f64::consts::TAU.sqrt();
+        let ends = steps(above_kg, sd_kg, (low, high));
+        let panel = |ends: &[f64]| integrate(&integrand, ends[0], ends[1], TOLERANCE * all);
+        ends.windows(2).map(panel).sum::<f64>() / all
+    }
+}
+
+/// Where the integrand steps, between `low` and `high`, both included: where a concave function passes multiples of a standard deviation.
+/// A step narrow against the panels of a quadrature would be overlooked.
+fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Vec<f64> {
+    let peak = maximum(&concave, (low, high));
+    let mut ends = vec![low, 0.0, peak, high];
+    for level in STEP {
+        for side in [low, high] {
+            ends.extend(crossing(&concave, level * sd, 0.1 * sd, (side, peak)));
+        }
+    }
+    ends.retain(|end| (low..=high).contains(end));
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    ends
+}
+
+/// Where a concave function is largest, by thirds.
+fn maximum(concave: &impl Fn(f64) -> f64, (mut low, mut high): (f64, f64)) -> f64 {
+    if concave(high) >= concave(high - 1e-6 * (high - low)) {
+        return high;
+    }
+    for _ in 0..60 {
+        let (left, right) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if concave(left) < concave(right) { low = left } else { high = right }
+    }
+    0.5 * (low + high)
+}
+
+/// Where a function passes a level, to a tolerance of the level, between two points; `None` if it does not.
+fn crossing(
+    f: &impl Fn(f64) -> f64,
+    level: f64,
+    tolerance: f64,
+    (mut from, mut to): (f64, f64),
+) -> Option<f64> {
+    let start = f(from) > level;
+    if (f(to) > level) == start {
+        return None;
+    }
+    for _ in 0..45 {
+        let middle = 0.5 * (from + to);
+        let value = f(middle);
+        if (value - level).abs() <= tolerance {
+            return Some(middle);
+        }
+        if (value > level) == start { from = middle } else { to = middle }
+    }
+    Some(0.5 * (from + to))
+}
+
+/// `P(x <= bound)` of a normal `x`, whose standard deviation may be zero.
+fn below(mean: f64, sd: f64, bound: f64) -> f64 {
+    if sd > 0.0 { normal_probability((bound - mean) / sd) } else { f64::from(u8::from(mean <= bound)) }
+}
+
+/// `ln P(x > z)` of a standard normal `x`; in the tail by the continued fraction of Mills' ratio.
+fn ln_upper_tail(z: f64) -> f64 {
+    if z < 5.0 {
+        return normal_probability(-z).ln();
+    }
+    let mills = (1..80).rev().fold(z, |fraction, n| z + f64::from(n) / fraction);
+    -0.5 * (z * z + std::f64::consts::TAU.ln()) - mills.ln()
+}
+
+/// Root of a rising function between two points with a change of sign, by Chandrupatla's method: inverse quadratic where that is safe,
+/// halving where not.
+fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 {
+    let (mut b, mut a) = (low, high);
+    let mut c = a;
+    let mut share = 0.5;
+    for _ in 0..200 {
+        let x = a.0 + share * (b.0 - a.0);
+        let new = (x, f(x));
+        c = if (new.1 > 0.0) == (a.1 > 0.0) { a } else { std::mem::replace(&mut b, a) };
+        a = new;
+        let best = if a.1.abs() < b.1.abs() { a } else { b };
+        let smallest = 1e-10 / (b.0 - a.0).abs();
+        if smallest > 0.5 || best.1.abs() < TOLERANCE {
+            return best.0;
+        }
+        let (xi, phi) = ((a.0 - b.0) / (c.0 - b.0), (a.1 - b.1) / (c.1 - b.1));
+        let safe = phi * phi < xi && (1.0 - phi).powi(2) < 1.0 - xi;
+        share = if safe {
+            let across = (c.0 - a.0) / (b.0 - a.0);
+            a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1) + across * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1)
+        } else {
+            0.5
+        }
+        .clamp(smallest, 1.0 - smallest);
+    }
+    c.0
+}
