@@ -37,12 +37,12 @@ pub struct UdBank {
     f: Vec<Lanes>,
     /// Factors on gain and covariance by which each column changes the other in an update: (n).
     factors: Vec<(Lanes, Lanes)>,
-    /// Columns of moving states of `Phi U` and the noise behind them, row by row: (m, 2 m).
-    rows: Vec<Lanes>,
+    /// Columns of moving states of `Phi U` and the noise behind them, row by row in pairs: (m, 2 m).
+    rows: Vec<[Lanes; 2]>,
     /// Elements of a row that may differ from zero.
     spans: Vec<(usize, usize)>,
-    weights: Vec<Lanes>,
-    weighted: Vec<Lanes>,
+    weights: Vec<[Lanes; 2]>,
+    weighted: Vec<[Lanes; 2]>,
     moved: Vec<[Lanes; 2]>,
 }
 
@@ -59,10 +59,10 @@ impl UdBank {
             d: vec![Lanes::ZERO; n],
             f: vec![Lanes::ZERO; n],
             factors: vec![(Lanes::ZERO, Lanes::ZERO); n],
-            rows: vec![Lanes::ZERO; 2 * leading * leading],
+            rows: vec![[Lanes::ZERO; 2]; leading * leading],
             spans: vec![(0, 0); leading],
-            weights: vec![Lanes::ZERO; 2 * leading],
-            weighted: vec![Lanes::ZERO; 2 * leading],
+            weights: vec![[Lanes::ZERO; 2]; leading],
+            weighted: vec![[Lanes::ZERO; 2]; leading],
             moved: vec![[Lanes::ZERO; 2]; leading],
         }
     }
@@ -151,8 +151,9 @@ impl UdBank {
     #[inline(always)]
     fn predict_sized(&mut self, transition: &mut BankTransition, (n, m): (usize, usize)) {
         self.transform(transition, (n, m));
-        self.weights[..m].copy_from_slice(&self.d[..m]);
-        transition.factor_noise(m, &mut self.rows, &mut self.spans, &mut self.weights[m..]);
+        let weights = self.weights.as_flattened_mut();
+        weights[..m].copy_from_slice(&self.d[..m]);
+        transition.factor_noise(m, self.rows.as_flattened_mut(), &mut self.spans, &mut weights[m..]);
         self.orthogonalise((n, m));
     }
 
@@ -167,15 +168,14 @@ impl UdBank {
             let last = (2 * pair + 1).min(n - 1);
             let both = [&*left, if right.is_empty() { &*left } else { &*right }];
             transition.multiply(both, last, moved);
-            for (j, to) in [left, right].into_iter().enumerate().filter(|(_, u)| !u.is_empty()) {
-                let column = 2 * pair + j;
-                if column < m {
-                    rows.chunks_exact_mut(2 * m)
-                        .zip(moved.iter())
-                        .for_each(|(row, moved)| row[column] = moved[j]);
-                } else {
-                    to.iter_mut().zip(moved.iter()).for_each(|(to, moved)| *to = moved[j]);
-                }
+            // Where a row's moving states end within the pair, noise takes the place of what is too much.
+            if 2 * pair < m {
+                rows.chunks_exact_mut(m).zip(&*moved).for_each(|(row, moved)| row[pair] = *moved);
+            }
+            for (j, to) in
+                [left, right].into_iter().enumerate().filter(|(j, u)| 2 * pair + j >= m && !u.is_empty())
+            {
+                to.iter_mut().zip(&*moved).for_each(|(to, moved)| *to = moved[j]);
             }
         }
         for (span, &first) in spans.iter_mut().zip(transition.firsts()) {
@@ -189,20 +189,20 @@ impl UdBank {
         let stride = stride(n);
         let Self { u, d, rows, weights, weighted, spans, .. } = self;
         for j in (0..m).rev() {
-            let (before, row) = rows[..(j + 1) * 2 * m].split_at_mut(j * 2 * m);
+            let (before, row) = rows[..(j + 1) * m].split_at_mut(j * m);
             let span = spans[j];
             // What is outside the span is zero: whole pairs may take part.
-            let (low, high) = (span.0 & !1, span.1.next_multiple_of(2));
-            let (row, weighted) = (&row[low..high], &mut weighted[low..high]);
-            for ((to, &value), &weight) in weighted.iter_mut().zip(row).zip(&weights[low..high]) {
-                *to = value * weight;
+            let pairs = span.0 / 2..span.1.div_ceil(2);
+            let (row, weighted) = (&row[pairs.clone()], &mut weighted[pairs.clone()]);
+            for ((to, value), weight) in weighted.iter_mut().zip(row).zip(&weights[pairs.clone()]) {
+                *to = [value[0] * weight[0], value[1] * weight[1]];
             }
-            d[j] = dot(weighted, row);
+            d[j] = dot_pairs(weighted, row);
             let inverse = d[j].inverse();
             let u = &mut u[j * stride..j * stride + j];
-            for ((other, u), other_span) in before.chunks_exact_mut(2 * m).zip(u).zip(spans.iter_mut()) {
-                let other = &mut other[low..high];
-                let share = dot(weighted, other) * inverse;
+            for ((other, u), other_span) in before.chunks_exact_mut(m).zip(u).zip(spans.iter_mut()) {
+                let other = &mut other[pairs.clone()];
+                let share = dot_pairs(weighted, other) * inverse;
                 *u = share;
                 subtract(share, row, other);
                 *other_span = (other_span.0.min(span.0), other_span.1.max(span.1));
@@ -226,19 +226,11 @@ impl UdBank {
     #[inline(always)]
     fn project_sized(&mut self, h: &[Lanes], n: usize) -> Lanes {
         let stride = stride(n);
-        let (u, d, f) = (&self.u[..stride * n], &self.d[..n], &mut self.f[..n]);
-        f.fill(Lanes::ZERO);
-        // A gradient has few elements: row by row.
-        for (i, &h) in h[..n].iter().enumerate() {
-            if !h.is_zero() {
-                for (f, u) in f[i..].iter_mut().zip(u[i * stride..].chunks_exact(stride)) {
-                    *f += h * u[i];
-                }
-            }
-        }
+        let Self { u, d, f, .. } = self;
         let mut sum = Lanes::ZERO;
-        for (&f, &d) in f.iter().zip(d) {
-            sum += f * f * d;
+        for (j, ((u, &d), f)) in u.chunks_exact(stride).zip(&d[..n]).zip(f).enumerate() {
+            *f = dot(&h[..=j], &u[..=j]);
+            sum += *f * *f * d;
         }
         sum
     }
@@ -398,27 +390,44 @@ const fn stride(n: usize) -> usize {
     n.next_multiple_of(4)
 }
 
-/// `sum a_i b_i` over whole pairs, in four sums that do not wait for each other.
+/// `sum a_i b_i`, in four sums that do not wait for each other.
 #[inline(always)]
 fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
-    let ((a4, a2), (b4, b2)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let ((a4, a1), (b4, b1)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
     let mut sum = [Lanes::ZERO; 4];
     for (a, b) in a4.iter().zip(b4) {
         for ((sum, &a), &b) in sum.iter_mut().zip(a).zip(b) {
             *sum += a * b;
         }
     }
-    if let ([a0, a1], [b0, b1]) = (a2, b2) {
-        sum[0] += *a0 * *b0;
-        sum[1] += *a1 * *b1;
+    for ((sum, &a), &b) in sum.iter_mut().zip(a1).zip(b1) {
+        *sum += a * b;
     }
     (sum[0] + sum[2]) + (sum[1] + sum[3])
 }
 
-/// `y <- y - c x` over whole pairs.
+/// The same for whole pairs.
 #[inline(always)]
-fn subtract(c: Lanes, x: &[Lanes], y: &mut [Lanes]) {
-    for (x, y) in x.as_chunks::<2>().0.iter().zip(y.as_chunks_mut::<2>().0) {
+fn dot_pairs(a: &[[Lanes; 2]], b: &[[Lanes; 2]]) -> Lanes {
+    let ((a4, a2), (b4, b2)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
+    let mut sum = [[Lanes::ZERO; 2]; 2];
+    for (a, b) in a4.iter().zip(b4) {
+        for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+            sum[0] += a[0] * b[0];
+            sum[1] += a[1] * b[1];
+        }
+    }
+    if let ([a], [b]) = (a2, b2) {
+        sum[0][0] += a[0] * b[0];
+        sum[0][1] += a[1] * b[1];
+    }
+    (sum[0][0] + sum[1][0]) + (sum[0][1] + sum[1][1])
+}
+
+/// `y <- y - c x`.
+#[inline(always)]
+fn subtract(c: Lanes, x: &[[Lanes; 2]], y: &mut [[Lanes; 2]]) {
+    for (x, y) in x.iter().zip(y) {
         y[0] -= c * x[0];
         y[1] -= c * x[1];
     }

@@ -19,6 +19,22 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sum[0] + sum[2]) + (sum[1] + sum[3]) + tail
 }
 
+/// `sum h_i (a_i - b_i)` over the shortest of the three.
+#[inline]
+pub(crate) fn dot_difference(h: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let n = h.len().min(a.len()).min(b.len());
+    let ((h4, h1), (a4, a1), (b4, b1)) =
+        (h[..n].as_chunks::<4>(), a[..n].as_chunks::<4>(), b[..n].as_chunks::<4>());
+    let mut sum = [0.0; 4];
+    for ((h, a), b) in h4.iter().zip(a4).zip(b4) {
+        for lane in 0..4 {
+            sum[lane] += h[lane] * (a[lane] - b[lane]);
+        }
+    }
+    let tail: f64 = h1.iter().zip(a1).zip(b1).map(|((h, a), b)| h * (a - b)).sum();
+    (sum[0] + sum[2]) + (sum[1] + sum[3]) + tail
+}
+
 /// `y <- y + c x`.
 #[inline(always)]
 pub(crate) fn axpy(c: f64, x: &[f64], y: &mut [f64]) {

@@ -35,10 +35,13 @@ impl Lanes {
         }
     }
 
-    /// Whether a lane is at most as in `other`.
+    /// Zero in the lanes that are at most as in `least`.
     #[inline(always)]
-    pub fn any_at_most(self, other: Self) -> bool {
-        self.0.iter().zip(other.0).fold(false, |any, (own, other)| any | (*own <= other))
+    pub fn above(mut self, least: Self) -> Self {
+        for (own, least) in self.0.iter_mut().zip(least.0) {
+            *own = if *own <= least { 0.0 } else { *own };
+        }
+        self
     }
 
     /// `normal` in the lanes where this is a normal positive number, else `otherwise`.

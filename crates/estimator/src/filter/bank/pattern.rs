@@ -1,4 +1,5 @@
 //! Where a transition may differ from zero.
+use std::ops::Range;
 
 /// Rows that are multiplied together.
 pub(super) const TOGETHER: usize = 4;
@@ -10,6 +11,7 @@ pub(super) const TOGETHER: usize = 4;
 pub struct Pattern {
     /// Number of leading rows.
     pub(super) leading: usize,
+    /// Four rows of the same columns each.
     pub(super) blocks: Vec<Block>,
     /// Row and column of the elements of all other rows.
     pub(super) elements: Vec<(usize, usize)>,
@@ -19,11 +21,24 @@ pub struct Pattern {
     pub(super) noise: Vec<Vec<usize>>,
 }
 
-/// Four rows of the same columns.
+/// Four rows of the same columns: runs of neighbours, in ascending order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Block {
     pub first_row: usize,
-    pub columns: Vec<usize>,
+    pub runs: Vec<Range<usize>>,
+}
+
+impl Block {
+    /// Sorted columns of the rows from `first_row` on.
+    fn new(first_row: usize, columns: &[usize]) -> Self {
+        let runs = columns.chunk_by(|left, right| left + 1 == *right);
+        Self { first_row, runs: runs.map(|run| run[0]..run[0] + run.len()).collect() }
+    }
+
+    /// The columns one by one.
+    pub fn columns(&self) -> impl Iterator<Item = usize> {
+        self.runs.iter().cloned().flatten()
+    }
 }
 
 impl Pattern {
@@ -42,7 +57,7 @@ impl Pattern {
         while let Some(columns) = rows.get(row) {
             let alike = rows[row..].iter().take_while(|other| *other == columns).count();
             if alike >= TOGETHER && columns.len() > 1 {
-                blocks.push(Block { first_row: row, columns: columns.clone() });
+                blocks.push(Block::new(row, columns));
                 row += TOGETHER;
             } else {
                 elements.extend(columns.iter().map(|&column| (row, column)));

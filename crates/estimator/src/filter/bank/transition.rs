@@ -1,5 +1,7 @@
 //! Transitions of four filters and the noise that they add.
-use super::pattern::{Pattern, TOGETHER};
+use pulp::{Arch, Simd, WithSimd};
+
+use super::pattern::{Block, Pattern, TOGETHER};
 use crate::filter::lanes::{LANES, Lanes};
 
 /// Transitions of four filters over one interval, of one pattern, with noise covariances.
@@ -18,7 +20,7 @@ impl BankTransition {
     /// Zeros.
     pub fn new(pattern: Pattern) -> Self {
         let m = pattern.leading;
-        let columns = pattern.blocks.iter().map(|block| block.columns.len()).sum();
+        let columns = pattern.blocks.iter().flat_map(Block::columns).count();
         Self {
             blocks: vec![[Lanes::ZERO; TOGETHER]; columns],
             elements: vec![Lanes::ZERO; pattern.elements.len()],
@@ -39,11 +41,10 @@ impl BankTransition {
             .pattern
             .blocks
             .iter()
-            .flat_map(|block| block.columns.iter().map(|column| column * m + block.first_row));
+            .flat_map(|block| block.columns().map(move |column| column * m + block.first_row));
         for (to, first) in self.blocks.iter_mut().zip(columns) {
-            to.iter_mut()
-                .zip(&phi[first..first + TOGETHER])
-                .for_each(|(to, &from)| to.put(lanes, Lanes::splat(from)));
+            let from = &phi[first..first + TOGETHER];
+            to.iter_mut().zip(from).for_each(|(to, &from)| to.put(lanes, Lanes::splat(from)));
         }
         for (to, (row, column)) in self.elements.iter_mut().zip(&self.pattern.elements) {
             to.put(lanes, Lanes::splat(phi[column * m + row]));
@@ -61,28 +62,38 @@ impl BankTransition {
         }
     }
 
+    /// `Phi u` of one column, `u`: (n), `out`: (leading).
+    pub fn carry(&self, u: &[Lanes], out: &mut [[Lanes; 1]]) {
+        Arch::new().dispatch(Carry { transition: self, u, out });
+    }
+
     /// `Phi u` of several columns, `last` being the last row in which one of them may differ from zero; `out`: (leading) each.
     #[inline(always)]
-    pub fn multiply<const C: usize>(&self, u: [&[Lanes]; C], last: usize, out: &mut [[Lanes; C]]) {
-        let mut from = self.blocks.iter();
-        for block in &self.pattern.blocks {
+    pub(super) fn multiply<const C: usize>(&self, u: [&[Lanes]; C], last: usize, out: &mut [[Lanes; C]]) {
+        let mut from = self.blocks.as_slice();
+        for Block { first_row, runs } in &self.pattern.blocks {
             let mut sum = [[Lanes::ZERO; C]; TOGETHER];
-            for (&column, elements) in block.columns.iter().zip(from.by_ref()) {
-                if column > last {
-                    continue;
-                }
-                let values = u.map(|u| u[column]);
-                for (sum, &element) in sum.iter_mut().zip(elements) {
-                    for (sum, &value) in sum.iter_mut().zip(&values) {
-                        *sum += element * value;
+            for run in runs {
+                let (own, others) = from.split_at(run.len());
+                from = others;
+                let end = run.end.min(last + 1).max(run.start);
+                let u = u.map(|u| &u[run.start..end]);
+                for (k, own) in own[..end - run.start].iter().enumerate() {
+                    let values = u.map(|u| u[k]);
+                    for (sum, &element) in sum.iter_mut().zip(own) {
+                        for (sum, &value) in sum.iter_mut().zip(&values) {
+                            *sum += element * value;
+                        }
                     }
                 }
             }
-            out[block.first_row..block.first_row + TOGETHER].copy_from_slice(&sum);
+            out[*first_row..first_row + TOGETHER].copy_from_slice(&sum);
         }
         let others = || self.pattern.elements.iter();
         others().for_each(|&(row, _)| out[row] = [Lanes::ZERO; C]);
-        for (&(row, column), &element) in others().zip(&self.elements) {
+        for (&(row, column), &element) in
+            others().zip(&self.elements).filter(|((_, column), _)| *column <= last)
+        {
             for (out, u) in out[row].iter_mut().zip(u) {
                 *out += element * u[column];
             }
@@ -123,14 +134,25 @@ impl BankTransition {
                 for (to, &value) in target.iter_mut().zip(column.iter()) {
                     *to -= share * value;
                 }
-                let least = diagonal * rounding;
-                if target[i].any_at_most(least) {
-                    let left = target[i];
-                    for lane in (0..LANES).filter(|&lane| left.0[lane] <= least.0[lane]) {
-                        target.iter_mut().for_each(|to| to.0[lane] = 0.0);
-                    }
-                }
+                // Without a variance its column has no share in any other.
+                target[i] = target[i].above(diagonal * rounding);
             }
         }
+    }
+}
+
+/// What [`BankTransition::carry`] compiles for the vector registers of the machine.
+struct Carry<'a> {
+    transition: &'a BankTransition,
+    u: &'a [Lanes],
+    out: &'a mut [[Lanes; 1]],
+}
+
+impl WithSimd for Carry<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.transition.multiply([self.u], self.u.len() - 1, self.out);
     }
 }

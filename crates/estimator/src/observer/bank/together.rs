@@ -8,6 +8,7 @@ use nalgebra::Dyn;
 
 use crate::EstimatorError;
 use crate::filter::bank::{BankTransition, UdBank};
+use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::{StateSpace, UdFactors};
 use crate::observer::cylinder::{Crossing, Cylinder, HARDLY};
@@ -114,7 +115,7 @@ impl Together {
         for group in &self.groups {
             memory.cross(cylinder, members, group, dt_s)?;
         }
-        memory.transition.multiply([&memory.away], cylinder.states() - 1, &mut memory.moved);
+        memory.transition.carry(&memory.away, &mut memory.moved);
         for (lane, member) in members.iter_mut().enumerate() {
             for (x, [by]) in member.x.iter_mut().zip(&memory.moved) {
                 *x += by.0[lane];
@@ -143,20 +144,14 @@ impl Together {
             let x = &members[group.reference].x;
             let value = cylinder.output(sensor, x, Some(h))?;
             let noise = cylinder.noise_variance(sensor, x);
-            let mut expected = [value; LANES];
-            for (state, (to, &h)) in memory.h.iter_mut().zip(&*h).enumerate() {
-                to.put(group.lanes, Lanes::splat(h));
-                if h != 0.0 {
-                    for (expected, member) in expected.iter_mut().zip(&*members) {
-                        *expected += h * (member.x[state] - x[state]);
-                    }
-                }
-            }
+            memory.h.iter_mut().zip(&*h).for_each(|(to, &h)| to.put(group.lanes, Lanes::splat(h)));
             for (lane, member) in members.iter().enumerate().filter(|(lane, _)| group.lanes[*lane]) {
-                if group.distance[lane] > HARDLY {
-                    expected[lane] = cylinder.output(sensor, &member.x, None)?;
-                }
-                nu.0[lane] = reading - expected[lane];
+                let expected = match group.distance[lane] {
+                    far if far > HARDLY => cylinder.output(sensor, &member.x, None)?,
+                    _ if lane == group.reference => value,
+                    _ => value + dot_difference(h, &member.x, x),
+                };
+                nu.0[lane] = reading - expected;
                 r.0[lane] = noise;
             }
         }

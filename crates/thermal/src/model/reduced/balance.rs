@@ -66,7 +66,7 @@ impl ReducedModel {
             add(mass, per_pressure * p_mass);
             add(inside_column, face.film_factor * face.heat_w);
             for other in 0..self.mesh.columns.len() {
-                add(other, per_pressure * p_wall * self.mean_wall_per_node(x, other));
+                add(other, per_pressure * p_wall * self.mean_wall_by[other]);
             }
         }
     }
@@ -75,16 +75,16 @@ impl ReducedModel {
         &self,
         x: &[f64],
         unknowns: &Unknowns,
+        film_w_m2_k: f64,
         rate: &mut [f64],
         mut jacobian: Jacobian<'_>,
     ) {
-        let film = self.film_w_m2_k * unknowns.ln_outside_film.exp();
         let n = self.states();
         for (node, column) in self.mesh.columns.iter().enumerate() {
             let sunlit = node + 1 == self.wall_nodes();
             let sun_w = if sunlit { unknowns.sun_w } else { 0.0 };
             let height = self.above_middle[node];
-            let everywhere = column.outer_area_m2 * film;
+            let everywhere = column.outer_area_m2 * film_w_m2_k;
             let slope = everywhere * (1.0 + unknowns.film_slope * height);
             let half = self.half_cell(x[node], column.outer_shape_m);
             let face =
@@ -102,13 +102,19 @@ impl ReducedModel {
         }
     }
 
-    pub(super) fn add_valve(&self, x: &[f64], unknowns: &Unknowns, rate: &mut [f64], jacobian: Jacobian<'_>) {
+    pub(super) fn add_valve(
+        &self,
+        x: &[f64],
+        unknowns: &Unknowns,
+        film_w_m2_k: f64,
+        rate: &mut [f64],
+        jacobian: Jacobian<'_>,
+    ) {
         let (Some(index), Some(valve)) = (self.valve_index(), &self.valve) else { return };
         let conductance_w_k = self.spread.conductance_w_k;
         let sun_rise_k_w = self.spread.top_rise_k_w;
         let (top, n) = (index - 1, self.states());
-        let everywhere =
-            valve.area_m2 * valve.film_factor * self.film_w_m2_k * unknowns.ln_outside_film.exp();
+        let everywhere = valve.area_m2 * valve.film_factor * film_w_m2_k;
         let slope = everywhere * (1.0 + unknowns.film_slope * TOP);
         let contact_w = conductance_w_k * (x[index] - x[top] - sun_rise_k_w * unknowns.sun_w);
         rate[top] += contact_w;
@@ -169,7 +175,6 @@ impl ReducedModel {
 
     pub(super) fn close_gas(
         &self,
-        x: &[f64],
         unknowns: &Unknowns,
         gas: &GasState<Slope>,
         rate: &mut [f64],
@@ -197,7 +202,7 @@ impl ReducedModel {
         j[(row, row)] -= own(0);
         j[(row, mass)] -= own(1);
         for node in 0..self.wall_nodes() {
-            j[(row, node)] -= own(2) * self.mean_wall_per_node(x, node);
+            j[(row, node)] -= own(2) * self.mean_wall_by[node];
         }
         let inverse = 1.0 / capacity;
         j.as_mut_slice()[row..].iter_mut().step_by(n).for_each(|by| *by *= inverse);

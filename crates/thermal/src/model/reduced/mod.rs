@@ -133,6 +133,8 @@ pub struct ReducedModel {
     gas: GasNode,
     /// Last difference between each wall node and its inner surface, K: where the next solve starts.
     skin_k: Vec<f64>,
+    /// Derivative of the mean wall temperature with that of each wall node at the last evaluation.
+    mean_wall_by: Vec<f64>,
     /// Rate of the mean wall temperature at the last evaluation, K/s.
     mean_rate_k_s: f64,
     /// Its derivatives.
@@ -176,6 +178,7 @@ impl ReducedModel {
             ),
             gas: GasNode::new(vessel.fluid.clone(), vessel.volume),
             skin_k: vec![0.0; nodes],
+            mean_wall_by: vec![0.0; nodes],
             mean_rate_k_s: 0.0,
             mean_rate_by: vec![0.0; nodes + 3 + Unknowns::COUNT],
             mesh,
@@ -336,14 +339,18 @@ impl ReducedModel {
         )?;
         if let Some(jacobian) = jacobian.as_deref_mut() {
             jacobian.as_mut_slice().fill(0.0);
+            for node in 0..self.wall_nodes() {
+                self.mean_wall_by[node] = self.mean_wall_per_node(x, node);
+            }
         }
         rate.fill(0.0);
         self.add_conduction(x, rate, jacobian.as_deref_mut());
         self.add_inner_faces(x, unknowns, &gas, rate, jacobian.as_deref_mut());
-        self.add_outer_faces(x, unknowns, rate, jacobian.as_deref_mut());
-        self.add_valve(x, unknowns, rate, jacobian.as_deref_mut());
+        let film_w_m2_k = self.film_w_m2_k * unknowns.ln_outside_film.exp();
+        self.add_outer_faces(x, unknowns, film_w_m2_k, rate, jacobian.as_deref_mut());
+        self.add_valve(x, unknowns, film_w_m2_k, rate, jacobian.as_deref_mut());
         self.divide_by_capacities(x, unknowns, rate, jacobian.as_deref_mut());
-        self.close_gas(x, unknowns, &gas, rate, jacobian);
+        self.close_gas(unknowns, &gas, rate, jacobian);
         Ok(())
     }
 }
