@@ -3,41 +3,44 @@
 //! Source: Levenberg 1944, Marquardt 1963.
 use nalgebra::{DMatrix, DVector};
 
-/// First damping, and the ones from which on there is none, or no hope.
+/// First damping, the one below which there is none, and how many times the first one leaves no hope.
 const FIRST: f64 = 1e-3;
 const NONE: f64 = 1e-9;
-const LAST: f64 = 1e9;
+const HOPELESS: f64 = 1e12;
 
 /// Share of the diagonal that is added to the normal equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Damping(f64);
+pub(crate) struct Damping {
+    share: f64,
+    last: f64,
+}
 
 impl Damping {
     pub fn first() -> Self {
-        Self(FIRST)
+        Self::starting_at(FIRST)
     }
 
     /// Another first damping.
     pub fn starting_at(share: f64) -> Self {
-        Self(share)
+        Self { share, last: HOPELESS * share.max(FIRST) }
     }
 
     pub fn share(self) -> f64 {
-        self.0
+        self.share
     }
 
     /// After a step that helped.
     pub fn relax(&mut self) {
-        self.0 = if self.0 < NONE { 0.0 } else { 0.1 * self.0 };
+        self.share = if self.share < NONE { 0.0 } else { 0.1 * self.share };
     }
 
     /// After a step that did not.
     pub fn tighten(&mut self) {
-        self.0 = (10.0 * self.0).max(FIRST);
+        self.share = (10.0 * self.share).max(FIRST);
     }
 
     pub fn is_hopeless(self) -> bool {
-        self.0 > LAST
+        self.share > self.last
     }
 
     /// Step `(A + damping diag A)^-1 g`, Marquardt's, which is free of the parameters' units; `None` if there is no finite one.
@@ -55,7 +58,7 @@ impl Damping {
     ) -> Option<DVector<f64>> {
         let mut damped = matrix.clone();
         for i in 0..damped.nrows() {
-            damped[(i, i)] += self.0 * scale[i];
+            damped[(i, i)] += self.share * scale[i];
         }
         solve(&damped, rhs)
     }

@@ -74,7 +74,9 @@ impl Experiment {
         }
         let (low, high) = sensor.plausible();
         let reading = |row: usize| self.log.row(kept[row])[index];
-        let rows: Vec<usize> = (0..kept.len()).filter(|&row| (low..=high).contains(&reading(row))).collect();
+        // A reading at the end of the range says that the value is beyond it, not what it is.
+        let inside = |&row: &usize| reading(row) > low && reading(row) < high;
+        let rows: Vec<usize> = (0..kept.len()).filter(inside).collect();
         let values: Vec<f64> = rows.iter().map(|&row| reading(row)).collect();
         match values[..] {
             [] => Err(CalibrateError::NoReadings { experiment, channel, low, high }),

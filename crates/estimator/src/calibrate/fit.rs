@@ -6,7 +6,7 @@ use super::apply::Setup;
 use super::experiment::{Column, check_excitation};
 use super::{CalibrateError, Calibration, CalibrationSettings, Experiment, ParameterSpec, Scope};
 use crate::EstimatorError;
-use crate::sensor::{Sensor, Specimen, SuiteTruth, sample_at};
+use crate::sensor::{Sensor, SensorKind, Specimen, SuiteTruth, sample_at};
 
 /// Which readings take part.
 #[derive(Clone, Debug, PartialEq)]
@@ -211,9 +211,12 @@ fn base(calibration: &Calibration, experiment: &Experiment, times_s: &[f64]) -> 
     Setup { vessel: vessel.clone(), scenario, sensors: experiment.channels.clone() }
 }
 
-/// A sensor as it reads on average: without noise, rounding and losses.
+/// A sensor as it reads on average: without noise, rounding, losses and ends of its range.
 fn faultless(sensor: &Sensor) -> Specimen {
     let mut sensor = sensor.clone();
+    if let SensorKind::Pressure { full_scale_pa, .. } = &mut sensor.kind {
+        *full_scale_pa = None;
+    }
     (sensor.noise_sd, sensor.correlated, sensor.resolution, sensor.dropout) = (0.0, None, 0.0, 0.0);
     let walking: Vec<_> = sensor.parameters().iter().map(|parameter| parameter.kind).collect();
     for kind in walking {

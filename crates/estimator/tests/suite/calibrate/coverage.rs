@@ -1,5 +1,10 @@
 //! Six properties 30 % off, found again from one log.
-use super::study::{Case, kinds, preset};
+use cylwatch_estimator::calibrate::{ParameterKind, ParameterSpec};
+use cylwatch_thermal::model::Model;
+use cylwatch_thermal::scenario::Fill;
+use cylwatch_thermal::vessel;
+
+use super::study::{Case, kinds, preset, run};
 
 /// 50 seeds: `cargo run --release -p cylwatch-estimator --example calibrate_coverage`.
 #[test]
@@ -32,4 +37,26 @@ fn prediction_of_the_next_scenario_improves_at_least_threefold() {
     let (before, after) = case.prediction(&calibrated, &preset("tunnel-winter"));
     println!("rms of the mean gas temperature: {before:.3} K before, {after:.4} K after");
     assert!(before > 3.0 * after, "{before} K before, {after} K after");
+}
+
+/// At 1.3 times the fill the warm gas is beyond the transmitter's range: it then reads the end of it, which is no pressure.
+#[test]
+fn fill_that_is_far_off_is_found_though_the_transmitter_ends_before_it() {
+    let case = Case::new(3);
+    let mut scenario = preset("tunnel-step");
+    scenario.sample_time_s = 30.0;
+    let nominal = vessel::presets::load("nitrogen-20l").unwrap();
+    let model = Model::new(&nominal, &scenario).unwrap();
+    let stated_kg = model.mass_kg(&model.initial_state(&nominal, &scenario.initial).unwrap());
+    for factor in [0.6, 1.3] {
+        let mut filled = case.exposed(&scenario);
+        filled.initial.fill = Fill::Mass { mass_kg: factor * stated_kg };
+        let mut calibration = case.calibration(&scenario);
+        calibration.experiments[0].log = case.readings(&run(&case.vessel(), &filled));
+        calibration.parameters.push(ParameterSpec::new(ParameterKind::FillMass, 1.0));
+        let calibrated = calibration.run().unwrap();
+        let found = calibrated.estimate(&ParameterKind::FillMass).unwrap();
+        assert!((found.value - factor).abs() < 3.0 * found.sd, "{found:?} instead of {factor}");
+        assert!(found.sd < 0.01, "{found:?}");
+    }
 }

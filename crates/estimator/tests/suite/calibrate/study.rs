@@ -78,10 +78,15 @@ impl Case {
 
     /// What drawn specimens of the sensors read.
     pub fn log(&self, scenario: &Scenario) -> Log {
+        self.readings(&self.course(scenario))
+    }
+
+    /// What they read along a course.
+    pub fn readings(&self, course: &Trajectory) -> Log {
         let mut specimens = SensorSuite::try_new(sensors()).unwrap().draw(self.seed);
         specimens.find_mut("shoulder").unwrap().truth.parameters[1] = self.truth[4];
         specimens.find_mut("valve").unwrap().truth.parameters[1] = self.truth[5];
-        sample(&self.course(scenario), &specimens, self.seed).unwrap()
+        sample(course, &specimens, self.seed).unwrap()
     }
 
     pub fn calibration(&self, scenario: &Scenario) -> Calibration {
