@@ -1,6 +1,6 @@
 //! `cylwatch calibrate`: physical parameters of a vessel from logs, as a new vessel file.
 use super::fill::GivenFill;
-use super::input::Inputs;
+use super::input::{Inputs, shown};
 use super::message::Messages;
 use super::output::Target;
 use super::plot::Plot;
@@ -31,7 +31,7 @@ use amounts::Amounts;
 pub use arguments::CalibrateArguments;
 use arguments::CalibrationFormat;
 use circumstances::{Circumstances, Exposure};
-use recording::{Reading, Recording, shown};
+use recording::{Reading, Recording};
 use wanted::{Subject, Wanted, Words};
 
 /// Validated options.

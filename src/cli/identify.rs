@@ -1,6 +1,6 @@
 //! `cylwatch identify`: a transfer function from one column of a log to another.
 use super::arguments::Format;
-use super::input::Inputs;
+use super::input::{Inputs, shown};
 use super::message::Messages;
 use super::output::Target;
 use super::plot::Plot;
@@ -189,9 +189,4 @@ impl Options {
         }
         Ok(())
     }
-}
-
-/// What a message calls a log.
-fn shown(log: &str) -> String {
-    if log == "-" { "stdin".to_owned() } else { log.to_owned() }
 }

@@ -148,8 +148,7 @@ impl Inputs {
     ) -> anyhow::Result<Document> {
         let path = Path::new(name);
         if name == "-" || (path.exists() && !path.is_dir()) {
-            let shown = if name == "-" { "stdin".to_owned() } else { name.to_owned() };
-            return Ok(Document { text: self.read(name)?, shown, built_in: false });
+            return Ok(Document { text: self.read(name)?, shown: shown(name), built_in: false });
         }
         let Some(text) = preset(name) else { bail!("{}", neither(kind, name, &known)) };
         self.records.borrow_mut().push(Input::of(format!("preset {name}"), text.as_bytes()));
@@ -220,6 +219,11 @@ fn hashed(file: &mut File, name: &str) -> std::io::Result<(Input, u64)> {
     }
     file.rewind()?;
     Ok((fingerprint.input(name), length))
+}
+
+/// What a message calls an input.
+pub fn shown(name: &str) -> String {
+    if name == "-" { "stdin".to_owned() } else { name.to_owned() }
 }
 
 /// The message for a name that is neither a file nor built in.

@@ -3,9 +3,7 @@ use crate::estimator::EstimatorError;
 use crate::estimator::log::Log;
 use crate::estimator::sensor::{PressureReference, Sensor, SensorKind, SensorSuite, SuiteTruth, sample};
 use crate::thermal::trajectory::Trajectory;
-use crate::thermal::units::{ATMOSPHERE_PA, ZERO_CELSIUS_K};
-
-const PASCAL_PER_BAR: f64 = 1e5;
+use crate::thermal::units::{ATMOSPHERE_PA, PASCAL_PER_BAR, ZERO_CELSIUS_K};
 
 /// Readings of a scenario's sensors at the samples of a run.
 #[derive(Clone, Debug)]

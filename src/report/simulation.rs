@@ -4,10 +4,10 @@ use super::table::{Table, number};
 use super::{Provenance, Readings, aligned, readings};
 use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
+use crate::thermal::units::PASCAL_PER_BAR;
 use serde_json::{Value, json};
 
 const ZERO_CELSIUS_K: f64 = 273.15;
-const PASCAL_PER_BAR: f64 = 1e5;
 const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// Significant digits of a simulated number: beyond what the solver's tolerance carries, short enough to read.

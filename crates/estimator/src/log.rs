@@ -44,3 +44,10 @@ impl Log {
         self.time_s.iter().enumerate().map(|(index, &time_s)| (time_s, self.row(index)))
     }
 }
+
+/// Median interval between times, in their unit; `None` with fewer than two.
+pub(crate) fn median_interval(times: &[f64]) -> Option<f64> {
+    let mut intervals: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = intervals.len() / 2;
+    (!intervals.is_empty()).then(|| *intervals.select_nth_unstable_by(middle, f64::total_cmp).1)
+}

@@ -10,6 +10,8 @@ pub const ATMOSPHERE_PA: f64 = 101_325.0;
 
 /// Zero of the Celsius scale, K.
 pub const ZERO_CELSIUS_K: f64 = 273.15;
+/// One bar, Pa.
+pub const PASCAL_PER_BAR: f64 = 1e5;
 
 const PSI_PA: f64 = 6_894.757_293_168_361;
 

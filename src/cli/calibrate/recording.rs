@@ -1,5 +1,5 @@
 //! A log in memory: the readings of its sensors, and the air.
-use crate::cli::input::Inputs;
+use crate::cli::input::{Inputs, shown};
 use crate::cli::message::Messages;
 use crate::cli::progress::Progress;
 use crate::cli::selection::Selection;
@@ -121,9 +121,4 @@ impl Recording {
     fn first(&self, channel: usize) -> Option<f64> {
         self.log.rows().map(|(_, row)| row[channel]).find(|reading| reading.is_finite())
     }
-}
-
-/// What a message calls a log.
-pub fn shown(log: &str) -> String {
-    if log == "-" { "stdin".to_owned() } else { log.to_owned() }
 }

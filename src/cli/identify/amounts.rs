@@ -2,9 +2,7 @@
 use crate::cli::unit_options::{Choice, Choices, Given};
 use anyhow::bail;
 use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::Dimension;
-
-const PASCAL_PER_BAR: f64 = 1e5;
+use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR};
 
 /// What can be given.
 #[derive(Clone, Debug)]

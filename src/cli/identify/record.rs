@@ -5,9 +5,7 @@ use cylwatch::estimator::log::Quantity;
 use cylwatch::log::columns::TruthQuantity;
 use cylwatch::log::{LogReader, Row};
 use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::{Dimension, ZERO_CELSIUS_K, units_of};
-
-const PASCAL_PER_BAR: f64 = 1e5;
+use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K, units_of};
 
 /// What is true and may be identified from.
 const GAS_MEAN: &str = "gas_mean";

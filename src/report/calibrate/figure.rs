@@ -3,11 +3,10 @@ use super::Study;
 use super::summary::unit;
 use crate::estimator::calibrate::ChannelResiduals;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, correlation, style};
-use crate::thermal::units::ZERO_CELSIUS_K;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 
 /// Two-sided normal quantile of 99 %.
 const QUANTILE_99: f64 = 2.576;
-const PASCAL_PER_BAR: f64 = 1e5;
 
 /// All logs, one below the other.
 pub fn figure(study: &Study) -> Figure {

@@ -4,9 +4,9 @@ use crate::estimator::calibrate::{
     ParameterSpec, Profile, Scope,
 };
 use crate::estimator::log::Quantity;
+use crate::thermal::units::PASCAL_PER_BAR;
 use crate::thermal::vessel::spec::FittedSpec;
 
-const PASCAL_PER_BAR: f64 = 1e5;
 const PASCAL_PER_MILLIBAR: f64 = 1e2;
 
 /// A finished calibration.

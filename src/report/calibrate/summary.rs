@@ -2,10 +2,10 @@
 use super::{Line, Study};
 use crate::estimator::calibrate::{ChannelResiduals, ChannelScore};
 use crate::report::{aligned, number};
+use crate::thermal::units::PASCAL_PER_BAR;
 
 /// Digits of values that people compare.
 const DIGITS: usize = 4;
-const PASCAL_PER_BAR: f64 = 1e5;
 
 /// The study in words and tables.
 pub fn text(study: &Study) -> String {

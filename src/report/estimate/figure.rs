@@ -4,9 +4,8 @@ use super::innovation::normalised;
 use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::Truth;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
-use crate::thermal::units::ZERO_CELSIUS_K;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 
-const PASCAL_PER_BAR: f64 = 1e5;
 const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// Curves before those of the innovations.

@@ -1,9 +1,8 @@
 //! One estimate as a row of a CSV file or of a JSON array.
 use crate::estimator::observer::Estimate;
-use crate::thermal::units::ZERO_CELSIUS_K;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use std::fmt::Write;
 
-const PASCAL_PER_BAR: f64 = 1e5;
 const GRAM_PER_HOUR: f64 = 3.6e6;
 const SECONDS_PER_HOUR: f64 = 3600.0;
 

@@ -5,11 +5,10 @@ use super::score::{Score, Spread};
 use crate::estimator::consistency::{Finding, OutputReport};
 use crate::log::{Caution, Sampling};
 use crate::report::aligned;
-use crate::thermal::units::ZERO_CELSIUS_K;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
 const GRAM_PER_HOUR: f64 = 3.6e6;
-const PASCAL_PER_BAR: f64 = 1e5;
 
 /// What is left of a run when its rows have gone.
 #[derive(Clone, Debug)]

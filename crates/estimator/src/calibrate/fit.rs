@@ -6,6 +6,7 @@ use super::apply::Setup;
 use super::experiment::{Column, check_excitation};
 use super::{CalibrateError, Calibration, CalibrationSettings, Experiment, ParameterSpec, Scope};
 use crate::EstimatorError;
+use crate::log::median_interval;
 use crate::sensor::{Sensor, SensorKind, Specimen, SuiteTruth, sample_at};
 
 /// Which readings take part.
@@ -200,10 +201,7 @@ fn base(calibration: &Calibration, experiment: &Experiment, times_s: &[f64]) -> 
     if let Some(&last_s) = times_s.last().filter(|&&last_s| last_s > 0.0) {
         scenario.duration_s = last_s;
     }
-    let mut intervals_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if !intervals_s.is_empty() {
-        let middle = intervals_s.len() / 2;
-        let interval_s = *intervals_s.select_nth_unstable_by(middle, f64::total_cmp).1;
+    if let Some(interval_s) = median_interval(times_s) {
         scenario.sample_time_s = scenario.sample_time_s.min(interval_s);
     }
     scenario.pressure_limits_pa.clear();
@@ -211,18 +209,13 @@ fn base(calibration: &Calibration, experiment: &Experiment, times_s: &[f64]) -> 
     Setup { vessel: vessel.clone(), scenario, sensors: experiment.channels.clone() }
 }
 
-/// A sensor as it reads on average: without noise, rounding, losses and ends of its range.
+/// A sensor as it reads on average, drift included, and beyond the ends of its range.
 fn faultless(sensor: &Sensor) -> Specimen {
-    let mut sensor = sensor.clone();
+    let drift_per_s = sensor.drift_per_s;
+    let mut sensor = sensor.ideal();
+    sensor.drift_per_s = drift_per_s;
     if let SensorKind::Pressure { full_scale_pa, .. } = &mut sensor.kind {
         *full_scale_pa = None;
-    }
-    (sensor.noise_sd, sensor.correlated, sensor.resolution, sensor.dropout) = (0.0, None, 0.0, 0.0);
-    let walking: Vec<_> = sensor.parameters().iter().map(|parameter| parameter.kind).collect();
-    for kind in walking {
-        if let Some(parameter) = sensor.parameter_mut(kind) {
-            parameter.walk_per_sqrt_s = 0.0;
-        }
     }
     let truth = sensor.nominal();
     Specimen { sensor, truth }

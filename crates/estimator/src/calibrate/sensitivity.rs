@@ -2,12 +2,10 @@
 //!
 //! The readings of a course's neighbours (`thermal::simulate::simulate_with_neighbours`) differ by what the parameters
 //! change, to first order and without the solver's error; so do readings of one course by sensors of different numbers.
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use cylwatch_thermal::simulate::{Neighbours, SimulationSettings, simulate_with_neighbours};
 use cylwatch_thermal::trajectory::Trajectory;
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use super::apply::Setup;
 use super::fit::{Case, Evaluation, Fit};
@@ -40,7 +38,8 @@ pub(super) fn sensitivities(
 ) -> Result<DMatrix<f64>, CalibrateError> {
     let mut jacobian = DMatrix::zeros(fit.samples(), z.len());
     let tasks = tasks(fit, held);
-    for (task, columns) in tasks.iter().zip(in_parallel(&tasks, |task| task.columns(fit, z, here))) {
+    let columns: Vec<_> = tasks.par_iter().map(|task| task.columns(fit, z, here)).collect();
+    for (task, columns) in tasks.iter().zip(columns) {
         for (parameter, column) in columns? {
             for (row, value) in column.into_iter().enumerate() {
                 jacobian[(task.first_row + row, parameter)] = value;
@@ -69,7 +68,7 @@ struct Task<'a> {
 
 /// For each case, what its course depends on, in as many parts as there are threads for, and what its sensors depend on.
 fn tasks<'a>(fit: &'a Fit, held: &[bool]) -> Vec<Task<'a>> {
-    let parts = threads().div_ceil(fit.cases.len().max(1));
+    let parts = rayon::current_num_threads().div_ceil(fit.cases.len().max(1));
     let mut tasks = Vec::new();
     let mut first_row = 0;
     for (index, case) in fit.cases.iter().enumerate() {
@@ -167,31 +166,4 @@ fn beside(z: &[f64], parameter: usize, by: f64) -> Vec<f64> {
 
 fn central(below: &[f64], above: &[f64], half: f64) -> Vec<f64> {
     above.iter().zip(below).map(|(above, below)| (above - below) / (2.0 * half)).collect()
-}
-
-/// Threads that the machine runs at once.
-fn threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
-/// Results of independent tasks in their order, computed by as many threads as the machine runs at once.
-fn in_parallel<T: Sync, R: Send>(tasks: &[T], run: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let threads = threads().min(tasks.len());
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::with_capacity(tasks.len()));
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(task) = tasks.get(index) else { break };
-                    let result = run(task);
-                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((index, result));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    done.sort_by_key(|(index, _)| *index);
-    done.into_iter().map(|(_, result)| result).collect()
 }

@@ -3,6 +3,7 @@
 //! Every number of the estimation is then near one, and the result cannot depend on the units that the data came in.
 use super::data::check_column;
 use super::{Data, Hold, IdentifyError};
+use crate::log::median_interval;
 
 /// A gap of the input longer than this many median intervals is not bridged unless allowed.
 const LONGEST_GAP_INTERVALS: f64 = 20.0;
@@ -112,12 +113,7 @@ impl Problem {
 
     /// Median interval of the input.
     pub fn interval(&self) -> f64 {
-        let mut intervals: Vec<f64> = self.input_time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = intervals.len() / 2;
-        if intervals.is_empty() {
-            return 0.0;
-        }
-        *intervals.select_nth_unstable_by(middle, f64::total_cmp).1
+        median_interval(&self.input_time).unwrap_or(0.0)
     }
 
     /// Number of output samples.

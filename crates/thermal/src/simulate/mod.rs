@@ -420,14 +420,9 @@ impl Run<'_> {
             statistics,
             ..self.samples.into_trajectory(vessel, self.scenario, self.model.mesh())
         };
-        let neighbours = self.tangents.into_iter().flat_map(Tangents::into_sides);
+        let neighbours = self.tangents.into_iter().flat_map(Tangents::into_trajectories);
         let neighbours = neighbours.map(|pair| {
-            pair.map(|(vessel, scenario, samples, model)| Trajectory {
-                events: self.events.clone(),
-                ledger,
-                statistics,
-                ..samples.into_trajectory(&vessel, &scenario, model.mesh())
-            })
+            pair.map(|side| Trajectory { events: self.events.clone(), ledger, statistics, ..side })
         });
         let neighbours = neighbours.collect();
         (Trajectory { events: self.events, ..run }, neighbours)

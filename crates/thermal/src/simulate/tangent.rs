@@ -16,12 +16,14 @@
 //! `dt = -dp / (dp/dt)`, and the displacement jumps by `(f_before - f_after) dt`. Times of a scenario are fixed and give no jump.
 use nalgebra::{DMatrix, DVector};
 
+use super::events::Interpolation;
 use super::samples::Samples;
 use super::solver::Drive;
 use crate::ThermalError;
 use crate::model::Model;
 use crate::model::inputs::{InputPieces, Inputs};
 use crate::scenario::Scenario;
+use crate::trajectory::Trajectory;
 use crate::vessel::Vessel;
 
 /// Diagonal of the method.
@@ -70,9 +72,6 @@ pub(super) struct Tangents {
     /// Whether the rate at the end still holds for the next step.
     continues: bool,
 }
-
-/// Dense output of the last step: state at a time, s.
-type Along<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), String> + 'a;
 
 impl Side {
     fn new((vessel, scenario): &(Vessel, Scenario), until_s: f64, sign: f64) -> Result<Self, ThermalError> {
@@ -130,7 +129,7 @@ impl Tangents {
         model: &Model,
         drive: &Drive,
         (from_s, to_s): (f64, f64),
-        along: &mut Along<'_>,
+        along: &mut Interpolation<'_>,
     ) -> Result<(), ThermalError> {
         let h = to_s - from_s;
         let mut x = vec![0.0; model.layout().states];
@@ -266,11 +265,13 @@ impl Tangents {
         Ok(())
     }
 
-    /// Vessel, scenario and samples of each neighbour, below and above.
-    pub fn into_sides(self) -> impl Iterator<Item = [(Vessel, Scenario, Samples, Model); 2]> {
-        self.sides
-            .into_iter()
-            .map(|pair| pair.map(|side| (side.vessel, side.scenario, side.samples, side.model)))
+    /// Trajectories of each neighbour, below and above, so far without events and balance.
+    pub fn into_trajectories(self) -> impl Iterator<Item = [Trajectory; 2]> {
+        self.sides.into_iter().map(|pair| {
+            pair.map(|Side { vessel, scenario, model, samples, .. }| {
+                samples.into_trajectory(&vessel, &scenario, model.mesh())
+            })
+        })
     }
 }
 
