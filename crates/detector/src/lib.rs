@@ -9,6 +9,7 @@
 pub mod baseline;
 pub mod calibrate;
 pub mod error;
+pub mod monitor;
 pub mod prognosis;
 pub mod statistic;
 

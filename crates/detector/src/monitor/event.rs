@@ -1,0 +1,82 @@
+//! What happened, once: each event has a name that stays the same however often and wherever the log is replayed.
+use serde::{Deserialize, Serialize};
+
+use super::{Health, LeakFinding, Verdict};
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// The same for the same happening: `<kind>-<onset, ms>`.
+    pub id: String,
+    /// Time of the sample at which it was noticed, s.
+    pub time_s: f64,
+    /// When it began, s.
+    pub onset_s: f64,
+    /// What it was.
+    pub kind: EventKind,
+}
+
+/// Kinds of events.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EventKind {
+    /// The verdict changed.
+    Verdict {
+        /// What it was.
+        from: Verdict,
+        /// What it is.
+        to: Verdict,
+    },
+    /// A leak was found.
+    LeakFound(LeakFinding),
+    /// A leak is over, or was none.
+    LeakEnded,
+    /// Gas went out at once; mass lost, kg.
+    Discharge(f64),
+    /// Gas was put in; mass gained, kg.
+    Refill(f64),
+    /// A sensor's health changed.
+    Sensor {
+        /// Its index in the order of the readings.
+        sensor: usize,
+        /// How it is now.
+        health: Health,
+    },
+    /// The raw pressure will be below the limit at the coldest temperature expected, Pa, although no gas is being lost.
+    ColdNight(f64),
+    /// The clock jumped by so much, s.
+    ClockJump(f64),
+    /// Rows came after a gap, s.
+    Gap(f64),
+    /// A row came too late to be used.
+    TooLate,
+    /// The estimate began again from its prior.
+    Restarted,
+}
+
+impl Event {
+    /// An event with its name.
+    pub fn new(time_s: f64, onset_s: f64, kind: EventKind) -> Self {
+        let id = format!("{}-{}", kind.name(), (onset_s * 1e3).round());
+        Self { id, time_s, onset_s, kind }
+    }
+}
+
+impl EventKind {
+    /// One word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Verdict { .. } => "verdict",
+            Self::LeakFound(_) => "leak-found",
+            Self::LeakEnded => "leak-ended",
+            Self::Discharge(_) => "discharge",
+            Self::Refill(_) => "refill",
+            Self::Sensor { .. } => "sensor",
+            Self::ColdNight(_) => "cold-night",
+            Self::ClockJump(_) => "clock-jump",
+            Self::Gap(_) => "gap",
+            Self::TooLate => "too-late",
+            Self::Restarted => "restarted",
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What the monitor says about the cylinder, and why.
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// What is happening to the gas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// No gas is being lost that could be seen.
+    Tight,
+    /// Gas is being lost steadily.
+    Leak,
+    /// Gas was let out at once, or is being.
+    Discharge,
+    /// Gas was put in, or is being.
+    Refill,
+    /// A sensor is at fault; what is said of the gas rests on the others.
+    SensorFault,
+    /// It cannot be told, and never counts as tight.
+    Unknown(Reason),
+}
+
+/// Why it cannot be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// The observer has not seen enough yet to know its sensors.
+    Learning,
+    /// No usable pressure for too long.
+    NoPressure,
+    /// No usable temperature for too long.
+    NoTemperature,
+    /// No rows for too long.
+    Gap,
+    /// The pressure jumped, and it is not told yet whether gas or the transmitter did.
+    Jump,
+    /// Gas was exchanged, and temperature and mass have not come to rest.
+    Settling,
+    /// A reading stands still while it should move.
+    Stuck,
+    /// The times of the rows cannot be relied on.
+    Clock,
+    /// The estimate had to begin again.
+    Restarted,
+}
+
+impl Verdict {
+    /// One word for a table.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Tight => "tight",
+            Self::Leak => "leak",
+            Self::Discharge => "discharge",
+            Self::Refill => "refill",
+            Self::SensorFault => "sensor fault",
+            Self::Unknown(_) => "unknown",
+        }
+    }
+
+    /// Why it is unknown.
+    pub fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Unknown(reason) => Some(reason),
+            _ => None,
+        }
+    }
+}
+
+impl Reason {
+    /// Words for a person.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Learning => "still learning the sensors",
+            Self::NoPressure => "no usable pressure",
+            Self::NoTemperature => "no usable temperature",
+            Self::Gap => "no rows for too long",
+            Self::Jump => "the pressure jumped: gas or transmitter",
+            Self::Settling => "gas was exchanged and has not settled",
+            Self::Stuck => "a reading stands still",
+            Self::Clock => "the clock jumped",
+            Self::Restarted => "the estimate had to begin again",
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.reason() {
+            Some(reason) => write!(f, "unknown: {}", reason.as_str()),
+            None => f.write_str(self.as_str()),
+        }
+    }
+}
