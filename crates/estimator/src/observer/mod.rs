@@ -381,6 +381,15 @@ impl Observer {
         self.bank.members.first().map_or(&[], |member| &member.innovations)
     }
 
+    /// What a sensor would read now by the first member, K or Pa.
+    ///
+    /// # Errors
+    /// There has been no sample, or the state has no such reading.
+    pub fn expected_reading(&mut self, sensor: usize) -> Result<f64, EstimatorError> {
+        let first = self.bank.members.first().ok_or(EstimatorError::NoEstimate)?;
+        self.cylinder.output(sensor, &first.x, None)
+    }
+
     /// Leak rate and mass of every member, in the order of the bank; none before the first sample.
     pub fn leaks(&self) -> impl ExactSizeIterator<Item = Leak> {
         let states = self.cylinder.state_map();
