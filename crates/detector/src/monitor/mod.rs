@@ -1,5 +1,6 @@
 //! The monitor: rows of a log in, a verdict and events out.
 mod event;
+pub mod intake;
 mod output;
 mod verdict;
 
