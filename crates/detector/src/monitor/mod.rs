@@ -1,6 +1,7 @@
 //! The monitor: rows of a log in, a verdict and events out.
 mod event;
 pub mod health;
+pub mod intake;
 pub mod jump;
 pub mod onset;
 mod output;
