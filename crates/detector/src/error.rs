@@ -87,6 +87,14 @@ pub enum DetectorError {
         /// Volume, m³.
         volume_m3: f64,
     },
+    /// An alarm is in a state in which something cannot be done to it.
+    #[error("the alarm cannot be {act}: {reason}")]
+    AlarmState {
+        /// What was to be done.
+        act: &'static str,
+        /// What stands against it.
+        reason: &'static str,
+    },
 }
 
 /// `value` if it is positive and finite.

@@ -1,4 +1,5 @@
 //! The monitor: rows of a log in, a verdict and events out.
+pub mod alarm;
 mod event;
 mod output;
 mod verdict;
