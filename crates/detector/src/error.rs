@@ -87,6 +87,9 @@ pub enum DetectorError {
         /// Volume, m³.
         volume_m3: f64,
     },
+    /// The observer's bank lacks a member that the evidence needs.
+    #[error("the observer's bank must have a member whose mass walks and another one whose leak rate walks")]
+    Bank,
 }
 
 /// `value` if it is positive and finite.

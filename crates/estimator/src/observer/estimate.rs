@@ -67,4 +67,6 @@ pub struct Leak {
     pub mass_kg: f64,
     /// Its standard deviation, kg.
     pub mass_sd_kg: f64,
+    /// Whether it was out of the question at this sample and began anew from the freest member.
+    pub begun_anew: bool,
 }
