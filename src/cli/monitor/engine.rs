@@ -78,7 +78,12 @@ impl Engine {
             commissioning.fill = Fill::Mass { mass_kg };
         }
         let contents = Contents::of(vessel);
-        let fill_pa = contents.pressure_pa(mass_kg, first_k).with_context(begin)?;
+        let fill_pa = contents.pressure_pa(mass_kg, first_k).with_context(|| {
+            format!(
+                "{}: the fill of {mass_kg:.3} kg does not fit the vessel: look at vessel and fill",
+                begin()
+            )
+        })?;
         if let (Some(row), Some(channel)) = (first.last(), selection.first_of(Quantity::Pressure))
             && let Some(doubt) =
                 fill::misfit(mass_kg, first_k, fill_pa, row.readings[channel]).with_context(begin)?
