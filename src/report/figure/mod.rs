@@ -7,6 +7,7 @@ mod correlation;
 mod output;
 mod panel;
 mod path;
+mod strip;
 pub mod style;
 mod ticks;
 
@@ -92,6 +93,24 @@ pub enum Item {
         /// Value.
         value: f64,
     },
+    /// Stretches in the colours of what they are, over the whole height: a panel without a vertical scale.
+    Strip {
+        /// In the order of the horizontal axis.
+        stretches: Vec<Stretch>,
+    },
+}
+
+/// A stretch of a strip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What it is, for the legend.
+    pub name: String,
+    /// Colour.
+    pub color: style::Rgb,
 }
 
 /// A marked instant.
@@ -104,13 +123,14 @@ pub struct Mark {
 }
 
 impl Item {
-    /// Its name.
+    /// Its name; of a strip that of its first stretch.
     pub fn name(&self) -> &str {
         match self {
             Self::Line { name, .. }
             | Self::Points { name, .. }
             | Self::Band { name, .. }
             | Self::Limit { name, .. } => name,
+            Self::Strip { stretches } => stretches.first().map_or("", |stretch| &stretch.name),
         }
     }
 

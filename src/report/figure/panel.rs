@@ -3,11 +3,11 @@ use super::canvas::{Canvas, Side, Text};
 use super::path::{Point, simplified, unbroken};
 use super::style::{self, Rgb, Stroke};
 use super::ticks::{Ticks, label, ticks, time_unit};
-use super::{Figure, Horizontal, Item, Mark, Panel};
+use super::{Figure, Horizontal, Item, Mark, Panel, strip};
 use crate::report::ReportError;
 use plotters::prelude::DrawingBackend;
 
-const PLAIN: Text =
+pub(super) const PLAIN: Text =
     Text { size: style::SMALL, side: Side::Left, bold: false, upwards: false, color: Rgb::BLACK };
 
 /// A linear map from values to paper.
@@ -80,7 +80,8 @@ fn draw_part<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>, from: f64
 fn abscissa(figure: &Figure) -> Abscissa {
     let all = figure.panels.iter().flat_map(|panel| &panel.items).flat_map(|item| match item {
         Item::Line { x, .. } | Item::Points { x, .. } | Item::Band { x, .. } => x.as_slice(),
-        Item::Limit { .. } => &[],
+        // A strip accompanies curves.
+        Item::Limit { .. } | Item::Strip { .. } => &[],
     });
     let values = widened(range(all.copied()), 0.0);
     let scale = Scale { values, paper: (style::LEFT, style::WIDTH - style::RIGHT) };
@@ -118,7 +119,7 @@ fn values(item: &Item) -> Box<dyn Iterator<Item = f64> + '_> {
     match item {
         Item::Line { y, .. } | Item::Points { y, .. } => Box::new(y.iter().copied()),
         Item::Band { low, high, .. } => Box::new(low.iter().chain(high).copied()),
-        Item::Limit { .. } => Box::new(std::iter::empty()),
+        Item::Limit { .. } | Item::Strip { .. } => Box::new(std::iter::empty()),
     }
 }
 
@@ -147,18 +148,40 @@ fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -
         canvas.line(&[(at, bottom), (at, top)], &grid)?;
         canvas.line(&[(at, bottom), (at, bottom + 4.0)], &axis)?;
     }
+    let is_strip = panel.items.iter().all(|item| matches!(item, Item::Strip { .. }));
+    if is_strip {
+        canvas.text(
+            &panel.quantity,
+            (left - 8.0, 0.5 * (bottom + top)),
+            Text { side: Side::Right, ..PLAIN },
+        )?;
+    } else {
+        vertical_scale(canvas, frame, panel, &grid, &axis)?;
+    }
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    canvas.line(&corners, &Stroke { color: Rgb::GREY, width: 0.75, dash: &[] })?;
+    canvas.line(&[(left, top), (left, bottom), (right, bottom)], &axis)
+}
+
+/// Ticks, their grid and the name of the vertical axis.
+fn vertical_scale<DB: DrawingBackend>(
+    canvas: &Canvas<DB>,
+    frame: &Frame,
+    panel: &Panel,
+    grid: &Stroke,
+    axis: &Stroke,
+) -> Result<(), ReportError> {
+    let (left, right) = frame.x.scale.paper;
+    let (bottom, top) = frame.y.paper;
     let wanted = ((bottom - top) / 42.0) as usize;
     let ticks = ticks(frame.y.values.0, frame.y.values.1, wanted.max(2), &[]);
     let number = Text { side: Side::Right, ..PLAIN };
     for &value in &ticks.values {
         let at = frame.y.at(value);
-        canvas.line(&[(left, at), (right, at)], &grid)?;
-        canvas.line(&[(left - 4.0, at), (left, at)], &axis)?;
+        canvas.line(&[(left, at), (right, at)], grid)?;
+        canvas.line(&[(left - 4.0, at), (left, at)], axis)?;
         canvas.text(&label(value, ticks.step), (left - 8.0, at), number)?;
     }
-    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    canvas.line(&corners, &Stroke { color: Rgb::GREY, width: 0.75, dash: &[] })?;
-    canvas.line(&[(left, top), (left, bottom), (right, bottom)], &axis)?;
     let name = Text { size: style::NORMAL, side: Side::Center, upwards: true, ..PLAIN };
     canvas.text(&panel.quantity, (18.0, 0.5 * (bottom + top)), name)
 }
@@ -195,6 +218,7 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
             canvas.polygon(&outline, Rgb::BAND)?;
         }
         Item::Limit { name, value } => limit(canvas, frame, name, *value)?,
+        Item::Strip { stretches } => strip::draw(canvas, stretches, |x| frame.x.scale.at(x), frame.y.paper)?,
     }
     Ok(())
 }
@@ -249,6 +273,10 @@ fn legend<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, top: f64) -> R
     for item in panel.items.iter().filter(|item| !item.name().is_empty()) {
         let sample = [(left, at), (left + style::LEGEND_SAMPLE, at)];
         let name = match item {
+            Item::Strip { stretches } => {
+                strip::legend(canvas, stretches, (left, at))?;
+                continue;
+            }
             Item::Line { name, stroke, .. } => {
                 canvas.line(&sample, stroke)?;
                 name
