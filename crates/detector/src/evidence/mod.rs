@@ -12,15 +12,16 @@
 //! | scale | statistic | finds within |
 //! |---|---|---|
 //! | [`Scale::Hour`] | missing mass `(m - m_free)/sd` over a quarter of an hour ([`rapid`]) | an hour |
-//! | [`Scale::HalfDay`] | `z` | half a day |
-//! | [`Scale::Day`] | low-pass of `z`, 12 h | one to two days |
-//! | [`Scale::Week`] | low-pass of that, 96 h | a week |
+//! | [`Scale::HalfDay`] | low-pass of `z`, 4 h | a day |
+//! | [`Scale::Day`] | low-pass of `z`, 24 h | three days |
+//! | [`Scale::Week`] | low-pass of `z`, 96 h | a week |
 //! | [`Scale::Month`] | low-pass of that, 168 h | a month |
 //!
 //! The members' standard deviations make the statistics alike from cylinder to cylinder, wide before the sensors are learnt and after a
 //! gap, and narrow once they are: they scale, they are no normal numbers, because errors are daily and heavy-tailed. What they
-//! reach without a leak is measured ([`Tails`]). A low-pass of a rate over a time is the mass lost in it; low-passes in
-//! series, each begun at zero, let no early value count more than it should.
+//! reach without a leak is measured ([`Tails`]). A low-pass of a rate over a time tells the mass lost in it and averages what
+//! comes and goes with the day; each begins at zero, so that nothing counts for more than it has lasted. Slower members of the bank
+//! find no smaller leaks than low-passes of the fastest one, which know no surprise after a false alarm.
 //!
 //! A member that began anew (see the observer) has a wide leak rate, so `z` says nothing until it is known again. An exchange of
 //! gas or a restart of the observer makes all statistics begin anew.
@@ -43,8 +44,10 @@ pub use tail::{Tail, Tails};
 pub use thresholds::Thresholds;
 
 const HOUR_S: f64 = 3600.0;
-/// Time constants of the low-passes in series, s.
-const LOW_PASS_S: [f64; 3] = [12.0 * HOUR_S, 96.0 * HOUR_S, 168.0 * HOUR_S];
+/// Time constants of the low-passes of the rate, s.
+const LOW_PASS_S: [f64; 3] = [4.0 * HOUR_S, 24.0 * HOUR_S, 96.0 * HOUR_S];
+/// Time constant of the low-pass behind the slowest of them, s.
+const BEHIND_S: f64 = 168.0 * HOUR_S;
 /// A rate in standard deviations counts so much at most: one that is far beyond any threshold must not be remembered for months.
 const MOST: f64 = 3.0;
 
@@ -54,13 +57,13 @@ const MOST: f64 = 3.0;
 pub enum Scale {
     /// Gas that is missing now.
     Hour,
-    /// Leaks found within half a day to a day.
+    /// Leaks found within a day.
     HalfDay,
-    /// One to three days.
+    /// Within three days.
     Day,
-    /// About a week.
+    /// Within a week.
     Week,
-    /// About a month.
+    /// Within a month.
     Month,
 }
 
@@ -129,8 +132,8 @@ pub struct Evidence {
     members: Members,
     last_s: Option<f64>,
     missing: MissingMass,
-    rate: f64,
     low_passes: [f64; LOW_PASS_S.len()],
+    behind: f64,
 }
 
 impl Evidence {
@@ -144,8 +147,8 @@ impl Evidence {
             members,
             last_s: None,
             missing: MissingMass::default(),
-            rate: 0.0,
             low_passes: [0.0; LOW_PASS_S.len()],
+            behind: 0.0,
         })
     }
 
@@ -169,26 +172,25 @@ impl Evidence {
         }
         self.last_s = Some(estimate.time_s);
         self.missing.update(interval_s, slowest, freest);
-        self.rate = standardised(fastest);
-        let mut input = self.rate;
+        let rate = standardised(fastest);
         for (output, time_constant_s) in self.low_passes.iter_mut().zip(LOW_PASS_S) {
-            *output += -(-interval_s / time_constant_s).exp_m1() * (input - *output);
-            input = *output;
+            *output += -(-interval_s / time_constant_s).exp_m1() * (rate - *output);
         }
+        self.behind += -(-interval_s / BEHIND_S).exp_m1() * (self.low_passes[2] - self.behind);
         self.statistics()
     }
 
     /// The statistics after the last sample; 0 before the first and after an exchange of gas.
     pub fn statistics(&self) -> Statistics {
-        let [day, week, month] = self.low_passes;
-        [self.missing.value(), self.rate, day, week, month]
+        let [half_day, day, week] = self.low_passes;
+        [self.missing.value(), half_day, day, week, self.behind]
     }
 
     /// Begin anew, as after an exchange of gas.
     pub fn forget(&mut self) {
         self.missing = MissingMass::default();
-        self.rate = 0.0;
         self.low_passes = [0.0; LOW_PASS_S.len()];
+        self.behind = 0.0;
     }
 }
 

@@ -41,13 +41,15 @@ fn low_passes_of_a_steady_rate_are_those_of_the_closed_form() {
     for n in 0..=24 * 60 {
         evidence.update(&estimate(60.0 * f64::from(n), Quality::Good), &leaks(0.8, 0.0));
     }
-    let [_, half_day, day, week, _] = evidence.statistics();
-    assert!((half_day - 0.8).abs() < 1e-12);
-    // 24 h in a low-pass of 12 h, and in that of 96 h behind it: 1 - (a e^(-t/a) - b e^(-t/b))/(a - b).
-    let (a, b): (f64, f64) = (96.0, 12.0);
-    assert!((day - 0.8 * (1.0 - (-2.0_f64).exp())).abs() < 1e-12, "{day}");
+    let [_, half_day, day, week, month] = evidence.statistics();
+    for (found, hours) in [(half_day, 4.0), (day, 24.0), (week, 96.0)] {
+        let expected = 0.8 * (1.0 - (-24.0_f64 / hours).exp());
+        assert!((found - expected).abs() < 1e-12, "{hours} h: {found} {expected}");
+    }
+    // One behind the other: 1 - (a e^(-t/a) - b e^(-t/b))/(a - b).
+    let (a, b): (f64, f64) = (168.0, 96.0);
     let expected = 0.8 * (1.0 - (a * (-24.0 / a).exp() - b * (-24.0 / b).exp()) / (a - b));
-    assert!((week / expected - 1.0).abs() < 2e-3, "{week} {expected}");
+    assert!((month / expected - 1.0).abs() < 2e-3, "{month} {expected}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod correlated;
 mod data_calibration;
 mod delay;
 mod equivalence;
+mod evidence;
 mod failure_alarms;
 mod likelihood_ratio;
 mod monte_carlo;
