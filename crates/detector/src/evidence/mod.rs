@@ -24,7 +24,8 @@
 //! find no smaller leaks than low-passes of the fastest one, which know no surprise after a false alarm.
 //!
 //! A member that began anew (see the observer) has a wide leak rate, so `z` says nothing until it is known again. An exchange of
-//! gas or a restart of the observer makes all statistics begin anew.
+//! gas or a restart of the observer makes all statistics begin anew; a reading that was taken after many rejections frees the
+//! mass, so only the missing mass does.
 //!
 //! Constant time and memory per sample; the state can be saved and restored at any sample.
 //!
@@ -163,15 +164,21 @@ impl Evidence {
         else {
             return self.statistics();
         };
-        if matches!(estimate.quality, Quality::Open | Quality::Restarted) {
-            self.forget();
-        }
         let interval_s = self.last_s.map_or(0.0, |last_s| estimate.time_s - last_s);
-        if interval_s < 0.0 || (interval_s == 0.0 && self.last_s.is_some()) {
+        if self.last_s.is_some() && interval_s <= 0.0 {
             return self.statistics();
         }
         self.last_s = Some(estimate.time_s);
-        self.missing.update(interval_s, slowest, freest);
+        let open = estimate.quality == Quality::Open;
+        // An exchange takes the rate back to its prior, which is no leak; a reading taken after many rejections does not.
+        if estimate.quality == Quality::Restarted || (open && fastest.rate_kg_s == 0.0) {
+            self.forget();
+        }
+        if open {
+            self.missing = MissingMass::default();
+        } else {
+            self.missing.update(interval_s, slowest, freest);
+        }
         let rate = standardised(fastest);
         for (output, time_constant_s) in self.low_passes.iter_mut().zip(LOW_PASS_S) {
             *output += -(-interval_s / time_constant_s).exp_m1() * (rate - *output);
