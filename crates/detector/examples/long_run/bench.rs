@@ -69,7 +69,7 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
     for (time_s, row) in readings.rows() {
         let [shoulder_k, _, pressure_pa] = row;
         let estimate = observer.step(time_s, &row)?;
-        let statistics = evidence.update(&estimate, &observer.leaks());
+        let statistics = evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>());
         peaks.update(time_s, &statistics);
         let (own, others) = rises.split_at_mut(Scale::ALL.len());
         own.iter_mut().zip(statistics).for_each(|(rises, value)| rises.update(time_s, value));
