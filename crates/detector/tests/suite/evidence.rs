@@ -54,7 +54,7 @@ fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, St
     let step = |(time_s, row): &Row| {
         before(*time_s, &mut observer);
         let estimate = observer.step(*time_s, row).unwrap();
-        (*time_s, evidence.update(&estimate, &observer.leaks()))
+        (*time_s, evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>()))
     };
     rows.iter().map(step).collect()
 }
@@ -129,7 +129,7 @@ fn saved_and_restored_at_any_sample_it_goes_on_bit_for_bit() {
     let mut restored = whole.clone();
     for (n, (time_s, row)) in leaking().iter().enumerate().skip(3000).take(1500) {
         let estimate = observer.step(*time_s, row).unwrap();
-        let leaks = observer.leaks();
+        let leaks: Vec<_> = observer.leaks().collect();
         if n % 7 == 0 {
             restored = serde_json::from_str(&serde_json::to_string(&restored).unwrap()).unwrap();
         }
