@@ -87,6 +87,16 @@ pub enum DetectorError {
         /// Volume, m³.
         volume_m3: f64,
     },
+    /// A row has another number of readings than there are sensors.
+    #[error(
+        "a row of {found} readings does not fit {expected} sensors: give one each, NaN where it is missing"
+    )]
+    RowLength {
+        /// Number of sensors.
+        expected: usize,
+        /// Number of readings.
+        found: usize,
+    },
 }
 
 /// `value` if it is positive and finite.

@@ -343,6 +343,14 @@ pub enum EstimatorError {
     /// A bound without paths.
     #[error("the bound needs at least one true path")]
     NoPaths,
+    /// An observer without a sample.
+    #[error("the observer has not taken a sample yet")]
+    NoEstimate,
+    /// A snapshot of another observer.
+    #[error(
+        "the snapshot is that of an observer of another cylinder, other sensors or another bank: begin anew"
+    )]
+    SnapshotForeign,
     /// Nothing could be identified.
     #[error(transparent)]
     Identify(#[from] crate::identify::IdentifyError),

@@ -1,6 +1,11 @@
 //! The monitor: rows of a log in, a verdict and events out.
 mod event;
+pub mod health;
+pub mod intake;
+pub mod jump;
+pub mod onset;
 mod output;
+pub mod trace;
 mod verdict;
 
 pub use event::{Event, EventKind};

@@ -89,12 +89,12 @@ impl MassAndLeak {
         Ok(Self { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, correlation })
     }
 
-    /// From what a member of the observer's bank says; it tells no correlation, which is taken as given.
+    /// From what a member of the observer's bank says.
     ///
     /// # Errors
     /// As [`MassAndLeak::try_new`].
-    pub fn of_leak(leak: &Leak, correlation: f64) -> Result<Self, DetectorError> {
-        let across = correlation * leak.mass_sd_kg * leak.sd_kg_s;
+    pub fn of_leak(leak: &Leak) -> Result<Self, DetectorError> {
+        let across = leak.covariance_kg2_s;
         let covariance = [[leak.mass_sd_kg.powi(2), across], [across, leak.sd_kg_s.powi(2)]];
         Self::try_new(leak.mass_kg, leak.rate_kg_s, covariance)
     }

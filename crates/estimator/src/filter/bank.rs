@@ -8,15 +8,18 @@
 //! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
 use nalgebra::{DMatrix, Dyn};
 use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
 use super::lanes::Lanes;
 use super::ud::UdFactors;
 
+mod factors;
 mod pattern;
 #[cfg(test)]
 mod tests;
 mod transition;
 
+use factors::Factors;
 pub use pattern::Pattern;
 pub use transition::BankTransition;
 
@@ -24,7 +27,8 @@ pub use transition::BankTransition;
 pub(crate) const USUAL: (usize, usize) = (18, 9);
 
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "Factors", try_from = "Factors")]
 pub struct UdBank {
     n: usize,
     /// Vector registers of this machine.
@@ -65,6 +69,11 @@ impl UdBank {
             weighted: vec![[Lanes::ZERO; 2]; leading],
             moved: vec![[Lanes::ZERO; 2]; leading],
         }
+    }
+
+    /// Number of states.
+    pub fn states(&self) -> usize {
+        self.n
     }
 
     /// Let a lane have the covariance of `factors`, of as many states.
@@ -112,9 +121,14 @@ impl UdBank {
 
     /// Variance of state `i` of a lane.
     pub fn variance(&self, lane: usize, i: usize) -> f64 {
+        self.covariance_of(lane, i, i)
+    }
+
+    /// Covariance of states `i` and `j` of a lane.
+    pub fn covariance_of(&self, lane: usize, i: usize, j: usize) -> f64 {
         let mut sum = 0.0;
-        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(i) {
-            sum += d.0[lane] * u[i].0[lane] * u[i].0[lane];
+        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(j.max(i)) {
+            sum += d.0[lane] * u[i].0[lane] * u[j].0[lane];
         }
         sum
     }

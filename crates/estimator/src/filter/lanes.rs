@@ -1,11 +1,12 @@
 //! Four numbers that go through the same arithmetic side by side.
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Number of lanes.
 pub const LANES: usize = 4;
 
 /// A number for each of four lanes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(32))]
 pub struct Lanes(pub [f64; LANES]);
 

@@ -4,6 +4,7 @@
 //! Members with the extended filter move [`together`](Together), in four lanes and mostly by one linearisation. Those with another
 //! engine move one by one.
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use super::belief::Moments;
 use super::cylinder::Cylinder;
@@ -28,7 +29,7 @@ const SLOW_WALK_S: f64 = 3600.0;
 const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;
 
 /// The members in the order of the settings.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Bank {
     pub members: Vec<Member>,
     covariances: Covariances,
@@ -36,9 +37,11 @@ pub(super) struct Bank {
     slow_s: f64,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum Covariances {
     Together(Vec<Together>),
+    /// Engines that carry more than mean and covariance cannot be saved.
+    #[serde(skip)]
     Separate(Vec<Separate>),
 }
 
@@ -278,6 +281,33 @@ impl Bank {
     /// Mean and variance of a state.
     pub fn moments(&self, index: usize, state: usize) -> Moments {
         (self.members[index].x[state], self.variance(index, state))
+    }
+
+    /// Covariance of two states.
+    pub fn covariance_of(&self, index: usize, i: usize, j: usize) -> f64 {
+        match &self.covariances {
+            Covariances::Together(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].bank.covariance_of(lane, i, j)
+            }
+            Covariances::Separate(all) => all[index].covariance()[(i, j)],
+        }
+    }
+
+    /// Whether it has members and sensors as another one, and covariances of so many states.
+    pub fn is_like(&self, hypotheses: &[LeakHypothesis], states: usize, sensors: usize) -> bool {
+        let members = self.members.iter().zip(hypotheses).all(|(member, hypothesis)| {
+            member.hypothesis == *hypothesis && member.x.len() == states && member.has_sensors(sensors)
+        });
+        let packs = match &self.covariances {
+            Covariances::Together(packs) => {
+                packs.len() == hypotheses.len().div_ceil(Together::SIZE)
+                    && packs.iter().all(|pack| pack.bank.states() == states)
+            }
+            Covariances::Separate(_) => false,
+        };
+        // Before the first sample there are none.
+        self.members.is_empty() || (members && packs && self.members.len() == hypotheses.len())
     }
 
     /// Mean and variance of a state, member by member.

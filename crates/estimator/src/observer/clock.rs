@@ -1,9 +1,11 @@
 //! What the observer keeps of time: samples, events and the sensors' faults.
+use serde::{Deserialize, Serialize};
+
 use super::screen::Screen;
 use crate::sensor::Sensor;
 
 /// Times that the observer keeps.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Clock {
     pub time_s: Option<f64>,
     pub last_reading_s: Vec<f64>,
@@ -17,7 +19,7 @@ pub(super) struct Clock {
 }
 
 /// Exchange of gas with the outside.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Exchange {
     None,
     Open,

@@ -1,7 +1,8 @@
 //! What the observer says after a sample.
+use serde::{Deserialize, Serialize};
 
 /// How far an estimate can be relied on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quality {
     /// Every sensor was heard.
     Good,
@@ -29,7 +30,7 @@ impl Quality {
 }
 
 /// Estimate after a sample. SI; `sd` is a standard deviation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Time, s.
     pub time_s: f64,
@@ -57,7 +58,7 @@ pub struct Estimate {
 }
 
 /// Leak rate in the eyes of one member.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Leak {
     /// Leak rate, kg/s.
     pub rate_kg_s: f64,
@@ -67,4 +68,6 @@ pub struct Leak {
     pub mass_kg: f64,
     /// Its standard deviation, kg.
     pub mass_sd_kg: f64,
+    /// Covariance of mass and leak rate, kg²/s.
+    pub covariance_kg2_s: f64,
 }

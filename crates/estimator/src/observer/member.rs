@@ -1,5 +1,6 @@
 //! One member of the bank: an estimate with its own view of how gas may leave, and what it made of the readings.
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 use super::cylinder::Cylinder;
 use super::pass::Pass;
@@ -7,7 +8,7 @@ use super::settings::LeakHypothesis;
 use super::states::States;
 
 /// What became of a reading.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// It was used.
     Accepted,
@@ -21,7 +22,7 @@ pub enum Outcome {
 }
 
 /// Innovation of one sensor, before its gate.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Innovation {
     /// Reading minus prediction, K or Pa.
     pub nu: f64,
@@ -37,7 +38,7 @@ impl Innovation {
 }
 
 /// Mean and counters of a member; its covariance is in the bank's.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Member {
     pub hypothesis: LeakHypothesis,
     pub x: Vec<f64>,
@@ -48,7 +49,8 @@ pub(super) struct Member {
     pub pulled: Vec<f64>,
     /// Whether a constant or a film stood at its bound after the last step.
     pub at_bound: bool,
-    /// The last step, for a smoother.
+    /// The last step, for a smoother; it is not saved.
+    #[serde(skip)]
     pub pass: Option<Box<Pass>>,
 }
 
@@ -63,6 +65,11 @@ impl Member {
             at_bound: false,
             pass: None,
         }
+    }
+
+    /// Whether it has seen so many sensors.
+    pub fn has_sensors(&self, sensors: usize) -> bool {
+        [self.rejected.len(), self.innovations.len(), self.pulled.len()] == [sensors; 3]
     }
 
     /// What becomes of a reading with the innovation `nu` of variance `s` at a gate, in variances.

@@ -33,6 +33,7 @@ mod smoother;
 pub mod states;
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
 use crate::filter::StateSpace;
@@ -67,8 +68,10 @@ const SETTLE_S: f64 = 1200.0;
 /// Interval as which that between two rows of one time counts, s.
 const SHORTEST_S: f64 = 1e-3;
 
-/// The members as they were after a sample: what a late sample goes back to.
-#[derive(Clone, Debug)]
+/// The members as they were after a sample: what a late sample goes back to, and what a program that was stopped goes on from. With
+/// another engine than the extended filter it cannot be serialised. It holds numbers that are none, which JSON has no
+/// word for: take a binary format.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot {
     bank: Bank,
     clock: Clock,
@@ -378,15 +381,30 @@ impl Observer {
         self.bank.members.first().map_or(&[], |member| &member.innovations)
     }
 
-    /// Leak rate and mass of every member, in the order of the bank; empty before the first sample.
-    pub fn leaks(&self) -> Vec<Leak> {
+    /// What a sensor would read now by the first member, K or Pa.
+    ///
+    /// # Errors
+    /// There has been no sample, or the state has no such reading.
+    pub fn expected_reading(&mut self, sensor: usize) -> Result<f64, EstimatorError> {
+        let first = self.bank.members.first().ok_or(EstimatorError::NoEstimate)?;
+        self.cylinder.output(sensor, &first.x, None)
+    }
+
+    /// Leak rate and mass of every member, in the order of the bank; none before the first sample.
+    pub fn leaks(&self) -> impl ExactSizeIterator<Item = Leak> {
         let states = self.cylinder.state_map();
         let of = |index: usize| {
             let (rate_kg_s, rate_variance) = self.bank.moments(index, states.leak);
             let (mass_kg, mass_variance) = self.bank.moments(index, states.mass);
-            Leak { rate_kg_s, sd_kg_s: rate_variance.sqrt(), mass_kg, mass_sd_kg: mass_variance.sqrt() }
+            Leak {
+                rate_kg_s,
+                sd_kg_s: rate_variance.sqrt(),
+                mass_kg,
+                mass_sd_kg: mass_variance.sqrt(),
+                covariance_kg2_s: self.bank.covariance_of(index, states.mass, states.leak),
+            }
         };
-        (0..self.bank.members.len()).map(of).collect()
+        (0..self.bank.members.len()).map(of)
     }
 
     /// Mean and covariance of a member's state, in the order of [`states::States`]; `None` before the first sample or
@@ -430,6 +448,23 @@ impl Observer {
         self.bank.clone_from(&snapshot.bank);
         self.clock.clone_from(&snapshot.clock);
         self.cylinder.model().set_warm_start(&snapshot.warm_start);
+    }
+
+    /// Back to a snapshot that comes from elsewhere, such as a file.
+    ///
+    /// # Errors
+    /// It is that of an observer of another cylinder, other sensors or another bank; this one stays as it was.
+    pub fn try_restore(&mut self, snapshot: &Snapshot) -> Result<(), EstimatorError> {
+        let (states, sensors) = (self.cylinder.states(), self.cylinder.outputs());
+        let clock = &snapshot.clock;
+        let fits = snapshot.bank.is_like(&self.cylinder.settings().bank, states, sensors)
+            && [clock.last_reading_s.len(), clock.screens.len()] == [sensors; 2]
+            && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
+        if !fits {
+            return Err(EstimatorError::SnapshotForeign);
+        }
+        self.restore(snapshot);
+        Ok(())
     }
 
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.

@@ -4,6 +4,7 @@
 //! along a little at each sample. So identical readings in a row are watched: how far has the estimate been pulled back to them
 //! in sum, `sum h^T K nu`? At rest that is next to nothing. Beyond [`PULLED`] standard deviations of the sensor's own noise the
 //! readings count as stuck, and are not used until they change.
+use serde::{Deserialize, Serialize};
 
 use crate::sensor::Sensor;
 
@@ -22,7 +23,7 @@ pub enum Fault {
 }
 
 /// Faulty readings of a sensor so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FaultCount {
     /// Readings outside what the sensor can read.
     pub implausible: u64,
@@ -31,7 +32,7 @@ pub struct FaultCount {
 }
 
 /// Watch over one sensor.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Screen {
     low: f64,
     high: f64,

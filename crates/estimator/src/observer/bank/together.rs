@@ -5,6 +5,7 @@
 //! equations would not show ([`HARDLY`]), by their own rates and readings. A member that is far away, after a leak that it does not
 //! allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
 use nalgebra::Dyn;
+use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
 use crate::filter::bank::{BankTransition, UdBank};
@@ -16,7 +17,7 @@ use crate::observer::engine::Shared;
 use crate::observer::member::{Member, Outcome, freed};
 
 /// Covariances of up to four members.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Together {
     pub bank: UdBank,
     /// Who shares derivatives, found at each time update; readings hardly change it.
@@ -261,7 +262,7 @@ impl Memory {
 }
 
 /// Members that share the derivatives of one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Group {
     reference: usize,
     lanes: Some4,

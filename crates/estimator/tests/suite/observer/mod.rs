@@ -4,6 +4,7 @@ mod engines;
 mod events;
 mod fast_leak;
 mod late;
+mod saved;
 mod smoothing;
 
 use std::sync::OnceLock;

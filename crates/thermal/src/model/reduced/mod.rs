@@ -18,6 +18,7 @@ mod gas;
 mod spread;
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use crate::ThermalError;
 use crate::fluid::Fluid;
@@ -95,7 +96,7 @@ pub struct Pressure {
 }
 
 /// Start of the iterations inside a [`ReducedModel`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WarmStart {
     volumes_m3: [f64; 2],
     skin_k: Vec<f64>,
@@ -210,6 +211,11 @@ impl ReducedModel {
     pub fn set_warm_start(&mut self, start: &WarmStart) {
         self.gas.set_guesses_m3(start.volumes_m3);
         self.skin_k.clone_from(&start.skin_k);
+    }
+
+    /// Whether a start has the shape of this model's.
+    pub fn fits_warm_start(&self, start: &WarmStart) -> bool {
+        start.skin_k.len() == self.skin_k.len()
     }
 
     /// Index of the valve's temperature, if there is a valve.

@@ -1,0 +1,210 @@
+//! The health of each sensor, from its own readings.
+//!
+//! * *Missing*, *implausible*: no number, or one outside what the sensor can read or at the end of its range.
+//! * *Stuck*: identical readings in a row. How many are too many depends on how often a reading of this logger repeats itself:
+//!   with the share `f` of repeated readings so far, `n` in a row have the probability `f^n`; below 2e-9 it is no chance.
+//! * *Spikes*: readings refused by the observer's gate within the last hour.
+//! * *Shifted*: a thermometer that jumps while the other one does not, and stays there, has changed its offset; a
+//!   disturbance from outside moves both, since air and sun reach both. The jump is taken off the readings from then on.
+//! * *Detached*: a thermometer that does so again and again reads the air.
+//!
+//! What a transmitter's jump is, [`super::jump`] tells.
+use serde::{Deserialize, Serialize};
+
+use super::Health;
+use crate::estimator::log::Quantity;
+use crate::estimator::sensor::Sensor;
+
+/// Logarithm of the probability of a repetition that is no chance.
+const NO_CHANCE: f64 = 20.0;
+/// Fewest identical readings in a row that are too many.
+const FEWEST_IN_A_ROW: u32 = 10;
+/// Readings from which the share of repeated ones is learnt.
+const MEMORY: f64 = 2000.0;
+/// Time for which a spike is remembered, s.
+const SPIKES_S: f64 = 3600.0;
+/// Least pressure that a transmitter on a vented cylinder reads, Pa.
+const LEAST_PA: f64 = 0.5e5;
+/// Distance from the end of the range that counts as its end, relative to the range.
+const AT_END: f64 = 1e-6;
+
+/// Watch over one sensor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SensorWatch {
+    low: f64,
+    high: f64,
+    latest: f64,
+    in_a_row: u32,
+    /// Number of readings, at most the memory, and how many of them were repeated.
+    seen: f64,
+    repeated: f64,
+    spiked_s: f64,
+    last_usable_s: f64,
+    /// Taken off every reading, K or Pa.
+    correction: f64,
+    detached: bool,
+    health: Health,
+}
+
+impl SensorWatch {
+    /// Of a sensor.
+    pub fn new(sensor: &Sensor) -> Self {
+        let (low, high) = sensor.plausible();
+        let end = AT_END * (high - low);
+        let least = if sensor.quantity() == Quantity::Pressure { LEAST_PA } else { f64::NEG_INFINITY };
+        Self {
+            low: (low + end).max(least),
+            high: high - end,
+            latest: f64::NAN,
+            in_a_row: 0,
+            seen: 0.0,
+            repeated: 0.0,
+            spiked_s: f64::NEG_INFINITY,
+            last_usable_s: f64::NEG_INFINITY,
+            correction: 0.0,
+            detached: false,
+            health: Health::Good,
+        }
+    }
+
+    /// Judge a reading as it came, K or Pa; the usable one, or NaN.
+    pub fn judge(&mut self, time_s: f64, reading: f64) -> f64 {
+        if reading.is_nan() {
+            self.health = Health::Missing;
+            return f64::NAN;
+        }
+        if !(self.low..=self.high).contains(&reading) {
+            self.health = Health::Implausible;
+            return f64::NAN;
+        }
+        if self.stands_still(reading) {
+            self.health = Health::Stuck;
+            return f64::NAN;
+        }
+        if self.detached {
+            self.health = Health::Detached;
+            return f64::NAN;
+        }
+        self.health = match () {
+            () if time_s - self.spiked_s < SPIKES_S => Health::Spikes,
+            () if self.correction != 0.0 => Health::Shifted(self.correction),
+            () => Health::Good,
+        };
+        self.last_usable_s = time_s;
+        reading - self.correction
+    }
+
+    fn stands_still(&mut self, reading: f64) -> bool {
+        let repeats = reading == self.latest;
+        self.latest = reading;
+        if !repeats {
+            // A run of repetitions that has ended was none of chance only if it was too long.
+            self.learn(self.in_a_row);
+            self.in_a_row = 0;
+            return false;
+        }
+        self.in_a_row = self.in_a_row.saturating_add(1);
+        self.too_many(self.in_a_row)
+    }
+
+    fn too_many(&self, in_a_row: u32) -> bool {
+        let share = ((self.repeated + 5.0) / (self.seen + 10.0)).clamp(0.05, 1.0 - 1e-6);
+        in_a_row >= FEWEST_IN_A_ROW && f64::from(in_a_row) * -share.ln() > NO_CHANCE
+    }
+
+    fn learn(&mut self, in_a_row: u32) {
+        let repeated = if self.too_many(in_a_row) { 0.0 } else { f64::from(in_a_row) };
+        let kept = (1.0 - (repeated + 1.0) / MEMORY).max(0.0);
+        if self.seen + repeated + 1.0 > MEMORY {
+            (self.seen, self.repeated) = (kept * self.seen, kept * self.repeated);
+        }
+        self.seen += repeated + 1.0;
+        self.repeated += repeated;
+    }
+
+    /// The observer refused the reading.
+    pub fn refused(&mut self, time_s: f64) {
+        self.spiked_s = time_s;
+        if matches!(self.health, Health::Good | Health::Shifted(_)) {
+            self.health = Health::Spikes;
+        }
+    }
+
+    /// From now on so much more, K or Pa, is taken off.
+    pub fn shift(&mut self, by: f64) {
+        self.correction += by;
+    }
+
+    /// The sensor reads something else than it should.
+    pub fn detach(&mut self) {
+        self.detached = true;
+    }
+
+    /// Somebody has looked after the sensor: it is trusted again, with the offset it has.
+    pub fn repaired(&mut self) {
+        (self.detached, self.in_a_row) = (false, 0);
+    }
+
+    /// Health after the last reading.
+    pub fn health(&self) -> Health {
+        self.health
+    }
+
+    /// Time of the last usable reading, s.
+    pub fn last_usable_s(&self) -> f64 {
+        self.last_usable_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pressure() -> SensorWatch {
+        SensorWatch::new(&Sensor::typical("pressure").unwrap())
+    }
+
+    #[test]
+    fn zero_full_scale_and_minus_999_are_no_pressures() {
+        let mut watch = pressure();
+        for reading in [0.0, watch.high + 1.0, -999.0, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(watch.judge(0.0, reading).is_nan(), "{reading}");
+            assert_eq!(watch.health(), Health::Implausible);
+        }
+        assert!(watch.judge(0.0, f64::NAN).is_nan() && watch.health() == Health::Missing);
+        assert_eq!(watch.judge(1.0, 1.013e5), 1.013e5);
+        assert_eq!((watch.health(), watch.last_usable_s()), (Health::Good, 1.0));
+    }
+
+    #[test]
+    fn a_fine_reading_that_repeats_is_stuck_and_a_coarse_one_is_not() {
+        let mut fine = pressure();
+        let noisy = |n: u32| 180e5 + f64::from(n % 7919);
+        (0..100).for_each(|n| assert!(fine.judge(f64::from(n), noisy(n)).is_finite()));
+        let stuck_at = (0..100).find(|n| fine.judge(100.0 + f64::from(*n), 181e5).is_nan());
+        assert_eq!(stuck_at, Some(10), "the first of them is no repetition");
+        assert!(fine.judge(300.0, 181.5e5).is_finite() && fine.health() == Health::Good);
+        // Steps of half a bar: a reading stands for 60 samples.
+        let mut coarse = pressure();
+        for n in 0..3000 {
+            coarse.judge(f64::from(n), 180e5 + 0.5e5 * f64::from((n / 20) % 5));
+        }
+        for n in 3000..3060 {
+            assert!(coarse.judge(f64::from(n), 185e5).is_finite(), "sample {n}");
+        }
+        assert!((3060..4000).any(|n| coarse.judge(f64::from(n), 185e5).is_nan()));
+    }
+
+    #[test]
+    fn a_shift_is_taken_off_and_told() {
+        let mut watch = pressure();
+        watch.shift(2e5);
+        assert_eq!(watch.judge(0.0, 182e5), 180e5);
+        assert_eq!(watch.health(), Health::Shifted(2e5));
+        watch.refused(10.0);
+        watch.judge(20.0, 183e5);
+        assert_eq!(watch.health(), Health::Spikes);
+        watch.judge(20.0 + SPIKES_S, 184e5);
+        assert_eq!(watch.health(), Health::Shifted(2e5));
+    }
+}

@@ -1,0 +1,75 @@
+//! Rows that lie closer together than a step made one: per sensor the median of three readings or more, the mean of two.
+//!
+//! Bins lie on a fixed grid of the internal time, `floor(t/step)`, so that rows at the step or slower pass as they are, and where the
+//! log begins changes nothing. A bin is handed out when a row of another one comes.
+use serde::{Deserialize, Serialize};
+
+use super::exact;
+use super::row::Row;
+
+/// Rows in a bin at most; a fuller one is handed out early.
+const ROWS_AT_MOST: usize = 256;
+
+/// The bin that is being filled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Bins {
+    #[serde(with = "exact::number")]
+    step_s: f64,
+    filling: Vec<Row>,
+}
+
+impl Bins {
+    /// Bins of a width, s; 0: none.
+    pub fn new(step_s: f64) -> Self {
+        Self { step_s, filling: Vec::new() }
+    }
+
+    /// Take a row: what is complete now.
+    pub fn take(&mut self, row: Row) -> Option<Row> {
+        if self.step_s == 0.0 {
+            return Some(row);
+        }
+        let bin = |time_s: f64| (time_s / self.step_s).floor();
+        let another = self.filling.last().is_some_and(|last| bin(last.time_s) != bin(row.time_s));
+        let done = if another || self.filling.len() == ROWS_AT_MOST { self.close() } else { None };
+        self.filling.push(row);
+        done
+    }
+
+    /// The bin as it is, if there is anything in it.
+    pub fn close(&mut self) -> Option<Row> {
+        let mut rows = std::mem::take(&mut self.filling);
+        let mut one = rows.pop()?;
+        if rows.is_empty() {
+            return Some(one);
+        }
+        let mut values = Vec::with_capacity(rows.len() + 1);
+        for (sensor, reading) in one.readings.iter_mut().enumerate() {
+            values.clear();
+            let others = rows.iter().map(|row| row.readings[sensor]);
+            values.extend(others.chain([*reading]).filter(|value| !value.is_nan()));
+            *reading = middle(&mut values);
+        }
+        Some(one)
+    }
+
+    /// Rows in the bin.
+    pub fn held(&self) -> usize {
+        self.filling.len()
+    }
+}
+
+/// Median, the mean of the two in the middle of an even number; infinite ones count only where there are no others. NaN of none.
+fn middle(values: &mut Vec<f64>) -> f64 {
+    if values.iter().any(|value| value.is_finite()) {
+        values.retain(|value| value.is_finite());
+    }
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    match n {
+        0 => f64::NAN,
+        _ if n % 2 == 1 => values[n / 2],
+        _ if values[n / 2 - 1] == values[n / 2] => values[n / 2],
+        _ => 0.5 * values[n / 2 - 1] + 0.5 * values[n / 2],
+    }
+}

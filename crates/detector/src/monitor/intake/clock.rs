@@ -1,0 +1,123 @@
+//! The clock guard: where a stamp lies on the internal axis `t = stamp - offset`, and the run of rows that lie off it.
+//!
+//! Rows off the axis wait in a run, in order among themselves. A run that grows long enough is believed; one that a row on the axis
+//! cuts short is not. When the clock has jumped, `offset += jump` with
+//! `jump = (first stamp of the run - offset) - (latest time + usual interval)`.
+use serde::{Deserialize, Serialize};
+
+use super::exact;
+use super::row::{Row, United};
+
+/// A row whose time is not believed yet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Stray {
+    #[serde(with = "exact::number")]
+    pub stamp_s: f64,
+    #[serde(with = "exact::numbers")]
+    pub readings: Vec<f64>,
+}
+
+/// Where a stamp lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Where rows are expected.
+    On,
+    /// Later than any row may be.
+    Behind,
+    /// After a gap, or beyond any.
+    Ahead,
+}
+
+/// Axis and run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Guard {
+    /// Stamp minus internal time, s.
+    #[serde(with = "exact::number")]
+    pub offset_s: f64,
+    /// Latest internal time that was believed, s; minus infinity before the first row.
+    #[serde(with = "exact::number")]
+    pub latest_s: f64,
+    /// Sorted, of distinct stamps.
+    run: Vec<Stray>,
+}
+
+impl Default for Guard {
+    fn default() -> Self {
+        Self { offset_s: 0.0, latest_s: f64::NEG_INFINITY, run: Vec::new() }
+    }
+}
+
+impl Guard {
+    /// Where a stamp lies with an allowed lateness and a time ahead that needs no confirmation, s.
+    pub fn place(&self, stamp_s: f64, lateness_s: f64, reach_s: f64) -> Place {
+        match self.ahead_s(stamp_s) {
+            _ if self.latest_s == f64::NEG_INFINITY => Place::On,
+            ahead_s if ahead_s < -lateness_s => Place::Behind,
+            ahead_s if ahead_s > reach_s => Place::Ahead,
+            _ => Place::On,
+        }
+    }
+
+    /// How far a stamp lies ahead of the latest time, s.
+    pub fn ahead_s(&self, stamp_s: f64) -> f64 {
+        stamp_s - self.offset_s - self.latest_s
+    }
+
+    /// Internal time of a stamp that is believed, s.
+    pub fn accept(&mut self, stamp_s: f64) -> f64 {
+        let time_s = stamp_s - self.offset_s;
+        self.latest_s = self.latest_s.max(time_s);
+        time_s
+    }
+
+    /// Move the axis so that a stamp lies a usual interval after the latest time: that time and the jump, s.
+    pub fn jump(&mut self, stamp_s: f64, usual_s: f64) -> Option<(f64, f64)> {
+        let time_s = self.latest_s + usual_s;
+        let jump_s = stamp_s - self.offset_s - time_s;
+        if !jump_s.is_finite() {
+            return None;
+        }
+        self.offset_s += jump_s;
+        Some((stamp_s - self.offset_s, jump_s))
+    }
+
+    /// Whether a stamp goes on where the run has come to; any does with an empty run.
+    pub fn fits_run(&self, stamp_s: f64, lateness_s: f64, longest_gap_s: f64) -> bool {
+        let fits =
+            |last: &Stray| (last.stamp_s - lateness_s..=last.stamp_s + longest_gap_s).contains(&stamp_s);
+        self.run.last().is_none_or(fits)
+    }
+
+    /// Put a row into the run; one of a stamp that is there is united with it, says how, and confirms nothing.
+    pub fn join_run(&mut self, stray: Stray) -> Option<United> {
+        let at = self.run.partition_point(|other| other.stamp_s < stray.stamp_s);
+        match self.run.get_mut(at) {
+            Some(same) if same.stamp_s == stray.stamp_s => {
+                let readings = std::mem::take(&mut same.readings);
+                let mut row = Row { time_s: same.stamp_s, stamp_s: same.stamp_s, readings };
+                let united = row.unite(&stray.readings);
+                same.readings = row.readings;
+                Some(united)
+            }
+            _ => {
+                self.run.insert(at, stray);
+                None
+            }
+        }
+    }
+
+    /// Earliest stamp of the run, s.
+    pub fn run_first_s(&self) -> Option<f64> {
+        self.run.first().map(|stray| stray.stamp_s)
+    }
+
+    /// The run; there is none afterwards.
+    pub fn take_run(&mut self) -> Vec<Stray> {
+        std::mem::take(&mut self.run)
+    }
+
+    /// Rows in the run.
+    pub fn held(&self) -> usize {
+        self.run.len()
+    }
+}

@@ -1,0 +1,75 @@
+//! What comes out of the intake.
+use serde::{Deserialize, Serialize};
+
+use super::super::Event;
+use super::exact;
+
+/// A row in its place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Time on the internal axis, s: the stamp without the jumps of the clock. Never before that of the row handed out last.
+    #[serde(with = "exact::number")]
+    pub time_s: f64,
+    /// Time as it was stamped, s.
+    #[serde(with = "exact::number")]
+    pub stamp_s: f64,
+    /// Readings, SI, NaN where missing. A second row of one time has only what the first had not.
+    #[serde(with = "exact::numbers")]
+    pub readings: Vec<f64>,
+}
+
+impl Row {
+    /// Take over readings of the same time. New finite ones stand.
+    pub(super) fn unite(&mut self, with: &[f64]) -> United {
+        let mut united = United::Same;
+        for (known, &with) in self.readings.iter_mut().zip(with) {
+            let stands = with.is_finite() || (known.is_nan() && !with.is_nan());
+            if stands && with.to_bits() != known.to_bits() {
+                united = united.max(if known.is_nan() { United::Filled } else { United::Replaced });
+                *known = with;
+            }
+        }
+        united
+    }
+}
+
+/// What rows of one time say together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum United {
+    /// No more than the first.
+    Same,
+    /// The second has what the first had not.
+    Filled,
+    /// The second has another value of the same.
+    Replaced,
+}
+
+/// What a step of the intake hands out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Taken {
+    /// Rows in order of time.
+    pub rows: Vec<Row>,
+    /// Gaps, jumps of the clock, rows that were too late.
+    pub events: Vec<Event>,
+}
+
+/// What has become of rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Rows that came.
+    pub rows: u64,
+    /// Rows with nothing new: of a time and readings that were there already.
+    pub duplicates: u64,
+    /// Rows united with another of the same time.
+    pub merged: u64,
+    /// Rows with another value for what the row of that time had, which came first and stands if it has been handed out.
+    pub contradictions: u64,
+    /// Rows later than the lateness, not used.
+    pub too_late: u64,
+    /// Rows whose stamp was no time or far ahead without confirmation, not used.
+    pub wild: u64,
+    /// Jumps of the clock.
+    pub jumps: u64,
+    /// Gaps.
+    pub gaps: u64,
+}

@@ -1,0 +1,246 @@
+//! A pressure that jumps: gas or transmitter?
+//!
+//! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next beyond
+//! `L = 0.25 bar + 0.2 |change of the expectation|` is a jump and is examined: a second observer goes on from before it without
+//! the pressure, and `e(t)`, what it expects less what is read, less the same before the jump, shows
+//!
+//! * back to nothing within a few samples: a spike;
+//! * growing over several samples: gas flows;
+//! * a step that stays: the transmitter's offset has jumped, which no thermal process does;
+//! * a step of which a part comes back within half an hour: gas was let out (or in) at once, and the rest, cooled (or warmed) on
+//!   the way, comes to the temperature of the wall. At 200 bar an isentropic step of the pressure is 1.6 times the isothermal one;
+//!   what is left of it at the first sample is at least the tenth part that divides the two.
+//!
+//! The part that comes back is known no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of
+//! the gas temperature. What lies within that of the division remains unclear.
+//!
+//! Assumes that a jump of gas is over within two hours; a longer one is a flow.
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Serialize};
+
+/// Change of the innovation that is a jump, Pa, and by the change of the expectation.
+const JUMP_PA: f64 = 0.25e5;
+const JUMP_PER_CHANGE: f64 = 0.2;
+/// Interval beyond which two innovations are not compared, s.
+const LONGEST_INTERVAL_S: f64 = 900.0;
+/// Samples within which a spike comes back.
+const SPIKE_SAMPLES: usize = 5;
+/// Samples over which a flow grows, where a transmitter's jump takes one.
+const FLOW_SAMPLES: usize = 3;
+/// Time after the largest error until the examination ends, s, and the part at its end that counts.
+const REST_S: f64 = 1500.0;
+const LAST_S: f64 = 600.0;
+/// Growth of the error that moves the largest one, relative and absolute, Pa.
+const GROWTH: f64 = 0.03;
+const GROWTH_PA: f64 = 0.05e5;
+/// Part that comes back which divides gas from transmitter.
+const DIVISION: f64 = 0.1;
+/// Part of the largest error that gas leaves at least.
+const LEFT_OF_GAS: f64 = 0.4;
+/// How the model wanders meanwhile, Pa and Pa/K.
+const WANDER_PA: f64 = 0.04e5;
+const WANDER_PA_K: f64 = 0.05e5;
+/// Longest examination, s.
+const LONGEST_S: f64 = 7200.0;
+
+/// What the jump was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// Too early to say.
+    Open,
+    /// Gas is flowing: the error grows over several samples.
+    Flowing,
+    /// A reading or a few were far off.
+    Spike,
+    /// Nothing is left of it.
+    Passed,
+    /// The transmitter's offset has changed by so much, Pa.
+    Offset(f64),
+    /// Gas was exchanged and the flow is over.
+    Gas,
+    /// Either may be; gas is the safe assumption.
+    Unclear,
+}
+
+/// Watches the innovations of the pressure for a jump.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JumpWatch {
+    last: Option<Innovated>,
+}
+
+/// A reading and what was expected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Innovated {
+    time_s: f64,
+    reading_pa: f64,
+    innovation_pa: f64,
+}
+
+impl JumpWatch {
+    /// Take in a reading, Pa, with its innovation, Pa; that before it if this one is a jump.
+    pub fn notice(&mut self, time_s: f64, reading_pa: f64, innovation_pa: f64) -> Option<f64> {
+        if !(reading_pa.is_finite() && innovation_pa.is_finite()) {
+            return None;
+        }
+        let now = Innovated { time_s, reading_pa, innovation_pa };
+        let last = self.last.replace(now)?;
+        if time_s - last.time_s > LONGEST_INTERVAL_S {
+            return None;
+        }
+        let expected = |of: &Innovated| of.reading_pa - of.innovation_pa;
+        let limit_pa = JUMP_PA + JUMP_PER_CHANGE * (expected(&now) - expected(&last)).abs();
+        ((innovation_pa - last.innovation_pa).abs() > limit_pa).then_some(last.innovation_pa)
+    }
+
+    /// Forget the last reading.
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+}
+
+/// The examination of a jump.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Examination {
+    onset_s: f64,
+    /// Expected less read before the jump, Pa.
+    before_pa: f64,
+    /// Errors of the last while: time, s, and error, Pa.
+    recent: VecDeque<(f64, f64)>,
+    samples: usize,
+    peak_pa: f64,
+    peak_s: f64,
+    /// Samples at which the error grew.
+    grew: usize,
+    back: usize,
+    warmest_k: f64,
+    coldest_k: f64,
+}
+
+impl Examination {
+    /// Of a jump at `onset_s`, s, before which the pressure read `innovation_pa`, Pa, more than expected.
+    pub fn new(onset_s: f64, innovation_pa: f64) -> Self {
+        Self {
+            onset_s,
+            before_pa: -innovation_pa,
+            recent: VecDeque::new(),
+            samples: 0,
+            peak_pa: 0.0,
+            peak_s: onset_s,
+            grew: 0,
+            back: 0,
+            warmest_k: f64::NEG_INFINITY,
+            coldest_k: f64::INFINITY,
+        }
+    }
+
+    /// When it began, s.
+    pub fn onset_s(&self) -> f64 {
+        self.onset_s
+    }
+
+    /// Pressure lost since before the jump at the last sample, Pa; negative: gained.
+    pub fn error_pa(&self) -> f64 {
+        self.recent.back().map_or(0.0, |(_, error)| *error)
+    }
+
+    /// Take in what is expected without the pressure, Pa, and read, Pa, at a gas temperature, K.
+    pub fn push(&mut self, time_s: f64, expected_pa: f64, reading_pa: f64, gas_k: f64) -> Cause {
+        if !(expected_pa.is_finite() && reading_pa.is_finite()) {
+            return if time_s - self.onset_s > LONGEST_S { Cause::Unclear } else { Cause::Open };
+        }
+        let error_pa = expected_pa - reading_pa - self.before_pa;
+        (self.warmest_k, self.coldest_k) = (self.warmest_k.max(gas_k), self.coldest_k.min(gas_k));
+        self.samples += 1;
+        self.recent.push_back((time_s, error_pa));
+        while self.recent.front().is_some_and(|(first_s, _)| *first_s < time_s - LAST_S) {
+            self.recent.pop_front();
+        }
+        if error_pa.abs() > (1.0 + GROWTH) * self.peak_pa.abs() + GROWTH_PA {
+            (self.peak_pa, self.peak_s) = (error_pa, time_s);
+            self.grew += 1;
+        }
+        self.back = if error_pa.abs() < 0.4 * self.peak_pa.abs() { self.back + 1 } else { 0 };
+        self.judge(time_s)
+    }
+
+    fn judge(&self, time_s: f64) -> Cause {
+        if self.samples <= SPIKE_SAMPLES && self.back >= 2 {
+            return Cause::Spike;
+        }
+        if time_s - self.peak_s < REST_S && time_s - self.onset_s < LONGEST_S {
+            return if self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
+        }
+        let rest: Vec<f64> = self.recent.iter().map(|(_, error)| *error).collect();
+        let end_pa = rest.iter().sum::<f64>() / rest.len() as f64;
+        let wander_pa = WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k);
+        let back_pa = self.peak_pa.abs() - end_pa * self.peak_pa.signum();
+        match () {
+            () if end_pa.abs() < wander_pa.max(LEFT_OF_GAS * self.peak_pa.abs()) => Cause::Passed,
+            () if self.grew >= FLOW_SAMPLES => Cause::Gas,
+            () if back_pa > DIVISION * self.peak_pa.abs() + 0.5 * wander_pa => Cause::Gas,
+            () if back_pa < DIVISION * self.peak_pa.abs() - 0.5 * wander_pa => Cause::Offset(-end_pa),
+            () => Cause::Unclear,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MINUTE_S: f64 = 60.0;
+
+    /// Causes of the courses `e(minutes)` until there is one.
+    fn cause(error_bar: impl Fn(f64) -> f64) -> Cause {
+        let mut examination = Examination::new(0.0, 0.02e5);
+        for minute in 0..200 {
+            let minutes = f64::from(minute);
+            let expected_pa = 180e5;
+            let reading_pa = expected_pa + 0.02e5 - 1e5 * error_bar(minutes);
+            match examination.push(MINUTE_S * minutes, expected_pa, reading_pa, 280.0) {
+                Cause::Open | Cause::Flowing => {}
+                cause => return cause,
+            }
+        }
+        Cause::Open
+    }
+
+    #[test]
+    fn what_jumps_is_told_by_what_comes_back() {
+        assert_eq!(cause(|minutes| if minutes < 2.0 { 50.0 } else { 0.0 }), Cause::Spike);
+        let Cause::Offset(by_pa) = cause(|_| 0.5) else { panic!("a step that stays is the transmitter's") };
+        assert!((by_pa + 0.5e5).abs() < 1.0, "{by_pa} Pa");
+        assert!(matches!(cause(|_| -2.0), Cause::Offset(by_pa) if (by_pa - 2e5).abs() < 1.0));
+        // Half of the rebound of 38 % was over at the first sample.
+        assert_eq!(cause(|minutes| 1.0 + 0.25 * (-minutes / 4.0).exp()), Cause::Gas);
+        assert_eq!(cause(|minutes| -20.0 * (1.0 + 0.4 * (-minutes / 4.0).exp())), Cause::Gas);
+        // A refill of ten minutes.
+        assert_eq!(cause(|minutes| -4.0 * (minutes + 1.0).min(10.0)), Cause::Gas);
+        assert_eq!(cause(|minutes| 0.5 * (-minutes / 10.0).exp()), Cause::Passed);
+        assert_eq!(cause(|minutes| 0.4 + 0.05 * (-minutes / 4.0).exp()), Cause::Unclear);
+    }
+
+    #[test]
+    fn a_flow_is_told_after_three_samples() {
+        let mut examination = Examination::new(0.0, 0.0);
+        let causes: Vec<Cause> = (0..4)
+            .map(|n| examination.push(MINUTE_S * f64::from(n), 180e5, 180e5 - 1e5 * f64::from(n + 1), 280.0))
+            .collect();
+        assert_eq!(causes, [Cause::Open, Cause::Open, Cause::Flowing, Cause::Flowing]);
+    }
+
+    #[test]
+    fn slow_changes_and_expected_ones_are_no_jumps() {
+        let mut watch = JumpWatch::default();
+        for minute in 0..100 {
+            let t = MINUTE_S * f64::from(minute);
+            assert_eq!(watch.notice(t, 180e5 + 3e4 * f64::from(minute), 2e4 * f64::from(minute)), None);
+        }
+        assert_eq!(watch.notice(6000.0, 210e5 - 5e4, 198e4 - 5e4), Some(198e4));
+        watch.forget();
+        assert_eq!(watch.notice(6060.0, 100e5, -80e5), None);
+        // A pressure that was expected to rise by 2 bar may be 0.6 bar beside it.
+        assert_eq!(watch.notice(6120.0, 102.6e5, -79.4e5), None);
+    }
+}
