@@ -97,6 +97,9 @@ pub enum DetectorError {
         /// Number of readings.
         found: usize,
     },
+    /// A truth, an observer or its sensors.
+    #[error(transparent)]
+    Estimator(#[from] cylwatch_estimator::EstimatorError),
 }
 
 /// `value` if it is positive and finite.

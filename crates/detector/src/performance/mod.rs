@@ -31,9 +31,12 @@
 //! assert!(found.0 > 0.91);
 //! ```
 //!
+//! [`bench`] makes such runs: detectors side by side on the same simulated cylinders.
+//!
 //! Source: API RP 1130, Computational Pipeline Monitoring for Liquids; API RP 1149.
 mod accuracy;
 mod alarm_rate;
+pub mod bench;
 mod confusion;
 mod delay;
 mod detection;
@@ -45,7 +48,7 @@ mod summary;
 mod survival;
 
 pub use accuracy::{Accuracy, Errors};
-pub use alarm_rate::AlarmRate;
+pub use alarm_rate::{AlarmRate, YEAR_S};
 pub use confusion::{Class, Confusion};
 pub use delay::Delay;
 pub use detection::{Detection, Horizon};
