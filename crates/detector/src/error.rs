@@ -97,9 +97,20 @@ pub enum DetectorError {
         /// Number of readings.
         found: usize,
     },
-    /// A truth, an observer or its sensors.
+    /// An alarm is in a state in which something cannot be done to it.
+    #[error("the alarm cannot be {act}: {reason}")]
+    AlarmState {
+        /// What was to be done.
+        act: &'static str,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A state that cannot be continued from.
     #[error(transparent)]
-    Estimator(#[from] cylwatch_estimator::EstimatorError),
+    State(#[from] crate::monitor::state::StateError),
+    /// The observer could not go on.
+    #[error(transparent)]
+    Observer(#[from] cylwatch_estimator::EstimatorError),
 }
 
 /// `value` if it is positive and finite.

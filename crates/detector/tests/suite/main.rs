@@ -8,6 +8,7 @@ mod equivalence;
 mod failure_alarms;
 mod intake;
 mod likelihood_ratio;
+mod monitor;
 mod monte_carlo;
 mod prognosis;
 mod run_lengths;
