@@ -2,6 +2,7 @@
 //!
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error.
 mod arguments;
+mod bench_detector;
 mod calibrate;
 mod completions;
 mod estimate;
@@ -50,6 +51,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<()> {
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
+        Command::BenchDetector(arguments) => bench_detector::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

@@ -1,5 +1,8 @@
 //! What the examples claim.
 #[allow(dead_code)]
+#[path = "../../examples/cold_night.rs"]
+mod cold_night;
+#[allow(dead_code)]
 #[path = "../../examples/figure_6.rs"]
 mod figure_6;
 #[allow(dead_code)]
@@ -9,8 +12,14 @@ mod figure_7_8;
 #[path = "../../examples/leak.rs"]
 mod leak;
 #[allow(dead_code)]
+#[path = "../../examples/leak_masked_by_warming.rs"]
+mod leak_masked_by_warming;
+#[allow(dead_code)]
 #[path = "../../examples/observe_scenarios.rs"]
 mod observe_scenarios;
+#[allow(dead_code)]
+#[path = "../../examples/refill.rs"]
+mod refill;
 #[allow(dead_code)]
 #[path = "../../examples/scenario_1.rs"]
 mod scenario_1;
@@ -28,6 +37,7 @@ mod scenario_4;
 mod tunnel_passage;
 
 use approx::assert_abs_diff_eq;
+use cylwatch::detector::monitor::Verdict;
 
 #[test]
 fn a_tight_cylinder_stays_above_160_bar_at_minus_25_degrees_and_alarms_when_it_is_colder() {
@@ -149,4 +159,44 @@ fn the_papers_detector_finds_a_leak_in_its_scheme_after_minutes_and_on_a_cylinde
         assert!(delay(said) > 0.0 && delay(said) + 60.0 < delay(&published), "{}", said.detector);
         assert!(said.threshold_bar < 0.2 * published.threshold_bar);
     }
+}
+
+#[test]
+fn a_leak_that_a_warming_day_hides_from_the_gauge_is_found_with_its_rate_and_onset() {
+    let masked = leak_masked_by_warming::run().unwrap();
+    let (spread_bar, lost_g) = masked.spread_and_loss();
+    assert!(spread_bar < 2.5, "{spread_bar} bar");
+    assert_abs_diff_eq!(lost_g, 14.7 * leak_masked_by_warming::LEAK_G_H, epsilon = 0.1);
+    assert!(!masked.false_alarm);
+    assert!(masked.found_s.is_some_and(|found_s| found_s < 54.0 * 3600.0), "{:?}", masked.found_s);
+    let finding = masked.finding.unwrap();
+    let rate = finding.rate_kg_s.scaled(3.6e6);
+    assert!(rate.holds(leak_masked_by_warming::LEAK_G_H), "{rate:?}");
+    assert!(finding.onset_s.holds(48.3 * 3600.0), "{:?}", finding.onset_s);
+    assert_eq!(leak_masked_by_warming::figure(&masked).panels.len(), 3);
+}
+
+#[test]
+fn a_cold_night_trips_the_switch_and_the_monitor_has_warned_of_it_and_says_tight() {
+    let night = cold_night::run().unwrap();
+    let (switch_s, gas_degc) = night.switch.unwrap();
+    // A tight rigid cylinder of 180 bar reads 160 bar at -7.9 degC (CoolProp); transmitter and steel move it by a degree.
+    assert_abs_diff_eq!(gas_degc, -7.9, epsilon = 1.0);
+    let (warned_s, warned_bar) = night.warning.unwrap();
+    assert!(warned_s + 12.0 * 3600.0 < switch_s, "{warned_s} {switch_s}");
+    assert_abs_diff_eq!(warned_bar, 156.0, epsilon = 1.5);
+    assert!(night.verdict == Verdict::Tight && !night.leak, "{}", night.verdict);
+}
+
+#[test]
+fn a_refill_is_recognised_and_its_cooling_is_no_leak() {
+    let refill = refill::run().unwrap();
+    let (peak_bar, fall_bar) = refill.peak_and_fall();
+    assert!(peak_bar > 220.0 && fall_bar > 15.0, "{peak_bar} {fall_bar}");
+    let (gained_kg, said_s) = refill.recognised.unwrap();
+    assert_abs_diff_eq!(gained_kg / refill.filled_kg, 1.0, epsilon = 0.1);
+    assert!(said_s < refill::REFILL_S + 3600.0, "{said_s}");
+    assert!(refill.verdicts.iter().any(|(_, verdict)| *verdict == Verdict::Refill));
+    assert!(refill.verdicts.iter().all(|(_, verdict)| *verdict != Verdict::Leak));
+    assert_eq!(refill.verdicts.last().map(|(_, verdict)| *verdict), Some(Verdict::Tight));
 }
