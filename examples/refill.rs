@@ -20,7 +20,7 @@ use std::path::PathBuf;
 const SCENARIO: &str = r#"
 name = "a refill"
 duration_h = 60
-sample_time_min = 1
+sample_time_s = 20
 
 [initial]
 fill_pressure_bar = 160
@@ -46,11 +46,11 @@ over_h = 6
 to_degc = 15
 
 [[refill]]
-flow_kg_s = 0.02
+flow_kg_s = 0.06
 source_temperature_degc = 15
 source_pressure_bar = 300
 start_h = 40
-closes_above_bar = 225
+closes_above_bar = 226
 "#;
 
 /// Start of the refill, s.

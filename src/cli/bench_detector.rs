@@ -8,7 +8,7 @@ use super::progress::Progress;
 use anyhow::bail;
 use clap::Args;
 use cylwatch::detector::performance::YEAR_S;
-use cylwatch::detector::performance::bench::{Candidate, Outcome, Plan, baselines, bench};
+use cylwatch::detector::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
 use cylwatch::report::{Provenance, bench_detector as report};
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -95,7 +95,7 @@ impl Options {
     }
 
     fn bench(&self, messages: &Messages) -> anyhow::Result<Outcome> {
-        let candidates: Vec<Candidate> = candidates()?;
+        let candidates = candidates(&self.plan)?;
         let progress = Mutex::new(Progress::new(messages));
         let outcome = bench(&self.plan, &candidates, &|so_far| {
             // Without the bar the bench goes on.
@@ -136,8 +136,10 @@ impl Options {
 }
 
 /// All detectors, ours first.
-fn candidates() -> anyhow::Result<Vec<Candidate>> {
-    Ok(baselines(Plan::FILLING)?)
+fn candidates(plan: &Plan) -> anyhow::Result<Vec<Candidate>> {
+    let mut candidates = vec![monitor(plan)?];
+    candidates.extend(baselines(Plan::FILLING)?);
+    Ok(candidates)
 }
 
 /// The plan, each option named if it is out of its bounds.

@@ -24,8 +24,7 @@ fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
 fn a_tiny_bench_writes_tables_figure_and_json_that_agree() {
     let folder = tempdir().unwrap();
     let folder = folder.path();
-    let outcome =
-        run(folder, &tiny(&["--rates", "20", "-o", "bench.csv", "--plot", "delay.svg"]));
+    let outcome = run(folder, &tiny(&["--rates", "20", "-o", "bench.csv", "--plot", "delay.svg"]));
     assert_eq!((outcome.code, outcome.stdout.as_str()), (Some(0), ""), "{}", outcome.stderr);
     assert_eq!(files(folder), ["bench.csv", "delay.svg"]);
     agree_on_the_false_alarms(folder, &outcome.stderr);

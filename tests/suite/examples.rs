@@ -180,8 +180,9 @@ fn a_leak_that_a_warming_day_hides_from_the_gauge_is_found_with_its_rate_and_ons
 fn a_cold_night_trips_the_switch_and_the_monitor_has_warned_of_it_and_says_tight() {
     let night = cold_night::run().unwrap();
     let (switch_s, gas_degc) = night.switch.unwrap();
-    // A tight rigid cylinder of 180 bar reads 160 bar at -7.9 degC (CoolProp); transmitter and steel move it by a degree.
-    assert_abs_diff_eq!(gas_degc, -7.9, epsilon = 1.0);
+    // A tight rigid cylinder of 180 bar reads 160 bar at -7.9 degC (CoolProp); a transmitter that is right within 0.6 bar and
+    // 0.03 bar/K, and steel that shrinks by 0.2 bar, move it by 2 K.
+    assert_abs_diff_eq!(gas_degc, -7.9, epsilon = 2.0);
     let (warned_s, warned_bar) = night.warning.unwrap();
     assert!(warned_s + 12.0 * 3600.0 < switch_s, "{warned_s} {switch_s}");
     assert_abs_diff_eq!(warned_bar, 156.0, epsilon = 1.5);
@@ -192,7 +193,7 @@ fn a_cold_night_trips_the_switch_and_the_monitor_has_warned_of_it_and_says_tight
 fn a_refill_is_recognised_and_its_cooling_is_no_leak() {
     let refill = refill::run().unwrap();
     let (peak_bar, fall_bar) = refill.peak_and_fall();
-    assert!(peak_bar > 220.0 && fall_bar > 15.0, "{peak_bar} {fall_bar}");
+    assert!(peak_bar > 220.0 && fall_bar > 18.0, "{peak_bar} {fall_bar}");
     let (gained_kg, said_s) = refill.recognised.unwrap();
     assert_abs_diff_eq!(gained_kg / refill.filled_kg, 1.0, epsilon = 0.1);
     assert!(said_s < refill::REFILL_S + 3600.0, "{said_s}");

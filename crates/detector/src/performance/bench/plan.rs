@@ -77,17 +77,8 @@ impl Plan {
 
     /// The truth's settings.
     pub(super) fn truth(&self) -> TruthSettings {
-        let vessel = self.vessel.clone();
-        if self.fast {
-            return TruthSettings {
-                vessel,
-                cylinder_cells: 3,
-                gas_cells: 1,
-                relative_tolerance: 1e-4,
-                ..TruthSettings::default()
-            };
-        }
-        TruthSettings { vessel, ..TruthSettings::default() }
+        let settings = if self.fast { TruthSettings::fast() } else { TruthSettings::default() };
+        TruthSettings { vessel: self.vessel.clone(), ..settings }
     }
 
     /// Number of cylinders that are simulated.
