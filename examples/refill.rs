@@ -91,6 +91,7 @@ pub fn run() -> anyhow::Result<Refill> {
         recognised: None,
         verdicts: Vec::new(),
     };
+    let mut last = Verdict::Tight;
     for (time_s, row) in log.rows() {
         for output in monitor.step(time_s, row)? {
             refill.time_s.push(time_s);
@@ -102,10 +103,10 @@ pub fn run() -> anyhow::Result<Refill> {
                 _ => None,
             });
             refill.recognised = refill.recognised.or(gained);
-            let last = refill.verdicts.last().map(|(_, verdict)| *verdict);
-            if time_s >= REFILL_S && last != Some(output.verdict) {
+            if time_s >= REFILL_S && last != output.verdict {
                 refill.verdicts.push((time_s, output.verdict));
             }
+            last = output.verdict;
         }
     }
     Ok(refill)
