@@ -49,6 +49,12 @@ fn main() {
                 for o in m.step(t, &cols.map(|c| row[c])).unwrap() {
                     *verdicts.entry(o.verdict.to_string()).or_default() += 1;
                     for e in &o.events {
+                        if let EventKind::Sensor { sensor, health } = &e.kind {
+                            println!(
+                                "seed {seed} t {t} sensor {sensor} {health:?} {:?}",
+                                cols.map(|c| row[c])
+                            );
+                        }
                         let k = match &e.kind {
                             EventKind::Verdict { from, to } => format!("{from}->{to}"),
                             k => k.name().to_string(),
