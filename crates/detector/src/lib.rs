@@ -10,6 +10,7 @@ pub mod baseline;
 pub mod calibrate;
 pub mod error;
 pub mod monitor;
+pub mod performance;
 pub mod prognosis;
 pub mod statistic;
 

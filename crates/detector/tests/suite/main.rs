@@ -6,6 +6,7 @@ mod data_calibration;
 mod delay;
 mod equivalence;
 mod failure_alarms;
+mod fault;
 mod intake;
 mod likelihood_ratio;
 mod monte_carlo;

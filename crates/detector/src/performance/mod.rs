@@ -1,0 +1,2 @@
+//! How good a leak detector is.
+pub mod fault;
