@@ -105,6 +105,20 @@ pub enum DetectorError {
         /// Names that there are.
         known: String,
     },
+    /// An alarm is in a state in which something cannot be done to it.
+    #[error("the alarm cannot be {act}: {reason}")]
+    AlarmState {
+        /// What was to be done.
+        act: &'static str,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A state that cannot be continued from.
+    #[error(transparent)]
+    State(#[from] crate::monitor::state::StateError),
+    /// The observer could not go on.
+    #[error(transparent)]
+    Observer(#[from] cylwatch_estimator::EstimatorError),
 }
 
 /// `value` if it is positive and finite.

@@ -150,6 +150,11 @@ impl SensorWatch {
         self.health
     }
 
+    /// What is taken off every reading, K or Pa.
+    pub fn correction(&self) -> f64 {
+        self.correction
+    }
+
     /// Time of the last usable reading, s.
     pub fn last_usable_s(&self) -> f64 {
         self.last_usable_s

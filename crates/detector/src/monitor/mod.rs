@@ -1,13 +1,46 @@
-//! The monitor: rows of a log in, a verdict and events out.
+//! The monitor: rows of a log in, a verdict, what it rests on and events out.
+//!
+//! A row goes through these, each of which can be saved and restored at any row:
+//!
+//! | part | what it does |
+//! |---|---|
+//! | [`intake`] | rows as they arrive become rows in order on one axis of time |
+//! | [`health`], [`thermometers`] | readings that are none, stand still or have an offset that jumped |
+//! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
+//! | [`jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
+//! | evidence | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
+//! | [`onset`] | since when, how fast, how much, with intervals |
+//! | outlook | the time left and the reaction that is due ([`crate::prognosis`]) |
+//! | [`alarm`] | what must be dealt with, in the words of OPC UA Part 9 |
+//!
+//! Where it cannot be told the verdict is [`Verdict::Unknown`] with its reason, never [`Verdict::Tight`].
+//!
+//! # What one cylinder cannot tell
+//! A transmitter that drifts downwards looks like a leak: 0.1 % of 400 bar in a year are 5e-5 bar/h. Two cylinders exchanged for
+//! each other look like cylinders.
+pub mod alarm;
+mod contents;
 mod event;
+mod evidence;
 pub mod health;
 pub mod intake;
 pub mod jump;
+mod leak;
+mod machine;
 pub mod onset;
+mod outlook;
 mod output;
+mod rewind;
+mod roles;
+pub mod settings;
+pub mod state;
+pub mod thermometers;
 pub mod trace;
 mod verdict;
 
 pub use event::{Event, EventKind};
+pub use machine::Monitor;
 pub use output::{Health, Interval, LeakFinding, Outlook, Output};
+pub use settings::{Limits, MonitorSettings};
+pub use state::StateError;
 pub use verdict::{Reason, Verdict};

@@ -2,6 +2,7 @@
 use cylwatch_estimator::observer::Estimate;
 use serde::{Deserialize, Serialize};
 
+use super::alarm::AlarmEvent;
 use super::{Event, Verdict};
 use crate::prognosis::{Advice, Quantiles};
 
@@ -60,13 +61,13 @@ pub enum Health {
     Shifted(f64),
     /// It follows the air instead of the surface that it should sit on.
     Detached,
-    /// More noise than it should have.
-    Noisy,
 }
 
 /// What is said after a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
+    /// Time as the row was stamped, s; that of the estimate has no jumps of the clock in it.
+    pub stamp_s: f64,
     /// The observer's estimate.
     pub estimate: Estimate,
     /// What is happening.
@@ -79,14 +80,16 @@ pub struct Output {
     pub cold_pressure_pa: f64,
     /// Health of each sensor, in the order of the readings.
     pub health: Vec<Health>,
-    /// Time left and the reaction that is due; new with each hour and each change of the verdict.
+    /// Time left and the reaction that is due; new with each day (hour, in a leak) and each change of the verdict.
     pub outlook: Option<Outlook>,
     /// What has happened at this sample.
     pub events: Vec<Event>,
+    /// What has changed about the alarms at this sample.
+    pub alarms: Vec<AlarmEvent>,
 }
 
 /// Time that is left and what to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outlook {
     /// Until the pressure at 15 °C is at the operational limit.
     pub operational: Quantiles,

@@ -9,6 +9,7 @@ mod failure_alarms;
 mod fault;
 mod intake;
 mod likelihood_ratio;
+mod monitor;
 mod monte_carlo;
 mod prognosis;
 mod run_lengths;

@@ -1,5 +1,6 @@
 //! What is known when the observer starts.
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use super::settings::ObserverSettings;
 use super::states::{StateKind, States};
@@ -22,7 +23,7 @@ const UNSETTLED_SD_K: f64 = 5.0;
 const UNSETTLED_GAS_SD_K: f64 = 10.0;
 
 /// What is known of the cylinder at the first sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Commissioning {
     /// What fixes the gas mass.
     pub fill: Fill,

@@ -16,6 +16,8 @@ pub use sensor::{MountedSensor, PLACES, SensorKind, SensorSpec};
 pub use series::Series;
 pub use spec::ScenarioSpec;
 
+use serde::{Deserialize, Serialize};
+
 use crate::flow::Flow;
 
 /// A validated scenario. All values SI, time from 0.
@@ -51,7 +53,7 @@ pub struct Initial {
 }
 
 /// What fixes the gas mass.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fill {
     /// Settled pressure at a settled temperature of gas and wall, as a filling station states it.
     Settled {

@@ -1,0 +1,92 @@
+//! Settings of the six alarms of a cylinder.
+use serde::{Deserialize, Serialize};
+
+use super::{Alarm, ExclusiveLimit, Limit, OffNormal, Timing};
+use crate::DetectorError;
+use crate::prognosis::ISO_14520_LOSS;
+
+const MINUTE_S: f64 = 60.0;
+const HOUR_S: f64 = 3600.0;
+const DAY_S: f64 = 24.0 * HOUR_S;
+const BAR_PA: f64 = 1e5;
+
+/// Rules of the alarms of a cylinder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AlarmSettings {
+    /// Gas is being lost. At once, because the monitor has weighed it already; stays latched.
+    pub leak: Alarm<OffNormal>,
+    /// Pressure at 15 °C, Pa: LowLow is the operational limit, Low a warning above it.
+    pub operational_limit: Alarm<ExclusiveLimit>,
+    /// Pressure at 15 °C over that of the full cylinder.
+    pub maintenance_limit: Alarm<ExclusiveLimit>,
+    /// A sensor is not as it should be.
+    pub sensor_fault: Alarm<OffNormal>,
+    /// Nothing can be said of the gas.
+    pub unknown: Alarm<OffNormal>,
+    /// Raw pressure on the coldest night, Pa.
+    pub cold_night: Alarm<ExclusiveLimit>,
+}
+
+impl Default for AlarmSettings {
+    /// For 160 bar.
+    fn default() -> Self {
+        Self::with_limit(160.0 * BAR_PA)
+    }
+}
+
+impl AlarmSettings {
+    /// The defaults for an operational limit, Pa.
+    ///
+    /// A warning 5 bar above it; deadbands of 1 bar and 0.5 %, several times the noise of the estimate. Delays are short where the monitor
+    /// has waited already, and an hour where weather could pass. Severities: 900 out of operation, 800 gas is being lost, 600 and
+    /// 500 somebody must come, 400 and 300 at the next occasion.
+    pub fn with_limit(limit_pa: f64) -> Self {
+        let timing = |on_delay_s: f64, off_delay_s: f64, re_alarm_time_s: f64| Timing {
+            on_delay_s,
+            off_delay_s,
+            re_alarm_time_s: Some(re_alarm_time_s),
+            ..Timing::default()
+        };
+        let low = |limit, deadband, severity| Limit { limit, deadband, severity };
+        let below = |limit| ExclusiveLimit { low: limit, low_low: None };
+        let latching = Timing { latching: true, confirming: true, ..timing(0.0, HOUR_S, DAY_S) };
+        Self {
+            leak: Alarm { trigger: OffNormal { severity: 800 }, timing: latching },
+            operational_limit: Alarm {
+                trigger: ExclusiveLimit {
+                    low: low(limit_pa + 5.0 * BAR_PA, BAR_PA, 600),
+                    low_low: Some(low(limit_pa, BAR_PA, 900)),
+                },
+                timing: Timing { confirming: true, ..timing(10.0 * MINUTE_S, 10.0 * MINUTE_S, DAY_S) },
+            },
+            maintenance_limit: Alarm {
+                trigger: below(low(1.0 - ISO_14520_LOSS, 0.005, 400)),
+                timing: timing(HOUR_S, HOUR_S, 7.0 * DAY_S),
+            },
+            sensor_fault: Alarm {
+                trigger: OffNormal { severity: 500 },
+                timing: timing(10.0 * MINUTE_S, 10.0 * MINUTE_S, DAY_S),
+            },
+            unknown: Alarm {
+                trigger: OffNormal { severity: 500 },
+                timing: timing(HOUR_S, 10.0 * MINUTE_S, DAY_S),
+            },
+            cold_night: Alarm {
+                trigger: below(low(limit_pa, BAR_PA, 300)),
+                timing: timing(HOUR_S, HOUR_S, 7.0 * DAY_S),
+            },
+        }
+    }
+
+    /// # Errors
+    /// Names the setting, its value and the bound.
+    pub fn validate(&self) -> Result<(), DetectorError> {
+        self.leak.validate()?;
+        self.operational_limit.validate()?;
+        self.maintenance_limit.validate()?;
+        self.sensor_fault.validate()?;
+        self.unknown.validate()?;
+        self.cold_night.validate()
+    }
+}

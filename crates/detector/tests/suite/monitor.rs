@@ -1,0 +1,175 @@
+//! The monitor on simulated cylinders that are not the observer's model.
+use std::sync::OnceLock;
+
+use cylwatch_detector::DetectorError;
+use cylwatch_detector::estimator::observer::Commissioning;
+use cylwatch_detector::estimator::sensor::Sensor;
+use cylwatch_detector::estimator::thermal::vessel::{Vessel, presets};
+use cylwatch_detector::estimator::truth::{Course, Truth, TruthLeak, TruthSettings, generate_with};
+use cylwatch_detector::monitor::{
+    EventKind, Health, Monitor, MonitorSettings, Output, Reason, StateError, Verdict,
+};
+
+const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
+const SHOULDER: usize = 0;
+const PRESSURE: usize = 2;
+const HOUR_S: f64 = 3600.0;
+const DAY_S: f64 = 86_400.0;
+
+type Rows = Vec<(f64, [f64; 3])>;
+
+fn vessel() -> Vessel {
+    presets::load("nitrogen-20l").unwrap()
+}
+
+fn sensors() -> Vec<Sensor> {
+    SENSORS.map(|name| Sensor::typical(name).unwrap()).to_vec()
+}
+
+fn rows_of(truth: &Truth) -> Rows {
+    let columns = SENSORS.map(|name| truth.log.channels.iter().position(|c| c.name == name).unwrap());
+    truth.log.rows().map(|(t, row)| (t, columns.map(|c| row[c]))).collect()
+}
+
+fn week(days: f64, leak: Option<TruthLeak>) -> Rows {
+    let settings = TruthSettings {
+        gas_cells: 1,
+        cylinder_cells: 3,
+        relative_tolerance: 1e-4,
+        leak,
+        ..TruthSettings::default()
+    };
+    rows_of(&generate_with(&Course::RailwayWeeks { days }, 5, 60.0, &settings).unwrap())
+}
+
+/// Four days without a leak.
+fn tight() -> &'static Rows {
+    static ROWS: OnceLock<Rows> = OnceLock::new();
+    ROWS.get_or_init(|| week(4.0, None))
+}
+
+fn monitor() -> Monitor {
+    let commissioning = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
+    Monitor::new(&vessel(), &sensors(), &commissioning, &MonitorSettings::default()).unwrap()
+}
+
+fn run(rows: &[(f64, [f64; 3])]) -> Vec<Output> {
+    let mut monitor = monitor();
+    let mut outputs: Vec<Output> =
+        rows.iter().flat_map(|(t, readings)| monitor.step(*t, readings).unwrap()).collect();
+    outputs.extend(monitor.finish().unwrap());
+    outputs
+}
+
+fn events(outputs: &[Output]) -> impl Iterator<Item = &EventKind> {
+    outputs.iter().flat_map(|output| output.events.iter().map(|event| &event.kind))
+}
+
+/// All that is put out, to the last digit.
+fn print(outputs: &[Output]) -> Vec<String> {
+    outputs.iter().map(|output| format!("{output:?}")).collect()
+}
+
+#[test]
+fn a_tight_cylinder_in_winter_is_tight_once_it_is_learnt() {
+    let outputs = run(tight());
+    for output in &outputs {
+        let expected =
+            if output.estimate.time_s < DAY_S { Verdict::Unknown(Reason::Learning) } else { Verdict::Tight };
+        let examining = output.verdict == Verdict::Unknown(Reason::Jump);
+        assert!(output.verdict == expected || examining, "{} s: {}", output.estimate.time_s, output.verdict);
+    }
+    let examined = outputs.iter().filter(|o| o.verdict == Verdict::Unknown(Reason::Jump)).count();
+    println!("{examined} of {} samples under examination", outputs.len());
+    assert!(examined * 50 < outputs.len());
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_) | EventKind::Discharge(_))));
+}
+
+#[test]
+fn a_leak_is_found_with_its_rate_and_onset() {
+    let rate_kg_s = 3e-3 / HOUR_S;
+    let onset_s = 2.0 * DAY_S;
+    let outputs = run(&week(4.0, Some(TruthLeak { rate_kg_s, start_s: onset_s })));
+    let alarm = outputs.iter().find(|output| output.verdict == Verdict::Leak).expect("a leak is found");
+    assert!(alarm.estimate.time_s > onset_s && alarm.estimate.time_s < onset_s + DAY_S);
+    let leak = outputs.last().unwrap().leak.unwrap();
+    assert!(leak.rate_kg_s.holds(rate_kg_s) && leak.onset_s.holds(onset_s), "{leak:?}");
+    assert!(leak.lost_kg.holds(rate_kg_s * 2.0 * DAY_S), "{leak:?}");
+}
+
+#[test]
+fn a_monitor_killed_and_restored_at_every_row_says_the_same_to_the_last_digit() {
+    let mut rows: Rows = tight()[..900].to_vec();
+    // A jump under examination, a gap of readings and a late row among them.
+    for (_, readings) in &mut rows[500..] {
+        readings[PRESSURE] -= 2e5;
+    }
+    rows[600].1[SHOULDER] = f64::NAN;
+    rows.swap(700, 701);
+    let expected = run(&rows);
+    let mut killed = monitor();
+    let mut outputs = Vec::new();
+    for (t, readings) in &rows {
+        let bytes = killed.save().unwrap();
+        killed = Monitor::restore(&vessel(), &sensors(), &MonitorSettings::default(), &bytes).unwrap();
+        outputs.extend(killed.step(*t, readings).unwrap());
+    }
+    outputs.extend(killed.finish().unwrap());
+    assert_eq!(print(&outputs), print(&expected));
+}
+
+#[test]
+fn a_state_of_another_cylinder_is_refused_with_the_reason() {
+    let mut monitor = monitor();
+    monitor.step(0.0, &tight()[0].1).unwrap();
+    let bytes = monitor.save().unwrap();
+    let other = presets::load("nitrogen-50l").or_else(|_| presets::load("hydrogen-a1"));
+    let restore = |vessel: &Vessel, bytes: &[u8]| {
+        Monitor::restore(vessel, &sensors(), &MonitorSettings::default(), bytes).map(|_| ())
+    };
+    assert!(restore(&vessel(), &bytes).is_ok());
+    if let Ok(other) = other {
+        let refused = restore(&other, &bytes).unwrap_err();
+        assert!(matches!(refused, DetectorError::State(StateError::Foreign)), "{refused}");
+    }
+    let mut renamed = vessel();
+    renamed.volume.volume_m3 *= 1.001;
+    assert!(matches!(restore(&renamed, &bytes), Err(DetectorError::State(StateError::Foreign))));
+    let cut = restore(&vessel(), &bytes[..bytes.len() - 1]);
+    assert!(matches!(cut, Err(DetectorError::State(StateError::Cut { .. }))));
+}
+
+#[test]
+fn a_jump_of_the_transmitter_is_its_fault_and_no_leak() {
+    let mut rows = tight()[..4000].to_vec();
+    let at_rest = 2880 + 60;
+    for (_, readings) in &mut rows[at_rest..] {
+        readings[PRESSURE] -= 2e5;
+    }
+    let outputs = run(&rows);
+    let last = outputs.last().unwrap();
+    assert_eq!(last.verdict, Verdict::SensorFault, "{:?}", last.health);
+    let Health::Shifted(by_pa) = last.health[PRESSURE] else { panic!("{:?}", last.health) };
+    assert!((by_pa + 2e5).abs() < 0.15e5, "{by_pa} Pa");
+    assert!(!events(&outputs).any(|k| matches!(k, EventKind::LeakFound(_) | EventKind::Discharge(_))));
+    let before = &outputs[at_rest - 1].estimate;
+    assert!((last.estimate.mass_kg - before.mass_kg).abs() < 0.01);
+}
+
+#[test]
+fn a_wire_that_breaks_makes_it_unknown_and_never_tight() {
+    let mut rows = tight()[..4000].to_vec();
+    for (_, readings) in &mut rows[3000..3600] {
+        readings[PRESSURE] = 0.0;
+    }
+    let outputs = run(&rows);
+    let blind_s = rows[3000].0 + 0.5 * HOUR_S;
+    for output in &outputs {
+        let blind = output.estimate.time_s > blind_s && output.estimate.time_s < rows[3600].0;
+        if blind {
+            assert_eq!(output.verdict, Verdict::Unknown(Reason::NoPressure));
+            assert_eq!(output.health[PRESSURE], Health::Implausible);
+        }
+    }
+    assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
+}
