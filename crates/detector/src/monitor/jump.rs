@@ -1,7 +1,8 @@
 //! A pressure that jumps: gas or transmitter?
 //!
 //! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next beyond
-//! `L = 0.15 bar + sd(innovation) + 0.2 |change of the expectation|` is a jump and is examined: a second observer goes on from before it without
+//! `L = 0.15 bar + sd(innovation) + 0.2 |change of the expectation| + 0.5 bar/K D` is a jump, with `D` the smaller change of two
+//! thermometers, since a tunnel reaches both. It is examined: a second observer goes on from before it without
 //! the pressure, and `e(t)`, what it expects less what is read, less the same before the jump, shows
 //!
 //! * back to nothing within a few samples: a spike;
@@ -19,9 +20,11 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Change of the innovation that is a jump beside its standard deviation, Pa, and by the change of the expectation.
+/// Change of the innovation that is a jump beside its standard deviation, Pa, and by the change of the expectation,
 const JUMP_PA: f64 = 0.15e5;
 const JUMP_PER_CHANGE: f64 = 0.2;
+/// and by the change of the thermometers, Pa/K.
+const JUMP_PER_K: f64 = 0.5e5;
 /// Interval beyond which two innovations are not compared, s.
 const LONGEST_INTERVAL_S: f64 = 900.0;
 /// Samples within which a spike comes back.
@@ -78,8 +81,15 @@ struct Innovated {
 }
 
 impl JumpWatch {
-    /// Take in a reading, Pa, with its innovation and its standard deviation, Pa; the innovation before it if this one is a jump.
-    pub fn notice(&mut self, time_s: f64, reading_pa: f64, innovation: (f64, f64)) -> Option<f64> {
+    /// Take in a reading, Pa, with its innovation and its standard deviation, Pa, and the smaller change of two thermometers since the
+    /// last one, K; the innovation before it if this one is a jump.
+    pub fn notice(
+        &mut self,
+        time_s: f64,
+        reading_pa: f64,
+        innovation: (f64, f64),
+        warmed_k: f64,
+    ) -> Option<f64> {
         let (innovation_pa, sd_pa) = innovation;
         if !(reading_pa.is_finite() && innovation_pa.is_finite()) {
             return None;
@@ -90,7 +100,10 @@ impl JumpWatch {
             return None;
         }
         let expected = |of: &Innovated| of.reading_pa - of.innovation_pa;
-        let limit_pa = JUMP_PA + sd_pa + JUMP_PER_CHANGE * (expected(&now) - expected(&last)).abs();
+        let limit_pa = JUMP_PA
+            + sd_pa
+            + JUMP_PER_CHANGE * (expected(&now) - expected(&last)).abs()
+            + JUMP_PER_K * warmed_k;
         ((innovation_pa - last.innovation_pa).abs() > limit_pa).then_some(last.innovation_pa)
     }
 
@@ -237,14 +250,14 @@ mod tests {
         for minute in 0..100 {
             let t = MINUTE_S * f64::from(minute);
             assert_eq!(
-                watch.notice(t, 180e5 + 3e4 * f64::from(minute), (2e4 * f64::from(minute), 1e4)),
+                watch.notice(t, 180e5 + 3e4 * f64::from(minute), (2e4 * f64::from(minute), 1e4), 0.0),
                 None
             );
         }
-        assert_eq!(watch.notice(6000.0, 210e5 - 5e4, (198e4 - 5e4, 1e4)), Some(198e4));
+        assert_eq!(watch.notice(6000.0, 210e5 - 5e4, (198e4 - 5e4, 1e4), 0.0), Some(198e4));
         watch.forget();
-        assert_eq!(watch.notice(6060.0, 100e5, (-80e5, 1e4)), None);
+        assert_eq!(watch.notice(6060.0, 100e5, (-80e5, 1e4), 0.0), None);
         // A pressure that was expected to rise by 2 bar may be 0.6 bar beside it.
-        assert_eq!(watch.notice(6120.0, 102.6e5, (-79.4e5, 1e4)), None);
+        assert_eq!(watch.notice(6120.0, 102.6e5, (-79.4e5, 1e4), 0.0), None);
     }
 }

@@ -3,7 +3,6 @@ use serde::{Deserialize, Serialize};
 
 use super::alarm::{AlarmEvent, AlarmInputs, AlarmPanel};
 use super::contents::Tangent;
-use super::evidence::Evidence;
 use super::health::SensorWatch;
 use super::intake::{Intake, Row, Taken};
 use super::jump::{Cause, Examination, JumpWatch};
@@ -21,6 +20,7 @@ use crate::estimator::observer::{
 };
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
+use crate::evidence::{Evidence, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K};
 
 /// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
@@ -45,6 +45,7 @@ pub struct Monitor {
     settings: MonitorSettings,
     contents: Contents,
     limits: LimitMasses,
+    thresholds: Thresholds,
     full_pa: f64,
     roles: Roles,
     fingerprint: Fingerprint,
@@ -138,7 +139,7 @@ impl Monitor {
             examined: None,
             rewind: Rewind::default(),
             leak: LeakState::default(),
-            evidence: Evidence::default(),
+            evidence: Evidence::try_new(&settings.observer)?,
             lost_across: false,
             waiting: Vec::new(),
             panel: AlarmPanel::default(),
@@ -155,6 +156,7 @@ impl Monitor {
         };
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
+            thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
             roles: Roles::of(sensors),
             fingerprint: state::fingerprint(&(vessel, sensors, settings)),
@@ -334,7 +336,12 @@ impl Monitor {
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
         let innovation = self.observer.innovations()[pressure];
         let (innovation_pa, sd_pa) = (innovation.nu, innovation.s.sqrt());
-        let jump = self.state.jumps.notice(time_s, self.usable[pressure], (innovation_pa, sd_pa));
+        let jump = self.state.jumps.notice(
+            time_s,
+            self.usable[pressure],
+            (innovation_pa, sd_pa),
+            self.state.pair.moved_k(),
+        );
         if let (Some(before_pa), Some(before_kg)) = (jump, before_kg)
             && estimate.quality != Quality::Restarted
         {
@@ -433,7 +440,7 @@ impl Monitor {
     }
 
     fn forget_masses(&mut self) {
-        self.state.evidence.restart();
+        self.state.evidence.forget();
         if self.state.leak.found().is_none() {
             self.state.leak.begin_anew();
         }
@@ -498,7 +505,9 @@ impl Monitor {
         self.leaks.clear();
         self.leaks.extend(self.observer.leaks());
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
-        let evidence = self.state.evidence.update(time_s, &self.leaks, estimate);
+        let statistics = self.state.evidence.update(estimate, &self.leaks);
+        let alarm = self.thresholds.alarm(&statistics).is_some();
+        let calm = self.thresholds.is_calm(&statistics);
         let lost_across = std::mem::take(&mut self.state.lost_across);
         let (Some(free), Some(slow)) = (self.leaks.last(), self.leaks.get(1)) else { return Ok(()) };
         let look = Look {
@@ -507,8 +516,8 @@ impl Monitor {
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
             error: &self.settings.mass_error,
-            alarm: evidence.alarm || lost_across,
-            calm: evidence.calm && !lost_across,
+            alarm: alarm || lost_across,
+            calm: calm && !lost_across,
             over_after_s: self.settings.leak_over_after_s,
         };
         match self.state.leak.step(&look) {

@@ -8,7 +8,7 @@
 //! | [`health`], [`thermometers`] | readings that are none, stand still or have an offset that jumped |
 //! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
 //! | [`jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
-//! | evidence | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
+//! | [`crate::evidence`] | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
 //! | [`onset`] | since when, how fast, how much, with intervals |
 //! | outlook | the time left and the reaction that is due ([`crate::prognosis`]) |
 //! | [`alarm`] | what must be dealt with, in the words of OPC UA Part 9 |
@@ -21,7 +21,6 @@
 pub mod alarm;
 mod contents;
 mod event;
-mod evidence;
 pub mod health;
 pub mod intake;
 pub mod jump;

@@ -33,6 +33,8 @@ pub enum Lonely {
 /// Two thermometers on one cylinder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
+    /// Smaller change of the two at the last sample, K.
+    moved_k: f64,
     last: Option<(f64, [f64; 2])>,
     suspect: Option<Suspect>,
     /// Times of the last lonely jumps of each, s.
@@ -51,13 +53,20 @@ struct Suspect {
 }
 
 impl Pair {
+    /// Smaller change of the two at the last sample, K.
+    pub fn moved_k(&self) -> f64 {
+        self.moved_k
+    }
+
     /// Take in both readings, K.
     pub fn update(&mut self, time_s: f64, readings: [f64; 2]) -> Option<Lonely> {
         if readings.iter().any(|reading| !reading.is_finite()) {
-            (self.last, self.suspect) = (None, None);
+            (self.last, self.suspect, self.moved_k) = (None, None, 0.0);
             return None;
         }
         let last = self.last.replace((time_s, readings));
+        self.moved_k = last
+            .map_or(0.0, |(_, before)| (readings[0] - before[0]).abs().min((readings[1] - before[1]).abs()));
         if let Some(suspect) = &mut self.suspect {
             let apart = readings[suspect.which] - readings[1 - suspect.which] - suspect.before_k;
             suspect.samples += 1;

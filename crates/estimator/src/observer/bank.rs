@@ -244,9 +244,13 @@ impl Bank {
         }
     }
 
-    /// Free mass and gas temperature of everything known about them.
+    /// Free mass and gas temperature of everything known about them, and forget the leak rate.
     pub fn open(&mut self, cylinder: &Cylinder) {
+        let leak = cylinder.state_map().leak;
         for index in 0..self.members.len() {
+            self.members[index].x[leak] = 0.0;
+            let prior_sd_kg_s = self.members[index].hypothesis.rate.prior_sd;
+            self.decorrelate_and_set(index, leak, prior_sd_kg_s * prior_sd_kg_s);
             for (state, variance) in freed(cylinder.state_map()) {
                 self.decorrelate_and_set(index, state, variance);
             }

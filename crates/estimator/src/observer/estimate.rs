@@ -70,4 +70,6 @@ pub struct Leak {
     pub mass_sd_kg: f64,
     /// Covariance of mass and leak rate, kg²/s.
     pub covariance_kg2_s: f64,
+    /// Whether it was out of the question at this sample and began anew from the freest member.
+    pub begun_anew: bool,
 }

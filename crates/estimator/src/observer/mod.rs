@@ -98,6 +98,8 @@ pub struct Observer {
     reference_x: Vec<f64>,
     /// Mass of each member at the present sample.
     masses: Vec<Moments>,
+    /// Which members began anew at the present sample.
+    anew: Vec<bool>,
     /// The readings of the present sample without the faulty ones.
     usable: Vec<f64>,
 }
@@ -134,6 +136,7 @@ impl Observer {
             freest: freest(&settings.bank),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
+            anew: vec![false; settings.bank.len()],
             cylinder,
         })
     }
@@ -230,8 +233,10 @@ impl Observer {
         let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
         let freest = self.freest;
         self.bank.write_moments(mass, &mut self.masses);
+        self.anew.fill(false);
         for index in (0..self.masses.len()).filter(|&index| index != freest) {
             if Belief::of(self.masses[index], self.masses[freest]).is_out_of_the_question() {
+                self.anew[index] = true;
                 self.bank.begin_anew(index, freest, (mass, leak));
                 self.masses[index] = self.masses[freest];
             }
@@ -287,7 +292,8 @@ impl Observer {
         self.bank.is_possible(&self.cylinder)
     }
 
-    /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends.
+    /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends, and what was known of a
+    /// leak is forgotten, since the cylinder may be another one.
     pub fn begin_exchange(&mut self) {
         self.clock.exchange = Exchange::Open;
         self.clock.reference_mass_kg = None;
@@ -402,6 +408,7 @@ impl Observer {
                 mass_kg,
                 mass_sd_kg: mass_variance.sqrt(),
                 covariance_kg2_s: self.bank.covariance_of(index, states.mass, states.leak),
+                begun_anew: self.anew[index],
             }
         };
         (0..self.bank.members.len()).map(of)

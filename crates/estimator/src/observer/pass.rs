@@ -8,7 +8,7 @@ use crate::filter::dense::add_product;
 #[derive(Clone, Debug)]
 pub(super) struct Pass {
     pub step: PassStep,
-    /// Whether mass and gas temperature were freed before the sample's readings, and before each of them.
+    /// Whether mass, gas temperature and leak rate were freed before the sample's readings, and mass and gas temperature before each of them.
     pub opened: bool,
     pub opened_before: Vec<bool>,
     /// Whether the member began anew after the readings: nothing links it with what it was.

@@ -238,7 +238,7 @@ fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States)
         }
     }
     if pass.opened {
-        freed.iter().for_each(|&state| backward.forget(state));
+        freed.iter().chain([&states.leak]).for_each(|&state| backward.forget(state));
     }
     for (state, &factor) in pass.relaxed.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
         backward.scale(state, factor);

@@ -29,6 +29,11 @@ pub enum Course {
         /// How long, d.
         days: f64,
     },
+    /// A year and more under a rail vehicle, from any day of the year on, with summer and winter.
+    RailwayYear {
+        /// How long, d.
+        days: f64,
+    },
     /// Railway operation, then, settled at its start temperature, another course.
     Learnt {
         /// Railway operation before, d.
@@ -36,6 +41,15 @@ pub enum Course {
         /// What follows.
         then: Box<Course>,
     },
+}
+
+/// Which climate a railway course has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Climate {
+    /// Weeks of winter.
+    Winter,
+    /// All seasons.
+    Seasons,
 }
 
 /// Air temperature of a chamber course: rest at `start`, then the change, then rest.
@@ -57,8 +71,8 @@ impl Course {
         Self::Learnt { days: 10.0, then: Box::new(self) }
     }
 
-    /// A course by its name: `scenario1` to `scenario4`, `tunnel` or `week`, each with or without `-learnt`;
-    /// `days` is the length of the weeks, d.
+    /// A course by its name: `scenario1` to `scenario4`, `tunnel`, `week` or `year`, each with or without `-learnt`;
+    /// `days` is the length of weeks and years, d.
     pub fn named(name: &str, days: f64) -> Option<Self> {
         if let Some(name) = name.strip_suffix("-learnt") {
             return Self::named(name, days).map(Self::learnt);
@@ -70,6 +84,7 @@ impl Course {
             "scenario4" => Self::Scenario4,
             "tunnel" => Self::Tunnel,
             "week" => Self::RailwayWeeks { days },
+            "year" => Self::RailwayYear { days },
             _ => return None,
         })
     }
@@ -83,6 +98,7 @@ impl Course {
             Self::Scenario4 => "scenario4".into(),
             Self::Tunnel => "tunnel".into(),
             Self::RailwayWeeks { .. } => "week".into(),
+            Self::RailwayYear { .. } => "year".into(),
             Self::Learnt { then, .. } => format!("{}-learnt", then.name()),
         }
     }
@@ -115,9 +131,18 @@ impl Course {
     /// Railway operation at the beginning, s.
     pub(super) fn railway_s(&self) -> f64 {
         match self {
-            Self::RailwayWeeks { days } => days * DAY_S,
+            Self::RailwayWeeks { days } | Self::RailwayYear { days } => days * DAY_S,
             Self::Learnt { days, then } => days * DAY_S + then.railway_s(),
             _ => 0.0,
+        }
+    }
+
+    /// The climate of its railway operation.
+    pub(super) fn climate(&self) -> Climate {
+        match self {
+            Self::RailwayYear { .. } => Climate::Seasons,
+            Self::Learnt { then, .. } => then.climate(),
+            _ => Climate::Winter,
         }
     }
 
@@ -140,7 +165,7 @@ impl Course {
             Self::Scenario3 => Some(ramp(10.0, 60.0, 5.0)),
             Self::Scenario4 => Some(ramp(60.0, 28.0, 14.0)),
             Self::Tunnel => Some(Chamber { lag_s: 6.0, ..jump(-10.0, 35.0, 3.0) }),
-            Self::RailwayWeeks { .. } => None,
+            Self::RailwayWeeks { .. } | Self::RailwayYear { .. } => None,
             Self::Learnt { then, .. } => then.chamber(),
         }
     }

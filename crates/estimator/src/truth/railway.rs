@@ -1,9 +1,12 @@
-//! Winter weeks under a rail vehicle, drawn from a seed.
+//! Winter weeks, or whole years, under a rail vehicle, drawn from a seed.
 //!
 //! Air outside tunnels: `mean + weather + diurnal`, mean -8 to 8 °C, weather an Ornstein-Uhlenbeck process of 4 K and
 //! 2 d, diurnal cosine of 3 to 7 K either way with its top at 15 h. Tunnels: 3 to 6 a day in service (5 to 22 h), 32 to 40 °C,
 //! 20 to 35 min, entered and left with a lag of 6 or 20 s. Film by convection: 4 W/(m² K) parked, 10 to 30 on a trip.
+//! In years the mean is `annual - swing cos(2 pi (day - coldest)/365.25)`, annual mean 1 to 6 °C, swing 14 to 18 K: with weather and
+//! day about -30 to 35 °C, beyond class T1 of EN 50125-1 (-25 to 40 °C) on the cold side.
 //! Sun from 8 to 16 h in patches, up to 500 W/m², which is about 10 W on the shoulder of the 20 L cylinder.
+use super::course::Climate;
 use super::random::{OrnsteinUhlenbeck, Purpose, Random};
 
 const DAY_S: f64 = 86_400.0;
@@ -11,6 +14,9 @@ const HOUR_S: f64 = 3600.0;
 const MINUTE_S: f64 = 60.0;
 
 const MEAN_DEGC: (f64, f64) = (-8.0, 8.0);
+const YEAR_S: f64 = 365.25 * DAY_S;
+const ANNUAL_DEGC: (f64, f64) = (1.0, 6.0);
+const SWING_K: (f64, f64) = (14.0, 18.0);
 const DIURNAL_K: (f64, f64) = (3.0, 7.0);
 const WARMEST_S: f64 = 15.0 * HOUR_S;
 const WEATHER_K: f64 = 4.0;
@@ -81,6 +87,8 @@ impl Trapezoid {
 /// Drawn weeks; every quantity as a function of time, s from the first midnight.
 pub(super) struct Railway {
     mean_degc: f64,
+    /// Amplitude of the year, K, and its coldest time, s.
+    year: (f64, f64),
     diurnal_k: f64,
     weather: OrnsteinUhlenbeck,
     passages: Vec<Passage>,
@@ -89,13 +97,19 @@ pub(super) struct Railway {
 }
 
 impl Railway {
-    pub fn draw(seed: u64, duration_s: f64) -> Self {
+    pub fn draw(seed: u64, duration_s: f64, kind: Climate) -> Self {
         let days = (duration_s / DAY_S).ceil() as usize;
         let mut climate = Random::new(seed, Purpose::Climate);
         let weather = &mut Random::new(seed, Purpose::Weather);
+        let seasons = kind == Climate::Seasons;
+        let mean_degc = climate.uniform(if seasons { ANNUAL_DEGC } else { MEAN_DEGC });
+        let diurnal_k = climate.uniform(DIURNAL_K);
+        let year =
+            if seasons { (climate.uniform(SWING_K), climate.uniform((0.0, YEAR_S))) } else { (0.0, 0.0) };
         Self {
-            mean_degc: climate.uniform(MEAN_DEGC),
-            diurnal_k: climate.uniform(DIURNAL_K),
+            mean_degc,
+            year,
+            diurnal_k,
             weather: OrnsteinUhlenbeck::draw(weather, WEATHER_TIME_S, HOUR_S, duration_s),
             passages: passages(seed, days),
             trips: trips(seed, days),
@@ -106,27 +120,39 @@ impl Railway {
     /// Air temperature around the cylinder without turbulence, °C.
     pub fn air_degc(&self, t_s: f64) -> f64 {
         let outside = self.outside_degc(t_s);
-        self.passages
+        self.passages_at(t_s)
             .iter()
             .fold(outside, |air, passage| air + passage.share(t_s) * (passage.air_degc - outside))
     }
 
     fn outside_degc(&self, t_s: f64) -> f64 {
         let phase = std::f64::consts::TAU * (t_s - WARMEST_S) / DAY_S;
-        self.mean_degc + WEATHER_K * self.weather.at(t_s) + self.diurnal_k * phase.cos()
+        let (swing_k, coldest_s) = self.year;
+        let season = std::f64::consts::TAU * (t_s - coldest_s) / YEAR_S;
+        self.mean_degc - swing_k * season.cos()
+            + WEATHER_K * self.weather.at(t_s)
+            + self.diurnal_k * phase.cos()
+    }
+
+    /// The passages that can be felt at a time: all others add nothing.
+    fn passages_at(&self, t_s: f64) -> &[Passage] {
+        let longest_s = TUNNEL_STAY_S.1 + APPROACH[APPROACH.len() - 1] * TUNNEL_LAGS_S[1] + 1.0;
+        let from = self.passages.partition_point(|passage| passage.enter_s < t_s - longest_s);
+        let to = self.passages.partition_point(|passage| passage.enter_s <= t_s);
+        &self.passages[from..to.max(from)]
     }
 
     /// Film by convection without gusts, W/(m² K).
     pub fn film_w_m2_k(&self, t_s: f64) -> f64 {
-        FILM_PARKED_W_M2_K + self.trips.iter().map(|trip| trip.at(t_s)).sum::<f64>()
+        FILM_PARKED_W_M2_K + at_work(&self.trips, t_s).map(|trip| trip.at(t_s)).sum::<f64>()
     }
 
     /// Irradiance, W/m²; none in tunnels.
     pub fn irradiance_w_m2(&self, t_s: f64) -> f64 {
         let of_day = (t_s.rem_euclid(DAY_S) - SUN_S.0) / (SUN_S.1 - SUN_S.0);
         let arch = (4.0 * of_day * (1.0 - of_day)).max(0.0);
-        let light: f64 = self.sun.iter().map(|patch| patch.at(t_s)).sum();
-        let tunnel: f64 = self.passages.iter().map(|passage| passage.share(t_s)).sum();
+        let light: f64 = at_work(&self.sun, t_s).map(|patch| patch.at(t_s)).sum();
+        let tunnel: f64 = self.passages_at(t_s).iter().map(|passage| passage.share(t_s)).sum();
         arch * light * (1.0 - tunnel).max(0.0)
     }
 
@@ -135,6 +161,12 @@ impl Railway {
         let corners = self.trips.iter().chain(&self.sun).flat_map(|trapezoid| trapezoid.corners_s);
         self.passages.iter().flat_map(Passage::knots_s).chain(corners)
     }
+}
+
+/// Those of stretches in the order of time that may not be zero at a time.
+fn at_work(stretches: &[Trapezoid], t_s: f64) -> impl Iterator<Item = &Trapezoid> {
+    let from = stretches.partition_point(|stretch| stretch.corners_s[3] < t_s);
+    stretches[from..].iter().take_while(move |stretch| stretch.corners_s[0] <= t_s)
 }
 
 /// Passages through tunnels in the first days: one in each equal part of the service day, so that none overlap.

@@ -144,7 +144,7 @@ fn columns(truth: &Truth, sensors: &[&str]) -> Vec<usize> {
 /// Start of the samples that matter: the commissioning hour, or the judged part of railway weeks.
 fn commissioning_s(truth: &Truth) -> f64 {
     match &truth.course {
-        Course::RailwayWeeks { days } if *days > 10.0 => LEARNING_S,
+        Course::RailwayWeeks { days } | Course::RailwayYear { days } if *days > 10.0 => LEARNING_S,
         course => course.opening_s(),
     }
 }
@@ -168,7 +168,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 fn summarise(truth: &Truth, pairs: &[Pair]) -> Score {
     let change_s = match truth.course {
-        Course::RailwayWeeks { .. } => f64::NEG_INFINITY,
+        Course::RailwayWeeks { .. } | Course::RailwayYear { .. } => f64::NEG_INFINITY,
         _ => truth.course.change_s(),
     };
     let judged: Vec<&Pair> = pairs.iter().filter(|pair| pair.time_s >= change_s).collect();

@@ -3,7 +3,8 @@
 //! On top of a course's own air come turbulence (0.4 K, 2 min), gusts of the film (10 %, 2 min) and a difference between
 //! the air at the top and at the bottom (0.5 K, 1 h), all Ornstein-Uhlenbeck. The surface radiates to surroundings that follow
 //! the air of the railway with a lag of 30 min, and the air of the chamber at once. The chamber's film is 16 W/(m² K) by
-//! convection, about 20 with radiation. All signals are linear between the same knots, 2 min apart or closer.
+//! convection, about 20 with radiation. All signals are linear between the same knots, 2 min apart or closer
+//! ([`super::TruthSettings::weather_spacing_s`] spaces them wider; the disturbances keep their variance).
 use cylwatch_thermal::scenario::{
     AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings,
 };
@@ -14,7 +15,8 @@ use super::random::{OrnsteinUhlenbeck, Purpose, Random};
 use crate::EstimatorError;
 
 const ZERO_DEGC_K: f64 = 273.15;
-const SPACING_S: f64 = 120.0;
+/// Spacing of the knots of turbulence, gusts and axial difference, s.
+pub(super) const SPACING_S: f64 = 120.0;
 const TURBULENCE_K: f64 = 0.4;
 const TURBULENCE_TIME_S: f64 = 120.0;
 const GUST: f64 = 0.1;
@@ -49,9 +51,9 @@ struct Disturbances {
 }
 
 impl Disturbances {
-    fn draw(seed: u64, duration_s: f64) -> Self {
+    fn draw(seed: u64, duration_s: f64, spacing_s: f64) -> Self {
         let process = |purpose, time_s| {
-            OrnsteinUhlenbeck::draw(&mut Random::new(seed, purpose), time_s, SPACING_S, duration_s)
+            OrnsteinUhlenbeck::draw(&mut Random::new(seed, purpose), time_s, spacing_s, duration_s)
         };
         Self {
             turbulence: process(Purpose::Turbulence, TURBULENCE_TIME_S),
@@ -76,12 +78,18 @@ impl Disturbances {
 /// # Errors
 /// None for a course of positive length; otherwise the thermal model's.
 pub fn draw_weather(course: &Course, seed: u64) -> Result<Scenario, EstimatorError> {
+    draw_spaced(course, seed, SPACING_S)
+}
+
+/// The same with other knots, s apart.
+pub(super) fn draw_spaced(course: &Course, seed: u64, spacing_s: f64) -> Result<Scenario, EstimatorError> {
     let duration_s = course.duration_s();
-    let mut skies = railway(course, seed);
+    let grid = Grid(spacing_s);
+    let mut skies = railway(course, seed, grid);
     if let Some(chamber) = course.chamber() {
-        add_chamber(&mut skies, course, &chamber);
+        add_chamber(&mut skies, course, &chamber, grid);
     }
-    let disturbances = Disturbances::draw(seed, duration_s);
+    let disturbances = Disturbances::draw(seed, duration_s, spacing_s);
     for sky in &mut skies {
         *sky = disturbances.apply(*sky);
     }
@@ -124,13 +132,14 @@ fn surroundings(skies: &[Sky]) -> Result<Surroundings, EstimatorError> {
 }
 
 /// Knots of the railway part, undisturbed; none without one.
-fn railway(course: &Course, seed: u64) -> Vec<Sky> {
+fn railway(course: &Course, seed: u64, grid: Grid) -> Vec<Sky> {
     let end_s = course.railway_s();
     if end_s == 0.0 {
         return Vec::new();
     }
-    let weeks = Railway::draw(seed, end_s);
-    let mut knots: Vec<f64> = grid(0.0, end_s).chain(weeks.knots_s().filter(|&t| t < end_s)).collect();
+    let weeks = Railway::draw(seed, end_s, course.climate());
+    let mut knots: Vec<f64> =
+        grid.between(0.0, end_s).chain(weeks.knots_s().filter(|&t| t < end_s)).collect();
     knots.sort_by(f64::total_cmp);
     knots.dedup();
     let mut lag = Lag { t_s: 0.0, input: weeks.air_degc(0.0), output: weeks.air_degc(0.0) };
@@ -150,16 +159,22 @@ fn railway(course: &Course, seed: u64) -> Vec<Sky> {
         .collect()
 }
 
-/// Evenly spaced times of the disturbances' knots, ends included.
-fn grid(from_s: f64, to_s: f64) -> impl Iterator<Item = f64> {
-    let (first, last) = ((from_s / SPACING_S).floor() as usize + 1, (to_s / SPACING_S).ceil() as usize);
-    std::iter::once(from_s)
-        .chain((first..last).map(|knot| knot as f64 * SPACING_S))
-        .chain(std::iter::once(to_s))
+/// Knots of the disturbances, s apart.
+#[derive(Clone, Copy)]
+struct Grid(f64);
+
+impl Grid {
+    /// Evenly spaced times, ends included.
+    fn between(self, from_s: f64, to_s: f64) -> impl Iterator<Item = f64> {
+        let (first, last) = ((from_s / self.0).floor() as usize + 1, (to_s / self.0).ceil() as usize);
+        std::iter::once(from_s)
+            .chain((first..last).map(move |knot| knot as f64 * self.0))
+            .chain(std::iter::once(to_s))
+    }
 }
 
 /// Append the transfer to the chamber, the rest, and the chamber's course.
-fn add_chamber(skies: &mut Vec<Sky>, course: &Course, chamber: &Chamber) {
+fn add_chamber(skies: &mut Vec<Sky>, course: &Course, chamber: &Chamber, grid: Grid) {
     let begin_s = course.railway_s();
     let transfer_s = if skies.is_empty() { 0.0 } else { TRANSFER_S };
     let sky = |t_s: f64, degc: f64| Sky {
@@ -174,15 +189,16 @@ fn add_chamber(skies: &mut Vec<Sky>, course: &Course, chamber: &Chamber) {
     if let Some(last) = skies.pop() {
         // From the railway's air, film and surroundings to the chamber's.
         let (from, to) = (last, sky(begin_s + transfer_s, chamber.start_degc));
-        skies.extend(grid(begin_s, begin_s + transfer_s).map(|t_s| between(&from, &to, t_s)));
+        skies.extend(grid.between(begin_s, begin_s + transfer_s).map(|t_s| between(&from, &to, t_s)));
         skies.pop();
     }
-    skies.extend(grid(begin_s + transfer_s, change_s).map(|t_s| sky(t_s, chamber.start_degc)));
+    skies.extend(grid.between(begin_s + transfer_s, change_s).map(|t_s| sky(t_s, chamber.start_degc)));
     if chamber.ramp_s > 0.0 || chamber.lag_s > 0.0 {
         // The change begins without a jump.
         skies.pop();
     }
-    let mut after: Vec<f64> = grid(change_s, end_s)
+    let mut after: Vec<f64> = grid
+        .between(change_s, end_s)
         .chain(APPROACH.map(|n| change_s + n * chamber.lag_s))
         .chain([change_s + chamber.ramp_s])
         .collect();

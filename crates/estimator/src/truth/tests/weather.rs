@@ -1,4 +1,5 @@
 //! Railway weeks and chamber courses against what is stated for them.
+use super::super::course::Climate;
 use super::super::railway::Railway;
 use super::super::{Course, Passage, draw_weather, passages};
 use super::{assert_uniform, mean, sd};
@@ -17,7 +18,7 @@ fn mean_air_is_uniform_and_the_days_swing_by_three_to_seven_kelvin_with_their_to
     let days = 60;
     let (mut means, mut swings, mut quadratures) = (Vec::new(), Vec::new(), Vec::new());
     for seed in 0..200 {
-        let railway = Railway::draw(seed, days as f64 * DAY_S);
+        let railway = Railway::draw(seed, days as f64 * DAY_S, Climate::Winter);
         let tunnels = passages(seed, days);
         // Half a day apart the diurnal parts cancel in the sum, and everything slow in the difference.
         let at = |hour: f64, sign: f64| {
@@ -55,7 +56,7 @@ fn weather_is_of_four_kelvin_and_two_days() {
     let (days, seeds) = (400_u32, 20_u32);
     let (mut variance, mut neighbours) = (0.0, 0.0);
     for seed in 0..seeds {
-        let railway = Railway::draw(u64::from(seed), f64::from(days) * DAY_S);
+        let railway = Railway::draw(u64::from(seed), f64::from(days) * DAY_S, Climate::Winter);
         let air: Vec<f64> =
             (0..days).map(|day| railway.air_degc(f64::from(day) * DAY_S + 3.0 * HOUR_S)).collect();
         variance += super::covariance(&air, &air) / f64::from(seeds);
@@ -95,7 +96,7 @@ fn tunnels_keep_to_their_number_hours_temperatures_and_stays() {
 
 #[test]
 fn air_follows_into_a_tunnel_and_out_of_it_with_its_lag() {
-    let railway = Railway::draw(9, 10.0 * DAY_S);
+    let railway = Railway::draw(9, 10.0 * DAY_S, Climate::Winter);
     let outside_degc = |p: &Passage| railway.air_degc(p.enter_s - 1e-6);
     for p in &passages(9, 10) {
         // Within a minute and a half the air outside changes by less than 0.1 K.
@@ -114,7 +115,7 @@ fn air_follows_into_a_tunnel_and_out_of_it_with_its_lag() {
 #[test]
 fn film_is_four_when_parked_and_ten_to_thirty_on_trips() {
     let days = 60;
-    let railway = Railway::draw(2, days as f64 * DAY_S);
+    let railway = Railway::draw(2, days as f64 * DAY_S, Climate::Winter);
     let mut cruises = Vec::new();
     for day in 0..days {
         let at = |hour: f64, minute: usize| {
@@ -147,7 +148,7 @@ fn sun_shines_in_patches_from_eight_to_sixteen_with_a_peak_of_up_to_five_hundred
     let days = 10;
     let (mut peaks, mut lit, mut light) = (Vec::new(), 0, 0);
     for seed in 0..30 {
-        let railway = Railway::draw(seed, days as f64 * DAY_S);
+        let railway = Railway::draw(seed, days as f64 * DAY_S, Climate::Winter);
         for day in 0..days {
             let at = |minute: usize| railway.irradiance_w_m2(day as f64 * DAY_S + minute as f64 * 60.0);
             assert!((0..=480).chain(960..1440).all(|minute| at(minute) == 0.0), "sun at night");
@@ -186,7 +187,7 @@ fn turbulence_gusts_and_the_difference_along_the_height_have_their_deviations() 
     for seed in 0..12 {
         let days = 10.0;
         let scenario = draw_weather(&Course::RailwayWeeks { days }, seed).unwrap();
-        let railway = Railway::draw(seed, days * DAY_S);
+        let railway = Railway::draw(seed, days * DAY_S, Climate::Winter);
         // Nights, where nothing else bends; steps that see every part of the lines between knots alike.
         for t_s in (0..10).flat_map(|day| (0..600).map(move |k| f64::from(day) * DAY_S + f64::from(k) * 27.0))
         {
@@ -216,7 +217,7 @@ fn turbulence_gusts_and_the_difference_along_the_height_have_their_deviations() 
 #[test]
 fn radiation_follows_the_undisturbed_air_with_half_an_hour() {
     let scenario = draw_weather(&Course::RailwayWeeks { days: 1.0 }, 21).unwrap();
-    let railway = Railway::draw(21, DAY_S);
+    let railway = Railway::draw(21, DAY_S, Climate::Winter);
     let mut follows = railway.air_degc(0.0);
     for second in 0..86_400_u32 {
         let t_s = f64::from(second);

@@ -1,0 +1,148 @@
+use super::*;
+use crate::evidence::tail::Tail;
+
+const SECOND: f64 = 1.0 / 3600.0;
+
+fn estimate(time_s: f64, quality: Quality) -> Estimate {
+    Estimate {
+        time_s,
+        gas_mean_k: 288.0,
+        gas_mean_sd_k: 0.1,
+        mass_kg: 4.4,
+        mass_sd_kg: 8e-3,
+        leak_kg_s: 0.0,
+        leak_sd_kg_s: 1e-8,
+        pressure_pa: 2e7,
+        pressure_expected_pa: 2e7,
+        p15_pa: 2e7,
+        quality,
+    }
+}
+
+/// Members of the usual bank whose fastest rate is `z` standard deviations, and whose freest mass misses `missing_g`.
+fn leaks(z: f64, missing_g: f64) -> Vec<Leak> {
+    let leak = |z: f64, missing_g: f64, mass_sd_g: f64| Leak {
+        rate_kg_s: z * 1e-4 * SECOND,
+        sd_kg_s: 1e-4 * SECOND,
+        mass_kg: 4.4 - 1e-3 * missing_g,
+        mass_sd_kg: 1e-3 * mass_sd_g,
+        covariance_kg2_s: 0.0,
+        begun_anew: false,
+    };
+    vec![leak(0.0, 0.0, 8.0), leak(z, 0.0, 6.0), leak(9.0, 0.0, 6.0), leak(0.0, missing_g, 10.0)]
+}
+
+fn evidence() -> Evidence {
+    Evidence::try_new(&observer_settings()).unwrap()
+}
+
+#[test]
+fn low_passes_of_a_steady_rate_are_those_of_the_closed_form() {
+    let mut evidence = evidence();
+    for n in 0..=24 * 60 {
+        evidence.update(&estimate(60.0 * f64::from(n), Quality::Good), &leaks(0.8, 0.0));
+    }
+    let [_, half_day, day, week, _] = evidence.statistics();
+    assert!((half_day - 0.8).abs() < 1e-12);
+    // 24 h in a low-pass of 12 h, and in that of 96 h behind it: 1 - (a e^(-t/a) - b e^(-t/b))/(a - b).
+    let (a, b): (f64, f64) = (96.0, 12.0);
+    assert!((day - 0.8 * (1.0 - (-2.0_f64).exp())).abs() < 1e-12, "{day}");
+    let expected = 0.8 * (1.0 - (a * (-24.0 / a).exp() - b * (-24.0 / b).exp()) / (a - b));
+    assert!((week / expected - 1.0).abs() < 2e-3, "{week} {expected}");
+}
+
+#[test]
+fn a_missing_mass_is_in_standard_deviations_of_the_difference() {
+    let mut evidence = evidence();
+    for n in 0..600 {
+        evidence.update(&estimate(60.0 * f64::from(n), Quality::Good), &leaks(0.0, 24.0));
+    }
+    // 24 g over sqrt(10^2 - 6^2) g = 8 g.
+    assert!((evidence.statistics()[0] - 3.0).abs() < 1e-9, "{:?}", evidence.statistics());
+}
+
+#[test]
+fn a_member_that_begins_anew_does_not_hide_the_mass_it_gave_up() {
+    let mut evidence = evidence();
+    let mut now = leaks(0.0, 48.0);
+    for n in 0..600 {
+        evidence.update(&estimate(60.0 * f64::from(n), Quality::Good), &now);
+    }
+    let before = evidence.statistics()[0];
+    (now[2].mass_kg, now[2].begun_anew) = (now[3].mass_kg, true);
+    evidence.update(&estimate(36_000.0, Quality::Good), &now);
+    assert!((evidence.statistics()[0] - before).abs() < 0.01 * before);
+    now[2].begun_anew = false;
+    for n in 1..600 {
+        evidence.update(&estimate(36_000.0 + 60.0 * f64::from(n), Quality::Good), &now);
+    }
+    assert!(evidence.statistics()[0] < 0.05 * before);
+}
+
+#[test]
+fn an_exchange_of_gas_and_a_restart_leave_no_evidence() {
+    for quality in [Quality::Open, Quality::Restarted] {
+        let mut evidence = evidence();
+        for n in 0..600 {
+            evidence.update(&estimate(60.0 * f64::from(n), Quality::Good), &leaks(2.0, 30.0));
+        }
+        assert!(evidence.statistics().iter().all(|statistic| *statistic > 0.0));
+        evidence.update(&estimate(36_000.0, quality), &leaks(0.0, 0.0));
+        assert!(evidence.statistics().iter().all(|statistic| statistic.abs() < 1e-12));
+    }
+}
+
+#[test]
+fn samples_that_are_not_later_and_foreign_banks_change_nothing() {
+    let mut evidence = evidence();
+    evidence.update(&estimate(0.0, Quality::Good), &leaks(1.0, 5.0));
+    evidence.update(&estimate(60.0, Quality::Good), &leaks(1.0, 5.0));
+    let before = evidence.clone();
+    evidence.update(&estimate(60.0, Quality::Good), &leaks(2.0, 9.0));
+    evidence.update(&estimate(30.0, Quality::Good), &leaks(2.0, 9.0));
+    evidence.update(&estimate(120.0, Quality::Good), &leaks(2.0, 9.0)[..2]);
+    assert_eq!(evidence, before);
+}
+
+#[test]
+fn a_bank_without_the_members_is_refused() {
+    let settings = ObserverSettings::single();
+    assert!(Evidence::try_new(&settings).is_err());
+    let mut settings = observer_settings();
+    settings.bank.truncate(3);
+    settings.bank[0].mass_walk_kg_per_sqrt_s = 0.0;
+    assert!(Evidence::try_new(&settings).is_err());
+}
+
+#[test]
+fn a_pareto_tail_is_found_again_and_extrapolates_as_its_law() {
+    // Quantiles of excesses 0.4 [(1 - p)^-0.1 - 1]/0.1 above 1, on top of nine in ten that stay below.
+    let n = 4000;
+    let quantile = |i: usize| {
+        let p = (i as f64 + 0.5) / n as f64;
+        if p < 0.9 { p / 0.9 } else { 1.0 + 4.0 * ((10.0 * (1.0 - p)).powf(-0.1) - 1.0) }
+    };
+    let largest: Vec<f64> = (0..n).map(quantile).collect();
+    let tail = Tail::fit(&largest, 100.0).unwrap();
+    assert!((tail.shape - 0.1).abs() < 0.03 && (tail.scale - 0.4).abs() < 0.02, "{tail:?}");
+    // One in a million stretches.
+    let expected = 1.0 + 4.0 * (1e5_f64.powf(0.1) - 1.0);
+    assert!((tail.threshold(1e8) / expected - 1.0).abs() < 0.12, "{} {expected}", tail.threshold(1e8));
+    assert!((tail.interval_s / 1000.0 - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn thresholds_rise_with_the_mean_time_and_name_the_scale() {
+    let year_s = 365.25 * 86_400.0;
+    let [one, ten, hundred] = [1.0, 10.0, 100.0].map(|n| Thresholds::for_mean_time_s(n * year_s).unwrap());
+    for scale in Scale::ALL {
+        assert!(one.of(scale) < ten.of(scale) && ten.of(scale) < hundred.of(scale), "{scale:?}");
+    }
+    assert_eq!(ten.alarm(&[0.0; 5]), None);
+    let mut statistics = ten.levels.map(|level| 0.99 * level);
+    assert_eq!(ten.alarm(&statistics), None);
+    statistics[3] = 1.2 * ten.levels[3];
+    statistics[1] = 1.1 * ten.levels[1];
+    assert_eq!(ten.alarm(&statistics), Some(Scale::Week));
+    assert!(Thresholds::for_mean_time_s(0.0).is_err());
+}

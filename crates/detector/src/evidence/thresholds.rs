@@ -1,0 +1,53 @@
+//! From a mean time between false alarms to thresholds.
+//!
+//! The numbers were fitted to leak-free winters of mismatched cylinders under a train:
+//!
+//! `cargo run --release -p cylwatch-detector --example long_run -- FOLDER train`
+use serde::{Deserialize, Serialize};
+
+use super::{Scale, Statistics, Tail, Tails};
+use crate::DetectorError;
+
+/// Tails of the statistics without a leak; see the module's head.
+const USUAL: Tails = Tails([
+    Tail { level: 1.2, interval_s: 4.3e5, scale: 0.30, shape: 0.05 },
+    Tail { level: 0.70, interval_s: 1.7e6, scale: 0.11, shape: 0.0 },
+    Tail { level: 0.38, interval_s: 3.5e6, scale: 0.065, shape: 0.0 },
+    Tail { level: 0.13, interval_s: 1.2e7, scale: 0.03, shape: 0.0 },
+    Tail { level: 0.06, interval_s: 2.6e7, scale: 0.02, shape: 0.0 },
+]);
+
+/// A threshold for each statistic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Thresholds {
+    /// Mean time between false alarms of all statistics together that they stand for, s.
+    pub mean_time_s: f64,
+    /// In the order of [`Scale::ALL`].
+    pub levels: Statistics,
+}
+
+impl Thresholds {
+    /// For a mean time between false alarms, s.
+    ///
+    /// # Errors
+    /// The time is not positive.
+    pub fn for_mean_time_s(mean_time_s: f64) -> Result<Self, DetectorError> {
+        USUAL.thresholds(mean_time_s)
+    }
+
+    /// Threshold of a scale.
+    pub fn of(&self, scale: Scale) -> f64 {
+        self.levels[scale as usize]
+    }
+
+    /// The scale whose statistic exceeds its threshold farthest, relative to it; `None` without an alarm.
+    pub fn alarm(&self, statistics: &Statistics) -> Option<Scale> {
+        let part = |scale: &Scale| statistics[*scale as usize] / self.of(*scale);
+        Scale::ALL.into_iter().filter(|scale| part(scale) >= 1.0).max_by(|a, b| part(a).total_cmp(&part(b)))
+    }
+
+    /// Whether nothing speaks for a leak any more: every statistic is below half of its threshold.
+    pub fn is_calm(&self, statistics: &Statistics) -> bool {
+        Scale::ALL.into_iter().all(|scale| statistics[scale as usize] < 0.5 * self.of(scale))
+    }
+}
