@@ -27,6 +27,8 @@ pub enum Step {
 pub struct Arrival {
     /// Time as stamped, s.
     pub stamp_s: f64,
+    /// Time at which it was measured, s: what the stamp would be with a good clock.
+    pub measured_s: f64,
     /// Readings, SI, NaN where missing.
     pub readings: Vec<f64>,
     /// Whether the row says that it is replayed from a store.
@@ -110,7 +112,7 @@ impl Step {
 impl Arrival {
     /// A row that comes when it is stamped.
     pub fn live(stamp_s: f64, readings: Vec<f64>) -> Self {
-        Self { stamp_s, readings, historical: false }
+        Self { stamp_s, measured_s: stamp_s, readings, historical: false }
     }
 }
 
