@@ -97,6 +97,14 @@ pub enum DetectorError {
         /// Number of readings.
         found: usize,
     },
+    /// A record has no sensor of that name.
+    #[error("there is no sensor `{sensor}`: there are {known}")]
+    NoSuchSensor {
+        /// Name that was asked for.
+        sensor: String,
+        /// Names that there are.
+        known: String,
+    },
     /// An alarm is in a state in which something cannot be done to it.
     #[error("the alarm cannot be {act}: {reason}")]
     AlarmState {

@@ -7,6 +7,7 @@ mod delay;
 mod equivalence;
 mod evidence;
 mod failure_alarms;
+mod fault;
 mod intake;
 mod likelihood_ratio;
 mod monitor;

@@ -6,7 +6,9 @@
 //! ([`generate`]). The same seed gives the same truth; a longer course begins like a shorter one.
 mod course;
 mod cylinder;
+pub mod disturbance;
 mod file;
+pub mod process;
 mod railway;
 mod random;
 mod readings;
@@ -26,6 +28,7 @@ pub use course::Course;
 pub use cylinder::{
     Cylinder, CylinderParameters, PressureSensor, SensorParameters, TemperatureSensor, draw_cylinder,
 };
+pub use process::{Happenings, Process};
 pub use railway::{Passage, passages};
 pub use weather::draw_weather;
 
@@ -167,7 +170,21 @@ pub fn generate_with(
     sample_time_s: f64,
     settings: &TruthSettings,
 ) -> Result<Truth, EstimatorError> {
-    let (cylinder, trajectory) = simulate_truth(course, seed, sample_time_s, settings)?;
+    generate_through(course, seed, sample_time_s, settings, &Happenings::default())
+}
+
+/// The truth of a course and a seed with what happens on top of it.
+///
+/// # Errors
+/// As [`generate_with`].
+pub fn generate_through(
+    course: &Course,
+    seed: u64,
+    sample_time_s: f64,
+    settings: &TruthSettings,
+    happenings: &Happenings,
+) -> Result<Truth, EstimatorError> {
+    let (cylinder, trajectory) = simulate_through(course, seed, sample_time_s, settings, happenings)?;
     let learning_s = course.opening_s();
     let every = ((LEARNING_SAMPLE_S / sample_time_s).round() as usize).max(1);
     let kept = |&index: &usize| trajectory.time_s[index] >= learning_s || index % every == 0;
@@ -185,11 +202,26 @@ pub fn simulate_truth(
     sample_time_s: f64,
     settings: &TruthSettings,
 ) -> Result<(Cylinder, Trajectory), EstimatorError> {
+    simulate_through(course, seed, sample_time_s, settings, &Happenings::default())
+}
+
+/// The same with what happens on top of the course.
+///
+/// # Errors
+/// As [`simulate_truth`].
+pub fn simulate_through(
+    course: &Course,
+    seed: u64,
+    sample_time_s: f64,
+    settings: &TruthSettings,
+    happenings: &Happenings,
+) -> Result<(Cylinder, Trajectory), EstimatorError> {
     let cylinder = draw_cylinder(&presets::load(&settings.vessel)?, settings, seed)?;
     let mut scenario =
         cylinder.parameters.expose(weather::draw_spaced(course, seed, settings.weather_spacing_s)?)?;
     scenario.sample_time_s = sample_time_s;
     scenario.flows.extend(settings.leak.map(flow));
+    happenings.apply(&cylinder.vessel, &mut scenario)?;
     let simulation = SimulationSettings {
         relative_tolerance: settings.relative_tolerance,
         ..SimulationSettings::default()

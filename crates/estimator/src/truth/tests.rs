@@ -2,6 +2,7 @@
 mod cylinder;
 mod file;
 mod generated;
+mod happenings;
 mod random;
 mod readings;
 mod weather;

@@ -236,14 +236,19 @@ impl Chamber {
 }
 
 /// First-order lag of an input that is linear between the times it is followed to.
-struct Lag {
+pub(super) struct Lag {
     t_s: f64,
     input: f64,
     output: f64,
 }
 
 impl Lag {
-    fn follow(&mut self, t_s: f64, input: f64) -> f64 {
+    /// At rest at zero.
+    pub(super) fn at_rest(t_s: f64) -> Self {
+        Self { t_s, input: 0.0, output: 0.0 }
+    }
+
+    pub(super) fn follow(&mut self, t_s: f64, input: f64) -> f64 {
         let dt_s = t_s - self.t_s;
         if dt_s > 0.0 {
             let behind = RADIATION_LAG_S * (input - self.input) / dt_s;
