@@ -24,6 +24,8 @@ pub struct State {
     pub origin: Option<String>,
     /// Time of the last row that was taken in, as it was stamped, s; NaN: none.
     pub last_stamp_s: f64,
+    /// Times of the first rows of the last logs, s: a log that begins with one of them is that log again.
+    pub log_starts_s: Vec<f64>,
     /// Pressure of the full cylinder at 15 °C, Pa.
     pub full_pa: f64,
     /// The last output.
@@ -157,6 +159,7 @@ mod tests {
             identity: Identity(vec![("vessel".into(), "a".into()), ("a limit of".into(), "160 bar".into())]),
             origin: None,
             last_stamp_s: f64::NAN,
+            log_starts_s: vec![0.0],
             full_pa: 200e5,
             last: None,
             monitor: (0..200).collect(),
