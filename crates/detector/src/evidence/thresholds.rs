@@ -10,9 +10,9 @@ use crate::DetectorError;
 
 /// Tails of the statistics without a leak; see the module's head.
 const USUAL: Tails = Tails([
-    Tail { level: 1.2, interval_s: 4.3e5, scale: 0.30, shape: 0.05 },
-    Tail { level: 0.70, interval_s: 1.7e6, scale: 0.11, shape: 0.0 },
-    Tail { level: 0.38, interval_s: 3.5e6, scale: 0.065, shape: 0.0 },
+    Tail { level: 1.5, interval_s: 4.3e5, scale: 0.35, shape: 0.0 },
+    Tail { level: 0.75, interval_s: 1.7e6, scale: 0.13, shape: 0.0 },
+    Tail { level: 0.38, interval_s: 3.5e6, scale: 0.06, shape: 0.0 },
     Tail { level: 0.13, interval_s: 1.2e7, scale: 0.03, shape: 0.0 },
     Tail { level: 0.06, interval_s: 2.6e7, scale: 0.02, shape: 0.0 },
 ]);
