@@ -27,6 +27,7 @@ pub struct Session<'a> {
     kit: Kit<'a>,
     monitor: Monitor,
     full_pa: f64,
+    settled: bool,
     naming: Naming,
     sink: EventSink,
     rows: Rows,
@@ -73,6 +74,7 @@ impl<'a> Session<'a> {
         Ok(Self {
             monitor: engine.monitor,
             full_pa: engine.full_pa,
+            settled: engine.settled,
             naming,
             sink,
             rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
@@ -179,6 +181,7 @@ impl<'a> Session<'a> {
             last_stamp_s: self.last_stamp_s,
             log_starts_s: self.log_starts_s.clone(),
             full_pa: self.full_pa,
+            settled: self.settled,
             last: self.last.clone(),
             monitor: self.monitor.save()?,
         };

@@ -28,6 +28,8 @@ pub struct State {
     pub log_starts_s: Vec<f64>,
     /// Pressure of the full cylinder at 15 °C, Pa.
     pub full_pa: f64,
+    /// Whether all was at rest at the first row.
+    pub settled: bool,
     /// The last output.
     pub last: Option<Output>,
     /// The monitor, as it saves itself.
@@ -37,6 +39,18 @@ pub struct State {
 /// What a state belongs to: names and values; a state is of use only to the same.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Identity(pub Vec<(String, String)>);
+
+impl Identity {
+    /// With what an earlier one says and this one does not, as a fill that is not stated again.
+    pub fn after(mut self, earlier: &Self) -> Self {
+        for entry in &earlier.0 {
+            if !self.0.iter().any(|(what, _)| *what == entry.0) {
+                self.0.push(entry.clone());
+            }
+        }
+        self
+    }
+}
 
 /// Why a state cannot be gone on from.
 #[derive(Debug, thiserror::Error)]
@@ -161,6 +175,7 @@ mod tests {
             last_stamp_s: f64::NAN,
             log_starts_s: vec![0.0],
             full_pa: 200e5,
+            settled: true,
             last: None,
             monitor: (0..200).collect(),
         }

@@ -184,7 +184,11 @@ fn a_state_of_another_vessel_other_sensors_or_settings_is_refused_by_what_differ
     let fewer = "time_s,shoulder_degc,pressure_bar\n7200,15,200\n";
     refusal(monitor(folder.path(), fewer, STATE), &["made with sensors", "shoulder, valve"]);
     assert_eq!(std::fs::read(&path).unwrap(), before);
+    // A fill that is not repeated is the one of the state.
+    let silent = ["monitor", "nitrogen-20l", "-", "--state", "c.state"];
+    assert_eq!(run_with_stdin(folder.path(), &silent, &next).code, Some(3));
     // When the next service is does not belong to it.
+    let next = log(130..140, TIGHT);
     let outcome = monitor(folder.path(), &next, &[STATE, &["--next-service-d", "3"]].concat());
     assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
 }
