@@ -1,4 +1,5 @@
 //! The raw arguments: they mirror the command line and decide nothing.
+use super::bench_detector::BenchDetectorArguments;
 use super::calibrate::CalibrateArguments;
 use super::fill::GivenFill;
 use super::identify::IdentifyArguments;
@@ -51,6 +52,8 @@ pub enum Command {
     Identify(Box<IdentifyArguments>),
     /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.
     Calibrate(Box<CalibrateArguments>),
+    /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; takes minutes.
+    BenchDetector(BenchDetectorArguments),
     /// Print the properties of a gas, at one state or for every row of a file.
     Properties(PropertiesArguments),
     /// Write start files vessel.toml and scenario.toml, with comments, to edit.

@@ -3,6 +3,7 @@
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error; of `monitor`
 //! also 1 leak found, 3 inconclusive.
 mod arguments;
+mod bench_detector;
 mod calibrate;
 mod completions;
 mod estimate;
@@ -54,6 +55,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
+        Command::BenchDetector(arguments) => bench_detector::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

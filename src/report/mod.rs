@@ -1,4 +1,5 @@
 //! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal. Pure functions; nothing here reads or writes.
+pub mod bench_detector;
 pub mod calibrate;
 pub mod estimate;
 pub mod figure;

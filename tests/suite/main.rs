@@ -2,6 +2,7 @@
 // Helpers outside of test functions fail a test by panicking, too.
 #![allow(clippy::unwrap_used)]
 
+mod bench_detector;
 mod calibrate;
 mod estimate;
 mod examples;

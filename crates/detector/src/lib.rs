@@ -12,6 +12,7 @@ pub mod calibrate;
 pub mod error;
 pub mod evidence;
 pub mod monitor;
+pub mod performance;
 pub mod prognosis;
 pub mod statistic;
 

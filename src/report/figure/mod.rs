@@ -2,6 +2,7 @@
 //!
 //! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. plotters is named in this folder only.
 //! Looks are decided in [`style`] alone.
+mod axis;
 mod canvas;
 mod correlation;
 mod output;
@@ -36,6 +37,8 @@ pub enum Horizontal {
     Time,
     /// A quantity with its name and unit.
     Quantity(String),
+    /// A positive quantity with its name and unit; this axis and the vertical ones are logarithmic.
+    LogLog(String),
 }
 
 /// One panel.
@@ -72,6 +75,19 @@ pub enum Item {
         x: Vec<f64>,
         /// Vertical values.
         y: Vec<f64>,
+        /// Looks.
+        stroke: Stroke,
+    },
+    /// Vertical bars from a lower to an upper edge, such as the intervals of points.
+    Intervals {
+        /// Name in the legend.
+        name: String,
+        /// Horizontal values.
+        x: Vec<f64>,
+        /// Lower ends.
+        low: Vec<f64>,
+        /// Upper ends.
+        high: Vec<f64>,
         /// Looks.
         stroke: Stroke,
     },
@@ -128,6 +144,7 @@ impl Item {
         match self {
             Self::Line { name, .. }
             | Self::Points { name, .. }
+            | Self::Intervals { name, .. }
             | Self::Band { name, .. }
             | Self::Limit { name, .. } => name,
             Self::Strip { stretches } => stretches.first().map_or("", |stretch| &stretch.name),

@@ -1,7 +1,7 @@
 //! Evidence for a leak on five time scales in parallel, from an hour to a month.
 //!
 //! Fed with what the members of the observer's bank say after every sample ([`Observer::leaks`]). The bank is the observer's
-//! usual one, with settings of its own ([`observer_settings`]); three of its members matter:
+//! usual one, cautious with the pressure ([`observer_settings`]); three of its members matter:
 //!
 //! | member | its part |
 //! |---|---|
@@ -35,7 +35,7 @@ mod rapid;
 mod tail;
 mod thresholds;
 
-use cylwatch_estimator::observer::{Estimate, Leak, ModelError, ObserverSettings, Quality};
+use cylwatch_estimator::observer::{Estimate, Leak, LeakHypothesis, ObserverSettings, Quality};
 use serde::{Deserialize, Serialize};
 
 use crate::DetectorError;
@@ -99,16 +99,21 @@ impl Scale {
 /// One number per scale, in the order of [`Scale::ALL`]; positive: gas is being lost.
 pub type Statistics = [f64; Scale::ALL.len()];
 
-/// Error of the pressure per kelvin between mean wall and gas, Pa/K: 2 bar/K.
-const PRESSURE_PER_WALL_PA_K: f64 = 2e5;
+/// Error of the pressure per kelvin between mean wall and gas in the eyes of the members that matter here, Pa/K: 2 bar/K.
+const CAUTION_PA_K: f64 = 2e5;
 
-/// Settings of the observer whose members the evidence is taken from: the usual ones, but for the pressure, which counts far less
-/// while wall and gas differ. In tunnels and in the sun the stratified gas is not the reduced model's, always to the same side; what
-/// counts is the mass from one calm hour to the next. That halves the smallest leak found, from an hour to a month.
+/// Settings of the observer whose members the evidence is taken from: the usual ones, but for a bank whose members trust the pressure far
+/// less while wall and gas differ. In tunnels and in the sun the stratified gas is not the reduced model's, always to the same
+/// side; what counts is the mass from one calm hour to the next. That nearly halves the smallest leak found, from an hour to
+/// a month. The first member, which gives mass and gas temperature, trusts it as usual.
 pub fn observer_settings() -> ObserverSettings {
-    let usual = ObserverSettings::default();
-    let model_error = ModelError { pressure_per_wall_k: PRESSURE_PER_WALL_PA_K, ..usual.model_error };
-    ObserverSettings { model_error, ..usual }
+    let bank = vec![
+        LeakHypothesis::walking_mass(1.5),
+        LeakHypothesis::walking_rate(0.02).cautious(CAUTION_PA_K),
+        LeakHypothesis::walking_rate(0.005).cautious(CAUTION_PA_K),
+        LeakHypothesis::walking_mass(30.0).cautious(CAUTION_PA_K),
+    ];
+    ObserverSettings { bank, ..ObserverSettings::default() }
 }
 
 /// The members that matter, by their place in the bank.

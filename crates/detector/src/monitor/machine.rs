@@ -20,7 +20,7 @@ use crate::estimator::observer::{
 };
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
-use crate::evidence::{Evidence, Thresholds};
+use crate::evidence::{Evidence, Statistics, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
 
 /// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
@@ -87,6 +87,13 @@ struct State {
     p15: Tangent,
     cold: Tangent,
     warned: bool,
+}
+
+impl State {
+    /// Whether gas may be being exchanged, or has been and has not settled.
+    fn is_exchanging(&self, time_s: f64) -> bool {
+        self.examined.is_some() || self.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S)
+    }
 }
 
 /// A jump under examination.
@@ -261,6 +268,11 @@ impl Monitor {
         &self.observer
     }
 
+    /// The statistics of the evidence for a leak after the last row.
+    pub fn evidence(&self) -> Statistics {
+        self.state.evidence.statistics()
+    }
+
     /// What has become of the rows so far.
     pub fn intake(&self) -> &Intake {
         &self.state.intake
@@ -315,6 +327,11 @@ impl Monitor {
 
     fn watch_thermometers(&mut self, time_s: f64) {
         let Some(pair) = self.roles.pair else { return };
+        if self.state.is_exchanging(time_s) {
+            // Gas that comes in or goes out warms or cools the shoulder before the valve.
+            self.state.pair.forget();
+            return;
+        }
         let watches = &mut self.state.watches;
         let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
         match self.state.pair.update(time_s, as_read) {

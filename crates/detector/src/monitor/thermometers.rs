@@ -55,6 +55,11 @@ struct Suspect {
 }
 
 impl Pair {
+    /// Compare nothing with the last readings.
+    pub fn forget(&mut self) {
+        (self.last, self.suspect) = (None, None);
+    }
+
     /// Smaller change of the two at the last sample, K.
     pub fn moved_k(&self) -> f64 {
         self.moved_k
