@@ -123,7 +123,8 @@ fn estimate(
     let first_k = selection.mean_temperature_k(first.first());
     let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
     let commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
-    let settings = ObserverSettings { engine: options.engine, ..options.fill.settings() };
+    let settings = ObserverSettings { engine: options.engine, ..ObserverSettings::default() };
+    let settings = fill::settings(settings, options.fill.is_settled());
     let mut observer = Observer::new(vessel, &selection.sensors, &commissioning, &settings)?;
     if let (Some(row), Some(channel)) = (first.last(), selection.first_of(Quantity::Pressure)) {
         let mass_kg = commissioning.mass_kg(vessel, first_k)?;

@@ -109,14 +109,19 @@ impl GivenFill {
         Ok(Commissioning { mass_sd_kg: stated_kg.hypot(of_temperature_kg), ..one })
     }
 
-    /// Settings of the observer: where nobody says that all is at rest, the air may be anything.
-    pub fn settings(&self) -> ObserverSettings {
-        let mut settings = ObserverSettings::default();
-        if !self.settled {
-            settings.air.prior_sd = UNSETTLED_AIR_SD_K;
-        }
-        settings
+    /// Whether all is said to be at rest at the first row.
+    pub fn is_settled(&self) -> bool {
+        self.settled
     }
+}
+
+/// Settings of an observer for a start that may be at rest: where nobody says so, the air may be anything.
+pub fn settings(settings: ObserverSettings, settled: bool) -> ObserverSettings {
+    let mut settings = settings;
+    if !settled {
+        settings.air.prior_sd = UNSETTLED_AIR_SD_K;
+    }
+    settings
 }
 
 /// How a fill contradicts the first pressure of the log (`read_pa`, Pa; NaN: none): an error where they are a factor of

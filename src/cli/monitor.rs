@@ -79,7 +79,7 @@ fn monitor(
     log: &mut LogInput,
     messages: &Messages,
 ) -> anyhow::Result<Option<Summary>> {
-    let identity = beginning.identity(options, &selection.sensors);
+    let mut identity = beginning.identity(options, &selection.sensors);
     let vessel = &beginning.vessel;
     let engine = match &beginning.state {
         None => Engine::cold(options, inputs, vessel, selection, log, messages)?,
@@ -87,6 +87,7 @@ fn monitor(
             let path = options.state.as_deref().unwrap_or(Path::new("the state"));
             state.check(&identity).map_err(|reason| going_on::refused(path, &reason))?;
             session::check_clock(options, state, log)?;
+            identity = identity.after(&state.identity);
             Engine::restored(options, vessel, selection, state)?
         }
     };

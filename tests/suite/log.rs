@@ -259,3 +259,39 @@ fn a_parquet_file_is_refused_with_how_to_build_for_it() {
     let error = LogReader::open(&path, &LogOptions::default()).err().unwrap().to_string();
     assert!(error.contains("log.parquet") && error.contains("--features parquet"), "{error}");
 }
+
+#[test]
+fn in_any_order_late_rows_come_as_they_stand_and_contradictions_cost_a_caution() {
+    let text = format!("{HEAD}0,15,200\n60,15,\n60,,200\n60,16,\n30,15,200\n90,15,200\n");
+    let options = LogOptions { any_order: true, ..LogOptions::default() };
+    let (rows, cautions) = read_with(text.as_bytes(), &options).unwrap();
+    assert_eq!(rows.iter().map(|row| row.time_s).collect::<Vec<_>>(), [0.0, 60.0, 30.0, 90.0]);
+    assert_eq!((rows[1].readings[0], rows[1].readings[1]), (288.15, 200e5));
+    assert_eq!(
+        cautions.iter().map(|caution| caution.kind).collect::<Vec<_>>(),
+        [Kind::Joined, Kind::Contradicted]
+    );
+    assert!(cautions[1].to_string().starts_with("log.csv:5: the row has the time of the one above and says"));
+}
+
+#[test]
+fn a_late_row_counts_and_is_no_interval() {
+    let text = format!("{HEAD}0,15,200\n60,15,200\n120,15,200\n90,15,200\n180,15,200\n");
+    let options = LogOptions { any_order: true, ..LogOptions::default() };
+    let mut reader = LogReader::from_text(Box::new(std::io::Cursor::new(text)), "x", &options).unwrap();
+    while reader.next_row().unwrap().is_some() {}
+    let sampling = reader.sampling();
+    assert_eq!((sampling.rows(), sampling.duration_s(), sampling.gaps().count), (5, 180.0, 0));
+    assert_relative_eq!(sampling.usual_interval_s(), 60.0);
+}
+
+#[test]
+fn dates_count_from_a_date_that_is_given_and_seconds_do_not() {
+    let options =
+        LogOptions { origin: Some("2026-01-01T00:00:00Z".parse().unwrap()), ..LogOptions::default() };
+    let dated = "time,shoulder_degc\n2026-01-01T01:00:00Z,15\n2026-01-01T02:00:00+01:00,15\n2026-01-01T02:00:00Z,15\n";
+    let (rows, _) = read_with(dated.as_bytes(), &options).unwrap();
+    assert_eq!(rows.iter().map(|row| row.time_s).collect::<Vec<_>>(), [3600.0, 7200.0]);
+    let (rows, _) = read_with(format!("{HEAD}5,15,200\n").as_bytes(), &options).unwrap();
+    assert_eq!(rows[0].time_s, 5.0);
+}

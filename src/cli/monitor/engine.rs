@@ -17,16 +17,18 @@ pub struct Engine {
     pub monitor: Monitor,
     /// Pressure of the full cylinder at 15 °C, Pa.
     pub full_pa: f64,
+    /// Whether all was at rest at the first row.
+    pub settled: bool,
     /// Rows that were read to find the fill.
     pub first: Vec<Row>,
 }
 
-/// Settings of the monitor.
-pub fn settings(options: &Options) -> MonitorSettings {
+/// Settings of the monitor of a cylinder that was at rest at its first row, or was not.
+pub fn settings(options: &Options, settled: bool) -> MonitorSettings {
     let defaults = MonitorSettings::default();
     let circumstances = options.circumstances;
     MonitorSettings {
-        observer: options.fill.settings(),
+        observer: fill::settings(defaults.observer, settled),
         false_alarm_interval_s: options.false_alarm_years * YEAR_S,
         limits: Limits {
             operational_pa: circumstances.limit_pa,
@@ -51,10 +53,11 @@ impl Engine {
         selection: &Selection,
         state: &State,
     ) -> anyhow::Result<Self> {
-        let restored = Monitor::restore(vessel, &selection.sensors, &settings(options), &state.monitor);
+        let settings = settings(options, state.settled);
+        let restored = Monitor::restore(vessel, &selection.sensors, &settings, &state.monitor);
         let path = options.state.as_deref().unwrap_or(Path::new("the state"));
         let monitor = restored.map_err(|error| refused(path, &Refusal::Monitor(error)))?;
-        Ok(Self { monitor, full_pa: state.full_pa, first: Vec::new() })
+        Ok(Self { monitor, full_pa: state.full_pa, settled: state.settled, first: Vec::new() })
     }
 
     /// A monitor that begins with the first rows.
@@ -90,10 +93,12 @@ impl Engine {
         {
             messages.caution(&format!("{}: {doubt}", begin()));
         }
-        let mut monitor = Monitor::new(vessel, &selection.sensors, &commissioning, &settings(options))?;
+        let settings = settings(options, options.fill.is_settled());
+        let mut monitor = Monitor::new(vessel, &selection.sensors, &commissioning, &settings)?;
         if let Some(learned) = learned {
             monitor = monitor.with_learned(learned);
         }
-        Ok(Self { monitor, full_pa: contents.pressure_pa(mass_kg, QUOTED_K)?, first })
+        let full_pa = contents.pressure_pa(mass_kg, QUOTED_K)?;
+        Ok(Self { monitor, full_pa, settled: options.fill.is_settled(), first })
     }
 }

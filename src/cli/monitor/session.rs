@@ -10,6 +10,9 @@ use cylwatch::log::Truth;
 use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowFates, Summary};
 use std::time::Instant;
 
+/// Most logs whose beginning is remembered.
+const MOST_LOGS: usize = 64;
+
 /// What a run uses.
 pub struct Kit<'a> {
     pub options: &'a Options,
@@ -24,6 +27,7 @@ pub struct Session<'a> {
     kit: Kit<'a>,
     monitor: Monitor,
     full_pa: f64,
+    settled: bool,
     naming: Naming,
     sink: EventSink,
     rows: Rows,
@@ -31,8 +35,10 @@ pub struct Session<'a> {
     readings: Vec<f64>,
     last: Option<Output>,
     last_stamp_s: f64,
-    /// Rows up to this time are known to the state; NaN: none is.
-    known_until_s: f64,
+    /// Times of the first rows of the last logs, s.
+    log_starts_s: Vec<f64>,
+    /// Rows up to this time are known to the state; NaN: none is. `None`: no row has been looked at.
+    known_until_s: Option<f64>,
     known_rows: u64,
     /// What had become of rows before this run.
     counts_before: Counts,
@@ -68,6 +74,7 @@ impl<'a> Session<'a> {
         Ok(Self {
             monitor: engine.monitor,
             full_pa: engine.full_pa,
+            settled: engine.settled,
             naming,
             sink,
             rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
@@ -75,8 +82,8 @@ impl<'a> Session<'a> {
             readings: Vec::new(),
             last: state.and_then(|state| state.last.clone()),
             last_stamp_s,
-            // A file is read again from its start; what comes through a pipe is new.
-            known_until_s: if options.is_live() { f64::NAN } else { last_stamp_s - options.lateness_s },
+            log_starts_s: state.map_or(Vec::new(), |state| state.log_starts_s.clone()),
+            known_until_s: None,
             known_rows: 0,
             counts_before,
             leak_found: false,
@@ -99,11 +106,10 @@ impl<'a> Session<'a> {
 
     /// Takes in a row.
     pub fn push(&mut self, row: &Row, log: &LogInput, progress: &Progress) -> anyhow::Result<()> {
-        if row.time_s <= self.known_until_s {
+        if self.is_known(row) {
             self.known_rows += 1;
             return Ok(());
         }
-        self.known_until_s = f64::NAN;
         self.naming.clock = self.naming.clock.with_origin(log.reader.origin_instant());
         self.readings.clear();
         self.readings.extend(self.kit.selection.readings(row));
@@ -124,6 +130,26 @@ impl<'a> Session<'a> {
             self.save(log)?;
         }
         Ok(())
+    }
+
+    /// Whether a row at the beginning of the log is one that the state has seen. A file may overlap with what came before. Through
+    /// a pipe rows are new unless it is a known log once more: a clock that was set back must not be taken for old rows.
+    fn is_known(&mut self, row: &Row) -> bool {
+        let until_s = *self.known_until_s.get_or_insert_with(|| {
+            let again = self.log_starts_s.contains(&row.time_s);
+            if !again {
+                self.log_starts_s.push(row.time_s);
+                let surplus = self.log_starts_s.len().saturating_sub(MOST_LOGS);
+                self.log_starts_s.drain(..surplus);
+            }
+            let Kit { options, .. } = self.kit;
+            if again || !options.is_live() { self.last_stamp_s - options.lateness_s } else { f64::NAN }
+        });
+        let known = row.time_s <= until_s;
+        if !known {
+            self.known_until_s = Some(f64::NAN);
+        }
+        known
     }
 
     fn take(&mut self, output: Output, truth: &Truth, progress: &Progress) -> anyhow::Result<()> {
@@ -153,7 +179,9 @@ impl<'a> Session<'a> {
             identity: self.kit.identity.clone(),
             origin: log.reader.origin(),
             last_stamp_s: self.last_stamp_s,
+            log_starts_s: self.log_starts_s.clone(),
             full_pa: self.full_pa,
+            settled: self.settled,
             last: self.last.clone(),
             monitor: self.monitor.save()?,
         };
@@ -176,7 +204,11 @@ impl<'a> Session<'a> {
         log: &LogInput,
         progress: &Progress,
     ) -> anyhow::Result<Option<Summary>> {
-        let Kit { options, inputs, .. } = self.kit;
+        let Kit { options, inputs, messages, .. } = self.kit;
+        if self.known_rows > 0 && self.known_rows == log.reader.sampling().rows() {
+            let until = self.naming.clock.words(self.last_stamp_s);
+            messages.caution(&format!("nothing new: the state has seen all rows up to {until}"));
+        }
         if options.state.is_none() {
             // With a state, rows that are held back wait in it for those that come later.
             for output in self.monitor.finish()? {

@@ -24,8 +24,12 @@ pub struct State {
     pub origin: Option<String>,
     /// Time of the last row that was taken in, as it was stamped, s; NaN: none.
     pub last_stamp_s: f64,
+    /// Times of the first rows of the last logs, s: a log that begins with one of them is that log again.
+    pub log_starts_s: Vec<f64>,
     /// Pressure of the full cylinder at 15 °C, Pa.
     pub full_pa: f64,
+    /// Whether all was at rest at the first row.
+    pub settled: bool,
     /// The last output.
     pub last: Option<Output>,
     /// The monitor, as it saves itself.
@@ -35,6 +39,18 @@ pub struct State {
 /// What a state belongs to: names and values; a state is of use only to the same.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Identity(pub Vec<(String, String)>);
+
+impl Identity {
+    /// With what an earlier one says and this one does not, as a fill that is not stated again.
+    pub fn after(mut self, earlier: &Self) -> Self {
+        for entry in &earlier.0 {
+            if !self.0.iter().any(|(what, _)| *what == entry.0) {
+                self.0.push(entry.clone());
+            }
+        }
+        self
+    }
+}
 
 /// Why a state cannot be gone on from.
 #[derive(Debug, thiserror::Error)]
@@ -157,7 +173,9 @@ mod tests {
             identity: Identity(vec![("vessel".into(), "a".into()), ("a limit of".into(), "160 bar".into())]),
             origin: None,
             last_stamp_s: f64::NAN,
+            log_starts_s: vec![0.0],
             full_pa: 200e5,
+            settled: true,
             last: None,
             monitor: (0..200).collect(),
         }

@@ -70,6 +70,25 @@ fn a_log_that_grows_is_read_from_where_it_was_left() {
     let third = monitor_file(folder.path(), &log(0..320, TIGHT), &["--next-service-d", "7"]);
     assert_eq!((data(&third.stdout).len(), third.code), (0, Some(3)), "{}", third.stderr);
     assert!(third.stderr.contains("unknown: still learning"), "{}", third.stderr);
+    assert_eq!(cautions(&third), ["nothing new: the state has seen all rows up to t = 5.317 h"]);
+}
+
+#[test]
+fn a_pipe_that_begins_again_is_known_and_one_whose_clock_is_set_back_is_not() {
+    let folder = tempdir().unwrap();
+    monitor(folder.path(), &log(0..200, TIGHT), STATE);
+    let again = monitor(folder.path(), &log(0..230, TIGHT), STATE);
+    assert_eq!(data(&again.stdout).len(), 30);
+    assert!(again.stderr.contains("200 known to the state"), "{}", again.stderr);
+    // The same cylinder goes on, by a clock that has fallen back by more than an hour.
+    let mut text = String::from(HEADER);
+    for minute in 230..260 {
+        let line = row(minute, TIGHT);
+        text.push_str(&format!("{},{}", 60 * (minute - 100), line.split_once(',').unwrap().1));
+    }
+    let back = monitor(folder.path(), &text, &[STATE, &["--events", "e.jsonl"]].concat());
+    assert!(back.stderr.contains("the clock jumped once"), "{}", back.stderr);
+    assert_eq!(data(&back.stdout).len(), 30);
 }
 
 #[test]
@@ -165,7 +184,11 @@ fn a_state_of_another_vessel_other_sensors_or_settings_is_refused_by_what_differ
     let fewer = "time_s,shoulder_degc,pressure_bar\n7200,15,200\n";
     refusal(monitor(folder.path(), fewer, STATE), &["made with sensors", "shoulder, valve"]);
     assert_eq!(std::fs::read(&path).unwrap(), before);
+    // A fill that is not repeated is the one of the state.
+    let silent = ["monitor", "nitrogen-20l", "-", "--state", "c.state"];
+    assert_eq!(run_with_stdin(folder.path(), &silent, &next).code, Some(3));
     // When the next service is does not belong to it.
+    let next = log(130..140, TIGHT);
     let outcome = monitor(folder.path(), &next, &[STATE, &["--next-service-d", "3"]].concat());
     assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
 }
@@ -230,9 +253,11 @@ fn alarms_are_acknowledged_with_a_comment_and_reset_once_they_are_over() {
     let (_, last) = pieces(folder.path(), &[0, end], leak_from, &[]);
     assert!(last.stderr.contains("leak: active since"), "{}", last.stderr);
     assert!(last.stderr.contains("not acknowledged"), "{}", last.stderr);
-    let act = ["--acknowledge", "fitter is coming", "--events", "e.jsonl"];
+    // The next service is in an hour: 30 bar are lost in a day and more.
+    let act = ["--acknowledge", "fitter is coming", "--events", "e.jsonl", "--next-service-h", "1"];
     let next = monitor(folder.path(), &log(end..end + 10, leak_from), &[STATE, &act].concat());
     assert_eq!(next.code, Some(1), "{}", next.stderr);
+    assert_eq!(cells(&next.stdout, "reaction")[0], "next-interval");
     let standing = next.stderr.lines().find(|line| line.contains("leak: active")).unwrap();
     assert!(standing.ends_with(", acknowledged"), "{standing}");
     let changes: Vec<serde_json::Value> =
