@@ -4,6 +4,7 @@ pub mod calibrate;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
+pub mod monitor;
 mod provenance;
 mod readings;
 pub mod simulation;

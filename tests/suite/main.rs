@@ -11,6 +11,7 @@ mod identify;
 mod log;
 #[cfg(feature = "parquet")]
 mod log_parquet;
+mod monitor;
 mod pages;
 mod properties;
 mod report;

@@ -73,7 +73,8 @@ pub(super) fn abscissa(figure: &Figure) -> Abscissa {
         Item::Line { x, .. } | Item::Points { x, .. } | Item::Intervals { x, .. } | Item::Band { x, .. } => {
             x.as_slice()
         }
-        Item::Limit { .. } => &[],
+        // A strip accompanies curves.
+        Item::Limit { .. } | Item::Strip { .. } => &[],
     });
     let paper = (style::LEFT, style::WIDTH - style::RIGHT);
     let scale = |kind: Kind, margin| {
@@ -124,7 +125,7 @@ fn values(item: &Item) -> Box<dyn Iterator<Item = f64> + '_> {
         Item::Band { low, high, .. } | Item::Intervals { low, high, .. } => {
             Box::new(low.iter().chain(high).copied())
         }
-        Item::Limit { .. } => Box::new(std::iter::empty()),
+        Item::Limit { .. } | Item::Strip { .. } => Box::new(std::iter::empty()),
     }
 }
 

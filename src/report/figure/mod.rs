@@ -8,6 +8,7 @@ mod correlation;
 mod output;
 mod panel;
 mod path;
+mod strip;
 pub mod style;
 mod ticks;
 
@@ -108,6 +109,24 @@ pub enum Item {
         /// Value.
         value: f64,
     },
+    /// Stretches in the colours of what they are, over the whole height: a panel without a vertical scale.
+    Strip {
+        /// In the order of the horizontal axis.
+        stretches: Vec<Stretch>,
+    },
+}
+
+/// A stretch of a strip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What it is, for the legend.
+    pub name: String,
+    /// Colour.
+    pub color: style::Rgb,
 }
 
 /// A marked instant.
@@ -120,7 +139,7 @@ pub struct Mark {
 }
 
 impl Item {
-    /// Its name.
+    /// Its name; of a strip that of its first stretch.
     pub fn name(&self) -> &str {
         match self {
             Self::Line { name, .. }
@@ -128,6 +147,7 @@ impl Item {
             | Self::Intervals { name, .. }
             | Self::Band { name, .. }
             | Self::Limit { name, .. } => name,
+            Self::Strip { stretches } => stretches.first().map_or("", |stretch| &stretch.name),
         }
     }
 

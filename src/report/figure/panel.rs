@@ -3,11 +3,11 @@ use super::axis::{Abscissa, Scale, abscissa, ordinate};
 use super::canvas::{Canvas, Side, Text};
 use super::path::{Point, simplified, unbroken};
 use super::style::{self, Rgb, Stroke};
-use super::{Figure, Item, Mark, Panel};
+use super::{Figure, Item, Mark, Panel, strip};
 use crate::report::ReportError;
 use plotters::prelude::DrawingBackend;
 
-const PLAIN: Text =
+pub(super) const PLAIN: Text =
     Text { size: style::SMALL, side: Side::Left, bold: false, upwards: false, color: Rgb::BLACK };
 
 /// The frame of a panel on paper.
@@ -69,21 +69,43 @@ fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -
         let at = frame.x.scale.at(value * frame.x.unit);
         canvas.line(&[(at, bottom), (at, bottom + 2.5)], &axis)?;
     }
+    let is_strip = panel.items.iter().all(|item| matches!(item, Item::Strip { .. }));
+    if is_strip {
+        canvas.text(
+            &panel.quantity,
+            (left - 8.0, 0.5 * (bottom + top)),
+            Text { side: Side::Right, ..PLAIN },
+        )?;
+    } else {
+        vertical_scale(canvas, frame, panel, &grid, &axis)?;
+    }
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    canvas.line(&corners, &Stroke { color: Rgb::GREY, width: 0.75, dash: &[] })?;
+    canvas.line(&[(left, top), (left, bottom), (right, bottom)], &axis)
+}
+
+/// Ticks, their grid and the name of the vertical axis.
+fn vertical_scale<DB: DrawingBackend>(
+    canvas: &Canvas<DB>,
+    frame: &Frame,
+    panel: &Panel,
+    grid: &Stroke,
+    axis: &Stroke,
+) -> Result<(), ReportError> {
+    let (left, right) = frame.x.scale.paper;
+    let (bottom, top) = frame.y.paper;
     let ticks = frame.y.ticks();
     let number = Text { side: Side::Right, ..PLAIN };
     for (value, label) in ticks.values.iter().zip(&ticks.labels) {
         let at = frame.y.at(*value);
-        canvas.line(&[(left, at), (right, at)], &grid)?;
-        canvas.line(&[(left - 4.0, at), (left, at)], &axis)?;
+        canvas.line(&[(left, at), (right, at)], grid)?;
+        canvas.line(&[(left - 4.0, at), (left, at)], axis)?;
         canvas.text(label, (left - 8.0, at), number)?;
     }
     for value in &ticks.small {
         let at = frame.y.at(*value);
-        canvas.line(&[(left - 2.5, at), (left, at)], &axis)?;
+        canvas.line(&[(left - 2.5, at), (left, at)], axis)?;
     }
-    let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
-    canvas.line(&corners, &Stroke { color: Rgb::GREY, width: 0.75, dash: &[] })?;
-    canvas.line(&[(left, top), (left, bottom), (right, bottom)], &axis)?;
     let name = Text { size: style::NORMAL, side: Side::Center, upwards: true, ..PLAIN };
     canvas.text(&panel.quantity, (18.0, 0.5 * (bottom + top)), name)
 }
@@ -129,6 +151,7 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
             canvas.polygon(&outline, Rgb::BAND)?;
         }
         Item::Limit { name, value } => limit(canvas, frame, name, *value)?,
+        Item::Strip { stretches } => strip::draw(canvas, stretches, |x| frame.x.scale.at(x), frame.y.paper)?,
     }
     Ok(())
 }
@@ -184,6 +207,10 @@ fn legend<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, top: f64) -> R
     for item in panel.items.iter().filter(|item| !item.name().is_empty()) {
         let sample = [(left, at), (left + style::LEGEND_SAMPLE, at)];
         let name = match item {
+            Item::Strip { stretches } => {
+                strip::legend(canvas, stretches, (left, at))?;
+                continue;
+            }
             Item::Line { name, stroke, .. } => {
                 canvas.line(&sample, stroke)?;
                 name

@@ -21,7 +21,7 @@ use crate::estimator::observer::{
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Thresholds};
-use crate::prognosis::{Contents, QUOTED_K};
+use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
 
 /// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
 const ACROSS_PA: f64 = 2e5;
@@ -116,9 +116,16 @@ struct Exchanged {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     commissioning: Commissioning,
+    reaction: ReactionSettings,
     state: State,
     observer: Snapshot,
     shadow: Option<Snapshot>,
+}
+
+/// What a state belongs to. When a reaction is due does not belong to it: the next service comes nearer every day.
+fn fingerprint(vessel: &Vessel, sensors: &[Sensor], settings: &MonitorSettings) -> Fingerprint {
+    let settings = MonitorSettings { reaction: ReactionSettings::default(), ..settings.clone() };
+    state::fingerprint(&(vessel, sensors, settings))
 }
 
 impl Monitor {
@@ -166,7 +173,7 @@ impl Monitor {
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
             roles: Roles::of(sensors),
-            fingerprint: state::fingerprint(&(vessel, sensors, settings)),
+            fingerprint: fingerprint(vessel, sensors, settings),
             observer: observer()?,
             shadow: observer()?,
             commissioning: *commissioning,
@@ -184,7 +191,7 @@ impl Monitor {
         self
     }
 
-    /// A monitor that goes on from saved bytes, with the commissioning of then.
+    /// A monitor that goes on from saved bytes, with the commissioning of then. Other settings of the reaction are taken over.
     ///
     /// # Errors
     /// The bytes are no state of this vessel, these sensors and settings, of this version, whole and unchanged; or as
@@ -195,14 +202,16 @@ impl Monitor {
         settings: &MonitorSettings,
         bytes: &[u8],
     ) -> Result<Self, DetectorError> {
-        let fingerprint = state::fingerprint(&(vessel, sensors, settings));
-        let saved: Saved = state::decode(bytes, &fingerprint)?;
+        let saved: Saved = state::decode(bytes, &fingerprint(vessel, sensors, settings))?;
         let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
         monitor.observer.try_restore(&saved.observer)?;
         if let Some(shadow) = &saved.shadow {
             monitor.shadow.try_restore(shadow)?;
         }
         monitor.state = saved.state;
+        if saved.reaction != settings.reaction {
+            monitor.state.outlook_due_s = f64::NEG_INFINITY;
+        }
         Ok(monitor)
     }
 
@@ -214,6 +223,7 @@ impl Monitor {
         let examined = self.state.examined.is_some();
         let saved = Saved {
             commissioning: self.commissioning,
+            reaction: self.settings.reaction,
             state: self.state.clone(),
             observer: self.observer.snapshot(),
             shadow: examined.then(|| self.shadow.snapshot()),

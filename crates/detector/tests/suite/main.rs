@@ -5,6 +5,7 @@ mod correlated;
 mod data_calibration;
 mod delay;
 mod equivalence;
+mod evidence;
 mod failure_alarms;
 mod intake;
 mod likelihood_ratio;
