@@ -49,7 +49,7 @@ fn agree_on_the_false_alarms(folder: &Path, words: &str) {
         let said = words.lines().find(|said| said.starts_with(&format!("{} ", line[0])));
         let said: Vec<&str> = said.unwrap_or_else(|| panic!("{} is missing", line[0])).split("  ").collect();
         let cells: Vec<&str> = said.iter().map(|cell| cell.trim()).filter(|cell| !cell.is_empty()).collect();
-        assert_eq!(cells[2], line[2], "false alarms of {}", line[0]);
+        assert_eq!(cells[2], line[3], "false alarms of {}", line[0]);
     }
     assert!(words.contains("extrapolated by a factor of"), "{words}");
 }

@@ -9,8 +9,9 @@ use serde_json::{Value, json};
 const DIGITS: usize = 8;
 
 /// Names of the columns.
-const COLUMNS: [&str; 26] = [
+const COLUMNS: [&str; 27] = [
     "detector",
+    "threshold_unit",
     "threshold",
     "false_alarms",
     "at_risk_years",
@@ -48,13 +49,13 @@ pub fn csv(outcome: &Outcome, provenance: &Provenance, remarks: &[String]) -> St
         for row in judged.performance.rows() {
             let cells =
                 numbers(judged, &row).map(|cell| cell.map_or_else(String::new, |x| number(x, DIGITS)));
-            text.push_str(&format!("{},{}\n", quoted(&row.detector), cells.join(",")));
+            text.push_str(&format!("{},{},{}\n", quoted(&row.detector), judged.unit, cells.join(",")));
         }
     }
     text
 }
 
-/// The cells behind the detector's name.
+/// The cells behind the detector's name and the unit of its threshold.
 fn numbers(judged: &Judged, row: &Row) -> [Option<f64>; 25] {
     let reliability = judged.performance.reliability;
     let hours = |seconds: Option<f64>| seconds.map(|seconds| seconds / HOUR_S);

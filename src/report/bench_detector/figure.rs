@@ -5,14 +5,12 @@ use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
 
 /// Median delays with their 95 % intervals, and the shortest possible delay.
 pub fn figure(outcome: &Outcome) -> Figure {
-    let mut items = vec![bound(outcome)];
-    for (number, judged) in outcome.judged.iter().enumerate().rev() {
-        items.extend(curve(number, judged));
-    }
-    items.extend(
-        [("1 h", 1.0), ("1 d", 24.0), ("7 d", 168.0)]
-            .map(|(name, hours)| Item::Limit { name: name.into(), value: hours }),
-    );
+    let mut items: Vec<Item> =
+        outcome.judged.iter().enumerate().map(|(n, judged)| curve(n, judged)).collect();
+    items.push(bound(outcome));
+    items.extend(horizons(outcome));
+    // From the last to the first, so that the first lies on top.
+    items.extend(outcome.judged.iter().enumerate().rev().flat_map(|(n, judged)| points(n, judged)));
     Figure {
         title: "How soon is a leak found?".into(),
         horizontal: Horizontal::LogLog("leak rate in bar/h".into()),
@@ -24,26 +22,47 @@ pub fn figure(outcome: &Outcome) -> Figure {
 
 fn bound(outcome: &Outcome) -> Item {
     let at = outcome.judged.first().map_or(&[][..], |judged| &judged.performance.sensitivity);
-    let rates: Vec<f64> = at.iter().map(|at| bar_h(at.rate_pa_s)).collect();
+    let rates = rates(outcome.judged.first());
     let bounds = at.iter().map(|at| at.bound_s.map_or(f64::NAN, |bound_s| bound_s / HOUR_S));
     Item::line("shortest possible", &rates, bounds, style::BOUND)
 }
 
-/// Intervals, curve and points of one detector; rates at which fewer than half were found are left out.
-fn curve(number: usize, judged: &Judged) -> [Item; 3] {
-    let stroke = style::detector(number);
-    let at = &judged.performance.sensitivity;
+/// An hour, a day and a week, thin behind the curves.
+fn horizons(outcome: &Outcome) -> [Item; 3] {
+    let rates = rates(outcome.judged.first());
+    let ends = [rates.first(), rates.last()].map(|end| end.copied().unwrap_or(f64::NAN));
+    [("1 h, 1 d, 7 d", 1.0), ("", 24.0), ("", 168.0)]
+        .map(|(name, hours)| Item::line(name, &ends, [hours; 2], style::EVENT))
+}
+
+/// Leak rates, bar/h.
+fn rates(judged: Option<&Judged>) -> Vec<f64> {
+    let at = judged.map_or(&[][..], |judged| &judged.performance.sensitivity);
+    at.iter().map(|at| bar_h(at.rate_pa_s)).collect()
+}
+
+/// Median delays of one detector, h; NaN where fewer than half were found.
+fn medians(judged: &Judged) -> Vec<f64> {
     let hours = |seconds: Option<f64>| seconds.map_or(f64::NAN, |seconds| seconds / HOUR_S);
-    let x: Vec<f64> = at.iter().map(|at| bar_h(at.rate_pa_s)).collect();
-    let y: Vec<f64> = at.iter().map(|at| hours(at.delay.median_s)).collect();
-    // A bound that was not seen to be reached ends at the median.
-    let end = |k: usize, bound: Option<f64>| bound.map_or(y[k], |bound| bound / HOUR_S);
-    let low = (0..at.len()).map(|k| end(k, at[k].delay.median_interval_s.0)).collect();
-    let high = (0..at.len()).map(|k| end(k, at[k].delay.median_interval_s.1)).collect();
+    judged.performance.sensitivity.iter().map(|at| hours(at.delay.median_s)).collect()
+}
+
+fn curve(number: usize, judged: &Judged) -> Item {
     let name = judged.performance.detector.clone();
+    Item::line(name, &rates(Some(judged)), medians(judged), style::detector(number))
+}
+
+/// Intervals, curve once more, and points.
+fn points(number: usize, judged: &Judged) -> [Item; 3] {
+    let stroke = style::detector(number);
+    let (x, y) = (rates(Some(judged)), medians(judged));
+    // A bound that was not seen to be reached ends at the median.
+    let end = |bound: Option<f64>, median: f64| bound.map_or(median, |bound| bound / HOUR_S);
+    let bounds = judged.performance.sensitivity.iter().map(|at| at.delay.median_interval_s).zip(&y);
+    let (low, high) = bounds.map(|((low, high), median)| (end(low, *median), end(high, *median))).unzip();
     [
         Item::Intervals { name: String::new(), x: x.clone(), low, high, stroke },
-        Item::line(name, &x, y.iter().copied(), stroke),
+        Item::line("", &x, y.iter().copied(), stroke),
         Item::Points { name: String::new(), x, y, stroke },
     ]
 }

@@ -59,13 +59,23 @@ fn reached(judged: &Judged) -> Vec<String> {
     let reliability = performance.reliability;
     let mut cells = vec![
         performance.detector.clone(),
-        number(judged.level.threshold, 3),
+        threshold(judged),
         reliability.alarms.to_string(),
         number(reliability.per_year(), 2),
         number(reliability.per_year_interval(CONFIDENCE).1, 2),
     ];
     cells.extend(HORIZONS.map(|horizon| performance.smallest(horizon).map_or_else(String::new, smallest)));
     cells
+}
+
+/// A threshold with its unit, pressures in bar.
+fn threshold(judged: &Judged) -> String {
+    let value = judged.level.threshold;
+    match judged.unit.as_str() {
+        "Pa" => format!("{} bar", number(value / super::PASCAL_PER_BAR, 3)),
+        "log10(years)" => format!("{} years", number(10_f64.powf(value), 2)),
+        unit => format!("{} {unit}", number(value, 3)),
+    }
 }
 
 /// A smallest leak with its interval, in bar/h.

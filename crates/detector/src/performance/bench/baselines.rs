@@ -14,6 +14,8 @@ use crate::DetectorError;
 use crate::baseline::{ErrorCusum, Expectation, GasModel, Law, PressureError, Threshold, ThresholdSettings};
 use crate::statistic::Statistic;
 
+/// Unit of errors of the pressure.
+const PASCAL: &str = "Pa";
 /// Pole of the transfer function refitted to simulated cylinders, 1/s.
 const REFITTED_POLE_PER_S: f64 = 0.002_988;
 /// How long the refitted detectors learn their error, s.
@@ -33,11 +35,11 @@ pub fn baselines(filling: Filling) -> Result<Vec<Candidate>, DetectorError> {
     let refitted = refitted_error(filling)?;
     let settings = ThresholdSettings { hold_s: HOLD_S, zero_s: LEARNT_S, ..ThresholdSettings::default() };
     Ok(vec![
-        of_statistic("paper", Threshold::published(filling)?),
-        of_statistic("paper, refitted", Threshold::try_new(refitted.clone(), settings)?),
+        of_statistic("paper", PASCAL, Threshold::published(filling)?),
+        of_statistic("paper, refitted", PASCAL, Threshold::try_new(refitted.clone(), settings)?),
         textbook_cusum(refitted),
-        of_statistic("ideal gas", Threshold::ideal_gas(filling)?),
-        of_statistic("pressure switch", Threshold::raw_switch(SWITCH_PA)?),
+        of_statistic("ideal gas", PASCAL, Threshold::ideal_gas(filling)?),
+        of_statistic("pressure switch", PASCAL, Threshold::raw_switch(SWITCH_PA)?),
     ])
 }
 
@@ -50,7 +52,7 @@ fn refitted_error(filling: Filling) -> Result<PressureError, DetectorError> {
 
 /// A cumulative sum of an error whose mean and standard deviation it takes from its first four days.
 pub fn textbook_cusum(error: PressureError) -> Candidate {
-    Candidate::new("textbook CUSUM", move || {
+    Candidate::new("textbook CUSUM", "sd", move || {
         Ok(Textbook { error: error.clone(), start_s: None, sums: (0.0, 0.0, 0.0), cusum: None })
     })
 }

@@ -44,6 +44,8 @@ type Start = Box<dyn Fn() -> Result<Box<dyn Contender>, DetectorError> + Send + 
 pub struct Candidate {
     /// Name for tables.
     pub name: String,
+    /// Unit of its statistic.
+    pub unit: &'static str,
     start: Start,
 }
 
@@ -51,10 +53,11 @@ impl Candidate {
     /// A detector that `start` makes anew for each cylinder.
     pub fn new<C: Contender + 'static>(
         name: &str,
+        unit: &'static str,
         start: impl Fn() -> Result<C, DetectorError> + Send + Sync + 'static,
     ) -> Self {
         let boxed = move || start().map(|contender| Box::new(contender) as Box<dyn Contender>);
-        Self { name: name.to_owned(), start: Box::new(boxed) }
+        Self { name: name.to_owned(), unit, start: Box::new(boxed) }
     }
 
     /// At the beginning of a cylinder.
@@ -72,12 +75,12 @@ impl std::fmt::Debug for Candidate {
     }
 }
 
-/// A detector without an observer: a statistic of shoulder and pressure.
-pub fn of_statistic<S>(name: &str, statistic: S) -> Candidate
+/// A detector without an observer: a statistic of shoulder and pressure in a unit.
+pub fn of_statistic<S>(name: &str, unit: &'static str, statistic: S) -> Candidate
 where
     S: Statistic<Sample = Reading> + Clone + Send + Sync + 'static,
 {
-    Candidate::new(name, move || Ok(OfStatistic(statistic.clone())))
+    Candidate::new(name, unit, move || Ok(OfStatistic(statistic.clone())))
 }
 
 struct OfStatistic<S>(S);

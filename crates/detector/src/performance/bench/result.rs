@@ -36,6 +36,8 @@ pub struct Outcome {
 /// One candidate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Judged {
+    /// Unit of its threshold.
+    pub unit: String,
     /// Its threshold.
     pub level: AlarmLevel,
     /// Its measures.
@@ -75,7 +77,7 @@ pub fn bench(
         // Before its leak a leaking cylinder is the tight one of its seed: it would count again for each rate.
         let tight: Vec<Run> = runs.iter().filter(|run| run.leak.is_none()).copied().collect();
         performance.reliability = AlarmRate::of(&tight);
-        Ok(Judged { level, performance, runs })
+        Ok(Judged { unit: candidate.unit.to_owned(), level, performance, runs })
     };
     let judged = candidates.iter().enumerate().map(judge).collect::<Result<_, DetectorError>>()?;
     Ok(Outcome { plan: plan.clone(), judged, noise })

@@ -59,8 +59,8 @@ impl Contender for Zeroed {
 
 fn candidates() -> Vec<Candidate> {
     vec![
-        of_statistic("paper", Threshold::published(Plan::FILLING).unwrap()),
-        Candidate::new("zeroed", Zeroed::start),
+        of_statistic("paper", "Pa", Threshold::published(Plan::FILLING).unwrap()),
+        Candidate::new("zeroed", "Pa", Zeroed::start),
     ]
 }
 
