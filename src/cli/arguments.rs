@@ -1,7 +1,9 @@
 //! The raw arguments: they mirror the command line and decide nothing.
+use super::bench_detector::BenchDetectorArguments;
 use super::calibrate::CalibrateArguments;
 use super::fill::GivenFill;
 use super::identify::IdentifyArguments;
+use super::monitor::MonitorArguments;
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cylwatch::estimator::EstimatorError;
@@ -26,13 +28,14 @@ const EXAMPLES: &str = "\
 Examples:
   cylwatch simulate nitrogen-20l shock-cold -o run.csv --plot run.svg
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
+  cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
 
-Exit codes: 0 done, 2 error. Data goes to stdout, words to stderr; NO_COLOR is respected.";
+Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive (monitor). Data goes to stdout, words to stderr; NO_COLOR is respected.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -43,10 +46,14 @@ pub enum Command {
     Simulate(SimulateArguments),
     /// Estimate gas temperature, mass and leak rate from a log of sensors outside.
     Estimate(Box<EstimateArguments>),
+    /// Decide whether gas is being lost: verdict, leak rate, onset, time left, events and alarms from a log.
+    Monitor(Box<MonitorArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.
     Identify(Box<IdentifyArguments>),
     /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.
     Calibrate(Box<CalibrateArguments>),
+    /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; takes minutes.
+    BenchDetector(BenchDetectorArguments),
     /// Print the properties of a gas, at one state or for every row of a file.
     Properties(PropertiesArguments),
     /// Write start files vessel.toml and scenario.toml, with comments, to edit.

@@ -7,13 +7,13 @@ use super::output::Target;
 use super::plot::Plot;
 use super::progress::Progress;
 use super::selection::{self, Selection};
+use super::start;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::log::{LogOptions, LogReader, Mapping, Row};
+use cylwatch::log::{LogOptions, Mapping, Row};
 use cylwatch::report::estimate as report;
-use cylwatch::thermal::scenario::Fill;
 use cylwatch::thermal::vessel::Vessel;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -23,9 +23,6 @@ mod rows;
 
 use pass::Pass;
 use rows::Rows;
-
-/// Rows that are looked through for the first pressure.
-const LONGEST_WAIT: usize = 10_000;
 
 /// Validated options.
 struct Options {
@@ -50,7 +47,8 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
     let inputs = Inputs::default();
     let vessel = inputs.vessel(&options.vessel)?;
     let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
-    let learned = options.learned_in.as_deref().map(|path| learned(&inputs, path, &vessel)).transpose()?;
+    let learned =
+        options.learned_in.as_deref().map(|path| start::learned(&inputs, path, &vessel)).transpose()?;
     let log_options = LogOptions {
         mappings: options.mappings.clone(),
         sensors: sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect(),
@@ -121,7 +119,7 @@ fn estimate(
     messages: &Messages,
 ) -> anyhow::Result<report::Summary> {
     let selection = Selection::new(&mut log.reader, sensors, vessel, &[], messages)?;
-    let (first, fill) = first_rows(&mut log.reader, &selection, options.source)?;
+    let (first, fill) = start::first_rows(&mut log.reader, &selection, options.source)?;
     let first_k = selection.mean_temperature_k(first.first());
     let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
     let commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
@@ -153,55 +151,4 @@ fn estimate(
     }
     drop(progress);
     rows.finish(title, inputs, log, options)
-}
-
-/// Reads rows until the fill is known: one row, or all up to the first pressure.
-fn first_rows(
-    reader: &mut LogReader,
-    selection: &Selection,
-    source: FillSource,
-) -> anyhow::Result<(Vec<Row>, Fill)> {
-    const REMEDY: &str = "give --fill-pressure-bar and --fill-temperature-degc, or --fill-mass-kg";
-    let pressure = selection.first_of(Quantity::Pressure);
-    if source == FillSource::FirstPressure && pressure.is_none() {
-        bail!("the log has no pressure, so that nothing says how much gas there is: {REMEDY}");
-    }
-    let mut rows = Vec::new();
-    while let Some(row) = reader.next_row()? {
-        rows.push(row.clone());
-        match source {
-            FillSource::Given(fill) => return Ok((rows, fill)),
-            FillSource::FirstPressure => {
-                let pressure_pa = pressure.map_or(f64::NAN, |channel| row.readings[channel]);
-                if pressure_pa.is_finite() {
-                    return Ok((rows, Fill::Pressure { pressure_pa }));
-                }
-            }
-        }
-        if rows.len() == LONGEST_WAIT {
-            break;
-        }
-    }
-    bail!("none of the first {} rows has a pressure: {REMEDY}", rows.len())
-}
-
-/// What an earlier run has learnt of the same vessel.
-fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<Learned> {
-    let shown = path.display();
-    let text = inputs.read(&path.to_string_lossy())?;
-    let document: serde_json::Value =
-        serde_json::from_str(&text).with_context(|| format!("{shown} is no JSON"))?;
-    let learned = serde_json::from_value::<Learned>(document["learned"].clone())
-        .with_context(|| format!("{shown} is no file of --learned-out"))?;
-    if learned.version != Learned::VERSION {
-        let version = learned.version;
-        bail!("{shown} has version {version}, this program reads {}: learn anew", Learned::VERSION);
-    }
-    if !learned.is_consistent() {
-        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn anew");
-    }
-    if learned.vessel != vessel.name {
-        bail!("{shown} was learnt on `{}`, and this is `{}`: learn on this one", learned.vessel, vessel.name);
-    }
-    Ok(learned)
 }

@@ -81,6 +81,15 @@ impl GivenFill {
         })
     }
 
+    /// The options as they were given, to tell another fill from the same; `None`: none was.
+    pub fn words(&self) -> Option<String> {
+        let quantities = self.given.quantities.iter().map(|given| format!("{} {}", given.name, given.value));
+        let percent = self.mass_sd_percent.map(|percent| format!("--fill-sd-percent {percent}"));
+        let settled = self.settled.then(|| "--settled".to_owned());
+        let words: Vec<String> = quantities.chain(percent).chain(settled).collect();
+        (!words.is_empty()).then(|| words.join(" "))
+    }
+
     /// What is known at the first row. `first_k` is the temperature that stands for one that is not given, K.
     pub fn commissioning(&self, fill: Fill, vessel: &Vessel, first_k: f64) -> anyhow::Result<Commissioning> {
         let percent = self.mass_sd_percent.unwrap_or(MASS_SD_PERCENT);

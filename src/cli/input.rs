@@ -47,6 +47,11 @@ impl Inputs {
         String::from_utf8(bytes).ok().with_context(|| format!("{name} is not UTF-8 text: save it as UTF-8"))
     }
 
+    /// Records something that was read elsewhere.
+    pub fn record(&self, input: Input) {
+        self.records.borrow_mut().push(input);
+    }
+
     /// A vessel by file name, by built-in name, or from stdin.
     pub fn vessel(&self, name: &str) -> anyhow::Result<Vessel> {
         let document =

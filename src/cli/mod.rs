@@ -1,7 +1,9 @@
 //! The command line: raw arguments ([`arguments`]), validated options (the start of every command), the run, the output.
 //!
-//! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error.
+//! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error; of `monitor`
+//! also 1 leak found, 3 inconclusive.
 mod arguments;
+mod bench_detector;
 mod calibrate;
 mod completions;
 mod estimate;
@@ -10,6 +12,7 @@ mod identify;
 mod init;
 mod input;
 mod message;
+mod monitor;
 mod output;
 mod plot;
 mod progress;
@@ -18,6 +21,7 @@ mod reproduce;
 mod schema;
 mod selection;
 mod simulate;
+mod start;
 mod states;
 mod unit_options;
 
@@ -34,7 +38,7 @@ pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let messages = Messages::new(arguments.quiet);
     match run(arguments.command, &messages) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             messages.error(&error);
@@ -43,18 +47,21 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(command: Command, messages: &Messages) -> anyhow::Result<()> {
-    match command {
+fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
+    let done = match command {
+        Command::Monitor(arguments) => return monitor::run(*arguments, messages),
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
+        Command::BenchDetector(arguments) => bench_detector::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),
-    }
+    };
+    done.map(|()| ExitCode::SUCCESS)
 }
 
 /// Whether the reader of our output has gone, as `head` does when it has seen enough: that is success.

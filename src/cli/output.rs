@@ -76,6 +76,25 @@ impl Target {
         Ok(Stream { writer: BufWriter::with_capacity(BUFFER, writer), shown, flushed: Instant::now() })
     }
 
+    /// Begins a result whose lines are there as soon as they are written; `goes_on` keeps those of an earlier run.
+    pub fn append(&self, goes_on: bool) -> anyhow::Result<Appended> {
+        let (writer, shown): (Box<dyn Write>, String) = match self {
+            Self::Stdout => (Box::new(std::io::stdout()), "stdout".to_owned()),
+            Self::File(path) | Self::Device(path) => {
+                let shown = path.display().to_string();
+                let mut options = File::options();
+                let is_device = matches!(self, Self::Device(_));
+                options.append(true).create(!is_device);
+                let opened = options.open(path).with_context(|| format!("{shown} cannot be written"))?;
+                if !goes_on && !is_device {
+                    opened.set_len(0).with_context(|| format!("{shown} cannot be emptied"))?;
+                }
+                (Box::new(opened), shown)
+            }
+        };
+        Ok(Appended { writer, shown })
+    }
+
     /// Writes the result.
     pub fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
         match self {
@@ -89,6 +108,21 @@ impl Target {
                 write.with_context(|| format!("{} cannot be written", path.display()))
             }
         }
+    }
+}
+
+/// A result whose lines are there as soon as they are written.
+pub struct Appended {
+    writer: Box<dyn Write>,
+    shown: String,
+}
+
+impl Appended {
+    /// Writes a line.
+    pub fn line(&mut self, line: &str) -> anyhow::Result<()> {
+        let written =
+            self.writer.write_all(format!("{line}\n").as_bytes()).and_then(|()| self.writer.flush());
+        written.with_context(|| format!("{} cannot be written", self.shown))
     }
 }
 
@@ -137,6 +171,12 @@ impl Stream {
             self.flushed = Instant::now();
         }
         Ok(())
+    }
+
+    /// Hands on what waits in the buffer.
+    pub fn flush(&mut self) -> anyhow::Result<()> {
+        self.flushed = Instant::now();
+        self.writer.flush().with_context(|| format!("{} cannot be written", self.shown))
     }
 
     /// Ends the result: all of it is there.

@@ -40,6 +40,11 @@ impl Progress {
         self.bar.set_message(what.to_owned());
     }
 
+    /// Does something that writes to the terminal, with the bar out of the way.
+    pub fn suspended(&self, act: impl FnOnce()) {
+        self.bar.suspend(act);
+    }
+
     /// Shows what is being done and which share of it is done.
     pub fn show(&self, what: &str, fraction: f64) {
         if self.bar.message() != what {

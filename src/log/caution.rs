@@ -18,6 +18,8 @@ pub enum Kind {
     Repeated,
     /// A row that fills gaps of the one above at the same time: both were joined.
     Joined,
+    /// A row that contradicts the one above at the same time: left out.
+    Contradicted,
     /// A row without a time: left out.
     WithoutTime,
     /// The header once more: left out.
@@ -72,6 +74,10 @@ impl fmt::Display for Caution {
             Kind::Joined => {
                 write!(f, "{first}: the row has the time of the one above; {rows} joined with it")
             }
+            Kind::Contradicted => write!(
+                f,
+                "{first}: the row has the time of the one above and says something else; {rows} left out"
+            ),
             Kind::WithoutTime => write!(f, "{first}: the row has no time; {rows} left out"),
             Kind::HeaderAgain => write!(f, "{first}: the header stands here again; {rows} left out"),
             Kind::CutOff => write!(f, "{first}: the last row is cut off and left out"),

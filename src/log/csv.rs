@@ -48,7 +48,7 @@ impl CsvSource {
             records,
             header,
             decimal_comma,
-            time: TimeReader::new(name, *form, decimal_comma),
+            time: TimeReader::new(name, *form, decimal_comma).with_origin(options.origin),
             time_at: *time_at,
             values: columns.values().map(|(i, name, unit)| (i, name.to_owned(), unit)).collect(),
         };

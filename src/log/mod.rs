@@ -7,7 +7,8 @@
 //! (text, infinite, outside of the [range](LogOptions)) is taken as missing and counted in a [`Caution`], so that a
 //! glitch does not end a live run.
 //!
-//! **Order**: a filter cannot go back. A row whose time lies before the one above is refused with both times. Rows of
+//! **Order**: a filter cannot go back. A row whose time lies before the one above is refused with both times, unless
+//! [any order](LogOptions::any_order) is wanted. Rows of
 //! one time are one row: repeated ones are counted, ones that fill each other's gaps are joined, ones that contradict
 //! each other are refused. For this a row is held back until the next one has been read.
 //!
@@ -34,6 +35,7 @@ pub use reader::{LogReader, Row, Truth, is_parquet};
 pub use sampling::Sampling;
 
 use crate::estimator::log::Quantity;
+use jiff::Timestamp;
 
 /// How a log is read.
 #[derive(Clone, Debug)]
@@ -46,6 +48,11 @@ pub struct LogOptions {
     pub temperature_range_k: (f64, f64),
     /// Lowest and highest absolute pressure that a sensor can read, Pa. What lies outside is taken as missing.
     pub pressure_range_pa: (f64, f64),
+    /// Date of second 0 of a log with dates, for one that goes on from another. `None`: the first date of the log.
+    pub origin: Option<Timestamp>,
+    /// Whether rows whose time runs backwards are handed out as they come, for whoever can sort late ones in, and rows of
+    /// one time that contradict each other cost a caution; else they are refused.
+    pub any_order: bool,
 }
 
 impl Default for LogOptions {
@@ -56,6 +63,8 @@ impl Default for LogOptions {
             sensors: Vec::new(),
             temperature_range_k: (173.15, 473.15),
             pressure_range_pa: (0.0, 1.5e8),
+            origin: None,
+            any_order: false,
         }
     }
 }

@@ -90,7 +90,7 @@ impl ParquetSource {
             reader,
             next_group: 0,
             columns,
-            time: TimeReader::new(time_name, *form, false),
+            time: TimeReader::new(time_name, *form, false).with_origin(options.origin),
             at: 0,
             length: 0,
             rows_before: 0,

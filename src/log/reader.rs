@@ -1,6 +1,6 @@
 //! The reader: rows of a source in the order of time, checked.
 use super::caution::{Caution, Cautions, Kind};
-use super::columns::{Columns, TruthQuantity};
+use super::columns::{Columns, TimeForm, TruthQuantity};
 use super::csv::CsvSource;
 use super::sampling::Sampling;
 use super::stuck::StuckWatch;
@@ -12,7 +12,7 @@ use std::path::Path;
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Time, s; increasing.
+    /// Time, s; increasing, unless the log is read in any order.
     pub time_s: f64,
     /// Readings in the order of [`LogReader::channels`], SI; NaN is a missing value.
     pub readings: Vec<f64>,
@@ -95,6 +95,7 @@ pub struct LogReader {
     stuck: StuckWatch,
     sampling: Sampling,
     cautions: Cautions,
+    any_order: bool,
     ended: bool,
 }
 
@@ -157,6 +158,7 @@ impl LogReader {
             stuck: StuckWatch::new(channels.iter().map(|channel| channel.quantity)),
             sampling: Sampling::default(),
             cautions,
+            any_order: options.any_order,
             ended: false,
             columns,
             channels,
@@ -180,7 +182,17 @@ impl LogReader {
 
     /// Date of second 0 in RFC 3339, if the log has dates and a row has been read.
     pub fn origin(&self) -> Option<String> {
-        self.source.origin().map(|origin| origin.to_string())
+        self.origin_instant().map(|origin| origin.to_string())
+    }
+
+    /// Whether the rows have dates rather than times.
+    pub fn has_dates(&self) -> bool {
+        matches!(self.columns.time.2, TimeForm::Date)
+    }
+
+    /// The same as an instant.
+    pub fn origin_instant(&self) -> Option<jiff::Timestamp> {
+        self.source.origin()
     }
 
     /// Share of the log that has been read, where the file says how long it is.
@@ -245,7 +257,9 @@ impl LogReader {
                 self.pending = Some(self.fetched.clone());
                 continue;
             };
-            if !found || self.fetched.time_s > pending.time_s {
+            let is_other = self.fetched.time_s > pending.time_s
+                || (self.any_order && self.fetched.time_s < pending.time_s);
+            if !found || is_other {
                 emit(pending, &self.columns, &mut self.row);
                 if found {
                     std::mem::swap(pending, &mut self.fetched);
@@ -266,6 +280,11 @@ impl LogReader {
             let back_s = pending.time_s - fetched.time_s;
             let text = format!("{} s", fetched.time_s);
             return Err(LogError::Backwards { at: at(), text, before, back_s });
+        }
+        let contradicts = |(a, b): (&f64, &f64)| !a.is_nan() && !b.is_nan() && a != b;
+        if self.any_order && pending.values.iter().zip(&fetched.values).any(contradicts) {
+            self.cautions.count(Kind::Contradicted, "", || (at(), String::new()));
+            return Ok(());
         }
         let mut joined = false;
         for ((_, header, unit), (first, second)) in

@@ -43,10 +43,14 @@ impl Default for Sampling {
 }
 
 impl Sampling {
-    /// Counts a row at a time after the last one.
+    /// Counts a row.
     pub(super) fn push(&mut self, time_s: f64) {
         if self.rows == 0 {
             self.first_s = time_s;
+        } else if time_s <= self.last_s {
+            // A late row says nothing of the intervals.
+            self.rows += 1;
+            return;
         } else {
             let interval_s = time_s - self.last_s;
             let bucket = (interval_s / SHORTEST_S).max(1.0).ln() / FACTOR.ln();

@@ -22,6 +22,11 @@ impl TimeReader {
         Self { column: column.to_owned(), form, decimal_comma, origin: None, zoned: None }
     }
 
+    /// The same with a date of second 0 that is known beforehand; of no use to a log without dates.
+    pub fn with_origin(self, origin: Option<Timestamp>) -> Self {
+        Self { origin: origin.filter(|_| matches!(self.form, TimeForm::Date)), ..self }
+    }
+
     /// Date of second 0, if the log has dates.
     pub fn origin(&self) -> Option<Timestamp> {
         self.origin

@@ -1,8 +1,10 @@
 //! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal. Pure functions; nothing here reads or writes.
+pub mod bench_detector;
 pub mod calibrate;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
+pub mod monitor;
 mod provenance;
 mod readings;
 pub mod simulation;

@@ -1,10 +1,25 @@
 //! What the examples claim.
 #[allow(dead_code)]
+#[path = "../../examples/cold_night.rs"]
+mod cold_night;
+#[allow(dead_code)]
+#[path = "../../examples/figure_6.rs"]
+mod figure_6;
+#[allow(dead_code)]
+#[path = "../../examples/figure_7_8.rs"]
+mod figure_7_8;
+#[allow(dead_code)]
 #[path = "../../examples/leak.rs"]
 mod leak;
 #[allow(dead_code)]
+#[path = "../../examples/leak_masked_by_warming.rs"]
+mod leak_masked_by_warming;
+#[allow(dead_code)]
 #[path = "../../examples/observe_scenarios.rs"]
 mod observe_scenarios;
+#[allow(dead_code)]
+#[path = "../../examples/refill.rs"]
+mod refill;
 #[allow(dead_code)]
 #[path = "../../examples/scenario_1.rs"]
 mod scenario_1;
@@ -22,6 +37,7 @@ mod scenario_4;
 mod tunnel_passage;
 
 use approx::assert_abs_diff_eq;
+use cylwatch::detector::monitor::Verdict;
 
 #[test]
 fn a_tight_cylinder_stays_above_160_bar_at_minus_25_degrees_and_alarms_when_it_is_colder() {
@@ -110,4 +126,79 @@ fn the_observer_is_nearer_to_gas_and_mass_than_the_transfer_function_and_knows_h
         assert!(errors.covered > 0.95, "{title}: {}", errors.covered);
         assert_eq!(comparison.figure(title).panels.len(), 3);
     }
+}
+
+#[test]
+fn the_published_expectation_fits_its_own_scheme_and_misses_a_simulated_tight_cylinder_by_bars() {
+    let scheme = figure_6::scheme().unwrap();
+    let end = scheme.time_s.len() - 1;
+    // 45 K times a gain of 1.0331 times 0.8457 bar/K; 63 % of it after 331 s.
+    let rise = |n: usize| scheme.pressure_bar[n] - scheme.pressure_bar[0];
+    assert_abs_diff_eq!(rise(end), 39.31, epsilon = 0.01);
+    let later = scheme.time_s.iter().position(|&t| t >= 600.0 + 331.0).unwrap();
+    assert_abs_diff_eq!(rise(later) / rise(end), 0.632, epsilon = 0.02);
+    let passage = figure_6::passage().unwrap();
+    let largest = |who: usize| passage.missing_bar[who].iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    assert!(largest(0) > 3.0 && largest(1) < 2.0 && largest(2) < 0.5, "{:?}", [0, 1, 2].map(largest));
+    assert_eq!(figure_6::figure(&scheme, &passage).panels.len(), 2);
+}
+
+#[test]
+fn the_papers_detector_finds_a_leak_in_its_scheme_after_minutes_and_on_a_cylinder_an_hour_after_the_others() {
+    let (course, said) = figure_7_8::scheme().unwrap();
+    // 0.1 bar at 3 bar/h after 2 min, then 10 min; noise of 10 mbar must have left the threshold.
+    let delay_min = said.delay_min.unwrap();
+    assert!((12.0..13.0).contains(&delay_min), "{delay_min} min");
+    assert_abs_diff_eq!(said.rate_bar_h, figure_7_8::SCHEME_BAR_H, epsilon = 0.03);
+    // 218 bar less three hours of 3 bar/h, 160 bar: 49 bar.
+    assert_abs_diff_eq!(said.left_h.unwrap(), 16.3, epsilon = 0.3);
+    assert_eq!(course.time_s.len(), 1441);
+    let (_, [published, refitted, monitor]) = figure_7_8::cylinder().unwrap();
+    let delay = |said: &figure_7_8::Said| said.delay_min.unwrap_or(f64::INFINITY);
+    for said in [&refitted, &monitor] {
+        assert!(delay(said) > 0.0 && delay(said) + 30.0 < delay(&published), "{}", said.detector);
+    }
+    // 60 g/h are 3.13 bar/h at 15 degC (19.18 g/bar).
+    assert_abs_diff_eq!(monitor.rate_bar_h, 3.13, epsilon = 0.15);
+}
+
+#[test]
+fn a_leak_that_a_warming_day_hides_from_the_gauge_is_found_with_its_rate_and_onset() {
+    let masked = leak_masked_by_warming::run().unwrap();
+    let (spread_bar, lost_g) = masked.spread_and_loss();
+    assert!(spread_bar < 2.5, "{spread_bar} bar");
+    assert_abs_diff_eq!(lost_g, 14.7 * leak_masked_by_warming::LEAK_G_H, epsilon = 0.1);
+    assert!(!masked.false_alarm);
+    assert!(masked.found_s.is_some_and(|found_s| found_s < 54.0 * 3600.0), "{:?}", masked.found_s);
+    let finding = masked.finding.unwrap();
+    let rate = finding.rate_kg_s.scaled(3.6e6);
+    assert!(rate.holds(leak_masked_by_warming::LEAK_G_H), "{rate:?}");
+    assert!(finding.onset_s.holds(48.3 * 3600.0), "{:?}", finding.onset_s);
+    assert_eq!(leak_masked_by_warming::figure(&masked).panels.len(), 3);
+}
+
+#[test]
+fn a_cold_night_trips_the_switch_and_the_monitor_has_warned_of_it_and_says_tight() {
+    let night = cold_night::run().unwrap();
+    let (switch_s, gas_degc) = night.switch.unwrap();
+    // A tight rigid cylinder of 180 bar reads 160 bar at -7.9 degC (CoolProp); a transmitter that is right within 0.6 bar and
+    // 0.03 bar/K, and steel that shrinks by 0.2 bar, move it by 2 K.
+    assert_abs_diff_eq!(gas_degc, -7.9, epsilon = 2.0);
+    let (warned_s, warned_bar) = night.warning.unwrap();
+    assert!(warned_s + 12.0 * 3600.0 < switch_s, "{warned_s} {switch_s}");
+    assert_abs_diff_eq!(warned_bar, 156.0, epsilon = 1.5);
+    assert!(night.verdict == Verdict::Tight && !night.leak, "{}", night.verdict);
+}
+
+#[test]
+fn a_refill_is_recognised_and_its_cooling_is_no_leak() {
+    let refill = refill::run().unwrap();
+    let (peak_bar, fall_bar) = refill.peak_and_fall();
+    assert!(peak_bar > 220.0 && fall_bar > 18.0, "{peak_bar} {fall_bar}");
+    let (gained_kg, said_s) = refill.recognised.unwrap();
+    assert_abs_diff_eq!(gained_kg / refill.filled_kg, 1.0, epsilon = 0.1);
+    assert!(said_s < refill::REFILL_S + 3600.0, "{said_s}");
+    assert!(refill.verdicts.iter().any(|(_, verdict)| *verdict == Verdict::Refill));
+    assert!(refill.verdicts.iter().all(|(_, verdict)| *verdict != Verdict::Leak));
+    assert_eq!(refill.verdicts.last().map(|(_, verdict)| *verdict), Some(Verdict::Tight));
 }

@@ -57,6 +57,7 @@ fn every_command_has_help_and_the_shells_their_completions() {
         "reproduce",
         "simulate",
         "estimate",
+        "monitor",
         "identify",
         "calibrate",
         "properties",

@@ -2,6 +2,7 @@
 // Helpers outside of test functions fail a test by panicking, too.
 #![allow(clippy::unwrap_used)]
 
+mod bench_detector;
 mod calibrate;
 mod estimate;
 mod examples;
@@ -10,6 +11,7 @@ mod identify;
 mod log;
 #[cfg(feature = "parquet")]
 mod log_parquet;
+mod monitor;
 mod pages;
 mod properties;
 mod report;

@@ -51,7 +51,9 @@ impl<'a> Rows<'a> {
         let pass = Pass::new(observer, options.smooth)?;
         let mut stream = options.data.open()?;
         match options.format {
-            Format::Csv => stream.write(&head(&inputs.provenance(), &names, log))?,
+            Format::Csv => {
+                stream.write(&start::head(&inputs.provenance(), &names, log, &report::csv_header()))?
+            }
             Format::Json => {
                 stream.write(&format!("{{\"columns\":{},\"data\":[", json!(report::COLUMNS)))?;
             }
@@ -156,19 +158,6 @@ impl Results {
         }
         Ok(self.slope.1)
     }
-}
-
-/// Comments and header of a CSV file.
-fn head(provenance: &Provenance, sensors: &[String], log: &LogInput) -> String {
-    let mut text = provenance.comment_lines();
-    if log.is_hashed_late() {
-        text.push_str("# input: the log's SHA-256 stands in the last line\n");
-    }
-    text.push_str(&format!("# sensors: {}\n", sensors.join(", ")));
-    if let Some(origin) = log.reader.origin() {
-        text.push_str(&format!("# time_s = 0 is {origin}\n"));
-    }
-    text + &report::csv_header() + "\n"
 }
 
 /// What stands below the rows.

@@ -144,6 +144,27 @@ impl Course {
         (time_s, low, high)
     }
 
+    /// The band, cut off three usual half widths beside curves, so that where it is wide it does not set the scale.
+    pub fn band_beside(
+        &self,
+        lower: usize,
+        upper: usize,
+        curves: &[usize],
+    ) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+        let (time_s, mut low, mut high) = self.band(lower, upper);
+        let mut halves: Vec<f64> = low.iter().zip(&high).map(|(low, high)| 0.5 * (high - low)).collect();
+        halves.sort_by(f64::total_cmp);
+        let room = 3.0 * halves.get(halves.len() / 2)?;
+        let drawn: Vec<f64> = curves.iter().flat_map(|&curve| self.line(curve).1).collect();
+        let known = || drawn.iter().copied().filter(|value| value.is_finite());
+        let (bottom, top) =
+            (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
+        for edge in low.iter_mut().chain(&mut high) {
+            *edge = edge.max(bottom - room).min(top + room);
+        }
+        Some((time_s, low, high))
+    }
+
     fn column(&self, curve: usize) -> impl Iterator<Item = &Extremes> {
         self.extremes.iter().skip(curve).step_by(self.curves.max(1))
     }

@@ -60,21 +60,10 @@ impl FigureData {
         self.course.has(curve).then(|| Item::Line { name: name.to_owned(), x, y, stroke })
     }
 
-    /// Band of an estimate. The wide one of the first rows is cut off three usual half widths beside the curves, so
-    /// that it does not set the scale.
+    /// Band of an estimate; the wide one of the first rows does not set the scale.
     fn band(&self, curves: [usize; 4]) -> Option<Item> {
-        let (mut x, mut low, mut high) = self.course.band(curves[1], curves[2]);
+        let (mut x, low, high) = self.course.band_beside(curves[1], curves[2], &[curves[0], curves[3]])?;
         x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
-        let mut halves: Vec<f64> = low.iter().zip(&high).map(|(low, high)| 0.5 * (high - low)).collect();
-        halves.sort_by(f64::total_cmp);
-        let room = 3.0 * halves.get(halves.len() / 2)?;
-        let drawn = [curves[0], curves[3]].map(|curve| self.course.line(curve).1).concat();
-        let known = || drawn.iter().copied().filter(|value| value.is_finite());
-        let (bottom, top) =
-            (known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max));
-        for edge in low.iter_mut().chain(&mut high) {
-            *edge = edge.max(bottom - room).min(top + room);
-        }
         Some(Item::Band { name: "± 2 sd".to_owned(), x, low, high })
     }
 

@@ -14,5 +14,7 @@ pub use course::Course;
 pub use figure::{FigureData, figure};
 pub use innovation::{Counts, Innovations};
 pub use row::{COLUMNS, DOCUMENTATION, EstimateRow, csv_header, csv_row, json_row};
+pub(in crate::report) use row::{csv_cells, json_cells, push_number};
 pub use score::{Score, Spread};
 pub use summary::{Summary, document, doubts, text};
+pub(in crate::report) use summary::{duration, log as sampling_words};

@@ -75,29 +75,44 @@ pub fn csv_header() -> String {
 
 /// Appends a row with its line feed.
 pub fn csv_row(row: &EstimateRow, text: &mut String) {
-    for number in row.numbers() {
-        push(number, "", text);
-        text.push(',');
-    }
     // The verdict is the monitor's.
-    text.push(',');
-    text.push_str(row.estimate.quality.as_str());
+    csv_cells(row, "", text);
     text.push('\n');
 }
 
 /// Appends a row as a JSON array.
 pub fn json_row(row: &EstimateRow, text: &mut String) {
     text.push('[');
-    for number in row.numbers() {
-        push(number, "null", text);
-        text.push(',');
-    }
-    text.push_str("null,\"");
-    text.push_str(row.estimate.quality.as_str());
-    text.push_str("\"]");
+    json_cells(row, None, text);
+    text.push(']');
 }
 
-fn push((value, decimals): (f64, usize), missing: &str, text: &mut String) {
+/// Appends the cells of a row with a verdict.
+pub(in crate::report) fn csv_cells(row: &EstimateRow, verdict: &str, text: &mut String) {
+    for number in row.numbers() {
+        push_number(number, "", text);
+        text.push(',');
+    }
+    text.push_str(verdict);
+    text.push(',');
+    text.push_str(row.estimate.quality.as_str());
+}
+
+/// Appends the values of a row as elements of a JSON array; no verdict is null.
+pub(in crate::report) fn json_cells(row: &EstimateRow, verdict: Option<&str>, text: &mut String) {
+    for number in row.numbers() {
+        push_number(number, "null", text);
+        text.push(',');
+    }
+    match verdict {
+        Some(verdict) => _ = write!(text, "\"{verdict}\""),
+        None => text.push_str("null"),
+    }
+    _ = write!(text, ",\"{}\"", row.estimate.quality.as_str());
+}
+
+/// Appends a number with so many decimals (`usize::MAX`: all that it has), or what stands for a missing one.
+pub(in crate::report) fn push_number((value, decimals): (f64, usize), missing: &str, text: &mut String) {
     match decimals {
         _ if !value.is_finite() => text.push_str(missing),
         // Adding zero turns a negative zero into a positive one; writing to a string does not fail.
@@ -210,7 +225,7 @@ mod tests {
             (1e17, usize::MAX, "100000000000000000"),
         ] {
             let mut text = String::new();
-            push((value, decimals), "", &mut text);
+            push_number((value, decimals), "", &mut text);
             assert_eq!(text, expected);
         }
     }
@@ -218,7 +233,7 @@ mod tests {
     #[test]
     fn nothing_is_minus_zero() {
         let mut text = String::new();
-        push((-1e-9, 4), "", &mut text);
+        push_number((-1e-9, 4), "", &mut text);
         assert_eq!(text, "0.0000");
     }
 }

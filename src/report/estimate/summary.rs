@@ -69,7 +69,8 @@ pub fn doubts(summary: &Summary) -> Vec<String> {
     names.zip(summary.innovations.counts()).filter_map(doubt).collect()
 }
 
-fn log(sampling: &Sampling) -> String {
+/// Rows, usual interval and gaps of a log.
+pub(in crate::report) fn log(sampling: &Sampling) -> String {
     let gaps = sampling.gaps();
     let mut text = match sampling.rows() {
         1 => "1 row".to_owned(),
@@ -174,7 +175,7 @@ fn short(finding: Finding) -> &'static str {
 }
 
 /// A duration in the unit that people would say.
-fn duration(duration_s: f64) -> String {
+pub(in crate::report) fn duration(duration_s: f64) -> String {
     let (value, unit) = match duration_s {
         d if d < 120.0 => (d, "s"),
         d if d < 2.0 * 3600.0 => (d / 60.0, "min"),

@@ -2,11 +2,13 @@
 //!
 //! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. plotters is named in this folder only.
 //! Looks are decided in [`style`] alone.
+mod axis;
 mod canvas;
 mod correlation;
 mod output;
 mod panel;
 mod path;
+mod strip;
 pub mod style;
 mod ticks;
 
@@ -35,6 +37,8 @@ pub enum Horizontal {
     Time,
     /// A quantity with its name and unit.
     Quantity(String),
+    /// A positive quantity with its name and unit; this axis and the vertical ones are logarithmic.
+    LogLog(String),
 }
 
 /// One panel.
@@ -74,6 +78,19 @@ pub enum Item {
         /// Looks.
         stroke: Stroke,
     },
+    /// Vertical bars from a lower to an upper edge, such as the intervals of points.
+    Intervals {
+        /// Name in the legend.
+        name: String,
+        /// Horizontal values.
+        x: Vec<f64>,
+        /// Lower ends.
+        low: Vec<f64>,
+        /// Upper ends.
+        high: Vec<f64>,
+        /// Looks.
+        stroke: Stroke,
+    },
     /// A filled band.
     Band {
         /// Name in the legend.
@@ -92,6 +109,24 @@ pub enum Item {
         /// Value.
         value: f64,
     },
+    /// Stretches in the colours of what they are, over the whole height: a panel without a vertical scale.
+    Strip {
+        /// In the order of the horizontal axis.
+        stretches: Vec<Stretch>,
+    },
+}
+
+/// A stretch of a strip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretch {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What it is, for the legend.
+    pub name: String,
+    /// Colour.
+    pub color: style::Rgb,
 }
 
 /// A marked instant.
@@ -104,13 +139,15 @@ pub struct Mark {
 }
 
 impl Item {
-    /// Its name.
+    /// Its name; of a strip that of its first stretch.
     pub fn name(&self) -> &str {
         match self {
             Self::Line { name, .. }
             | Self::Points { name, .. }
+            | Self::Intervals { name, .. }
             | Self::Band { name, .. }
             | Self::Limit { name, .. } => name,
+            Self::Strip { stretches } => stretches.first().map_or("", |stretch| &stretch.name),
         }
     }
 

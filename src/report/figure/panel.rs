@@ -1,36 +1,14 @@
 //! Draws the panels of a figure: axes, curves, limits, marks, legend.
+use super::axis::{Abscissa, Scale, abscissa, ordinate};
 use super::canvas::{Canvas, Side, Text};
 use super::path::{Point, simplified, unbroken};
 use super::style::{self, Rgb, Stroke};
-use super::ticks::{Ticks, label, ticks, time_unit};
-use super::{Figure, Horizontal, Item, Mark, Panel};
+use super::{Figure, Item, Mark, Panel, strip};
 use crate::report::ReportError;
 use plotters::prelude::DrawingBackend;
 
-const PLAIN: Text =
+pub(super) const PLAIN: Text =
     Text { size: style::SMALL, side: Side::Left, bold: false, upwards: false, color: Rgb::BLACK };
-
-/// A linear map from values to paper.
-#[derive(Clone, Copy, Debug)]
-struct Scale {
-    values: (f64, f64),
-    paper: (f64, f64),
-}
-
-impl Scale {
-    fn at(&self, value: f64) -> f64 {
-        let share = (value - self.values.0) / (self.values.1 - self.values.0);
-        self.paper.0 + share * (self.paper.1 - self.paper.0)
-    }
-}
-
-/// Horizontal axis: scale in its own values, ticks in its unit.
-struct Abscissa {
-    scale: Scale,
-    unit: f64,
-    ticks: Ticks,
-    name: String,
-}
 
 /// The frame of a panel on paper.
 struct Frame<'a> {
@@ -58,7 +36,7 @@ fn draw_part<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>, from: f64
     for (index, panel) in figure.panels.iter().enumerate() {
         let bottom = top + panel.height * style::PANEL_HEIGHT;
         let named: &[Mark] = if index == 0 { &figure.marks } else { &[] };
-        let frame = Frame { x: &x, y: ordinate(panel, named.len(), (bottom, top)) };
+        let frame = Frame { x: &x, y: ordinate(panel, x.scale.kind, named.len(), (bottom, top)) };
         grid(canvas, &frame, panel)?;
         for mark in &figure.marks {
             let at = x.scale.at(mark.at);
@@ -77,66 +55,6 @@ fn draw_part<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>, from: f64
     Ok(())
 }
 
-fn abscissa(figure: &Figure) -> Abscissa {
-    let all = figure.panels.iter().flat_map(|panel| &panel.items).flat_map(|item| match item {
-        Item::Line { x, .. } | Item::Points { x, .. } | Item::Band { x, .. } => x.as_slice(),
-        Item::Limit { .. } => &[],
-    });
-    let values = widened(range(all.copied()), 0.0);
-    let scale = Scale { values, paper: (style::LEFT, style::WIDTH - style::RIGHT) };
-    match &figure.horizontal {
-        Horizontal::Time => {
-            let unit = time_unit(values.1 - values.0);
-            let ticks = ticks(values.0 / unit.seconds, values.1 / unit.seconds, 8, unit.steps);
-            Abscissa { scale, unit: unit.seconds, ticks, name: format!("time in {}", unit.symbol) }
-        }
-        Horizontal::Quantity(name) => {
-            let ticks = ticks(values.0, values.1, 8, &[]);
-            Abscissa { scale, unit: 1.0, ticks, name: name.clone() }
-        }
-    }
-}
-
-/// Vertical scale of a panel: all its curves with a margin, its limits where they do not squeeze the curves, and room
-/// above for the names of marks.
-fn ordinate(panel: &Panel, names: usize, paper: (f64, f64)) -> Scale {
-    let (low, high) = widened(range(panel.items.iter().flat_map(values)), 0.05);
-    let most = 4.0 * (high - low);
-    let with_limits = panel.items.iter().fold((low, high), |(low, high), item| match item {
-        Item::Limit { value, .. } => {
-            let (a, b) = (low.min(*value), high.max(*value));
-            if b - a <= most { (a, b) } else { (low, high) }
-        }
-        _ => (low, high),
-    });
-    let (low, high) = if with_limits == (low, high) { (low, high) } else { widened(with_limits, 0.06) };
-    let room = names.min(3) as f64 * style::LEGEND_LINE / (paper.0 - paper.1);
-    Scale { values: (low, low + (high - low) / (1.0 - room)), paper }
-}
-
-fn values(item: &Item) -> Box<dyn Iterator<Item = f64> + '_> {
-    match item {
-        Item::Line { y, .. } | Item::Points { y, .. } => Box::new(y.iter().copied()),
-        Item::Band { low, high, .. } => Box::new(low.iter().chain(high).copied()),
-        Item::Limit { .. } => Box::new(std::iter::empty()),
-    }
-}
-
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    if low <= high { (low, high) } else { (0.0, 1.0) }
-}
-
-/// A range that has some extent, with a margin as a share of it.
-fn widened((low, high): (f64, f64), margin: f64) -> (f64, f64) {
-    let least = 1e-3 * low.abs().max(high.abs()).max(1.0);
-    let (low, high) = if high - low < least { (low - 0.5 * least, high + 0.5 * least) } else { (low, high) };
-    let extra = margin * (high - low);
-    (low - extra, high + extra)
-}
-
 fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -> Result<(), ReportError> {
     let grid = Stroke { color: Rgb::GRID, width: 0.75, dash: &[] };
     let axis = Stroke { color: Rgb::BLACK, width: 1.0, dash: &[] };
@@ -147,18 +65,44 @@ fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -
         canvas.line(&[(at, bottom), (at, top)], &grid)?;
         canvas.line(&[(at, bottom), (at, bottom + 4.0)], &axis)?;
     }
-    let wanted = ((bottom - top) / 42.0) as usize;
-    let ticks = ticks(frame.y.values.0, frame.y.values.1, wanted.max(2), &[]);
-    let number = Text { side: Side::Right, ..PLAIN };
-    for &value in &ticks.values {
-        let at = frame.y.at(value);
-        canvas.line(&[(left, at), (right, at)], &grid)?;
-        canvas.line(&[(left - 4.0, at), (left, at)], &axis)?;
-        canvas.text(&label(value, ticks.step), (left - 8.0, at), number)?;
+    for value in &frame.x.ticks.small {
+        let at = frame.x.scale.at(value * frame.x.unit);
+        canvas.line(&[(at, bottom), (at, bottom + 2.5)], &axis)?;
+    }
+    let is_strip = panel.items.iter().all(|item| matches!(item, Item::Strip { .. }));
+    if is_strip {
+        let name = Text { side: Side::Right, ..PLAIN };
+        canvas.text(&panel.quantity, (left - 8.0, 0.5 * (bottom + top)), name)?;
+    } else {
+        vertical_scale(canvas, frame, panel, &grid, &axis)?;
     }
     let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
     canvas.line(&corners, &Stroke { color: Rgb::GREY, width: 0.75, dash: &[] })?;
-    canvas.line(&[(left, top), (left, bottom), (right, bottom)], &axis)?;
+    canvas.line(&[(left, top), (left, bottom), (right, bottom)], &axis)
+}
+
+/// Ticks, their grid and the name of the vertical axis.
+fn vertical_scale<DB: DrawingBackend>(
+    canvas: &Canvas<DB>,
+    frame: &Frame,
+    panel: &Panel,
+    grid: &Stroke,
+    axis: &Stroke,
+) -> Result<(), ReportError> {
+    let (left, right) = frame.x.scale.paper;
+    let (bottom, top) = frame.y.paper;
+    let ticks = frame.y.ticks();
+    let number = Text { side: Side::Right, ..PLAIN };
+    for (value, label) in ticks.values.iter().zip(&ticks.labels) {
+        let at = frame.y.at(*value);
+        canvas.line(&[(left, at), (right, at)], grid)?;
+        canvas.line(&[(left - 4.0, at), (left, at)], axis)?;
+        canvas.text(label, (left - 8.0, at), number)?;
+    }
+    for value in &ticks.small {
+        let at = frame.y.at(*value);
+        canvas.line(&[(left - 2.5, at), (left, at)], axis)?;
+    }
     let name = Text { size: style::NORMAL, side: Side::Center, upwards: true, ..PLAIN };
     canvas.text(&panel.quantity, (18.0, 0.5 * (bottom + top)), name)
 }
@@ -166,9 +110,9 @@ fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -
 fn horizontal_labels<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame) -> Result<(), ReportError> {
     let (bottom, _) = frame.y.paper;
     let number = Text { side: Side::Center, ..PLAIN };
-    for &value in &frame.x.ticks.values {
+    for (value, label) in frame.x.ticks.values.iter().zip(&frame.x.ticks.labels) {
         let at = frame.x.scale.at(value * frame.x.unit);
-        canvas.text(&label(value, frame.x.ticks.step), (at, bottom + 14.0), number)?;
+        canvas.text(label, (at, bottom + 14.0), number)?;
     }
     let (left, right) = frame.x.scale.paper;
     let name = Text { size: style::NORMAL, ..number };
@@ -188,6 +132,15 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
                 canvas.ring(at, 3.4, stroke)?;
             }
         }
+        Item::Intervals { x, low, high, stroke, .. } => {
+            let full = Stroke { dash: &[], width: 1.2, ..*stroke };
+            for ((x, low), high) in x.iter().zip(low).zip(high) {
+                let (low, high) = (place((x, low)), place((x, high)));
+                for bar in unbroken([low, high].into_iter()).iter().filter(|bar| bar.len() == 2) {
+                    canvas.line(bar, &full)?;
+                }
+            }
+        }
         Item::Band { x, low, high, .. } => {
             let there = x.iter().zip(low).map(place);
             let back = x.iter().zip(high).map(place).rev();
@@ -195,6 +148,7 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
             canvas.polygon(&outline, Rgb::BAND)?;
         }
         Item::Limit { name, value } => limit(canvas, frame, name, *value)?,
+        Item::Strip { stretches } => strip::draw(canvas, stretches, |x| frame.x.scale.at(x), frame.y.paper)?,
     }
     Ok(())
 }
@@ -209,10 +163,11 @@ fn limit<DB: DrawingBackend>(
     let (left, right) = frame.x.scale.paper;
     let (bottom, top) = frame.y.paper;
     let text = Text { side: Side::Right, color: style::LIMIT.color, ..PLAIN };
-    if value < frame.y.values.0 {
+    let (low, high) = frame.y.values();
+    if value < low {
         return canvas.text(&format!("{name} \u{2193}"), (right - 8.0, bottom - 10.0), text);
     }
-    if value > frame.y.values.1 {
+    if value > high {
         return canvas.text(&format!("{name} \u{2191}"), (right - 8.0, top + 11.0), text);
     }
     let at = frame.y.at(value);
@@ -249,12 +204,21 @@ fn legend<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, top: f64) -> R
     for item in panel.items.iter().filter(|item| !item.name().is_empty()) {
         let sample = [(left, at), (left + style::LEGEND_SAMPLE, at)];
         let name = match item {
+            Item::Strip { stretches } => {
+                strip::legend(canvas, stretches, (left, at))?;
+                continue;
+            }
             Item::Line { name, stroke, .. } => {
                 canvas.line(&sample, stroke)?;
                 name
             }
             Item::Points { name, stroke, .. } => {
                 canvas.ring((left + 0.5 * style::LEGEND_SAMPLE, at), 3.4, stroke)?;
+                name
+            }
+            Item::Intervals { name, stroke, .. } => {
+                let middle = left + 0.5 * style::LEGEND_SAMPLE;
+                canvas.line(&[(middle, at - 7.0), (middle, at + 7.0)], &Stroke { dash: &[], ..*stroke })?;
                 name
             }
             Item::Band { name, .. } => {

@@ -82,6 +82,22 @@ pub const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
 /// Measured points.
 pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
+/// What cannot be passed.
+pub const BOUND: Stroke = stroke(Rgb::GREY, 2.6, &[1.5, 3.0]);
+
+/// Stroke of a detector in a comparison, the one that is proposed first.
+pub fn detector(number: usize) -> Stroke {
+    const STROKES: [Stroke; 6] = [
+        stroke(Rgb::BLACK, 2.4, &[]),
+        stroke(Rgb::ORANGE, 1.8, &[]),
+        stroke(Rgb::GREEN, 1.8, &[8.0, 3.0]),
+        stroke(Rgb::PURPLE, 1.8, &[1.8, 2.2]),
+        stroke(Rgb::SKY, 1.8, &[8.0, 2.5, 1.8, 2.5]),
+        stroke(Rgb::VERMILLION, 1.8, &[3.5, 2.5]),
+    ];
+    STROKES[number % STROKES.len()]
+}
+
 /// Stroke of a sensor: thin, in the colour of the place where it sits, with a dash of its own by its number.
 pub fn sensor(place: &str, number: usize) -> Stroke {
     const DASHES: [&[f64]; 3] = [&[1.2, 3.2], &[12.0, 2.5], &[6.0, 2.0, 1.2, 2.0, 1.2, 2.0]];

@@ -5,8 +5,10 @@
 pub(super) struct Ticks {
     /// Values, increasing.
     pub values: Vec<f64>,
-    /// Distance of two.
-    pub step: f64,
+    /// What stands at each of them.
+    pub labels: Vec<String>,
+    /// Values between them that get a small tick without a label.
+    pub small: Vec<f64>,
 }
 
 /// Multiples of a round step inside `[low, high]`, about `wanted` of them. `steps` are the round numbers of the axis;
@@ -16,7 +18,26 @@ pub(super) fn ticks(low: f64, high: f64, wanted: usize, steps: &[f64]) -> Ticks 
     let step = round_step(span / wanted as f64, steps);
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
-    Ticks { values: (first..=last).map(|k| k as f64 * step).collect(), step }
+    let values: Vec<f64> = (first..=last).map(|k| k as f64 * step).collect();
+    Ticks { labels: values.iter().map(|value| label(*value, step)).collect(), values, small: Vec::new() }
+}
+
+/// Powers of ten inside `[low, high]`, both positive; 2 and 5 times them, too, where there are fewer than three. The other
+/// multiples are small ticks.
+pub(super) fn logarithmic_ticks(low: f64, high: f64) -> Ticks {
+    let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let inside = |value: &f64| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(value);
+    let multiples = |factors: &[f64]| -> Vec<f64> {
+        let all = decades.clone().flat_map(|decade| factors.iter().map(move |factor| (decade, *factor)));
+        all.map(|(decade, factor)| factor * 10f64.powi(decade)).filter(inside).collect()
+    };
+    let powers = multiples(&[1.0]);
+    let (values, between) = match powers.len() {
+        0..3 => (multiples(&[1.0, 2.0, 5.0]), [3.0, 4.0, 6.0, 7.0, 8.0, 9.0].as_slice()),
+        _ => (powers, [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0].as_slice()),
+    };
+    let labels = values.iter().map(|value| label(*value, 10f64.powf(value.log10().floor()))).collect();
+    Ticks { labels, small: multiples(between), values }
 }
 
 fn round_step(ideal: f64, steps: &[f64]) -> f64 {
@@ -30,7 +51,7 @@ fn round_step(ideal: f64, steps: &[f64]) -> f64 {
 }
 
 /// A number with as many decimals as the step of its axis needs, with a real minus sign.
-pub(super) fn label(value: f64, step: f64) -> String {
+fn label(value: f64, step: f64) -> String {
     let decimals = (-(step * (1.0 + 1e-9)).log10().floor()).clamp(0.0, 9.0) as usize;
     // A step of 2.5 has one decimal more than its magnitude says.
     let decimals =
@@ -74,10 +95,21 @@ mod tests {
     fn ticks_are_round_and_inside_the_range() {
         assert_eq!(ticks(-27.0, 23.0, 6, DECIMAL).values, vec![-20.0, -10.0, 0.0, 10.0, 20.0]);
         assert_eq!(ticks(0.0, 0.5, 5, DECIMAL).values.len(), 6);
-        assert_eq!(ticks(0.0, 5.0, 8, time_unit(18000.0).steps).step, 0.5);
-        assert_eq!(ticks(0.0, 100.0, 8, time_unit(100.0).steps).step, 10.0);
-        assert_eq!(ticks(0.0, 1.0e7, 5, DECIMAL).step, 2.0e6);
-        assert_eq!(ticks(0.0, 0.01, 5, time_unit(0.01).steps).step, 0.002);
+        let first = |ticks: Ticks| ticks.values[1];
+        assert_eq!(first(ticks(0.0, 5.0, 8, time_unit(18000.0).steps)), 0.5);
+        assert_eq!(first(ticks(0.0, 100.0, 8, time_unit(100.0).steps)), 10.0);
+        assert_eq!(first(ticks(0.0, 1.0e7, 5, DECIMAL)), 2.0e6);
+        assert_eq!(first(ticks(0.0, 0.01, 5, time_unit(0.01).steps)), 0.002);
+    }
+
+    #[test]
+    fn logarithmic_axes_show_powers_of_ten_and_more_where_they_are_few() {
+        let wide = logarithmic_ticks(0.0008, 20.0);
+        assert_eq!(wide.labels, ["0.001", "0.01", "0.1", "1", "10"]);
+        assert!(wide.small.contains(&20.0) && wide.small.iter().any(|small| (small - 0.03).abs() < 1e-12));
+        let narrow = logarithmic_ticks(0.3, 6.0);
+        assert_eq!(narrow.labels, ["0.5", "1", "2", "5"]);
+        assert!(narrow.small.iter().all(|small| narrow.values.iter().all(|value| value != small)));
     }
 
     #[test]

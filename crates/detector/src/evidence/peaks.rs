@@ -32,6 +32,11 @@ impl Peaks {
         }
     }
 
+    /// What was kept elsewhere: largest values of whole stretches, in the order of [`Scale::ALL`].
+    pub fn from_largest(largest: [Vec<f64>; Scale::ALL.len()]) -> Self {
+        Self { largest, ..Self::default() }
+    }
+
     /// Largest values of the whole stretches of a scale.
     pub fn of(&self, scale: Scale) -> &[f64] {
         &self.largest[scale as usize]

@@ -10,11 +10,11 @@ use crate::DetectorError;
 
 /// Tails of the statistics without a leak; see the module's head.
 const USUAL: Tails = Tails([
-    Tail { level: 1.2, interval_s: 4.3e5, scale: 0.30, shape: 0.05 },
-    Tail { level: 0.70, interval_s: 1.7e6, scale: 0.11, shape: 0.0 },
-    Tail { level: 0.38, interval_s: 3.5e6, scale: 0.065, shape: 0.0 },
-    Tail { level: 0.13, interval_s: 1.2e7, scale: 0.03, shape: 0.0 },
-    Tail { level: 0.06, interval_s: 2.6e7, scale: 0.02, shape: 0.0 },
+    Tail { level: 0.9336, interval_s: 4.3207e5, scale: 0.2923, shape: -0.078 },
+    Tail { level: 0.4254, interval_s: 1.7298e6, scale: 0.1347, shape: -0.205 },
+    Tail { level: 0.2211, interval_s: 3.4560e6, scale: 0.0557, shape: -0.218 },
+    Tail { level: 0.1074, interval_s: 1.2223e7, scale: 0.0188, shape: 0.029 },
+    Tail { level: 0.0478, interval_s: 2.6193e7, scale: 0.0099, shape: -0.074 },
 ]);
 
 /// A threshold for each statistic.

@@ -25,8 +25,6 @@ const MEMORY: f64 = 2000.0;
 const SPIKES_S: f64 = 3600.0;
 /// Least pressure that a transmitter on a vented cylinder reads, Pa.
 const LEAST_PA: f64 = 0.5e5;
-/// Distance from the end of the range that counts as its end, relative to the range.
-const AT_END: f64 = 1e-6;
 
 /// Watch over one sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,12 +47,11 @@ pub struct SensorWatch {
 impl SensorWatch {
     /// Of a sensor.
     pub fn new(sensor: &Sensor) -> Self {
-        let (low, high) = sensor.plausible();
-        let end = AT_END * (high - low);
+        let (low, high) = sensor.usable_range();
         let least = if sensor.quantity() == Quantity::Pressure { LEAST_PA } else { f64::NEG_INFINITY };
         Self {
-            low: (low + end).max(least),
-            high: high - end,
+            low: low.max(least),
+            high,
             latest: f64::NAN,
             in_a_row: 0,
             seen: 0.0,

@@ -1,8 +1,8 @@
 //! A pressure that jumps: gas or transmitter?
 //!
 //! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next beyond
-//! `L = 0.15 bar + sd(innovation) + 0.2 |change of the expectation| + 0.5 bar/K D` is a jump, with `D` the smaller change of two
-//! thermometers, since a tunnel reaches both. It is examined: a second observer goes on from before it without
+//! `L = 0.15 bar + sd(innovation) + 0.2 |change of the expectation| + 0.5 bar/K D` is a jump, with the larger standard deviation of both, and `D`
+//! the smaller change of two thermometers, since a tunnel reaches both. It is examined: a second observer goes on from before it without
 //! the pressure, and `e(t)`, what it expects less what is read, less the same before the jump, shows
 //!
 //! * back to nothing within a few samples: a spike;
@@ -78,6 +78,7 @@ struct Innovated {
     time_s: f64,
     reading_pa: f64,
     innovation_pa: f64,
+    sd_pa: f64,
 }
 
 impl JumpWatch {
@@ -94,14 +95,15 @@ impl JumpWatch {
         if !(reading_pa.is_finite() && innovation_pa.is_finite()) {
             return None;
         }
-        let now = Innovated { time_s, reading_pa, innovation_pa };
+        let now = Innovated { time_s, reading_pa, innovation_pa, sd_pa };
         let last = self.last.replace(now)?;
         if time_s - last.time_s > LONGEST_INTERVAL_S {
             return None;
         }
         let expected = |of: &Innovated| of.reading_pa - of.innovation_pa;
         let limit_pa = JUMP_PA
-            + sd_pa
+            // The first reading of a filling that is not known well corrects it: that is no jump.
+            + sd_pa.max(last.sd_pa)
             + JUMP_PER_CHANGE * (expected(&now) - expected(&last)).abs()
             + JUMP_PER_K * warmed_k;
         ((innovation_pa - last.innovation_pa).abs() > limit_pa).then_some(last.innovation_pa)

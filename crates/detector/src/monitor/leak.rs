@@ -8,7 +8,7 @@ use crate::estimator::observer::{Estimate, Leak};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
-/// Completed bins of the trace between two looks while nothing is lost.
+/// Completed bins of the trace between two looks: an hour.
 const BINS_PER_LOOK: u32 = 6;
 
 /// What is known about a leak.
@@ -67,7 +67,7 @@ impl LeakState {
         self.bins += u32::from(completed);
         let leaking = self.found.is_some();
         let newly = look.alarm && !leaking;
-        if newly || (completed && (leaking || self.bins >= BINS_PER_LOOK)) {
+        if newly || (completed && self.bins >= BINS_PER_LOOK) {
             self.bins = 0;
             self.look(look, newly || leaking);
         }
@@ -86,13 +86,15 @@ impl LeakState {
     }
 
     fn look(&mut self, look: &Look<'_>, leaking: bool) {
-        let fitted = onset::fit(&self.trace, look.error);
-        let log_bayes_factor = fitted.map_or(0.0, |fitted| fitted.log_bayes_factor);
+        let log_bayes_factor = if leaking {
+            let fitted = onset::fit(&self.trace, look.error);
+            let finding = fitted.map(|fitted| fitted.finding(look.pa_per_kg));
+            self.found = finding.or(self.found).or_else(|| Some(self.by_rate(look)));
+            fitted.map_or(0.0, |fitted| fitted.log_bayes_factor)
+        } else {
+            onset::log_bayes_factor(&self.trace, look.error)
+        };
         self.probability = probability(PRIOR_ODDS * log_bayes_factor.exp().min(1e12));
-        if leaking {
-            let fitted = fitted.map(|fitted| fitted.finding(look.pa_per_kg));
-            self.found = fitted.or(self.found).or_else(|| Some(self.by_rate(look)));
-        }
     }
 
     /// What a member of the bank says, where the trace says nothing yet.

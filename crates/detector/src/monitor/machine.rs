@@ -20,8 +20,8 @@ use crate::estimator::observer::{
 };
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
-use crate::evidence::{Evidence, Thresholds};
-use crate::prognosis::{Contents, QUOTED_K};
+use crate::evidence::{Evidence, Statistics, Thresholds};
+use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
 
 /// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
 const ACROSS_PA: f64 = 2e5;
@@ -89,6 +89,13 @@ struct State {
     warned: bool,
 }
 
+impl State {
+    /// Whether gas may be being exchanged, or has been and has not settled.
+    fn is_exchanging(&self, time_s: f64) -> bool {
+        self.examined.is_some() || self.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S)
+    }
+}
+
 /// A jump under examination.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Examined {
@@ -109,9 +116,16 @@ struct Exchanged {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     commissioning: Commissioning,
+    reaction: ReactionSettings,
     state: State,
     observer: Snapshot,
     shadow: Option<Snapshot>,
+}
+
+/// What a state belongs to. When a reaction is due does not belong to it: the next service comes nearer every day.
+fn fingerprint(vessel: &Vessel, sensors: &[Sensor], settings: &MonitorSettings) -> Fingerprint {
+    let settings = MonitorSettings { reaction: ReactionSettings::default(), ..settings.clone() };
+    state::fingerprint(&(vessel, sensors, settings))
 }
 
 impl Monitor {
@@ -159,7 +173,7 @@ impl Monitor {
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
             roles: Roles::of(sensors),
-            fingerprint: state::fingerprint(&(vessel, sensors, settings)),
+            fingerprint: fingerprint(vessel, sensors, settings),
             observer: observer()?,
             shadow: observer()?,
             commissioning: *commissioning,
@@ -177,7 +191,7 @@ impl Monitor {
         self
     }
 
-    /// A monitor that goes on from saved bytes, with the commissioning of then.
+    /// A monitor that goes on from saved bytes, with the commissioning of then. Other settings of the reaction are taken over.
     ///
     /// # Errors
     /// The bytes are no state of this vessel, these sensors and settings, of this version, whole and unchanged; or as
@@ -188,14 +202,16 @@ impl Monitor {
         settings: &MonitorSettings,
         bytes: &[u8],
     ) -> Result<Self, DetectorError> {
-        let fingerprint = state::fingerprint(&(vessel, sensors, settings));
-        let saved: Saved = state::decode(bytes, &fingerprint)?;
+        let saved: Saved = state::decode(bytes, &fingerprint(vessel, sensors, settings))?;
         let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
         monitor.observer.try_restore(&saved.observer)?;
         if let Some(shadow) = &saved.shadow {
             monitor.shadow.try_restore(shadow)?;
         }
         monitor.state = saved.state;
+        if saved.reaction != settings.reaction {
+            monitor.state.outlook_due_s = f64::NEG_INFINITY;
+        }
         Ok(monitor)
     }
 
@@ -207,6 +223,7 @@ impl Monitor {
         let examined = self.state.examined.is_some();
         let saved = Saved {
             commissioning: self.commissioning,
+            reaction: self.settings.reaction,
             state: self.state.clone(),
             observer: self.observer.snapshot(),
             shadow: examined.then(|| self.shadow.snapshot()),
@@ -249,6 +266,11 @@ impl Monitor {
     /// The observer inside.
     pub fn observer(&self) -> &Observer {
         &self.observer
+    }
+
+    /// The statistics of the evidence for a leak after the last row.
+    pub fn evidence(&self) -> Statistics {
+        self.state.evidence.statistics()
     }
 
     /// What has become of the rows so far.
@@ -305,6 +327,11 @@ impl Monitor {
 
     fn watch_thermometers(&mut self, time_s: f64) {
         let Some(pair) = self.roles.pair else { return };
+        if self.state.is_exchanging(time_s) {
+            // Gas that comes in or goes out warms or cools the shoulder before the valve.
+            self.state.pair.forget();
+            return;
+        }
         let watches = &mut self.state.watches;
         let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
         match self.state.pair.update(time_s, as_read) {

@@ -30,9 +30,9 @@ use crate::{DetectorError, statistic::Noise};
 /// Probability on either side of an interval.
 const TAIL: f64 = 0.025;
 /// Weight of an onset that adds nothing.
-const NEGLIGIBLE: f64 = 1e-9;
+const NEGLIGIBLE: f64 = 1e-6;
 /// Halvings of an interval until its ends are one number in print.
-const BISECTIONS: usize = 40;
+const BISECTIONS: usize = 30;
 /// Decades over which a leak rate may be anything, as a natural logarithm: 0.001 to 10 bar/h.
 const LN_RATES: f64 = 9.21;
 /// Fewest bins that tell a rate.
@@ -95,6 +95,31 @@ struct Candidate {
 
 /// Rate and onset of the leak that the trace shows best; `None` where it is too short, or nothing in it speaks for a loss.
 pub fn fit(trace: &MassTrace, error: &MassError) -> Option<Fitted> {
+    let Posterior { candidates, log_bayes_factor, end_s } = posterior(trace, error)?;
+    let rates = Mixture::new(&candidates, |one| (one.rate, one.sd.hypot(error.drift_kg_s)));
+    let losses = Mixture::new(&candidates, |one| {
+        let age_s = end_s - one.onset_s;
+        (one.rate * age_s, one.sd * age_s)
+    });
+    let onset = |p: f64| onset_quantile(&candidates, p);
+    let onset_s = Interval { value: onset(0.5), low: onset(TAIL), high: onset(1.0 - TAIL) };
+    let (rate_kg_s, lost_kg) = (rates.interval(), losses.interval());
+    Some(Fitted { rate_kg_s, onset_s, lost_kg, log_bayes_factor })
+}
+
+/// Logarithm of the Bayes factor of a leak alone; 0 where the trace says nothing.
+pub fn log_bayes_factor(trace: &MassTrace, error: &MassError) -> f64 {
+    posterior(trace, error).map_or(0.0, |posterior| posterior.log_bayes_factor)
+}
+
+/// All onsets with their weights.
+struct Posterior {
+    candidates: Vec<Candidate>,
+    log_bayes_factor: f64,
+    end_s: f64,
+}
+
+fn posterior(trace: &MassTrace, error: &MassError) -> Option<Posterior> {
     let bins: Vec<Bin> = trace.bins().copied().collect();
     if bins.len() < FEWEST {
         return None;
@@ -116,17 +141,8 @@ pub fn fit(trace: &MassTrace, error: &MassError) -> Option<Fitted> {
         span_s += width;
     }
     candidates.iter_mut().for_each(|one| one.weight /= total);
-    let log_bayes_factor = largest + (factor / span_s).ln();
     let end_s = bins[bins.len() - 1].time_s;
-    let rates = Mixture::new(&candidates, |one| (one.rate, one.sd.hypot(error.drift_kg_s)));
-    let losses = Mixture::new(&candidates, |one| {
-        let age_s = end_s - one.onset_s;
-        (one.rate * age_s, one.sd * age_s)
-    });
-    let onset = |p: f64| onset_quantile(&candidates, p);
-    let onset_s = Interval { value: onset(0.5), low: onset(TAIL), high: onset(1.0 - TAIL) };
-    let (rate_kg_s, lost_kg) = (rates.interval(), losses.interval());
-    Some(Fitted { rate_kg_s, onset_s, lost_kg, log_bayes_factor })
+    Some(Posterior { candidates, log_bayes_factor: largest + (factor / span_s).ln(), end_s })
 }
 
 impl Fitted {

@@ -64,7 +64,7 @@ pub enum Health {
 }
 
 /// What is said after a sample.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
     /// Time as the row was stamped, s; that of the estimate has no jumps of the clock in it.
     pub stamp_s: f64,

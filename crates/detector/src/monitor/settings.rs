@@ -74,7 +74,7 @@ impl Default for MonitorSettings {
     /// A false alarm in ten years; a day of learning; blind after half an hour; a gap from six hours on; a leak over after a day.
     fn default() -> Self {
         Self {
-            observer: ObserverSettings::default(),
+            observer: crate::evidence::observer_settings(),
             intake: IntakeSettings::default(),
             false_alarm_interval_s: 10.0 * YEAR_S,
             limits: Limits::default(),

@@ -1,8 +1,8 @@
 //! Thermometers that jump alone.
 //!
 //! Air, sun and rain reach shoulder and valve alike, if not as much; a thermometer whose reading jumps against its
-//! expectation while the other one's does not, and stays there, has changed its offset. It is watched for five samples
-//! more before it is believed. One that jumps alone again and again, or
+//! expectation while the other one's does not, and stays there, has changed its offset. For eight samples more
+//! neither the step nor the other one may move before it is believed. One that jumps alone again and again, or
 //! by more than an offset can be, reads the air.
 use serde::{Deserialize, Serialize};
 
@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 const JUMP_K: f64 = 0.7;
 /// Part of it by which the other thermometer may have moved.
 const ALONE: f64 = 0.15;
-/// Samples that a jump must last, and the part of it that must be left.
-const LASTING: u32 = 5;
-const LEFT: f64 = 0.7;
+/// Samples that a jump must last, and how far their difference and the other one may move meanwhile, as parts of it.
+const LASTING: u32 = 8;
+const STEADY: f64 = 0.25;
 /// Jump that no offset makes, K.
 const NO_OFFSET_K: f64 = 10.0;
 /// Lonely jumps within this time, s, that tell a thermometer which reads the air.
@@ -48,11 +48,18 @@ struct Suspect {
     /// Difference of the two before the jump, K, and the jump, K.
     before_k: f64,
     jump_k: f64,
+    /// The other one before the jump, K.
+    other_k: f64,
     samples: u32,
     sum_k: f64,
 }
 
 impl Pair {
+    /// Compare nothing with the last readings.
+    pub fn forget(&mut self) {
+        (self.last, self.suspect) = (None, None);
+    }
+
     /// Smaller change of the two at the last sample, K.
     pub fn moved_k(&self) -> f64 {
         self.moved_k
@@ -71,7 +78,8 @@ impl Pair {
             let apart = readings[suspect.which] - readings[1 - suspect.which] - suspect.before_k;
             suspect.samples += 1;
             suspect.sum_k += apart;
-            if apart * suspect.jump_k.signum() < LEFT * suspect.jump_k.abs() {
+            let other_k = readings[1 - suspect.which] - suspect.other_k;
+            if (apart - suspect.jump_k).abs().max(other_k.abs()) > STEADY * suspect.jump_k.abs() {
                 self.suspect = None;
                 return None;
             }
@@ -91,7 +99,8 @@ impl Pair {
             return None;
         }
         let before_k = before[which] - before[1 - which];
-        self.suspect = Some(Suspect { which, before_k, jump_k, samples: 0, sum_k: 0.0 });
+        let other_k = before[1 - which];
+        self.suspect = Some(Suspect { which, before_k, jump_k, other_k, samples: 0, sum_k: 0.0 });
         let jumps = &mut self.jumps_s[which];
         jumps.retain(|at_s| time_s - at_s < DETACHED_S && *at_s <= last_s);
         jumps.push(time_s);

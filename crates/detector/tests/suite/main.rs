@@ -6,6 +6,7 @@ mod correlated;
 mod data_calibration;
 mod delay;
 mod equivalence;
+mod evidence;
 mod failure_alarms;
 mod fault;
 mod intake;

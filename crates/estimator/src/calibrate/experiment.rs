@@ -72,14 +72,16 @@ impl Experiment {
         if sigma.is_nan() || sigma <= 0.0 {
             return Err(CalibrateError::NoNoise { experiment, channel });
         }
-        let (low, high) = sensor.plausible();
         let reading = |row: usize| self.log.row(kept[row])[index];
-        // A reading at the end of the range says that the value is beyond it, not what it is.
-        let inside = |&row: &usize| reading(row) > low && reading(row) < high;
+        let (lowest, highest) = sensor.usable_range();
+        let inside = |&row: &usize| (lowest..=highest).contains(&reading(row));
         let rows: Vec<usize> = (0..kept.len()).filter(inside).collect();
         let values: Vec<f64> = rows.iter().map(|&row| reading(row)).collect();
         match values[..] {
-            [] => Err(CalibrateError::NoReadings { experiment, channel, low, high }),
+            [] => {
+                let (low, high) = sensor.plausible();
+                Err(CalibrateError::NoReadings { experiment, channel, low, high })
+            }
             [value, ref others @ ..] if others.len() > 1 && others.iter().all(|other| *other == value) => {
                 Err(CalibrateError::ConstantChannel { experiment, channel, value })
             }

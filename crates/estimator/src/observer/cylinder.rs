@@ -50,6 +50,8 @@ pub struct Cylinder {
     settings: ObserverSettings,
     /// How each leading state walks.
     walking: Vec<Walking>,
+    /// Error of the pressure per kelvin between wall and gas that the present member supposes, Pa/K.
+    caution_pa_k: f64,
     /// Bounded states with their bounds.
     bounds: Vec<(usize, f64, f64)>,
     /// States in which the equations are not linear, with the inverse of the difference for which a linearisation serves.
@@ -73,6 +75,29 @@ struct Work {
 }
 
 impl Cylinder {
+    /// Variance of a sensor's noise, K² or Pa², for a member of such caution, Pa/K.
+    pub(super) fn noise_at_caution(&self, j: usize, x: &[f64], caution_pa_k: f64) -> f64 {
+        let error = &self.settings.model_error;
+        let states = &self.states;
+        let square = |v: f64| v * v;
+        let model = match self.targets[j] {
+            Target::Gas => square(error.gas_k),
+            Target::Surface(place) => {
+                let away_k = x[states.air] - self.surface_k(place, x);
+                square(error.surface_k) + square(error.surface_per_air_k * away_k)
+            }
+            Target::Air => square(error.air_k),
+            Target::Pressure => {
+                let wall_k = self.model.mean_wall_k(x);
+                let away_k = wall_k - x[states.gas];
+                let per_k2 = square(error.pressure_per_wall_k) + square(caution_pa_k);
+                square(error.pressure_pa) + per_k2 * square(away_k)
+            }
+        };
+        let again = (error.correlation_s / self.interval_s[j]).max(1.0);
+        self.sensors[j].noise_variance() + model * again
+    }
+
     /// A vessel seen by sensors.
     ///
     /// # Errors
@@ -103,6 +128,7 @@ impl Cylinder {
         };
         let mut cylinder = Self {
             interval_s: vec![f64::INFINITY; sensors.len()],
+            caution_pa_k: 0.0,
             walking: vec![Walking::default(); states.leading],
             bounds: Vec::new(),
             near: Vec::new(),
@@ -426,22 +452,6 @@ impl StateSpace for Cylinder {
     }
 
     fn noise_variance(&self, j: usize, x: &[f64]) -> f64 {
-        let error = &self.settings.model_error;
-        let states = &self.states;
-        let square = |v: f64| v * v;
-        let model = match self.targets[j] {
-            Target::Gas => square(error.gas_k),
-            Target::Surface(place) => {
-                let away_k = x[states.air] - self.surface_k(place, x);
-                square(error.surface_k) + square(error.surface_per_air_k * away_k)
-            }
-            Target::Air => square(error.air_k),
-            Target::Pressure => {
-                let wall_k = self.model.mean_wall_k(x);
-                square(error.pressure_pa) + square(error.pressure_per_wall_k * (wall_k - x[states.gas]))
-            }
-        };
-        let again = (error.correlation_s / self.interval_s[j]).max(1.0);
-        self.sensors[j].noise_variance() + model * again
+        self.noise_at_caution(j, x, self.caution_pa_k)
     }
 }

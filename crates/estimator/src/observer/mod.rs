@@ -93,6 +93,8 @@ pub struct Observer {
     gate: f64,
     /// The middle one of the members that have a leak rate, in the order of the bank.
     slow: Option<usize>,
+    /// The member that gives the gas temperature: the same, if it trusts the pressure, or the first.
+    thermometer: usize,
     /// The member whose mass walks most freely: it judges the others.
     freest: usize,
     reference_x: Vec<f64>,
@@ -133,6 +135,7 @@ impl Observer {
             usable: vec![f64::NAN; sensors.len()],
             gate,
             slow: middle_slow(&settings.bank),
+            thermometer: thermometer(&settings.bank),
             freest: freest(&settings.bank),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
@@ -314,7 +317,7 @@ impl Observer {
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
-        let (thermometer, freest) = (self.slow.unwrap_or(0), self.freest);
+        let (thermometer, freest) = (self.thermometer, self.freest);
         let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
         let (mass_kg, mass_variance_kg2) = Belief::of(first_mass, free_mass).blend(first_mass, free_mass);
         let (gas_mean_k, gas_variance_k2) = Belief::of(slow_mass, free_mass)
@@ -500,6 +503,10 @@ impl Observer {
 fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
     let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
     slow().nth(slow().count() / 2)
+}
+
+fn thermometer(bank: &[LeakHypothesis]) -> usize {
+    middle_slow(bank).filter(|&index| bank[index].caution_pa_k == 0.0).unwrap_or(0)
 }
 
 /// The first of those whose mass walks farthest.

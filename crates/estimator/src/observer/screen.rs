@@ -16,7 +16,7 @@ const PULLED: f64 = 20.0;
 /// What is wrong with a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Outside what the sensor can read.
+    /// Outside what the sensor can read, or at the end of it.
     Implausible,
     /// The same as long before, while the cylinder moved on.
     Stuck,
@@ -46,7 +46,7 @@ pub(super) struct Screen {
 
 impl Screen {
     pub fn new(sensor: &Sensor) -> Self {
-        let (low, high) = sensor.plausible();
+        let (low, high) = sensor.usable_range();
         let limit = PULLED * sensor.noise_variance().sqrt();
         Self { low, high, limit, latest: f64::NAN, in_a_row: 0, pulled: 0.0, count: FaultCount::default() }
     }
@@ -90,12 +90,13 @@ mod tests {
     #[test]
     fn readings_outside_the_range_are_implausible_and_counted() {
         let mut screen = screen();
-        for reading in [-1e9, 1e12] {
+        let (low, high) = Sensor::typical("pressure").unwrap().plausible();
+        for reading in [-1e9, 1e12, low, high] {
             assert_eq!(screen.judge(reading), Some(Fault::Implausible));
         }
         assert_eq!(screen.judge(2e7), None);
         assert_eq!(screen.judge(f64::NAN), None);
-        assert_eq!(screen.count, FaultCount { implausible: 2, stuck: 0 });
+        assert_eq!(screen.count, FaultCount { implausible: 4, stuck: 0 });
     }
 
     #[test]

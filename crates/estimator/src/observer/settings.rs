@@ -85,12 +85,20 @@ pub struct LeakHypothesis {
     pub mass_walk_kg_per_sqrt_s: f64,
     /// Leak rate, kg/s: prior and random walk.
     pub rate: Walk,
+    /// Error of the pressure per kelvin between mean wall and gas, beside that of [`ModelError`], Pa/K: a member that has it sees
+    /// the mass mostly in calm hours, and is no thermometer.
+    #[serde(default)]
+    pub caution_pa_k: f64,
 }
 
 impl LeakHypothesis {
     /// The mass walks by so many grams in the square root of an hour; no leak rate.
     pub fn walking_mass(grams_per_sqrt_h: f64) -> Self {
-        Self { mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * PER_HOUR.sqrt(), rate: Walk::constant(0.0) }
+        Self {
+            mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * PER_HOUR.sqrt(),
+            rate: Walk::constant(0.0),
+            caution_pa_k: 0.0,
+        }
     }
 
     /// A leak rate that changes by so many g/h in the square root of an hour.
@@ -98,7 +106,13 @@ impl LeakHypothesis {
         Self {
             mass_walk_kg_per_sqrt_s: 0.0,
             rate: Walk::per_sqrt_hour(0.0, grams_per_h_per_sqrt_h * 1e-3 * PER_HOUR),
+            caution_pa_k: 0.0,
         }
+    }
+
+    /// The same with so much error of the pressure per kelvin between wall and gas, Pa/K.
+    pub fn cautious(self, caution_pa_k: f64) -> Self {
+        Self { caution_pa_k, ..self }
     }
 }
 
@@ -308,6 +322,7 @@ impl ObserverSettings {
         }
         for member in &self.bank {
             not_negative("bank.mass_walk_kg_per_sqrt_s", member.mass_walk_kg_per_sqrt_s)?;
+            not_negative("bank.caution_pa_k", member.caution_pa_k)?;
             member.rate.check("bank.rate")?;
         }
         Ok(())

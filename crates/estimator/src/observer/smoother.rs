@@ -43,7 +43,7 @@ pub struct Smoother {
 struct Row {
     estimate: Estimate,
     reference_kg: Option<f64>,
-    /// Weight of the first member in the mass, and of the slow one in the gas temperature, against the freest.
+    /// Weight of the first member in the mass, and of the thermometer in the gas temperature, against the freest.
     beliefs: (Belief, Belief),
     passes: Vec<Pass>,
 }
@@ -154,17 +154,22 @@ impl Smoother {
             bank.covariance_into(index, &mut row.step.p);
             passes.push(row);
         }
-        let (first, slow, _) = self.roles();
+        let Roles { first, thermometer, .. } = self.roles();
         let belief = |role: usize| self.observer.belief(self.members[role]);
-        let beliefs = (belief(first), belief(slow));
+        let beliefs = (belief(first), belief(thermometer));
         Row { estimate, reference_kg: self.observer.clock.reference_mass_kg, beliefs, passes }
     }
 
-    /// Places of the first, the middle slow (or again the first) and the freest member among the recorded ones.
-    fn roles(&self) -> (usize, usize, usize) {
+    /// Where the members stand among the recorded ones; the slow one is the first where there is none.
+    fn roles(&self) -> Roles {
         let place = |index: usize| self.members.iter().position(|&member| member == index).unwrap_or(0);
-        let slow = self.observer.slow.map_or(0, place);
-        (0, slow, place(self.observer.freest))
+        let observer = &self.observer;
+        Roles {
+            first: 0,
+            thermometer: place(observer.thermometer),
+            slow: observer.slow.map_or(0, place),
+            freest: place(observer.freest),
+        }
     }
 
     /// Smooth the whole record and hand out the oldest `count` rows.
@@ -193,14 +198,15 @@ impl Smoother {
             backward.estimate(&pass.step, smoothed);
         }
         let (filtered, reference_kg, beliefs) = (row.estimate, row.reference_kg, row.beliefs);
-        let (first, slow, freest) = self.roles();
-        let learnt = &row.passes[slow].step.p;
+        let Roles { first, thermometer, slow, freest } = self.roles();
+        let learnt = &row.passes[thermometer].step.p;
         let states = self.observer.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
-        let (first, slow, freest) = (&self.smoothed[first], &self.smoothed[slow], &self.smoothed[freest]);
+        let [first, thermometer, slow, freest] =
+            [first, thermometer, slow, freest].map(|role| &self.smoothed[role]);
         let of = |smoothed: &Smoothed, state: usize| (smoothed.x[state], smoothed.p[(state, state)].max(0.0));
         let (mass_kg, mass_variance_kg2) = beliefs.0.blend(of(first, mass), of(freest, mass));
-        let (gas_mean_k, gas_variance_k2) = beliefs.1.blend(of(slow, gas), of(freest, gas));
+        let (gas_mean_k, gas_variance_k2) = beliefs.1.blend(of(thermometer, gas), of(freest, gas));
         // What the filter had learnt at this row: with what later rows tell too, more of them could widen the band.
         let gas_variance_k2 = self.observer.band.stated_k2(gas_variance_k2, |state| learnt[(state, state)]);
         let mut estimate = Estimate {
@@ -220,6 +226,14 @@ impl Smoother {
             Err(_) => filtered,
         }
     }
+}
+
+/// Places among the recorded members.
+struct Roles {
+    first: usize,
+    thermometer: usize,
+    slow: usize,
+    freest: usize,
 }
 
 /// From after a step to after the step before it.

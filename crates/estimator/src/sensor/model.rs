@@ -10,6 +10,9 @@ use cylwatch_thermal::units::ATMOSPHERE_PA;
 /// Temperature of the electronics at which a pressure transmitter has no temperature error, K: 15 °C.
 pub const ELECTRONICS_REFERENCE_K: f64 = 288.15;
 
+/// Distance from an end of the range that counts as the end, relative to the range: what a logger rounds.
+const END_OF_RANGE: f64 = 1e-6;
+
 /// What a sensor is exposed to at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Exposure {
@@ -194,6 +197,13 @@ impl Sensor {
     /// Lowest and highest reading that can be one; a reading outside is a fault of the sensor.
     pub fn plausible(&self) -> (f64, f64) {
         self.plausible
+    }
+
+    /// Lowest and highest reading that say what the value is: one at an end of the bounds says only that the value is beyond.
+    pub fn usable_range(&self) -> (f64, f64) {
+        let (low, high) = self.plausible;
+        let end = END_OF_RANGE * (high - low);
+        (low + end, high - end)
     }
 
     /// Time constant of its first-order lag, s; 0: none.

@@ -24,7 +24,7 @@ pub struct AlarmSettings {
     pub sensor_fault: Alarm<OffNormal>,
     /// Nothing can be said of the gas.
     pub unknown: Alarm<OffNormal>,
-    /// Raw pressure on the coldest night, Pa.
+    /// Raw pressure on the coldest night, Pa; a deadband below the operational limit, since a full cylinder is right at it.
     pub cold_night: Alarm<ExclusiveLimit>,
 }
 
@@ -73,7 +73,7 @@ impl AlarmSettings {
                 timing: timing(HOUR_S, 10.0 * MINUTE_S, DAY_S),
             },
             cold_night: Alarm {
-                trigger: below(low(limit_pa, BAR_PA, 300)),
+                trigger: below(low(limit_pa - BAR_PA, BAR_PA, 300)),
                 timing: timing(HOUR_S, HOUR_S, 7.0 * DAY_S),
             },
         }

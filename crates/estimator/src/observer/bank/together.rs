@@ -144,7 +144,6 @@ impl Together {
         for group in &self.groups {
             let x = &members[group.reference].x;
             let value = cylinder.output(sensor, x, Some(h))?;
-            let noise = cylinder.noise_variance(sensor, x);
             memory.h.iter_mut().zip(&*h).for_each(|(to, &h)| to.put(group.lanes, Lanes::splat(h)));
             for (lane, member) in members.iter().enumerate().filter(|(lane, _)| group.lanes[*lane]) {
                 let expected = match group.distance[lane] {
@@ -153,7 +152,7 @@ impl Together {
                     _ => value + dot_difference(h, &member.x, x),
                 };
                 nu.0[lane] = reading - expected;
-                r.0[lane] = noise;
+                r.0[lane] = cylinder.noise_at_caution(sensor, x, member.hypothesis.caution_pa_k);
             }
         }
         let s = self.bank.project(&memory.h) + r;

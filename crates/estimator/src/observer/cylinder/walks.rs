@@ -36,8 +36,9 @@ impl SlowProcess {
 }
 
 impl Cylinder {
-    /// Let mass and leak rate walk as one member of the bank supposes.
+    /// Let mass and leak rate walk, and trust the pressure, as one member of the bank does.
     pub fn suppose(&mut self, leak: &LeakHypothesis) {
+        self.caution_pa_k = leak.caution_pa_k;
         self.walking[self.states.mass].intensity = leak.mass_walk_kg_per_sqrt_s.powi(2);
         self.walking[self.states.leak].intensity = leak.rate.per_sqrt_s.powi(2);
         self.walking[self.states.leak].decay_per_s = leak.rate.decay_per_s();

@@ -1,0 +1,105 @@
+//! Probability of finding a leak within a time, against its rate.
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Proportion, Run};
+
+const HOUR_S: f64 = 3600.0;
+
+/// Times within which a leak should be found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Horizon {
+    /// 1 h.
+    Hour,
+    /// 24 h.
+    Day,
+    /// 7 d.
+    Week,
+    /// 30 d.
+    Month,
+}
+
+impl Horizon {
+    /// All of them, increasing.
+    pub const ALL: [Self; 4] = [Self::Hour, Self::Day, Self::Week, Self::Month];
+
+    /// How long it is, s.
+    pub fn seconds(self) -> f64 {
+        match self {
+            Self::Hour => HOUR_S,
+            Self::Day => 24.0 * HOUR_S,
+            Self::Week => 168.0 * HOUR_S,
+            Self::Month => 720.0 * HOUR_S,
+        }
+    }
+}
+
+impl fmt::Display for Horizon {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Hour => "1 h",
+            Self::Day => "24 h",
+            Self::Week => "7 d",
+            Self::Month => "30 d",
+        })
+    }
+}
+
+/// How many leaks of one rate were found within a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Detection {
+    /// Loss of the pressure at 15 °C, Pa/s.
+    pub rate_pa_s: f64,
+    /// Found of those that were watched for so long, or found before.
+    pub found: Proportion,
+}
+
+impl Detection {
+    /// Of runs with one rate each, in the order of [`by_rate`](super::by_rate), within `horizon_s`.
+    pub fn against_rate(groups: &[(f64, Vec<Run>)], horizon_s: f64) -> Vec<Self> {
+        let of = |(rate_pa_s, runs): &(f64, Vec<Run>)| Self {
+            rate_pa_s: *rate_pa_s,
+            found: Proportion::count(told(runs, horizon_s)),
+        };
+        groups.iter().map(of).collect()
+    }
+}
+
+/// Outcomes of the runs that can tell.
+///
+/// A run that ends before the horizon could add a hit but never a miss: then it counts neither way.
+pub(super) fn told(runs: &[Run], horizon_s: f64) -> impl Iterator<Item = bool> + '_ {
+    let long_enough = move |run: &&Run| run.watched_s().is_some_and(|watched_s| watched_s >= horizon_s);
+    runs.iter().filter(long_enough).filter_map(move |run| run.found_within(horizon_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::performance::{TrueLeak, by_rate};
+
+    #[test]
+    fn runs_that_end_before_the_horizon_count_neither_way() {
+        let run = |seed, watched_h: f64, delay_h: Option<f64>| Run {
+            seed,
+            leak: Some(TrueLeak { rate_pa_s: 1.0, onset_s: 0.0 }),
+            from_s: 0.0,
+            until_s: watched_h * HOUR_S,
+            alarm_s: delay_h.map(|hours| hours * HOUR_S),
+            found: None,
+        };
+        let runs = [
+            run(0, 48.0, Some(10.0)),
+            run(1, 48.0, Some(30.0)),
+            run(2, 48.0, None),
+            run(3, 12.0, Some(2.0)),
+            run(4, 12.0, None),
+        ];
+        let within = |horizon: Horizon| Detection::against_rate(&by_rate(&runs), horizon.seconds())[0].found;
+        assert_eq!(within(Horizon::Day), Proportion { hits: 1, trials: 3 });
+        assert_eq!(within(Horizon::Hour), Proportion { hits: 0, trials: 5 });
+        assert_eq!(within(Horizon::Week), Proportion { hits: 0, trials: 0 });
+    }
+}

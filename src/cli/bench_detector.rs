@@ -1,0 +1,173 @@
+//! `cylwatch bench-detector`: leak detectors side by side on simulated cylinders.
+use super::arguments::Format;
+use super::command_line;
+use super::message::Messages;
+use super::output::Target;
+use super::plot::Plot;
+use super::progress::Progress;
+use anyhow::bail;
+use clap::Args;
+use cylwatch::detector::performance::YEAR_S;
+use cylwatch::detector::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
+use cylwatch::report::{Provenance, bench_detector as report};
+use std::path::PathBuf;
+use std::sync::Mutex;
+
+const DAY_S: f64 = 86_400.0;
+const HOUR_S: f64 = 3600.0;
+
+/// Arguments of `bench-detector`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct BenchDetectorArguments {
+    /// Cylinders for training, as many for the test, and as many for each leak rate; at least 5.
+    #[arg(long, value_name = "NUMBER", default_value_t = 24)]
+    pub seeds: u64,
+    /// How long each cylinder is watched, in d, after --learning-days; above 1.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8.0)]
+    pub days: f64,
+    /// Operation that detectors learn from before anything counts, in d.
+    #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
+    pub learning_days: f64,
+    /// Leak rates in bar/h, loss of the pressure at 15 degC [default: 11 from 0.001 to 10].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub rates: Option<Vec<f64>>,
+    /// Mean time between false alarms that every threshold is set for, in years.
+    #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
+    pub false_alarm_years: f64,
+    /// First seed of cylinders and weather, a whole number of at least 0.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
+    /// Simulate stratified gas, a finer wall and weather: about thirty times the time.
+    #[arg(long)]
+    pub stratified: bool,
+    /// File for a row of each detector and rate; - is stdout [default: tables for people on stdout].
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Format of the data [default: json for a file that ends in .json, else csv].
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// The same as --format json.
+    #[arg(long, conflicts_with = "format")]
+    pub json: bool,
+    /// Figure of delay against leak rate; the ending .svg or .png decides the format.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+const HELP: &str = "\
+Every detector sees the same readings of the same cylinders, drawn with errors of wall, films and
+sensors, in winter weeks under a train with tunnels. Thresholds are set on the training cylinders
+for one rate of false alarms; the test cylinders have other seeds.
+
+Detectors: cylwatch; the paper's as published and refitted (real gas, gain 1, zero learnt); a
+textbook's cumulative sum; an ideal gas at the shoulder's temperature; a pressure switch.
+
+Examples:
+  cylwatch bench-detector
+  cylwatch bench-detector --seeds 60 --days 31 -o bench.csv --plot delay.svg
+  cylwatch bench-detector --rates 0.01,0.1,1 --json | jq '.detectors[].performance.smallest'";
+
+/// Validated options.
+struct Options {
+    plan: Plan,
+    data: Target,
+    format: Option<Format>,
+    plot: Option<Plot>,
+}
+
+/// Simulates, judges, writes.
+pub fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Result<()> {
+    let options = Options::checked(arguments)?;
+    let outcome = options.bench(messages)?;
+    options.write(&outcome, messages)
+}
+
+impl Options {
+    fn checked(arguments: BenchDetectorArguments) -> anyhow::Result<Self> {
+        let data = Target::checked(arguments.output.as_deref(), &[])?;
+        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &[], &[&data])).transpose()?;
+        let asked = if arguments.json { Some(Format::Json) } else { arguments.format };
+        let for_people = asked.is_none() && arguments.output.is_none();
+        let format = (!for_people).then(|| asked.unwrap_or_else(|| Format::of(arguments.output.as_deref())));
+        let plan = plan(&arguments)?;
+        Ok(Self { plan, data, format, plot })
+    }
+
+    fn bench(&self, messages: &Messages) -> anyhow::Result<Outcome> {
+        let candidates = candidates(&self.plan)?;
+        let progress = Mutex::new(Progress::new(messages));
+        let outcome = bench(&self.plan, &candidates, &|so_far| {
+            // Without the bar the bench goes on.
+            if let Ok(bar) = progress.lock() {
+                bar.show("simulating cylinders", so_far.done as f64 / so_far.all as f64);
+            }
+        });
+        drop(progress);
+        Ok(outcome?)
+    }
+
+    fn write(&self, outcome: &Outcome, messages: &Messages) -> anyhow::Result<()> {
+        let provenance =
+            Provenance { command: command_line(), inputs: Vec::new(), seed: Some(self.plan.seed) };
+        let words = report::text(outcome);
+        let picture = self.plot.as_ref().map(|plot| plot.draw(&report::figure(outcome), &provenance));
+        let picture = picture.transpose()?;
+        let text = match self.format {
+            None => words.clone(),
+            Some(Format::Csv) => {
+                let remarks: Vec<String> =
+                    words.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+                report::csv(outcome, &provenance, &remarks)
+            }
+            Some(Format::Json) => {
+                serde_json::to_string_pretty(&report::document(outcome, &provenance))? + "\n"
+            }
+        };
+        self.data.write(text.as_bytes())?;
+        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
+            plot.write(&bytes)?;
+        }
+        if self.format.is_some() {
+            messages.say(&words);
+        }
+        Ok(())
+    }
+}
+
+/// All detectors, ours first.
+fn candidates(plan: &Plan) -> anyhow::Result<Vec<Candidate>> {
+    let mut candidates = vec![monitor(plan)?];
+    candidates.extend(baselines(Plan::FILLING)?);
+    Ok(candidates)
+}
+
+/// The plan, each option named if it is out of its bounds.
+fn plan(arguments: &BenchDetectorArguments) -> anyhow::Result<Plan> {
+    let positive = |option: &str, value: f64, above: f64| {
+        if !(value > above && value.is_finite()) {
+            bail!("--{option} {value}: it must be above {above} and finite");
+        }
+        Ok(value)
+    };
+    if arguments.seeds < 5 {
+        bail!("--seeds {}: at least 5 cylinders are needed to set a threshold", arguments.seeds);
+    }
+    let mut plan = Plan {
+        training: arguments.seeds,
+        tests: arguments.seeds,
+        seed: arguments.seed,
+        learning_s: DAY_S * positive("learning-days", arguments.learning_days, 0.0)?,
+        watched_s: DAY_S * positive("days", arguments.days, 1.0)?,
+        between_alarms_s: YEAR_S * positive("false-alarm-years", arguments.false_alarm_years, 0.0)?,
+        fast: !arguments.stratified,
+        ..Plan::default()
+    };
+    if let Some(rates) = &arguments.rates {
+        let of = |rate: &f64| Ok(positive("rates", *rate, 0.0)? * 1e5 / HOUR_S);
+        plan.rates_pa_s = rates.iter().map(of).collect::<anyhow::Result<_>>()?;
+        plan.rates_pa_s.sort_by(f64::total_cmp);
+        plan.rates_pa_s.dedup();
+    }
+    Ok(plan)
+}

@@ -1,0 +1,123 @@
+//! `cylwatch monitor`: the monitor on a log, row by row: verdict, events, alarms, a state to go on from.
+use super::arguments::Format;
+use super::fill::{self, FillSource, GivenFill};
+use super::input::{Inputs, LogInput};
+use super::message::Messages;
+use super::output::Target;
+use super::plot::Plot;
+use super::progress::Progress;
+use super::selection::{self, Selection};
+use super::start;
+use anyhow::{Context, bail};
+use cylwatch::log::{LogOptions, Row};
+use cylwatch::report::monitor::Summary;
+use std::path::Path;
+use std::process::ExitCode;
+
+mod arguments;
+mod engine;
+mod events;
+mod going_on;
+mod options;
+mod rows;
+mod session;
+mod state;
+
+pub use arguments::MonitorArguments;
+
+use engine::Engine;
+use going_on::Beginning;
+use options::Options;
+use session::{Kit, Session};
+
+/// Exit code where a leak was found.
+const LEAK: u8 = 1;
+/// Exit code where nothing can be told.
+const INCONCLUSIVE: u8 = 3;
+
+/// Monitors row by row and writes.
+pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let beginning = Beginning::find(&options, &inputs, messages)?;
+    let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
+    let log_options = LogOptions {
+        mappings: options.mappings.clone(),
+        sensors: sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect(),
+        origin: beginning.origin()?,
+        any_order: true,
+        ..LogOptions::default()
+    };
+    let mut log = inputs.log(&options.log, &log_options)?;
+    let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
+    let outcome =
+        selection.and_then(|selection| monitor(&options, &inputs, beginning, &selection, &mut log, messages));
+    for caution in log.reader.cautions() {
+        messages.caution(&caution.to_string());
+    }
+    let Some(summary) = outcome? else {
+        messages.say("nothing can be said yet: all rows wait in the state for late ones");
+        return Ok(ExitCode::from(INCONCLUSIVE));
+    };
+    messages.say(&cylwatch::report::monitor::text(&summary));
+    Ok(if summary.has_leak() {
+        ExitCode::from(LEAK)
+    } else if summary.is_inconclusive() {
+        ExitCode::from(INCONCLUSIVE)
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+/// Runs the monitor over the log. Without a state nothing is left behind if it fails; with one, what was done before a
+/// bad row stays.
+fn monitor(
+    options: &Options,
+    inputs: &Inputs,
+    beginning: Beginning,
+    selection: &Selection,
+    log: &mut LogInput,
+    messages: &Messages,
+) -> anyhow::Result<Option<Summary>> {
+    let identity = beginning.identity(options, &selection.sensors);
+    let vessel = &beginning.vessel;
+    let engine = match &beginning.state {
+        None => Engine::cold(options, inputs, vessel, selection, log, messages)?,
+        Some(state) => {
+            let path = options.state.as_deref().unwrap_or(Path::new("the state"));
+            state.check(&identity).map_err(|reason| going_on::refused(path, &reason))?;
+            session::check_clock(options, state, log)?;
+            Engine::restored(options, vessel, selection, state)?
+        }
+    };
+    let title = format!("{} \u{2013} {}", vessel.name, selection.names().join(", "));
+    let first = engine.first.clone();
+    let kit = Kit { options, inputs, selection, messages, identity };
+    let mut session = Session::begin(kit, &beginning, engine, log)?;
+    let progress = Progress::new(messages);
+    session.acknowledge(&progress)?;
+    if let Err(error) = read(&mut session, &first, options, log, &progress) {
+        session.abandon(inputs, log, &error)?;
+        return Err(error);
+    }
+    session.finish(title, log, &progress)
+}
+
+/// Takes in all rows.
+fn read(
+    session: &mut Session,
+    first: &[Row],
+    options: &Options,
+    log: &mut LogInput,
+    progress: &Progress,
+) -> anyhow::Result<()> {
+    for row in first {
+        session.push(row, log, progress)?;
+    }
+    loop {
+        progress.show(&options.log, log.fraction());
+        let Some(row) = log.reader.next_row()? else { return Ok(()) };
+        let row = row.clone();
+        session.push(&row, log, progress)?;
+    }
+}

@@ -1,0 +1,99 @@
+//! The monitor of a run: made from the first rows, or restored from a state.
+use super::going_on::refused;
+use super::state::{Refusal, State};
+use super::*;
+use cylwatch::detector::monitor::alarm::AlarmSettings;
+use cylwatch::detector::monitor::{Limits, Monitor, MonitorSettings};
+use cylwatch::detector::prognosis::{Contents, QUOTED_K, ReactionSettings};
+use cylwatch::estimator::log::Quantity;
+use cylwatch::thermal::scenario::Fill;
+use cylwatch::thermal::vessel::Vessel;
+
+const YEAR_S: f64 = 365.25 * 86_400.0;
+
+/// A monitor and what a run must know beside it.
+pub struct Engine {
+    /// The monitor.
+    pub monitor: Monitor,
+    /// Pressure of the full cylinder at 15 °C, Pa.
+    pub full_pa: f64,
+    /// Rows that were read to find the fill.
+    pub first: Vec<Row>,
+}
+
+/// Settings of the monitor.
+pub fn settings(options: &Options) -> MonitorSettings {
+    let defaults = MonitorSettings::default();
+    let circumstances = options.circumstances;
+    MonitorSettings {
+        observer: options.fill.settings(),
+        false_alarm_interval_s: options.false_alarm_years * YEAR_S,
+        limits: Limits {
+            operational_pa: circumstances.limit_pa,
+            coldest_k: circumstances.coldest_k,
+            ..defaults.limits
+        },
+        intake: cylwatch::detector::monitor::intake::IntakeSettings {
+            lateness_s: options.lateness_s,
+            ..defaults.intake
+        },
+        reaction: ReactionSettings { next_service_s: circumstances.next_service_s, ..defaults.reaction },
+        alarms: AlarmSettings::with_limit(circumstances.limit_pa),
+        ..defaults
+    }
+}
+
+impl Engine {
+    /// A monitor that goes on.
+    pub fn restored(
+        options: &Options,
+        vessel: &Vessel,
+        selection: &Selection,
+        state: &State,
+    ) -> anyhow::Result<Self> {
+        let restored = Monitor::restore(vessel, &selection.sensors, &settings(options), &state.monitor);
+        let path = options.state.as_deref().unwrap_or(Path::new("the state"));
+        let monitor = restored.map_err(|error| refused(path, &Refusal::Monitor(error)))?;
+        Ok(Self { monitor, full_pa: state.full_pa, first: Vec::new() })
+    }
+
+    /// A monitor that begins with the first rows.
+    pub fn cold(
+        options: &Options,
+        inputs: &Inputs,
+        vessel: &Vessel,
+        selection: &Selection,
+        log: &mut LogInput,
+        messages: &Messages,
+    ) -> anyhow::Result<Self> {
+        let learned = options.learned_in.as_deref();
+        let learned = learned.map(|path| start::learned(inputs, path, vessel)).transpose()?;
+        let (first, fill) = start::first_rows(&mut log.reader, selection, options.source)?;
+        let first_k = selection.mean_temperature_k(first.first());
+        let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
+        let mut commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
+        let mass_kg = commissioning.mass_kg(vessel, first_k)?;
+        // What the cylinder was filled with is the mass, not a pressure at whatever temperature the first row has.
+        if matches!(commissioning.fill, Fill::Pressure { .. }) {
+            commissioning.fill = Fill::Mass { mass_kg };
+        }
+        let contents = Contents::of(vessel);
+        let fill_pa = contents.pressure_pa(mass_kg, first_k).with_context(|| {
+            format!(
+                "{}: the fill of {mass_kg:.3} kg does not fit the vessel: look at vessel and fill",
+                begin()
+            )
+        })?;
+        if let (Some(row), Some(channel)) = (first.last(), selection.first_of(Quantity::Pressure))
+            && let Some(doubt) =
+                fill::misfit(mass_kg, first_k, fill_pa, row.readings[channel]).with_context(begin)?
+        {
+            messages.caution(&format!("{}: {doubt}", begin()));
+        }
+        let mut monitor = Monitor::new(vessel, &selection.sensors, &commissioning, &settings(options))?;
+        if let Some(learned) = learned {
+            monitor = monitor.with_learned(learned);
+        }
+        Ok(Self { monitor, full_pa: contents.pressure_pa(mass_kg, QUOTED_K)?, first })
+    }
+}

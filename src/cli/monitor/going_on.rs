@@ -1,0 +1,92 @@
+//! How a run begins: from a state, or cold.
+use super::state::{Identity, Refusal, State};
+use super::*;
+use anyhow::anyhow;
+use cylwatch::estimator::sensor::Sensor;
+use cylwatch::report::Input;
+use cylwatch::report::monitor::Circumstances;
+use cylwatch::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use cylwatch::thermal::vessel::{Vessel, VesselSpec};
+use jiff::Timestamp;
+
+/// A vessel and what is known of its past.
+pub struct Beginning {
+    /// The vessel.
+    pub vessel: Vessel,
+    /// What tells this vessel from another.
+    fingerprint: String,
+    /// The state to go on from.
+    pub state: Option<State>,
+    /// Why there is none although there could be.
+    pub cold_start: Option<String>,
+}
+
+impl Beginning {
+    /// Reads the vessel and the state.
+    pub fn find(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Self> {
+        let (specification, vessel, _) = inputs.vessel_specification(&options.vessel)?;
+        let fingerprint = fingerprint(&specification)?;
+        let mut beginning = Self { vessel, fingerprint, state: None, cold_start: None };
+        let Some(path) = &options.state else { return Ok(beginning) };
+        match (State::read(path), options.cold_start) {
+            (Ok(None), _) => {
+                if options.acknowledge.is_some() {
+                    bail!("{} is not there: --acknowledge needs a state with alarms", path.display());
+                }
+            }
+            (Ok(Some(state)), false) => {
+                if options.learned_in.is_some() {
+                    messages.caution("--learned-in is not used: the state knows what was learnt");
+                }
+                inputs.record(Input::of(path.display().to_string(), &std::fs::read(path)?));
+                beginning.state = Some(state);
+            }
+            (Ok(Some(_)), true) => beginning.cold_start = Some("as asked by --cold-start".to_owned()),
+            (Err(reason), true) => beginning.cold_start = Some(reason.to_string()),
+            (Err(reason), false) => return Err(refused(path, &reason)),
+        }
+        if let Some(reason) = &beginning.cold_start {
+            messages.caution(&format!("cold start instead of going on from {}: {reason}", path.display()));
+        }
+        Ok(beginning)
+    }
+
+    /// Date of second 0 of the state.
+    pub fn origin(&self) -> anyhow::Result<Option<Timestamp>> {
+        let origin = self.state.as_ref().and_then(|state| state.origin.as_deref());
+        origin.map(str::parse).transpose().context("the state has no date of RFC 3339")
+    }
+
+    /// What a state of this run belongs to.
+    pub fn identity(&self, options: &Options, sensors: &[Sensor]) -> Identity {
+        let names: Vec<&str> = sensors.iter().map(|sensor| sensor.name.as_str()).collect();
+        let Circumstances { limit_pa, coldest_k, .. } = options.circumstances;
+        let value = |value: f64| cylwatch::report::number(value, 9);
+        let mut entries = vec![
+            ("vessel", format!("{} ({})", self.vessel.name, self.fingerprint)),
+            ("sensors", format!("{} ({})", names.join(", "), short_hash(&format!("{sensors:?}")))),
+            ("a limit of", format!("{} bar", value(limit_pa / PASCAL_PER_BAR))),
+            ("a coldest temperature of", format!("{} degC", value(coldest_k - ZERO_CELSIUS_K))),
+            ("a time between false alarms of", format!("{} years", value(options.false_alarm_years))),
+            ("a lateness of", format!("{} s", value(options.lateness_s))),
+        ];
+        if let Some(words) = options.fill.words() {
+            entries.push(("the fill", words));
+        }
+        Identity(entries.into_iter().map(|(what, value)| (what.to_owned(), value)).collect())
+    }
+}
+
+/// The refusal of a state, with what to do.
+pub fn refused(path: &Path, reason: &Refusal) -> anyhow::Error {
+    anyhow!("{} cannot be gone on from: {reason}; --cold-start begins anew and replaces it", path.display())
+}
+
+/// What tells one vessel from another: comments and the order of keys do not.
+fn fingerprint(specification: &VesselSpec) -> anyhow::Result<String> {
+    Ok(short_hash(&serde_json::to_string(specification)?))
+}
+
+fn short_hash(text: &str) -> String {
+    Input::of("", text.as_bytes()).sha256[..12].to_owned()
+}

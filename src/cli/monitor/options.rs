@@ -1,0 +1,118 @@
+//! Validated options of `monitor`.
+use super::arguments::MonitorArguments;
+use super::*;
+use crate::cli::unit_options::Given;
+use cylwatch::log::Mapping;
+use cylwatch::report::monitor::Circumstances;
+use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use std::path::PathBuf;
+use std::time::Duration;
+
+const DAY_S: f64 = 86_400.0;
+/// Longest time between false alarms that is taken, years: thresholds beyond it rest on no data.
+const LONGEST_YEARS: f64 = 1e5;
+
+/// Options that passed all checks that need no file to be read.
+pub struct Options {
+    pub vessel: String,
+    pub log: String,
+    pub data: Target,
+    pub format: Format,
+    pub plot: Option<Plot>,
+    pub mappings: Vec<Mapping>,
+    pub sensors: Option<PathBuf>,
+    pub fill: GivenFill,
+    pub source: FillSource,
+    pub learned_in: Option<PathBuf>,
+    pub circumstances: Circumstances,
+    pub false_alarm_years: f64,
+    pub lateness_s: f64,
+    pub events: Option<Target>,
+    pub state: Option<PathBuf>,
+    pub cold_start: bool,
+    pub save_every: Duration,
+    pub acknowledge: Option<String>,
+}
+
+impl Options {
+    /// Checks places and numbers.
+    pub fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
+        let MonitorArguments { vessel, log, fill, given, mappings, sensors, learned_in, .. } = arguments;
+        if vessel == "-" && log == "-" {
+            bail!("stdin can be the vessel or the log, not both: give the other one as a file");
+        }
+        let mut inputs = vec![Path::new(&vessel), Path::new(&log)];
+        inputs.extend([sensors.as_deref(), learned_in.as_deref()].into_iter().flatten());
+        let data = Target::checked(arguments.output.as_deref(), &inputs)?;
+        let events = arguments.events.as_deref();
+        let events = events.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
+        let state = arguments.state.as_deref();
+        let state = state.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
+        apart(&[("--output", Some(&data)), ("--events", events.as_ref()), ("--state", state.as_ref())])?;
+        let state = state.map(state_file).transpose()?;
+        let others: Vec<&Target> = std::iter::once(&data).chain(&events).collect();
+        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
+        let years = arguments.false_alarm_years;
+        if !(years > 0.0 && years <= LONGEST_YEARS) {
+            bail!("--false-alarm-years = {years} must be above 0 and at most {LONGEST_YEARS}");
+        }
+        let time = |option: &str| given.si(option, Dimension::Time);
+        let save_every_s = time("save-every")?.unwrap_or(600.0).min(365.0 * DAY_S);
+        Ok(Self {
+            source: fill.source()?,
+            format: arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref())),
+            circumstances: circumstances(&given)?,
+            lateness_s: time("lateness")?.unwrap_or(0.0),
+            save_every: Duration::from_secs_f64(save_every_s),
+            false_alarm_years: years,
+            cold_start: arguments.cold_start,
+            acknowledge: arguments.acknowledge,
+            vessel,
+            log,
+            data,
+            plot,
+            mappings,
+            sensors,
+            fill,
+            learned_in,
+            events,
+            state,
+        })
+    }
+
+    /// Whether rows come one by one and somebody waits for them.
+    pub fn is_live(&self) -> bool {
+        self.log == "-"
+    }
+}
+
+fn circumstances(given: &Given<super::arguments::OfMonitor>) -> anyhow::Result<Circumstances> {
+    Ok(Circumstances {
+        limit_pa: given.si("limit", Dimension::Pressure)?.unwrap_or(160.0 * PASCAL_PER_BAR),
+        coldest_k: given.si("coldest", Dimension::Temperature)?.unwrap_or(ZERO_CELSIUS_K - 25.0),
+        next_service_s: given.si("next-service", Dimension::Time)?.unwrap_or(30.0 * DAY_S),
+    })
+}
+
+/// Refuses results that name one place.
+fn apart(targets: &[(&str, Option<&Target>)]) -> anyhow::Result<()> {
+    for (k, (one, a)) in targets.iter().enumerate() {
+        for (other, b) in &targets[k + 1..] {
+            if let (Some(a), Some(b)) = (a, b)
+                && (a.is_same_file(b) || matches!((a, b), (Target::Stdout, Target::Stdout)))
+            {
+                bail!("{one} and {other} name the same place: choose two");
+            }
+        }
+    }
+    Ok(())
+}
+
+fn state_file(target: Target) -> anyhow::Result<PathBuf> {
+    match target {
+        Target::File(path) => Ok(path),
+        Target::Stdout | Target::Device(_) => {
+            bail!("--state must be a file: a state is read before the run and replaced after it")
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Outputs as rows of the data.
+use super::*;
+use crate::cli::output::Stream;
+use cylwatch::detector::monitor::Output;
+use cylwatch::detector::prognosis::{Contents, QUOTED_K};
+use cylwatch::report::monitor::{self as report, MonitorRow, Summary};
+use cylwatch::thermal::vessel::Vessel;
+use serde_json::json;
+
+/// Relative width of the classes of mass that share a slope of the settled pressure.
+const CLASS: f64 = 1e-3;
+/// Step of the mass for that slope, relative.
+const STEP: f64 = 1e-4;
+
+/// Rows that are being written.
+pub struct Rows {
+    stream: Stream,
+    format: Format,
+    any: bool,
+    text: String,
+    slope: Slope,
+}
+
+/// Slope of the settled pressure in the mass. It depends on the class of the mass alone, not on what came before, so that a run that goes
+/// on from a state writes what one run would have.
+struct Slope {
+    contents: Contents,
+    class: Option<i64>,
+    pa_kg: f64,
+}
+
+impl Rows {
+    /// Opens the output and writes what stands above the rows.
+    pub fn begin(
+        options: &Options,
+        inputs: &Inputs,
+        selection: &Selection,
+        log: &LogInput,
+        vessel: &Vessel,
+    ) -> anyhow::Result<Self> {
+        let mut stream = options.data.open()?;
+        match options.format {
+            Format::Csv => {
+                let header = report::csv_header();
+                stream.write(&start::head(&inputs.provenance(), &selection.names(), log, &header))?;
+            }
+            Format::Json => {
+                stream.write(&format!("{{\"columns\":{},\"data\":[", json!(report::COLUMNS)))?;
+            }
+        }
+        let slope = Slope { contents: Contents::of(vessel), class: None, pa_kg: f64::NAN };
+        Ok(Self { stream, format: options.format, any: false, text: String::new(), slope })
+    }
+
+    /// Writes an output.
+    pub fn push(&mut self, output: &Output) -> anyhow::Result<()> {
+        let estimate = &output.estimate;
+        let leak_pa_s = estimate.leak_kg_s * self.slope.at(estimate.mass_kg)?;
+        let row = MonitorRow { output, leak_pa_s };
+        self.text.clear();
+        match self.format {
+            Format::Csv => report::csv_row(&row, &mut self.text),
+            Format::Json => {
+                self.text.push_str(if self.any { ",\n" } else { "\n" });
+                report::json_row(&row, &mut self.text);
+            }
+        }
+        self.any = true;
+        self.stream.write(&self.text)
+    }
+
+    /// Hands on what waits.
+    pub fn flush(&mut self) -> anyhow::Result<()> {
+        self.stream.flush()
+    }
+
+    /// Writes what stands below the rows and ends the output; `error`: why there is no summary.
+    pub fn finish(
+        mut self,
+        inputs: &Inputs,
+        log: &LogInput,
+        summary: Option<&Summary>,
+        error: Option<&str>,
+    ) -> anyhow::Result<()> {
+        let late = inputs.record_log(log);
+        let tail = match self.format {
+            Format::Csv => late.map_or(String::new(), |input| input.comment_line() + "\n"),
+            Format::Json => {
+                let (origin, provenance) = (json!(log.reader.origin()), inputs.provenance().to_json());
+                let summary = json!(summary.map(report::document));
+                let error = json!(error);
+                format!(
+                    "\n],\"origin\":{origin},\"summary\":{summary},\"error\":{error},\"provenance\":{provenance}}}\n"
+                )
+            }
+        };
+        self.stream.write(&tail)?;
+        self.stream.finish()
+    }
+}
+
+impl Slope {
+    /// Slope at a mass, Pa/kg.
+    fn at(&mut self, mass_kg: f64) -> anyhow::Result<f64> {
+        let class = (mass_kg.ln() / CLASS).round() as i64;
+        if self.class != Some(class) {
+            let middle_kg = (class as f64 * CLASS).exp();
+            let above = self.contents.pressure_pa(middle_kg * (1.0 + STEP), QUOTED_K)?;
+            let below = self.contents.pressure_pa(middle_kg * (1.0 - STEP), QUOTED_K)?;
+            (self.class, self.pa_kg) = (Some(class), (above - below) / (2.0 * STEP * middle_kg));
+        }
+        Ok(self.pa_kg)
+    }
+}

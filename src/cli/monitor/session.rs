@@ -1,0 +1,238 @@
+//! A run: rows in, outputs out, the state saved now and then.
+use super::events::{EventSink, Say};
+use super::going_on::refused;
+use super::rows::Rows;
+use super::state::{Identity, Refusal, State};
+use super::*;
+use cylwatch::detector::monitor::intake::Counts;
+use cylwatch::detector::monitor::{EventKind, Monitor, Output};
+use cylwatch::log::Truth;
+use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowFates, Summary};
+use std::time::Instant;
+
+/// What a run uses.
+pub struct Kit<'a> {
+    pub options: &'a Options,
+    pub inputs: &'a Inputs,
+    pub selection: &'a Selection,
+    pub messages: &'a Messages,
+    pub identity: Identity,
+}
+
+/// A run that is under way.
+pub struct Session<'a> {
+    kit: Kit<'a>,
+    monitor: Monitor,
+    full_pa: f64,
+    naming: Naming,
+    sink: EventSink,
+    rows: Rows,
+    figure: Option<FigureData>,
+    readings: Vec<f64>,
+    last: Option<Output>,
+    last_stamp_s: f64,
+    /// Rows up to this time are known to the state; NaN: none is.
+    known_until_s: f64,
+    known_rows: u64,
+    /// What had become of rows before this run.
+    counts_before: Counts,
+    leak_found: bool,
+    continued: bool,
+    /// Whether something failed that leaves the monitor or the rows with part of a row.
+    broken: bool,
+    saved: Instant,
+}
+
+impl<'a> Session<'a> {
+    /// Goes on from a state, or begins cold.
+    pub fn begin(
+        kit: Kit<'a>,
+        beginning: &Beginning,
+        engine: Engine,
+        log: &LogInput,
+    ) -> anyhow::Result<Self> {
+        let state = beginning.state.as_ref();
+        let options = kit.options;
+        let circumstances = options.circumstances;
+        let sensors = kit.selection.sensors.iter();
+        let naming = Naming {
+            clock: Clock::new(log.reader.origin_instant()),
+            sensors: sensors.map(|sensor| (sensor.name.clone(), sensor.quantity())).collect(),
+        };
+        let last_stamp_s = state.map_or(f64::NAN, |state| state.last_stamp_s);
+        let mut sink = EventSink::open(options.events.as_ref(), state.is_some())?;
+        if let Some(reason) = &beginning.cold_start {
+            sink.cold_start(reason)?;
+        }
+        let counts_before = *engine.monitor.intake().counts();
+        Ok(Self {
+            monitor: engine.monitor,
+            full_pa: engine.full_pa,
+            naming,
+            sink,
+            rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
+            figure: options.plot.is_some().then(|| FigureData::new(circumstances.limit_pa, engine.full_pa)),
+            readings: Vec::new(),
+            last: state.and_then(|state| state.last.clone()),
+            last_stamp_s,
+            // A file is read again from its start; what comes through a pipe is new.
+            known_until_s: if options.is_live() { f64::NAN } else { last_stamp_s - options.lateness_s },
+            known_rows: 0,
+            counts_before,
+            leak_found: false,
+            continued: state.is_some(),
+            broken: false,
+            saved: Instant::now(),
+            kit,
+        })
+    }
+
+    /// Acknowledges the alarms of the state, if that is wanted.
+    pub fn acknowledge(&mut self, progress: &Progress) -> anyhow::Result<()> {
+        let Some(comment) = &self.kit.options.acknowledge else { return Ok(()) };
+        let say = Say { messages: self.kit.messages, progress };
+        for alarm in self.monitor.acknowledge(comment) {
+            self.sink.alarm(&alarm, &self.naming, &say)?;
+        }
+        Ok(())
+    }
+
+    /// Takes in a row.
+    pub fn push(&mut self, row: &Row, log: &LogInput, progress: &Progress) -> anyhow::Result<()> {
+        if row.time_s <= self.known_until_s {
+            self.known_rows += 1;
+            return Ok(());
+        }
+        self.known_until_s = f64::NAN;
+        self.naming.clock = self.naming.clock.with_origin(log.reader.origin_instant());
+        self.readings.clear();
+        self.readings.extend(self.kit.selection.readings(row));
+        self.broken = true;
+        let outputs = self.monitor.step(row.time_s, &self.readings).with_context(|| log.reader.place(row))?;
+        self.last_stamp_s = row.time_s;
+        for output in outputs {
+            // Rows that were held back have lost their truth.
+            let truth = if output.stamp_s == row.time_s { row.truth } else { Truth::UNKNOWN };
+            self.take(output, &truth, progress)?;
+        }
+        if self.kit.options.is_live() {
+            self.rows.flush()?;
+        }
+        self.broken = false;
+        if self.saved.elapsed() >= self.kit.options.save_every {
+            self.rows.flush()?;
+            self.save(log)?;
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, output: Output, truth: &Truth, progress: &Progress) -> anyhow::Result<()> {
+        let clock = self.naming.clock.with_offset(output.stamp_s - output.estimate.time_s);
+        self.naming.clock = clock;
+        let say = Say { messages: self.kit.messages, progress };
+        for event in &output.events {
+            self.leak_found |= matches!(event.kind, EventKind::LeakFound(_));
+            self.sink.event(event, &self.naming, &say)?;
+        }
+        for alarm in &output.alarms {
+            self.sink.alarm(alarm, &self.naming, &say)?;
+        }
+        self.rows.push(&output)?;
+        if let Some(figure) = &mut self.figure {
+            figure.push(&output, truth);
+        }
+        self.last = Some(output);
+        Ok(())
+    }
+
+    /// Saves the state, if one is wanted.
+    fn save(&mut self, log: &LogInput) -> anyhow::Result<()> {
+        self.saved = Instant::now();
+        let Some(path) = &self.kit.options.state else { return Ok(()) };
+        let state = State {
+            identity: self.kit.identity.clone(),
+            origin: log.reader.origin(),
+            last_stamp_s: self.last_stamp_s,
+            full_pa: self.full_pa,
+            last: self.last.clone(),
+            monitor: self.monitor.save()?,
+        };
+        state.write(path)
+    }
+
+    /// Ends a run whose log failed: with a state, what was done up to there stays.
+    pub fn abandon(mut self, inputs: &Inputs, log: &LogInput, error: &anyhow::Error) -> anyhow::Result<()> {
+        if self.broken || self.kit.options.state.is_none() {
+            return Ok(());
+        }
+        self.save(log)?;
+        self.rows.finish(inputs, log, None, Some(&format!("{error:#}")))
+    }
+
+    /// Ends the run; files appear here. `None`: no row has come out yet.
+    pub fn finish(
+        mut self,
+        title: String,
+        log: &LogInput,
+        progress: &Progress,
+    ) -> anyhow::Result<Option<Summary>> {
+        let Kit { options, inputs, .. } = self.kit;
+        if options.state.is_none() {
+            // With a state, rows that are held back wait in it for those that come later.
+            for output in self.monitor.finish()? {
+                self.take(output, &Truth::UNKNOWN, progress)?;
+            }
+        }
+        let summary = self.last.take().map(|last| Summary {
+            title,
+            sampling: log.reader.sampling().clone(),
+            cautions: log.reader.cautions().to_vec(),
+            naming: self.naming.clone(),
+            last,
+            alarms: self.monitor.alarms().clone(),
+            circumstances: options.circumstances,
+            known_rows: self.known_rows,
+            held_rows: self.monitor.intake().held() as u64,
+            fates: fates(self.monitor.intake().counts(), &self.counts_before),
+            leak_found: self.leak_found,
+            continued: self.continued,
+        });
+        self.last = summary.as_ref().map(|summary| summary.last.clone());
+        let provenance = inputs.provenance();
+        let data = self.figure.take().zip(summary.as_ref());
+        let figure = data.map(|(data, summary)| report::figure(&summary.title, &data));
+        // Everything is made before any file appears.
+        let plot = options.plot.as_ref().zip(figure);
+        let picture = plot.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
+        if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
+            plot.write(&bytes)?;
+        }
+        self.save(log)?;
+        self.rows.finish(inputs, log, summary.as_ref(), None)?;
+        Ok(summary)
+    }
+}
+
+/// What became of rows that were not simply used, of this run alone.
+fn fates(now: &Counts, before: &Counts) -> RowFates {
+    RowFates {
+        duplicates: now.duplicates - before.duplicates,
+        contradictions: now.contradictions - before.contradictions,
+        too_late: now.too_late - before.too_late,
+        wild: now.wild - before.wild,
+        jumps: now.jumps - before.jumps,
+    }
+}
+
+/// Refuses a state that counts time in another way than the log.
+pub fn check_clock(options: &Options, state: &State, log: &LogInput) -> anyhow::Result<()> {
+    const DATES: &str = "has dates";
+    const SECONDS: &str = "has times without dates";
+    let (then, now) = (state.origin.is_some(), log.reader.has_dates());
+    if then == now {
+        return Ok(());
+    }
+    let word = |dates: bool| if dates { DATES } else { SECONDS };
+    let path = options.state.as_deref().unwrap_or(Path::new("the state"));
+    Err(refused(path, &Refusal::Clock { then: word(then), now: word(now) }))
+}

@@ -1,0 +1,79 @@
+//! What a run over a log begins with: the first rows, the fill, what was learnt before.
+use super::fill::FillSource;
+use super::input::{Inputs, LogInput};
+use super::selection::Selection;
+use anyhow::{Context, bail};
+use cylwatch::estimator::log::Quantity;
+use cylwatch::estimator::observer::Learned;
+use cylwatch::log::{LogReader, Row};
+use cylwatch::report::Provenance;
+use cylwatch::thermal::scenario::Fill;
+use cylwatch::thermal::vessel::Vessel;
+use std::path::Path;
+
+/// Rows that are looked through for the first pressure.
+const LONGEST_WAIT: usize = 10_000;
+
+/// Reads rows until the fill is known: one row, or all up to the first pressure.
+pub fn first_rows(
+    reader: &mut LogReader,
+    selection: &Selection,
+    source: FillSource,
+) -> anyhow::Result<(Vec<Row>, Fill)> {
+    const REMEDY: &str = "give --fill-pressure-bar and --fill-temperature-degc, or --fill-mass-kg";
+    let pressure = selection.first_of(Quantity::Pressure);
+    if source == FillSource::FirstPressure && pressure.is_none() {
+        bail!("the log has no pressure, so that nothing says how much gas there is: {REMEDY}");
+    }
+    let mut rows = Vec::new();
+    while let Some(row) = reader.next_row()? {
+        rows.push(row.clone());
+        match source {
+            FillSource::Given(fill) => return Ok((rows, fill)),
+            FillSource::FirstPressure => {
+                let pressure_pa = pressure.map_or(f64::NAN, |channel| row.readings[channel]);
+                if pressure_pa.is_finite() {
+                    return Ok((rows, Fill::Pressure { pressure_pa }));
+                }
+            }
+        }
+        if rows.len() == LONGEST_WAIT {
+            break;
+        }
+    }
+    bail!("none of the first {} rows has a pressure: {REMEDY}", rows.len())
+}
+
+/// What an earlier run has learnt of the same vessel.
+pub fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<Learned> {
+    let shown = path.display();
+    let text = inputs.read(&path.to_string_lossy())?;
+    let document: serde_json::Value =
+        serde_json::from_str(&text).with_context(|| format!("{shown} is no JSON"))?;
+    let learned = serde_json::from_value::<Learned>(document["learned"].clone())
+        .with_context(|| format!("{shown} is no file of --learned-out"))?;
+    if learned.version != Learned::VERSION {
+        let version = learned.version;
+        bail!("{shown} has version {version}, this program reads {}: learn anew", Learned::VERSION);
+    }
+    if !learned.is_consistent() {
+        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn anew");
+    }
+    if learned.vessel != vessel.name {
+        bail!("{shown} was learnt on `{}`, and this is `{}`: learn on this one", learned.vessel, vessel.name);
+    }
+    Ok(learned)
+}
+
+/// Comments and header of a CSV file of rows.
+pub fn head(provenance: &Provenance, sensors: &[String], log: &LogInput, columns: &str) -> String {
+    let mut text = provenance.comment_lines();
+    if log.is_hashed_late() {
+        text.push_str("# input: the log's SHA-256 stands in the last line\n");
+    }
+    text.push_str(&format!("# sensors: {}\n", sensors.join(", ")));
+    if let Some(origin) = log.reader.origin() {
+        text.push_str(&format!("# time_s = 0 is {origin}\n"));
+    }
+    text + columns + "\n"
+}

@@ -1,0 +1,235 @@
+//! Events: in words for people, and as lines of JSON for programs.
+use super::{BAR_PER_HOUR, Clock, GRAM, GRAM_PER_HOUR, short};
+use crate::detector::monitor::{Event, EventKind, Health, Interval, LeakFinding, Verdict};
+use crate::estimator::log::Quantity;
+use crate::report::estimate::duration;
+use crate::thermal::units::PASCAL_PER_BAR;
+use serde_json::{Value, json};
+
+/// What events call times and sensors.
+#[derive(Clone, Debug, Default)]
+pub struct Naming {
+    /// Times.
+    pub clock: Clock,
+    /// Names and quantities of the sensors, in the order of the readings.
+    pub sensors: Vec<(String, Quantity)>,
+}
+
+impl Naming {
+    fn sensor(&self, index: usize) -> &str {
+        self.sensors.get(index).map_or("sensor", |(name, _)| name.as_str())
+    }
+
+    fn quantity(&self, index: usize) -> Quantity {
+        self.sensors.get(index).map_or(Quantity::Temperature, |&(_, quantity)| quantity)
+    }
+}
+
+/// An event in words.
+pub fn event_words(event: &Event, naming: &Naming) -> String {
+    format!("{}: {}", naming.clock.words(event.time_s), happening(event, naming))
+}
+
+fn happening(event: &Event, naming: &Naming) -> String {
+    let since = || naming.clock.words(event.onset_s);
+    match &event.kind {
+        EventKind::Verdict { from, to } => format!("verdict {to}, before {from}"),
+        EventKind::LeakFound(leak) => format!(
+            "leak found: {} g/h, since {}",
+            range(leak.rate_kg_s.scaled(GRAM_PER_HOUR)),
+            naming.clock.words(leak.onset_s.value)
+        ),
+        EventKind::LeakEnded => "the leak is over, or was none".to_owned(),
+        EventKind::Discharge(mass_kg) => format!("discharge of {} g at {}", short(mass_kg * GRAM), since()),
+        EventKind::Refill(mass_kg) => format!("refill of {} g at {}", short(mass_kg * GRAM), since()),
+        EventKind::Sensor { sensor, health } => {
+            format!("{} {}", naming.sensor(*sensor), health_words(*health, naming.quantity(*sensor)))
+        }
+        EventKind::ColdNight(pressure_pa) => format!(
+            "the coldest night will bring the pressure to {} bar without any leak: refill before it",
+            short(pressure_pa / PASCAL_PER_BAR)
+        ),
+        EventKind::ClockJump(jump_s) => {
+            let way = if *jump_s < 0.0 { "back" } else { "forward" };
+            format!("the clock jumped {way} by {}", duration(jump_s.abs()))
+        }
+        EventKind::Gap(gap_s) => format!("no rows for {}", duration(*gap_s)),
+        EventKind::TooLate => format!("a row of {} came too late and was left out", since()),
+        EventKind::Restarted => "the estimate began again from its prior".to_owned(),
+    }
+}
+
+/// How a sensor is doing, in words.
+pub fn health_words(health: Health, quantity: Quantity) -> String {
+    match health {
+        Health::Good => "good".to_owned(),
+        Health::Missing => "gives no readings".to_owned(),
+        Health::Implausible => "gives readings outside what it can read: look at its wire".to_owned(),
+        Health::Stuck => "stands still".to_owned(),
+        Health::Spikes => "has single readings far off".to_owned(),
+        Health::Shifted(by) => {
+            let (by, unit) = match quantity {
+                Quantity::Temperature => (by, "K"),
+                Quantity::Pressure => (by / PASCAL_PER_BAR, "bar"),
+            };
+            format!("is shifted by {} {unit}, which is taken into account", short(by))
+        }
+        Health::Detached => "follows the air: it is off its surface".to_owned(),
+    }
+}
+
+/// A value with its interval.
+pub(super) fn range(interval: Interval) -> String {
+    format!("{} ({} to {})", short(interval.value), short(interval.low), short(interval.high))
+}
+
+/// An event as one line of JSON, without its end.
+pub fn event_line(event: &Event, naming: &Naming) -> String {
+    let mut line = json!({
+        "id": event.id,
+        "event": event.kind.name(),
+        "time_s": event.time_s,
+        "time": naming.clock.date(event.time_s),
+        "onset_s": event.onset_s,
+        "onset": naming.clock.date(event.onset_s),
+    });
+    if let (Value::Object(line), Value::Object(details)) = (&mut line, details(&event.kind, naming)) {
+        line.extend(details);
+    }
+    line.to_string()
+}
+
+fn details(kind: &EventKind, naming: &Naming) -> Value {
+    match kind {
+        EventKind::Verdict { from, to } => json!({ "from": verdict(*from), "to": verdict(*to) }),
+        EventKind::LeakFound(leak) => finding(leak),
+        EventKind::Discharge(mass_kg) | EventKind::Refill(mass_kg) => json!({ "mass_g": mass_kg * GRAM }),
+        EventKind::Sensor { sensor, health } => json!({
+            "sensor": naming.sensor(*sensor),
+            "health": health_word(*health),
+            "shift": shift(*health, naming.quantity(*sensor)),
+        }),
+        EventKind::ColdNight(pressure_pa) => json!({ "pressure_bar": pressure_pa / PASCAL_PER_BAR }),
+        EventKind::ClockJump(jump_s) => json!({ "jump_s": jump_s }),
+        EventKind::Gap(gap_s) => json!({ "gap_s": gap_s }),
+        EventKind::LeakEnded | EventKind::TooLate | EventKind::Restarted => json!({}),
+    }
+}
+
+/// A verdict as an object.
+pub(super) fn verdict(verdict: Verdict) -> Value {
+    json!({ "verdict": verdict.as_str(), "reason": verdict.reason().map(|reason| reason.as_str()) })
+}
+
+/// A finding with its intervals, in the units of the files.
+pub(super) fn finding(leak: &LeakFinding) -> Value {
+    let of = |interval: Interval| json!([interval.value, interval.low, interval.high]);
+    json!({
+        "rate_g_h": of(leak.rate_kg_s.scaled(GRAM_PER_HOUR)),
+        "rate_bar_h": of(leak.rate_pa_s.scaled(BAR_PER_HOUR)),
+        "began_s": of(leak.onset_s),
+        "lost_g": of(leak.lost_kg.scaled(GRAM)),
+    })
+}
+
+/// A health as one word.
+pub(super) fn health_word(health: Health) -> &'static str {
+    match health {
+        Health::Good => "good",
+        Health::Missing => "missing",
+        Health::Implausible => "implausible",
+        Health::Stuck => "stuck",
+        Health::Spikes => "spikes",
+        Health::Shifted(_) => "shifted",
+        Health::Detached => "detached",
+    }
+}
+
+fn shift(health: Health, quantity: Quantity) -> Value {
+    match (health, quantity) {
+        (Health::Shifted(by), Quantity::Temperature) => json!({ "k": by }),
+        (Health::Shifted(by), Quantity::Pressure) => json!({ "bar": by / PASCAL_PER_BAR }),
+        _ => Value::Null,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detector::monitor::Reason;
+    use crate::report::monitor::row::tests::leaking;
+
+    fn naming() -> Naming {
+        let sensors =
+            vec![("shoulder".to_owned(), Quantity::Temperature), ("pressure".to_owned(), Quantity::Pressure)];
+        Naming { clock: Clock::new(Some("2026-01-01T00:00:00Z".parse().unwrap())), sensors }
+    }
+
+    fn kinds() -> Vec<EventKind> {
+        vec![
+            EventKind::Verdict { from: Verdict::Unknown(Reason::Learning), to: Verdict::Tight },
+            EventKind::LeakFound(leaking().leak.unwrap()),
+            EventKind::LeakEnded,
+            EventKind::Discharge(0.12),
+            EventKind::Refill(1.5),
+            EventKind::Sensor { sensor: 1, health: Health::Shifted(-0.4e5) },
+            EventKind::ColdNight(158.2e5),
+            EventKind::ClockJump(-3600.0),
+            EventKind::Gap(7200.0),
+            EventKind::TooLate,
+            EventKind::Restarted,
+        ]
+    }
+
+    #[test]
+    fn words_say_when_and_what_in_units_that_people_use() {
+        let said: Vec<String> = kinds()
+            .into_iter()
+            .map(|kind| event_words(&Event::new(7200.0, 3600.0, kind), &naming()))
+            .collect();
+        assert!(said.iter().all(|words| words.starts_with("2026-01-01T02:00:00Z: ")), "{said:?}");
+        for (words, part) in said.iter().zip([
+            "verdict tight, before unknown: still learning the sensors",
+            "leak found: 3.6 (2.88 to 4.68) g/h, since 2026-01-01T01:00:00Z",
+            "over, or was none",
+            "discharge of 120 g at 2026-01-01T01:00:00Z",
+            "refill of 1500 g",
+            "pressure is shifted by -0.4 bar",
+            "158 bar without any leak",
+            "jumped back by 60 min",
+            "no rows for 2 h",
+            "a row of 2026-01-01T01:00:00Z came too late",
+            "began again",
+        ]) {
+            assert!(words.contains(part), "`{part}` is missing in {words}");
+        }
+    }
+
+    #[test]
+    fn a_line_is_one_json_object_with_id_time_and_what_the_words_say() {
+        for kind in kinds() {
+            let event = Event::new(7200.0, 3600.0, kind);
+            let line = event_line(&event, &naming());
+            assert!(!line.contains('\n'));
+            let object: Value = serde_json::from_str(&line).unwrap();
+            assert_eq!(
+                (object["id"].as_str(), object["time_s"].as_f64()),
+                (Some(event.id.as_str()), Some(7200.0))
+            );
+            assert_eq!(object["onset"], "2026-01-01T01:00:00Z");
+            assert_eq!(object["event"], event.kind.name());
+            match event.kind {
+                EventKind::LeakFound(_) => assert_eq!(object["rate_g_h"][2].as_f64().unwrap().round(), 5.0),
+                EventKind::Sensor { .. } => assert_eq!(object["shift"]["bar"], -0.4),
+                EventKind::Verdict { .. } => {
+                    assert_eq!(object["from"]["reason"], "still learning the sensors")
+                }
+                _ => {}
+            }
+        }
+        let without = Naming::default();
+        let object: Value =
+            serde_json::from_str(&event_line(&Event::new(1.0, 0.0, EventKind::TooLate), &without)).unwrap();
+        assert!(object["time"].is_null());
+    }
+}

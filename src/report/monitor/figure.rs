@@ -1,0 +1,172 @@
+//! The figure of a monitored log: pressures, mass, leak rate, verdict.
+use super::marks::Marks;
+use super::{GRAM_PER_HOUR, VerdictStrip};
+use crate::detector::monitor::Output;
+use crate::log::Truth;
+use crate::report::estimate::Course;
+use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+use crate::thermal::units::PASCAL_PER_BAR;
+
+/// Curves: places in the course.
+const RAW: usize = 0;
+const EXPECTED: usize = 1;
+const P15: usize = 2;
+/// Value, edges of its band, truth.
+const MASS: [usize; 4] = [3, 4, 5, 6];
+/// The leak that is found with its bounds, the truth, and what the observer says.
+const LEAK: [usize; 4] = [7, 8, 9, 10];
+const OBSERVED: usize = 11;
+const CURVES: usize = 12;
+
+/// What a figure needs, collected output by output.
+#[derive(Clone, Debug)]
+pub struct FigureData {
+    course: Course,
+    strip: VerdictStrip,
+    marks: Marks,
+    limit_pa: f64,
+    full_pa: f64,
+}
+
+impl FigureData {
+    /// With the operational limit and the pressure of the full cylinder at 15 °C, Pa.
+    pub fn new(limit_pa: f64, full_pa: f64) -> Self {
+        Self {
+            course: Course::new(CURVES),
+            strip: VerdictStrip::default(),
+            marks: Marks::default(),
+            limit_pa,
+            full_pa,
+        }
+    }
+
+    /// Adds an output with the truth of its row.
+    pub fn push(&mut self, output: &Output, truth: &Truth) {
+        let e = &output.estimate;
+        let pressures = [e.pressure_pa, e.pressure_expected_pa, e.p15_pa].map(|p| p / PASCAL_PER_BAR);
+        let mass = [e.mass_kg, e.mass_kg - 2.0 * e.mass_sd_kg, e.mass_kg + 2.0 * e.mass_sd_kg, truth.mass_kg];
+        let found = output.leak.map_or([f64::NAN; 3], |leak| {
+            let rate = leak.rate_kg_s.scaled(GRAM_PER_HOUR);
+            [rate.value, rate.low, rate.high]
+        });
+        let others = [truth.outflow_kg_s, e.leak_kg_s].map(|rate| rate * GRAM_PER_HOUR);
+        self.course.push(e.time_s, pressures.into_iter().chain(mass).chain(found).chain(others));
+        self.strip.push(e.time_s, output.verdict);
+        output.events.iter().for_each(|event| self.marks.event(event));
+        output.alarms.iter().for_each(|alarm| self.marks.alarm(alarm));
+    }
+
+    /// Shift of the time axis, s: a log whose clock began long ago is drawn from its first row.
+    fn origin_s(&self) -> f64 {
+        match self.course.span_s() {
+            Some((from_s, to_s)) if from_s < 0.0 || from_s > to_s - from_s => from_s,
+            _ => 0.0,
+        }
+    }
+
+    fn line(&self, name: &str, curve: usize, stroke: style::Stroke) -> Option<Item> {
+        let (mut x, y) = self.course.line(curve);
+        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
+        self.course.has(curve).then(|| Item::Line { name: name.to_owned(), x, y, stroke })
+    }
+
+    /// A band about a curve; where it is wide, as while gas is exchanged, it does not set the scale.
+    fn band(&self, name: &str, curves: [usize; 4]) -> Option<Item> {
+        let (mut x, low, high) = self.course.band_beside(curves[1], curves[2], &[curves[0], curves[3]])?;
+        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
+        Some(Item::Band { name: name.to_owned(), x, low, high })
+    }
+
+    fn pressures(&self) -> Panel {
+        let limit = |name: String, pressure_pa: f64| {
+            let value = pressure_pa / PASCAL_PER_BAR;
+            pressure_pa.is_finite().then_some(Item::Limit { name, value })
+        };
+        let limit_bar = self.limit_pa / PASCAL_PER_BAR;
+        let items = [
+            self.line("as read", RAW, style::noisy(style::PRESSURE)),
+            self.line("expected if tight", EXPECTED, style::MODEL),
+            self.line("at 15 °C", P15, style::GAS_MEAN),
+            limit(format!("limit {limit_bar:.0} bar"), self.limit_pa),
+            limit(
+                "maintenance".to_owned(),
+                (1.0 - crate::detector::prognosis::ISO_14520_LOSS) * self.full_pa,
+            ),
+        ];
+        panel("pressure in bar", items, 1.0)
+    }
+
+    fn mass(&self) -> Panel {
+        let items = [
+            self.band("± 2 sd", MASS),
+            self.line("estimate", MASS[0], style::GAS_MEAN),
+            self.line("truth", MASS[3], style::FIRST),
+        ];
+        panel("gas mass in kg", items, 0.8)
+    }
+
+    fn leak(&self) -> Option<Panel> {
+        let found = self.course.has(LEAK[0]);
+        let items = [
+            self.band("95 %", LEAK),
+            self.line("leak found", LEAK[0], style::GAS_MEAN),
+            // Before a leak is found there is nothing but what the observer thinks.
+            self.line("observer", OBSERVED, style::MIDDLE),
+            self.line("truth", LEAK[3], style::FIRST),
+        ];
+        (found || self.course.has(OBSERVED)).then(|| panel("leak rate in g/h", items, 0.7))
+    }
+
+    fn verdict(&self) -> Panel {
+        let stretches = self.strip.stretches(self.origin_s());
+        Panel { quantity: "verdict".into(), items: vec![Item::Strip { stretches }], height: 0.16 }
+    }
+}
+
+fn panel<const N: usize>(quantity: &str, items: [Option<Item>; N], height: f64) -> Panel {
+    Panel { quantity: quantity.to_owned(), items: items.into_iter().flatten().collect(), height }
+}
+
+/// The figure of a run.
+pub fn figure(title: &str, data: &FigureData) -> Figure {
+    let panels = [Some(data.pressures()), Some(data.mass()), data.leak(), Some(data.verdict())];
+    Figure {
+        title: title.to_owned(),
+        horizontal: Horizontal::Time,
+        panels: panels.into_iter().flatten().collect(),
+        marks: data.marks.shifted(data.origin_s()),
+        below: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Provenance;
+    use crate::report::monitor::row::tests::{leaking, unknown};
+
+    #[test]
+    fn a_figure_has_limits_marks_and_a_strip_whose_colours_are_explained() {
+        use crate::detector::monitor::{Event, EventKind};
+        let mut data = FigureData::new(160e5, 200e5);
+        for row in 0..50 {
+            let mut output = if row < 20 { unknown() } else { leaking() };
+            output.estimate.time_s = 1e9 + 60.0 * f64::from(row);
+            if row == 20 {
+                let kind = EventKind::LeakFound(output.leak.unwrap());
+                output.events = vec![Event::new(output.estimate.time_s, 1e9, kind)];
+            }
+            data.push(&output, &Truth::UNKNOWN);
+        }
+        let figure = figure("a cylinder", &data);
+        assert_eq!(figure.marks[0].at, 1200.0);
+        let provenance = Provenance { command: "cylwatch".into(), inputs: Vec::new(), seed: None };
+        let svg = figure.to_svg(&provenance).unwrap();
+        for words in
+            ["limit 160 bar", "maintenance", "leak found", "verdict", "unknown", "leak", "95 %", "at 15 °C"]
+        {
+            assert!(svg.contains(words), "`{words}` is missing");
+        }
+        assert!(figure.to_png(&provenance).is_ok());
+    }
+}

@@ -1,0 +1,33 @@
+//! What a monitor says: rows of a file, events and alarms in words and as JSON lines, a summary to act on, a figure.
+//!
+//! Everything takes one output after the other and keeps what fits in bounded memory.
+mod alarm;
+mod clock;
+mod event;
+mod figure;
+mod marks;
+mod prognosis;
+mod row;
+mod strip;
+mod summary;
+
+pub use alarm::{alarm_line, alarm_words};
+pub use clock::Clock;
+pub use event::{Naming, event_line, event_words, health_words};
+pub use figure::{FigureData, figure};
+pub use prognosis::{passage_words, reaction_reason, reaction_word, reaction_words};
+pub use row::{COLUMNS, DOCUMENTATION, MonitorRow, csv_header, csv_row, json_row};
+pub use strip::VerdictStrip;
+pub use summary::{Circumstances, RowFates, Summary, document, text};
+
+use crate::thermal::units::PASCAL_PER_BAR;
+
+const GRAM_PER_HOUR: f64 = 3.6e6;
+const GRAM: f64 = 1e3;
+/// Pa/s in bar/h.
+const BAR_PER_HOUR: f64 = 3600.0 / PASCAL_PER_BAR;
+
+/// A number for people: so many digits that count, none that do not.
+fn short(value: f64) -> String {
+    crate::report::number(value, 3)
+}

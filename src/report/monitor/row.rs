@@ -1,0 +1,236 @@
+//! One output of the monitor as a row of a CSV file or of a JSON array.
+use super::{GRAM, GRAM_PER_HOUR, reaction_word};
+use crate::detector::monitor::Output;
+use crate::report::estimate::{self, EstimateRow, push_number};
+use crate::thermal::units::PASCAL_PER_BAR;
+
+/// Standard deviations between the bounds of a 95 % interval.
+const INTERVAL_SD: f64 = 2.0 * 1.959_963_984_540_054;
+
+/// Columns of an output: those of an estimate, then the decision.
+pub const COLUMNS: [&str; 21] = {
+    let mut columns = [""; 21];
+    let mut at = 0;
+    while at < estimate::COLUMNS.len() {
+        columns[at] = estimate::COLUMNS[at];
+        at += 1;
+    }
+    let own = [
+        "leak_probability",
+        "leak_low_g_h",
+        "leak_high_g_h",
+        "onset_s",
+        "lost_g",
+        "cold_pressure_bar",
+        "reaction",
+        "reason",
+    ];
+    while at < columns.len() {
+        columns[at] = own[at - estimate::COLUMNS.len()];
+        at += 1;
+    }
+    columns
+};
+
+/// What the columns mean, for a help page.
+pub const DOCUMENTATION: &str = "\
+Columns (those of `estimate`, then):
+  leak_g_h, leak_sd_g_h  while a leak is found, the one that explains the masses best, else the
+                         observer's; leak_bar_h is the same as fall of p15_bar
+  verdict                tight, leak, discharge, refill, sensor fault or unknown
+  leak_probability       that gas is being lost faster than the rate that matters
+  leak_low_g_h, _high_   95 % interval of the leak that is found
+  onset_s                when it began
+  lost_g                 gas lost since
+  cold_pressure_bar      what the transmitter would show at the coldest temperature expected
+  reaction               none, next-interval, as-soon-as-possible or shutdown
+  reason                 why the verdict is unknown";
+
+/// An output with what a file says beside it.
+#[derive(Clone, Copy, Debug)]
+pub struct MonitorRow<'a> {
+    /// What the monitor said.
+    pub output: &'a Output,
+    /// The observer's leak rate as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown.
+    pub leak_pa_s: f64,
+}
+
+impl MonitorRow<'_> {
+    /// The estimate; a leak that is found stands in place of the observer's rate.
+    fn estimate(&self) -> EstimateRow {
+        let mut row = EstimateRow { estimate: self.output.estimate, leak_pa_s: self.leak_pa_s };
+        row.estimate.time_s = self.output.stamp_s;
+        if let Some(leak) = &self.output.leak {
+            row.estimate.leak_kg_s = leak.rate_kg_s.value;
+            row.estimate.leak_sd_kg_s = (leak.rate_kg_s.high - leak.rate_kg_s.low) / INTERVAL_SD;
+            row.leak_pa_s = leak.rate_pa_s.value;
+        }
+        row
+    }
+
+    /// Numbers after the estimate in the order of [`COLUMNS`], with the decimals that are worth writing.
+    fn numbers(&self) -> [(f64, usize); 6] {
+        let found = self.output.leak.map_or([f64::NAN; 4], |leak| {
+            let rate = leak.rate_kg_s.scaled(GRAM_PER_HOUR);
+            let onset_s = leak.onset_s.value + self.output.stamp_s - self.output.estimate.time_s;
+            [rate.low, rate.high, onset_s, leak.lost_kg.value * GRAM]
+        });
+        [
+            (self.output.leak_probability, 6),
+            (found[0], 6),
+            (found[1], 6),
+            (found[2], 1),
+            (found[3], 3),
+            (self.output.cold_pressure_pa / PASCAL_PER_BAR, 4),
+        ]
+    }
+
+    fn words(&self) -> [Option<&'static str>; 2] {
+        let reaction = self.output.outlook.map(|outlook| outlook.advice.reaction);
+        [reaction.map(reaction_word), self.output.verdict.reason().map(|reason| reason.as_str())]
+    }
+}
+
+/// Names of the columns as a line, without its end.
+pub fn csv_header() -> String {
+    COLUMNS.join(",")
+}
+
+/// Appends a row with its line feed.
+pub fn csv_row(row: &MonitorRow, text: &mut String) {
+    estimate::csv_cells(&row.estimate(), row.output.verdict.as_str(), text);
+    for number in row.numbers() {
+        text.push(',');
+        push_number(number, "", text);
+    }
+    for word in row.words() {
+        text.push(',');
+        text.push_str(word.unwrap_or_default());
+    }
+    text.push('\n');
+}
+
+/// Appends a row as a JSON array.
+pub fn json_row(row: &MonitorRow, text: &mut String) {
+    text.push('[');
+    estimate::json_cells(&row.estimate(), Some(row.output.verdict.as_str()), text);
+    for number in row.numbers() {
+        text.push(',');
+        push_number(number, "null", text);
+    }
+    for word in row.words() {
+        match word {
+            Some(word) => text.push_str(&format!(",\"{word}\"")),
+            None => text.push_str(",null"),
+        }
+    }
+    text.push(']');
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::detector::monitor::{Health, Interval, LeakFinding, Outlook, Reason, Verdict};
+    use crate::detector::prognosis::{Advice, Passage, Quantiles, Reaction};
+    use crate::estimator::observer::{Estimate, Quality};
+
+    /// A leak of 3.6 g/h in the third row of a log, and what else an output has.
+    pub fn leaking() -> Output {
+        let interval = |value: f64, low: f64, high: f64| Interval { value, low, high };
+        Output {
+            estimate: Estimate {
+                time_s: 7200.0,
+                gas_mean_k: 288.15,
+                gas_mean_sd_k: 0.25,
+                mass_kg: 4.4,
+                mass_sd_kg: 2e-3,
+                leak_kg_s: 5e-7,
+                leak_sd_kg_s: 1e-7,
+                pressure_pa: f64::NAN,
+                pressure_expected_pa: 199e5,
+                p15_pa: 196e5,
+                quality: Quality::Degraded,
+            },
+            verdict: Verdict::Leak,
+            leak: Some(LeakFinding {
+                rate_kg_s: interval(1e-6, 0.8e-6, 1.3e-6),
+                rate_pa_s: interval(4.5, 3.6, 5.85),
+                onset_s: interval(3600.0, 0.0, 5400.0),
+                lost_kg: interval(0.0036, 0.003, 0.0045),
+            }),
+            leak_probability: 0.999,
+            cold_pressure_pa: 158e5,
+            health: vec![Health::Good, Health::Missing],
+            outlook: Some(outlook(Reaction::AsSoonAsPossible)),
+            events: Vec::new(),
+            alarms: Vec::new(),
+            stamp_s: 7200.0,
+        }
+    }
+
+    /// Two weeks to the limit.
+    fn outlook(reaction: Reaction) -> Outlook {
+        let day_s = 86_400.0;
+        let [p5, p50, p95] = [12.0, 14.0, 17.5].map(|days| Passage::In(days * day_s));
+        let left = Quantiles { p5, p50, p95, horizon_s: 3652.5 * day_s };
+        let advice = Advice {
+            reaction,
+            before_safe_state: 0.0,
+            before_next_service: 0.97,
+            before_following_service: 1.0,
+        };
+        Outlook { operational: left, cold: left, maintenance: left, advice }
+    }
+
+    /// The same where nothing can be told.
+    pub fn unknown() -> Output {
+        Output { verdict: Verdict::Unknown(Reason::NoPressure), leak: None, outlook: None, ..leaking() }
+    }
+
+    #[test]
+    fn a_leak_that_is_found_stands_in_the_columns_of_the_leak_in_their_units() {
+        let output = leaking();
+        let row = MonitorRow { output: &output, leak_pa_s: 2.0 };
+        let mut text = String::new();
+        csv_row(&row, &mut text);
+        // 1e-6 kg/s are 3.6 g/h; 0.5e-6 kg/s wide, which is 3.92 standard deviations; 4.5 Pa/s are 0.162 bar/h.
+        let expected = "7200,15.0000,0.2500,4.400000,2.0000,3.600000,0.459192,0.16200000,,199.00000,196.00000,leak,degraded,\
+                        0.999000,2.880000,4.680000,3600.0,3.600,158.0000,as-soon-as-possible,\n";
+        assert_eq!(text, expected);
+        assert_eq!(text.matches(',').count() + 1, COLUMNS.len());
+        assert_eq!(csv_header().split(',').count(), COLUMNS.len());
+    }
+
+    #[test]
+    fn without_a_finding_the_cells_are_empty_and_unknown_has_its_reason() {
+        let output = unknown();
+        let row = MonitorRow { output: &output, leak_pa_s: 2.0 };
+        let mut text = String::new();
+        csv_row(&row, &mut text);
+        let cells: Vec<&str> = text.trim_end().split(',').collect();
+        assert_eq!(cells[5..8], ["1.800000", "0.360000", "0.07200000"]);
+        assert_eq!(
+            cells[11..],
+            ["unknown", "degraded", "0.999000", "", "", "", "", "158.0000", "", "no usable pressure"]
+        );
+    }
+
+    #[test]
+    fn a_json_row_is_the_csv_row_with_null_for_what_is_missing() {
+        for output in [leaking(), unknown()] {
+            let row = MonitorRow { output: &output, leak_pa_s: f64::NAN };
+            let (mut csv, mut json) = (String::new(), String::new());
+            csv_row(&row, &mut csv);
+            json_row(&row, &mut json);
+            let values: Vec<serde_json::Value> = serde_json::from_str(&json).unwrap();
+            for (cell, value) in csv.trim_end().split(',').zip(&values) {
+                match value {
+                    serde_json::Value::Null => assert_eq!(cell, ""),
+                    serde_json::Value::String(word) => assert_eq!(cell, word),
+                    number => assert_eq!(cell.parse().ok(), number.as_f64()),
+                }
+            }
+            assert_eq!(values.len(), COLUMNS.len());
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! A monitored log in a few lines that a person can act on, and as JSON.
+use super::event::{finding, health_word, range, verdict};
+use super::prognosis::percent;
+use super::{
+    BAR_PER_HOUR, GRAM, GRAM_PER_HOUR, Naming, health_words, passage_words, reaction_reason, reaction_word,
+    reaction_words,
+};
+use crate::detector::monitor::alarm::AlarmPanel;
+use crate::detector::monitor::{Health, LeakFinding, Outlook, Output, Verdict};
+use crate::detector::prognosis::Quantiles;
+use crate::log::{Caution, Sampling};
+use crate::report::estimate::sampling_words;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use serde_json::{Value, json};
+
+/// What the verdict is held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circumstances {
+    /// Operational limit, Pa.
+    pub limit_pa: f64,
+    /// Coldest temperature expected, K.
+    pub coldest_k: f64,
+    /// Time until the next service, s.
+    pub next_service_s: f64,
+}
+
+/// Rows that were not simply used, and jumps of the clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RowFates {
+    /// With nothing new.
+    pub duplicates: u64,
+    /// With another value than a row of the same time.
+    pub contradictions: u64,
+    /// Too late.
+    pub too_late: u64,
+    /// With a time that cannot be.
+    pub wild: u64,
+    /// Jumps of the clock.
+    pub jumps: u64,
+}
+
+/// What is left of a run when its rows have gone.
+#[derive(Clone, Debug)]
+pub struct Summary {
+    /// Title: vessel and sensors.
+    pub title: String,
+    /// How the log was sampled.
+    pub sampling: Sampling,
+    /// What was cautioned about.
+    pub cautions: Vec<Caution>,
+    /// What times and sensors are called.
+    pub naming: Naming,
+    /// The last output.
+    pub last: Output,
+    /// Alarms as they are.
+    pub alarms: AlarmPanel,
+    /// What the verdict is held against.
+    pub circumstances: Circumstances,
+    /// Rows that an earlier run has seen already.
+    pub known_rows: u64,
+    /// Rows that wait for those that may come late.
+    pub held_rows: u64,
+    /// What became of rows that were not simply used.
+    pub fates: RowFates,
+    /// Whether a leak was found among these rows.
+    pub leak_found: bool,
+    /// Whether the state goes on from an earlier run.
+    pub continued: bool,
+}
+
+/// The run in a few lines.
+pub fn text(summary: &Summary) -> String {
+    let mut rows = vec![("verdict", summary.last.verdict.to_string())];
+    rows.extend(summary.last.leak.iter().flat_map(|leak| leak_rows(leak, &summary.naming)));
+    if summary.last.leak.is_none() {
+        rows.push((
+            "leak",
+            format!("none found; one that matters is there with {}", percent(summary.last.leak_probability)),
+        ));
+    }
+    rows.extend(pressure_rows(summary));
+    if let Some(outlook) = &summary.last.outlook {
+        rows.extend(outlook_rows(outlook, summary.circumstances.next_service_s));
+    }
+    rows.extend(alarm_rows(summary));
+    rows.push(("sensors", sensors(&summary.last.health, &summary.naming)));
+    rows.push(("log", log(summary)));
+    let width = rows.iter().map(|(what, _)| what.chars().count()).max().unwrap_or(0);
+    let mut text = format!("{}\n", summary.title);
+    for (what, value) in rows {
+        // Character counts: the names have letters beyond ASCII.
+        let pad = width - what.chars().count();
+        text.push_str(&format!("{what}{:pad$}  {value}\n", ""));
+    }
+    text
+}
+
+fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3] {
+    let clock = &naming.clock;
+    let [onset, from, to] =
+        [leak.onset_s.value, leak.onset_s.low, leak.onset_s.high].map(|time_s| clock.words(time_s));
+    [
+        (
+            "leak rate",
+            format!(
+                "{} g/h, {} bar/h at 15 °C",
+                range(leak.rate_kg_s.scaled(GRAM_PER_HOUR)),
+                range(leak.rate_pa_s.scaled(BAR_PER_HOUR))
+            ),
+        ),
+        ("since", format!("{onset} ({from} to {to})")),
+        ("lost since", format!("{} g", range(leak.lost_kg.scaled(GRAM)))),
+    ]
+}
+
+fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
+    let Circumstances { limit_pa, coldest_k, .. } = summary.circumstances;
+    let held = |pressure_pa: f64| {
+        let limit_bar = limit_pa / PASCAL_PER_BAR;
+        match pressure_pa {
+            p if p.is_nan() => format!("limit {limit_bar:.0} bar"),
+            p if p > limit_pa => format!("above the limit of {limit_bar:.0} bar"),
+            _ => format!("at or below the limit of {limit_bar:.0} bar"),
+        }
+    };
+    let [p15_pa, cold_pa] = [summary.last.estimate.p15_pa, summary.last.cold_pressure_pa];
+    let degc = coldest_k - ZERO_CELSIUS_K;
+    [
+        ("pressure at 15 °C", format!("{:.2} bar, {}", p15_pa / PASCAL_PER_BAR, held(p15_pa))),
+        (
+            "coldest night",
+            format!("{:.1} bar will be read at {degc:.0} °C, {}", cold_pa / PASCAL_PER_BAR, held(cold_pa)),
+        ),
+    ]
+}
+
+fn outlook_rows(outlook: &Outlook, next_service_s: f64) -> Vec<(&'static str, String)> {
+    let left = |quantiles: &Quantiles| {
+        let [p5, p50, p95] = [quantiles.p5, quantiles.p50, quantiles.p95]
+            .map(|passage| passage_words(passage, quantiles.horizon_s));
+        if p5 == p95 { p5 } else { format!("{p5} (5 %), {p50} (50 %), {p95} (95 %)") }
+    };
+    let advice = &outlook.advice;
+    vec![
+        ("time to the limit", format!("{} at 15 °C", left(&outlook.operational))),
+        ("", format!("{} on the coldest night", left(&outlook.cold))),
+        ("to maintenance", left(&outlook.maintenance)),
+        (
+            "reaction",
+            format!("{}: {}", reaction_words(advice.reaction), reaction_reason(advice, next_service_s)),
+        ),
+    ]
+}
+
+fn alarm_rows(summary: &Summary) -> Vec<(&'static str, String)> {
+    let retained = summary.alarms.retained();
+    let words = retained
+        .iter()
+        .map(|(name, condition)| super::alarm::standing(*name, condition, &summary.naming.clock));
+    std::iter::once("alarms").chain(std::iter::repeat("")).zip(words).collect()
+}
+
+fn sensors(health: &[Health], naming: &Naming) -> String {
+    let bad = |(health, (name, quantity)): (&Health, &(String, _))| {
+        (*health != Health::Good).then(|| format!("{name} {}", health_words(*health, *quantity)))
+    };
+    let bad: Vec<String> = health.iter().zip(&naming.sensors).filter_map(bad).collect();
+    if bad.is_empty() { "all good".to_owned() } else { bad.join(", ") }
+}
+
+fn log(summary: &Summary) -> String {
+    let mut text = sampling_words(&summary.sampling);
+    let fates = &summary.fates;
+    for (count, one, many) in [
+        (summary.known_rows, "known to the state", "known to the state"),
+        (summary.held_rows, "waits for late ones", "wait for late ones"),
+        (fates.duplicates, "came twice", "came twice"),
+        (fates.contradictions, "contradicts another", "contradict others"),
+        (fates.too_late, "came too late", "came too late"),
+        (fates.wild, "has a time that cannot be", "have times that cannot be"),
+    ] {
+        match count {
+            0 => {}
+            1 => text.push_str(&format!("; 1 {one}")),
+            count => text.push_str(&format!("; {count} {many}")),
+        }
+    }
+    match fates.jumps {
+        0 => {}
+        1 => text.push_str("; the clock jumped once"),
+        jumps => text.push_str(&format!("; the clock jumped {jumps} times")),
+    }
+    match summary.cautions.len() {
+        0 => {}
+        1 => text.push_str("; 1 caution"),
+        many => text.push_str(&format!("; {many} cautions")),
+    }
+    text
+}
+
+/// The run as JSON; null where nothing is known.
+pub fn document(summary: &Summary) -> Value {
+    let clock = &summary.naming.clock;
+    let sensors: Vec<Value> = summary
+        .last
+        .health
+        .iter()
+        .zip(&summary.naming.sensors)
+        .map(|(health, (name, _))| json!({ "name": name, "health": health_word(*health) }))
+        .collect();
+    let alarms: Vec<Value> = summary
+        .alarms
+        .retained()
+        .into_iter()
+        .map(|(name, condition)| json!({ "name": name.as_str(), "condition": condition }))
+        .collect();
+    json!({
+        "rows": summary.sampling.rows(),
+        "known_rows": summary.known_rows,
+        "held_rows": summary.held_rows,
+        "duplicates": summary.fates.duplicates,
+        "contradictions": summary.fates.contradictions,
+        "too_late": summary.fates.too_late,
+        "wild_times": summary.fates.wild,
+        "clock_jumps": summary.fates.jumps,
+        "duration_s": summary.sampling.duration_s(),
+        "continued": summary.continued,
+        "time_s": summary.last.estimate.time_s,
+        "time": clock.date(summary.last.estimate.time_s),
+        "verdict": verdict(summary.last.verdict),
+        "leak": summary.last.leak.as_ref().map(finding),
+        "leak_found": summary.leak_found,
+        "leak_probability": summary.last.leak_probability,
+        "p15_bar": summary.last.estimate.p15_pa / PASCAL_PER_BAR,
+        "cold_pressure_bar": summary.last.cold_pressure_pa / PASCAL_PER_BAR,
+        "limit_bar": summary.circumstances.limit_pa / PASCAL_PER_BAR,
+        "coldest_degc": summary.circumstances.coldest_k - ZERO_CELSIUS_K,
+        "outlook": summary.last.outlook.as_ref().map(outlook),
+        "alarms": alarms,
+        "sensors": sensors,
+        "cautions": summary.cautions.iter().map(Caution::to_string).collect::<Vec<_>>(),
+    })
+}
+
+fn outlook(outlook: &Outlook) -> Value {
+    use crate::detector::prognosis::Passage;
+    // Null is beyond the horizon, 0 reached.
+    let days = |passage: Passage| match passage {
+        Passage::Reached => Some(0.0),
+        Passage::In(time_s) => Some(time_s / 86_400.0),
+        Passage::BeyondHorizon => None,
+    };
+    let left = |q: &Quantiles| json!({ "p5_d": days(q.p5), "p50_d": days(q.p50), "p95_d": days(q.p95), "horizon_d": q.horizon_s / 86_400.0 });
+    json!({
+        "operational": left(&outlook.operational),
+        "cold": left(&outlook.cold),
+        "maintenance": left(&outlook.maintenance),
+        "reaction": reaction_word(outlook.advice.reaction),
+        "before_safe_state": outlook.advice.before_safe_state,
+        "before_next_service": outlook.advice.before_next_service,
+        "before_following_service": outlook.advice.before_following_service,
+    })
+}
+
+impl Summary {
+    /// Whether a leak was found among these rows or is there at their end.
+    pub fn has_leak(&self) -> bool {
+        self.leak_found || self.last.leak.is_some() || self.last.verdict == Verdict::Leak
+    }
+
+    /// Whether nothing can be told at the end.
+    pub fn is_inconclusive(&self) -> bool {
+        self.last.verdict.reason().is_some()
+    }
+}
