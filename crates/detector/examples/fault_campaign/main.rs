@@ -7,7 +7,7 @@
 //! table is one row with one leak: how many of the cases are as required, with Wilson's 95 % interval; then what was missed how often,
 //! and the first seeds. Rows of data share a truth for each cylinder and leak; the fault begins at a random time of the second
 //! day after ten days of learning. Faults that last longer than the record do so to its end.
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 mod base;
 mod process;
 
@@ -18,6 +18,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use cylwatch_detector::performance::fault::{Case, Missed, TableRow, judge};
+use cylwatch_detector::performance::{CONFIDENCE, Proportion};
 use rayon::prelude::*;
 
 use base::{Base, Campaign, LEAKS_BAR_H};
@@ -98,6 +99,8 @@ fn outcomes(campaign: &Campaign, rows: &[Option<TableRow>], seed: u64, leak: usi
         };
         outcomes.push(Outcome { row: *row, leak, seed, what, endings });
     }
+    let missed = outcomes.iter().filter(|outcome| !outcome.endings.is_empty()).count();
+    eprintln!("seed {seed}, {} bar/h: {missed} of {} not as required", LEAKS_BAR_H[leak], outcomes.len());
     outcomes
 }
 
@@ -133,7 +136,8 @@ fn line(row: Option<TableRow>, leak: &str, outcomes: &[&Outcome]) {
         return;
     }
     let good = outcomes.iter().filter(|outcome| outcome.endings.is_empty()).count();
-    let (low, high) = wilson(good, outcomes.len());
+    let share = Proportion { hits: good as u64, trials: outcomes.len() as u64 };
+    let (low, high) = share.wilson(CONFIDENCE);
     let mut missed: BTreeMap<Ending, Vec<&Outcome>> = BTreeMap::new();
     for outcome in outcomes {
         for ending in &outcome.endings {
@@ -153,20 +157,9 @@ fn line(row: Option<TableRow>, leak: &str, outcomes: &[&Outcome]) {
         "| {} | {leak} | {good} of {} | {:.1} ({:.1} to {:.1}) | {} |",
         row.map_or("none".into(), TableRow::name),
         outcomes.len(),
-        100.0 * good as f64 / outcomes.len() as f64,
+        100.0 * share.value(),
         100.0 * low,
         100.0 * high,
         missed.join(", ")
     );
-}
-
-/// Wilson's 95 % interval of `k` of `n`.
-fn wilson(k: usize, n: usize) -> (f64, f64) {
-    const Z: f64 = 1.959_963_984_540_054;
-    let (k, n) = (k as f64, n as f64);
-    let p = k / n;
-    let middle = p + Z * Z / (2.0 * n);
-    let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
-    let all = 1.0 + Z * Z / n;
-    (((middle - half) / all).max(0.0), ((middle + half) / all).min(1.0))
 }

@@ -240,6 +240,15 @@ impl Monitor {
         self.process_all(taken)
     }
 
+    /// The same of a row that says that it is replayed from a store: it never moves the clock.
+    ///
+    /// # Errors
+    /// As [`Monitor::step`].
+    pub fn step_historical(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Vec<Output>, DetectorError> {
+        let taken = self.state.intake.take_historical(stamp_s, readings)?;
+        self.process_all(taken)
+    }
+
     /// The rows have come to their end: what was held back.
     ///
     /// # Errors

@@ -205,14 +205,26 @@ fn gaps_are_reported_but_rows_that_always_come_rarely_are_none() {
 
 #[test]
 fn a_replay_of_rows_that_were_used_is_no_news_and_no_jump_of_the_clock() {
-    let mut rows = minutes(0, 100);
-    let replay = rows[40..90].to_vec();
+    let mut rows = minutes(0, 2000);
+    let replay = rows[100..1600].to_vec();
     rows.extend(replay);
-    rows.extend(minutes(100, 150));
+    rows.extend(minutes(2000, 2050));
     let mut intake = intake(IntakeSettings::default());
     let out = all(&mut intake, &rows);
-    assert_eq!(bits(&out.rows), bits(&all(&mut self::intake(late(0.0)), &minutes(0, 150)).rows));
-    assert_eq!((out.events.len(), intake.counts().duplicates), (0, 50));
+    assert_eq!(bits(&out.rows), bits(&all(&mut self::intake(late(0.0)), &minutes(0, 2050)).rows));
+    assert_eq!((out.events.len(), intake.counts().duplicates), (0, 1500));
+}
+
+#[test]
+fn rows_of_a_time_without_any_come_from_a_store_and_move_no_clock() {
+    let mut rows = minutes(0, 100);
+    rows.extend(minutes(400, 410));
+    rows.extend(minutes(100, 400));
+    rows.extend(minutes(410, 450));
+    let mut intake = intake(IntakeSettings::default());
+    let out = all(&mut intake, &rows);
+    assert_eq!((out.rows.len(), intake.counts().too_late, intake.counts().jumps), (150, 300, 0));
+    assert_eq!(intake.offset_s(), 0.0);
 }
 
 #[test]

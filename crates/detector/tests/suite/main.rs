@@ -1,6 +1,7 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod baseline;
+mod campaign;
 mod correlated;
 mod data_calibration;
 mod delay;

@@ -8,7 +8,8 @@
 //! # What it assumes
 //! * Rows of one time belong together, and what has been handed out stands.
 //! * A jump forward within the longest gap is a gap; one hour of summer time is then an hour without rows.
-//! * A jump backward within the lateness cannot be told from late rows, and is taken as such.
+//! * A jump backward within the lateness cannot be told from late rows, and is taken as such. Nor can rows of a time in which
+//!   there were none: they come from a store. Rows that are replayed as they were are known for the last 2000 at least.
 //!
 //! As long as the clock does not jump and no row is later than the lateness, the rows that come out depend on the set of rows
 //! that came in alone, not on their order nor on how often each came: bit for bit. State and time per row are bounded.
@@ -113,7 +114,11 @@ impl Intake {
             }
             // Bit for bit what was handed out already.
             Place::Behind if self.memory.knows(memory::hash(&stray)) => self.counts.duplicates += 1,
-            Place::Behind if historical => self.too_late(stamp_s, &mut taken),
+            // It says that it comes from a store, or it belongs where rows were missing.
+            Place::Behind if historical || self.memory.is_in_gap(stamp_s - self.guard.offset_s) => {
+                self.astray = self.astray.saturating_add(1);
+                self.too_late(stamp_s, &mut taken);
+            }
             Place::Behind | Place::Ahead => self.stray(stray, place, &mut taken),
         }
         Ok(taken)
@@ -250,6 +255,9 @@ impl Intake {
                 if gap_s > self.gap_s() {
                     self.counts.gaps += 1;
                     taken.events.push(Event::new(row.time_s, last_s, EventKind::Gap(gap_s)));
+                }
+                if self.usual.median_s().is_some_and(|usual_s| gap_s > MISSED * usual_s) {
+                    self.memory.keep_gap(last_s, row.time_s);
                 }
                 self.usual.push(gap_s);
             }

@@ -118,7 +118,11 @@ impl Run<'_> {
             *old = self.monitor.save()?;
             self.saved_s = self.now_s;
         }
-        let outputs = self.monitor.step(row.stamp_s, &row.readings)?;
+        let outputs = if row.historical {
+            self.monitor.step_historical(row.stamp_s, &row.readings)?
+        } else {
+            self.monitor.step(row.stamp_s, &row.readings)?
+        };
         outputs.iter().for_each(|output| self.history.note(self.now_s, output));
         Ok(())
     }

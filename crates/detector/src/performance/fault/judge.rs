@@ -4,7 +4,8 @@
 //!
 //! * *False leak*: a leak is stated while there is none. Only a transmitter that drifts downwards may be taken for one.
 //! * *Found*: a leak is stated within `6 h (1 bar/h / r)^(2/3)` of its onset: 28 h for 0.1 bar/h, 5.4 d for 0.01 bar/h, about
-//!   twice the least delay that any detector can have with a model error of 0.3 bar and 3 h. Time in which nothing usable is read does not count.
+//!   twice the least delay that any detector can have with a model error of 0.3 bar and 3 h. Time in which nothing usable is read does not
+//!   count, and an exchange of gas begins it anew once it has settled.
 //! * *Flagged*: the sensor's health is said not to be good, or the verdict is that of a sensor at fault, within a time of the onset.
 //! * *Blind*: no usable pressure or no usable temperature for more than an hour, or the first row after six hours without any. Then the
 //!   verdict must not be "tight".
@@ -20,6 +21,8 @@ const BAR_PA: f64 = 1e5;
 const BLIND_AFTER_S: f64 = HOUR_S;
 /// Time without rows from which the same holds for the row after it, s.
 const LONG_GAP_S: f64 = 6.0 * HOUR_S;
+/// Time after an exchange of gas until it has settled, s.
+const SETTLED_S: f64 = 3.0 * HOUR_S;
 /// Delay within which a leak of 1 bar/h must be found, s.
 const DELAY_S: f64 = 6.0 * HOUR_S;
 const DELAY_POWER: f64 = 2.0 / 3.0;
@@ -111,7 +114,7 @@ fn only(missed: Vec<(Missed, bool)>) -> Vec<Missed> {
 fn flag_within_s(row: TableRow) -> f64 {
     match row {
         TableRow::P1 => HOUR_S,
-        TableRow::P7 => 10.0 * MINUTE_S,
+        TableRow::P7 => 30.0 * MINUTE_S,
         TableRow::T1 => HOUR_S,
         TableRow::T2 => 3.0 * HOUR_S,
         _ => 48.0 * HOUR_S,
@@ -164,7 +167,9 @@ impl Judgement<'_> {
 
     fn has_missed_the_leak(&self) -> bool {
         let Some(leak) = self.case.leak else { return false };
-        let allowed_s = allowed_delay_s(leak.rate_pa_s);
+        // With an exchange of gas a new episode begins.
+        let exchanged_s = self.case.exchanges.last().map_or(f64::NEG_INFINITY, |(at_s, _)| at_s + SETTLED_S);
+        let allowed_s = (exchanged_s - leak.onset_s).max(0.0) + allowed_delay_s(leak.rate_pa_s);
         let deadline_s = match self.blind_s() {
             // What was blind of the allowed time is added to it.
             Some((from_s, to_s)) if from_s < leak.onset_s + allowed_s && to_s > leak.onset_s => {
@@ -184,7 +189,9 @@ impl Judgement<'_> {
             Requirement::Flagged | Requirement::Degraded | Requirement::Undecidable | Requirement::Warned
         );
         let said = self.history.verdict_at(deadline_s);
-        !(undecided && matches!(said, Some(Verdict::Unknown(_))))
+        // Nothing can be found with a wrong unit: that it is said is enough.
+        let warned = matches!(self.case.fault, Some(Fault::Units { .. })) && self.is_warned();
+        !warned && !(undecided && matches!(said, Some(Verdict::Unknown(_))))
     }
 
     fn is_flagged(&self) -> bool {
