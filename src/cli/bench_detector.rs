@@ -138,7 +138,7 @@ impl Options {
 /// All detectors, ours first.
 fn candidates(plan: &Plan) -> anyhow::Result<Vec<Candidate>> {
     let mut candidates = vec![monitor(plan)?];
-    candidates.extend(baselines(Plan::FILLING)?);
+    candidates.extend(baselines(plan)?);
     Ok(candidates)
 }
 

@@ -122,6 +122,18 @@ pub enum DetectorError {
     /// The observer's bank lacks a member that the evidence needs.
     #[error("the observer's bank must have a member whose mass walks and another one whose leak rate walks")]
     Bank,
+    /// A detector's statistic says too little to set its threshold.
+    #[error(
+        "{detector} gives a statistic on {found} of the cylinders for training, {needed} are needed: give it more time to learn, or more cylinders"
+    )]
+    Silent {
+        /// Name of the detector.
+        detector: String,
+        /// Cylinders with a statistic.
+        found: usize,
+        /// Cylinders needed.
+        needed: usize,
+    },
 }
 
 /// `value` if it is positive and finite.

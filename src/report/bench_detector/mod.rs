@@ -14,3 +14,6 @@ const HOUR_S: f64 = 3600.0;
 fn bar_h(rate_pa_s: f64) -> f64 {
     rate_pa_s / PASCAL_PER_BAR * HOUR_S
 }
+
+#[cfg(test)]
+mod tests;

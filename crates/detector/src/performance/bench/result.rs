@@ -71,7 +71,12 @@ pub fn bench(
         noise.map(|noise| Change::Ramp(rate_pa_s).delay_bound(noise, SETTLED_S, plan.between_alarms_s))
     };
     let judge = |(index, candidate): (usize, &Candidate)| {
-        let level = trained(plan, &watched, index)?;
+        let level = trained(plan, &watched, index).map_err(|error| match error {
+            DetectorError::TooFewResiduals { found, needed } => {
+                DetectorError::Silent { detector: candidate.name.clone(), found, needed }
+            }
+            error => error,
+        })?;
         let runs = tested(&watched, index, level.threshold);
         let mut performance = Performance::of(&candidate.name, &runs, bound_s);
         // Before its leak a leaking cylinder is the tight one of its seed: it would count again for each rate.

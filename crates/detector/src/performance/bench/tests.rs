@@ -144,3 +144,34 @@ fn the_mass_of_a_bar_is_that_of_the_gas_tables() {
     let kg_bar = plan().mass_kg_pa().unwrap() * 1e5;
     assert!((kg_bar - 19.2e-3).abs() < 0.15e-3, "{kg_bar}");
 }
+
+#[test]
+fn a_candidate_that_says_nothing_is_named() {
+    struct Mute;
+    impl Contender for Mute {
+        fn step(&mut self, _: &Readings) -> Result<f64, DetectorError> {
+            Ok(f64::NEG_INFINITY)
+        }
+    }
+    let tight = Plan { rates_pa_s: Vec::new(), tests: 1, ..plan() };
+    let error = bench(&tight, &[Candidate::new("mute", "1", || Ok(Mute))], &|_| ()).unwrap_err();
+    assert!(matches!(error, DetectorError::Silent { ref detector, found: 0, .. } if detector == "mute"));
+}
+
+#[test]
+fn the_monitor_and_the_baselines_find_a_large_leak_and_the_monitor_says_how_large() {
+    let plan = Plan { tests: 1, ..plan() };
+    let mut all = vec![monitor(&plan).unwrap()];
+    all.extend(baselines(&plan).unwrap());
+    let outcome = bench(&plan, &all, &|_| ()).unwrap();
+    let names: Vec<&str> = outcome.judged.iter().map(|one| one.performance.detector.as_str()).collect();
+    assert_eq!(
+        names,
+        ["cylwatch", "paper", "paper, refitted", "textbook CUSUM", "ideal gas", "pressure switch"]
+    );
+    let ours = &outcome.judged[0].performance.sensitivity[0];
+    assert_eq!((ours.delay.leaks, ours.delay.found), (1, 1));
+    let rate = ours.accuracy.rate.unwrap();
+    assert!(rate.rms < 0.5, "{rate:?}");
+    assert!(outcome.judged.iter().all(|one| one.level.threshold.is_finite()));
+}
