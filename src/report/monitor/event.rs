@@ -46,8 +46,8 @@ fn happening(event: &Event, naming: &Naming) -> String {
             format!("{} {}", naming.sensor(*sensor), health_words(*health, naming.quantity(*sensor)))
         }
         EventKind::ColdNight(pressure_pa) => format!(
-            "the coldest night will bring the pressure to {} bar without any leak: refill before it",
-            short(pressure_pa / PASCAL_PER_BAR)
+            "the coldest night will bring the pressure to {:.1} bar without any leak: refill before it",
+            pressure_pa / PASCAL_PER_BAR
         ),
         EventKind::ClockJump(jump_s) => {
             let way = if *jump_s < 0.0 { "back" } else { "forward" };
@@ -195,7 +195,7 @@ mod tests {
             "discharge of 120 g at 2026-01-01T01:00:00Z",
             "refill of 1500 g",
             "pressure is shifted by -0.4 bar",
-            "158 bar without any leak",
+            "158.2 bar without any leak",
             "jumped back by 60 min",
             "no rows for 2 h",
             "a row of 2026-01-01T01:00:00Z came too late",

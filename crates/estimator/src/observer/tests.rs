@@ -178,3 +178,56 @@ fn members_that_share_a_linearisation_are_what_each_would_be_alone() {
     assert!(worst < 0.06, "{worst}");
     assert!(worst_freest < 0.4, "{worst_freest}");
 }
+
+#[test]
+fn a_cautious_member_is_no_thermometer_and_doubts_the_pressure_where_wall_and_gas_differ() {
+    let usual = ObserverSettings::default().bank;
+    let cautious: Vec<LeakHypothesis> = usual.iter().map(|member| member.cautious(2e5)).collect();
+    let bank = vec![usual[0], cautious[1], cautious[2], cautious[3]];
+    assert_eq!(
+        (observer(Engine::Extended).thermometer, observer_of(Engine::Extended, bank).thermometer),
+        (2, 0)
+    );
+    for engine in [Engine::Extended, Engine::Unscented] {
+        let mut observer = observer_of(engine, vec![usual[0], usual[0].cautious(2e5)]);
+        observer.step(0.0, &REST).unwrap();
+        let states = observer.cylinder.state_map().clone();
+        for member in &mut observer.bank.members {
+            member.x[..states.wall].fill(FILL_K + 3.0);
+        }
+        observer.step(60.0, &[f64::NAN, f64::NAN, REST[2]]).unwrap();
+        // Of the 3 K a minute leaves more than one.
+        let s = [0, 1].map(|member| observer.bank.members[member].innovations[2].s);
+        let extra_bar = (s[1] - s[0]).sqrt() / 1e5;
+        assert!((2.0..6.0).contains(&extra_bar), "{engine:?}: {extra_bar} bar");
+    }
+    let mut observer = observer(Engine::Extended);
+    observer.step(0.0, &REST).unwrap();
+    let mut x = observer.bank.members[0].x.clone();
+    let (wall, gas_k) = (observer.cylinder.state_map().wall, x[observer.cylinder.state_map().gas]);
+    x[..wall].fill(gas_k + 3.0);
+    let noise = |caution_pa_k| observer.cylinder.noise_at_caution(2, &x, caution_pa_k);
+    // 3 K at 2 bar/K.
+    assert!(((noise(2e5) - noise(0.0)).sqrt() / 6e5 - 1.0).abs() < 1e-9);
+    assert_eq!(
+        observer.cylinder.noise_at_caution(0, &x, 2e5),
+        observer.cylinder.noise_at_caution(0, &x, 0.0)
+    );
+}
+
+#[test]
+fn an_exchange_takes_every_leak_rate_back_to_its_prior() {
+    let mut observer = observer(Engine::Extended);
+    for k in 0..600_u32 {
+        observer.step(60.0 * f64::from(k), &[REST[0], REST[1], REST[2] - 500.0 * f64::from(k)]).unwrap();
+    }
+    assert!(observer.leaks()[1].rate_kg_s > 0.0);
+    observer.begin_exchange();
+    observer.step(36_000.0, &REST).unwrap();
+    assert!(observer.leaks().iter().all(|leak| leak.rate_kg_s == 0.0 && leak.sd_kg_s == 0.0));
+    observer.end_exchange();
+    (1..60).for_each(|k| {
+        observer.step(36_000.0 + 60.0 * f64::from(k), &REST).unwrap();
+    });
+    assert!(observer.leaks()[1].sd_kg_s > 0.0);
+}

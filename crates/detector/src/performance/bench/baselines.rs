@@ -3,7 +3,7 @@
 //! | name | expected pressure | gas | zero | hold |
 //! |---|---|---|---|---|
 //! | paper | as published | as published | none | 10 min |
-//! | paper, refitted | real gas | gain 1, pole 0.002988/s | first 4 d, at most half of learning | 60 min |
+//! | paper refitted | real gas | gain 1, pole 0.002988/s | first 4 d, at most half of learning | 60 min |
 //! | textbook CUSUM | real gas | as refitted | mean and standard deviation of the same time | none |
 //! | ideal gas | `p_fill T/T_fill` | shoulder | none | 10 min |
 //! | pressure switch | constant | none | none | none |
@@ -39,7 +39,7 @@ pub fn baselines(plan: &Plan) -> Result<Vec<Candidate>, DetectorError> {
     let settings = ThresholdSettings { hold_s: HOLD_S, zero_s, ..ThresholdSettings::default() };
     Ok(vec![
         of_statistic("paper", PASCAL, Threshold::published(Plan::FILLING)?),
-        of_statistic("paper, refitted", PASCAL, Threshold::try_new(refitted.clone(), settings)?),
+        of_statistic("paper refitted", PASCAL, Threshold::try_new(refitted.clone(), settings)?),
         textbook_cusum(refitted, zero_s),
         of_statistic("ideal gas", PASCAL, Threshold::ideal_gas(Plan::FILLING)?),
         of_statistic("pressure switch", PASCAL, Threshold::raw_switch(SWITCH_PA)?),

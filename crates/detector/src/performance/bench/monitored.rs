@@ -22,8 +22,8 @@ use crate::performance::{Found, YEAR_S};
 const FIRST_RUNG: f64 = -2.0;
 const RUNGS_PER_DECADE: f64 = 10.0;
 const RUNGS: i32 = 80;
-/// Mean time below which no threshold lies, as `log10(years)`.
-const SELDOM: f64 = -1.5;
+/// Mean time below which no threshold lies, as `log10(years)`: a decade below the ladder, for trainings of hours.
+const SELDOM: f64 = FIRST_RUNG - 1.0;
 /// The sensors of the readings, in the monitor's order.
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 

@@ -1,6 +1,7 @@
 //! Railway weeks and chamber courses against what is stated for them.
 use super::super::course::Climate;
 use super::super::railway::Railway;
+use super::super::weather::draw_spaced;
 use super::super::{Course, Passage, draw_weather, passages};
 use super::{assert_uniform, mean, sd};
 use cylwatch_thermal::scenario::{OutsideFilm, Scenario, Series};
@@ -297,4 +298,41 @@ fn courses_are_found_by_their_names_and_last_as_stated() {
         assert_eq!(scenario.duration_s, learnt.duration_s());
     }
     assert_eq!(Course::named("scenario5", 2.0), None);
+}
+
+#[test]
+fn years_have_winters_and_summers_of_the_railways_climate() {
+    let (seeds, days) = (30_u32, 365_u32);
+    let (mut coldest, mut warmest) = (Vec::new(), Vec::new());
+    for seed in 0..seeds {
+        let year = Railway::draw(u64::from(seed), f64::from(days) * DAY_S, Climate::Seasons);
+        // Outside the hours of service there are no tunnels; at 15 h most days have none either.
+        let tunnels = passages(u64::from(seed), days as usize);
+        let at = |hour: f64| {
+            let times = (0..days).map(move |day| f64::from(day) * DAY_S + hour * HOUR_S);
+            times.filter(|&t| !inside(&tunnels, t)).map(|t| year.air_degc(t)).collect::<Vec<f64>>()
+        };
+        coldest.push(at(3.0).into_iter().fold(f64::INFINITY, f64::min));
+        warmest.push(at(15.0).into_iter().fold(f64::NEG_INFINITY, f64::max));
+    }
+    // Mean 1 to 6, swing 14 to 18, day 3 to 7, weather 4 K of which some 2.5 standard deviations meet the coldest weeks.
+    assert!((mean(&coldest) + 24.0).abs() < 4.0, "coldest {}", mean(&coldest));
+    assert!((mean(&warmest) - 31.0).abs() < 4.0, "warmest {}", mean(&warmest));
+    assert!(coldest.iter().all(|&t| t > -45.0) && warmest.iter().all(|&t| t < 48.0));
+}
+
+#[test]
+fn knots_farther_apart_keep_the_variance_of_the_turbulence() {
+    let course = Course::RailwayWeeks { days: 20.0 };
+    let weeks = Railway::draw(8, 20.0 * DAY_S, Climate::Winter);
+    for spacing_s in [120.0, 300.0, 600.0] {
+        let scenario = draw_spaced(&course, 8, spacing_s).unwrap();
+        let tunnels = passages(8, 20);
+        let turbulence: Vec<f64> = (0..40_000)
+            .map(|n| 43.0 * f64::from(n))
+            .filter(|&t| !inside(&tunnels, t))
+            .map(|t| value(&scenario, "air").at(t) - 273.15 - weeks.air_degc(t))
+            .collect();
+        assert!((sd(&turbulence) / 0.4 - 1.0).abs() < 0.06, "{spacing_s} s: {} K", sd(&turbulence));
+    }
 }
