@@ -12,7 +12,7 @@ const JUMP_K: f64 = 0.7;
 const ALONE: f64 = 0.15;
 /// Samples that a jump must last, and how far their difference and the other one may move meanwhile, as parts of it.
 const LASTING: u32 = 8;
-const STEADY: f64 = 0.4;
+const STEADY: f64 = 0.25;
 /// Jump that no offset makes, K.
 const NO_OFFSET_K: f64 = 10.0;
 /// Lonely jumps within this time, s, that tell a thermometer which reads the air.
