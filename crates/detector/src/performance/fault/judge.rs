@@ -191,7 +191,7 @@ impl Judgement<'_> {
         let said = self.history.verdict_at(deadline_s);
         // Nothing can be found with a wrong unit: that it is said is enough.
         let warned = matches!(self.case.fault, Some(Fault::Units { .. })) && self.is_warned();
-        !warned && !(undecided && matches!(said, Some(Verdict::Unknown(_))))
+        !(warned || undecided && matches!(said, Some(Verdict::Unknown(_))))
     }
 
     fn is_flagged(&self) -> bool {
