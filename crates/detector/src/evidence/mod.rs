@@ -11,7 +11,7 @@
 //!
 //! | scale | statistic | finds within |
 //! |---|---|---|
-//! | [`Scale::Hour`] | missing mass `(m - m_free)/sd` over a quarter of an hour ([`rapid`]) | an hour |
+//! | [`Scale::Hour`] | missing mass `(m - m_free)/sd` over a quarter of an hour (`rapid`) | an hour |
 //! | [`Scale::HalfDay`] | low-pass of `z`, 4 h | a day |
 //! | [`Scale::Day`] | low-pass of `z`, 24 h | three days |
 //! | [`Scale::Week`] | low-pass of `z`, 96 h | a week |

@@ -31,7 +31,7 @@
 //! assert!(found.0 > 0.91);
 //! ```
 //!
-//! [`bench`] makes such runs: detectors side by side on the same simulated cylinders. [`fault`] puts faults into good rows.
+//! [`mod@bench`] makes such runs: detectors side by side on the same simulated cylinders. [`fault`] puts faults into good rows.
 //!
 //! Source: API RP 1130, Computational Pipeline Monitoring for Liquids; API RP 1149.
 mod accuracy;

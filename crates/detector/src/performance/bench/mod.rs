@@ -4,7 +4,7 @@
 //! read once by imperfect sensors, and every [`Candidate`] sees the same rows. What a candidate's statistic reaches for the first time is
 //! kept ([`Trace`]), so that one pass serves every threshold. The thresholds are set on tight cylinders of the training
 //! seeds for one mean time between false alarms ([`AlarmLevel`]); cylinders of other seeds, tight and leaking, then judge all candidates
-//! at them ([`bench`]).
+//! at them ([`bench()`]).
 //!
 //! A leak is a constant mass flow from a random time of the day after learning on. Watching ends when it has taken 40 % of
 //! the gas: who has not noticed by then counts as having missed it at any horizon.
