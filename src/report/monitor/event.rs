@@ -49,6 +49,10 @@ fn happening(event: &Event, naming: &Naming) -> String {
             "the coldest night will bring the pressure to {:.1} bar without any leak: refill before it",
             pressure_pa / PASCAL_PER_BAR
         ),
+        EventKind::FillingDoubted { mass_kg, filled_kg } => format!(
+            "the readings stand for {:.2} kg of gas, the filling that was stated for {:.2} kg: look at the units of the log, and state the filling as it is",
+            mass_kg, filled_kg
+        ),
         EventKind::ClockJump(jump_s) => {
             let way = if *jump_s < 0.0 { "back" } else { "forward" };
             format!("the clock jumped {way} by {}", duration(jump_s.abs()))
@@ -110,6 +114,9 @@ fn details(kind: &EventKind, naming: &Naming) -> Value {
             "shift": shift(*health, naming.quantity(*sensor)),
         }),
         EventKind::ColdNight(pressure_pa) => json!({ "pressure_bar": pressure_pa / PASCAL_PER_BAR }),
+        EventKind::FillingDoubted { mass_kg, filled_kg } => {
+            json!({ "mass_kg": mass_kg, "filled_kg": filled_kg })
+        }
         EventKind::ClockJump(jump_s) => json!({ "jump_s": jump_s }),
         EventKind::Gap(gap_s) => json!({ "gap_s": gap_s }),
         EventKind::LeakEnded | EventKind::TooLate | EventKind::Restarted => json!({}),
@@ -174,6 +181,7 @@ mod tests {
             EventKind::Refill(1.5),
             EventKind::Sensor { sensor: 1, health: Health::Shifted(-0.4e5) },
             EventKind::ColdNight(158.2e5),
+            EventKind::FillingDoubted { mass_kg: 4.1, filled_kg: 4.48 },
             EventKind::ClockJump(-3600.0),
             EventKind::Gap(7200.0),
             EventKind::TooLate,

@@ -21,6 +21,7 @@ impl Marks {
             EventKind::Verdict { .. }
             | EventKind::Sensor { .. }
             | EventKind::ColdNight(_)
+            | EventKind::FillingDoubted { .. }
             | EventKind::ClockJump(_)
             | EventKind::Gap(_)
             | EventKind::TooLate

@@ -44,6 +44,13 @@ pub enum EventKind {
     },
     /// The raw pressure will be below the limit at the coldest temperature expected, Pa, although no gas is being lost.
     ColdNight(f64),
+    /// The first readings do not fit the filling that was stated.
+    FillingDoubted {
+        /// Mass that they stand for, kg.
+        mass_kg: f64,
+        /// Mass that was stated, kg.
+        filled_kg: f64,
+    },
     /// The clock jumped by so much, s.
     ClockJump(f64),
     /// Rows came after a gap, s.
@@ -73,6 +80,7 @@ impl EventKind {
             Self::Refill(_) => "refill",
             Self::Sensor { .. } => "sensor",
             Self::ColdNight(_) => "cold-night",
+            Self::FillingDoubted { .. } => "filling-doubted",
             Self::ClockJump(_) => "clock-jump",
             Self::Gap(_) => "gap",
             Self::TooLate => "too-late",

@@ -21,6 +21,8 @@ const NO_CHANCE: f64 = 20.0;
 const FEWEST_IN_A_ROW: u32 = 10;
 /// Readings from which the share of repeated ones is learnt.
 const MEMORY: f64 = 2000.0;
+/// Growth of the smallest change from one reading to the next, so that it can become larger again.
+const STEP_FORGETS: f64 = 1.01;
 /// Time for which a spike is remembered, s.
 const SPIKES_S: f64 = 3600.0;
 /// Least pressure that a transmitter on a vented cylinder reads, Pa.
@@ -33,11 +35,13 @@ pub struct SensorWatch {
     high: f64,
     latest: f64,
     in_a_row: u32,
+    /// Smallest change lately, K or Pa.
+    step: f64,
     /// Number of readings, at most the memory, and how many of them were repeated.
     seen: f64,
     repeated: f64,
     spiked_s: f64,
-    last_usable_s: f64,
+    last_used_s: f64,
     /// Taken off every reading, K or Pa.
     correction: f64,
     detached: bool,
@@ -54,10 +58,11 @@ impl SensorWatch {
             high,
             latest: f64::NAN,
             in_a_row: 0,
+            step: f64::INFINITY,
             seen: 0.0,
             repeated: 0.0,
             spiked_s: f64::NEG_INFINITY,
-            last_usable_s: f64::NEG_INFINITY,
+            last_used_s: f64::NEG_INFINITY,
             correction: 0.0,
             detached: false,
             health: Health::Good,
@@ -87,12 +92,15 @@ impl SensorWatch {
             () if self.correction != 0.0 => Health::Shifted(self.correction),
             () => Health::Good,
         };
-        self.last_usable_s = time_s;
         reading - self.correction
     }
 
     fn stands_still(&mut self, reading: f64) -> bool {
-        let repeats = reading == self.latest;
+        let change = (reading - self.latest).abs();
+        let repeats = change == 0.0;
+        if change > 0.0 {
+            self.step = change.min(STEP_FORGETS * self.step);
+        }
         self.latest = reading;
         if !repeats {
             // A run of repetitions that has ended was none of chance only if it was too long.
@@ -127,6 +135,11 @@ impl SensorWatch {
         }
     }
 
+    /// Step in which it reads, K or Pa: the smallest change of late.
+    pub fn step(&self) -> f64 {
+        if self.step.is_finite() { self.step } else { 0.0 }
+    }
+
     /// From now on so much more, K or Pa, is taken off.
     pub fn shift(&mut self, by: f64) {
         self.correction += by;
@@ -152,9 +165,14 @@ impl SensorWatch {
         self.correction
     }
 
-    /// Time of the last usable reading, s.
-    pub fn last_usable_s(&self) -> f64 {
-        self.last_usable_s
+    /// The observer took the reading.
+    pub fn used(&mut self, time_s: f64) {
+        self.last_used_s = time_s;
+    }
+
+    /// Time of the last reading that was usable and that the observer took, s.
+    pub fn last_used_s(&self) -> f64 {
+        self.last_used_s
     }
 }
 
@@ -175,7 +193,7 @@ mod tests {
         }
         assert!(watch.judge(0.0, f64::NAN).is_nan() && watch.health() == Health::Missing);
         assert_eq!(watch.judge(1.0, 1.013e5), 1.013e5);
-        assert_eq!((watch.health(), watch.last_usable_s()), (Health::Good, 1.0));
+        assert_eq!(watch.health(), Health::Good);
     }
 
     #[test]

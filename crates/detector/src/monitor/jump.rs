@@ -1,34 +1,57 @@
 //! A pressure that jumps: gas or transmitter?
 //!
-//! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next beyond
-//! `L = 0.15 bar + sd(innovation) + 0.2 |change of the expectation| + 0.5 bar/K D` is a jump, with the larger standard deviation of both, and `D`
-//! the smaller change of two thermometers, since a tunnel reaches both. It is examined: a second observer goes on from before it without
+//! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next is a jump if it
+//! is beyond `L = 0.12 bar + 4 c + 1.2 q + 0.1 |change of the expectation| + 0.4 bar/K (D + S)`, and the reading itself made most of it: what
+//! the expectation alone did is the model's. `c` is the mean size of such changes lately, `q` the step in which the transmitter reads,
+//! `D` the smaller change of two thermometers and `S` the larger one of their last surprises, since a tunnel reaches both. It is examined: a second observer goes on from before it without
 //! the pressure, and `e(t)`, what it expects less what is read, less the same before the jump, shows
 //!
-//! * back to nothing within a few samples: a spike;
+//! * back to nothing within a few samples, or in three of the last five: spikes;
 //! * growing over several samples: gas flows;
 //! * a step that stays: the transmitter's offset has jumped, which no thermal process does;
 //! * a step of which a part comes back within half an hour: gas was let out (or in) at once, and the rest, cooled (or warmed) on
 //!   the way, comes to the temperature of the wall. At 200 bar an isentropic step of the pressure is 1.6 times the isothermal one;
 //!   what is left of it at the first sample is at least the tenth part that divides the two.
 //!
-//! The part that comes back is known no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of
-//! the gas temperature. What lies within that of the division remains unclear.
+//! No transmitter's offset jumps by more than a tenth of the largest filling: beyond that it is gas. The part that comes back is known no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of
+//! the gas temperature. What lies within that of the division remains
+//! unclear when gas may be gone. Of a gain so small that no filling stops there the transmitter is the safe
+//! assumption: it leaves the mass as low as it was.
 //!
 //! Assumes that a jump of gas is over within two hours; a longer one is a flow.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Change of the innovation that is a jump beside its standard deviation, Pa, and by the change of the expectation,
-const JUMP_PA: f64 = 0.15e5;
-const JUMP_PER_CHANGE: f64 = 0.2;
+use super::thermometers::Moved;
+
+/// Change of the innovation that is a jump, Pa, beside so many usual changes, and so many steps of the transmitter,
+const JUMP_PA: f64 = 0.12e5;
+const JUMP_PER_USUAL: f64 = 4.0;
+const JUMP_PER_STEP: f64 = 1.2;
+/// Samples over which the usual change is a mean, and the largest that counts, Pa.
+const USUAL_SAMPLES: f64 = 300.0;
+const USUAL_LARGEST_PA: f64 = 1e5;
+/// Part of it that the reading makes at least.
+const BY_READING: f64 = 0.6;
+/// It is farther by the change of the expectation,
+const JUMP_PER_CHANGE: f64 = 0.1;
 /// and by the change of the thermometers, Pa/K.
-const JUMP_PER_K: f64 = 0.5e5;
+const JUMP_PER_K: f64 = 0.4e5;
 /// Interval beyond which two innovations are not compared, s.
 const LONGEST_INTERVAL_S: f64 = 900.0;
 /// Samples within which a spike comes back.
 const SPIKE_SAMPLES: usize = 5;
+/// Samples whose median tells spikes among good ones, within so many, and what is left of the largest in it at most, beside the model's error, Pa.
+const AMONG: usize = 5;
+const AMONG_FIRST: usize = 12;
+const LEFT_OF_SPIKES: f64 = 0.05;
+/// Least height of such spikes, Pa.
+const SPIKE_PA: f64 = 1e5;
+const BESIDE_SPIKES_PA: f64 = 0.1e5;
+/// Jump that no offset makes, and gain that no filling stops at, Pa.
+const NO_OFFSET_PA: f64 = 20e5;
+const NO_FILLING_PA: f64 = 10e5;
 /// Samples over which a flow grows, where a transmitter's jump takes one.
 const FLOW_SAMPLES: usize = 3;
 /// Time after the largest error until the examination ends, s, and the part at its end that counts.
@@ -67,46 +90,52 @@ pub enum Cause {
 }
 
 /// Watches the innovations of the pressure for a jump.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JumpWatch {
     last: Option<Innovated>,
+    /// Usual change of the innovation, Pa.
+    usual_pa: f64,
 }
 
 /// A reading and what was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Innovated {
-    time_s: f64,
-    reading_pa: f64,
-    innovation_pa: f64,
-    sd_pa: f64,
+pub struct Innovated {
+    /// Time, s.
+    pub time_s: f64,
+    /// Reading, Pa.
+    pub reading_pa: f64,
+    /// Reading less what was expected, Pa.
+    pub innovation_pa: f64,
+}
+
+impl Default for JumpWatch {
+    /// Of a transmitter and a thermometer of which nothing is known.
+    fn default() -> Self {
+        Self { last: None, usual_pa: JUMP_PA }
+    }
 }
 
 impl JumpWatch {
-    /// Take in a reading, Pa, with its innovation and its standard deviation, Pa, and the smaller change of two thermometers since the
-    /// last one, K; the innovation before it if this one is a jump.
-    pub fn notice(
-        &mut self,
-        time_s: f64,
-        reading_pa: f64,
-        innovation: (f64, f64),
-        warmed_k: f64,
-    ) -> Option<f64> {
-        let (innovation_pa, sd_pa) = innovation;
-        if !(reading_pa.is_finite() && innovation_pa.is_finite()) {
+    /// Take in a reading of a transmitter that reads in steps, Pa, with what two thermometers did; the innovation before it if this one is
+    /// a jump.
+    pub fn notice(&mut self, now: Innovated, step_pa: f64, moved: Moved) -> Option<f64> {
+        if !(now.reading_pa.is_finite() && now.innovation_pa.is_finite()) {
             return None;
         }
-        let now = Innovated { time_s, reading_pa, innovation_pa, sd_pa };
         let last = self.last.replace(now)?;
-        if time_s - last.time_s > LONGEST_INTERVAL_S {
+        if now.time_s - last.time_s > LONGEST_INTERVAL_S {
             return None;
         }
-        let expected = |of: &Innovated| of.reading_pa - of.innovation_pa;
+        let change_pa = now.innovation_pa - last.innovation_pa;
+        let by_reading_pa = now.reading_pa - last.reading_pa;
         let limit_pa = JUMP_PA
-            // The first reading of a filling that is not known well corrects it: that is no jump.
-            + sd_pa.max(last.sd_pa)
-            + JUMP_PER_CHANGE * (expected(&now) - expected(&last)).abs()
-            + JUMP_PER_K * warmed_k;
-        ((innovation_pa - last.innovation_pa).abs() > limit_pa).then_some(last.innovation_pa)
+            + JUMP_PER_USUAL * self.usual_pa
+            + JUMP_PER_STEP * step_pa
+            + JUMP_PER_CHANGE * (by_reading_pa - change_pa).abs()
+            + JUMP_PER_K * (moved.by_k + moved.surprise_k);
+        self.usual_pa += (change_pa.abs().min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
+        let read = by_reading_pa * change_pa.signum() > BY_READING * change_pa.abs();
+        (read && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
     }
 
     /// Forget the last reading.
@@ -181,23 +210,37 @@ impl Examination {
     }
 
     fn judge(&self, time_s: f64) -> Cause {
-        if self.samples <= SPIKE_SAMPLES && self.back >= 2 {
+        let peak_pa = self.peak_pa.abs();
+        let among = self.recent.len() >= AMONG
+            && self.samples <= AMONG_FIRST
+            && self.recent_median_pa(AMONG).abs() < LEFT_OF_SPIKES * peak_pa + BESIDE_SPIKES_PA
+            && peak_pa > SPIKE_PA
+            && self.grew < FLOW_SAMPLES;
+        if among || self.samples <= SPIKE_SAMPLES && self.back >= 2 {
             return Cause::Spike;
         }
         if time_s - self.peak_s < REST_S && time_s - self.onset_s < LONGEST_S {
-            return if self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
+            let large = self.samples > SPIKE_SAMPLES && self.error_pa().abs() > NO_OFFSET_PA;
+            return if large || self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
         }
-        let rest: Vec<f64> = self.recent.iter().map(|(_, error)| *error).collect();
-        let end_pa = rest.iter().sum::<f64>() / rest.len() as f64;
+        let end_pa = self.recent_median_pa(self.recent.len());
         let wander_pa = WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k);
-        let back_pa = self.peak_pa.abs() - end_pa * self.peak_pa.signum();
+        let back_pa = peak_pa - end_pa * self.peak_pa.signum();
         match () {
-            () if end_pa.abs() < wander_pa.max(LEFT_OF_GAS * self.peak_pa.abs()) => Cause::Passed,
-            () if self.grew >= FLOW_SAMPLES => Cause::Gas,
-            () if back_pa > DIVISION * self.peak_pa.abs() + 0.5 * wander_pa => Cause::Gas,
-            () if back_pa < DIVISION * self.peak_pa.abs() - 0.5 * wander_pa => Cause::Offset(-end_pa),
+            () if end_pa.abs() < wander_pa.max(LEFT_OF_GAS * peak_pa) => Cause::Passed,
+            () if self.grew >= FLOW_SAMPLES || end_pa.abs() > NO_OFFSET_PA => Cause::Gas,
+            () if back_pa > DIVISION * peak_pa + 0.5 * wander_pa => Cause::Gas,
+            () if back_pa < DIVISION * peak_pa - 0.5 * wander_pa => Cause::Offset(-end_pa),
+            () if -NO_FILLING_PA < end_pa && end_pa < 0.0 => Cause::Offset(-end_pa),
             () => Cause::Unclear,
         }
+    }
+
+    /// Median of the last errors, Pa: spikes among them count for nothing.
+    fn recent_median_pa(&self, samples: usize) -> f64 {
+        let mut errors: Vec<f64> = self.recent.iter().rev().take(samples).map(|(_, error)| *error).collect();
+        errors.sort_by(f64::total_cmp);
+        errors.get(errors.len() / 2).copied().unwrap_or(0.0)
     }
 }
 
@@ -235,6 +278,25 @@ mod tests {
         assert_eq!(cause(|minutes| -4.0 * (minutes + 1.0).min(10.0)), Cause::Gas);
         assert_eq!(cause(|minutes| 0.5 * (-minutes / 10.0).exp()), Cause::Passed);
         assert_eq!(cause(|minutes| 0.4 + 0.05 * (-minutes / 4.0).exp()), Cause::Unclear);
+        // The same upwards is no filling; a bottle that is let go to 20 bar in a minute is no offset.
+        assert!(
+            matches!(cause(|minutes| -0.4 - 0.05 * (-minutes / 4.0).exp()), Cause::Offset(by) if by > 0.0)
+        );
+        assert_eq!(cause(|minutes| 150.0 + 10.0 * (-minutes / 4.0).exp()), Cause::Gas);
+    }
+
+    #[test]
+    fn spikes_among_good_readings_are_spikes() {
+        let one_of_three = |minutes: f64| match minutes as u32 % 3 {
+            0 if minutes as u32 % 2 == 0 => 50.0,
+            0 => -50.0,
+            _ => 0.0,
+        };
+        assert_eq!(cause(one_of_three), Cause::Spike);
+        assert_eq!(
+            cause(|minutes| if [0.0, 1.0, 2.0, 4.0].contains(&minutes) { 50.0 } else { 0.0 }),
+            Cause::Spike
+        );
     }
 
     #[test]
@@ -249,17 +311,19 @@ mod tests {
     #[test]
     fn slow_changes_and_expected_ones_are_no_jumps() {
         let mut watch = JumpWatch::default();
-        for minute in 0..100 {
-            let t = MINUTE_S * f64::from(minute);
-            assert_eq!(
-                watch.notice(t, 180e5 + 3e4 * f64::from(minute), (2e4 * f64::from(minute), 1e4), 0.0),
-                None
-            );
+        let mut notice = |time_s: f64, reading_pa: f64, innovation_pa: f64, moved: Moved| {
+            watch.notice(Innovated { time_s, reading_pa, innovation_pa }, 0.0, moved)
+        };
+        let still = Moved::default();
+        for minute in 0..1000 {
+            let n = f64::from(minute);
+            assert_eq!(notice(MINUTE_S * n, 180e5 + 3e4 * n, 2e4 + 1e3 * (n % 2.0), still), None);
         }
-        assert_eq!(watch.notice(6000.0, 210e5 - 5e4, (198e4 - 5e4, 1e4), 0.0), Some(198e4));
-        watch.forget();
-        assert_eq!(watch.notice(6060.0, 100e5, (-80e5, 1e4), 0.0), None);
-        // A pressure that was expected to rise by 2 bar may be 0.6 bar beside it.
-        assert_eq!(watch.notice(6120.0, 102.6e5, (-79.4e5, 1e4), 0.0), None);
+        let reading_pa = 180e5 + 3e4 * 999.0;
+        assert_eq!(notice(60_000.0, reading_pa - 0.5e5, -0.48e5, still), Some(2.1e4));
+        // What the expectation did alone; what a tunnel does.
+        assert_eq!(notice(60_060.0, reading_pa - 0.5e5, 0.5e5, still), None);
+        assert_eq!(notice(60_120.0, reading_pa - 1.5e5, -0.5e5, Moved { by_k: 1.0, surprise_k: 2.0 }), None);
+        assert_eq!(notice(70_000.0, 100e5, -80e5, still), None, "too long ago");
     }
 }

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`intake`] | rows as they arrive become rows in order on one axis of time |
 //! | [`health`], [`thermometers`] | readings that are none, stand still or have an offset that jumped |
+//! | filling | whether the first readings fit the filling that was stated |
 //! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
 //! | [`jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
 //! | [`crate::evidence`] | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
@@ -21,6 +22,7 @@
 pub mod alarm;
 mod contents;
 mod event;
+mod filling;
 pub mod health;
 pub mod intake;
 pub mod jump;

@@ -27,6 +27,8 @@ pub enum Verdict {
 pub enum Reason {
     /// The observer has not seen enough yet to know its sensors.
     Learning,
+    /// The readings do not fit the filling that was stated: units mixed up, another bottle, or gas gone before the first row.
+    Filling,
     /// No usable pressure for too long.
     NoPressure,
     /// No usable temperature for too long.
@@ -72,6 +74,7 @@ impl Reason {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Learning => "still learning the sensors",
+            Self::Filling => "the readings do not fit the filling that was stated",
             Self::NoPressure => "no usable pressure",
             Self::NoTemperature => "no usable temperature",
             Self::Gap => "no rows for too long",

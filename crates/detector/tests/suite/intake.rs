@@ -14,8 +14,13 @@ fn intake(settings: IntakeSettings) -> Intake {
     Intake::new(settings, 2).unwrap()
 }
 
+/// Each row by itself.
+fn each() -> IntakeSettings {
+    IntakeSettings { step_s: 0.0, ..IntakeSettings::default() }
+}
+
 fn late(lateness_s: f64) -> IntakeSettings {
-    IntakeSettings { lateness_s, ..IntakeSettings::default() }
+    IntakeSettings { lateness_s, ..each() }
 }
 
 /// All that comes out of rows and the end of the file.
@@ -58,7 +63,7 @@ fn jumps(events: &[Event]) -> Vec<f64> {
 
 #[test]
 fn rows_in_order_come_out_at_once_as_they_are() {
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     for (stamp_s, readings) in minutes(0, 100) {
         let taken = intake.take(stamp_s, &readings).unwrap();
         assert_eq!(taken, Taken { rows: vec![Row { time_s: stamp_s, stamp_s, readings }], events: vec![] });
@@ -97,7 +102,7 @@ fn readings_of_one_time_are_one_row_or_follow_each_other() {
     assert_eq!(out.rows, [Row { time_s: 0.0, stamp_s: 0.0, readings: vec![1.0, 2.0] }]);
     assert_eq!((waiting.counts().merged, waiting.counts().duplicates), (1, 1));
     // At once, the second one has what the first had not, and the third says nothing new.
-    let out = all(&mut intake(IntakeSettings::default()), &rows);
+    let out = all(&mut intake(each()), &rows);
     assert_eq!(bits(&out.rows), bits(&rows[..2].iter().map(|(t, r)| row(*t, r)).collect::<Vec<_>>()));
 }
 
@@ -108,7 +113,7 @@ fn row(t: f64, readings: &[f64]) -> Row {
 #[test]
 fn of_two_values_the_later_stands_until_it_is_handed_out() {
     let rows = [(0.0, vec![1.0, 5.0]), (0.0, vec![2.0, f64::INFINITY]), (60.0, vec![3.0, 6.0])];
-    let (mut waiting, mut at_once) = (intake(late(30.0)), intake(IntakeSettings::default()));
+    let (mut waiting, mut at_once) = (intake(late(30.0)), intake(each()));
     assert_eq!(all(&mut waiting, &rows).rows[0].readings, [2.0, 5.0]);
     assert_eq!(all(&mut at_once, &rows).rows.len(), 2);
     assert_eq!((waiting.counts().contradictions, at_once.counts().contradictions), (1, 1));
@@ -118,7 +123,7 @@ fn of_two_values_the_later_stands_until_it_is_handed_out() {
 fn summer_time_is_a_gap_of_an_hour() {
     let mut rows = minutes(0, 50);
     rows.extend(shifted(minutes(50, 100), HOUR_S));
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     let out = all(&mut intake, &rows);
     assert_eq!(times(&out), rows.iter().map(|(t, _)| *t).collect::<Vec<_>>());
     assert_eq!(out.events.len(), 1);
@@ -153,7 +158,7 @@ fn a_clock_that_comes_back_from_1970_finds_its_axis_again() {
     let mut rows = shifted(minutes(0, 30), now_s);
     rows.extend(minutes(0, 30));
     rows.extend(shifted(minutes(60, 90), now_s));
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     let out = all(&mut intake, &rows);
     assert_eq!((out.rows.len(), intake.counts().jumps), (90, 2));
     assert!(intake.offset_s().abs() < 1e-6);
@@ -166,7 +171,7 @@ fn single_wild_stamps_are_dropped_and_counted() {
     for wild_s in [1e9, f64::NAN, f64::INFINITY, -1e300, 2.0 * DAY_S] {
         let mut rows = minutes(0, 50);
         rows[25].0 = wild_s;
-        let mut intake = intake(IntakeSettings::default());
+        let mut intake = intake(each());
         let out = all(&mut intake, &rows);
         assert_eq!(out.rows.len(), 49, "{wild_s}");
         assert!(intake.counts().wild == 1 && out.events.is_empty(), "{wild_s}: {:?}", out.events);
@@ -180,7 +185,7 @@ fn seconds_of_network_time_cost_a_row_at_most() {
         let every_10_s = |rows: Vec<Arrival>| rows.into_iter().map(|(t, r)| (t / 6.0, r)).collect::<Vec<_>>();
         let mut rows = every_10_s(minutes(0, 50));
         rows.extend(shifted(every_10_s(minutes(50, 100)), jump_s));
-        let mut intake = intake(IntakeSettings::default());
+        let mut intake = intake(each());
         let out = all(&mut intake, &rows);
         let lost = 100 - out.rows.len();
         // A clock set back by 30 s repeats stamps that rows have; set back further it has jumped.
@@ -193,12 +198,12 @@ fn seconds_of_network_time_cost_a_row_at_most() {
 fn gaps_are_reported_but_rows_that_always_come_rarely_are_none() {
     let mut rows = minutes(0, 20);
     rows.extend(shifted(minutes(20, 40), 60.0 * DAY_S));
-    let out = all(&mut intake(IntakeSettings::default()), &rows);
+    let out = all(&mut intake(each()), &rows);
     assert_eq!(out.events[0].kind, EventKind::Gap(60.0 * DAY_S + MINUTE_S));
     assert_eq!(out.rows.len(), 40);
     // Twice a day: the first interval is a gap, the others are usual.
     let rare: Vec<Arrival> = (0..40).map(|k| (k as f64 * 0.5 * DAY_S, vec![1.0, k as f64])).collect();
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     let out = all(&mut intake, &rare);
     assert!(out.rows.len() == 40 && intake.counts().gaps == 1, "{:?}", intake.counts());
 }
@@ -209,7 +214,7 @@ fn a_replay_of_rows_that_were_used_is_no_news_and_no_jump_of_the_clock() {
     let replay = rows[100..1600].to_vec();
     rows.extend(replay);
     rows.extend(minutes(2000, 2050));
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     let out = all(&mut intake, &rows);
     assert_eq!(bits(&out.rows), bits(&all(&mut self::intake(late(0.0)), &minutes(0, 2050)).rows));
     assert_eq!((out.events.len(), intake.counts().duplicates), (0, 1500));
@@ -221,7 +226,7 @@ fn rows_of_a_time_without_any_come_from_a_store_and_move_no_clock() {
     rows.extend(minutes(400, 410));
     rows.extend(minutes(100, 400));
     rows.extend(minutes(410, 450));
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     let out = all(&mut intake, &rows);
     assert_eq!((out.rows.len(), intake.counts().too_late, intake.counts().jumps), (150, 300, 0));
     assert_eq!(intake.offset_s(), 0.0);
@@ -229,7 +234,7 @@ fn rows_of_a_time_without_any_come_from_a_store_and_move_no_clock() {
 
 #[test]
 fn a_replay_that_says_so_never_moves_the_clock() {
-    let mut intake = intake(IntakeSettings::default());
+    let mut intake = intake(each());
     for (stamp_s, readings) in minutes(100, 150) {
         intake.take(stamp_s, &readings).unwrap();
     }
@@ -265,7 +270,7 @@ fn bins_have_the_median_and_the_time_of_their_last_row() {
     let stamps = [0.0, 10.0, 20.0, 30.0, 61.0, 70.0, 130.0, 250.0];
     let first = [1.0, 2.0, 1e6, 3.0, 4.0, 8.0, f64::NAN, 9.0];
     let rows: Vec<Arrival> = stamps.iter().zip(first).map(|(&t, v)| (t, vec![v, f64::NAN])).collect();
-    let mut intake = intake(IntakeSettings { step_s: MINUTE_S, ..IntakeSettings::default() });
+    let mut intake = intake(IntakeSettings { step_s: MINUTE_S, ..each() });
     let out = all(&mut intake, &rows);
     assert_eq!(times(&out), [30.0, 70.0, 130.0, 250.0]);
     let of_first: Vec<f64> = out.rows.iter().map(|row| row.readings[0]).collect();
@@ -274,15 +279,35 @@ fn bins_have_the_median_and_the_time_of_their_last_row() {
 }
 
 #[test]
+fn rows_at_the_step_come_out_at_once_after_the_first() {
+    let mut intake = intake(IntakeSettings { step_s: MINUTE_S, ..each() });
+    for (k, (stamp_s, readings)) in minutes(0, 20).into_iter().enumerate() {
+        let out = intake.take(stamp_s, &readings).unwrap();
+        let expected = match k {
+            0 => vec![],
+            1 => vec![0.0, MINUTE_S],
+            _ => vec![stamp_s],
+        };
+        assert_eq!(times(&out), expected);
+    }
+    // A faster row is held from then on, until a slow one comes.
+    for (stamp_s, expected) in
+        [(1150.0, vec![]), (1160.0, vec![]), (1205.0, vec![1160.0]), (1265.0, vec![1205.0, 1265.0])]
+    {
+        assert_eq!(times(&intake.take(stamp_s, &[1.0, 2.0]).unwrap()), expected);
+    }
+}
+
+#[test]
 fn bins_no_wider_than_the_interval_change_nothing() {
-    let settings = IntakeSettings { step_s: MINUTE_S, ..IntakeSettings::default() };
+    let settings = IntakeSettings { step_s: MINUTE_S, ..each() };
     let (binned, plain) = (all(&mut intake(settings), &minutes(0, 50)), minutes(0, 50));
     assert_eq!(bits(&binned.rows), bits(&plain.iter().map(|(t, r)| row(*t, r)).collect::<Vec<_>>()));
 }
 
 #[test]
 fn a_million_rows_in_a_second_are_held_in_bounds() {
-    let settings = IntakeSettings { lateness_s: HOUR_S, step_s: DAY_S, ..IntakeSettings::default() };
+    let settings = IntakeSettings { lateness_s: HOUR_S, step_s: DAY_S, ..each() };
     let mut intake = intake(settings);
     let mut most = 0;
     for k in 0..20_000 {
@@ -294,7 +319,7 @@ fn a_million_rows_in_a_second_are_held_in_bounds() {
 
 #[test]
 fn settings_and_rows_that_do_not_fit_are_refused() {
-    let default = IntakeSettings::default;
+    let default = each;
     for (settings, name) in [
         (IntakeSettings { lateness_s: -1.0, ..default() }, "lateness_s"),
         (IntakeSettings { step_s: f64::NAN, ..default() }, "step_s"),
@@ -354,7 +379,7 @@ proptest! {
     fn order_and_repetition_within_the_lateness_change_no_bit(
         rows in ordered(), delays in delays(), step_s in prop_oneof![Just(0.0), 30.0..300.0],
     ) {
-        let settings = IntakeSettings { lateness_s: 600.0, step_s, ..IntakeSettings::default() };
+        let settings = IntakeSettings { lateness_s: 600.0, step_s, ..each() };
         let in_order = all(&mut intake(settings), &rows);
         let out = all(&mut intake(settings), &shuffled(&rows, 600.0, &delays));
         prop_assert_eq!(bits(&in_order.rows), bits(&out.rows));
@@ -365,7 +390,7 @@ proptest! {
     fn saved_and_restored_at_any_row_it_goes_on_bit_for_bit(
         rows in ordered(), delays in delays(), jump_s in prop_oneof![Just(-3600.0), Just(1e9), -1e5..1e5],
     ) {
-        let settings = IntakeSettings { lateness_s: 300.0, step_s: 90.0, ..IntakeSettings::default() };
+        let settings = IntakeSettings { lateness_s: 300.0, step_s: 90.0, ..each() };
         let mut rows = shuffled(&rows, 600.0, &delays);
         let half = rows.len() / 2;
         rows[half..].iter_mut().for_each(|row| row.0 += jump_s);

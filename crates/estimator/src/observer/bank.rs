@@ -143,12 +143,7 @@ impl Bank {
                 }
             }
             if variance > 0.0 {
-                match &mut self.covariances {
-                    Covariances::Together(packs) => {
-                        packs.iter_mut().for_each(|p| p.bank.inflate(state, Lanes::splat(variance)));
-                    }
-                    Covariances::Separate(all) => all.iter_mut().for_each(|p| p.inflate(state, variance)),
-                }
+                self.inflate(state, variance);
             }
         }
     }
@@ -231,6 +226,16 @@ impl Bank {
                     to.copy_from(from);
                 }
             }
+        }
+    }
+
+    /// Add a variance to a constant of every member.
+    pub fn inflate(&mut self, state: usize, variance: f64) {
+        match &mut self.covariances {
+            Covariances::Together(packs) => {
+                packs.iter_mut().for_each(|p| p.bank.inflate(state, Lanes::splat(variance)));
+            }
+            Covariances::Separate(all) => all.iter_mut().for_each(|p| p.inflate(state, variance)),
         }
     }
 

@@ -88,6 +88,13 @@ pub struct States {
 }
 
 impl States {
+    /// The state of a sensor's offset, if it has one.
+    pub fn offset_of(&self, sensor: usize, sensors: &[Sensor]) -> Option<usize> {
+        let parameters = sensors.get(sensor)?.parameters();
+        let offset = parameters.iter().position(|parameter| parameter.kind == ParameterKind::Offset)?;
+        self.parameters[sensor][offset]
+    }
+
     /// The states that a model, its sensors and the settings ask for.
     pub fn new(model: &ReducedModel, sensors: &[Sensor], settings: &ObserverSettings) -> Self {
         let mut kinds: Vec<StateKind> = (0..model.wall_nodes()).map(StateKind::Wall).collect();

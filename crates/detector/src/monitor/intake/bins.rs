@@ -1,7 +1,8 @@
 //! Rows that lie closer together than a step made one: per sensor the median of three readings or more, the mean of two.
 //!
 //! Bins lie on a fixed grid of the internal time, `floor(t/step)`, so that rows at the step or slower pass as they are, and where the
-//! log begins changes nothing. A bin is handed out when a row of another one comes.
+//! log begins changes nothing. A bin is handed out when a row of another one comes; a row at once while the rows before came at the step
+//! or slower.
 use serde::{Deserialize, Serialize};
 
 use super::exact;
@@ -9,6 +10,8 @@ use super::row::Row;
 
 /// Rows in a bin at most; a fuller one is handed out early.
 const ROWS_AT_MOST: usize = 256;
+/// Part of the step that makes an interval one of slow rows: stamps jitter.
+const SLOW: f64 = 0.9;
 
 /// The bin that is being filled.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,24 +19,37 @@ pub(super) struct Bins {
     #[serde(with = "exact::number")]
     step_s: f64,
     filling: Vec<Row>,
+    /// Time of the last row where it was handed out at once, s.
+    passed_s: Option<f64>,
 }
 
 impl Bins {
     /// Bins of a width, s; 0: none.
     pub fn new(step_s: f64) -> Self {
-        Self { step_s, filling: Vec::new() }
+        Self { step_s, filling: Vec::new(), passed_s: None }
     }
 
-    /// Take a row: what is complete now.
-    pub fn take(&mut self, row: Row) -> Option<Row> {
-        if self.step_s == 0.0 {
-            return Some(row);
-        }
+    /// Take a row: what is complete now is added to `done`.
+    pub fn take(&mut self, row: Row, done: &mut Vec<Row>) {
         let bin = |time_s: f64| (time_s / self.step_s).floor();
         let another = self.filling.last().is_some_and(|last| bin(last.time_s) != bin(row.time_s));
-        let done = if another || self.filling.len() == ROWS_AT_MOST { self.close() } else { None };
-        self.filling.push(row);
-        done
+        let alone_s = match &self.filling[..] {
+            [] => self.passed_s,
+            [one] => Some(one.time_s),
+            _ => None,
+        };
+        if another || self.filling.len() == ROWS_AT_MOST {
+            done.extend(self.close());
+        }
+        let slow = alone_s.is_some_and(|alone_s| row.time_s - alone_s >= SLOW * self.step_s);
+        if slow || self.step_s == 0.0 {
+            done.extend(self.close());
+            self.passed_s = Some(row.time_s);
+            done.push(row);
+        } else {
+            self.passed_s = None;
+            self.filling.push(row);
+        }
     }
 
     /// The bin as it is, if there is anything in it.

@@ -3,7 +3,7 @@
 //! A row passes three stations. The clock guard (`clock`) finds its place on an internal axis of time
 //! `t = stamp - offset`: a stamp far ahead or behind is believed when the next rows agree with it, and moves the axis if it
 //! was the clock that jumped. The order holds rows back for the allowed lateness, sorts them and unites rows of one
-//! time. The bins, if they are wanted, make one row of many that lie closer together than a step.
+//! time. The bins make one row of many that lie closer together than a step.
 //!
 //! # What it assumes
 //! * Rows of one time belong together, and what has been handed out stands.
@@ -262,7 +262,7 @@ impl Intake {
                 self.usual.push(gap_s);
             }
             self.order.note(&row);
-            taken.rows.extend(self.bins.take(row));
+            self.bins.take(row, &mut taken.rows);
         }
     }
 

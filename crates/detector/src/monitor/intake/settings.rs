@@ -17,8 +17,9 @@ pub struct IntakeSettings {
 }
 
 impl Default for IntakeSettings {
+    /// Bins of a minute: the observer's errors and the thresholds against them know nothing shorter, and a minute costs what a row does.
     fn default() -> Self {
-        Self { lateness_s: 0.0, step_s: 0.0, gap_s: 3600.0, longest_gap_s: 100.0 * 86_400.0 }
+        Self { lateness_s: 0.0, step_s: 60.0, gap_s: 3600.0, longest_gap_s: 100.0 * 86_400.0 }
     }
 }
 

@@ -99,12 +99,14 @@ fn twice(record: &mut Record, onset_s: f64, share: f64, mut random: ChaCha8Rng) 
     record.steps = in_order(keyed);
 }
 
+/// A row that would come after the last one is not delayed: there, nothing but late rows would come any more.
 fn disorder(record: &mut Record, onset_s: f64, (by_s, share): (f64, f64), mut random: ChaCha8Rng) {
+    let end_s = record.rows().map(|row| row.stamp_s).fold(f64::NEG_INFINITY, f64::max);
     let mut keyed = Vec::new();
     for (time_s, step) in timed(record) {
         let delayed = time_s >= onset_s && random.random::<f64>() < share;
         let delay_s = if delayed { by_s * random.random::<f64>() } else { 0.0 };
-        keyed.push((time_s + delay_s, step));
+        keyed.push((if time_s + delay_s <= end_s { time_s + delay_s } else { time_s }, step));
     }
     record.steps = in_order(keyed);
 }

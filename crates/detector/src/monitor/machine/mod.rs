@@ -1,11 +1,16 @@
 //! The monitor of one cylinder.
+mod exchange;
+mod judgement;
+
 use serde::{Deserialize, Serialize};
 
+use self::exchange::{Examined, Exchanged};
 use super::alarm::{AlarmEvent, AlarmInputs, AlarmPanel};
 use super::contents::Tangent;
+use super::filling::FillingCheck;
 use super::health::SensorWatch;
 use super::intake::{Intake, Row, Taken};
-use super::jump::{Cause, Examination, JumpWatch};
+use super::jump::JumpWatch;
 use super::leak::{Change, LeakState, Look};
 use super::outlook::{self, LimitMasses};
 use super::rewind::Rewind;
@@ -19,34 +24,36 @@ use crate::estimator::observer::{
     Commissioning, Estimate, Leak, Learned, Observer, Outcome, Quality, Snapshot,
 };
 use crate::estimator::sensor::Sensor;
+use crate::estimator::thermal::scenario::Fill;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
 
-/// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
-const ACROSS_PA: f64 = 2e5;
-const ACROSS_S: f64 = 900.0;
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;
-/// Time after an exchange of gas for which it is the verdict, and until it has settled, s.
-const EXCHANGED_S: f64 = 1800.0;
+/// Time after an exchange of gas until it has settled, s.
 const SETTLED_S: f64 = 3.0 * 3600.0;
-/// Time for which a jump that remained unclear leaves doubt, s.
-const DOUBT_S: f64 = 86_400.0;
+/// Standard deviation of a thermometer's offset after it jumped, K and as a part of the jump.
+const JUMPED_K: f64 = 0.5;
+const JUMPED_PART: f64 = 0.1;
+/// What the evidence is divided by while a thermometer has not been used for so long, s: the thresholds are those of all of them.
+const DEGRADED: f64 = 1.3;
+const DEGRADED_AFTER_S: f64 = 3600.0;
 /// Distance from the limit at which a warning of the cold may come again, Pa.
 const COLD_DEADBAND_PA: f64 = 1e5;
-/// Samples of an examination after which the jump is no spike.
-const NO_SPIKE: usize = 3;
 
 /// Monitor of one cylinder: a pure function of its state and the row, so that batch, stream and a stream that was killed and
 /// restored at any row give the same, bit for bit.
 #[derive(Debug)]
 pub struct Monitor {
     settings: MonitorSettings,
+    vessel: Vessel,
     contents: Contents,
     limits: LimitMasses,
     thresholds: Thresholds,
     full_pa: f64,
+    /// Mass that was stated and its standard deviation, kg.
+    filled_kg: (f64, f64),
     roles: Roles,
     fingerprint: Fingerprint,
     commissioning: Commissioning,
@@ -66,6 +73,7 @@ struct State {
     watches: Vec<SensorWatch>,
     health: Vec<Health>,
     pair: Pair,
+    filling: FillingCheck,
     jumps: JumpWatch,
     examined: Option<Examined>,
     rewind: Rewind,
@@ -94,22 +102,6 @@ impl State {
     fn is_exchanging(&self, time_s: f64) -> bool {
         self.examined.is_some() || self.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S)
     }
-}
-
-/// A jump under examination.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Examined {
-    examination: Examination,
-    before_kg: f64,
-    samples: usize,
-    flowing: bool,
-}
-
-/// Gas that was exchanged.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Exchanged {
-    at_s: f64,
-    out: bool,
 }
 
 /// What is saved.
@@ -149,6 +141,7 @@ impl Monitor {
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
             pair: Pair::default(),
+            filling: FillingCheck::default(),
             jumps: JumpWatch::default(),
             examined: None,
             rewind: Rewind::default(),
@@ -172,6 +165,7 @@ impl Monitor {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
+            filled_kg: (full_kg, commissioning.mass_sd_kg),
             roles: Roles::of(sensors),
             fingerprint: fingerprint(vessel, sensors, settings),
             observer: observer()?,
@@ -180,6 +174,7 @@ impl Monitor {
             usable: vec![f64::NAN; sensors.len()],
             leaks: Vec::with_capacity(settings.observer.bank.len()),
             settings: settings.clone(),
+            vessel: vessel.clone(),
             contents,
             state,
         })
@@ -258,8 +253,9 @@ impl Monitor {
         self.process_all(taken)
     }
 
-    /// Somebody has seen the alarms and looked after the sensors.
+    /// Somebody has seen the alarms, looked after the sensors and knows the filling.
     pub fn acknowledge(&mut self, comment: &str) -> Vec<AlarmEvent> {
+        self.state.filling.settle();
         self.state.watches.iter_mut().for_each(SensorWatch::repaired);
         let panel = std::mem::take(&mut self.state.panel);
         let (panel, events) = panel.acknowledge_all(&self.settings.alarms, self.state.last_s, comment);
@@ -307,8 +303,9 @@ impl Monitor {
         if silent_s.is_finite() && silent_s > self.settings.gap_s {
             self.state.look = (time_s + LOOK_S, Reason::Gap);
         }
+        self.check_filling(time_s, &mut events)?;
         let estimate = self.observe(time_s, silent_s, &mut events)?;
-        self.mark_refused(time_s);
+        self.mark_outcomes(time_s);
         if estimate.quality == Quality::Restarted {
             events.push(Event::new(time_s, time_s, EventKind::Restarted));
             self.state.look = (time_s + LOOK_S, Reason::Restarted);
@@ -335,19 +332,21 @@ impl Monitor {
     }
 
     fn watch_thermometers(&mut self, time_s: f64) {
-        let Some(pair) = self.roles.pair else { return };
-        if self.state.is_exchanging(time_s) {
-            // Gas that comes in or goes out warms or cools the shoulder before the valve.
-            self.state.pair.forget();
-            return;
-        }
+        let one = self.roles.thermometers.first().map(|only| [*only, *only]);
+        let Some(pair) = self.roles.pair.or(one) else { return };
+        // Gas that comes in or goes out warms or cools the shoulder before the valve.
+        let judged = self.roles.pair.is_some() && !self.state.is_exchanging(time_s);
         let watches = &mut self.state.watches;
         let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
-        match self.state.pair.update(time_s, as_read) {
+        match self.state.pair.update(time_s, as_read, judged) {
             None => {}
+            Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
                 watches[pair[which]].shift(by_k);
-                self.usable[pair[which]] -= by_k;
+                self.usable[pair[which]] = f64::NAN;
+                // How far it jumped is known by a part of it, and whether it did is not certain.
+                self.observer.loosen(pair[which], JUMPED_K + JUMPED_PART * by_k.abs());
+                self.state.rewind.begin(&self.observer);
             }
             Some(Lonely::Detached(which)) => {
                 watches[pair[which]].detach();
@@ -356,192 +355,56 @@ impl Monitor {
         }
     }
 
-    /// The observer's step, with what a jump of the pressure makes of it.
-    fn observe(
-        &mut self,
-        time_s: f64,
-        silent_s: f64,
-        events: &mut Vec<Event>,
-    ) -> Result<Estimate, DetectorError> {
-        if self.state.examined.is_some() {
-            let estimate = self.observer.step(time_s, &self.usable)?;
-            return self.examine(estimate, events);
-        }
-        let before_kg = self.masses_kg();
-        let estimate = self.observer.step(time_s, &self.usable)?;
-        let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
-        let innovation = self.observer.innovations()[pressure];
-        let (innovation_pa, sd_pa) = (innovation.nu, innovation.s.sqrt());
-        let jump = self.state.jumps.notice(
-            time_s,
-            self.usable[pressure],
-            (innovation_pa, sd_pa),
-            self.state.pair.moved_k(),
-        );
-        if let (Some(before_pa), Some(before_kg)) = (jump, before_kg)
-            && estimate.quality != Quality::Restarted
-        {
-            return self.begin_examination(time_s, before_pa, before_kg, events);
-        }
-        if silent_s > ACROSS_S
-            && innovation_pa.abs() > ACROSS_PA
-            && let Some(before_kg) = before_kg
-        {
-            return self.take_across(time_s, innovation_pa, before_kg, events);
-        }
-        self.state.rewind.taken(&self.observer, time_s, &self.usable);
-        Ok(estimate)
-    }
-
-    /// Mass by the freest member, kg.
-    fn masses_kg(&self) -> Option<f64> {
-        self.observer.leaks().last().map(|free| free.mass_kg)
-    }
-
-    /// Go back before the present row, and take it with the mass free and, in the shadow, without the pressure.
-    fn begin_examination(
-        &mut self,
-        time_s: f64,
-        before_pa: f64,
-        before_kg: f64,
-        events: &mut Vec<Event>,
-    ) -> Result<Estimate, DetectorError> {
-        self.go_back()?;
-        self.observer.begin_exchange();
-        let estimate = self.observer.step(time_s, &self.usable)?;
-        let examination = Examination::new(time_s, before_pa);
-        self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
-        self.examine(estimate, events)
-    }
-
-    /// Both observers as they were before the present row.
-    fn go_back(&mut self) -> Result<(), DetectorError> {
-        if self.state.rewind.restore(&mut self.shadow, self.usable.len())? {
-            self.observer.restore(&self.shadow.snapshot());
+    /// Whether the first rows fit the filling that was stated.
+    fn check_filling(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
+        let stated = !matches!(self.commissioning.fill, Fill::Pressure { .. });
+        let Some(pressure) = self.roles.pressure.filter(|_| stated && self.state.filling.is_open()) else {
+            return Ok(());
+        };
+        let usable = self.roles.thermometers.iter().map(|sensor| self.usable[*sensor]);
+        let usable: Vec<f64> = usable.filter(|reading| reading.is_finite()).collect();
+        let mean_k = usable.iter().sum::<f64>() / usable.len() as f64;
+        // No number where a reading is none or stands for no state of the gas.
+        let stands_for = Commissioning::filled(self.usable[pressure], mean_k);
+        let mass_kg = stands_for.mass_kg(&self.vessel, mean_k).unwrap_or(f64::NAN);
+        if let Some(mass_kg) = self.state.filling.take(time_s, mass_kg, self.filled_kg) {
+            let filled_kg = self.filled_kg.0;
+            events.push(Event::new(time_s, time_s, EventKind::FillingDoubted { mass_kg, filled_kg }));
         }
         Ok(())
     }
 
-    /// A sample of a jump: what it shows, and what follows.
-    fn examine(&mut self, estimate: Estimate, events: &mut Vec<Event>) -> Result<Estimate, DetectorError> {
-        let time_s = estimate.time_s;
-        let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
-        let reading_pa = std::mem::replace(&mut self.usable[pressure], f64::NAN);
-        let blind = self.shadow.step(time_s, &self.usable)?;
-        self.usable[pressure] = reading_pa;
-        let expected_pa = self.shadow.expected_reading(pressure)?;
-        let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
-        examined.samples += 1;
-        let cause = examined.examination.push(time_s, expected_pa, reading_pa, blind.gas_mean_k);
-        examined.flowing = cause == Cause::Flowing;
-        match cause {
-            Cause::Open | Cause::Flowing => return Ok(estimate),
-            Cause::Spike | Cause::Passed | Cause::Offset(_) => {
-                self.observer.restore(&self.shadow.snapshot());
-                match cause {
-                    Cause::Spike => self.state.watches[pressure].refused(time_s),
-                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa),
-                    _ => {}
-                }
-            }
-            Cause::Gas | Cause::Unclear => self.exchange(time_s, cause == Cause::Unclear, events),
-        }
-        self.state.examined = None;
-        self.state.jumps.forget();
-        self.state.rewind.begin(&self.observer);
-        Ok(if matches!(cause, Cause::Gas | Cause::Unclear) { estimate } else { blind })
-    }
-
-    /// Gas was exchanged, and the flow is over.
-    fn exchange(&mut self, time_s: f64, unclear: bool, events: &mut Vec<Event>) {
-        let Some(examined) = &self.state.examined else { return };
-        let onset_s = examined.examination.onset_s();
-        let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
-        self.observer.end_exchange();
-        if unclear {
-            self.state.look = (time_s + DOUBT_S, Reason::Jump);
-        }
-        self.exchanged(time_s, onset_s, change_kg, events);
-    }
-
-    fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, events: &mut Vec<Event>) {
-        let out = change_kg < 0.0;
-        let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
-        events.push(Event::new(time_s, onset_s, kind));
-        self.state.exchanged = Some(Exchanged { at_s: time_s, out });
-        if self.state.leak.begin_anew() == Change::Ended {
-            events.push(Event::new(time_s, onset_s, EventKind::LeakEnded));
-        }
-        self.forget_masses();
-    }
-
-    fn forget_masses(&mut self) {
-        self.state.evidence.forget();
-        if self.state.leak.found().is_none() {
-            self.state.leak.begin_anew();
-        }
-    }
-
-    /// The pressure is another one after a time without rows: a refill, or a loss that the trace of the masses will tell.
-    fn take_across(
-        &mut self,
-        time_s: f64,
-        innovation_pa: f64,
-        before_kg: f64,
-        events: &mut Vec<Event>,
-    ) -> Result<Estimate, DetectorError> {
-        let silent_since_s = self.state.last_s;
-        self.go_back()?;
-        self.observer.begin_exchange();
-        let estimate = self.observer.step(time_s, &self.usable)?;
-        self.observer.end_exchange();
-        self.state.rewind.begin(&self.observer);
-        if innovation_pa > 0.0 {
-            let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
-            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), events);
-        } else {
-            self.state.lost_across = true;
-        }
-        Ok(estimate)
-    }
-
-    fn mark_refused(&mut self, time_s: f64) {
+    /// Which readings the observer took, and which it refused.
+    fn mark_outcomes(&mut self, time_s: f64) {
         for (watch, innovation) in self.state.watches.iter_mut().zip(self.observer.innovations()) {
-            if innovation.outcome == Outcome::Rejected {
-                watch.refused(time_s);
+            match innovation.outcome {
+                Outcome::Accepted | Outcome::Reacquired => watch.used(time_s),
+                Outcome::Rejected => watch.refused(time_s),
+                Outcome::Missing => {}
             }
         }
-    }
-
-    /// Whether neither pressure nor temperature can be told, and why.
-    fn blindness(&self, time_s: f64) -> Option<Reason> {
-        let watches = &self.state.watches;
-        let begun_s = self.state.start_s.unwrap_or(time_s);
-        let since = |sensor: usize| time_s - watches[sensor].last_usable_s().max(begun_s);
-        let late = |sensor: usize| since(sensor) > self.settings.blind_after_s;
-        let stuck = |sensor: usize| watches[sensor].health() == Health::Stuck;
-        match self.roles.pressure {
-            None => return Some(Reason::NoPressure),
-            Some(pressure) if stuck(pressure) => return Some(Reason::Stuck),
-            Some(pressure) if late(pressure) => return Some(Reason::NoPressure),
-            Some(_) => {}
-        }
-        let thermometers = &self.roles.thermometers;
-        let blind = thermometers.iter().all(|sensor| stuck(*sensor) || late(*sensor));
-        blind.then_some(Reason::NoTemperature)
     }
 
     fn judge_leak(&mut self, estimate: &Estimate, events: &mut Vec<Event>) -> Result<(), DetectorError> {
         let time_s = estimate.time_s;
         let pressure_used =
             self.roles.pressure.is_some_and(|p| self.observer.innovations()[p].outcome == Outcome::Accepted);
-        if !pressure_used || self.state.examined.is_some() || self.blindness(time_s).is_some() {
+        let blind = !pressure_used || self.state.examined.is_some() || self.blindness(time_s).is_some();
+        // With a wrong unit every change of the temperature is a change of the mass.
+        if blind || self.state.filling.is_wrong() {
+            return Ok(());
+        }
+        if self.state.pair.is_on_probation() {
+            // The mass takes a step with the thermometers that it rests on: no evidence of a leak.
+            self.forget_masses();
             return Ok(());
         }
         self.leaks.clear();
         self.leaks.extend(self.observer.leaks());
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
+        let degraded = self.is_degraded(time_s);
         let statistics = self.state.evidence.update(estimate, &self.leaks);
+        let statistics = if degraded { statistics.map(|value| value / DEGRADED) } else { statistics };
         let alarm = self.thresholds.alarm(&statistics).is_some();
         let calm = self.thresholds.is_calm(&statistics);
         let lost_across = std::mem::take(&mut self.state.lost_across);
@@ -558,12 +421,25 @@ impl Monitor {
         };
         match self.state.leak.step(&look) {
             Change::None => {}
+            Change::Found(_) if self.state.filling.explains_leak(self.filled_kg) => {
+                self.state.leak.begin_anew();
+                self.state.evidence.forget();
+            }
             Change::Found(finding) => {
                 events.push(Event::new(time_s, finding.onset_s.value, EventKind::LeakFound(finding)));
             }
             Change::Ended => events.push(Event::new(time_s, time_s, EventKind::LeakEnded)),
         }
         Ok(())
+    }
+
+    /// Whether a thermometer has not been used for an hour.
+    fn is_degraded(&self, time_s: f64) -> bool {
+        let begun_s = self.state.start_s.unwrap_or(time_s);
+        let unused = |sensor: &usize| {
+            time_s - self.state.watches[*sensor].last_used_s().max(begun_s) > DEGRADED_AFTER_S
+        };
+        self.roles.thermometers.iter().any(unused)
     }
 
     fn tell_health(&mut self, time_s: f64, events: &mut Vec<Event>) {
@@ -574,49 +450,6 @@ impl Monitor {
             }
             self.state.health[sensor] = health;
         }
-    }
-
-    fn verdict(&self, time_s: f64) -> Verdict {
-        let state = &self.state;
-        let direction = |out: bool| if out { Verdict::Discharge } else { Verdict::Refill };
-        if let Some(examined) = state.examined.as_ref().filter(|examined| examined.flowing) {
-            return direction(examined.examination.error_pa() > 0.0);
-        }
-        if let Some(Exchanged { out, .. }) = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S) {
-            return direction(out);
-        }
-        if state.leak.found().is_some() {
-            return Verdict::Leak;
-        }
-        if let Some(reason) = self.doubt(time_s) {
-            return Verdict::Unknown(reason);
-        }
-        let at_fault = |health: &Health| {
-            matches!(health, Health::Stuck | Health::Shifted(_) | Health::Detached | Health::Implausible)
-        };
-        if state.health.iter().any(at_fault) { Verdict::SensorFault } else { Verdict::Tight }
-    }
-
-    /// Why it cannot be told, if so.
-    fn doubt(&self, time_s: f64) -> Option<Reason> {
-        let state = &self.state;
-        if state.examined.as_ref().is_some_and(|examined| examined.samples >= NO_SPIKE) {
-            return Some(Reason::Jump);
-        }
-        if state.intake.is_astray() {
-            return Some(Reason::Clock);
-        }
-        if let Some(reason) = self.blindness(time_s) {
-            return Some(reason);
-        }
-        if time_s < state.look.0 {
-            return Some(state.look.1);
-        }
-        if state.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S) {
-            return Some(Reason::Settling);
-        }
-        let learning = state.start_s.is_some_and(|start_s| time_s - start_s < self.settings.learning_s);
-        learning.then_some(Reason::Learning)
     }
 
     fn output(
@@ -664,6 +497,9 @@ impl Monitor {
     fn warn_of_the_cold(&mut self, time_s: f64, cold_pressure_pa: f64, events: &mut Vec<Event>) {
         let limit_pa = self.settings.limits.operational_pa;
         let below = cold_pressure_pa < limit_pa;
+        if self.state.examined.is_some() {
+            return;
+        }
         if below && !self.state.warned {
             events.push(Event::new(time_s, time_s, EventKind::ColdNight(cold_pressure_pa)));
         }

@@ -1,0 +1,183 @@
+//! Jumps of the pressure: noticed, examined, and what follows from them.
+//!
+//! The observer goes back before the jump and takes it with the mass free; a shadow of it goes on without the pressure, and what it
+//! expects shows what the jump was. Until that is told, what is said of the gas is the shadow's.
+use serde::{Deserialize, Serialize};
+
+use super::Monitor;
+use crate::DetectorError;
+use crate::estimator::observer::{Estimate, Quality};
+use crate::monitor::jump::{Cause, Examination, Innovated};
+use crate::monitor::leak::Change;
+use crate::monitor::{Event, EventKind, Reason};
+
+/// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
+const ACROSS_PA: f64 = 2e5;
+const ACROSS_S: f64 = 900.0;
+/// Time for which a jump that remained unclear leaves doubt, s.
+const DOUBT_S: f64 = 86_400.0;
+
+/// A jump under examination.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Examined {
+    pub examination: Examination,
+    before_kg: f64,
+    pub samples: usize,
+    pub flowing: bool,
+}
+
+/// Gas that was exchanged.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Exchanged {
+    pub at_s: f64,
+    pub out: bool,
+}
+
+impl Monitor {
+    /// The observer's step, with what a jump of the pressure makes of it.
+    pub(super) fn observe(
+        &mut self,
+        time_s: f64,
+        silent_s: f64,
+        events: &mut Vec<Event>,
+    ) -> Result<Estimate, DetectorError> {
+        if self.state.examined.is_some() {
+            let estimate = self.observer.step(time_s, &self.usable)?;
+            return self.examine(estimate, events);
+        }
+        let before_kg = self.masses_kg();
+        let estimate = self.observer.step(time_s, &self.usable)?;
+        let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
+        let innovation_pa = self.observer.innovations()[pressure].nu;
+        let now = Innovated { time_s, reading_pa: self.usable[pressure], innovation_pa };
+        let step_pa = self.state.watches[pressure].step();
+        let jump = self.state.jumps.notice(now, step_pa, self.state.pair.moved());
+        if let (Some(before_pa), Some(before_kg)) = (jump, before_kg)
+            && estimate.quality != Quality::Restarted
+        {
+            return self.begin_examination(time_s, before_pa, before_kg, events);
+        }
+        if silent_s > ACROSS_S
+            && innovation_pa.abs() > ACROSS_PA
+            && let Some(before_kg) = before_kg
+        {
+            return self.take_across(time_s, innovation_pa, before_kg, events);
+        }
+        self.state.rewind.taken(&self.observer, time_s, &self.usable);
+        Ok(estimate)
+    }
+
+    /// Mass by the freest member, kg.
+    fn masses_kg(&self) -> Option<f64> {
+        self.observer.leaks().last().map(|free| free.mass_kg)
+    }
+
+    /// Go back before the present row, and take it with the mass free and, in the shadow, without the pressure.
+    fn begin_examination(
+        &mut self,
+        time_s: f64,
+        before_pa: f64,
+        before_kg: f64,
+        events: &mut Vec<Event>,
+    ) -> Result<Estimate, DetectorError> {
+        self.go_back()?;
+        self.observer.begin_exchange();
+        let estimate = self.observer.step(time_s, &self.usable)?;
+        let examination = Examination::new(time_s, before_pa);
+        self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
+        self.examine(estimate, events)
+    }
+
+    /// Both observers as they were before the present row.
+    fn go_back(&mut self) -> Result<(), DetectorError> {
+        if self.state.rewind.restore(&mut self.shadow, self.usable.len())? {
+            self.observer.restore(&self.shadow.snapshot());
+        }
+        Ok(())
+    }
+
+    /// A sample of a jump: what it shows, and what follows.
+    fn examine(&mut self, estimate: Estimate, events: &mut Vec<Event>) -> Result<Estimate, DetectorError> {
+        let time_s = estimate.time_s;
+        let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
+        let reading_pa = std::mem::replace(&mut self.usable[pressure], f64::NAN);
+        let blind = self.shadow.step(time_s, &self.usable)?;
+        self.usable[pressure] = reading_pa;
+        let expected_pa = self.shadow.expected_reading(pressure)?;
+        let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
+        examined.samples += 1;
+        let cause = examined.examination.push(time_s, expected_pa, reading_pa, blind.gas_mean_k);
+        examined.flowing = cause == Cause::Flowing;
+        match cause {
+            Cause::Open => return Ok(blind),
+            Cause::Flowing => return Ok(estimate),
+            Cause::Spike | Cause::Passed | Cause::Offset(_) => {
+                self.observer.restore(&self.shadow.snapshot());
+                match cause {
+                    Cause::Spike => self.state.watches[pressure].refused(time_s),
+                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa),
+                    _ => {}
+                }
+            }
+            Cause::Gas | Cause::Unclear => self.exchange(time_s, cause == Cause::Unclear, events),
+        }
+        self.state.examined = None;
+        self.state.jumps.forget();
+        self.state.rewind.begin(&self.observer);
+        Ok(if matches!(cause, Cause::Gas | Cause::Unclear) { estimate } else { blind })
+    }
+
+    /// Gas was exchanged, and the flow is over.
+    fn exchange(&mut self, time_s: f64, unclear: bool, events: &mut Vec<Event>) {
+        let Some(examined) = &self.state.examined else { return };
+        let onset_s = examined.examination.onset_s();
+        let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
+        self.observer.end_exchange();
+        if unclear {
+            self.state.look = (time_s + DOUBT_S, Reason::Jump);
+        }
+        self.exchanged(time_s, onset_s, change_kg, events);
+    }
+
+    fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, events: &mut Vec<Event>) {
+        let out = change_kg < 0.0;
+        let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
+        events.push(Event::new(time_s, onset_s, kind));
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out });
+        self.state.filling.settle();
+        if self.state.leak.begin_anew() == Change::Ended {
+            events.push(Event::new(time_s, onset_s, EventKind::LeakEnded));
+        }
+        self.forget_masses();
+    }
+
+    pub(super) fn forget_masses(&mut self) {
+        self.state.evidence.forget();
+        if self.state.leak.found().is_none() {
+            self.state.leak.begin_anew();
+        }
+    }
+
+    /// The pressure is another one after a time without rows: a refill, or a loss that the trace of the masses will tell.
+    fn take_across(
+        &mut self,
+        time_s: f64,
+        innovation_pa: f64,
+        before_kg: f64,
+        events: &mut Vec<Event>,
+    ) -> Result<Estimate, DetectorError> {
+        let silent_since_s = self.state.last_s;
+        self.go_back()?;
+        self.observer.begin_exchange();
+        let estimate = self.observer.step(time_s, &self.usable)?;
+        self.observer.end_exchange();
+        self.state.rewind.begin(&self.observer);
+        if innovation_pa > 0.0 {
+            let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
+            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), events);
+        } else {
+            self.state.lost_across = true;
+        }
+        Ok(estimate)
+    }
+}

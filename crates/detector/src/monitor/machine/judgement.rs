@@ -1,0 +1,75 @@
+//! The verdict: what is said of the cylinder, and why it cannot be told.
+use super::exchange::Exchanged;
+use super::{Monitor, SETTLED_S};
+use crate::monitor::{Health, Reason, Verdict};
+
+/// Time after an exchange of gas for which it is the verdict, s.
+const EXCHANGED_S: f64 = 1800.0;
+/// Samples of an examination after which the jump is no spike.
+const NO_SPIKE: usize = 3;
+
+impl Monitor {
+    /// Whether neither pressure nor temperature can be told, and why.
+    pub(super) fn blindness(&self, time_s: f64) -> Option<Reason> {
+        let watches = &self.state.watches;
+        let begun_s = self.state.start_s.unwrap_or(time_s);
+        let since = |sensor: usize| time_s - watches[sensor].last_used_s().max(begun_s);
+        let late = |sensor: usize| since(sensor) > self.settings.blind_after_s;
+        let stuck = |sensor: usize| watches[sensor].health() == Health::Stuck;
+        match self.roles.pressure {
+            None => return Some(Reason::NoPressure),
+            Some(pressure) if stuck(pressure) => return Some(Reason::Stuck),
+            Some(pressure) if late(pressure) => return Some(Reason::NoPressure),
+            Some(_) => {}
+        }
+        let thermometers = &self.roles.thermometers;
+        let blind = thermometers.iter().all(|sensor| stuck(*sensor) || late(*sensor));
+        blind.then_some(Reason::NoTemperature)
+    }
+
+    pub(super) fn verdict(&self, time_s: f64) -> Verdict {
+        let state = &self.state;
+        let direction = |out: bool| if out { Verdict::Discharge } else { Verdict::Refill };
+        if let Some(examined) = state.examined.as_ref().filter(|examined| examined.flowing) {
+            return direction(examined.examination.error_pa() > 0.0);
+        }
+        if let Some(Exchanged { out, .. }) = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S) {
+            return direction(out);
+        }
+        if state.leak.found().is_some() {
+            return Verdict::Leak;
+        }
+        if let Some(reason) = self.doubt(time_s) {
+            return Verdict::Unknown(reason);
+        }
+        let at_fault = |health: &Health| {
+            matches!(health, Health::Stuck | Health::Shifted(_) | Health::Detached | Health::Implausible)
+        };
+        if state.health.iter().any(at_fault) { Verdict::SensorFault } else { Verdict::Tight }
+    }
+
+    /// Why it cannot be told, if so.
+    fn doubt(&self, time_s: f64) -> Option<Reason> {
+        let state = &self.state;
+        if state.examined.as_ref().is_some_and(|examined| examined.samples >= NO_SPIKE) {
+            return Some(Reason::Jump);
+        }
+        if state.intake.is_astray() {
+            return Some(Reason::Clock);
+        }
+        if let Some(reason) = self.blindness(time_s) {
+            return Some(reason);
+        }
+        if state.filling.is_wrong() {
+            return Some(Reason::Filling);
+        }
+        if time_s < state.look.0 {
+            return Some(state.look.1);
+        }
+        if state.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S) {
+            return Some(Reason::Settling);
+        }
+        let learning = state.start_s.is_some_and(|start_s| time_s - start_s < self.settings.learning_s);
+        learning.then_some(Reason::Learning)
+    }
+}
