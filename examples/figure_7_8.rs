@@ -14,6 +14,7 @@ use cylwatch::detector::baseline::{
     ThresholdSettings,
 };
 use cylwatch::detector::calibrate::{ResidualSource, SimulatedNoise};
+use cylwatch::detector::monitor::intake::IntakeSettings;
 use cylwatch::detector::monitor::{LeakFinding, Monitor, MonitorSettings};
 use cylwatch::detector::statistic::{Noise, Statistic};
 use cylwatch::estimator::observer::Commissioning;
@@ -149,6 +150,8 @@ impl Bench {
             Ok(PressureError::try_new(real_gas, gas)?)
         };
         let vessel = vessel::presets::load("nitrogen-20l")?;
+        let each = IntakeSettings { step_s: 0.0, ..IntakeSettings::default() };
+        let settings = MonitorSettings { intake: each, ..MonitorSettings::default() };
         let filled = Commissioning::filled(FULL.pressure_pa, FULL.temperature_k);
         Ok(Self {
             shoulder: of("shoulder")?,
@@ -158,7 +161,7 @@ impl Bench {
                 Threshold::try_new(refitted()?, ThresholdSettings::default())?,
             ],
             errors: [PressureError::published(FULL)?, refitted()?],
-            monitor: Monitor::new(&vessel, suite.sensors(), &filled, &MonitorSettings::default())?,
+            monitor: Monitor::new(&vessel, suite.sensors(), &filled, &settings)?,
             settled_pa: Vec::new(),
         })
     }

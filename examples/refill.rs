@@ -7,6 +7,7 @@
 //! monitor recognises the refill, says how much came in, waits until it has settled, and speaks of no leak.
 #![allow(clippy::print_stdout)]
 
+use cylwatch::detector::monitor::intake::IntakeSettings;
 use cylwatch::detector::monitor::{EventKind, Monitor, MonitorSettings, Verdict};
 use cylwatch::estimator::observer::Commissioning;
 use cylwatch::estimator::sensor::{Sensor, SensorSuite, sample};
@@ -82,7 +83,13 @@ pub fn run() -> anyhow::Result<Refill> {
     let sensors = SENSORS.map(Sensor::typical).into_iter().collect::<Result<Vec<_>, _>>()?;
     let log = sample(&run, &SensorSuite::try_new(sensors.clone())?.draw(SEED), SEED)?;
     let filled = Commissioning::filled(160e5, ZERO_CELSIUS_K + 15.0);
-    let mut monitor = Monitor::new(&vessel, &sensors, &filled, &MonitorSettings::default())?;
+    let each = IntakeSettings { step_s: 0.0, ..IntakeSettings::default() };
+    let mut monitor = Monitor::new(
+        &vessel,
+        &sensors,
+        &filled,
+        &MonitorSettings { intake: each, ..MonitorSettings::default() },
+    )?;
     let mut refill = Refill {
         time_s: Vec::new(),
         temperatures_degc: [Vec::new(), run.gas_mean_k.iter().map(|k| k - ZERO_CELSIUS_K).collect()],

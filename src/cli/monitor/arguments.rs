@@ -31,6 +31,11 @@ impl Choices for OfMonitor {
             "How late a row may come: rows are held back so long and sorted [default: 0, none is held back]",
         ),
         (
+            "step",
+            Dimension::Time,
+            "Rows that lie closer together are made one, their median; 0: each by itself [default: 1 min]",
+        ),
+        (
             "save-every",
             Dimension::Time,
             "How often the state is saved during a run, by the wall clock [default: 10 min]",

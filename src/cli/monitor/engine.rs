@@ -37,6 +37,7 @@ pub fn settings(options: &Options, settled: bool) -> MonitorSettings {
         },
         intake: cylwatch::detector::monitor::intake::IntakeSettings {
             lateness_s: options.lateness_s,
+            step_s: options.step_s,
             ..defaults.intake
         },
         reaction: ReactionSettings { next_service_s: circumstances.next_service_s, ..defaults.reaction },

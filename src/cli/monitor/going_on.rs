@@ -69,6 +69,7 @@ impl Beginning {
             ("a coldest temperature of", format!("{} degC", value(coldest_k - ZERO_CELSIUS_K))),
             ("a time between false alarms of", format!("{} years", value(options.false_alarm_years))),
             ("a lateness of", format!("{} s", value(options.lateness_s))),
+            ("a step of", format!("{} s", value(options.step_s))),
         ];
         if let Some(words) = options.fill.words() {
             entries.push(("the fill", words));

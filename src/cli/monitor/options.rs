@@ -2,6 +2,7 @@
 use super::arguments::MonitorArguments;
 use super::*;
 use crate::cli::unit_options::Given;
+use cylwatch::detector::monitor::intake::IntakeSettings;
 use cylwatch::log::Mapping;
 use cylwatch::report::monitor::Circumstances;
 use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K};
@@ -27,6 +28,7 @@ pub struct Options {
     pub circumstances: Circumstances,
     pub false_alarm_years: f64,
     pub lateness_s: f64,
+    pub step_s: f64,
     pub events: Option<Target>,
     pub state: Option<PathBuf>,
     pub cold_start: bool,
@@ -63,6 +65,7 @@ impl Options {
             format: arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref())),
             circumstances: circumstances(&given)?,
             lateness_s: time("lateness")?.unwrap_or(0.0),
+            step_s: time("step")?.unwrap_or_else(|| IntakeSettings::default().step_s),
             save_every: Duration::from_secs_f64(save_every_s),
             false_alarm_years: years,
             cold_start: arguments.cold_start,

@@ -8,6 +8,7 @@ use cylwatch::detector::monitor::intake::Counts;
 use cylwatch::detector::monitor::{EventKind, Monitor, Output};
 use cylwatch::log::Truth;
 use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowFates, Summary};
+use std::collections::VecDeque;
 use std::time::Instant;
 
 /// Most logs whose beginning is remembered.
@@ -33,6 +34,8 @@ pub struct Session<'a> {
     rows: Rows,
     figure: Option<FigureData>,
     readings: Vec<f64>,
+    /// Truths of the rows that may be held back, with their stamps, s; only for a figure.
+    truths: VecDeque<(f64, Truth)>,
     last: Option<Output>,
     last_stamp_s: f64,
     /// Times of the first rows of the last logs, s.
@@ -80,6 +83,7 @@ impl<'a> Session<'a> {
             rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
             figure: options.plot.is_some().then(|| FigureData::new(circumstances.limit_pa, engine.full_pa)),
             readings: Vec::new(),
+            truths: VecDeque::new(),
             last: state.and_then(|state| state.last.clone()),
             last_stamp_s,
             log_starts_s: state.map_or(Vec::new(), |state| state.log_starts_s.clone()),
@@ -116,10 +120,13 @@ impl<'a> Session<'a> {
         self.broken = true;
         let outputs = self.monitor.step(row.time_s, &self.readings).with_context(|| log.reader.place(row))?;
         self.last_stamp_s = row.time_s;
+        if self.figure.is_some() {
+            self.truths.push_back((row.time_s, row.truth));
+            let surplus = self.truths.len().saturating_sub(self.monitor.intake().held() + outputs.len() + 1);
+            self.truths.drain(..surplus);
+        }
         for output in outputs {
-            // Rows that were held back have lost their truth.
-            let truth = if output.stamp_s == row.time_s { row.truth } else { Truth::UNKNOWN };
-            self.take(output, &truth, progress)?;
+            self.take(output, progress)?;
         }
         if self.kit.options.is_live() {
             self.rows.flush()?;
@@ -152,7 +159,13 @@ impl<'a> Session<'a> {
         known
     }
 
-    fn take(&mut self, output: Output, truth: &Truth, progress: &Progress) -> anyhow::Result<()> {
+    /// Truth of a row that may have been held back.
+    fn truth_of(&self, stamp_s: f64) -> Truth {
+        let of_row = self.truths.iter().find(|(at_s, _)| *at_s == stamp_s);
+        of_row.map_or(Truth::UNKNOWN, |(_, truth)| *truth)
+    }
+
+    fn take(&mut self, output: Output, progress: &Progress) -> anyhow::Result<()> {
         let clock = self.naming.clock.with_offset(output.stamp_s - output.estimate.time_s);
         self.naming.clock = clock;
         let say = Say { messages: self.kit.messages, progress };
@@ -164,8 +177,9 @@ impl<'a> Session<'a> {
             self.sink.alarm(alarm, &self.naming, &say)?;
         }
         self.rows.push(&output)?;
+        let truth = self.truth_of(output.stamp_s);
         if let Some(figure) = &mut self.figure {
-            figure.push(&output, truth);
+            figure.push(&output, &truth);
         }
         self.last = Some(output);
         Ok(())
@@ -212,7 +226,7 @@ impl<'a> Session<'a> {
         if options.state.is_none() {
             // With a state, rows that are held back wait in it for those that come later.
             for output in self.monitor.finish()? {
-                self.take(output, &Truth::UNKNOWN, progress)?;
+                self.take(output, progress)?;
             }
         }
         let summary = self.last.take().map(|last| Summary {

@@ -204,6 +204,7 @@ mod tests {
             "refill of 1500 g",
             "pressure is shifted by -0.4 bar",
             "158.2 bar without any leak",
+            "4.10 kg of gas, the filling that was stated for 4.48 kg",
             "jumped back by 60 min",
             "no rows for 2 h",
             "a row of 2026-01-01T01:00:00Z came too late",
