@@ -135,29 +135,35 @@ fn false_alarms(folder: &Path, levels: &Levels, names: &[&str]) -> Result<(), Fa
     writeln!(out, "\nFalse alarms (95 % interval of the rate)\n")?;
     writeln!(
         out,
-        "| part | detector | alarms | years | per 10 years | by scale |\n|---|---|---|---|---|---|"
+        "| part | detector | alarms | years | per 10 years | simulations with one | by scale |\n|---|---|---|---|---|---|---|"
     )?;
     for part in [Part::Train, Part::Test, Part::Stratified, Part::Seasons] {
         let runs = by_run(load(folder, part.name()));
         for name in names.iter().filter(|_| !runs.is_empty()) {
             let mut found = FalseAlarms::default();
+            // Four sets of sensors read one simulated cylinder.
+            let mut with_one = BTreeMap::new();
             for run in &runs {
                 let alarm_s = levels.alarm_s(run, name);
                 let end_s = run.values().next().map_or(0.0, |record| record.end_s);
                 found.alarms += u64::from(alarm_s.is_some());
+                let simulation = run.values().next().and_then(|record| record.run.rsplit_once('-'));
+                *with_one.entry(simulation.map(|(name, _)| name)).or_insert(false) |= alarm_s.is_some();
                 found.samples += alarm_s.unwrap_or(end_s) / YEAR_S;
             }
             let (low, high) = found.interval(0.95);
             let rate = |years: f64| YEARS / years;
             writeln!(
                 out,
-                "| {} | {name} | {} | {:.1} | {:.2} ({:.2} to {:.2}) | {} |",
+                "| {} | {name} | {} | {:.1} | {:.2} ({:.2} to {:.2}) | {} of {} | {} |",
                 part.name(),
                 found.alarms,
                 found.samples,
                 rate(found.mean()),
                 rate(high),
                 rate(low),
+                with_one.values().filter(|one| **one).count(),
+                with_one.len(),
                 if *name == OWN { by_scale(&runs, levels) } else { String::new() }
             )?;
         }
