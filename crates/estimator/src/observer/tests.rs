@@ -188,17 +188,16 @@ fn a_cautious_member_is_no_thermometer_and_doubts_the_pressure_where_wall_and_ga
         (observer(Engine::Extended).thermometer, observer_of(Engine::Extended, bank).thermometer),
         (2, 0)
     );
-    {
-        let engine = Engine::Extended;
-        let mut observer = observer_of(engine, vec![usual[0], usual[0].cautious(2e5)]);
-        observer.step(0.0, &REST).unwrap();
-        let states = observer.cylinder.state_map().clone();
-        for member in &mut observer.bank.members {
+    for engine in [Engine::Extended, Engine::Unscented] {
+        let mut pair = observer_of(engine, vec![usual[0], usual[0].cautious(2e5)]);
+        pair.step(0.0, &REST).unwrap();
+        let states = pair.cylinder.state_map().clone();
+        for member in &mut pair.bank.members {
             member.x[..states.wall].fill(FILL_K + 3.0);
         }
-        observer.step(60.0, &[f64::NAN, f64::NAN, REST[2]]).unwrap();
+        pair.step(60.0, &[f64::NAN, f64::NAN, REST[2]]).unwrap();
         // Of the 3 K a minute leaves more than one.
-        let s = [0, 1].map(|member| observer.bank.members[member].innovations[2].s);
+        let s = [0, 1].map(|member| pair.bank.members[member].innovations[2].s);
         let extra_bar = (s[1] - s[0]).sqrt() / 1e5;
         assert!((2.0..6.0).contains(&extra_bar), "{engine:?}: {extra_bar} bar");
     }

@@ -52,6 +52,7 @@ impl Separate {
         (sensor, reading): (usize, f64),
         gate: f64,
     ) -> Result<(), EstimatorError> {
+        cylinder.suppose(&member.hypothesis);
         let Self { p, mechanism } = self;
         let Predicted { value, mut r } = mechanism.expect(cylinder, shared, (&member.x, p), sensor)?;
         let nu = reading - value;
