@@ -5,13 +5,14 @@
 //!
 //! Each part can be named alone and interrupted at any time: simulated readings and what every detector said of them are kept in FOLDER
 //! (`readings/`, `<part>.csv`), and the next call goes on from there. `fit` prints the tails of the statistics as they stand in the
-//! library. Without a part, the tables are made from what is there. The truth is [`TruthSettings::fast`], in `stratified` and in half
+//! library; `accuracy` runs the monitor on the leaks and prints how often its intervals hold rate and onset. Without a part, the tables are made from what is there. The truth is [`TruthSettings::fast`], in `stratified` and in half
 //! of `train` with four layers of gas; winters of 122 days, years of 365.
 //!
 //! A false alarm is the first one of a run; time counts up to it. Detectors without an observer have the threshold that as many runs of
 //! `train` exceed as one in ten years makes; the evidence has the thresholds of the library.
 //!
 //! [`TruthSettings::fast`]: cylwatch_detector::estimator::truth::TruthSettings::fast
+mod accuracy;
 mod bench;
 mod campaign;
 mod records;
@@ -37,6 +38,9 @@ fn main() -> Result<(), Fault> {
     std::fs::create_dir_all(folder.join("readings"))?;
     if parts == ["fit"] {
         return tables::print_fit(folder);
+    }
+    if parts == ["accuracy"] {
+        return accuracy::print(folder);
     }
     for name in parts {
         let part = Part::named(name).ok_or_else(|| format!("no part {name}"))?;

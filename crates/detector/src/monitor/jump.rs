@@ -227,7 +227,7 @@ impl Examination {
         let wander_pa = WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k);
         let back_pa = peak_pa - end_pa * self.peak_pa.signum();
         match () {
-            () if end_pa.abs() < wander_pa.max(LEFT_OF_GAS * peak_pa) => Cause::Passed,
+            () if end_pa.abs() < WANDER_PA.max(LEFT_OF_GAS * peak_pa) => Cause::Passed,
             () if self.grew >= FLOW_SAMPLES || end_pa.abs() > NO_OFFSET_PA => Cause::Gas,
             () if back_pa > DIVISION * peak_pa + 0.5 * wander_pa => Cause::Gas,
             () if back_pa < DIVISION * peak_pa - 0.5 * wander_pa => Cause::Offset(-end_pa),

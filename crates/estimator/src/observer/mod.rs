@@ -318,6 +318,15 @@ impl Observer {
         }
     }
 
+    /// Another sensor of the same kind has taken the place: whatever is uncertain of it is so anew.
+    pub fn renew(&mut self, sensor: usize) {
+        let Some(parameters) = self.cylinder.sensors().get(sensor).map(Sensor::parameters) else { return };
+        let states = &self.cylinder.state_map().parameters[sensor];
+        let uncertain =
+            states.iter().zip(parameters).filter_map(|(state, of)| Some(((*state)?, of.sd * of.sd)));
+        uncertain.for_each(|(state, variance)| self.bank.inflate(state, variance));
+    }
+
     fn estimate(
         &mut self,
         time_s: f64,
