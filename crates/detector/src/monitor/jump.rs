@@ -155,6 +155,8 @@ pub struct Examination {
     samples: usize,
     peak_pa: f64,
     peak_s: f64,
+    /// Least of the medians of five since the largest error, as its part of the same sign, Pa.
+    least_pa: f64,
     /// Samples at which the error grew.
     grew: usize,
     back: usize,
@@ -172,6 +174,7 @@ impl Examination {
             samples: 0,
             peak_pa: 0.0,
             peak_s: onset_s,
+            least_pa: f64::INFINITY,
             grew: 0,
             back: 0,
             warmest_k: f64::NEG_INFINITY,
@@ -202,8 +205,11 @@ impl Examination {
             self.recent.pop_front();
         }
         if error_pa.abs() > (1.0 + GROWTH) * self.peak_pa.abs() + GROWTH_PA {
-            (self.peak_pa, self.peak_s) = (error_pa, time_s);
+            (self.peak_pa, self.peak_s, self.least_pa) = (error_pa, time_s, f64::INFINITY);
             self.grew += 1;
+        }
+        if self.samples >= AMONG {
+            self.least_pa = self.least_pa.min(self.recent_median_pa(AMONG) * self.peak_pa.signum());
         }
         self.back = if error_pa.abs() < 0.4 * self.peak_pa.abs() { self.back + 1 } else { 0 };
         self.judge(time_s)
@@ -225,7 +231,9 @@ impl Examination {
         }
         let end_pa = self.recent_median_pa(self.recent.len());
         let wander_pa = WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k);
-        let back_pa = peak_pa - end_pa * self.peak_pa.signum();
+        let left_pa = end_pa * self.peak_pa.signum();
+        // In a cylinder that leaks, what came back is lost again by the end.
+        let back_pa = peak_pa - if self.peak_pa > 0.0 { self.least_pa.min(left_pa) } else { left_pa };
         match () {
             () if end_pa.abs() < WANDER_PA.max(LEFT_OF_GAS * peak_pa) => Cause::Passed,
             () if self.grew >= FLOW_SAMPLES || end_pa.abs() > NO_OFFSET_PA => Cause::Gas,
@@ -286,9 +294,17 @@ mod tests {
     }
 
     #[test]
+    fn gas_let_out_of_a_cylinder_that_leaks_is_gas() {
+        let leaks = |minutes: f64| 0.017 * minutes;
+        assert_eq!(cause(|minutes| 0.8 + 0.4 * (-minutes / 4.0).exp() + leaks(minutes)), Cause::Gas);
+        // An offset on top of a leak grows like a flow: gas is the safe assumption.
+        assert_eq!(cause(|minutes| 2.0 + leaks(minutes)), Cause::Gas);
+    }
+
+    #[test]
     fn spikes_among_good_readings_are_spikes() {
         let one_of_three = |minutes: f64| match minutes as u32 % 3 {
-            0 if minutes as u32 % 2 == 0 => 50.0,
+            0 if (minutes as u32).is_multiple_of(2) => 50.0,
             0 => -50.0,
             _ => 0.0,
         };
