@@ -171,11 +171,13 @@ impl Monitor {
         self.observer.begin_exchange();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
-        self.state.rewind.begin(&self.observer);
-        if innovation_pa > 0.0 {
+        let gained = innovation_pa > 0.0;
+        if gained {
             // It may be another bottle, with sensors of its own.
             (0..self.usable.len()).for_each(|sensor| self.observer.renew(sensor));
-            self.state.rewind.begin(&self.observer);
+        }
+        self.state.rewind.begin(&self.observer);
+        if gained {
             let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
             self.exchanged(time_s, silent_since_s, change_kg.max(0.0), events);
         } else {

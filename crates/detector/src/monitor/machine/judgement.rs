@@ -12,9 +12,7 @@ impl Monitor {
     /// Whether neither pressure nor temperature can be told, and why.
     pub(super) fn blindness(&self, time_s: f64) -> Option<Reason> {
         let watches = &self.state.watches;
-        let begun_s = self.state.start_s.unwrap_or(time_s);
-        let since = |sensor: usize| time_s - watches[sensor].last_used_s().max(begun_s);
-        let late = |sensor: usize| since(sensor) > self.settings.blind_after_s;
+        let late = |sensor: usize| self.unused_s(sensor, time_s) > self.settings.blind_after_s;
         let stuck = |sensor: usize| watches[sensor].health() == Health::Stuck;
         match self.roles.pressure {
             None => return Some(Reason::NoPressure),

@@ -1,6 +1,7 @@
 //! The monitor of one cylinder.
 mod exchange;
 mod judgement;
+mod sensors;
 
 use serde::{Deserialize, Serialize};
 
@@ -17,14 +18,13 @@ use super::rewind::Rewind;
 use super::roles::Roles;
 use super::settings::MonitorSettings;
 use super::state::{self, Fingerprint, StateError};
-use super::thermometers::{Lonely, Pair};
+use super::thermometers::Pair;
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
 use crate::estimator::observer::{
     Commissioning, Estimate, Leak, Learned, Observer, Outcome, Quality, Snapshot,
 };
 use crate::estimator::sensor::Sensor;
-use crate::estimator::thermal::scenario::Fill;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
@@ -33,12 +33,8 @@ use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
 const LOOK_S: f64 = 3600.0;
 /// Time after an exchange of gas until it has settled, s.
 const SETTLED_S: f64 = 3.0 * 3600.0;
-/// Standard deviation of a thermometer's offset after it jumped, K and as a part of the jump.
-const JUMPED_K: f64 = 0.5;
-const JUMPED_PART: f64 = 0.1;
-/// What the evidence is divided by while a thermometer has not been used for so long, s: the thresholds are those of all of them.
+/// What the evidence is divided by while a thermometer is missing: the thresholds are those of all of them.
 const DEGRADED: f64 = 1.3;
-const DEGRADED_AFTER_S: f64 = 3600.0;
 /// Distance from the limit at which a warning of the cold may come again, Pa.
 const COLD_DEADBAND_PA: f64 = 1e5;
 
@@ -323,68 +319,6 @@ impl Monitor {
         self.output(row, estimate, was != verdict, events)
     }
 
-    /// Readings that can be used.
-    fn screen(&mut self, row: &Row) {
-        let judged = self.state.watches.iter_mut().zip(&row.readings);
-        for ((watch, &reading), usable) in judged.zip(&mut self.usable) {
-            *usable = watch.judge(row.time_s, reading);
-        }
-    }
-
-    fn watch_thermometers(&mut self, time_s: f64) {
-        let one = self.roles.thermometers.first().map(|only| [*only, *only]);
-        let Some(pair) = self.roles.pair.or(one) else { return };
-        // Gas that comes in or goes out warms or cools the shoulder before the valve.
-        let judged = self.roles.pair.is_some() && !self.state.is_exchanging(time_s);
-        let watches = &mut self.state.watches;
-        let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
-        match self.state.pair.update(time_s, as_read, judged) {
-            None => {}
-            Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
-            Some(Lonely::Shifted(which, by_k)) => {
-                watches[pair[which]].shift(by_k);
-                self.usable[pair[which]] = f64::NAN;
-                // How far it jumped is known by a part of it, and whether it did is not certain.
-                self.observer.loosen(pair[which], JUMPED_K + JUMPED_PART * by_k.abs());
-                self.state.rewind.begin(&self.observer);
-            }
-            Some(Lonely::Detached(which)) => {
-                watches[pair[which]].detach();
-                self.usable[pair[which]] = f64::NAN;
-            }
-        }
-    }
-
-    /// Whether the first rows fit the filling that was stated.
-    fn check_filling(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
-        let stated = !matches!(self.commissioning.fill, Fill::Pressure { .. });
-        let Some(pressure) = self.roles.pressure.filter(|_| stated && self.state.filling.is_open()) else {
-            return Ok(());
-        };
-        let usable = self.roles.thermometers.iter().map(|sensor| self.usable[*sensor]);
-        let usable: Vec<f64> = usable.filter(|reading| reading.is_finite()).collect();
-        let mean_k = usable.iter().sum::<f64>() / usable.len() as f64;
-        // No number where a reading is none or stands for no state of the gas.
-        let stands_for = Commissioning::filled(self.usable[pressure], mean_k);
-        let mass_kg = stands_for.mass_kg(&self.vessel, mean_k).unwrap_or(f64::NAN);
-        if let Some(mass_kg) = self.state.filling.take(time_s, mass_kg, self.filled_kg) {
-            let filled_kg = self.filled_kg.0;
-            events.push(Event::new(time_s, time_s, EventKind::FillingDoubted { mass_kg, filled_kg }));
-        }
-        Ok(())
-    }
-
-    /// Which readings the observer took, and which it refused.
-    fn mark_outcomes(&mut self, time_s: f64) {
-        for (watch, innovation) in self.state.watches.iter_mut().zip(self.observer.innovations()) {
-            match innovation.outcome {
-                Outcome::Accepted | Outcome::Reacquired => watch.used(time_s),
-                Outcome::Rejected => watch.refused(time_s),
-                Outcome::Missing => {}
-            }
-        }
-    }
-
     fn judge_leak(&mut self, estimate: &Estimate, events: &mut Vec<Event>) -> Result<(), DetectorError> {
         let time_s = estimate.time_s;
         let pressure_used =
@@ -433,25 +367,6 @@ impl Monitor {
         Ok(())
     }
 
-    /// Whether a thermometer has not been used for an hour.
-    fn is_degraded(&self, time_s: f64) -> bool {
-        let begun_s = self.state.start_s.unwrap_or(time_s);
-        let unused = |sensor: &usize| {
-            time_s - self.state.watches[*sensor].last_used_s().max(begun_s) > DEGRADED_AFTER_S
-        };
-        self.roles.thermometers.iter().any(unused)
-    }
-
-    fn tell_health(&mut self, time_s: f64, events: &mut Vec<Event>) {
-        for (sensor, watch) in self.state.watches.iter().enumerate() {
-            let health = watch.health();
-            if std::mem::discriminant(&health) != std::mem::discriminant(&self.state.health[sensor]) {
-                events.push(Event::new(time_s, time_s, EventKind::Sensor { sensor, health }));
-            }
-            self.state.health[sensor] = health;
-        }
-    }
-
     fn output(
         &mut self,
         row: &Row,
@@ -495,11 +410,11 @@ impl Monitor {
 
     /// Once, when the pressure of a tight cylinder will be below the limit on the coldest night.
     fn warn_of_the_cold(&mut self, time_s: f64, cold_pressure_pa: f64, events: &mut Vec<Event>) {
-        let limit_pa = self.settings.limits.operational_pa;
-        let below = cold_pressure_pa < limit_pa;
         if self.state.examined.is_some() {
             return;
         }
+        let limit_pa = self.settings.limits.operational_pa;
+        let below = cold_pressure_pa < limit_pa;
         if below && !self.state.warned {
             events.push(Event::new(time_s, time_s, EventKind::ColdNight(cold_pressure_pa)));
         }

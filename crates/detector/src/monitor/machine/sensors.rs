@@ -1,0 +1,103 @@
+//! The readings of a row: which can be used, what the sensors show of themselves, and whether they fit the filling.
+use super::Monitor;
+use crate::DetectorError;
+use crate::estimator::observer::{Commissioning, Outcome};
+use crate::estimator::thermal::scenario::Fill;
+use crate::monitor::intake::Row;
+use crate::monitor::thermometers::Lonely;
+use crate::monitor::{Event, EventKind};
+
+/// Standard deviation of a thermometer's offset after it jumped, K and as a part of the jump.
+const JUMPED_K: f64 = 0.5;
+const JUMPED_PART: f64 = 0.1;
+/// Time without use after which a thermometer counts as missing, s.
+const DEGRADED_AFTER_S: f64 = 3600.0;
+
+impl Monitor {
+    /// Readings that can be used.
+    pub(super) fn screen(&mut self, row: &Row) {
+        let judged = self.state.watches.iter_mut().zip(&row.readings);
+        for ((watch, &reading), usable) in judged.zip(&mut self.usable) {
+            *usable = watch.judge(row.time_s, reading);
+        }
+    }
+
+    pub(super) fn watch_thermometers(&mut self, time_s: f64) {
+        let one = self.roles.thermometers.first().map(|only| [*only, *only]);
+        let Some(pair) = self.roles.pair.or(one) else { return };
+        // Gas that comes in or goes out warms or cools the shoulder before the valve.
+        let judged = self.roles.pair.is_some() && !self.state.is_exchanging(time_s);
+        let watches = &mut self.state.watches;
+        let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
+        match self.state.pair.update(time_s, as_read, judged) {
+            None => {}
+            Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
+            Some(Lonely::Shifted(which, by_k)) => {
+                watches[pair[which]].shift(by_k);
+                self.usable[pair[which]] = f64::NAN;
+                // How far it jumped is known by a part of it, and whether it did is not certain.
+                self.observer.loosen(pair[which], JUMPED_K + JUMPED_PART * by_k.abs());
+                self.state.rewind.begin(&self.observer);
+            }
+            Some(Lonely::Detached(which)) => {
+                watches[pair[which]].detach();
+                self.usable[pair[which]] = f64::NAN;
+            }
+        }
+    }
+
+    /// Whether the first rows fit the filling that was stated.
+    pub(super) fn check_filling(
+        &mut self,
+        time_s: f64,
+        events: &mut Vec<Event>,
+    ) -> Result<(), DetectorError> {
+        let stated = !matches!(self.commissioning.fill, Fill::Pressure { .. });
+        let Some(pressure) = self.roles.pressure.filter(|_| stated && self.state.filling.is_open()) else {
+            return Ok(());
+        };
+        let usable = self.roles.thermometers.iter().map(|sensor| self.usable[*sensor]);
+        let usable: Vec<f64> = usable.filter(|reading| reading.is_finite()).collect();
+        let mean_k = usable.iter().sum::<f64>() / usable.len() as f64;
+        // No number where a reading is none or stands for no state of the gas.
+        let stands_for = Commissioning::filled(self.usable[pressure], mean_k);
+        let mass_kg = stands_for.mass_kg(&self.vessel, mean_k).unwrap_or(f64::NAN);
+        if let Some(mass_kg) = self.state.filling.take(time_s, mass_kg, self.filled_kg) {
+            let filled_kg = self.filled_kg.0;
+            events.push(Event::new(time_s, time_s, EventKind::FillingDoubted { mass_kg, filled_kg }));
+        }
+        Ok(())
+    }
+
+    /// Which readings the observer took, and which it refused.
+    pub(super) fn mark_outcomes(&mut self, time_s: f64) {
+        for (watch, innovation) in self.state.watches.iter_mut().zip(self.observer.innovations()) {
+            match innovation.outcome {
+                Outcome::Accepted | Outcome::Reacquired => watch.used(time_s),
+                Outcome::Rejected => watch.refused(time_s),
+                Outcome::Missing => {}
+            }
+        }
+    }
+
+    pub(super) fn tell_health(&mut self, time_s: f64, events: &mut Vec<Event>) {
+        for (sensor, watch) in self.state.watches.iter().enumerate() {
+            let health = watch.health();
+            if std::mem::discriminant(&health) != std::mem::discriminant(&self.state.health[sensor]) {
+                events.push(Event::new(time_s, time_s, EventKind::Sensor { sensor, health }));
+            }
+            self.state.health[sensor] = health;
+        }
+    }
+
+    /// How long a sensor has not been used, s.
+    pub(super) fn unused_s(&self, sensor: usize, time_s: f64) -> f64 {
+        let begun_s = self.state.start_s.unwrap_or(time_s);
+        time_s - self.state.watches[sensor].last_used_s().max(begun_s)
+    }
+
+    /// Whether a thermometer has not been used for an hour.
+    pub(super) fn is_degraded(&self, time_s: f64) -> bool {
+        self.roles.thermometers.iter().any(|sensor| self.unused_s(*sensor, time_s) > DEGRADED_AFTER_S)
+    }
+}
