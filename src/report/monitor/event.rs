@@ -53,6 +53,16 @@ fn happening(event: &Event, naming: &Naming) -> String {
             "the readings stand for {:.2} kg of gas, the filling that was stated for {:.2} kg: look at the units of the log, and state the filling as it is",
             mass_kg, filled_kg
         ),
+        EventKind::Swapped([first, second]) => format!(
+            "{} and {} are in each other's place, which is taken into account from now on: learning again",
+            naming.sensor(*first),
+            naming.sensor(*second)
+        ),
+        EventKind::Late { sensor, by_s } => format!(
+            "{} is late by {:.0} s, which is taken into account from now on: learning again",
+            naming.sensor(*sensor),
+            by_s
+        ),
         EventKind::ClockJump(jump_s) => {
             let way = if *jump_s < 0.0 { "back" } else { "forward" };
             format!("the clock jumped {way} by {}", duration(jump_s.abs()))
@@ -117,6 +127,8 @@ fn details(kind: &EventKind, naming: &Naming) -> Value {
         EventKind::FillingDoubted { mass_kg, filled_kg } => {
             json!({ "mass_kg": mass_kg, "filled_kg": filled_kg })
         }
+        EventKind::Swapped(sensors) => json!({ "sensors": sensors.map(|sensor| naming.sensor(sensor)) }),
+        EventKind::Late { sensor, by_s } => json!({ "sensor": naming.sensor(*sensor), "by_s": by_s }),
         EventKind::ClockJump(jump_s) => json!({ "jump_s": jump_s }),
         EventKind::Gap(gap_s) => json!({ "gap_s": gap_s }),
         EventKind::LeakEnded | EventKind::TooLate | EventKind::Restarted => json!({}),
@@ -182,6 +194,8 @@ mod tests {
             EventKind::Sensor { sensor: 1, health: Health::Shifted(-0.4e5) },
             EventKind::ColdNight(158.2e5),
             EventKind::FillingDoubted { mass_kg: 4.1, filled_kg: 4.48 },
+            EventKind::Swapped([0, 1]),
+            EventKind::Late { sensor: 0, by_s: 87.3 },
             EventKind::ClockJump(-3600.0),
             EventKind::Gap(7200.0),
             EventKind::TooLate,
@@ -205,6 +219,8 @@ mod tests {
             "pressure is shifted by -0.4 bar",
             "158.2 bar without any leak",
             "4.10 kg of gas, the filling that was stated for 4.48 kg",
+            "shoulder and pressure are in each other's place",
+            "shoulder is late by 87 s",
             "jumped back by 60 min",
             "no rows for 2 h",
             "a row of 2026-01-01T01:00:00Z came too late",

@@ -22,6 +22,8 @@ impl Marks {
             | EventKind::Sensor { .. }
             | EventKind::ColdNight(_)
             | EventKind::FillingDoubted { .. }
+            | EventKind::Swapped(_)
+            | EventKind::Late { .. }
             | EventKind::ClockJump(_)
             | EventKind::Gap(_)
             | EventKind::TooLate

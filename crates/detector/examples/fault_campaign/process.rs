@@ -18,6 +18,9 @@ const END_D: [f64; 4] = [13.0, 14.5, 10.0, 8.5];
 /// Where the pressure of a full bottle is left after a full discharge, Pa.
 const EMPTY_PA: f64 = 20.0 * BAR_PA;
 
+/// Loss from which a leak has begun, kg.
+const BEGUN_KG: f64 = 0.005;
+
 /// What is drawn for one case. Times in s from the beginning.
 #[derive(Default)]
 struct Drawn {
@@ -57,6 +60,11 @@ pub fn run(
     }
     let days = if own { END_D[0] } else { END_D[leak_index] };
     let truth = truth(campaign, row, seed, leak_index, days, &drawn)?;
+    if row == TableRow::G5 {
+        // Where it never becomes warmer nothing is let out: no case.
+        let Some(onset_s) = begun_s(&truth) else { return Ok(None) };
+        drawn.leak = drawn.leak.map(|leak| CaseLeak { onset_s, ..leak });
+    }
     let case = Case {
         row,
         fault: None,
@@ -71,6 +79,13 @@ pub fn run(
     let subject = Subject { commissioning, ..campaign.subject.clone() };
     let history = subject.run(None, &record(&truth)?.without("ambient"))?;
     Ok(Some(crate::missed(&case, &Histories { history, unbroken: None })))
+}
+
+/// When gas began to be lost, s.
+fn begun_s(truth: &Truth) -> Option<f64> {
+    let first_kg = *truth.mass_kg.first()?;
+    let begun = truth.mass_kg.iter().position(|mass_kg| first_kg - mass_kg > BEGUN_KG)?;
+    Some(truth.time_s[begun])
 }
 
 fn truth(
@@ -215,7 +230,7 @@ fn masked(campaign: &Campaign, at_s: f64, seed: u64) -> Result<Drawn, Failure> {
         let leak = Process::masked(&vessel, &warm, (at_s + HOUR_S, at_s + 10.0 * HOUR_S), 600.0)?;
         happenings.processes = vec![leak];
     }
-    // Some 20 bar in 9 h; as soon as it must be found with 1 bar/h.
+    // Some 20 bar in 9 h, most of it in the warmest of them; as soon as it must be found with 1 bar/h.
     let leak = CaseLeak { rate_pa_s: BAR_PA / HOUR_S, onset_s: at_s + HOUR_S };
     Ok(Drawn { happenings, leak: Some(leak), what: "masked by warming".into(), ..Drawn::default() })
 }

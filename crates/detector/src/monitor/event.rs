@@ -51,6 +51,15 @@ pub enum EventKind {
         /// Mass that was stated, kg.
         filled_kg: f64,
     },
+    /// Two thermometers were in each other's place, which is taken into account; their indices in the order of the readings.
+    Swapped([usize; 2]),
+    /// A channel is late, which is taken into account.
+    Late {
+        /// Index of the sensor in the order of the readings.
+        sensor: usize,
+        /// By so much against the earliest, s.
+        by_s: f64,
+    },
     /// The clock jumped by so much, s.
     ClockJump(f64),
     /// Rows came after a gap, s.
@@ -81,6 +90,8 @@ impl EventKind {
             Self::Sensor { .. } => "sensor",
             Self::ColdNight(_) => "cold-night",
             Self::FillingDoubted { .. } => "filling-doubted",
+            Self::Swapped(_) => "swapped",
+            Self::Late { .. } => "late",
             Self::ClockJump(_) => "clock-jump",
             Self::Gap(_) => "gap",
             Self::TooLate => "too-late",

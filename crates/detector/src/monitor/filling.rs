@@ -32,12 +32,12 @@ impl FillingCheck {
         self.wrong
     }
 
-    /// A leak has been found: whether it is none, because the readings do not fit the filling from the first row on.
-    pub fn explains_leak(&mut self, (filled_kg, sd_kg): (f64, f64)) -> bool {
+    /// A leak has been found: the mean mass, kg, if it is none because the readings do not fit the filling from the first row on.
+    pub fn explains_leak(&mut self, (filled_kg, sd_kg): (f64, f64)) -> Option<f64> {
         if !self.done {
             (self.done, self.wrong) = (true, self.is_off(filled_kg, sd_kg));
         }
-        self.wrong
+        self.wrong.then_some(self.mean_kg)
     }
 
     fn is_off(&self, filled_kg: f64, sd_kg: f64) -> bool {
@@ -87,8 +87,9 @@ mod tests {
         assert!(after(|_| f64::NAN).is_open());
         let mut early = FillingCheck::default();
         early.take(0.0, 0.9 * 4.48, (4.48, 0.045));
-        assert!(early.explains_leak((4.48, 0.045)) && early.is_wrong());
-        assert!(!after(|_| 4.48).explains_leak((4.48, 0.045)));
+        assert_eq!(early.explains_leak((4.48, 0.045)), Some(0.9 * 4.48));
+        assert!(early.is_wrong());
+        assert_eq!(after(|_| 4.48).explains_leak((4.48, 0.045)), None);
         let mut settled = after(|_| 4.0);
         settled.settle();
         assert!(!settled.is_wrong() && !settled.is_open());

@@ -13,6 +13,12 @@
 //!   the way, comes to the temperature of the wall. At 200 bar an isentropic step of the pressure is 1.6 times the isothermal one;
 //!   what is left of it at the first sample is at least the tenth part that divides the two.
 //!
+//! What thermometers pull the expectation to, the reading does not follow at once; but it does not go the other way either. Where its
+//! second difference has the other sign than their change, only 0.1 bar/K of that is allowed for.
+//!
+//! The shadow is good as long as wall and gas go on as before. When the surroundings begin to move, what has been seen until then is
+//! judged, if it is eight samples and tells gas from transmitter; else it goes on.
+//!
 //! No transmitter's offset jumps by more than a tenth of the largest filling: beyond that it is gas. The part that comes back is known no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of
 //! the gas temperature. What lies within that of the division remains
 //! unclear when gas may be gone. Of a gain so small that no filling stops there the transmitter is the safe
@@ -38,6 +44,8 @@ const BY_READING: f64 = 0.6;
 const JUMP_PER_CHANGE: f64 = 0.1;
 /// and by the change of the thermometers, Pa/K.
 const JUMP_PER_K: f64 = 0.4e5;
+/// The same where the reading goes the other way.
+const JUMP_PER_K_AGAINST: f64 = 0.1e5;
 /// Interval beyond which two innovations are not compared, s.
 const LONGEST_INTERVAL_S: f64 = 900.0;
 /// Samples within which a spike comes back.
@@ -67,6 +75,11 @@ const LEFT_OF_GAS: f64 = 0.4;
 /// How the model wanders meanwhile, Pa and Pa/K.
 const WANDER_PA: f64 = 0.04e5;
 const WANDER_PA_K: f64 = 0.05e5;
+/// Change of the thermometers from one sample to the next, K and as a multiple of that at the jump, from which the surroundings move, and
+/// fewest samples that can be judged then.
+const CALM_K: f64 = 0.15;
+const CALM_PER_FIRST: f64 = 1.5;
+const FEWEST: usize = 8;
 /// Longest examination, s.
 const LONGEST_S: f64 = 7200.0;
 
@@ -93,6 +106,8 @@ pub enum Cause {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JumpWatch {
     last: Option<Innovated>,
+    /// Change of the reading to it, Pa.
+    last_change_pa: f64,
     /// Usual change of the innovation, Pa.
     usual_pa: f64,
 }
@@ -111,7 +126,7 @@ pub struct Innovated {
 impl Default for JumpWatch {
     /// Of a transmitter and a thermometer of which nothing is known.
     fn default() -> Self {
-        Self { last: None, usual_pa: JUMP_PA }
+        Self { last: None, last_change_pa: 0.0, usual_pa: JUMP_PA }
     }
 }
 
@@ -128,11 +143,14 @@ impl JumpWatch {
         }
         let change_pa = now.innovation_pa - last.innovation_pa;
         let by_reading_pa = now.reading_pa - last.reading_pa;
+        let second_pa = by_reading_pa - std::mem::replace(&mut self.last_change_pa, by_reading_pa);
+        let against = second_pa * moved.together_k < 0.0;
+        let per_k = if against { JUMP_PER_K_AGAINST } else { JUMP_PER_K };
         let limit_pa = JUMP_PA
             + JUMP_PER_USUAL * self.usual_pa
             + JUMP_PER_STEP * step_pa
             + JUMP_PER_CHANGE * (by_reading_pa - change_pa).abs()
-            + JUMP_PER_K * (moved.by_k + moved.surprise_k);
+            + per_k * (moved.by_k + moved.surprise_k);
         self.usual_pa += (change_pa.abs().min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
         let read = by_reading_pa * change_pa.signum() > BY_READING * change_pa.abs();
         (read && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
@@ -140,7 +158,7 @@ impl JumpWatch {
 
     /// Forget the last reading.
     pub fn forget(&mut self) {
-        self.last = None;
+        (self.last, self.last_change_pa) = (None, 0.0);
     }
 }
 
@@ -160,6 +178,8 @@ pub struct Examination {
     /// Samples at which the error grew.
     grew: usize,
     back: usize,
+    /// Change of the thermometers beyond which the surroundings move, K; `None`: they have.
+    calm_k: Option<f64>,
     warmest_k: f64,
     coldest_k: f64,
 }
@@ -177,6 +197,7 @@ impl Examination {
             least_pa: f64::INFINITY,
             grew: 0,
             back: 0,
+            calm_k: Some(f64::INFINITY),
             warmest_k: f64::NEG_INFINITY,
             coldest_k: f64::INFINITY,
         }
@@ -192,10 +213,19 @@ impl Examination {
         self.recent.back().map_or(0.0, |(_, error)| *error)
     }
 
-    /// Take in what is expected without the pressure, Pa, and read, Pa, at a gas temperature, K.
-    pub fn push(&mut self, time_s: f64, expected_pa: f64, reading_pa: f64, gas_k: f64) -> Cause {
+    /// Take in what is expected without the pressure, Pa, and read, Pa, at a gas temperature, K, with what two thermometers did.
+    pub fn push(
+        &mut self,
+        time_s: f64,
+        (expected_pa, reading_pa): (f64, f64),
+        gas_k: f64,
+        moved: Moved,
+    ) -> Cause {
         if !(expected_pa.is_finite() && reading_pa.is_finite()) {
             return if time_s - self.onset_s > LONGEST_S { Cause::Unclear } else { Cause::Open };
+        }
+        if let Some(decided) = self.decide_before_it_moves(moved) {
+            return decided;
         }
         let error_pa = expected_pa - reading_pa - self.before_pa;
         (self.warmest_k, self.coldest_k) = (self.warmest_k.max(gas_k), self.coldest_k.min(gas_k));
@@ -215,6 +245,19 @@ impl Examination {
         self.judge(time_s)
     }
 
+    /// The surroundings begin to move: what is known until then, if it tells gas from transmitter.
+    fn decide_before_it_moves(&mut self, moved: Moved) -> Option<Cause> {
+        if self.samples == 0 {
+            self.calm_k = Some(CALM_K + CALM_PER_FIRST * moved.by_k);
+        }
+        if moved.by_k <= self.calm_k? {
+            return None;
+        }
+        self.calm_k = None;
+        let settled = self.samples >= FEWEST && self.grew < FLOW_SAMPLES;
+        Some(self.conclude()).filter(|cause| settled && matches!(cause, Cause::Gas | Cause::Offset(_)))
+    }
+
     fn judge(&self, time_s: f64) -> Cause {
         let peak_pa = self.peak_pa.abs();
         let among = self.recent.len() >= AMONG
@@ -229,6 +272,12 @@ impl Examination {
             let large = self.samples > SPIKE_SAMPLES && self.error_pa().abs() > NO_OFFSET_PA;
             return if large || self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
         }
+        self.conclude()
+    }
+
+    /// What the errors so far say.
+    fn conclude(&self) -> Cause {
+        let peak_pa = self.peak_pa.abs();
         let end_pa = self.recent_median_pa(self.recent.len());
         let wander_pa = WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k);
         let left_pa = end_pa * self.peak_pa.signum();
@@ -265,7 +314,7 @@ mod tests {
             let minutes = f64::from(minute);
             let expected_pa = 180e5;
             let reading_pa = expected_pa + 0.02e5 - 1e5 * error_bar(minutes);
-            match examination.push(MINUTE_S * minutes, expected_pa, reading_pa, 280.0) {
+            match examination.push(MINUTE_S * minutes, (expected_pa, reading_pa), 280.0, Moved::default()) {
                 Cause::Open | Cause::Flowing => {}
                 cause => return cause,
             }
@@ -319,7 +368,10 @@ mod tests {
     fn a_flow_is_told_after_three_samples() {
         let mut examination = Examination::new(0.0, 0.0);
         let causes: Vec<Cause> = (0..4)
-            .map(|n| examination.push(MINUTE_S * f64::from(n), 180e5, 180e5 - 1e5 * f64::from(n + 1), 280.0))
+            .map(|n| {
+                let read = (180e5, 180e5 - 1e5 * f64::from(n + 1));
+                examination.push(MINUTE_S * f64::from(n), read, 280.0, Moved::default())
+            })
             .collect();
         assert_eq!(causes, [Cause::Open, Cause::Open, Cause::Flowing, Cause::Flowing]);
     }
@@ -339,7 +391,57 @@ mod tests {
         assert_eq!(notice(60_000.0, reading_pa - 0.5e5, -0.48e5, still), Some(2.1e4));
         // What the expectation did alone; what a tunnel does.
         assert_eq!(notice(60_060.0, reading_pa - 0.5e5, 0.5e5, still), None);
-        assert_eq!(notice(60_120.0, reading_pa - 1.5e5, -0.5e5, Moved { by_k: 1.0, surprise_k: 2.0 }), None);
+        assert_eq!(
+            notice(
+                60_120.0,
+                reading_pa - 1.5e5,
+                -0.5e5,
+                Moved { by_k: 1.0, together_k: -1.0, surprise_k: 2.0 }
+            ),
+            None
+        );
         assert_eq!(notice(70_000.0, 100e5, -80e5, still), None, "too long ago");
+    }
+
+    #[test]
+    fn a_pressure_that_falls_while_both_thermometers_rise_has_jumped() {
+        let noticed = |together_k: f64| {
+            let mut watch = JumpWatch::default();
+            let mut notice = |minute: u32, reading_pa: f64, innovation_pa: f64, moved: Moved| {
+                watch.notice(
+                    Innovated { time_s: MINUTE_S * f64::from(minute), reading_pa, innovation_pa },
+                    0.0,
+                    moved,
+                )
+            };
+            for minute in 0..1000 {
+                notice(minute, 184e5, 2e3 * f64::from(minute % 2), Moved::default());
+            }
+            let mouth = Moved { by_k: 2.2, together_k, surprise_k: 2.2 };
+            notice(1000, 182.5e5, -1.5e5, mouth).is_some()
+        };
+        assert!(noticed(2.2));
+        assert!(!noticed(-2.2), "so a train that leaves the tunnel");
+    }
+
+    #[test]
+    fn what_was_seen_before_the_surroundings_moved_decides() {
+        // Gas let out nine minutes before a tunnel that throws the shadow off.
+        let course = |minute: f64| {
+            if minute < 9.0 { 0.76 + 0.3 * (-minute / 4.0).exp() } else { 0.3 }
+        };
+        let until = |tunnel_at: f64| {
+            let mut examination = Examination::new(0.0, 0.0);
+            (0..120).find_map(|minute| {
+                let minute = f64::from(minute);
+                let moved = Moved { by_k: if minute < tunnel_at { 0.05 } else { 2.0 }, ..Moved::default() };
+                let read = (180e5, 180e5 - 1e5 * course(minute));
+                let cause = examination.push(MINUTE_S * minute, read, 280.0, moved);
+                (cause != Cause::Open).then_some((minute, cause))
+            })
+        };
+        assert_eq!(until(9.0), Some((9.0, Cause::Gas)));
+        let (later, cause) = until(3.0).expect("it ends");
+        assert!(later > 20.0 && cause == Cause::Passed, "too early to tell: {cause:?} after {later} min");
     }
 }

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`intake`] | rows as they arrive become rows in order on one axis of time |
 //! | [`health`], [`thermometers`] | readings that are none, stand still or have an offset that jumped |
+//! | wiring | whether a channel is late or the thermometers are in each other's place: put right |
 //! | filling | whether the first readings fit the filling that was stated |
 //! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
 //! | [`jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
@@ -26,6 +27,7 @@ mod filling;
 pub mod health;
 pub mod intake;
 pub mod jump;
+mod lateness;
 mod leak;
 mod machine;
 pub mod onset;
@@ -38,6 +40,7 @@ pub mod state;
 pub mod thermometers;
 pub mod trace;
 mod verdict;
+mod wiring;
 
 pub use event::{Event, EventKind};
 pub use machine::Monitor;

@@ -12,6 +12,7 @@ use cylwatch_detector::monitor::{
 
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const SHOULDER: usize = 0;
+const VALVE: usize = 1;
 const PRESSURE: usize = 2;
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
@@ -116,6 +117,90 @@ fn a_monitor_killed_and_restored_at_every_row_says_the_same_to_the_last_digit() 
     }
     outputs.extend(killed.finish().unwrap());
     assert_eq!(print(&outputs), print(&expected));
+}
+
+/// Rows with one reading late by whole rows.
+fn late(rows: &Rows, sensor: usize, by: usize) -> Rows {
+    let reading = |n: usize| rows[n.saturating_sub(by)].1[sensor];
+    let mut late = rows.clone();
+    late.iter_mut().enumerate().for_each(|(n, (_, readings))| readings[sensor] = reading(n));
+    late
+}
+
+#[test]
+fn thermometers_in_each_others_place_are_told_after_a_day_and_put_right() {
+    let mut swapped = tight().clone();
+    swapped.iter_mut().for_each(|(_, readings)| readings.swap(SHOULDER, VALVE));
+    let outputs = run(&swapped);
+    let told: Vec<f64> = outputs
+        .iter()
+        .flat_map(|output| &output.events)
+        .filter(|event| event.kind == EventKind::Swapped([SHOULDER, VALVE]))
+        .map(|event| event.time_s)
+        .collect();
+    assert_eq!(told, [DAY_S]);
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
+    let last = outputs.last().unwrap();
+    assert_eq!(last.verdict, Verdict::Tight);
+    // From then on as if they had never been.
+    let right = run(&tight()[1440..]);
+    let apart_k = (last.estimate.gas_mean_k - right.last().unwrap().estimate.gas_mean_k).abs();
+    assert!(apart_k < 1e-9, "{apart_k} K");
+}
+
+#[test]
+fn a_late_thermometer_is_told_after_a_day_and_put_right() {
+    let outputs = run(&late(tight(), SHOULDER, 2));
+    let told: Vec<(usize, f64)> = events(&outputs)
+        .filter_map(|kind| match kind {
+            EventKind::Late { sensor, by_s } => Some((*sensor, *by_s)),
+            _ => None,
+        })
+        .collect();
+    assert!(matches!(told[..], [(SHOULDER, by_s)] if (by_s - 120.0).abs() < 15.0), "{told:?}");
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
+    assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
+}
+
+#[test]
+fn channels_as_they_should_be_are_left_alone() {
+    let wired = |kind: &EventKind| matches!(kind, EventKind::Swapped(_) | EventKind::Late { .. });
+    assert!(!events(&run(tight())).any(wired));
+}
+
+#[test]
+fn a_monitor_killed_while_it_puts_the_wiring_right_goes_on_to_the_last_digit() {
+    let mut rows = late(&tight()[..3000].to_vec(), VALVE, 1);
+    rows.iter_mut().for_each(|(_, readings)| readings.swap(SHOULDER, VALVE));
+    let expected = run(&rows);
+    assert_eq!(events(&expected).filter(|kind| matches!(kind, EventKind::Late { .. })).count(), 1);
+    assert_eq!(events(&expected).filter(|kind| matches!(kind, EventKind::Swapped(_))).count(), 1);
+    let mut killed = monitor();
+    let mut outputs = Vec::new();
+    for (n, (t, readings)) in rows.iter().enumerate() {
+        if n % 1440 > 1435 || n % 1440 < 4 || n % 50 == 0 {
+            let bytes = killed.save().unwrap();
+            killed = Monitor::restore(&vessel(), &sensors(), &MonitorSettings::default(), &bytes).unwrap();
+        }
+        outputs.extend(killed.step(*t, readings).unwrap());
+    }
+    outputs.extend(killed.finish().unwrap());
+    assert_eq!(print(&outputs), print(&expected));
+}
+
+#[test]
+fn degrees_fahrenheit_read_as_celsius_are_no_leak_but_doubt() {
+    let mut rows = tight().clone();
+    for (_, readings) in &mut rows {
+        for kelvin in &mut readings[..PRESSURE] {
+            *kelvin = 1.8 * (*kelvin - 273.15) + 32.0 + 273.15;
+        }
+    }
+    let outputs = run(&rows);
+    assert_eq!(events(&outputs).filter(|kind| matches!(kind, EventKind::FillingDoubted { .. })).count(), 1);
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
+    assert!(outputs.iter().all(|output| output.verdict != Verdict::Tight));
+    assert_eq!(outputs.last().unwrap().verdict, Verdict::Unknown(Reason::Filling));
 }
 
 #[test]

@@ -31,6 +31,7 @@ mod screen;
 pub mod settings;
 mod smoother;
 pub mod states;
+mod told;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -293,38 +294,6 @@ impl Observer {
 
     fn is_possible(&mut self) -> bool {
         self.bank.is_possible(&self.cylinder)
-    }
-
-    /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends, and what was known of a
-    /// leak is forgotten, since the cylinder may be another one.
-    pub fn begin_exchange(&mut self) {
-        self.clock.exchange = Exchange::Open;
-        self.clock.reference_mass_kg = None;
-    }
-
-    /// The exchange is over; mass and gas stay free for twenty minutes more, in which the gas comes to rest.
-    pub fn end_exchange(&mut self) {
-        if let Some(time_s) = self.clock.time_s {
-            self.clock.exchange = Exchange::Settling { until_s: time_s + SETTLE_S };
-            self.clock.reference_due_s = time_s + SETTLE_S + REFERENCE_AFTER_S;
-        }
-    }
-
-    /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there. Of a sensor without
-    /// an uncertain offset nothing is said.
-    pub fn loosen(&mut self, sensor: usize, sd: f64) {
-        if let Some(state) = self.cylinder.state_map().offset_of(sensor, self.cylinder.sensors()) {
-            self.bank.inflate(state, sd * sd);
-        }
-    }
-
-    /// Another sensor of the same kind has taken the place: whatever is uncertain of it is so anew.
-    pub fn renew(&mut self, sensor: usize) {
-        let Some(parameters) = self.cylinder.sensors().get(sensor).map(Sensor::parameters) else { return };
-        let states = &self.cylinder.state_map().parameters[sensor];
-        let uncertain =
-            states.iter().zip(parameters).filter_map(|(state, of)| Some(((*state)?, of.sd * of.sd)));
-        uncertain.for_each(|(state, variance)| self.bank.inflate(state, variance));
     }
 
     fn estimate(

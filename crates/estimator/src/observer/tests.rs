@@ -231,3 +231,41 @@ fn an_exchange_takes_every_leak_rate_back_to_its_prior() {
     });
     assert!(observer.leaks().nth(1).unwrap().sd_kg_s > 0.0);
 }
+
+#[test]
+fn a_loosened_offset_is_uncertain_by_so_much_more_and_a_renewed_sensor_by_all_that_it_was() {
+    let mut observer = observer(Engine::Extended);
+    for (n, readings) in readings_of_a_day().iter().enumerate() {
+        observer.step(60.0 * n as f64, readings).unwrap();
+    }
+    let variances = |observer: &Observer| -> Vec<f64> {
+        (0..observer.bank.members.len())
+            .flat_map(|m| observer.state(m).unwrap().1.diagonal().as_slice().to_vec())
+            .collect()
+    };
+    let states = observer.cylinder.state_map().clone();
+    let offset = states.offset_of(0, observer.cylinder.sensors()).expect("a shoulder has one");
+    let before = variances(&observer);
+    observer.loosen(0, 0.7);
+    for (state, (after, before)) in variances(&observer).into_iter().zip(before).enumerate() {
+        let added = if state % states.count() == offset { 0.49 } else { 0.0 };
+        assert!(
+            (after - before - added).abs() <= 1e-9 * before.max(1.0),
+            "state {state}: {before} to {after}"
+        );
+    }
+    let before = variances(&observer);
+    observer.renew(2);
+    let parameters = observer.cylinder.sensors()[2].parameters().to_vec();
+    let of = |state: usize| {
+        let index = states.parameters[2].iter().position(|of| *of == Some(state))?;
+        Some(parameters[index].sd.powi(2))
+    };
+    let after = variances(&observer);
+    let grown = after.iter().zip(&before).filter(|(after, before)| *after > *before).count();
+    assert!(grown > 0, "a pressure has uncertain parameters");
+    for (index, (after, before)) in after.into_iter().zip(before).enumerate() {
+        let added = of(index % states.count()).unwrap_or(0.0);
+        assert!((after - before - added).abs() <= 1e-9 * (before + added).max(1.0), "state {index}");
+    }
+}

@@ -106,7 +106,12 @@ impl Monitor {
         let expected_pa = self.shadow.expected_reading(pressure)?;
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
-        let cause = examined.examination.push(time_s, expected_pa, reading_pa, blind.gas_mean_k);
+        let cause = examined.examination.push(
+            time_s,
+            (expected_pa, reading_pa),
+            blind.gas_mean_k,
+            self.state.pair.moved(),
+        );
         examined.flowing = cause == Cause::Flowing;
         match cause {
             Cause::Open => return Ok(blind),

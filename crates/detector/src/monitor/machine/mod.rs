@@ -2,6 +2,7 @@
 mod exchange;
 mod judgement;
 mod sensors;
+mod wiring;
 
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,7 @@ use super::filling::FillingCheck;
 use super::health::SensorWatch;
 use super::intake::{Intake, Row, Taken};
 use super::jump::JumpWatch;
+use super::lateness::DelayLine;
 use super::leak::{Change, LeakState, Look};
 use super::outlook::{self, LimitMasses};
 use super::rewind::Rewind;
@@ -19,6 +21,7 @@ use super::roles::Roles;
 use super::settings::MonitorSettings;
 use super::state::{self, Fingerprint, StateError};
 use super::thermometers::Pair;
+use super::wiring::WiringCheck;
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
 use crate::estimator::observer::{
@@ -51,9 +54,14 @@ pub struct Monitor {
     /// Mass that was stated and its standard deviation, kg.
     filled_kg: (f64, f64),
     roles: Roles,
+    /// Two thermometers and the pressure, whose wiring is checked.
+    compared: Option<[usize; 3]>,
+    sensors: Vec<Sensor>,
     fingerprint: Fingerprint,
     commissioning: Commissioning,
     observer: Observer,
+    /// Has the thermometers in each other's place, until that is judged.
+    twin: Option<Observer>,
     /// Goes on without the pressure while a jump is examined.
     shadow: Observer,
     state: State,
@@ -69,6 +77,12 @@ struct State {
     watches: Vec<SensorWatch>,
     health: Vec<Health>,
     pair: Pair,
+    wiring: WiringCheck,
+    delays: DelayLine,
+    /// Whether the two thermometers are in each other's place.
+    swapped: bool,
+    /// What was known when the observer began.
+    begun_with: Commissioning,
     filling: FillingCheck,
     jumps: JumpWatch,
     examined: Option<Examined>,
@@ -107,6 +121,7 @@ struct Saved {
     reaction: ReactionSettings,
     state: State,
     observer: Snapshot,
+    twin: Option<Snapshot>,
     shadow: Option<Snapshot>,
 }
 
@@ -128,7 +143,18 @@ impl Monitor {
         settings: &MonitorSettings,
     ) -> Result<Self, DetectorError> {
         settings.validate()?;
-        let observer = || Observer::new(vessel, sensors, commissioning, &settings.observer);
+        Self::begun(vessel, sensors, commissioning, settings, commissioning)
+    }
+
+    /// A monitor whose observer knows something else of the filling than was stated at first.
+    fn begun(
+        vessel: &Vessel,
+        sensors: &[Sensor],
+        commissioning: &Commissioning,
+        settings: &MonitorSettings,
+        begun_with: &Commissioning,
+    ) -> Result<Self, DetectorError> {
+        let observer = || Observer::new(vessel, sensors, begun_with, &settings.observer);
         let contents = Contents::of(vessel);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
         let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
@@ -137,6 +163,10 @@ impl Monitor {
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
             pair: Pair::default(),
+            wiring: WiringCheck::of_all(),
+            delays: DelayLine::default(),
+            swapped: false,
+            begun_with: *begun_with,
             filling: FillingCheck::default(),
             jumps: JumpWatch::default(),
             examined: None,
@@ -157,12 +187,18 @@ impl Monitor {
             cold: Tangent::at(settings.limits.coldest_k),
             warned: false,
         };
+        let roles = Roles::of(sensors);
+        let compared = wiring::compared(&roles, sensors);
+        let twin = compared.map(|_| wiring::twin(vessel, sensors, begun_with, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
             filled_kg: (full_kg, commissioning.mass_sd_kg),
-            roles: Roles::of(sensors),
+            roles,
+            compared,
+            sensors: sensors.to_vec(),
+            twin: twin.transpose()?,
             fingerprint: fingerprint(vessel, sensors, settings),
             observer: observer()?,
             shadow: observer()?,
@@ -194,8 +230,13 @@ impl Monitor {
         bytes: &[u8],
     ) -> Result<Self, DetectorError> {
         let saved: Saved = state::decode(bytes, &fingerprint(vessel, sensors, settings))?;
-        let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
+        let begun_with = saved.state.begun_with;
+        let mut monitor = Self::begun(vessel, sensors, &saved.commissioning, settings, &begun_with)?;
         monitor.observer.try_restore(&saved.observer)?;
+        match (&mut monitor.twin, &saved.twin) {
+            (Some(twin), Some(saved)) => twin.try_restore(saved)?,
+            _ => monitor.twin = None,
+        }
         if let Some(shadow) = &saved.shadow {
             monitor.shadow.try_restore(shadow)?;
         }
@@ -217,6 +258,7 @@ impl Monitor {
             reaction: self.settings.reaction,
             state: self.state.clone(),
             observer: self.observer.snapshot(),
+            twin: self.twin.as_ref().map(Observer::snapshot),
             shadow: examined.then(|| self.shadow.snapshot()),
         };
         state::encode(&saved, &self.fingerprint)
@@ -294,14 +336,18 @@ impl Monitor {
     fn process(&mut self, row: &Row, mut events: Vec<Event>) -> Result<Output, DetectorError> {
         let time_s = row.time_s;
         let silent_s = time_s - self.state.last_s;
+        self.judge_wiring(time_s, &mut events)?;
         self.screen(row);
+        self.read_wiring(row);
         self.watch_thermometers(time_s);
+        self.place();
         if silent_s.is_finite() && silent_s > self.settings.gap_s {
             self.state.look = (time_s + LOOK_S, Reason::Gap);
         }
         self.check_filling(time_s, &mut events)?;
         let estimate = self.observe(time_s, silent_s, &mut events)?;
         self.mark_outcomes(time_s);
+        self.step_twin(time_s)?;
         if estimate.quality == Quality::Restarted {
             events.push(Event::new(time_s, time_s, EventKind::Restarted));
             self.state.look = (time_s + LOOK_S, Reason::Restarted);
@@ -355,13 +401,14 @@ impl Monitor {
         };
         match self.state.leak.step(&look) {
             Change::None => {}
-            Change::Found(_) if self.state.filling.explains_leak(self.filled_kg) => {
-                self.state.leak.begin_anew();
-                self.state.evidence.forget();
-            }
-            Change::Found(finding) => {
-                events.push(Event::new(time_s, finding.onset_s.value, EventKind::LeakFound(finding)));
-            }
+            Change::Found(finding) => match self.state.filling.explains_leak(self.filled_kg) {
+                Some(mass_kg) => {
+                    self.doubt_filling(time_s, mass_kg, events);
+                    self.state.leak.begin_anew();
+                    self.state.evidence.forget();
+                }
+                None => events.push(Event::new(time_s, finding.onset_s.value, EventKind::LeakFound(finding))),
+            },
             Change::Ended => events.push(Event::new(time_s, time_s, EventKind::LeakEnded)),
         }
         Ok(())

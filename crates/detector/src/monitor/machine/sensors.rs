@@ -14,11 +14,12 @@ const JUMPED_PART: f64 = 0.1;
 const DEGRADED_AFTER_S: f64 = 3600.0;
 
 impl Monitor {
-    /// Readings that can be used.
+    /// Readings that can be used, all of one time.
     pub(super) fn screen(&mut self, row: &Row) {
-        let judged = self.state.watches.iter_mut().zip(&row.readings);
-        for ((watch, &reading), usable) in judged.zip(&mut self.usable) {
-            *usable = watch.judge(row.time_s, reading);
+        self.usable.copy_from_slice(&row.readings);
+        self.state.delays.align(row.time_s, &mut self.usable);
+        for (watch, reading) in self.state.watches.iter_mut().zip(&mut self.usable) {
+            *reading = watch.judge(row.time_s, *reading);
         }
     }
 
@@ -36,7 +37,7 @@ impl Monitor {
                 watches[pair[which]].shift(by_k);
                 self.usable[pair[which]] = f64::NAN;
                 // How far it jumped is known by a part of it, and whether it did is not certain.
-                self.observer.loosen(pair[which], JUMPED_K + JUMPED_PART * by_k.abs());
+                self.observer.loosen(self.place_of(pair[which]), JUMPED_K + JUMPED_PART * by_k.abs());
                 self.state.rewind.begin(&self.observer);
             }
             Some(Lonely::Detached(which)) => {
@@ -63,16 +64,22 @@ impl Monitor {
         let stands_for = Commissioning::filled(self.usable[pressure], mean_k);
         let mass_kg = stands_for.mass_kg(&self.vessel, mean_k).unwrap_or(f64::NAN);
         if let Some(mass_kg) = self.state.filling.take(time_s, mass_kg, self.filled_kg) {
-            let filled_kg = self.filled_kg.0;
-            events.push(Event::new(time_s, time_s, EventKind::FillingDoubted { mass_kg, filled_kg }));
+            self.doubt_filling(time_s, mass_kg, events);
         }
         Ok(())
     }
 
+    pub(super) fn doubt_filling(&self, time_s: f64, mass_kg: f64, events: &mut Vec<Event>) {
+        let filled_kg = self.filled_kg.0;
+        events.push(Event::new(time_s, time_s, EventKind::FillingDoubted { mass_kg, filled_kg }));
+    }
+
     /// Which readings the observer took, and which it refused.
     pub(super) fn mark_outcomes(&mut self, time_s: f64) {
-        for (watch, innovation) in self.state.watches.iter_mut().zip(self.observer.innovations()) {
-            match innovation.outcome {
+        for sensor in 0..self.usable.len() {
+            let outcome = self.observer.innovations()[self.place_of(sensor)].outcome;
+            let watch = &mut self.state.watches[sensor];
+            match outcome {
                 Outcome::Accepted | Outcome::Reacquired => watch.used(time_s),
                 Outcome::Rejected => watch.refused(time_s),
                 Outcome::Missing => {}

@@ -6,6 +6,7 @@
 //! * *Found*: a leak is stated within `6 h (1 bar/h / r)^(2/3)` of its onset: 28 h for 0.1 bar/h, 5.4 d for 0.01 bar/h, about
 //!   twice the least delay that any detector can have with a model error of 0.3 bar and 3 h. Time in which nothing usable is read does not
 //!   count, and an exchange of gas begins it anew once it has settled.
+//!   A loss that follows a tunnel (G5) goes as fast as a discharge, and may be stated as one.
 //! * *Flagged*: the sensor's health is said not to be good, or the verdict is that of a sensor at fault, within a time of the onset.
 //! * *Blind*: no usable pressure or no usable temperature for more than an hour, or the first row after six hours without any. Then the
 //!   verdict must not be "tight".
@@ -177,7 +178,11 @@ impl Judgement<'_> {
             }
             _ => leak.onset_s + allowed_s,
         };
-        if self.history.any_leak(leak.onset_s, deadline_s.min(self.case.until_s)) {
+        let until_s = deadline_s.min(self.case.until_s);
+        let discharged = |kind: &EventKind| matches!(kind, EventKind::Discharge(_));
+        if self.history.any_leak(leak.onset_s, until_s)
+            || self.case.row == TableRow::G5 && self.history.events_in(leak.onset_s, until_s).any(discharged)
+        {
             return false;
         }
         if deadline_s > self.case.until_s {
@@ -209,10 +214,14 @@ impl Judgement<'_> {
             || self.history.any_verdict(from_s, to_s, |verdict| verdict == Verdict::SensorFault)
     }
 
-    /// A reading in a wrong unit must be named or never be called tight; swapped thermometers and a gauge pressure are harmless.
+    /// A reading in a wrong unit must be named or never be called tight, swapped thermometers must be told; a gauge pressure is harmless.
     fn is_warned(&self) -> bool {
         match &self.case.fault {
-            Some(Fault::Units { mix_up: MixUp::GaugeAsAbsolute, .. } | Fault::Swapped { .. }) => true,
+            Some(Fault::Units { mix_up: MixUp::GaugeAsAbsolute, .. }) => true,
+            Some(Fault::Swapped { .. }) => self
+                .history
+                .events_in(f64::NEG_INFINITY, self.case.until_s)
+                .any(|kind| matches!(kind, EventKind::Swapped(_))),
             Some(fault @ Fault::Units { .. }) => {
                 let (from_s, to_s) = (f64::NEG_INFINITY, self.case.until_s);
                 self.is_named(fault, from_s, to_s)

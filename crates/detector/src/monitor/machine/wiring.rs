@@ -1,0 +1,159 @@
+//! Channels that are late or in each other's place: found, put right, and begun again with.
+use super::Monitor;
+use crate::DetectorError;
+use crate::estimator::observer::{Commissioning, Innovation, Observer, ObserverSettings};
+use crate::estimator::sensor::Sensor;
+use crate::estimator::thermal::scenario::Fill;
+use crate::estimator::thermal::vessel::Vessel;
+use crate::evidence::Evidence;
+use crate::monitor::health::SensorWatch;
+use crate::monitor::intake::Row;
+use crate::monitor::jump::JumpWatch;
+use crate::monitor::lateness::DelayLine;
+use crate::monitor::leak::Change;
+use crate::monitor::rewind::Rewind;
+use crate::monitor::roles::Roles;
+use crate::monitor::thermometers::Pair;
+use crate::monitor::wiring::Finding;
+use crate::monitor::{Event, EventKind, Health};
+
+/// The channels that are compared: two thermometers on the surface, without a lag of their own, and the pressure.
+pub(super) fn compared(roles: &Roles, sensors: &[Sensor]) -> Option<[usize; 3]> {
+    let ([first, second], pressure) = roles.pair.zip(roles.pressure)?;
+    let of_all = [first, second, pressure];
+    of_all.iter().all(|sensor| sensors[*sensor].lag_s() == 0.0).then_some(of_all)
+}
+
+/// The observer's twin: its first member alone.
+pub(super) fn twin(
+    vessel: &Vessel,
+    sensors: &[Sensor],
+    commissioning: &Commissioning,
+    settings: &ObserverSettings,
+) -> Result<Observer, DetectorError> {
+    let bank = settings.bank.iter().take(1).cloned().collect();
+    let settings = ObserverSettings { bank, ..settings.clone() };
+    Ok(Observer::new(vessel, sensors, commissioning, &settings)?)
+}
+
+impl Monitor {
+    /// What a row as it came shows of the wiring: before a late thermometer's jumps at the mouth of a tunnel are taken for a fault of it.
+    pub(super) fn read_wiring(&mut self, row: &Row) {
+        let Some(compared) = self.compared.filter(|_| self.twin.is_some()) else { return };
+        let watches = &self.state.watches;
+        let read = |sensor: usize| match watches[sensor].health() {
+            Health::Missing | Health::Implausible | Health::Stuck => f64::NAN,
+            Health::Good | Health::Spikes | Health::Shifted(_) | Health::Detached => row.readings[sensor],
+        };
+        self.state.wiring.read(row.time_s, compared.map(read));
+    }
+
+    /// Usable readings in the order of the places.
+    pub(super) fn place(&mut self) {
+        if let Some([first, second, _]) = self.compared.filter(|_| self.state.swapped) {
+            self.usable.swap(first, second);
+        }
+    }
+
+    /// The place that a channel stands for.
+    pub(super) fn place_of(&self, channel: usize) -> usize {
+        match self.compared {
+            Some([first, second, _]) if self.state.swapped && channel == first => second,
+            Some([first, second, _]) if self.state.swapped && channel == second => first,
+            _ => channel,
+        }
+    }
+
+    /// Let the twin take the row that the observer took.
+    pub(super) fn step_twin(&mut self, time_s: f64) -> Result<(), DetectorError> {
+        let (Some(compared @ [first, second, _]), Some(twin)) = (self.compared, &mut self.twin) else {
+            return Ok(());
+        };
+        if self.state.exchanged.is_some_and(|of| of.at_s == time_s) {
+            self.state.begun_with = self.now();
+            self.twin = Some(self.new_twin()?);
+            self.state.wiring.forget_twin();
+            return Ok(());
+        }
+        self.usable.swap(first, second);
+        let stepped = twin.step(time_s, &self.usable);
+        self.usable.swap(first, second);
+        stepped?;
+        if !self.state.is_exchanging(time_s) {
+            let of = |observer: &Observer| compared.map(|sensor| innovation(observer, sensor));
+            self.state.wiring.compare(of(&self.observer), of(twin));
+        }
+        Ok(())
+    }
+
+    /// What the rows so far say, before the next one is taken.
+    pub(super) fn judge_wiring(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
+        let Some(compared) = self.compared.filter(|_| self.twin.is_some()) else { return Ok(()) };
+        if self.state.examined.is_some() {
+            return Ok(());
+        }
+        let kind = |sensor: usize, by_s: f64| EventKind::Late { sensor, by_s };
+        match self.state.wiring.judge(time_s) {
+            Finding::Open => return Ok(()),
+            Finding::Sound => {
+                self.twin = None;
+                return Ok(());
+            }
+            Finding::Late(late_s) => {
+                let latest_s = late_s.iter().copied().fold(0.0, f64::max);
+                let mut delays_s = vec![0.0; self.usable.len()];
+                for (sensor, late_s) in compared.into_iter().zip(late_s) {
+                    delays_s[sensor] = latest_s - late_s;
+                    if late_s > 0.0 {
+                        events.push(Event::new(time_s, time_s, kind(sensor, late_s)));
+                    }
+                }
+                self.state.delays = DelayLine::of(delays_s);
+            }
+            Finding::Swapped => {
+                let [first, second, _] = compared;
+                self.state.swapped = true;
+                self.twin = None;
+                events.push(Event::new(time_s, time_s, EventKind::Swapped([first, second])));
+            }
+        }
+        self.begin_again(time_s, events)
+    }
+
+    /// What was learnt was learnt of wrong rows: learn again.
+    fn begin_again(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
+        self.state.begun_with = self.now();
+        self.observer =
+            Observer::new(&self.vessel, &self.sensors, &self.state.begun_with, &self.settings.observer)?;
+        if self.twin.is_some() {
+            self.twin = Some(self.new_twin()?);
+        }
+        let state = &mut self.state;
+        state.watches = self.sensors.iter().map(SensorWatch::new).collect();
+        (state.jumps, state.rewind, state.pair) = (JumpWatch::default(), Rewind::default(), Pair::default());
+        state.evidence = Evidence::try_new(&self.settings.observer)?;
+        state.start_s = Some(time_s);
+        if state.leak.begin_anew() == Change::Ended {
+            events.push(Event::new(time_s, time_s, EventKind::LeakEnded));
+        }
+        Ok(())
+    }
+
+    fn new_twin(&self) -> Result<Observer, DetectorError> {
+        twin(&self.vessel, &self.sensors, &self.state.begun_with, &self.settings.observer)
+    }
+
+    /// What is known of the filling now: after an exchange of gas, the mass that the observer sees.
+    fn now(&self) -> Commissioning {
+        match self.state.exchanged.and_then(|_| self.observer.leaks().last()) {
+            Some(free) => {
+                Commissioning { fill: Fill::Mass { mass_kg: free.mass_kg }, ..self.state.begun_with }
+            }
+            None => self.state.begun_with,
+        }
+    }
+}
+
+fn innovation(observer: &Observer, sensor: usize) -> Innovation {
+    observer.innovations().get(sensor).copied().unwrap_or(Innovation::MISSING)
+}
