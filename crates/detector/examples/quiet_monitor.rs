@@ -1,21 +1,20 @@
 //! What the monitor as a whole says of tight cylinders: leaks, exchanges of gas and faults of sensors that are none.
 //!
 //! `cargo run --release -p cylwatch-detector --example quiet_monitor -- [SEEDS [DAYS]]` (default 12 winters of 122 d, a row a minute, each
-//! read by four sets of sensors: 16 cylinder-years, ten minutes on two cores)
+//! read by four sets of sensors: 16 cylinder-years, ten minutes on two cores). `SEEDS`: a count, or `first..end` of those that there are.
 //!
 //! The long run judges the evidence for a leak alone; here sensors are watched, jumps examined and rows taken in as well, and any of them
 //! can go wrong. No seed is shared with the runs that thresholds were fitted to.
 #![allow(clippy::print_stdout)]
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::ops::Range;
 
 use cylwatch_detector::calibrate::FalseAlarms;
 use cylwatch_detector::estimator::observer::Commissioning;
 use cylwatch_detector::estimator::sensor::Sensor;
 use cylwatch_detector::estimator::thermal::vessel::presets;
-use cylwatch_detector::estimator::truth::{
-    Course, Cylinder, Truth, TruthSettings, draw_cylinder, simulate_truth,
-};
+use cylwatch_detector::estimator::truth::{Course, Truth, TruthSettings, generate_sets};
 use cylwatch_detector::monitor::{EventKind, Health, Monitor, MonitorSettings};
 use rayon::prelude::*;
 
@@ -23,9 +22,8 @@ type Failure = Box<dyn Error + Send + Sync>;
 
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const FIRST_SEED: u64 = 70_001;
-/// Sets of sensors on each simulated cylinder, and from the seed of one to that of the next.
+/// Sets of sensors on each simulated cylinder.
 const SETS: u64 = 4;
-const NEXT_SET: u64 = 1_000_000;
 const INTERVAL_S: f64 = 60.0;
 const DAY_S: f64 = 86_400.0;
 const YEAR_S: f64 = 365.25 * DAY_S;
@@ -35,12 +33,10 @@ type Said = BTreeMap<&'static str, u64>;
 
 fn main() -> Result<(), Failure> {
     let mut arguments = std::env::args().skip(1);
-    let seeds: u64 = arguments.next().map_or(Ok(12), |text| text.parse())?;
+    let seeds = seeds(&arguments.next().unwrap_or_else(|| "12".into()))?;
     let days: f64 = arguments.next().map_or(Ok(122.0), |text| text.parse())?;
-    let all: Vec<Vec<Said>> = (FIRST_SEED..FIRST_SEED + seeds)
-        .into_par_iter()
-        .map(|seed| simulation(seed, days))
-        .collect::<Result<_, _>>()?;
+    let all: Vec<Vec<Said>> =
+        seeds.into_par_iter().map(|seed| simulation(FIRST_SEED + seed, days)).collect::<Result<_, _>>()?;
     let cylinders: Vec<&Said> = all.iter().flatten().collect();
     let years = cylinders.len() as f64 * days * DAY_S / YEAR_S;
     println!("{} cylinders, {years:.1} years\n", cylinders.len());
@@ -55,6 +51,8 @@ fn main() -> Result<(), Failure> {
         "thermometer shifted",
         "sensor detached",
         "transmitter shifted",
+        "thermometers swapped",
+        "channel late",
     ] {
         let times: u64 = cylinders.iter().filter_map(|said| said.get(kind)).sum();
         let with_one = cylinders.iter().filter(|said| said.contains_key(kind)).count() as u64;
@@ -72,20 +70,20 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
+/// A count from the first on, or `first..end`.
+fn seeds(text: &str) -> Result<Range<u64>, Failure> {
+    Ok(match text.split_once("..") {
+        Some((first, end)) => first.parse()?..end.parse()?,
+        None => 0..text.parse()?,
+    })
+}
+
 /// One cylinder in its weather, watched through each set of sensors.
 fn simulation(seed: u64, days: f64) -> Result<Vec<Said>, Failure> {
-    let settings = TruthSettings::fast();
     let course = Course::RailwayWeeks { days };
-    let (cylinder, trajectory) = simulate_truth(&course, seed, INTERVAL_S, &settings)?;
-    let samples: Vec<usize> = (0..trajectory.time_s.len()).collect();
-    let nominal = presets::load(&settings.vessel)?;
-    let watch = |set: u64| {
-        let seed = seed + set * NEXT_SET;
-        let sensors = draw_cylinder(&nominal, &settings, seed)?.sensors;
-        let cylinder = Cylinder { sensors, ..cylinder.clone() };
-        said(&Truth::sample(&course, seed, None, &cylinder, &trajectory, &samples)?)
-    };
-    (0..SETS).map(watch).collect()
+    let settings = TruthSettings::fast();
+    let truths = generate_sets(&course, seed, INTERVAL_S, &settings, 0..SETS)?;
+    truths.map(|truth| said(&truth?)).collect()
 }
 
 /// What the monitor says of a truth.
@@ -115,6 +113,8 @@ fn kind(event: &EventKind) -> Option<&'static str> {
         EventKind::Discharge(_) => "discharge",
         EventKind::Refill(_) => "refill",
         EventKind::Restarted => "restart",
+        EventKind::Swapped(_) => "thermometers swapped",
+        EventKind::Late { .. } => "channel late",
         EventKind::Sensor { sensor, health: Health::Shifted(_) } if SENSORS[*sensor] == "pressure" => {
             "transmitter shifted"
         }

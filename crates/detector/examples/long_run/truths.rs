@@ -7,10 +7,7 @@ use std::fs::{self, File};
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use cylwatch_detector::estimator::thermal::vessel::presets;
-use cylwatch_detector::estimator::truth::{
-    Course, Cylinder, Truth, TruthLeak, TruthSettings, draw_cylinder, simulate_truth,
-};
+use cylwatch_detector::estimator::truth::{Course, Truth, TruthLeak, TruthSettings, generate_sets};
 
 use crate::Fault;
 
@@ -18,8 +15,6 @@ use crate::Fault;
 pub const INTERVAL_S: f64 = 120.0;
 /// Sets of sensors on each simulated cylinder.
 pub const SETS: u64 = 4;
-/// From the seed of one set of sensors to that of the next.
-const NEXT_SET: u64 = 1_000_000;
 
 /// A cylinder: where its readings are kept and how they are made.
 #[derive(Clone, Debug)]
@@ -80,17 +75,8 @@ fn read(path: &Path) -> Result<Readings, std::io::Error> {
 
 fn simulate(group: &[Run]) -> Result<Vec<Readings>, Fault> {
     let Some(Run { course, seed, settings, .. }) = group.first() else { return Ok(Vec::new()) };
-    let (cylinder, trajectory) = simulate_truth(course, *seed, INTERVAL_S, settings)?;
-    let samples: Vec<usize> = (0..trajectory.time_s.len()).collect();
-    let nominal = presets::load(&settings.vessel)?;
-    let read = |run: &Run| -> Result<Readings, Fault> {
-        let seed = seed + run.set * NEXT_SET;
-        let sensors = draw_cylinder(&nominal, settings, seed)?.sensors;
-        let cylinder = Cylinder { sensors, ..cylinder.clone() };
-        let truth = Truth::sample(course, seed, settings.leak, &cylinder, &trajectory, &samples)?;
-        Ok(Readings(rows(&truth).collect()))
-    };
-    group.iter().map(read).collect()
+    let truths = generate_sets(course, *seed, INTERVAL_S, settings, group.iter().map(|run| run.set))?;
+    truths.map(|truth| Ok(Readings(rows(&truth?).collect()))).collect()
 }
 
 fn rows(truth: &Truth) -> impl Iterator<Item = [f32; 3]> + '_ {
