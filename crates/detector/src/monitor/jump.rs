@@ -1,8 +1,8 @@
 //! A pressure that jumps: gas or transmitter?
 //!
 //! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next is a jump if it
-//! is beyond `L = 0.12 bar + 4 c + 1.2 q + 0.1 |change of the expectation| + 0.4 bar/K (D + S)`, and the reading itself made most of it: what
-//! the expectation alone did is the model's. `c` is the mean size of such changes lately, `q` the step in which the transmitter reads,
+//! is beyond `L = 0.12 bar + 4 c + 1.2 q + 0.1 |change of the expectation| + 0.2 bar/K D + 0.4 bar/K S`, and the reading itself made most of it by its second difference: what
+//! the expectation alone did is the model's. `c` is the mean size of such changes lately, as it grows with the root of the interval, `q` the step in which the transmitter reads,
 //! `D` the smaller change of two thermometers and `S` the larger one of their last surprises, since a tunnel reaches both. It is examined: a second observer goes on from before it without
 //! the pressure, and `e(t)`, what it expects less what is read, less the same before the jump, shows
 //!
@@ -17,7 +17,7 @@
 //! second difference has the other sign than their change, only 0.1 bar/K of that is allowed for.
 //!
 //! The shadow is good as long as wall and gas go on as before. When the surroundings begin to move, what has been seen until then is
-//! judged, if it is eight samples and tells gas from transmitter; else it goes on.
+//! judged, if it is six samples and tells gas from transmitter; else it goes on.
 //!
 //! No transmitter's offset jumps by more than a tenth of the largest filling: beyond that it is gas. The part that comes back is known no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of
 //! the gas temperature. What lies within that of the division remains
@@ -37,13 +37,17 @@ const JUMP_PER_USUAL: f64 = 4.0;
 const JUMP_PER_STEP: f64 = 1.2;
 /// Samples over which the usual change is a mean, and the largest that counts, Pa.
 const USUAL_SAMPLES: f64 = 300.0;
+const MINUTE_S: f64 = 60.0;
 const USUAL_LARGEST_PA: f64 = 1e5;
-/// Part of it that the reading makes at least.
+/// Part of it that the reading's second difference makes at least.
 const BY_READING: f64 = 0.6;
+/// Part of it that is left against the sample before the last, below which it only returns.
+const RETURNED: f64 = 0.4;
 /// It is farther by the change of the expectation,
 const JUMP_PER_CHANGE: f64 = 0.1;
-/// and by the change of the thermometers, Pa/K.
+/// and by the surprise of the thermometers, Pa/K, of which their change counts a part.
 const JUMP_PER_K: f64 = 0.4e5;
+const PER_CHANGE: f64 = 0.5;
 /// The same where the reading goes the other way.
 const JUMP_PER_K_AGAINST: f64 = 0.1e5;
 /// Interval beyond which two innovations are not compared, s.
@@ -54,6 +58,8 @@ const SPIKE_SAMPLES: usize = 5;
 const AMONG: usize = 5;
 const AMONG_FIRST: usize = 12;
 const LEFT_OF_SPIKES: f64 = 0.05;
+/// Error that no tunnel makes in a few samples, Pa.
+const BEYOND_TUNNEL_PA: f64 = 2e5;
 /// Least height of such spikes, Pa.
 const SPIKE_PA: f64 = 1e5;
 const BESIDE_SPIKES_PA: f64 = 0.1e5;
@@ -70,7 +76,7 @@ const GROWTH: f64 = 0.03;
 const GROWTH_PA: f64 = 0.05e5;
 /// Part that comes back which divides gas from transmitter.
 const DIVISION: f64 = 0.1;
-/// Part of the largest error that gas leaves at least.
+/// Part of the largest error that gas leaves at least, unless the model wanders less.
 const LEFT_OF_GAS: f64 = 0.4;
 /// How the model wanders meanwhile, Pa and Pa/K.
 const WANDER_PA: f64 = 0.04e5;
@@ -79,7 +85,7 @@ const WANDER_PA_K: f64 = 0.05e5;
 /// fewest samples that can be judged then.
 const CALM_K: f64 = 0.15;
 const CALM_PER_FIRST: f64 = 1.5;
-const FEWEST: usize = 8;
+const FEWEST: usize = 6;
 /// Longest examination, s.
 const LONGEST_S: f64 = 7200.0;
 
@@ -106,9 +112,11 @@ pub enum Cause {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JumpWatch {
     last: Option<Innovated>,
-    /// Change of the reading to it, Pa.
-    last_change_pa: f64,
-    /// Usual change of the innovation, Pa.
+    /// Slope of the reading to it, Pa/s, and the interval, s; the innovation before it, Pa.
+    slope_pa_s: f64,
+    interval_s: f64,
+    before_pa: f64,
+    /// Usual change of the innovation in a minute, Pa.
     usual_pa: f64,
 }
 
@@ -126,7 +134,7 @@ pub struct Innovated {
 impl Default for JumpWatch {
     /// Of a transmitter and a thermometer of which nothing is known.
     fn default() -> Self {
-        Self { last: None, last_change_pa: 0.0, usual_pa: JUMP_PA }
+        Self { last: None, slope_pa_s: 0.0, interval_s: 0.0, before_pa: f64::NAN, usual_pa: JUMP_PA }
     }
 }
 
@@ -143,22 +151,31 @@ impl JumpWatch {
         }
         let change_pa = now.innovation_pa - last.innovation_pa;
         let by_reading_pa = now.reading_pa - last.reading_pa;
-        let second_pa = by_reading_pa - std::mem::replace(&mut self.last_change_pa, by_reading_pa);
+        // A slope leads no farther than the interval that it was taken over.
+        let interval_s = now.time_s - last.time_s;
+        let second_pa = by_reading_pa - self.slope_pa_s * interval_s.min(self.interval_s);
+        self.slope_pa_s = if interval_s > 0.0 { by_reading_pa / interval_s } else { 0.0 };
+        self.interval_s = interval_s;
+        // The errors walk: they change by more in a longer interval.
+        let grown = (interval_s / MINUTE_S).max(1.0).sqrt();
+        // What goes back to where it was has taken in a jump that was not noticed: the other way it would be believed.
+        let before_pa = std::mem::replace(&mut self.before_pa, last.innovation_pa);
+        let returns = (now.innovation_pa - before_pa).abs() < RETURNED * change_pa.abs();
         let against = second_pa * moved.together_k < 0.0;
         let per_k = if against { JUMP_PER_K_AGAINST } else { JUMP_PER_K };
         let limit_pa = JUMP_PA
-            + JUMP_PER_USUAL * self.usual_pa
+            + JUMP_PER_USUAL * self.usual_pa * grown
             + JUMP_PER_STEP * step_pa
             + JUMP_PER_CHANGE * (by_reading_pa - change_pa).abs()
-            + per_k * (moved.by_k + moved.surprise_k);
-        self.usual_pa += (change_pa.abs().min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
-        let read = by_reading_pa * change_pa.signum() > BY_READING * change_pa.abs();
-        (read && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
+            + per_k * (PER_CHANGE * moved.by_k + moved.surprise_k);
+        self.usual_pa += ((change_pa.abs() / grown).min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
+        let read = second_pa * change_pa.signum() > BY_READING * change_pa.abs();
+        (read && !returns && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
     }
 
     /// Forget the last reading.
     pub fn forget(&mut self) {
-        (self.last, self.last_change_pa) = (None, 0.0);
+        *self = Self { usual_pa: self.usual_pa, ..Self::default() };
     }
 }
 
@@ -265,7 +282,9 @@ impl Examination {
             && self.recent_median_pa(AMONG).abs() < LEFT_OF_SPIKES * peak_pa + BESIDE_SPIKES_PA
             && peak_pa > SPIKE_PA
             && self.grew < FLOW_SAMPLES;
-        if among || self.samples <= SPIKE_SAMPLES && self.back >= 2 {
+        // What a tunnel does to the shadow is no spike that has gone.
+        let tellable = self.calm_k.is_some() || peak_pa > BEYOND_TUNNEL_PA;
+        if among || tellable && self.samples <= SPIKE_SAMPLES && self.back >= 2 {
             return Cause::Spike;
         }
         if time_s - self.peak_s < REST_S && time_s - self.onset_s < LONGEST_S {
@@ -284,7 +303,7 @@ impl Examination {
         // In a cylinder that leaks, what came back is lost again by the end.
         let back_pa = peak_pa - if self.peak_pa > 0.0 { self.least_pa.min(left_pa) } else { left_pa };
         match () {
-            () if end_pa.abs() < WANDER_PA.max(LEFT_OF_GAS * peak_pa) => Cause::Passed,
+            () if end_pa.abs() < WANDER_PA.max((LEFT_OF_GAS * peak_pa).min(2.0 * wander_pa)) => Cause::Passed,
             () if self.grew >= FLOW_SAMPLES || end_pa.abs() > NO_OFFSET_PA => Cause::Gas,
             () if back_pa > DIVISION * peak_pa + 0.5 * wander_pa => Cause::Gas,
             () if back_pa < DIVISION * peak_pa - 0.5 * wander_pa => Cause::Offset(-end_pa),
@@ -304,8 +323,6 @@ impl Examination {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const MINUTE_S: f64 = 60.0;
 
     /// Causes of the courses `e(minutes)` until there is one.
     fn cause(error_bar: impl Fn(f64) -> f64) -> Cause {
@@ -425,6 +442,26 @@ mod tests {
     }
 
     #[test]
+    fn the_return_after_a_jump_that_was_not_noticed_is_none() {
+        let mut watch = JumpWatch::default();
+        let mut notice = |minute: u32, reading_pa: f64, innovation_pa: f64, by_k: f64| {
+            let moved = Moved { by_k, together_k: -by_k, surprise_k: by_k };
+            watch.notice(
+                Innovated { time_s: MINUTE_S * f64::from(minute), reading_pa, innovation_pa },
+                0.0,
+                moved,
+            )
+        };
+        for minute in 0..1000 {
+            notice(minute, 200e5, 2e3 * f64::from(minute % 2), 0.0);
+        }
+        assert_eq!(notice(1000, 199.2e5, -0.8e5, 1.2), None, "hidden by a tunnel");
+        assert_eq!(notice(1001, 199.2e5, 0.02e5, 0.0), None);
+        notice(1002, 199.2e5, 0.0, 0.0);
+        assert!(notice(1003, 198.4e5, -0.8e5, 0.0).is_some());
+    }
+
+    #[test]
     fn what_was_seen_before_the_surroundings_moved_decides() {
         // Gas let out nine minutes before a tunnel that throws the shadow off.
         let course = |minute: f64| {
@@ -436,7 +473,8 @@ mod tests {
                 let minute = f64::from(minute);
                 let moved = Moved { by_k: if minute < tunnel_at { 0.05 } else { 2.0 }, ..Moved::default() };
                 let read = (180e5, 180e5 - 1e5 * course(minute));
-                let cause = examination.push(MINUTE_S * minute, read, 280.0, moved);
+                let gas_k = 280.0 + (minute - tunnel_at).clamp(0.0, 8.0);
+                let cause = examination.push(MINUTE_S * minute, read, gas_k, moved);
                 (cause != Cause::Open).then_some((minute, cause))
             })
         };

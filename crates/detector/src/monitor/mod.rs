@@ -8,6 +8,7 @@
 //! | [`health`], [`thermometers`] | readings that are none, stand still or have an offset that jumped |
 //! | wiring | whether a channel is late or the thermometers are in each other's place: put right |
 //! | filling | whether the first readings fit the filling that was stated |
+//! | parity | whether one end is warmed or cooled by itself: the evidence for a leak counts less |
 //! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
 //! | [`jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
 //! | [`crate::evidence`] | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
@@ -24,6 +25,7 @@ pub mod alarm;
 mod contents;
 mod event;
 mod filling;
+mod gain;
 pub mod health;
 pub mod intake;
 pub mod jump;
@@ -33,6 +35,7 @@ mod machine;
 pub mod onset;
 mod outlook;
 mod output;
+mod parity;
 mod rewind;
 mod roles;
 pub mod settings;

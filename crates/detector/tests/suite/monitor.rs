@@ -5,7 +5,10 @@ use cylwatch_detector::DetectorError;
 use cylwatch_detector::estimator::observer::Commissioning;
 use cylwatch_detector::estimator::sensor::Sensor;
 use cylwatch_detector::estimator::thermal::vessel::{Vessel, presets};
-use cylwatch_detector::estimator::truth::{Course, Truth, TruthLeak, TruthSettings, generate_with};
+use cylwatch_detector::estimator::truth::disturbance::{Disturbance, Surrounding};
+use cylwatch_detector::estimator::truth::{
+    Course, Happenings, Process, Truth, TruthLeak, TruthSettings, generate_through, generate_with,
+};
 use cylwatch_detector::monitor::{
     EventKind, Health, Monitor, MonitorSettings, Output, Reason, StateError, Verdict,
 };
@@ -186,6 +189,43 @@ fn a_monitor_killed_while_it_puts_the_wiring_right_goes_on_to_the_last_digit() {
     }
     outputs.extend(killed.finish().unwrap());
     assert_eq!(print(&outputs), print(&expected));
+}
+
+fn happening(days: f64, seed: u64, happenings: &Happenings) -> Vec<Output> {
+    let course = Course::RailwayWeeks { days };
+    run(&rows_of(&generate_through(&course, seed, 60.0, &TruthSettings::fast(), happenings).unwrap()))
+}
+
+#[test]
+fn a_heater_beside_one_end_is_no_leak_neither_then_nor_later() {
+    let heater = Disturbance {
+        start_s: 3.0 * DAY_S,
+        lasting_s: 15.0 * HOUR_S,
+        kind: Surrounding::Heater { difference_k: 14.0 },
+    };
+    let outputs = happening(6.0, 56, &Happenings { disturbances: vec![heater], ..Happenings::default() });
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
+    assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
+}
+
+#[test]
+fn a_filling_of_more_than_an_hour_is_one() {
+    let filling =
+        Process::Refill { start_s: 2.0 * DAY_S, lasting_s: 4600.0, rise_pa: 40e5, source_k: 288.15 };
+    let fill_pa = 160e5;
+    let happenings = Happenings { fill_pa: Some(fill_pa), processes: vec![filling], ..Happenings::default() };
+    let course = Course::RailwayWeeks { days: 3.0 };
+    let truth = generate_through(&course, 57, 60.0, &TruthSettings::fast(), &happenings).unwrap();
+    let commissioning = Commissioning { settled: false, ..Commissioning::filled(fill_pa, 288.15) };
+    let mut monitor =
+        Monitor::new(&vessel(), &sensors(), &commissioning, &MonitorSettings::default()).unwrap();
+    let outputs: Vec<Output> =
+        rows_of(&truth).iter().flat_map(|(t, row)| monitor.step(*t, row).unwrap()).collect();
+    let gained: Vec<f64> = events(&outputs)
+        .filter_map(|kind| if let EventKind::Refill(gained_kg) = kind { Some(*gained_kg) } else { None })
+        .collect();
+    assert!(!gained.is_empty() && (gained.iter().sum::<f64>() - 0.8).abs() < 0.08, "{gained:?} kg");
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_) | EventKind::Discharge(_))));
 }
 
 #[test]

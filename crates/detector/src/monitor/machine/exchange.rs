@@ -5,6 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Monitor;
+use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Quality};
 use crate::monitor::jump::{Cause, Examination, Innovated};
@@ -150,10 +151,29 @@ impl Monitor {
         events.push(Event::new(time_s, onset_s, kind));
         self.state.exchanged = Some(Exchanged { at_s: time_s, out });
         self.state.filling.settle();
+        self.state.undisturbed = Undisturbed::default();
         if self.state.leak.begin_anew() == Change::Ended {
             events.push(Event::new(time_s, onset_s, EventKind::LeakEnded));
         }
         self.forget_masses();
+    }
+
+    /// A filling so slow that nothing jumped is over.
+    pub(super) fn notice_gain(&mut self, time_s: f64, events: &mut Vec<Event>) {
+        // A mass that does not fit the readings wanders.
+        let learning = self.state.start_s.is_none_or(|start_s| time_s - start_s < self.settings.learning_s);
+        let wanders = learning || self.state.filling.is_wrong();
+        if wanders || self.state.is_exchanging(time_s) || self.blindness(time_s).is_some() {
+            self.state.gains.forget();
+            return;
+        }
+        let Some(mass_kg) = self.masses_kg() else { return };
+        if let Some((onset_s, gain_kg)) = self.state.gains.push(time_s, mass_kg, self.filled_kg.0) {
+            self.observer.begin_exchange();
+            self.observer.end_exchange();
+            self.state.rewind.begin(&self.observer);
+            self.exchanged(time_s, onset_s, gain_kg, events);
+        }
     }
 
     pub(super) fn forget_masses(&mut self) {

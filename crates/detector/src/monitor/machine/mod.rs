@@ -1,4 +1,5 @@
 //! The monitor of one cylinder.
+mod disturbance;
 mod exchange;
 mod judgement;
 mod sensors;
@@ -6,16 +7,19 @@ mod wiring;
 
 use serde::{Deserialize, Serialize};
 
+use self::disturbance::Undisturbed;
 use self::exchange::{Examined, Exchanged};
 use super::alarm::{AlarmEvent, AlarmInputs, AlarmPanel};
 use super::contents::Tangent;
 use super::filling::FillingCheck;
+use super::gain::GainWatch;
 use super::health::SensorWatch;
 use super::intake::{Intake, Row, Taken};
 use super::jump::JumpWatch;
 use super::lateness::DelayLine;
 use super::leak::{Change, LeakState, Look};
 use super::outlook::{self, LimitMasses};
+use super::parity::Parity;
 use super::rewind::Rewind;
 use super::roles::Roles;
 use super::settings::MonitorSettings;
@@ -77,6 +81,8 @@ struct State {
     watches: Vec<SensorWatch>,
     health: Vec<Health>,
     pair: Pair,
+    parity: Parity,
+    undisturbed: Undisturbed,
     wiring: WiringCheck,
     delays: DelayLine,
     /// Whether the two thermometers are in each other's place.
@@ -85,6 +91,7 @@ struct State {
     begun_with: Commissioning,
     filling: FillingCheck,
     jumps: JumpWatch,
+    gains: GainWatch,
     examined: Option<Examined>,
     rewind: Rewind,
     leak: LeakState,
@@ -163,12 +170,15 @@ impl Monitor {
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
             pair: Pair::default(),
+            parity: Parity::default(),
+            undisturbed: Undisturbed::default(),
             wiring: WiringCheck::of_all(),
             delays: DelayLine::default(),
             swapped: false,
             begun_with: *begun_with,
             filling: FillingCheck::default(),
             jumps: JumpWatch::default(),
+            gains: GainWatch::default(),
             examined: None,
             rewind: Rewind::default(),
             leak: LeakState::default(),
@@ -347,6 +357,8 @@ impl Monitor {
         self.check_filling(time_s, &mut events)?;
         let estimate = self.observe(time_s, silent_s, &mut events)?;
         self.mark_outcomes(time_s);
+        self.keep_undisturbed(time_s);
+        self.notice_gain(time_s, &mut events);
         self.step_twin(time_s)?;
         if estimate.quality == Quality::Restarted {
             events.push(Event::new(time_s, time_s, EventKind::Restarted));
@@ -384,7 +396,8 @@ impl Monitor {
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let degraded = self.is_degraded(time_s);
         let statistics = self.state.evidence.update(estimate, &self.leaks);
-        let statistics = if degraded { statistics.map(|value| value / DEGRADED) } else { statistics };
+        let divisor = self.state.parity.divisor() * if degraded { DEGRADED } else { 1.0 };
+        let statistics = statistics.map(|value| value / divisor);
         let alarm = self.thresholds.alarm(&statistics).is_some();
         let calm = self.thresholds.is_calm(&statistics);
         let lost_across = std::mem::take(&mut self.state.lost_across);

@@ -1,5 +1,6 @@
 //! The readings of a row: which can be used, what the sensors show of themselves, and whether they fit the filling.
 use super::Monitor;
+use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Outcome};
 use crate::estimator::thermal::scenario::Fill;
@@ -28,13 +29,20 @@ impl Monitor {
         let Some(pair) = self.roles.pair.or(one) else { return };
         // Gas that comes in or goes out warms or cools the shoulder before the valve.
         let judged = self.roles.pair.is_some() && !self.state.is_exchanging(time_s);
-        let watches = &mut self.state.watches;
+        let watches = &self.state.watches;
         let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
+        if self.roles.pair.is_some() && self.state.parity.push(time_s, pair.map(|sensor| self.usable[sensor]))
+        {
+            self.go_back_before_disturbance();
+        }
+        let watches = &mut self.state.watches;
         match self.state.pair.update(time_s, as_read, judged) {
             None => {}
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
                 watches[pair[which]].shift(by_k);
+                self.state.parity.forget();
+                self.state.undisturbed = Undisturbed::default();
                 self.usable[pair[which]] = f64::NAN;
                 // How far it jumped is known by a part of it, and whether it did is not certain.
                 self.observer.loosen(self.place_of(pair[which]), JUMPED_K + JUMPED_PART * by_k.abs());

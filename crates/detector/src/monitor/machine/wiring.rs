@@ -1,5 +1,6 @@
 //! Channels that are late or in each other's place: found, put right, and begun again with.
 use super::Monitor;
+use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Innovation, Observer, ObserverSettings};
 use crate::estimator::sensor::Sensor;
@@ -11,6 +12,7 @@ use crate::monitor::intake::Row;
 use crate::monitor::jump::JumpWatch;
 use crate::monitor::lateness::DelayLine;
 use crate::monitor::leak::Change;
+use crate::monitor::parity::Parity;
 use crate::monitor::rewind::Rewind;
 use crate::monitor::roles::Roles;
 use crate::monitor::thermometers::Pair;
@@ -131,6 +133,7 @@ impl Monitor {
         let state = &mut self.state;
         state.watches = self.sensors.iter().map(SensorWatch::new).collect();
         (state.jumps, state.rewind, state.pair) = (JumpWatch::default(), Rewind::default(), Pair::default());
+        (state.parity, state.undisturbed) = (Parity::default(), Undisturbed::default());
         state.evidence = Evidence::try_new(&self.settings.observer)?;
         state.start_s = Some(time_s);
         if state.leak.begin_anew() == Change::Ended {

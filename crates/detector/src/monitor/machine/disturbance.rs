@@ -1,0 +1,50 @@
+//! What is learnt while one end of the cylinder is warmed by itself is wrong, and stays wrong for days: once it is over, the
+//! observer goes on with what it knew before, and with the mass free.
+use serde::{Deserialize, Serialize};
+
+use super::{Monitor, SETTLED_S};
+use crate::estimator::observer::Snapshot;
+use crate::monitor::Reason;
+
+/// Time between two snapshots of an undisturbed observer, s. The one before the last is gone back to: a disturbance is noticed an hour or two late.
+const BETWEEN_S: f64 = 6.0 * 3600.0;
+
+/// The observer as it was before a disturbance.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Undisturbed {
+    due_s: f64,
+    latest: Option<Snapshot>,
+    before: Option<Snapshot>,
+    /// The present row is the first one after a disturbance.
+    returning: bool,
+}
+
+impl Monitor {
+    /// A disturbance is over with the present row, which is not taken yet: back to what was known before it.
+    pub(super) fn go_back_before_disturbance(&mut self) {
+        self.forget_masses();
+        if self.state.examined.is_some() {
+            return;
+        }
+        if let Some(before) = &self.state.undisturbed.before {
+            self.observer.restore(before);
+            self.observer.begin_exchange();
+            self.state.undisturbed.returning = true;
+            self.state.jumps.forget();
+        }
+    }
+
+    /// The observer has taken a row: what follows after a disturbance, and what is kept for the next one.
+    pub(super) fn keep_undisturbed(&mut self, time_s: f64) {
+        let undisturbed = &mut self.state.undisturbed;
+        if std::mem::take(&mut undisturbed.returning) {
+            self.observer.end_exchange();
+            self.state.rewind.begin(&self.observer);
+            self.state.look = (time_s + SETTLED_S, Reason::Settling);
+            undisturbed.due_s = time_s + BETWEEN_S;
+        } else if time_s >= undisturbed.due_s && self.state.parity.is_usual() {
+            undisturbed.due_s = time_s + BETWEEN_S;
+            undisturbed.before = undisturbed.latest.replace(self.observer.snapshot());
+        }
+    }
+}
