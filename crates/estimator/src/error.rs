@@ -186,6 +186,20 @@ pub enum EstimatorError {
         "the filter has no steady state: a state that moves or is driven by noise is not seen by the outputs"
     )]
     NoSteadyState,
+    /// What is asked of a layout of sensors contradicts itself.
+    #[error("no layout of sensors can be: {what}")]
+    PlacementConstraints {
+        /// The contradiction.
+        what: String,
+    },
+    /// The program that bounds the layouts of sensors has no solution.
+    #[error(
+        "the bound of the layouts could not be computed: {what}; try fewer candidates or a shorter window"
+    )]
+    PlacementProgram {
+        /// What happened.
+        what: &'static str,
+    },
     /// A pass with consider states cannot be smoothed.
     #[error(
         "a filter with consider states cannot be smoothed: its gains are not optimal; estimate these states"

@@ -28,7 +28,7 @@ pub use form::{CovarianceForm, Information, Joseph, SquareRoot};
 pub use gate::{GateCount, GateSettings, Outcome};
 pub use kalman::{ExtendedKalman, KalmanSettings};
 pub use report::{OutputReport, StepReport};
-pub use riccati::{SteadyState, steady_state};
+pub use riccati::{SteadyState, steady_prediction, steady_state};
 pub use ring::{Placement, Refilter};
 pub use sequential::{KalmanSnapshot, SequentialFilter};
 pub(crate) use smoother::Backward;

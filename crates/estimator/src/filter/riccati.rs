@@ -57,10 +57,38 @@ pub fn steady_state(
     if let Some(&variance) = r.iter().find(|r| !(r.is_finite() && **r > 0.0)) {
         return Err(EstimatorError::NoiseNotPositive { variance });
     }
-    let mut doubling = Doubling::new(f, h, q, r);
+    let element = |i: usize, j: usize| (0..r.len()).map(|l| h[(l, i)] * h[(l, j)] / r[l]).sum();
+    let (predicted, doublings) = settle(f, &DMatrix::from_fn(n, n, element), q)?;
+    finish(predicted, h, r, doublings)
+}
+
+/// The covariance before an update, of a filter whose every sample brings the information `H^T R^-1 H` (n, n), for transition `f` (n, n)
+/// and process noise `q` (n, n).
+///
+/// # Errors
+/// As [`steady_state`].
+pub fn steady_prediction(
+    f: &DMatrix<f64>,
+    information: &DMatrix<f64>,
+    q: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, EstimatorError> {
+    let n = f.nrows();
+    for length in [f.ncols(), information.nrows(), information.ncols(), q.nrows(), q.ncols()] {
+        super::failure::check_length(length, n)?;
+    }
+    Ok(settle(f, information, q)?.0)
+}
+
+/// The predicted covariance and the doublings that it took.
+fn settle(
+    f: &DMatrix<f64>,
+    information: &DMatrix<f64>,
+    q: &DMatrix<f64>,
+) -> Result<(DMatrix<f64>, usize), EstimatorError> {
+    let mut doubling = Doubling::new(f, information, q);
     for doublings in 1..=DOUBLINGS {
         match doubling.step() {
-            Growth::Settled => return finish(doubling.solution(), h, r, doublings),
+            Growth::Settled => return Ok((doubling.solution(), doublings)),
             Growth::Grows => {}
             Growth::Unbounded => break,
         }
@@ -124,7 +152,7 @@ struct Doubling {
 }
 
 impl Doubling {
-    fn new(f: &DMatrix<f64>, h: &DMatrix<f64>, q: &DMatrix<f64>, r: &DVector<f64>) -> Self {
+    fn new(f: &DMatrix<f64>, information: &DMatrix<f64>, q: &DMatrix<f64>) -> Self {
         let n = f.nrows();
         let high = padded(n);
         let load = |element: &dyn Fn(usize, usize) -> f64| {
@@ -134,14 +162,13 @@ impl Doubling {
             }
             a
         };
-        let information = |i: usize, j: usize| (0..r.len()).map(|l| h[(l, i)] * h[(l, j)] / r[l]).sum();
         let zeros = || vec![0.0; high * n];
         Self {
             n,
             high,
             a: load(&|i, j| f[(j, i)]),
             a_transposed: load(&|i, j| f[(i, j)]),
-            g: load(&information),
+            g: load(&|i, j| information[(i, j)]),
             x: load(&|i, j| 0.5 * (q[(i, j)] + q[(j, i)])),
             w: vec![0.0; n * n],
             exchanges: vec![0; n],

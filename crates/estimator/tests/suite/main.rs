@@ -18,5 +18,6 @@ mod late_samples;
 mod linear_model;
 mod matched;
 mod observer;
+mod placement;
 mod properties;
 mod sensors;

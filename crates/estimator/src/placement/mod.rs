@@ -1,0 +1,28 @@
+//! Where sensors should sit: the best layouts out of many, with a proof that none better was missed.
+//!
+//! A layout is a set of candidates. What it is worth is a number that falls with every sensor more, e.g. the variance
+//! `V = w^T P w` of a functional `w` of the state in the steady state of the filter that reads them ([`LinearProblem`]). With weights
+//! `0 <= z_j <= 1` on the information of the candidates, `G(z) = sum_j z_j h_j h_j^T / sigma_j^2`, `V(z)` is convex, and
+//!
+//! `dV/dz_j = -h_j^T P Y P h_j / sigma_j^2`, `Y = L^T Y L + w w^T`, `L = (I - K H) F`.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | [`LinearProblem`] | value, relaxed value and gradient |
+//! | [`Constraints`] | how many, at what cost, which together |
+//! | [`search`] | every layout; branch and bound; greedy with swaps |
+//! | [`certificate`] | what no layout can fall below |
+//!
+//! The gap between the best that was found and the bound is part of every result: greedy search can be arbitrarily bad for this
+//! criterion (Ye, Roy and Sundaram 2017), and says nothing about it.
+//!
+//! Sources: Joshi and Boyd 2009 (relaxation and gap); Sagnol 2011 (optimal design as a second-order cone program).
+pub mod certificate;
+mod constraints;
+mod objective;
+mod problem;
+pub mod search;
+
+pub use constraints::{Constraints, Group};
+pub use objective::{Objective, Relaxed};
+pub use problem::{CandidateOutput, LinearProblem};
