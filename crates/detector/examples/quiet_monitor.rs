@@ -53,6 +53,7 @@ fn main() -> Result<(), Failure> {
         "transmitter shifted",
         "thermometers swapped",
         "channel late",
+        "disturbed",
     ] {
         let times: u64 = cylinders.iter().filter_map(|said| said.get(kind)).sum();
         let with_one = cylinders.iter().filter(|said| said.contains_key(kind)).count() as u64;
@@ -115,6 +116,7 @@ fn kind(event: &EventKind) -> Option<&'static str> {
         EventKind::Restarted => "restart",
         EventKind::Swapped(_) => "thermometers swapped",
         EventKind::Late { .. } => "channel late",
+        EventKind::Disturbed { .. } => "disturbed",
         EventKind::Sensor { sensor, health: Health::Shifted(_) } if SENSORS[*sensor] == "pressure" => {
             "transmitter shifted"
         }

@@ -63,6 +63,13 @@ fn happening(event: &Event, naming: &Naming) -> String {
             naming.sensor(*sensor),
             by_s
         ),
+        EventKind::Disturbed { sensors: [first, second], off_k } => format!(
+            "{} less {} is off its usual difference by {:+.1} K: one end is warmed or cooled by itself, or one of them has shifted; \
+             small leaks are not seen meanwhile",
+            naming.sensor(*first),
+            naming.sensor(*second),
+            off_k
+        ),
         EventKind::ClockJump(jump_s) => {
             let way = if *jump_s < 0.0 { "back" } else { "forward" };
             format!("the clock jumped {way} by {}", duration(jump_s.abs()))
@@ -129,6 +136,9 @@ fn details(kind: &EventKind, naming: &Naming) -> Value {
         }
         EventKind::Swapped(sensors) => json!({ "sensors": sensors.map(|sensor| naming.sensor(sensor)) }),
         EventKind::Late { sensor, by_s } => json!({ "sensor": naming.sensor(*sensor), "by_s": by_s }),
+        EventKind::Disturbed { sensors, off_k } => {
+            json!({ "sensors": sensors.map(|sensor| naming.sensor(sensor)), "off_k": off_k })
+        }
         EventKind::ClockJump(jump_s) => json!({ "jump_s": jump_s }),
         EventKind::Gap(gap_s) => json!({ "gap_s": gap_s }),
         EventKind::LeakEnded | EventKind::TooLate | EventKind::Restarted => json!({}),
@@ -196,6 +206,7 @@ mod tests {
             EventKind::FillingDoubted { mass_kg: 4.1, filled_kg: 4.48 },
             EventKind::Swapped([0, 1]),
             EventKind::Late { sensor: 0, by_s: 87.3 },
+            EventKind::Disturbed { sensors: [0, 1], off_k: -1.24 },
             EventKind::ClockJump(-3600.0),
             EventKind::Gap(7200.0),
             EventKind::TooLate,
@@ -221,6 +232,7 @@ mod tests {
             "4.10 kg of gas, the filling that was stated for 4.48 kg",
             "shoulder and pressure are in each other's place",
             "shoulder is late by 87 s",
+            "off its usual difference by -1.2 K",
             "jumped back by 60 min",
             "no rows for 2 h",
             "a row of 2026-01-01T01:00:00Z came too late",

@@ -24,6 +24,7 @@ impl Marks {
             | EventKind::FillingDoubted { .. }
             | EventKind::Swapped(_)
             | EventKind::Late { .. }
+            | EventKind::Disturbed { .. }
             | EventKind::ClockJump(_)
             | EventKind::Gap(_)
             | EventKind::TooLate

@@ -60,6 +60,14 @@ pub enum EventKind {
         /// By so much against the earliest, s.
         by_s: f64,
     },
+    /// Two thermometers have been farther apart than usual for an hour: one end is warmed or cooled by itself, or one of them has shifted. Small leaks
+    /// are not seen meanwhile.
+    Disturbed {
+        /// Their indices in the order of the readings.
+        sensors: [usize; 2],
+        /// By so much, first less second, K.
+        off_k: f64,
+    },
     /// The clock jumped by so much, s.
     ClockJump(f64),
     /// Rows came after a gap, s.
@@ -92,6 +100,7 @@ impl EventKind {
             Self::FillingDoubted { .. } => "filling-doubted",
             Self::Swapped(_) => "swapped",
             Self::Late { .. } => "late",
+            Self::Disturbed { .. } => "disturbed",
             Self::ClockJump(_) => "clock-jump",
             Self::Gap(_) => "gap",
             Self::TooLate => "too-late",

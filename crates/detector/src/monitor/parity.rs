@@ -30,6 +30,18 @@ const DISTURBED_K: f64 = 0.5;
 const DISTURBED_S: f64 = 3.0 * 3600.0;
 const OVER_K: f64 = 0.3;
 
+/// Time for which it is off until it is told, s.
+const TOLD_S: f64 = 3600.0;
+
+/// What changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Disturbance {
+    /// For an hour now the difference has been off, by so much, K.
+    Begun(f64),
+    /// It is over, and what was seen meanwhile counts for nothing.
+    Over,
+}
+
 /// Watches the difference of two thermometers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Parity {
@@ -41,6 +53,7 @@ pub(super) struct Parity {
     excess: f64,
     last_s: f64,
     disturbed_s: f64,
+    told: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,8 +85,8 @@ impl Window {
 }
 
 impl Parity {
-    /// Take in both readings, K; those that are none count for nothing. Whether a disturbance is over whose masses count for nothing.
-    pub fn push(&mut self, time_s: f64, readings: [f64; 2]) -> bool {
+    /// Take in both readings, K; those that are none count for nothing.
+    pub fn push(&mut self, time_s: f64, readings: [f64; 2]) -> Option<Disturbance> {
         let elapsed_s = (time_s - self.last_s).max(0.0);
         self.last_s = time_s;
         let window = self.window.get_or_insert(Window::new(time_s));
@@ -95,12 +108,16 @@ impl Parity {
         if self.off_k.abs() > DISTURBED_K {
             self.disturbed_s += elapsed_s;
         }
-        let over = self.off_k.abs() < OVER_K;
-        let forget = over && self.disturbed_s > DISTURBED_S;
-        if over {
-            self.disturbed_s = 0.0;
+        if self.disturbed_s > TOLD_S && !self.told {
+            self.told = true;
+            return Some(Disturbance::Begun(self.off_k));
         }
-        forget
+        if self.off_k.abs() >= OVER_K {
+            return None;
+        }
+        let forgotten = std::mem::take(&mut self.disturbed_s) > DISTURBED_S;
+        self.told = false;
+        forgotten.then_some(Disturbance::Over)
     }
 
     fn compare(&mut self, calm: (f64, f64)) {
@@ -144,23 +161,22 @@ mod tests {
 
     const HOUR_S: f64 = 3600.0;
 
-    /// The divisors of a course of minutes in hours, and the hours at which masses were to be forgotten.
+    /// The divisors of a course of minutes in hours, and the hours at which something changed.
     fn watched(
         hours: f64,
         shoulder: impl Fn(f64) -> f64,
         valve: impl Fn(f64) -> f64,
-    ) -> (Vec<f64>, Vec<f64>) {
+    ) -> (Vec<f64>, Vec<(f64, Disturbance)>) {
         let mut parity = Parity::default();
-        let (mut divisors, mut forgotten) = (Vec::new(), Vec::new());
+        let (mut divisors, mut changes) = (Vec::new(), Vec::new());
         for minute in 0..(60.0 * hours) as u32 {
             let hour = f64::from(minute) / 60.0;
             let noise = |n: u32| 0.01 * f64::from((minute * n) % 11) - 0.05;
-            if parity.push(HOUR_S * hour, [shoulder(hour) + noise(7), valve(hour) + noise(4)]) {
-                forgotten.push(hour);
-            }
+            let change = parity.push(HOUR_S * hour, [shoulder(hour) + noise(7), valve(hour) + noise(4)]);
+            changes.extend(change.map(|change| (hour, change)));
             divisors.push(parity.divisor());
         }
-        (divisors, forgotten)
+        (divisors, changes)
     }
 
     #[test]
@@ -170,27 +186,32 @@ mod tests {
             inside if inside < 0.4 => 280.0 + 40.0 * share + 12.0 * inside,
             after => 280.0 + (4.8 - 12.0 * (after - 0.4)).max(0.0),
         };
-        let (divisors, forgotten) = watched(72.0, |hour| tunnel(hour, 0.15), |hour| tunnel(hour, 0.05));
-        assert!(divisors.iter().all(|divisor| *divisor < 1.1) && forgotten.is_empty());
+        let (divisors, changes) = watched(72.0, |hour| tunnel(hour, 0.15), |hour| tunnel(hour, 0.05));
+        assert!(divisors.iter().all(|divisor| *divisor < 1.1) && changes.is_empty());
     }
 
     #[test]
     fn one_end_that_is_warmed_makes_the_evidence_count_less_until_it_is_over() {
         let warmed = |hour: f64| if (40.0..52.0).contains(&hour) { 281.0 } else { 280.0 };
-        let (divisors, forgotten) = watched(90.0, warmed, |_| 280.0);
+        let (divisors, changes) = watched(90.0, warmed, |_| 280.0);
         let at = |hour: f64| divisors[(60.0 * hour) as usize];
         assert!(at(39.0) < 1.1, "{}", at(39.0));
         for hour in [41.0, 46.0, 51.0] {
             assert!((at(hour) - 17_f64.sqrt()).abs() < 0.3, "{} at {hour} h", at(hour));
         }
         assert!(at(58.5) > 1.8 && at(58.5) < 2.8 && at(85.0) < 1.1, "{} and {}", at(58.5), at(85.0));
-        assert!(matches!(forgotten[..], [hour] if hour > 52.0 && hour < 53.0), "{forgotten:?}");
+        let [(begun_h, Disturbance::Begun(off_k)), (over_h, Disturbance::Over)] = changes[..] else {
+            panic!("{changes:?}")
+        };
+        assert!((41.0..42.0).contains(&begun_h) && (52.0..53.0).contains(&over_h), "{changes:?}");
+        assert!((off_k - 1.0).abs() < 0.1, "{off_k} K");
     }
 
     #[test]
     fn sun_of_an_hour_is_no_reason_to_forget_and_missing_readings_are_none() {
         let sunny = |hour: f64| if (40.0..41.5).contains(&hour) { 281.0 } else { 280.0 };
-        assert!(watched(60.0, sunny, |_| 280.0).1.is_empty());
+        let (_, changes) = watched(60.0, sunny, |_| 280.0);
+        assert!(matches!(changes[..], [(_, Disturbance::Begun(_))]), "{changes:?}");
         let (divisors, _) = watched(60.0, |hour| if hour > 40.0 { f64::NAN } else { 280.0 }, |_| 280.0);
         assert!(divisors.iter().all(|divisor| divisor.is_finite() && *divisor < 1.1));
     }

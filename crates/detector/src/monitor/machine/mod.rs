@@ -349,7 +349,7 @@ impl Monitor {
         self.judge_wiring(time_s, &mut events)?;
         self.screen(row);
         self.read_wiring(row);
-        self.watch_thermometers(time_s);
+        self.watch_thermometers(time_s, &mut events);
         self.place();
         if silent_s.is_finite() && silent_s > self.settings.gap_s {
             self.state.look = (time_s + LOOK_S, Reason::Gap);

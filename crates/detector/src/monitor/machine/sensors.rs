@@ -5,6 +5,7 @@ use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Outcome};
 use crate::estimator::thermal::scenario::Fill;
 use crate::monitor::intake::Row;
+use crate::monitor::parity::Disturbance;
 use crate::monitor::thermometers::Lonely;
 use crate::monitor::{Event, EventKind};
 
@@ -24,16 +25,21 @@ impl Monitor {
         }
     }
 
-    pub(super) fn watch_thermometers(&mut self, time_s: f64) {
+    pub(super) fn watch_thermometers(&mut self, time_s: f64, events: &mut Vec<Event>) {
         let one = self.roles.thermometers.first().map(|only| [*only, *only]);
         let Some(pair) = self.roles.pair.or(one) else { return };
         // Gas that comes in or goes out warms or cools the shoulder before the valve.
         let judged = self.roles.pair.is_some() && !self.state.is_exchanging(time_s);
         let watches = &self.state.watches;
         let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
-        if self.roles.pair.is_some() && self.state.parity.push(time_s, pair.map(|sensor| self.usable[sensor]))
-        {
-            self.go_back_before_disturbance();
+        if self.roles.pair.is_some() {
+            match self.state.parity.push(time_s, pair.map(|sensor| self.usable[sensor])) {
+                None => {}
+                Some(Disturbance::Begun(off_k)) => {
+                    events.push(Event::new(time_s, time_s, EventKind::Disturbed { sensors: pair, off_k }));
+                }
+                Some(Disturbance::Over) => self.go_back_before_disturbance(),
+            }
         }
         let watches = &mut self.state.watches;
         match self.state.pair.update(time_s, as_read, judged) {
