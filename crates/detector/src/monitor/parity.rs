@@ -6,7 +6,7 @@
 //! with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
 //!
 //! `d` is the median of the last three calm windows less that of the two days before. The evidence for a leak is divided by
-//! `sqrt(1 + (d / 0.25 K)^2)`, and for six hours after it by what is left of that, as the observer needs its time to come back. Where `d` was above 0.5 K for three
+//! `sqrt(1 + (d / 0.25 K)^2)`, at most 4, beyond 2.5 the verdict is unknown; and for six hours after it by what is left of that, as the observer needs its time to come back. Where `d` was above 0.5 K for three
 //! hours, the masses from then count for nothing once it is over. After two days the new difference is the usual one.
 use std::collections::VecDeque;
 
@@ -23,6 +23,10 @@ const FEWEST_USUAL: usize = 36;
 const LATEST: usize = 3;
 /// Difference that doubles what is needed, nearly, K.
 const SCALE_K: f64 = 0.25;
+/// Largest divisor: a leak of 1 bar/h is found beside whatever heater.
+const LARGEST: f64 = 4.0;
+/// Divisor beyond which nothing is known of small leaks.
+const BLIND: f64 = 2.5;
 /// Time constant with which it comes back, s.
 const BACK_S: f64 = 6.0 * 3600.0;
 /// Difference, K, and time, s, from which what was seen counts for nothing, and the difference at which it is over, K.
@@ -103,7 +107,7 @@ impl Parity {
         if let Some(calm) = completed {
             self.compare(calm);
         }
-        let now = (1.0 + (self.off_k / SCALE_K).powi(2)).sqrt() - 1.0;
+        let now = (1.0 + (self.off_k / SCALE_K).powi(2)).sqrt().min(LARGEST) - 1.0;
         self.excess = now.max(self.excess * (-elapsed_s / BACK_S).exp());
         if self.off_k.abs() > DISTURBED_K {
             self.disturbed_s += elapsed_s;
@@ -135,6 +139,11 @@ impl Parity {
     /// Whether the difference is the usual one, and has been for a while.
     pub fn is_usual(&self) -> bool {
         self.off_k.abs() < OVER_K && self.excess < 1.0
+    }
+
+    /// Whether nothing can be told of small leaks.
+    pub fn is_blind(&self) -> bool {
+        self.divisor() > BLIND
     }
 
     /// What the evidence for a leak is divided by.
@@ -197,7 +206,7 @@ mod tests {
         let at = |hour: f64| divisors[(60.0 * hour) as usize];
         assert!(at(39.0) < 1.1, "{}", at(39.0));
         for hour in [41.0, 46.0, 51.0] {
-            assert!((at(hour) - 17_f64.sqrt()).abs() < 0.3, "{} at {hour} h", at(hour));
+            assert!((at(hour) - LARGEST).abs() < 0.3, "{} at {hour} h", at(hour));
         }
         assert!(at(58.5) > 1.8 && at(58.5) < 2.8 && at(85.0) < 1.1, "{} and {}", at(58.5), at(85.0));
         let [(begun_h, Disturbance::Begun(off_k)), (over_h, Disturbance::Over)] = changes[..] else {

@@ -39,6 +39,8 @@ pub enum Reason {
     Jump,
     /// Gas was exchanged, and temperature and mass have not come to rest.
     Settling,
+    /// One end of the cylinder is warmed or cooled by itself, or was until a while ago: the thermometers do not stand for the gas.
+    Disturbed,
     /// A reading stands still while it should move.
     Stuck,
     /// The times of the rows cannot be relied on.
@@ -80,6 +82,7 @@ impl Reason {
             Self::Gap => "no rows for too long",
             Self::Jump => "the pressure jumped: gas or transmitter",
             Self::Settling => "gas was exchanged and has not settled",
+            Self::Disturbed => "one end of the cylinder is warmed or cooled by itself",
             Self::Stuck => "a reading stands still",
             Self::Clock => "the clock jumped",
             Self::Restarted => "the estimate had to begin again",

@@ -93,7 +93,8 @@ impl AlarmInputs {
         };
         let at_fault = |health: &Health| !matches!(health, Health::Good | Health::Spikes);
         // The first days and the hours after a refill are no loss of sight.
-        let expected = matches!(verdict.reason(), Some(Reason::Learning | Reason::Settling));
+        let expected =
+            matches!(verdict.reason(), Some(Reason::Learning | Reason::Settling | Reason::Disturbed));
         Self {
             leak,
             p15_pa,

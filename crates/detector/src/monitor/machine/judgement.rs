@@ -67,6 +67,9 @@ impl Monitor {
         if state.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S) {
             return Some(Reason::Settling);
         }
+        if state.parity.is_blind() {
+            return Some(Reason::Disturbed);
+        }
         let learning = state.start_s.is_some_and(|start_s| time_s - start_s < self.settings.learning_s);
         learning.then_some(Reason::Learning)
     }

@@ -130,14 +130,12 @@ impl TableRow {
             P1 | P7 | T1 | T2 | T7 => Requirement::Flagged,
             P2 => Requirement::NotALeak,
             P3 => Requirement::Undecidable,
-            T5 => Requirement::Degraded,
+            T5 | E3 | E5 => Requirement::Degraded,
             T6 => Requirement::Warned,
             G1 | G2 | G3 => Requirement::Recognised,
             G4 | G5 => Requirement::Found,
             D5 => Requirement::Continued,
-            P4 | P5 | P6 | T3 | T4 | E1 | E2 | E3 | E4 | E5 | E6 | E7 | D1 | D2 | D3 | D4 => {
-                Requirement::Survived
-            }
+            P4 | P5 | P6 | T3 | T4 | E1 | E2 | E4 | E6 | E7 | D1 | D2 | D3 | D4 => Requirement::Survived,
         }
     }
 
