@@ -80,12 +80,15 @@ fn a_tight_cylinder_in_winter_is_tight_once_it_is_learnt() {
     for output in &outputs {
         let expected =
             if output.estimate.time_s < DAY_S { Verdict::Unknown(Reason::Learning) } else { Verdict::Tight };
-        let examining = output.verdict == Verdict::Unknown(Reason::Jump);
-        assert!(output.verdict == expected || examining, "{} s: {}", output.estimate.time_s, output.verdict);
+        let passing = [Reason::Jump, Reason::Disturbed].map(Verdict::Unknown).contains(&output.verdict);
+        assert!(output.verdict == expected || passing, "{} s: {}", output.estimate.time_s, output.verdict);
     }
-    let examined = outputs.iter().filter(|o| o.verdict == Verdict::Unknown(Reason::Jump)).count();
-    println!("{examined} of {} samples under examination", outputs.len());
-    assert!(examined * 50 < outputs.len());
+    // A jump under examination; sun on the shoulder for a few hours.
+    for (reason, most) in [(Reason::Jump, 0.02), (Reason::Disturbed, 0.1)] {
+        let said = outputs.iter().filter(|output| output.verdict == Verdict::Unknown(reason)).count();
+        println!("{reason:?}: {said} of {} samples", outputs.len());
+        assert!((said as f64) < most * outputs.len() as f64);
+    }
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_) | EventKind::Discharge(_))));
 }
 
