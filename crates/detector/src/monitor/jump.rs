@@ -58,6 +58,8 @@ const SPIKE_SAMPLES: usize = 5;
 const AMONG: usize = 5;
 const AMONG_FIRST: usize = 12;
 const LEFT_OF_SPIKES: f64 = 0.05;
+/// Change of the thermometers at a jump, times the above, beyond which it is one in a tunnel, K.
+const STILL_K: f64 = 0.6;
 /// Error that no tunnel makes in a few samples, Pa.
 const BEYOND_TUNNEL_PA: f64 = 2e5;
 /// Least height of such spikes, Pa.
@@ -283,7 +285,7 @@ impl Examination {
             && peak_pa > SPIKE_PA
             && self.grew < FLOW_SAMPLES;
         // What a tunnel does to the shadow is no spike that has gone.
-        let tellable = self.calm_k.is_some() || peak_pa > BEYOND_TUNNEL_PA;
+        let tellable = self.calm_k.is_some_and(|calm_k| calm_k < STILL_K) || peak_pa > BEYOND_TUNNEL_PA;
         if among || tellable && self.samples <= SPIKE_SAMPLES && self.back >= 2 {
             return Cause::Spike;
         }

@@ -6,7 +6,7 @@
 //! with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
 //!
 //! `d` is the median of the last three calm windows less that of the two days before. The evidence for a leak is divided by
-//! `sqrt(1 + (d / 0.25 K)^2)`, at most 4, beyond 2.5 the verdict is unknown; and for six hours after it by what is left of that, as the observer needs its time to come back. Where `d` was above 0.5 K for three
+//! `sqrt(1 + ((|d| - 0.3 K) / 0.2 K)^2)` from `|d|` = 0.3 K on, at most 4, beyond 2.5 the verdict is unknown; and for six hours after it by what is left of that, as the observer needs its time to come back. Where `d` was above 0.5 K for three
 //! hours, the masses from then count for nothing once it is over. After two days the new difference is the usual one.
 use std::collections::VecDeque;
 
@@ -19,10 +19,12 @@ const FEWEST_ROWS: u32 = 2;
 /// Time over which the usual difference is taken, s, and fewest windows.
 const USUAL_S: f64 = 48.0 * 3600.0;
 const FEWEST_USUAL: usize = 36;
-/// Windows whose median is the present difference.
+/// Windows whose median is the present difference, and time without one, s, after which nothing is known of it.
 const LATEST: usize = 3;
-/// Difference that doubles what is needed, nearly, K.
-const SCALE_K: f64 = 0.25;
+const STALE_S: f64 = 3.0 * 3600.0;
+/// Difference that is usual, K, and difference beyond it that raises what is needed by 40 %, K.
+const HARMLESS_K: f64 = 0.3;
+const SCALE_K: f64 = 0.2;
 /// Largest divisor: a leak of 1 bar/h is found beside whatever heater.
 const LARGEST: f64 = 4.0;
 /// Divisor beyond which nothing is known of small leaks.
@@ -107,7 +109,11 @@ impl Parity {
         if let Some(calm) = completed {
             self.compare(calm);
         }
-        let now = (1.0 + (self.off_k / SCALE_K).powi(2)).sqrt().min(LARGEST) - 1.0;
+        if self.calm.back().is_some_and(|(at_s, _)| time_s - at_s > STALE_S) {
+            self.off_k = 0.0;
+        }
+        let beyond_k = (self.off_k.abs() - HARMLESS_K).max(0.0);
+        let now = (beyond_k / SCALE_K).hypot(1.0).min(LARGEST) - 1.0;
         self.excess = now.max(self.excess * (-elapsed_s / BACK_S).exp());
         if self.off_k.abs() > DISTURBED_K {
             self.disturbed_s += elapsed_s;
@@ -206,7 +212,7 @@ mod tests {
         let at = |hour: f64| divisors[(60.0 * hour) as usize];
         assert!(at(39.0) < 1.1, "{}", at(39.0));
         for hour in [41.0, 46.0, 51.0] {
-            assert!((at(hour) - LARGEST).abs() < 0.3, "{} at {hour} h", at(hour));
+            assert!((at(hour) - 3.64).abs() < 0.3, "{} at {hour} h", at(hour));
         }
         assert!(at(58.5) > 1.8 && at(58.5) < 2.8 && at(85.0) < 1.1, "{} and {}", at(58.5), at(85.0));
         let [(begun_h, Disturbance::Begun(off_k)), (over_h, Disturbance::Over)] = changes[..] else {
@@ -223,5 +229,9 @@ mod tests {
         assert!(matches!(changes[..], [(_, Disturbance::Begun(_))]), "{changes:?}");
         let (divisors, _) = watched(60.0, |hour| if hour > 40.0 { f64::NAN } else { 280.0 }, |_| 280.0);
         assert!(divisors.iter().all(|divisor| divisor.is_finite() && *divisor < 1.1));
+        // One that is lost while it is off says nothing more.
+        let lost = |hour: f64| if hour > 41.0 { f64::NAN } else { 281.0 + (hour - 40.0).signum() };
+        let (divisors, _) = watched(90.0, lost, |_| 280.0);
+        assert!(divisors[2460] > 3.0 && *divisors.last().unwrap() < 1.1, "{:?}", divisors.last());
     }
 }

@@ -137,7 +137,10 @@ impl Monitor {
     fn exchange(&mut self, time_s: f64, unclear: bool, events: &mut Vec<Event>) {
         let Some(examined) = &self.state.examined else { return };
         let onset_s = examined.examination.onset_s();
-        let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
+        // Which way it went the pressure says; in a tunnel the mass may not have come to it yet.
+        let by_pressure_kg = -examined.examination.error_pa() / self.state.p15.slope_pa_kg();
+        let by_mass_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
+        let change_kg = if by_mass_kg * by_pressure_kg < 0.0 { by_pressure_kg } else { by_mass_kg };
         self.observer.end_exchange();
         if unclear {
             self.state.look = (time_s + DOUBT_S, Reason::Jump);
