@@ -129,6 +129,14 @@ fn while_blind_nothing_is_tight_and_blind_time_does_not_count_against_a_leak() {
     assert_eq!(flagged(&in_time, 47.0), [Missed::NotFound]);
     let late = [(0.0, Verdict::Tight), (11.5, blind)];
     assert_eq!(flagged(&late, 45.0), [Missed::TightWhileBlind]);
+    // Beside a heater it may be said for a while that it cannot be known; that time does not count.
+    let beside_heater = |unknown_h: f64, found_h: f64| {
+        let disturbed = Verdict::Unknown(Reason::Disturbed);
+        let verdicts = [(0.0, Verdict::Tight), (22.0, disturbed), (22.0 + unknown_h, Verdict::Tight)];
+        judge(&leaking(TableRow::E5, None), &history(&verdicts, &[(0.0, false), (found_h, true)]), None)
+    };
+    assert_eq!(beside_heater(1.0, 30.0), [Missed::NotFound]);
+    assert_eq!(beside_heater(6.0, 30.0), []);
     // Who says at the deadline that it cannot be told has not missed the leak.
     assert_eq!(flagged(&[(0.0, Verdict::Tight), (10.5, blind)], 90.0), []);
 }

@@ -199,6 +199,13 @@ impl History {
             || self.verdicts.iter().any(|(at_s, verdict)| (from_s..=to_s).contains(at_s) && is(*verdict))
     }
 
+    /// Time in `[from_s, to_s]` in which the verdict was unknown, s.
+    pub fn unknown_s(&self, from_s: f64, to_s: f64) -> f64 {
+        let ends = self.verdicts.iter().skip(1).map(|(at_s, _)| *at_s).chain([f64::INFINITY]);
+        let spans = self.verdicts.iter().zip(ends).filter(|((_, verdict), _)| verdict.reason().is_some());
+        spans.map(|((begun_s, _), end_s)| (end_s.min(to_s) - begun_s.max(from_s)).max(0.0)).sum()
+    }
+
     /// Whether a leak was stated at any time in `[from_s, to_s]`.
     pub fn any_leak(&self, from_s: f64, to_s: f64) -> bool {
         let next = self.leaking.partition_point(|(at_s, _)| *at_s <= from_s);

@@ -5,7 +5,7 @@
 //! * *False leak*: a leak is stated while there is none. Only a transmitter that drifts downwards may be taken for one.
 //! * *Found*: a leak is stated within `6 h (1 bar/h / r)^(2/3)` of its onset: 28 h for 0.1 bar/h, 5.4 d for 0.01 bar/h, about
 //!   twice the least delay that any detector can have with a model error of 0.3 bar and 3 h. Time in which nothing usable is read does not
-//!   count, and an exchange of gas begins it anew once it has settled.
+//!   count, nor, where observing is degraded, time in which it is said that it cannot be known, and an exchange of gas begins it anew once it has settled.
 //!   A loss that follows a tunnel (G5) goes as fast as a discharge, and may be stated as one.
 //! * *Flagged*: the sensor's health is said not to be good, or the verdict is that of a sensor at fault, within a time of the onset.
 //! * *Blind*: no usable pressure or no usable temperature for more than an hour, or the first row after six hours without any. Then the
@@ -178,6 +178,14 @@ impl Judgement<'_> {
             }
             _ => leak.onset_s + allowed_s,
         };
+        let undecided = matches!(
+            self.case.row.requirement(),
+            Requirement::Flagged | Requirement::Degraded | Requirement::Undecidable | Requirement::Warned
+        );
+        // Where it may be said to the end that it cannot be known, it may be said for a while.
+        let degraded = self.case.row.requirement() == Requirement::Degraded && self.blind_s().is_none();
+        let unknown_s = if degraded { self.history.unknown_s(leak.onset_s, deadline_s) } else { 0.0 };
+        let deadline_s = deadline_s + unknown_s;
         let until_s = deadline_s.min(self.case.until_s);
         let discharged = |kind: &EventKind| matches!(kind, EventKind::Discharge(_));
         if self.history.any_leak(leak.onset_s, until_s)
@@ -189,10 +197,6 @@ impl Judgement<'_> {
             // Blind to the end, or cut off: nothing can be required but that it is not called tight while blind.
             return false;
         }
-        let undecided = matches!(
-            self.case.row.requirement(),
-            Requirement::Flagged | Requirement::Degraded | Requirement::Undecidable | Requirement::Warned
-        );
         let said = self.history.verdict_at(deadline_s);
         // Nothing can be found with a wrong unit: that it is said is enough.
         let warned = matches!(self.case.fault, Some(Fault::Units { .. })) && self.is_warned();
