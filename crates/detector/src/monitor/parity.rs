@@ -7,7 +7,7 @@
 //!
 //! `d` is the median of the last three calm windows less that of the two days before. The evidence for a leak is divided by
 //! `sqrt(1 + ((|d| - 0.3 K) / 0.2 K)^2)` from `|d|` = 0.3 K on, at most 4, beyond 2.5 the verdict is unknown; and for six hours after it by what is left of that, as the observer needs its time to come back. Where `d` was above 0.5 K for three
-//! hours, the masses from then count for nothing once it is over. After two days the new difference is the usual one.
+//! hours, the evidence from then counts for nothing once it is over. After two days the new difference is the usual one.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};

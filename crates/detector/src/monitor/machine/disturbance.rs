@@ -22,7 +22,8 @@ pub(super) struct Undisturbed {
 impl Monitor {
     /// A disturbance is over with the present row, which is not taken yet: back to what was known before it.
     pub(super) fn go_back_before_disturbance(&mut self) {
-        self.forget_masses();
+        // The masses from before it still say when a leak began.
+        self.state.evidence.forget();
         if self.state.examined.is_some() {
             return;
         }
