@@ -95,6 +95,12 @@ pub fn health_words(health: Health, quantity: Quantity) -> String {
             };
             format!("is shifted by {} {unit}, which is taken into account", short(by))
         }
+        Health::Deviates(by) => {
+            format!(
+                "is off by {} K, as the other thermometer and the pressure say: warmed by itself or shifted",
+                short(by)
+            )
+        }
         Health::Detached => "follows the air: it is off its surface".to_owned(),
     }
 }
@@ -170,13 +176,14 @@ pub(super) fn health_word(health: Health) -> &'static str {
         Health::Stuck => "stuck",
         Health::Spikes => "spikes",
         Health::Shifted(_) => "shifted",
+        Health::Deviates(_) => "deviates",
         Health::Detached => "detached",
     }
 }
 
 fn shift(health: Health, quantity: Quantity) -> Value {
     match (health, quantity) {
-        (Health::Shifted(by), Quantity::Temperature) => json!({ "k": by }),
+        (Health::Shifted(by) | Health::Deviates(by), Quantity::Temperature) => json!({ "k": by }),
         (Health::Shifted(by), Quantity::Pressure) => json!({ "bar": by / PASCAL_PER_BAR }),
         _ => Value::Null,
     }
@@ -202,6 +209,7 @@ mod tests {
             EventKind::Discharge(0.12),
             EventKind::Refill(1.5),
             EventKind::Sensor { sensor: 1, health: Health::Shifted(-0.4e5) },
+            EventKind::Sensor { sensor: 0, health: Health::Deviates(1.2) },
             EventKind::ColdNight(158.2e5),
             EventKind::FillingDoubted { mass_kg: 4.1, filled_kg: 4.48 },
             EventKind::Swapped([0, 1]),
@@ -228,6 +236,7 @@ mod tests {
             "discharge of 120 g at 2026-01-01T01:00:00Z",
             "refill of 1500 g",
             "pressure is shifted by -0.4 bar",
+            "shoulder is off by 1.2 K, as the other thermometer and the pressure say",
             "158.2 bar without any leak",
             "4.10 kg of gas, the filling that was stated for 4.48 kg",
             "shoulder and pressure are in each other's place",
@@ -257,6 +266,7 @@ mod tests {
             assert_eq!(object["event"], event.kind.name());
             match event.kind {
                 EventKind::LeakFound(_) => assert_eq!(object["rate_g_h"][2].as_f64().unwrap().round(), 5.0),
+                EventKind::Sensor { sensor: 0, .. } => assert_eq!(object["shift"]["k"], 1.2),
                 EventKind::Sensor { .. } => assert_eq!(object["shift"]["bar"], -0.4),
                 EventKind::Verdict { .. } => {
                     assert_eq!(object["from"]["reason"], "still learning the sensors")

@@ -2,11 +2,12 @@
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cylwatch_detector::estimator::observer::Commissioning;
 use cylwatch_detector::estimator::sensor::Sensor;
 use cylwatch_detector::estimator::thermal::vessel::presets;
-use cylwatch_detector::monitor::{LeakFinding, Monitor, MonitorSettings};
+use cylwatch_detector::monitor::{Event, EventKind, LeakFinding, Monitor, MonitorSettings};
 use cylwatch_detector::performance::{CONFIDENCE, Proportion};
 use rayon::prelude::*;
 
@@ -27,23 +28,26 @@ struct Said {
     findings: [LeakFinding; 2],
 }
 
-/// Run the monitor on the readings of all leaks, and print how often its intervals hold the truth.
+/// Run the monitor on the readings of all leaks, and print how often its intervals hold the truth, and how often it says that gas was exchanged.
 pub fn print(folder: &Path) -> Result<(), Fault> {
-    let said = Mutex::new(Vec::new());
+    let (said, exchanges) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
     Part::Leaks.groups().par_iter().with_max_len(1).try_for_each(|group| -> Result<(), Fault> {
         let readings = truths::readings(folder, group)?;
         for (run, readings) in group.iter().zip(&readings) {
-            if let Some(one) = watch(run, readings)? {
+            if let Some(one) = watch(run, readings, &exchanges)? {
                 said.lock().map_err(|_| "another thread failed")?.push(one);
             }
         }
         Ok(())
     })?;
-    table(&said.into_inner().map_err(|_| "another thread failed")?)
+    table(&said.into_inner().map_err(|_| "another thread failed")?)?;
+    let exchanges = exchanges.into_inner();
+    writeln!(std::io::stdout(), "\nExchanges of gas that were none: {exchanges}")?;
+    Ok(())
 }
 
 /// `None` if the leak was not found a day before the end.
-fn watch(run: &Run, readings: &Readings) -> Result<Option<Said>, Fault> {
+fn watch(run: &Run, readings: &Readings, exchanges: &AtomicUsize) -> Result<Option<Said>, Fault> {
     let Some(leak) = run.settings.leak else { return Ok(None) };
     let sensors = ["shoulder", "valve", "pressure"].map(Sensor::typical);
     let sensors = sensors.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -53,6 +57,9 @@ fn watch(run: &Run, readings: &Readings) -> Result<Option<Said>, Fault> {
     let mut alarm: Option<(f64, LeakFinding)> = None;
     for (time_s, row) in readings.rows() {
         for output in monitor.step(time_s, &row)? {
+            let exchange =
+                |event: &&Event| matches!(event.kind, EventKind::Discharge(_) | EventKind::Refill(_));
+            exchanges.fetch_add(output.events.iter().filter(exchange).count(), Ordering::Relaxed);
             let Some(leak_said) = output.leak else { continue };
             if time_s < leak.start_s {
                 // It was there before.

@@ -6,6 +6,7 @@
 //! * *Spikes*: readings refused by the observer's gate within the last hour.
 //! * *Shifted*: a thermometer that jumps while the other one does not, and stays there, has changed its offset; a
 //!   disturbance from outside moves both, since air and sun reach both. The jump is taken off the readings from then on.
+//! * *Deviates*: for half an hour it has been off while the other thermometer agrees with the pressure; [`super::parity`] tells.
 //! * *Detached*: a thermometer that does so again and again reads the air.
 //!
 //! What a transmitter's jump is, [`super::jump`] tells.
@@ -45,6 +46,8 @@ pub struct SensorWatch {
     /// Taken off every reading, K or Pa.
     correction: f64,
     detached: bool,
+    /// Off by so much, K, while others agree.
+    deviates: Option<f64>,
     health: Health,
 }
 
@@ -65,6 +68,7 @@ impl SensorWatch {
             last_used_s: f64::NEG_INFINITY,
             correction: 0.0,
             detached: false,
+            deviates: None,
             health: Health::Good,
         }
     }
@@ -87,10 +91,11 @@ impl SensorWatch {
             self.health = Health::Detached;
             return f64::NAN;
         }
-        self.health = match () {
-            () if time_s - self.spiked_s < SPIKES_S => Health::Spikes,
-            () if self.correction != 0.0 => Health::Shifted(self.correction),
-            () => Health::Good,
+        self.health = match self.deviates {
+            _ if time_s - self.spiked_s < SPIKES_S => Health::Spikes,
+            Some(by) => Health::Deviates(by),
+            None if self.correction != 0.0 => Health::Shifted(self.correction),
+            None => Health::Good,
         };
         reading - self.correction
     }
@@ -130,7 +135,7 @@ impl SensorWatch {
     /// The observer refused the reading.
     pub fn refused(&mut self, time_s: f64) {
         self.spiked_s = time_s;
-        if matches!(self.health, Health::Good | Health::Shifted(_)) {
+        if matches!(self.health, Health::Good | Health::Deviates(_) | Health::Shifted(_)) {
             self.health = Health::Spikes;
         }
     }
@@ -143,6 +148,11 @@ impl SensorWatch {
     /// From now on so much more, K or Pa, is taken off.
     pub fn shift(&mut self, by: f64) {
         self.correction += by;
+    }
+
+    /// From the next reading on it is off by so much, K, while others agree, or no longer.
+    pub fn deviates(&mut self, by: Option<f64>) {
+        self.deviates = by;
     }
 
     /// The sensor reads something else than it should.

@@ -59,6 +59,8 @@ pub enum Health {
     Spikes,
     /// Its offset jumped by so much, K or Pa, and was taken into account.
     Shifted(f64),
+    /// For half an hour it has been off by so much, K, while the other thermometer agrees with the pressure: warmed by itself, or shifted.
+    Deviates(f64),
     /// It follows the air instead of the surface that it should sit on.
     Detached,
 }

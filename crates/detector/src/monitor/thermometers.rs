@@ -61,9 +61,9 @@ const RESTLESS_PART: f64 = 0.4;
 const RESTLESS_LARGEST_K: f64 = 1.0;
 /// Interval beyond which two samples are not compared, s.
 const LONGEST_INTERVAL_S: f64 = 900.0;
-/// Samples before a jump over which a surprise of both is remembered; what both did is told over the last three.
+/// Samples before a jump over which a surprise of both is remembered; what both did is told over the last four.
 const SURPRISE_SAMPLES: usize = 3;
-const MOVED_SAMPLES: usize = 3;
+const MOVED_SAMPLES: usize = 4;
 /// What both may have done while neither can be read, K.
 const UNSEEN_K: f64 = 5.0;
 
@@ -86,8 +86,10 @@ pub struct Moved {
     pub by_k: f64,
     /// The same with its sign, where both went the same way, else 0, K.
     pub together_k: f64,
-    /// Largest second difference of the last three samples, K.
-    pub surprise_k: f64,
+    /// Largest second difference with which both got faster, of this sample and the last one, K.
+    pub quickened_k: f64,
+    /// The same of the two samples before.
+    pub quickened_before_k: f64,
 }
 
 /// Two thermometers on one cylinder.
@@ -96,6 +98,7 @@ pub struct Pair {
     by_k: f64,
     together_k: f64,
     surprises_k: VecDeque<f64>,
+    quickened_k: VecDeque<f64>,
     /// The last samples: time, s, and readings, K.
     recent: VecDeque<(f64, [f64; 2])>,
     suspect: Option<Suspect>,
@@ -128,18 +131,20 @@ impl Pair {
     fn forget(&mut self) {
         self.recent.clear();
         self.surprises_k.clear();
+        self.quickened_k.clear();
         (self.suspect, self.by_k, self.together_k) = (None, 0.0, 0.0);
     }
 
     /// What both did at the last samples.
     pub fn moved(&self) -> Moved {
         let (by_k, together_k) = (self.by_k, self.together_k);
-        Moved { by_k, together_k, surprise_k: self.surprise_k(0..MOVED_SAMPLES) }
-    }
-
-    /// Largest surprise of both within samples, counted back from the last one, K.
-    fn surprise_k(&self, samples: std::ops::Range<usize>) -> f64 {
-        self.surprises_k.iter().rev().skip(samples.start).take(samples.len()).copied().fold(0.0, f64::max)
+        let quickened = |samples| largest(&self.quickened_k, samples);
+        Moved {
+            by_k,
+            together_k,
+            quickened_k: quickened(0..2),
+            quickened_before_k: quickened(2..MOVED_SAMPLES),
+        }
     }
 
     /// Take in both readings, K, NaN where there is none; not judged while other gas warms or cools the one before the other.
@@ -191,9 +196,18 @@ impl Pair {
         };
         let one = against(latest.next()?, 1.0);
         let two = latest.next().map_or([f64::NAN; 2], |before| against(before, 2.0));
-        self.surprises_k.push_back(smaller(one));
-        if self.surprises_k.len() > SURPRISE_SAMPLES + 1 {
-            self.surprises_k.pop_front();
+        // What only goes on more slowly has been seen before.
+        let quickened = [0, 1].map(|i| {
+            if first[i] * (first[i] - one[i]) > 0.0 && first[i] * one[i] < 0.0 { 0.0 } else { one[i] }
+        });
+        for (kept, new, most) in [
+            (&mut self.surprises_k, smaller(one), SURPRISE_SAMPLES + 1),
+            (&mut self.quickened_k, smaller(quickened), MOVED_SAMPLES),
+        ] {
+            kept.push_back(new);
+            if kept.len() > most {
+                kept.pop_front();
+            }
         }
         Some([one, two])
     }
@@ -210,7 +224,8 @@ impl Pair {
         // Not so where one of them is no number.
         let still =
             other_k.abs() < beside_k(ALONE, STILL_K) && one_k[1 - which].abs() < beside_k(ALONE, STILL_ONE_K);
-        let surprised = self.surprise_k(1..SURPRISE_SAMPLES + 1) > beside_k(SURPRISED, SURPRISED_K) * minutes;
+        let surprised =
+            largest(&self.surprises_k, 1..SURPRISE_SAMPLES + 1) > beside_k(SURPRISED, SURPRISED_K) * minutes;
         if !jumps || !still || surprised {
             return None;
         }
@@ -312,6 +327,11 @@ impl Suspect {
             () => Belief::Open,
         }
     }
+}
+
+/// Largest within samples, counted back from the last one.
+fn largest(of: &VecDeque<f64>, samples: std::ops::Range<usize>) -> f64 {
+    of.iter().rev().skip(samples.start).take(samples.len()).copied().fold(0.0, f64::max)
 }
 
 /// Smaller size of two changes, of which one may be none.

@@ -91,7 +91,8 @@ impl AlarmInputs {
             Verdict::Unknown(_) => None,
             _ => Some(verdict == Verdict::Leak),
         };
-        let at_fault = |health: &Health| !matches!(health, Health::Good | Health::Spikes);
+        let at_fault =
+            |health: &Health| !matches!(health, Health::Good | Health::Spikes | Health::Deviates(_));
         // The first days and the hours after a refill are no loss of sight.
         let expected =
             matches!(verdict.reason(), Some(Reason::Learning | Reason::Settling | Reason::Disturbed));

@@ -170,7 +170,7 @@ impl Monitor {
             self.state.gains.forget();
             return;
         }
-        let Some(mass_kg) = self.masses_kg() else { return };
+        let Some(mass_kg) = self.masses_kg().filter(|_| self.is_pressure_used()) else { return };
         if let Some((onset_s, gain_kg)) = self.state.gains.push(time_s, mass_kg, self.filled_kg.0) {
             self.observer.begin_exchange();
             self.observer.end_exchange();

@@ -28,9 +28,7 @@ use super::thermometers::Pair;
 use super::wiring::WiringCheck;
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
-use crate::estimator::observer::{
-    Commissioning, Estimate, Leak, Learned, Observer, Outcome, Quality, Snapshot,
-};
+use crate::estimator::observer::{Commissioning, Estimate, Leak, Learned, Observer, Quality, Snapshot};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Thresholds};
@@ -363,6 +361,7 @@ impl Monitor {
         if estimate.quality == Quality::Restarted {
             events.push(Event::new(time_s, time_s, EventKind::Restarted));
             self.state.look = (time_s + LOOK_S, Reason::Restarted);
+            self.state.gains.forget();
             self.forget_masses();
         }
         self.state.start_s.get_or_insert(time_s);
@@ -379,9 +378,8 @@ impl Monitor {
 
     fn judge_leak(&mut self, estimate: &Estimate, events: &mut Vec<Event>) -> Result<(), DetectorError> {
         let time_s = estimate.time_s;
-        let pressure_used =
-            self.roles.pressure.is_some_and(|p| self.observer.innovations()[p].outcome == Outcome::Accepted);
-        let blind = !pressure_used || self.state.examined.is_some() || self.blindness(time_s).is_some();
+        let blind =
+            !self.is_pressure_used() || self.state.examined.is_some() || self.blindness(time_s).is_some();
         // With a wrong unit every change of the temperature is a change of the mass.
         if blind || self.state.filling.is_wrong() {
             return Ok(());

@@ -33,25 +33,15 @@ impl Monitor {
         let watches = &self.state.watches;
         let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
         if self.roles.pair.is_some() {
-            match self.state.parity.push(time_s, pair.map(|sensor| self.usable[sensor])) {
-                None => {}
-                Some(Disturbance::Begun(off_k)) => {
-                    events.push(Event::new(time_s, time_s, EventKind::Disturbed { sensors: pair, off_k }));
-                }
-                Some(Disturbance::Over) => self.go_back_before_disturbance(),
-            }
+            self.compare_thermometers(time_s, pair, events);
         }
         let watches = &mut self.state.watches;
         match self.state.pair.update(time_s, as_read, judged) {
             None => {}
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
-                watches[pair[which]].shift(by_k);
-                self.state.parity.forget();
+                self.take_off(pair[which], by_k);
                 self.state.undisturbed = Undisturbed::default();
-                self.usable[pair[which]] = f64::NAN;
-                // How far it jumped is known by a part of it, and whether it did is not certain.
-                self.observer.loosen(self.place_of(pair[which]), JUMPED_K + JUMPED_PART * by_k.abs());
                 self.state.rewind.begin(&self.observer);
             }
             Some(Lonely::Detached(which)) => {
@@ -59,6 +49,48 @@ impl Monitor {
                 self.usable[pair[which]] = f64::NAN;
             }
         }
+    }
+
+    fn compare_thermometers(&mut self, time_s: f64, pair: [usize; 2], events: &mut Vec<Event>) {
+        let pressure_pa = self.roles.pressure.map_or(f64::NAN, |pressure| self.usable[pressure]);
+        let gas_k = |pressure_pa: f64, near_k: f64| {
+            let mass_kg = |at_k: f64| self.contents.mass_kg(pressure_pa, at_k).unwrap_or(f64::NAN);
+            let near_kg = mass_kg(near_k);
+            near_k + (self.filled_kg.0 - near_kg) / (mass_kg(near_k + 1.0) - near_kg)
+        };
+        match self.state.parity.push(time_s, pair.map(|sensor| self.usable[sensor]), pressure_pa, gas_k) {
+            None => {}
+            Some(Disturbance::Begun(off_k)) => {
+                events.push(Event::new(time_s, time_s, EventKind::Disturbed { sensors: pair, off_k }));
+            }
+            Some(Disturbance::Over(by_k)) => {
+                self.go_back_before_disturbance();
+                if by_k.abs() > JUMPED_K {
+                    // One of them has shifted, nobody knows which.
+                    for sensor in pair {
+                        self.observer.loosen(self.place_of(sensor), by_k.abs());
+                    }
+                }
+            }
+            Some(Disturbance::Shifted(which, by_k)) => {
+                self.go_back_before_disturbance();
+                self.take_off(pair[which], by_k);
+            }
+        }
+        let deviating = self.state.parity.deviating();
+        for (which, sensor) in pair.into_iter().enumerate() {
+            let by_k = deviating.filter(|(named, _)| *named == which).map(|(_, by_k)| by_k);
+            self.state.watches[sensor].deviates(by_k);
+        }
+    }
+
+    /// A thermometer's offset has changed by so much, K.
+    fn take_off(&mut self, sensor: usize, by_k: f64) {
+        self.state.watches[sensor].shift(by_k);
+        self.state.parity.forget();
+        self.usable[sensor] = f64::NAN;
+        // How far it jumped is known by a part of it, and whether it did is not certain.
+        self.observer.loosen(self.place_of(sensor), JUMPED_K + JUMPED_PART * by_k.abs());
     }
 
     /// Whether the first rows fit the filling that was stated.
@@ -109,6 +141,11 @@ impl Monitor {
             }
             self.state.health[sensor] = health;
         }
+    }
+
+    /// Whether the observer took the present pressure.
+    pub(super) fn is_pressure_used(&self) -> bool {
+        self.roles.pressure.is_some_and(|p| self.observer.innovations()[p].outcome == Outcome::Accepted)
     }
 
     /// How long a sensor has not been used, s.

@@ -45,7 +45,9 @@ impl Monitor {
         let watches = &self.state.watches;
         let read = |sensor: usize| match watches[sensor].health() {
             Health::Missing | Health::Implausible | Health::Stuck => f64::NAN,
-            Health::Good | Health::Spikes | Health::Shifted(_) | Health::Detached => row.readings[sensor],
+            Health::Good | Health::Spikes | Health::Deviates(_) | Health::Shifted(_) | Health::Detached => {
+                row.readings[sensor]
+            }
         };
         self.state.wiring.read(row.time_s, compared.map(read));
     }

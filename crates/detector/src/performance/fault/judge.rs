@@ -5,7 +5,7 @@
 //! * *False leak*: a leak is stated while there is none. Only a transmitter that drifts downwards may be taken for one.
 //! * *Found*: a leak is stated within `6 h (1 bar/h / r)^(2/3)` of its onset: 28 h for 0.1 bar/h, 5.4 d for 0.01 bar/h, about
 //!   twice the least delay that any detector can have with a model error of 0.3 bar and 3 h. Time in which nothing usable is read does not
-//!   count, nor, where observing is degraded, time in which it is said that it cannot be known, and an exchange of gas begins it anew once it has settled.
+//!   count, nor, where it may be said that it cannot be known, time in which that is said, and an exchange of gas begins it anew once it has settled.
 //!   A loss that follows a tunnel (G5) goes as fast as a discharge, and may be stated as one.
 //! * *Flagged*: the sensor's health is said not to be good, or the verdict is that of a sensor at fault, within a time of the onset.
 //! * *Blind*: no usable pressure or no usable temperature for more than an hour, or the first row after six hours without any. Then the
@@ -183,8 +183,8 @@ impl Judgement<'_> {
             Requirement::Flagged | Requirement::Degraded | Requirement::Undecidable | Requirement::Warned
         );
         // Where it may be said to the end that it cannot be known, it may be said for a while.
-        let degraded = self.case.row.requirement() == Requirement::Degraded && self.blind_s().is_none();
-        let unknown_s = if degraded { self.history.unknown_s(leak.onset_s, deadline_s) } else { 0.0 };
+        let may_wait = undecided && self.blind_s().is_none();
+        let unknown_s = if may_wait { self.history.unknown_s(leak.onset_s, deadline_s) } else { 0.0 };
         let deadline_s = deadline_s + unknown_s;
         let until_s = deadline_s.min(self.case.until_s);
         let discharged = |kind: &EventKind| matches!(kind, EventKind::Discharge(_));
