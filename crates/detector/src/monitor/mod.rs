@@ -5,14 +5,14 @@
 //! | part | what it does |
 //! |---|---|
 //! | [`intake`] | rows as they arrive become rows in order on one axis of time |
-//! | [`health`], [`thermometers`] | readings that are none, stand still or have an offset that jumped |
+//! | [`readings::health`], [`readings::thermometers`] | readings that are none, stand still or have an offset that jumped |
 //! | wiring | whether a channel is late or the thermometers are in each other's place: put right |
 //! | filling | whether the first readings fit the filling that was stated |
 //! | parity | whether one end is warmed or cooled by itself: the evidence for a leak counts less |
 //! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
-//! | [`jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
+//! | [`gas::jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
 //! | [`crate::evidence`] | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
-//! | [`onset`] | since when, how fast, how much, with intervals |
+//! | [`gas::onset`] | since when, how fast, how much, with intervals |
 //! | outlook | the time left and the reaction that is due ([`crate::prognosis`]) |
 //! | [`alarm`] | what must be dealt with, in the words of OPC UA Part 9 |
 //!
@@ -22,28 +22,16 @@
 //! A transmitter that drifts downwards looks like a leak: 0.1 % of 400 bar in a year are 5e-5 bar/h. Two cylinders exchanged for
 //! each other look like cylinders.
 pub mod alarm;
-mod contents;
 mod event;
-mod filling;
-mod gain;
-pub mod health;
+pub mod gas;
 pub mod intake;
-pub mod jump;
-mod lateness;
-mod leak;
 mod machine;
-pub mod onset;
-mod outlook;
 mod output;
-mod parity;
-mod rewind;
+pub mod readings;
 mod roles;
 pub mod settings;
 pub mod state;
-pub mod thermometers;
-pub mod trace;
 mod verdict;
-mod wiring;
 
 pub use event::{Event, EventKind};
 pub use machine::Monitor;

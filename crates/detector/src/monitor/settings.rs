@@ -2,8 +2,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::alarm::AlarmSettings;
+use super::gas::onset::MassError;
 use super::intake::IntakeSettings;
-use super::onset::MassError;
 use crate::DetectorError;
 use crate::error::positive;
 use crate::estimator::observer::ObserverSettings;

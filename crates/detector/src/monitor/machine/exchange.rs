@@ -8,8 +8,8 @@ use super::Monitor;
 use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Quality};
-use crate::monitor::jump::{Cause, Examination, Innovated};
-use crate::monitor::leak::Change;
+use crate::monitor::gas::jump::{Cause, Examination, Innovated};
+use crate::monitor::gas::leak::Change;
 use crate::monitor::{Event, EventKind, Reason};
 
 /// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.

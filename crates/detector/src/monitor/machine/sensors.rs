@@ -5,8 +5,8 @@ use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Outcome};
 use crate::estimator::thermal::scenario::Fill;
 use crate::monitor::intake::Row;
-use crate::monitor::parity::Disturbance;
-use crate::monitor::thermometers::Lonely;
+use crate::monitor::readings::parity::Disturbance;
+use crate::monitor::readings::thermometers::Lonely;
 use crate::monitor::{Event, EventKind};
 
 /// Standard deviation of a thermometer's offset after it jumped, K and as a part of the jump.

@@ -7,16 +7,16 @@ use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::scenario::Fill;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::Evidence;
-use crate::monitor::health::SensorWatch;
+use crate::monitor::gas::jump::JumpWatch;
+use crate::monitor::gas::leak::Change;
 use crate::monitor::intake::Row;
-use crate::monitor::jump::JumpWatch;
-use crate::monitor::lateness::DelayLine;
-use crate::monitor::leak::Change;
-use crate::monitor::parity::Parity;
-use crate::monitor::rewind::Rewind;
+use crate::monitor::machine::rewind::Rewind;
+use crate::monitor::readings::health::SensorWatch;
+use crate::monitor::readings::lateness::DelayLine;
+use crate::monitor::readings::parity::Parity;
+use crate::monitor::readings::thermometers::Pair;
+use crate::monitor::readings::wiring::Finding;
 use crate::monitor::roles::Roles;
-use crate::monitor::thermometers::Pair;
-use crate::monitor::wiring::Finding;
 use crate::monitor::{Event, EventKind, Health};
 
 /// The channels that are compared: two thermometers on the surface, without a lag of their own, and the pressure.

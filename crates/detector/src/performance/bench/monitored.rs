@@ -13,8 +13,8 @@ use crate::estimator::observer::Commissioning;
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::{Vessel, presets};
 use crate::evidence::{Scale, Statistics, Thresholds};
-use crate::monitor::onset::{self, MassError};
-use crate::monitor::trace::MassTrace;
+use crate::monitor::gas::onset::{self, MassError};
+use crate::monitor::gas::trace::MassTrace;
 use crate::monitor::{Monitor, MonitorSettings};
 use crate::performance::{Found, YEAR_S};
 

@@ -1,21 +1,21 @@
 //! When the time that is left is computed, and from what.
-use super::settings::MonitorSettings;
-use super::{LeakFinding, Outlook};
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Leak};
+use crate::monitor::settings::MonitorSettings;
+use crate::monitor::{LeakFinding, Outlook};
 use crate::prognosis::{Contents, MassAndLeak, Prognosis, QUOTED_K};
 
 /// Interval at which the time left is computed anew while gas is being lost, and while none is, s.
 const LEAKING_S: f64 = 3600.0;
 const TIGHT_S: f64 = 86_400.0;
 /// How far ahead, s: ten years.
-const HORIZON_S: f64 = 10.0 * super::settings::YEAR_S;
+const HORIZON_S: f64 = 10.0 * crate::monitor::settings::YEAR_S;
 /// Standard deviations between the ends of a 95 % interval.
 const WIDTH_SD: f64 = 3.92;
 
 /// Masses at which limits are reached, kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LimitMasses {
+pub(in crate::monitor) struct LimitMasses {
     operational_kg: f64,
     cold_kg: f64,
     maintenance_kg: f64,
@@ -69,6 +69,6 @@ impl LimitMasses {
 }
 
 /// Interval until the next one, s.
-pub(super) fn interval_s(leaking: bool) -> f64 {
+pub(in crate::monitor) fn interval_s(leaking: bool) -> f64 {
     if leaking { LEAKING_S } else { TIGHT_S }
 }

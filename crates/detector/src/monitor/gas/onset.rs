@@ -23,9 +23,9 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::trace::{Bin, FINE_S, MassTrace};
-use super::{Interval, LeakFinding};
 use crate::calibrate::normal_probability;
 use crate::error::positive;
+use crate::monitor::{Interval, LeakFinding};
 use crate::{DetectorError, statistic::Noise};
 
 /// Probability on either side of an interval.

@@ -28,7 +28,7 @@ const NOISE: [f64; 3] = [0.05, 0.05, 1e3];
 
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Finding {
+pub(in crate::monitor) enum Finding {
     /// Too early to say.
     Open,
     /// The two thermometers and the pressure are so late, s, against the earliest.
@@ -41,7 +41,7 @@ pub(super) enum Finding {
 
 /// Learns how the channels are wired.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct WiringCheck {
+pub(in crate::monitor) struct WiringCheck {
     begun_s: Option<f64>,
     lags: Option<LagMeter>,
     differences: [f64; 3],

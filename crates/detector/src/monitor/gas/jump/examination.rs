@@ -1,64 +1,10 @@
-//! A pressure that jumps: gas or transmitter?
-//!
-//! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next is a jump if it
-//! is beyond `L = 0.12 bar + 4 c + 1.2 q + 0.4 |change of the expectation| + M`, and the reading itself made most of it by its second difference: what
-//! the expectation alone did is the model's. `c` is the mean size of such changes lately, as it grows with the root of the interval, `q` the step in which the transmitter reads,
-//! `M` the mouth of a tunnel, by what both thermometers did, as it reaches both: 0.4 bar/K of the second difference with which they got faster, of this sample and the
-//! last one, at most 0.9 bar, or 0.3 bar/K, at most 0.5 bar, of the two samples before, or 0.2 bar/K of their change. In 16 years of simulated winters the mouths of tunnels move it by
-//! 0.7 bar at most. It is examined: a second observer goes on from before it without
-//! the pressure, and `e(t)`, what it expects less what is read, less the same before the jump, shows
-//!
-//! * back to nothing within a few samples, or in three of the last five: spikes;
-//! * growing over several samples: gas flows;
-//! * a step that stays: the transmitter's offset has jumped, which no thermal process does;
-//! * a step of which a part comes back within half an hour: gas was let out (or in) at once, and the rest, cooled (or warmed) on
-//!   the way, comes to the temperature of the wall. At 200 bar an isentropic step of the pressure is 1.6 times the isothermal one;
-//!   what is left of it at the first sample is at least the tenth part that divides the two.
-//!
-//! What thermometers pull the expectation to, the reading does not follow at once; but it does not go the other way either. Where its
-//! second difference has the other sign than their change, only 0.1 bar/K of that is allowed for; not in intervals of two minutes and more, in
-//! which the gas has answered.
-//!
-//! The shadow is good as long as wall and gas go on as before. When the surroundings begin to move, what has been seen until then is
-//! judged, if it is six samples and tells gas from transmitter; else it goes on.
-//!
-//! No transmitter's offset jumps by more than a tenth of the largest filling: beyond that it is gas. The part that comes back is known no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of
-//! the gas temperature and `0.1 bar/K` of what the mouth of a tunnel did to the thermometers just before; where that is half of the jump, nothing has passed: what has
-//! jumped and not jumped back is gas or an offset. What lies within that of the division remains
-//! unclear when gas may be gone. Of a gain so small that no filling stops there the transmitter is the safe
-//! assumption: it leaves the mass as low as it was.
-//!
-//! Assumes that a jump of gas is over within two hours; a longer one is a flow.
+//! What a jump was; the rules stand in [`super`].
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::thermometers::Moved;
+use crate::monitor::readings::thermometers::Moved;
 
-/// Change of the innovation that is a jump, Pa, beside so many usual changes, and so many steps of the transmitter,
-const JUMP_PA: f64 = 0.12e5;
-const JUMP_PER_USUAL: f64 = 4.0;
-const JUMP_PER_STEP: f64 = 1.2;
-/// Samples over which the usual change is a mean, and the largest that counts, Pa.
-const USUAL_SAMPLES: f64 = 300.0;
-const MINUTE_S: f64 = 60.0;
-const USUAL_LARGEST_PA: f64 = 1e5;
-/// Part of it that the reading's second difference makes at least.
-const BY_READING: f64 = 0.6;
-/// Part of it that is left against the sample before the last, below which it only returns.
-const RETURNED: f64 = 0.4;
-/// It is farther by the change of the expectation,
-const JUMP_PER_CHANGE: f64 = 0.4;
-/// and by the surprise of the thermometers, Pa/K, of which their change counts a part.
-const JUMP_PER_K: f64 = 0.4e5;
-const PER_CHANGE: f64 = 0.5;
-/// By how much per kelvin the mouth of a tunnel can move it, Pa/K, and at most, Pa, within two samples and in the two after.
-const MOUTH: [(f64, f64); 2] = [(0.4e5, 0.9e5), (0.3e5, 0.5e5)];
-/// The same where the reading goes the other way, in an interval so short that the gas has not answered yet what the wall did, s.
-const JUMP_PER_K_AGAINST: f64 = 0.1e5;
-const AGAINST_S: f64 = 90.0;
-/// Interval beyond which two innovations are not compared, s.
-const LONGEST_INTERVAL_S: f64 = 900.0;
 /// Samples within which a spike comes back.
 const SPIKE_SAMPLES: usize = 5;
 /// Samples whose median tells spikes among good ones, within so many, and what is left of the largest in it at most, beside the model's error, Pa.
@@ -119,85 +65,6 @@ pub enum Cause {
     Gas,
     /// Either may be; gas is the safe assumption.
     Unclear,
-}
-
-/// Watches the innovations of the pressure for a jump.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct JumpWatch {
-    last: Option<Innovated>,
-    /// Slope of the reading to it, Pa/s, and the interval, s; the innovation before it, Pa.
-    slope_pa_s: f64,
-    interval_s: f64,
-    before_pa: f64,
-    /// Usual change of the innovation in a minute, Pa.
-    usual_pa: f64,
-}
-
-/// A reading and what was expected.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Innovated {
-    /// Time, s.
-    pub time_s: f64,
-    /// Reading, Pa.
-    pub reading_pa: f64,
-    /// Reading less what was expected, Pa.
-    pub innovation_pa: f64,
-}
-
-impl Default for JumpWatch {
-    /// Of a transmitter and a thermometer of which nothing is known.
-    fn default() -> Self {
-        Self { last: None, slope_pa_s: 0.0, interval_s: 0.0, before_pa: f64::NAN, usual_pa: JUMP_PA }
-    }
-}
-
-impl JumpWatch {
-    /// Take in a reading of a transmitter that reads in steps, Pa, with what two thermometers did; the innovation before it if this one is
-    /// a jump.
-    pub fn notice(&mut self, now: Innovated, step_pa: f64, moved: Moved) -> Option<f64> {
-        if !(now.reading_pa.is_finite() && now.innovation_pa.is_finite()) {
-            return None;
-        }
-        let last = self.last.replace(now)?;
-        if now.time_s - last.time_s > LONGEST_INTERVAL_S {
-            return None;
-        }
-        let change_pa = now.innovation_pa - last.innovation_pa;
-        let by_reading_pa = now.reading_pa - last.reading_pa;
-        // A slope leads no farther than the interval that it was taken over.
-        let interval_s = now.time_s - last.time_s;
-        let second_pa = by_reading_pa - self.slope_pa_s * interval_s.min(self.interval_s);
-        self.slope_pa_s = if interval_s > 0.0 { by_reading_pa / interval_s } else { 0.0 };
-        self.interval_s = interval_s;
-        // The errors walk: they change by more in a longer interval.
-        let grown = (interval_s / MINUTE_S).max(1.0).sqrt();
-        // What goes back to where it was has taken in a jump that was not noticed: the other way it would be believed.
-        let before_pa = std::mem::replace(&mut self.before_pa, last.innovation_pa);
-        let returns = (now.innovation_pa - before_pa).abs() < RETURNED * change_pa.abs();
-        let against = second_pa * moved.together_k < 0.0 && interval_s <= AGAINST_S;
-        let by_thermometers_pa = if against {
-            JUMP_PER_K_AGAINST * (PER_CHANGE * moved.by_k + moved.quickened_k.max(moved.quickened_before_k))
-        } else {
-            let [now, before] = MOUTH.map(|(per_k, most_pa)| (per_k, most_pa * grown));
-            let mouth_pa = (now.0 * moved.quickened_k)
-                .min(now.1)
-                .max((before.0 * moved.quickened_before_k).min(before.1));
-            mouth_pa.max(JUMP_PER_K * PER_CHANGE * moved.by_k)
-        };
-        let limit_pa = JUMP_PA
-            + JUMP_PER_USUAL * self.usual_pa * grown
-            + JUMP_PER_STEP * step_pa
-            + JUMP_PER_CHANGE * (by_reading_pa - change_pa).abs()
-            + by_thermometers_pa;
-        self.usual_pa += ((change_pa.abs() / grown).min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
-        let read = second_pa * change_pa.signum() > BY_READING * change_pa.abs();
-        (read && !returns && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
-    }
-
-    /// Forget the last reading.
-    pub fn forget(&mut self) {
-        *self = Self { usual_pa: self.usual_pa, ..Self::default() };
-    }
 }
 
 /// The examination of a jump.
@@ -355,6 +222,8 @@ impl Examination {
 mod tests {
     use super::*;
 
+    const MINUTE_S: f64 = 60.0;
+
     /// Causes of the courses `e(minutes)` until there is one.
     fn cause(error_bar: impl Fn(f64) -> f64) -> Cause {
         let mut examination = Examination::new(0.0, 0.02e5);
@@ -422,76 +291,6 @@ mod tests {
             })
             .collect();
         assert_eq!(causes, [Cause::Open, Cause::Open, Cause::Flowing, Cause::Flowing]);
-    }
-
-    /// What a watch says of a row: minute, reading and innovation, Pa, and what the thermometers did.
-    fn noticed(
-        watch: &mut JumpWatch,
-        minute: f64,
-        reading_pa: f64,
-        innovation_pa: f64,
-        moved: Moved,
-    ) -> Option<f64> {
-        watch.notice(Innovated { time_s: MINUTE_S * minute, reading_pa, innovation_pa }, 0.0, moved)
-    }
-
-    /// A watch that has seen a thousand quiet rows, so many minutes apart.
-    fn accustomed(reading_pa: f64, every: f64) -> JumpWatch {
-        let mut watch = JumpWatch::default();
-        for row in 0..1000 {
-            let n = f64::from(row);
-            noticed(&mut watch, every * (n - 1000.0), reading_pa, 2e3 * (n % 2.0), Moved::default());
-        }
-        watch
-    }
-
-    #[test]
-    fn slow_changes_and_expected_ones_are_no_jumps() {
-        let mut watch = JumpWatch::default();
-        let still = Moved::default();
-        for row in 0..1000 {
-            let n = f64::from(row);
-            assert_eq!(noticed(&mut watch, n, 180e5 + 3e4 * n, 2e4 + 1e3 * (n % 2.0), still), None);
-        }
-        let reading_pa = 180e5 + 3e4 * 999.0;
-        assert_eq!(noticed(&mut watch, 1000.0, reading_pa - 0.5e5, -0.48e5, still), Some(2.1e4));
-        // What the expectation did alone; what a tunnel does.
-        assert_eq!(noticed(&mut watch, 1001.0, reading_pa - 0.5e5, 0.5e5, still), None);
-        let mouth = Moved { by_k: 1.0, together_k: -1.0, quickened_k: 2.0, ..still };
-        assert_eq!(noticed(&mut watch, 1002.0, reading_pa - 1.4e5, -0.4e5, mouth), None);
-        assert_eq!(noticed(&mut watch, 1200.0, 100e5, -80e5, still), None, "too long ago");
-    }
-
-    #[test]
-    fn the_mouth_of_a_tunnel_hides_less_than_a_bar_and_less_the_longer_ago_it_was() {
-        let jumps = |by_pa: f64, moved: Moved| {
-            noticed(&mut accustomed(184e5, 1.0), 0.0, 184e5 - by_pa, -by_pa, moved).is_some()
-        };
-        let now = Moved { together_k: -6.0, quickened_k: 6.0, ..Moved::default() };
-        let before = Moved { together_k: -1.0, quickened_before_k: 6.0, ..Moved::default() };
-        assert!(!jumps(0.9e5, now) && jumps(1.3e5, now));
-        assert!(!jumps(0.5e5, before) && jumps(0.8e5, before));
-    }
-
-    #[test]
-    fn a_pressure_that_falls_while_both_thermometers_rise_has_jumped() {
-        let falls = |together_k: f64, minutes: f64| {
-            let mouth = Moved { by_k: 2.2, together_k, quickened_k: 2.2, ..Moved::default() };
-            noticed(&mut accustomed(184e5, minutes), 0.0, 183.2e5, -0.8e5, mouth).is_some()
-        };
-        assert!(falls(2.2, 1.0));
-        assert!(!falls(-2.2, 1.0), "so a train that leaves the tunnel");
-        assert!(!falls(2.2, 2.0), "within two minutes the gas has answered");
-    }
-
-    #[test]
-    fn the_return_after_a_jump_that_was_not_noticed_is_none() {
-        let mut watch = accustomed(200e5, 1.0);
-        let mouth = Moved { by_k: 1.2, together_k: -1.2, quickened_k: 2.0, ..Moved::default() };
-        assert_eq!(noticed(&mut watch, 0.0, 199.2e5, -0.8e5, mouth), None, "hidden by a tunnel");
-        assert_eq!(noticed(&mut watch, 1.0, 199.2e5, 0.02e5, Moved::default()), None);
-        noticed(&mut watch, 2.0, 199.2e5, 0.0, Moved::default());
-        assert!(noticed(&mut watch, 3.0, 198.4e5, -0.8e5, Moved::default()).is_some());
     }
 
     #[test]

@@ -9,12 +9,12 @@
 //! * *Deviates*: for half an hour it has been off while the other thermometer agrees with the pressure; [`super::parity`] tells.
 //! * *Detached*: a thermometer that does so again and again reads the air.
 //!
-//! What a transmitter's jump is, [`super::jump`] tells.
+//! What a transmitter's jump is, [`crate::monitor::gas::jump`] tells.
 use serde::{Deserialize, Serialize};
 
-use super::Health;
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
+use crate::monitor::Health;
 
 /// Logarithm of the probability of a repetition that is no chance.
 const NO_CHANCE: f64 = 20.0;

@@ -146,7 +146,7 @@ impl Grid {
 
 /// Learns by how much which channel is late.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct LagMeter {
+pub(in crate::monitor) struct LagMeter {
     grid: Grid,
     /// The last three points, newest first, and the last differences.
     points: VecDeque<Three>,
@@ -199,7 +199,7 @@ fn push_front(queue: &mut VecDeque<Three>, newest: Three, longest: usize) {
 
 /// Holds early channels back, by whole rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct DelayLine {
+pub(in crate::monitor) struct DelayLine {
     /// By how much each sensor is held back, s; empty: none is.
     delays_s: Vec<f64>,
     rows: VecDeque<(f64, Vec<f64>)>,

@@ -86,7 +86,9 @@ pub struct Moved {
     pub by_k: f64,
     /// The same with its sign, where both went the same way, else 0, K.
     pub together_k: f64,
-    /// Largest second difference with which both got faster, of this sample and the last one, K.
+    /// Largest second difference of the last three samples, K.
+    pub surprise_k: f64,
+    /// Largest with which both got faster, of this sample and the last one, K.
     pub quickened_k: f64,
     /// The same of the two samples before.
     pub quickened_before_k: f64,
@@ -138,10 +140,12 @@ impl Pair {
     /// What both did at the last samples.
     pub fn moved(&self) -> Moved {
         let (by_k, together_k) = (self.by_k, self.together_k);
+        let surprise_k = largest(&self.surprises_k, 0..MOVED_SAMPLES - 1);
         let quickened = |samples| largest(&self.quickened_k, samples);
         Moved {
             by_k,
             together_k,
+            surprise_k,
             quickened_k: quickened(0..2),
             quickened_before_k: quickened(2..MOVED_SAMPLES),
         }

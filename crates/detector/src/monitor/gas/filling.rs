@@ -13,7 +13,7 @@ const DEVIATIONS: f64 = 5.0;
 
 /// Watches the first hours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct FillingCheck {
+pub(in crate::monitor) struct FillingCheck {
     begun_s: Option<f64>,
     mean_kg: f64,
     rows: u32,

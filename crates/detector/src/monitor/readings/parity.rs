@@ -1,18 +1,21 @@
 //! Whether one end of the cylinder is warmed or cooled by itself, so that the thermometers do not stand for the gas.
 //!
-//! Sensors sit at the top. Something warm beside the bottom, a hall with warm air under the roof, sun: the mean of the wall is then not what the
-//! shoulder says, the gas is some kelvin off, and pressure and mass with it, with no leak. It shows in the difference of
-//! the two thermometers. In calm windows of ten minutes (neither moves by more than 0.6 K) it stays within 0.1 to 0.2 K for weeks, tunnels and all;
-//! with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
+//! Sensors sit at the top. Something warm beside the bottom, a hall with warm air under the roof, sun: the mean of the wall is then not
+//! what the shoulder says, the gas is some kelvin off, and pressure and mass with it, with no leak. It shows in the difference of the
+//! two thermometers. In calm windows of ten minutes (neither moves by more than 0.6 K) it stays within 0.1 to 0.2 K for weeks, tunnels
+//! and all; with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
 //!
 //! `d` is the median of the last three calm windows less that of the two days before. The evidence for a leak is divided by
-//! `sqrt(1 + ((|d| - 0.3 K) / 0.2 K)^2)` from `|d|` = 0.3 K on, at most 4 (1.3 at least where no three calm windows of the last one and a half hours give `d`, for as long again), beyond 2.5 the verdict is unknown; and for six hours after it by what is left of that, as the observer needs its time to come back. Where `d` was above 0.5 K for three
-//! hours, the evidence from then counts for nothing once it is over.
+//! `sqrt(1 + ((|d| - 0.3 K) / 0.2 K)^2)` from `|d|` = 0.3 K on, at most 4, and by 1.3 at least where no three calm windows of the last
+//! one and a half hours give `d`, for as long again; beyond 2.5 the verdict is unknown; for six hours after it by what is left of that,
+//! as the observer needs its time to come back. Where `d` was above 0.5 K for three hours, the evidence from then counts for nothing
+//! once it is over.
 //!
-//! Which of the two is off the pressure says: with `T_p` the temperature at which the stated mass has this pressure, `a_i = T_i - T_p` less its
-//! usual value, or less that of an hour before, is `d` for the one that is off and nothing for the other. Sun, day and night, and a leak move both `a` alike (by 1 K from night to noon, as the
-//! thermometers sit outside), so it is named where `|d| > 0.6 K` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself looks the same
-//! for hours. What stays within 0.3 K of itself for sixteen hours of the same one is an offset of that thermometer. A difference that nobody
+//! Which of the two is off the pressure says: with `T_p` the temperature at which the stated mass has this pressure,
+//! `a_i = T_i - T_p` less its usual value, or less that of an hour before, is `d` for the one that is off and nothing for the other.
+//! Sun, day and night, and a leak move both `a` alike (by 1 K from night to noon, as the thermometers sit outside), so it is named where
+//! `|d| > 0.6 K` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself may look the same for hours.
+//! What stays within 0.3 K of itself for sixteen hours of the same one is an offset of that thermometer. A difference that nobody
 //! could be named for is the usual one after a day: either may have shifted.
 use std::collections::VecDeque;
 
@@ -61,7 +64,7 @@ const LASTING_K: f64 = 0.3;
 
 /// What changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Disturbance {
+pub(in crate::monitor) enum Disturbance {
     /// For an hour the difference has been off, now by so much, K, that small leaks are not seen.
     Begun(f64),
     /// It is over, and what was seen meanwhile counts for nothing. The difference that is usual now is by so much another one, K.
@@ -94,7 +97,7 @@ struct Named {
 
 /// Watches the difference of two thermometers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Parity {
+pub(in crate::monitor) struct Parity {
     window: Option<Window>,
     calm: VecDeque<Calm>,
     off_k: f64,

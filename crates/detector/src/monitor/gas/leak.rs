@@ -3,8 +3,8 @@ use serde::{Deserialize, Serialize};
 
 use super::onset::{self, MassError};
 use super::trace::MassTrace;
-use super::{Interval, LeakFinding};
 use crate::estimator::observer::{Estimate, Leak};
+use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
@@ -13,7 +13,7 @@ const BINS_PER_LOOK: u32 = 6;
 
 /// What is known about a leak.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct LeakState {
+pub(in crate::monitor) struct LeakState {
     trace: MassTrace,
     bins: u32,
     found: Option<LeakFinding>,
@@ -38,14 +38,14 @@ impl Default for LeakState {
 
 /// What changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Change {
+pub(in crate::monitor) enum Change {
     None,
     Found(LeakFinding),
     Ended,
 }
 
 /// What a look rests on.
-pub(super) struct Look<'a> {
+pub(in crate::monitor) struct Look<'a> {
     pub estimate: &'a Estimate,
     /// The freest member, whose mass is right in any leak.
     pub free: &'a Leak,

@@ -16,7 +16,7 @@ const OVER_S: f64 = 1200.0;
 
 /// Watches the mass.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct GainWatch {
+pub(in crate::monitor) struct GainWatch {
     /// Times, s, and masses, kg.
     recent: VecDeque<(f64, f64)>,
 }

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 /// Length of a fresh bin, s.
-pub(super) const FINE_S: f64 = 600.0;
+pub(in crate::monitor) const FINE_S: f64 = 600.0;
 /// Fresh bins that make an old one.
 const PER_COARSE: usize = 6;
 /// Fresh bins kept, and old ones.

@@ -1,0 +1,48 @@
+//! A pressure that jumps: gas or transmitter?
+//!
+//! # Noticed
+//! The observer's innovation of the pressure changes slowly, because its errors do. A change from one sample to the next is a jump if
+//! it is beyond
+//!
+//! `L = 0.12 bar + 4 c + 1.2 q + W`
+//!
+//! and the reading itself made most of it by its second difference: what the expectation alone did is the model's. `c` is the mean
+//! size of such changes lately, as it grows with the root of the interval, `q` the step in which the transmitter reads, and `W` what a
+//! tunnel does, by the change `E` of the expectation and by what both thermometers did, as it reaches both. In samples a minute apart:
+//!
+//! * the mouth, `M = 0.4 bar/K Q`, at most 0.9 bar, `Q` the second difference with which both got faster, of this sample and the last;
+//! * what goes on after it, `G = 0.4 |E| + max(0.2 bar/K D, 0.3 bar/K Q')`, `D` their change and `Q'` the `Q` of the two samples
+//!   before, with at most 0.5 bar;
+//! * `W = M + G` while the gas is warmed, `max(M, min(G, 0.45 bar))` while it is not.
+//!
+//! In 16 years of simulated winters no mouth of a tunnel goes beyond it. What thermometers pull the expectation to, the reading does
+//! not follow at once, but it does not go the other way either: where its second difference has the other sign than their change,
+//! `W = 0.4 |E| + 0.1 bar/K (D / 2 + max(Q, Q'))`. In longer intervals the gas has answered, and the observer's model has errors of its
+//! own: `W = 0.4 |E| + 0.4 bar/K (D / 2 + S)`, `S` the largest second difference of three samples.
+//!
+//! # Examined
+//! A second observer goes on from before the jump without the pressure, and `e(t)`, what it expects less what is read, less the same
+//! before the jump, shows
+//!
+//! * back to nothing within a few samples, or in three of the last five: spikes;
+//! * growing over several samples: gas flows;
+//! * a step that stays: the transmitter's offset has jumped, which no thermal process does;
+//! * a step of which a part comes back within half an hour: gas was let out (or in) at once, and the rest, cooled (or warmed) on
+//!   the way, comes to the temperature of the wall. At 200 bar an isentropic step of the pressure is 1.6 times the isothermal one;
+//!   what is left of it at the first sample is at least the tenth part that divides the two.
+//!
+//! The shadow is good as long as wall and gas go on as before. When the surroundings begin to move, what has been seen until then is
+//! judged, if it is six samples and tells gas from transmitter, and no gas flows but a puff; else it goes on.
+//!
+//! No transmitter's offset jumps by more than a tenth of the largest filling: beyond that it is gas. The part that comes back is known
+//! no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of the gas temperature and
+//! `0.1 bar/K` of what the mouth of a tunnel did to the thermometers just before. Where that is half of the jump, nothing has passed:
+//! what has jumped and not jumped back is gas or an offset. What lies within it of the division remains unclear when gas may be gone.
+//! Of a gain so small that no filling stops there the transmitter is the safe assumption: it leaves the mass as low as it was.
+//!
+//! Assumes that a jump of gas is over within two hours; a longer one is a flow.
+mod examination;
+mod notice;
+
+pub use examination::{Cause, Examination};
+pub use notice::{Innovated, JumpWatch};

@@ -1,0 +1,6 @@
+//! What the readings say of their sensors: whether they can be used, have an offset that changed, are late or in another one's place.
+pub mod health;
+pub(super) mod lateness;
+pub(super) mod parity;
+pub mod thermometers;
+pub(super) mod wiring;
