@@ -186,6 +186,12 @@ pub enum EstimatorError {
         "the filter has no steady state: a state that moves or is driven by noise is not seen by the outputs"
     )]
     NoSteadyState,
+    /// A quantity that a layout of sensors should know is none that is estimated.
+    #[error("the {quantity:?} is no state of this member of the bank: take one whose leak rate walks")]
+    PlacementQuantity {
+        /// The quantity.
+        quantity: crate::placement::Quantity,
+    },
     /// What is asked of a layout of sensors contradicts itself.
     #[error("no layout of sensors can be: {what}")]
     PlacementConstraints {

@@ -8,7 +8,8 @@
 //!
 //! | part | what it does |
 //! |---|---|
-//! | [`LinearProblem`] | value, relaxed value and gradient |
+//! | [`SitedCylinder`] | the observer's own equations with every candidate on the cylinder |
+//! | [`LinearProblem`], [`GroupedProblem`] | value, relaxed value and gradient; candidates with states of their own |
 //! | [`Constraints`] | how many, at what cost, which together |
 //! | [`search`] | every layout; branch and bound; greedy with swaps |
 //! | [`certificate`] | what no layout can fall below |
@@ -19,10 +20,14 @@
 //! Sources: Joshi and Boyd 2009 (relaxation and gap); Sagnol 2011 (optimal design as a second-order cone program).
 pub mod certificate;
 mod constraints;
+pub mod cylinder;
+mod grouped;
 mod objective;
 mod problem;
 pub mod search;
 
 pub use constraints::{Constraints, Group};
+pub use cylinder::{Conditions, Quantity, SitedCylinder};
+pub use grouped::GroupedProblem;
 pub use objective::{Objective, Relaxed};
 pub use problem::{CandidateOutput, LinearProblem};

@@ -7,6 +7,12 @@ use crate::filter::steady_prediction;
 
 /// Doublings of the sum of the gradient: `2^60` steps.
 const DOUBLINGS: usize = 60;
+/// What a sample may change of a steady state, relative.
+const SOLVED: f64 = 1e-6;
+/// Samples after which a variance that still grows is not seen: a day of minutes.
+const DAY_SAMPLES: usize = 1440;
+/// Return of a state towards itself within a sample that is none.
+const STAYS: f64 = 1e-9;
 /// Growth of the sum, relative, below which it has settled.
 const SETTLED: f64 = 1e-14;
 
@@ -30,11 +36,13 @@ pub struct LinearProblem {
 }
 
 /// Steady state at an information.
-struct Steady {
+pub(super) struct Steady {
     /// Covariance after an update: (n, n).
-    updated: DMatrix<f64>,
+    pub updated: DMatrix<f64>,
+    /// What an update leaves of an error, `I - K H`: (n, n).
+    pub left: DMatrix<f64>,
     /// Error's transition from one update to the next, `(I - K H) F`: (n, n).
-    error: DMatrix<f64>,
+    pub error: DMatrix<f64>,
 }
 
 impl LinearProblem {
@@ -63,6 +71,37 @@ impl LinearProblem {
         Ok(Self { transition: f, process_noise: q, functional, candidates })
     }
 
+    /// Parts that fit each other.
+    pub(super) fn of_parts(
+        transition: DMatrix<f64>,
+        process_noise: DMatrix<f64>,
+        functional: DVector<f64>,
+        candidates: Vec<CandidateOutput>,
+    ) -> Self {
+        Self { transition, process_noise, functional, candidates }
+    }
+
+    /// By how much of itself the variance of each state that does not return by itself grows with all candidates read, in as many samples as have gone
+    /// since a start at nothing: near zero where they see it, one where they do not and it walks.
+    pub(super) fn growth(&self) -> Vec<f64> {
+        let n = self.transition.nrows();
+        let information = self.information((0..self.candidates.len()).map(|index| (index, 1.0)));
+        let mut p = DMatrix::zeros(n, n);
+        let mut halfway = DVector::zeros(n);
+        for sample in 0..2 * DAY_SAMPLES {
+            if sample == DAY_SAMPLES {
+                halfway = p.diagonal();
+            }
+            p = &self.transition * &p * self.transition.transpose() + &self.process_noise;
+            if let Some(left) = (DMatrix::identity(n, n) + &p * &information).try_inverse() {
+                p = left * p;
+            }
+            p = 0.5 * (&p + p.transpose());
+        }
+        let stays = |state: usize| self.transition[(state, state)] > 1.0 - STAYS;
+        (0..n).map(|i| if stays(i) { p[(i, i)] / halfway[i] - 1.0 } else { 0.0 }).collect()
+    }
+
     /// The candidates.
     pub fn outputs(&self) -> &[CandidateOutput] {
         &self.candidates
@@ -84,7 +123,7 @@ impl LinearProblem {
     }
 
     /// Information of a sample of weighted candidates: (n, n).
-    fn information(&self, weights: impl Iterator<Item = (usize, f64)>) -> DMatrix<f64> {
+    pub(super) fn information(&self, weights: impl Iterator<Item = (usize, f64)>) -> DMatrix<f64> {
         let n = self.transition.nrows();
         let mut information = DMatrix::zeros(n, n);
         for (index, weight) in weights.filter(|(_, weight)| *weight > 0.0) {
@@ -103,23 +142,27 @@ impl LinearProblem {
         steady_prediction(&self.transition, &all, &self.process_noise)
     }
 
-    fn steady(&self, information: &DMatrix<f64>) -> Option<Steady> {
+    pub(super) fn steady(&self, information: &DMatrix<f64>) -> Option<Steady> {
         let predicted = steady_prediction(&self.transition, information, &self.process_noise).ok()?;
         let n = predicted.nrows();
         // (I + P G)^-1 is what an update leaves of an error.
-        let left = (DMatrix::identity(n, n) + &predicted * information).lu();
-        let (mut updated, error) = (left.solve(&predicted)?, left.solve(&self.transition)?);
+        let left = (DMatrix::identity(n, n) + &predicted * information).try_inverse()?;
+        let (mut updated, error) = (&left * &predicted, &left * &self.transition);
         updated = 0.5 * (&updated + updated.transpose());
-        Some(Steady { updated, error })
+        // What is not seen grows so slowly that rounding can end the doubling.
+        let next = &self.transition * &updated * self.transition.transpose() + &self.process_noise;
+        let stands = (next - &predicted).norm() <= SOLVED * predicted.norm();
+        let is_covariance = updated.diagonal().min() >= 0.0;
+        (stands && is_covariance).then_some(Steady { updated, left, error })
     }
 
-    fn variance(&self, steady: &Steady) -> f64 {
+    pub(super) fn variance(&self, steady: &Steady) -> f64 {
         (self.functional.transpose() * &steady.updated * &self.functional)[(0, 0)]
     }
 }
 
 /// `sum_k (L^T)^k c c^T L^k` (n, n): how much each later error still counts.
-fn remembered(error: &DMatrix<f64>, functional: &DVector<f64>) -> Option<DMatrix<f64>> {
+pub(super) fn remembered(error: &DMatrix<f64>, functional: &DVector<f64>) -> Option<DMatrix<f64>> {
     let (mut sum, mut power) = (functional * functional.transpose(), error.clone());
     for _ in 0..DOUBLINGS {
         let added = power.transpose() * &sum * &power;

@@ -22,6 +22,16 @@ impl Sensor {
         let spec = SensorSpec { name: name.to_owned(), ..SensorSpec::default() };
         Self::try_from(&completed(&spec))
     }
+
+    /// The typical thermometer on the wall at a height above the outer bottom, m: `wall_<height in mm>mm`.
+    ///
+    /// # Errors
+    /// As [`Sensor::typical`].
+    pub fn typical_at_height(height_m: f64) -> Result<Self, EstimatorError> {
+        let name = format!("wall_{:.0}mm", 1e3 * height_m);
+        let spec = SensorSpec { name, height_m: Some(height_m), ..SensorSpec::default() };
+        Self::try_from(&completed(&spec))
+    }
 }
 
 /// The specification with the typical numbers wherever it says nothing.

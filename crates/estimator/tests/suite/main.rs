@@ -19,5 +19,6 @@ mod linear_model;
 mod matched;
 mod observer;
 mod placement;
+mod placement_cylinder;
 mod properties;
 mod sensors;

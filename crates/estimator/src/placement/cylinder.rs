@@ -1,0 +1,248 @@
+//! The cylinder with every candidate on it: the observer's own equations, linearised where the cylinder stands.
+//!
+//! No second model: [`Cylinder`] is built with all candidates as its sensors, and its transition, its noise, the gradients of the readings
+//! and their noise variances are those that the observer uses. To its leading states come the slow ones, which return to their priors
+//! (`x <- a x + w`), so that all of them settle:
+//!
+//! `[x; c] <- [F F_c; 0 diag(a)] [x; c] + w`, `y_j = h_j^T x + h_cj^T c + v_j`.
+//!
+//! A state that neither moves nor walks, such as the leak rate of a member that supposes none, is left out. So is a transmitter's constant offset:
+//! nothing tells it from the mass, which is therefore that against the filling. What a candidate
+//! brings (offset, coupling, lag) belongs to it alone ([`GroupedProblem`]).
+//!
+//! Assumes that wall, gas and surroundings have come to rest at the conditions: the steady state of an observer in a course says the scenario's
+//! covariance. The certainty is the observer's own, with the errors that it supposes of its model.
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use super::grouped::GroupedProblem;
+use super::problem::{CandidateOutput, LinearProblem};
+use crate::EstimatorError;
+use crate::filter::{Linearisation, StateSpace};
+use crate::observer::cylinder::Cylinder;
+use crate::observer::states::{StateKind, States};
+use crate::observer::{Commissioning, LeakHypothesis, ObserverSettings};
+use crate::sensor::Sensor;
+use crate::thermal::vessel::Vessel;
+
+/// Departure of a state from itself over an interval, relative, within which it does not move.
+const STANDS: f64 = 1e-12;
+
+/// Where the cylinder stands, and how often it is read.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// Pressure of the filling, Pa, and its temperature, K.
+    pub filling: (f64, f64),
+    /// Temperature of wall and gas, K.
+    pub body_k: f64,
+    /// Temperature of the surroundings, K.
+    pub air_k: f64,
+    /// Interval of the readings, s.
+    pub interval_s: f64,
+}
+
+impl Default for Conditions {
+    /// 200 bar at 15 °C, at rest at that temperature, read every minute.
+    fn default() -> Self {
+        Self { filling: (200e5, 288.15), body_k: 288.15, air_k: 288.15, interval_s: 60.0 }
+    }
+}
+
+/// What is to be known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// Mean gas temperature, K.
+    GasTemperature,
+    /// Gas mass, kg.
+    Mass,
+    /// Leak rate, kg/s.
+    LeakRate,
+}
+
+/// The linearised cylinder with all candidates.
+#[derive(Clone, Debug)]
+pub struct SitedCylinder {
+    /// Of the states that are kept.
+    names: Vec<String>,
+    kinds: Vec<StateKind>,
+    owners: Vec<Option<usize>>,
+    scales: Vec<f64>,
+    point: Vec<f64>,
+    transition: DMatrix<f64>,
+    process_noise: DMatrix<f64>,
+    outputs: Vec<CandidateOutput>,
+}
+
+impl SitedCylinder {
+    /// A vessel with candidates, as one member of the observer's bank sees it.
+    ///
+    /// # Errors
+    /// As [`Cylinder::new`]; or the conditions are no state of the gas.
+    pub fn new(
+        vessel: &Vessel,
+        candidates: &[Sensor],
+        settings: &ObserverSettings,
+        member: &LeakHypothesis,
+        conditions: &Conditions,
+    ) -> Result<Self, EstimatorError> {
+        let mut cylinder = Cylinder::new(vessel, candidates, settings)?;
+        cylinder.suppose(member);
+        let (n, m) = (cylinder.states(), cylinder.leading());
+        let point = state_at(&mut cylinder, vessel, conditions)?;
+        let mut linear = Linearisation::zeros(n, m, cylinder.noises());
+        cylinder.propagate(&mut point.clone(), conditions.interval_s, Some(&mut linear))?;
+        let mut f = DMatrix::zeros(n, n);
+        let mut q = DMatrix::zeros(n, n);
+        f.rows_mut(0, m).copy_from(&linear.phi);
+        q.view_mut((0, 0), (m, m))
+            .copy_from(&(&linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose()));
+        for state in m..n {
+            (f[(state, state)], q[(state, state)]) = cylinder.slow_process(state).over(conditions.interval_s);
+        }
+        let is_known = |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < STANDS;
+        let kept: Vec<usize> = (0..n).filter(|&state| !is_known(state)).collect();
+        let mut outputs = Vec::with_capacity(candidates.len());
+        let mut gradient = DVector::zeros(n);
+        for candidate in 0..candidates.len() {
+            cylinder.set_interval_s(candidate, conditions.interval_s);
+            cylinder.output(candidate, &point, Some(gradient.as_mut_slice()))?;
+            let variance = cylinder.noise_variance(candidate, &point);
+            outputs.push(CandidateOutput { gradient: gradient.select_rows(&kept), variance });
+        }
+        let States { kinds, names, .. } = cylinder.state_map();
+        let scales: Vec<f64> = kept.iter().map(|&state| scale(&kinds[state], candidates)).collect();
+        for output in &mut outputs {
+            output.gradient.iter_mut().zip(&scales).for_each(|(by, scale)| *by *= scale);
+        }
+        let scaled = |of: &DMatrix<f64>, columns: fn(f64) -> f64| {
+            DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+                of[(kept[i], kept[j])] * columns(scales[j]) / scales[i]
+            })
+        };
+        let kinds: Vec<StateKind> = kept.iter().map(|&state| kinds[state].clone()).collect();
+        let owner = |kind: &StateKind| match *kind {
+            StateKind::Lag { sensor } | StateKind::Parameter { sensor, .. } => Some(sensor),
+            _ => None,
+        };
+        Ok(Self {
+            names: kept.iter().map(|&state| names[state].clone()).collect(),
+            owners: kinds.iter().map(owner).collect(),
+            kinds,
+            point: kept.iter().map(|&state| point[state]).collect(),
+            transition: scaled(&f, |scale| scale),
+            process_noise: scaled(&q, f64::recip),
+            outputs,
+            scales,
+        })
+    }
+
+    /// Names of the states, in the order of the matrices.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// What one of each state is in the matrices, K, kg, ...: (n). Numbers near one keep the Riccati equation well posed.
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
+    /// The state that everything is linearised at, in SI: (n).
+    pub fn point(&self) -> &[f64] {
+        &self.point
+    }
+
+    /// Transition over an interval of the readings: (n, n).
+    pub fn transition(&self) -> &DMatrix<f64> {
+        &self.transition
+    }
+
+    /// Covariance of the process noise over it: (n, n).
+    pub fn process_noise(&self) -> &DMatrix<f64> {
+        &self.process_noise
+    }
+
+    /// What each candidate reads.
+    pub fn outputs(&self) -> &[CandidateOutput] {
+        &self.outputs
+    }
+
+    /// The search for the layout that knows a quantity best: its criterion is the variance of the observer's estimate in the steady state,
+    /// K², kg² or kg²/s².
+    ///
+    /// # Errors
+    /// [`EstimatorError::PlacementQuantity`]: the member does not estimate it.
+    pub fn problem(&self, quantity: Quantity) -> Result<GroupedProblem, EstimatorError> {
+        let wanted = match quantity {
+            Quantity::GasTemperature => StateKind::Gas,
+            Quantity::Mass => StateKind::Mass,
+            Quantity::LeakRate => StateKind::Leak,
+        };
+        let state = self.kinds.iter().position(|kind| *kind == wanted);
+        let state = state.ok_or(EstimatorError::PlacementQuantity { quantity })?;
+        let mut functional = DVector::zeros(self.kinds.len());
+        functional[state] = self.scales[state];
+        let outputs = self.outputs.clone();
+        let whole =
+            LinearProblem::new(self.transition.clone(), self.process_noise.clone(), functional, outputs)?;
+        GroupedProblem::new(whole, &self.owners)
+    }
+
+    /// The state that a layout does not see, where it has no steady state: of those that do not return by themselves that whose variance grows most in
+    /// a second day.
+    pub fn unseen(&self, layout: &[usize]) -> Option<&str> {
+        let problem = self.problem(Quantity::Mass).ok()?;
+        let states = problem.states_of(layout);
+        let growth = problem.of_layout(layout).growth();
+        let most = growth.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(&self.names[states[most.0]])
+    }
+}
+
+/// A typical size of a state's error.
+fn scale(kind: &StateKind, candidates: &[Sensor]) -> f64 {
+    let reading = |sensor: usize| match candidates[sensor].quantity() {
+        crate::log::Quantity::Pressure => 1e5,
+        crate::log::Quantity::Temperature => 1.0,
+    };
+    match *kind {
+        StateKind::Mass => 1e-2,
+        StateKind::Leak => 1e-4 / 3600.0,
+        StateKind::Lag { sensor } => reading(sensor),
+        StateKind::Parameter { sensor, parameter } => {
+            let sd = candidates[sensor].parameters()[parameter].sd;
+            if sd > 0.0 { sd } else { reading(sensor) }
+        }
+        StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Air | StateKind::Sun => 1.0,
+        StateKind::OutsideFilm | StateKind::InsideFilm | StateKind::Capacity | StateKind::FilmSlope => 0.1,
+    }
+}
+
+/// The state of a cylinder at rest, its surroundings at a temperature of their own.
+fn state_at(
+    cylinder: &mut Cylinder,
+    vessel: &Vessel,
+    conditions: &Conditions,
+) -> Result<Vec<f64>, EstimatorError> {
+    let Conditions { filling: (pressure_pa, temperature_k), body_k, air_k, .. } = *conditions;
+    let mass_kg = Commissioning::filled(pressure_pa, temperature_k).mass_kg(vessel, temperature_k)?;
+    let present_pa = cylinder.model().settled_pressure_pa(mass_kg, body_k)?;
+    let sensors = cylinder.sensors();
+    let value = |kind: &StateKind| match *kind {
+        StateKind::Wall(_) | StateKind::Valve | StateKind::Gas => body_k,
+        StateKind::Mass => mass_kg,
+        StateKind::Air => air_k,
+        StateKind::Lag { sensor } => match sensors[sensor].quantity() {
+            crate::log::Quantity::Pressure => present_pa,
+            crate::log::Quantity::Temperature => body_k,
+        },
+        StateKind::Parameter { sensor, parameter } => sensors[sensor].parameters()[parameter].mean,
+        StateKind::Leak
+        | StateKind::OutsideFilm
+        | StateKind::Sun
+        | StateKind::InsideFilm
+        | StateKind::Capacity
+        | StateKind::FilmSlope => 0.0,
+    };
+    Ok(cylinder.state_map().kinds.iter().map(value).collect())
+}
