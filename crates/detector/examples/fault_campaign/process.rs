@@ -20,6 +20,8 @@ const EMPTY_PA: f64 = 20.0 * BAR_PA;
 
 /// Loss from which a leak has begun, kg.
 const BEGUN_KG: f64 = 0.005;
+/// Time before and after a discharge between which gas has gone, s.
+const WITHIN_S: f64 = 600.0;
 
 /// What is drawn for one case. Times in s from the beginning.
 #[derive(Default)]
@@ -33,7 +35,7 @@ struct Drawn {
     what: String,
 }
 
-/// Run a row; `None` where it has its own leak and this one is not it.
+/// Run a row; `None` where it has its own leak and this one is not it, or nothing happens.
 pub fn run(
     campaign: &Campaign,
     row: TableRow,
@@ -65,6 +67,10 @@ pub fn run(
         let Some(onset_s) = begun_s(&truth) else { return Ok(None) };
         drawn.leak = drawn.leak.map(|leak| CaseLeak { onset_s, ..leak });
     }
+    if row == TableRow::G2 && !loses(&truth, at_s) {
+        // So cold that its pressure was below the end of the discharge: no case.
+        return Ok(None);
+    }
     let case = Case {
         row,
         fault: None,
@@ -79,6 +85,14 @@ pub fn run(
     let subject = Subject { commissioning, ..campaign.subject.clone() };
     let history = subject.run(None, &record(&truth)?.without("ambient"))?;
     Ok(Some(crate::missed(&case, &Histories { history, unbroken: None })))
+}
+
+/// Whether gas is lost about a time, s.
+fn loses(truth: &Truth, at_s: f64) -> bool {
+    let mass_kg = |time_s: f64| {
+        truth.mass_kg[truth.time_s.partition_point(|at_s| *at_s < time_s).min(truth.mass_kg.len() - 1)]
+    };
+    mass_kg(at_s - WITHIN_S) - mass_kg(at_s + WITHIN_S) > BEGUN_KG
 }
 
 /// When gas began to be lost, s.

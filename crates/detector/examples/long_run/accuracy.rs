@@ -18,6 +18,8 @@ use crate::truths::{self, Readings, Run};
 const DAY_S: f64 = 86_400.0;
 const HOUR_S: f64 = 3600.0;
 const BAR_PA: f64 = 1e5;
+/// Leak rate beyond which a loss is hardly told from a discharge, bar/h.
+const SLOW_BAR_H: f64 = 5.0;
 
 /// What was said of one leak.
 struct Said {
@@ -42,7 +44,7 @@ pub fn print(folder: &Path) -> Result<(), Fault> {
     })?;
     table(&said.into_inner().map_err(|_| "another thread failed")?)?;
     let exchanges = exchanges.into_inner();
-    writeln!(std::io::stdout(), "\nExchanges of gas that were none: {exchanges}")?;
+    writeln!(std::io::stdout(), "\nExchanges of gas that were none, up to {SLOW_BAR_H} bar/h: {exchanges}")?;
     Ok(())
 }
 
@@ -57,8 +59,10 @@ fn watch(run: &Run, readings: &Readings, exchanges: &AtomicUsize) -> Result<Opti
     let mut alarm: Option<(f64, LeakFinding)> = None;
     for (time_s, row) in readings.rows() {
         for output in monitor.step(time_s, &row)? {
-            let exchange =
-                |event: &&Event| matches!(event.kind, EventKind::Discharge(_) | EventKind::Refill(_));
+            let exchange = |event: &&Event| {
+                let kind = matches!(event.kind, EventKind::Discharge(_) | EventKind::Refill(_));
+                kind && rate_bar_h(run) <= SLOW_BAR_H
+            };
             exchanges.fetch_add(output.events.iter().filter(exchange).count(), Ordering::Relaxed);
             let Some(leak_said) = output.leak else { continue };
             if time_s < leak.start_s {
