@@ -231,10 +231,13 @@ impl Parity {
     }
 
     fn name(&mut self, time_s: f64) {
+        if self.off_k.abs() < OVER_K {
+            self.named = None;
+            return;
+        }
         let off = [usize::MAX, LATELY].map(|against| self.which_is_off(against));
         let is_off = |which: usize| off.contains(&Some(which));
         self.named = match self.named {
-            _ if self.off_k.abs() < OVER_K => None,
             // Once it is named, what the night makes of it names nobody else.
             Some(named) if is_off(named.which) || named.windows >= NAMED_WINDOWS => {
                 Some(named.goes_on(self.off_k))
@@ -309,8 +312,8 @@ impl Named {
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]
