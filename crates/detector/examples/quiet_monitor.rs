@@ -6,9 +6,11 @@
 //! The long run judges the evidence for a leak alone; here sensors are watched, jumps examined and rows taken in as well, and any of them
 //! can go wrong. No seed is shared with the runs that thresholds were fitted to.
 #![allow(clippy::print_stdout)]
+#[path = "shared/seeds.rs"]
+mod seeds;
+
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::ops::Range;
 
 use cylwatch_detector::calibrate::FalseAlarms;
 use cylwatch_detector::estimator::observer::Commissioning;
@@ -17,6 +19,8 @@ use cylwatch_detector::estimator::thermal::vessel::presets;
 use cylwatch_detector::estimator::truth::{Course, Truth, TruthSettings, generate_sets};
 use cylwatch_detector::monitor::{EventKind, Health, Monitor, MonitorSettings};
 use rayon::prelude::*;
+
+use seeds::seeds;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -33,7 +37,7 @@ type Said = BTreeMap<&'static str, u64>;
 
 fn main() -> Result<(), Failure> {
     let mut arguments = std::env::args().skip(1);
-    let seeds = seeds(&arguments.next().unwrap_or_else(|| "12".into()))?;
+    let seeds = seeds(&arguments.next().unwrap_or_else(|| "12".into()), 0)?;
     let days: f64 = arguments.next().map_or(Ok(122.0), |text| text.parse())?;
     let all: Vec<Vec<Said>> =
         seeds.into_par_iter().map(|seed| simulation(FIRST_SEED + seed, days)).collect::<Result<_, _>>()?;
@@ -69,14 +73,6 @@ fn main() -> Result<(), Failure> {
         );
     }
     Ok(())
-}
-
-/// A count from the first on, or `first..end`.
-fn seeds(text: &str) -> Result<Range<u64>, Failure> {
-    Ok(match text.split_once("..") {
-        Some((first, end)) => first.parse()?..end.parse()?,
-        None => 0..text.parse()?,
-    })
 }
 
 /// One cylinder in its weather, watched through each set of sensors.

@@ -5,6 +5,7 @@
 //! into the mean gas temperature, the gas mass and the leak rate, each with its standard deviation.
 pub mod bound;
 pub mod calibrate;
+mod cone;
 pub mod consistency;
 pub mod error;
 pub mod filter;

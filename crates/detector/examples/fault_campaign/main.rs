@@ -10,10 +10,11 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 mod base;
 mod process;
+#[path = "../shared/seeds.rs"]
+mod seeds;
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
@@ -22,6 +23,7 @@ use cylwatch_detector::performance::{CONFIDENCE, Proportion};
 use rayon::prelude::*;
 
 use base::{Base, Campaign, LEAKS_BAR_H};
+use seeds::seeds;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -45,7 +47,7 @@ struct Outcome {
 
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let seeds = seeds(arguments.first().map_or("50", String::as_str))?;
+    let seeds = seeds(arguments.first().map_or("50", String::as_str), 1)?;
     let rows = rows(arguments.get(1).map_or("", String::as_str))?;
     let cache = arguments.get(2).map(PathBuf::from);
     let campaign = Campaign::new(cache)?;
@@ -57,13 +59,6 @@ fn main() -> Result<(), Failure> {
         jobs.par_iter().flat_map_iter(|&(seed, leak)| outcomes(&campaign, &rows, seed, leak)).collect();
     print(&rows, &outcomes);
     Ok(())
-}
-
-fn seeds(text: &str) -> Result<Range<u64>, Failure> {
-    Ok(match text.split_once("..") {
-        Some((first, end)) => first.parse()?..end.parse()?,
-        None => 1..text.parse::<u64>()? + 1,
-    })
 }
 
 /// The rows whose names begin as asked for, and the record without a fault.

@@ -1,4 +1,4 @@
-//! The small program on Clarabel, an interior-point solver; no other file names it.
+//! The small program on Clarabel, an interior-point solver.
 //!
 //! Variables `[v, s+, s-]` with `s = s+ - s-`, all in standard deviations, so that the solver's tolerances are relative
 //! to what matters. It has no warm start; the program is small instead.
@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::outcome::FallbackReason;
 use super::program::{Optimum, Program};
+use crate::cone::{settings, sparse};
 
 /// What the solver returns.
 #[derive(Clone, Debug)]
@@ -18,10 +19,7 @@ pub(super) struct Solved {
     pub almost: bool,
 }
 
-/// Relative accuracy asked for; the optimum is polished afterwards.
-const TOLERANCE: f64 = 1e-9;
-
-/// Solve the program.
+/// Solve the program; the optimum is polished afterwards.
 ///
 /// # Errors
 /// Why there is no solution.
@@ -29,16 +27,7 @@ pub(super) fn solve(program: &Program) -> Result<Solved, FallbackReason> {
     let scale = scale(program);
     let (hessian, q) = objective(program, scale);
     let (a, b) = inequalities(program, scale);
-    let settings = DefaultSettings {
-        verbose: false,
-        presolve_enable: false,
-        max_threads: 1,
-        direct_solve_method: "qdldl".to_string(),
-        tol_gap_abs: TOLERANCE,
-        tol_gap_rel: TOLERANCE,
-        tol_feas: TOLERANCE,
-        ..DefaultSettings::default()
-    };
+    let settings = DefaultSettings { presolve_enable: false, ..settings() };
     let cones = [NonnegativeConeT(b.len())];
     let mut solver = DefaultSolver::new(&upper_csc(&hessian), &q, &csc(&a), &b, &cones, settings)
         .map_err(|_| FallbackReason::Solver)?;
@@ -108,15 +97,9 @@ fn upper_csc(a: &DMatrix<f64>) -> CscMatrix<f64> {
     compressed(a, |i, j| i <= j)
 }
 
-/// Sparse form of the entries that count and are not zero.
+/// Sparse form of the entries that count.
 fn compressed(a: &DMatrix<f64>, counts: impl Fn(usize, usize) -> bool) -> CscMatrix<f64> {
-    let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-    for (j, column) in a.column_iter().enumerate() {
-        for (i, &value) in column.iter().enumerate().filter(|&(i, &v)| counts(i, j) && v != 0.0) {
-            rows.push(i);
-            values.push(value);
-        }
-        starts.push(values.len());
-    }
-    CscMatrix::new(a.nrows(), a.ncols(), starts, rows, values)
+    let entries = (0..a.ncols()).flat_map(|j| (0..a.nrows()).map(move |i| (i, j)));
+    let counted = entries.filter(|&(i, j)| counts(i, j)).map(|(i, j)| (i, j, a[(i, j)]));
+    sparse(a.nrows(), a.ncols(), counted.collect())
 }

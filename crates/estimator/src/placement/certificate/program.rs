@@ -1,16 +1,12 @@
 //! Linear and second-order cone programs on Clarabel.
 //!
 //! `min 1/2 x^T P x + q^T x` under `A x = b`, `A x <= b` and `|v| <= u` for affine `(u, v)`.
-use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
-    SupportedConeT, ZeroConeT,
+    DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus, SupportedConeT, ZeroConeT,
 };
 
 use crate::EstimatorError;
-
-/// Relative accuracy asked for.
-const TOLERANCE: f64 = 1e-9;
+use crate::cone::{settings, sparse};
 
 /// `sum of factors times variables` against a number.
 #[derive(Clone, Debug)]
@@ -72,18 +68,9 @@ impl ConeProgram {
         let mut cones: Vec<SupportedConeT<f64>> =
             vec![ZeroConeT(self.equal.len()), NonnegativeConeT(self.at_most.len())];
         cones.extend(self.cones.iter().map(|rows| SecondOrderConeT(rows.len())));
-        let settings = DefaultSettings {
-            verbose: false,
-            max_threads: 1,
-            direct_solve_method: "qdldl".to_string(),
-            tol_gap_abs: TOLERANCE,
-            tol_gap_rel: TOLERANCE,
-            tol_feas: TOLERANCE,
-            ..DefaultSettings::default()
-        };
         let p = sparse(self.variables, self.variables, self.quadratic.clone());
         let a = sparse(b.len(), self.variables, entries);
-        let mut solver = DefaultSolver::new(&p, &self.linear, &a, &b, &cones, settings)
+        let mut solver = DefaultSolver::new(&p, &self.linear, &a, &b, &cones, settings())
             .map_err(|_| EstimatorError::PlacementProgram { what: "it could not be set up" })?;
         solver.solve();
         let solution = &solver.solution;
@@ -98,27 +85,4 @@ impl ConeProgram {
             _ => Err(EstimatorError::PlacementProgram { what: "the solver did not come to an end" }),
         }
     }
-}
-
-/// Sparse matrix by columns from entries, of which those at one place are summed.
-fn sparse(rows: usize, columns: usize, mut entries: Vec<(usize, usize, f64)>) -> CscMatrix<f64> {
-    entries.sort_by_key(|(row, column, _)| (*column, *row));
-    let (mut starts, mut at, mut values) = (vec![0; columns + 1], Vec::new(), Vec::new());
-    let mut last = None;
-    for (row, column, value) in entries {
-        if last == Some((row, column)) {
-            if let Some(sum) = values.last_mut() {
-                *sum += value;
-            }
-            continue;
-        }
-        last = Some((row, column));
-        at.push(row);
-        values.push(value);
-        starts[column + 1] = at.len();
-    }
-    for column in 0..columns {
-        starts[column + 1] = starts[column + 1].max(starts[column]);
-    }
-    CscMatrix::new(rows, columns, starts, at, values)
 }
