@@ -9,6 +9,11 @@
 //! convex. Its derivative has, beside that of the outputs, a part from the transition, with `A = I - K H`, `W = A^T Y A`:
 //!
 //! `dV/dz = -(h + h_o / sqrt(z))^T P Y P h / sigma^2 + sum F_ox,is (P F^T W)_si / sqrt(z)`.
+//!
+//! Candidates that are alike, such as thermometers on one cell of the mesh, are one candidate with the sum of their weights: information adds.
+use std::collections::HashMap;
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::objective::{Objective, Relaxed};
@@ -25,6 +30,9 @@ pub struct GroupedProblem {
     shared: Vec<usize>,
     /// States of each candidate.
     own: Vec<Vec<usize>>,
+    /// One of each kind, and which kind each candidate is.
+    kinds: Vec<usize>,
+    kind_of: Vec<usize>,
 }
 
 /// Least weight: what is read with it says nothing, but its derivative is there.
@@ -51,7 +59,30 @@ impl GroupedProblem {
                     .push(state),
             }
         }
-        Ok(Self { whole, shared, own })
+        let mut problem = Self { whole, shared, own, kinds: Vec::new(), kind_of: Vec::new() };
+        problem.tell_kinds();
+        Ok(problem)
+    }
+
+    /// Those that are read alike and have errors alike.
+    fn tell_kinds(&mut self) {
+        let mut known = HashMap::new();
+        for candidate in 0..self.own.len() {
+            let alone = self.of_layout(&[candidate]);
+            let shared = self.shared.len();
+            let own = self.own[candidate].len();
+            // What the shared states do among each other is the same for all.
+            let moves = alone.transition().rows(shared, own);
+            let walks = alone.process_noise().rows(shared, own);
+            let CandidateOutput { gradient, variance } = &alone.outputs()[0];
+            let numbers = moves.iter().chain(walks.iter()).chain(gradient.iter()).chain([variance]);
+            let key: Vec<u64> = numbers.map(|value| value.to_bits()).collect();
+            let kind = *known.entry(key).or_insert(self.kinds.len());
+            if kind == self.kinds.len() {
+                self.kinds.push(candidate);
+            }
+            self.kind_of.push(kind);
+        }
     }
 
     /// The problem with the states of all candidates.
@@ -59,18 +90,28 @@ impl GroupedProblem {
         &self.whole
     }
 
-    /// The problem in which each candidate reads the shared states times a root of its weight.
+    /// The problem of one of each kind, which reads the shared states times a root of its weight; its first states are the shared ones.
     fn weighed(&self, roots: &[f64]) -> LinearProblem {
-        let mut transition = self.whole.transition().clone();
-        let mut outputs = self.whole.outputs().to_vec();
-        for ((root, own), output) in roots.iter().zip(&self.own).zip(&mut outputs) {
-            for &state in &self.shared {
-                output.gradient[state] *= root;
-                own.iter().for_each(|&own| transition[(own, state)] *= root);
-            }
+        let whole = self.of_layout(&self.kinds);
+        let mut transition = whole.transition().clone();
+        let mut outputs = whole.outputs().to_vec();
+        let shared = self.shared.len();
+        for ((root, own), output) in roots.iter().zip(self.own_of_kinds()).zip(&mut outputs) {
+            output.gradient.rows_mut(0, shared).scale_mut(*root);
+            transition.view_mut((own.start, 0), (own.len(), shared)).scale_mut(*root);
         }
-        let noise = self.whole.process_noise().clone();
-        LinearProblem::of_parts(transition, noise, self.whole.functional().clone(), outputs)
+        let noise = whole.process_noise().clone();
+        LinearProblem::of_parts(transition, noise, whole.functional().clone(), outputs)
+    }
+
+    /// Where the own states of each kind are in their problem.
+    fn own_of_kinds(&self) -> impl Iterator<Item = Range<usize>> {
+        let mut next = self.shared.len();
+        self.kinds.iter().map(move |candidate| {
+            let begun = next;
+            next += self.own[*candidate].len();
+            begun..next
+        })
     }
 
     /// States that a layout has to do with: those that are shared, then its candidates' own.
@@ -108,10 +149,11 @@ impl Objective for GroupedProblem {
     }
 
     fn relaxed(&self, weights: &[f64]) -> Option<Relaxed> {
-        let roots: Vec<f64> = weights.iter().map(|weight| weight.max(LEAST_WEIGHT).sqrt()).collect();
+        let mut of_kind = vec![0.0; self.kinds.len()];
+        weights.iter().zip(&self.kind_of).for_each(|(weight, kind)| of_kind[*kind] += weight);
+        let roots: Vec<f64> = of_kind.iter().map(|weight: &f64| weight.max(LEAST_WEIGHT).sqrt()).collect();
         let weighed = self.weighed(&roots);
-        let all = weighed.information((0..roots.len()).map(|index| (index, 1.0)));
-        let steady = weighed.steady(&all)?;
+        let steady = weighed.steady(&weighed.information((0..roots.len()).map(|kind| (kind, 1.0))))?;
         let counted = remembered(&steady.error, weighed.functional())?;
         let per_information = &steady.updated * &counted * &steady.updated;
         let per_transition = &steady.updated
@@ -119,25 +161,22 @@ impl Objective for GroupedProblem {
             * steady.left.transpose()
             * counted
             * &steady.left;
-        let slope = |(candidate, root): (usize, &f64)| {
-            let CandidateOutput { gradient, variance } = &weighed.outputs()[candidate];
-            let of_shared = |matrix: &DVector<f64>| -> f64 {
-                self.shared
-                    .iter()
-                    .map(|&state| matrix[state] * self.whole.outputs()[candidate].gradient[state])
-                    .sum()
-            };
-            let by_output = -of_shared(&(&per_information * gradient)) / (variance * root);
-            let by_transition: f64 = self.own[candidate]
-                .iter()
-                .flat_map(|&own| self.shared.iter().map(move |&state| (own, state)))
-                .map(|(own, state)| self.whole.transition()[(own, state)] * per_transition[(state, own)])
-                .sum();
-            by_output + by_transition / root
+        let shared = self.shared.len();
+        let slope = |((root, own), output): ((&f64, Range<usize>), &CandidateOutput)| {
+            let by_output =
+                (&per_information * &output.gradient).rows(0, shared).dot(&output.gradient.rows(0, shared))
+                    / output.variance;
+            let rows = weighed.transition().view((own.start, 0), (own.len(), shared));
+            let by_transition =
+                rows.transpose().dot(&per_transition.view((0, own.start), (shared, own.len())));
+            // Both have the root in them once already.
+            (by_transition - by_output) / (root * root)
         };
+        let slopes: Vec<f64> =
+            roots.iter().zip(self.own_of_kinds()).zip(weighed.outputs()).map(slope).collect();
         Some(Relaxed {
             value: weighed.variance(&steady),
-            gradient: roots.iter().enumerate().map(slope).collect(),
+            gradient: self.kind_of.iter().map(|kind| slopes[*kind]).collect(),
         })
     }
 }

@@ -220,3 +220,20 @@ fn the_relaxed_criterion_is_convex_and_its_gradient_is_that_of_differences() {
     // At 0 and 1 it is the value of the layout.
     assert_relative_eq!(value(&[1.0, 0.0, 1.0, 0.0, 1.0]), problem.value(&[0, 2, 4]), max_relative = 1e-5);
 }
+
+#[test]
+fn candidates_alike_share_their_weight() {
+    // Three heights on one cell of the mesh, one on another.
+    let mut sensors: Vec<Sensor> =
+        [0.3, 0.3001, 0.3002, 0.5].iter().map(|at| Sensor::typical_at_height(*at).unwrap()).collect();
+    for (number, sensor) in sensors.iter_mut().enumerate() {
+        sensor.name = format!("wall_{number}");
+    }
+    sensors.extend(candidates(&["pressure"]));
+    let problem = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
+    let at = |weights: [f64; 5]| problem.relaxed(&weights).unwrap();
+    let (spread, one) = (at([0.2, 0.3, 0.1, 0.4, 1.0]), at([0.6, 0.0, 0.0, 0.4, 1.0]));
+    assert_relative_eq!(spread.value, one.value, max_relative = 1e-9);
+    assert!(spread.gradient[0] == spread.gradient[2] && spread.gradient[0] != spread.gradient[3]);
+    assert_relative_eq!(at([1.0, 0.0, 0.0, 0.0, 1.0]).value, problem.value(&[0, 4]), max_relative = 1e-5);
+}
