@@ -6,7 +6,7 @@
 //! * *Spikes*: readings refused by the observer's gate within the last hour.
 //! * *Shifted*: a thermometer that jumps while the other one does not, and stays there, has changed its offset; a
 //!   disturbance from outside moves both, since air and sun reach both. The jump is taken off the readings from then on.
-//! * *Deviates*: for half an hour it has been off while the other thermometer agrees with the pressure; [`super::parity`] tells.
+//! * *Deviates*: for half an hour it has been off while the other thermometer agrees with the pressure; the comparison of both tells.
 //! * *Detached*: a thermometer that does so again and again reads the air.
 //!
 //! What a transmitter's jump is, [`crate::monitor::gas::jump`] tells.
