@@ -16,7 +16,7 @@ use cylwatch_estimator::thermal::vessel::presets;
 
 /// Heights of the side of the 20 L cylinder, m.
 const LOW_M: f64 = 0.05;
-const HIGH_M: f64 = 0.85;
+const HIGH_M: f64 = 0.75;
 
 /// The mean gas temperature with so many thermometers on the wall of so many nodes, and the pressure, which is the last one.
 fn problem(thermometers: usize, wall_nodes: usize) -> GroupedProblem {

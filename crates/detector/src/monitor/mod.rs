@@ -26,6 +26,7 @@ mod event;
 pub mod gas;
 pub mod intake;
 mod machine;
+mod median;
 mod output;
 pub mod readings;
 mod roles;

@@ -301,3 +301,17 @@ fn a_wire_that_breaks_makes_it_unknown_and_never_tight() {
     }
     assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
 }
+
+#[test]
+fn an_empty_cylinder_is_no_refill_and_never_tight() {
+    // 10 bar/h from the second day on: empty within a day.
+    let leak = TruthLeak { start_s: 1.2 * DAY_S, rate_kg_s: 5.33e-5 };
+    let outputs = run(&week(2.7, Some(leak)));
+    assert!(events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
+    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::Refill(_))));
+    let empty = outputs.iter().filter(|output| output.estimate.time_s > 2.25 * DAY_S);
+    assert!(empty.clone().count() > 300);
+    for output in empty {
+        assert_ne!(output.verdict, Verdict::Tight, "{} d", output.estimate.time_s / DAY_S);
+    }
+}

@@ -7,6 +7,7 @@
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
 mod crossing;
 mod lanes;
+mod linear;
 mod near;
 mod noise;
 mod structure;
@@ -23,6 +24,7 @@ use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
 use crate::thermal::model::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 pub(super) use crossing::Crossing;
+pub(crate) use linear::LinearCylinder;
 pub(super) use near::HARDLY;
 use noise::Parts;
 use structure::Structure;

@@ -12,13 +12,13 @@
 //!
 //! Assumes that wall, gas and surroundings have come to rest at the conditions: the steady state of an observer in a course says the scenario's
 //! covariance. The certainty is the observer's own, with the errors that it supposes of its model.
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 
 use super::grouped::GroupedProblem;
 use super::problem::{CandidateOutput, LinearProblem};
 use crate::EstimatorError;
-use crate::filter::{Linearisation, StateSpace};
+use crate::filter::StateSpace;
 use crate::observer::cylinder::Cylinder;
 use crate::observer::states::{StateKind, States};
 use crate::observer::{Commissioning, LeakHypothesis, ObserverSettings};
@@ -90,31 +90,26 @@ impl SitedCylinder {
         cylinder.suppose(member);
         let (n, m) = (cylinder.states(), cylinder.leading());
         let point = state_at(&mut cylinder, vessel, conditions)?;
-        let mut linear = Linearisation::zeros(n, m, cylinder.noises());
-        cylinder.propagate(&mut point.clone(), conditions.interval_s, Some(&mut linear))?;
+        let linear = cylinder.linear_at(&point, conditions.interval_s)?;
         let mut f = DMatrix::zeros(n, n);
         let mut q = DMatrix::zeros(n, n);
         f.rows_mut(0, m).copy_from(&linear.phi);
-        q.view_mut((0, 0), (m, m))
-            .copy_from(&(&linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose()));
+        q.view_mut((0, 0), (m, m)).copy_from(&linear.q);
         for state in m..n {
             (f[(state, state)], q[(state, state)]) = cylinder.slow_process(state).over(conditions.interval_s);
         }
         let is_known = |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < STANDS;
         let kept: Vec<usize> = (0..n).filter(|&state| !is_known(state)).collect();
-        let mut outputs = Vec::with_capacity(candidates.len());
-        let mut gradient = DVector::zeros(n);
-        for candidate in 0..candidates.len() {
-            cylinder.set_interval_s(candidate, conditions.interval_s);
-            cylinder.output(candidate, &point, Some(gradient.as_mut_slice()))?;
-            let variance = cylinder.noise_variance(candidate, &point);
-            outputs.push(CandidateOutput { gradient: gradient.select_rows(&kept), variance });
-        }
         let States { kinds, names, .. } = cylinder.state_map();
         let scales: Vec<f64> = kept.iter().map(|&state| scale(&kinds[state], candidates)).collect();
-        for output in &mut outputs {
-            output.gradient.iter_mut().zip(&scales).for_each(|(by, scale)| *by *= scale);
-        }
+        let output = |(gradient, variance): (DVectorView<'_, f64>, &f64)| {
+            let scaled = |(&state, scale): (&usize, &f64)| gradient[state] * scale;
+            CandidateOutput {
+                gradient: DVector::from_iterator(kept.len(), kept.iter().zip(&scales).map(scaled)),
+                variance: *variance,
+            }
+        };
+        let outputs = linear.h.column_iter().zip(&linear.r).map(output).collect();
         let scaled = |of: &DMatrix<f64>, columns: fn(f64) -> f64| {
             DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
                 of[(kept[i], kept[j])] * columns(scales[j]) / scales[i]

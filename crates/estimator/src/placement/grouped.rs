@@ -123,7 +123,10 @@ impl GroupedProblem {
     /// The problem of a layout alone: its candidates in their order, without the states of all others.
     pub fn of_layout(&self, layout: &[usize]) -> LinearProblem {
         let states = self.states_of(layout);
-        let square = |of: &DMatrix<f64>| of.select_rows(&states).select_columns(&states);
+        // Not by whole rows: those of a thousand candidates are long.
+        let square = |of: &DMatrix<f64>| {
+            DMatrix::from_fn(states.len(), states.len(), |i, j| of[(states[i], states[j])])
+        };
         let part = |of: &DVector<f64>| of.select_rows(&states);
         let output = |candidate: &usize| {
             let CandidateOutput { gradient, variance } = &self.whole.outputs()[*candidate];
@@ -153,7 +156,7 @@ impl Objective for GroupedProblem {
         weights.iter().zip(&self.kind_of).for_each(|(weight, kind)| of_kind[*kind] += weight);
         let roots: Vec<f64> = of_kind.iter().map(|weight: &f64| weight.max(LEAST_WEIGHT).sqrt()).collect();
         let weighed = self.weighed(&roots);
-        let steady = weighed.steady(&weighed.information((0..roots.len()).map(|kind| (kind, 1.0))))?;
+        let steady = weighed.steady(&weighed.information_of_all())?;
         let counted = remembered(&steady.error, weighed.functional())?;
         let per_information = &steady.updated * &counted * &steady.updated;
         let per_transition = &steady.updated

@@ -85,7 +85,7 @@ impl LinearProblem {
     /// since a start at nothing: near zero where they see it, one where they do not and it walks.
     pub(super) fn growth(&self) -> Vec<f64> {
         let n = self.transition.nrows();
-        let information = self.information((0..self.candidates.len()).map(|index| (index, 1.0)));
+        let information = self.information_of_all();
         let mut p = DMatrix::zeros(n, n);
         let mut halfway = DVector::zeros(n);
         for sample in 0..2 * DAY_SAMPLES {
@@ -123,7 +123,7 @@ impl LinearProblem {
     }
 
     /// Information of a sample of weighted candidates: (n, n).
-    pub(super) fn information(&self, weights: impl Iterator<Item = (usize, f64)>) -> DMatrix<f64> {
+    fn information(&self, weights: impl Iterator<Item = (usize, f64)>) -> DMatrix<f64> {
         let n = self.transition.nrows();
         let mut information = DMatrix::zeros(n, n);
         for (index, weight) in weights.filter(|(_, weight)| *weight > 0.0) {
@@ -133,13 +133,17 @@ impl LinearProblem {
         information
     }
 
+    /// Information of a sample of all candidates: (n, n).
+    pub(super) fn information_of_all(&self) -> DMatrix<f64> {
+        self.information((0..self.candidates.len()).map(|index| (index, 1.0)))
+    }
+
     /// Covariance before an update with all candidates: (n, n). No layout's is below it.
     ///
     /// # Errors
     /// Not even all of them see every state that moves.
     pub fn least_prediction(&self) -> Result<DMatrix<f64>, EstimatorError> {
-        let all = self.information((0..self.candidates.len()).map(|index| (index, 1.0)));
-        steady_prediction(&self.transition, &all, &self.process_noise)
+        steady_prediction(&self.transition, &self.information_of_all(), &self.process_noise)
     }
 
     pub(super) fn steady(&self, information: &DMatrix<f64>) -> Option<Steady> {

@@ -51,6 +51,28 @@ fn weeks_of_bends_at_the_sample_times_run_through() {
     }
 }
 
+/// 2.7 days are a rounding more than 233280 s: an edge there is the end, and one in the middle is one with its twin.
+#[test]
+fn edges_a_rounding_apart_run_through() {
+    for method in [Method::TrBdf2, Method::Esdirk34, Method::Bdf] {
+        let mut scenario = waves(120.0, 64.8);
+        scenario.duration_s = 2.7 * 86_400.0;
+        assert!(scenario.duration_s > 233_280.0);
+        let trajectory = run_with(&scenario, method);
+        assert_relative_eq!(*trajectory.time_s.last().unwrap(), 233_280.0);
+
+        let mut twins = still(288.15, 288.15, 10.0, 20.0);
+        let middle_s = 36_000.0;
+        let knots = vec![0.0, middle_s, middle_s * (1.0 + f64::EPSILON), 72_000.0];
+        twins.surroundings.air_k = Series::try_new(knots, vec![288.15, 288.15, 278.15, 278.15]).unwrap();
+        let mut one = twins.clone();
+        let knots = vec![0.0, middle_s, middle_s, 72_000.0];
+        one.surroundings.air_k = Series::try_new(knots, vec![288.15, 288.15, 278.15, 278.15]).unwrap();
+        let (twins, one) = (run_with(&twins, method), run_with(&one, method));
+        assert_relative_eq!(twins.gas_mean_k.last().unwrap(), one.gas_mean_k.last().unwrap(), epsilon = 1e-3);
+    }
+}
+
 /// A bottle of poor conductor, so that every height answers for itself.
 fn insulating(conductivity: f64) -> Vessel {
     let mut vessel = closed_bottle();

@@ -21,6 +21,8 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
+use crate::monitor::median::median;
+
 /// Length of a window, s, the change within it that is calm, K, and its fewest rows.
 const WINDOW_S: f64 = 600.0;
 const CALM_K: f64 = 0.6;
@@ -76,7 +78,7 @@ pub(in crate::monitor) enum Disturbance {
 /// Means of a calm window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Calm {
-    ended_s: f64,
+    begun_s: f64,
     /// First less second thermometer, K.
     apart_k: f64,
     /// Each less the temperature that the pressure stands for, K; NaN without a pressure.
@@ -151,7 +153,7 @@ impl Window {
         let mean_k = self.sum_k.map(|sum_k| sum_k / f64::from(self.rows));
         let gas_k = gas_k(self.sum_pa / f64::from(self.rows), 0.5 * (mean_k[0] + mean_k[1]));
         Some(Calm {
-            ended_s: self.begun_s,
+            begun_s: self.begun_s,
             apart_k: mean_k[0] - mean_k[1],
             above_k: mean_k.map(|mean_k| mean_k - gas_k),
         })
@@ -182,7 +184,7 @@ impl Parity {
         if let Some(calm) = completed {
             self.compare(calm);
         }
-        if self.calm.back().is_some_and(|calm| time_s - calm.ended_s > STALE_S) {
+        if self.calm.back().is_some_and(|calm| time_s - calm.begun_s > STALE_S) {
             (self.off_k, self.named) = (0.0, None);
         }
         let beyond_k = (self.off_k.abs() - HARMLESS_K).max(0.0);
@@ -199,8 +201,7 @@ impl Parity {
         if let Some(named) =
             self.named.filter(|named| named.steady && self.last_s - named.since_s > LASTING_S)
         {
-            let sign = [1.0, -1.0][named.which];
-            return Some(Disturbance::Shifted(named.which, sign * named.mean_k));
+            return Some(Disturbance::Shifted(named.which, named.of_its_own(named.mean_k)));
         }
         if self.disturbed_s > TOLD_S && self.off_k.abs() > TOLD_K && !self.told {
             self.told = true;
@@ -216,7 +217,7 @@ impl Parity {
 
     fn compare(&mut self, calm: Calm) {
         self.calm.push_back(calm);
-        while self.calm.front().is_some_and(|first| first.ended_s < calm.ended_s - USUAL_S) {
+        while self.calm.front().is_some_and(|first| first.begun_s < calm.begun_s - USUAL_S) {
             self.calm.pop_front();
         }
         let usual = self.calm.len().saturating_sub(LATEST);
@@ -227,7 +228,7 @@ impl Parity {
         if self.disturbed_s == 0.0 {
             self.usual_k = self.latest_k(|calm| calm.apart_k) - self.off_k;
         }
-        self.name(calm.ended_s);
+        self.name(calm.begun_s);
     }
 
     fn name(&mut self, time_s: f64) {
@@ -269,7 +270,7 @@ impl Parity {
     /// A thermometer that is off while the other one agrees with the pressure, and by how much, K.
     pub fn deviating(&self) -> Option<(usize, f64)> {
         let named = self.named.filter(|named| named.windows >= NAMED_WINDOWS)?;
-        Some((named.which, [1.0, -1.0][named.which] * self.off_k))
+        Some((named.which, named.of_its_own(self.off_k)))
     }
 
     /// Whether the difference is the usual one, and has been for a while.
@@ -285,7 +286,7 @@ impl Parity {
     /// What the evidence for a leak is divided by.
     pub fn divisor(&self) -> f64 {
         let first = self.calm.len().checked_sub(LATEST).and_then(|at| self.calm.get(at));
-        let unknown = first.is_some_and(|first| (KNOWN_S..STALE_S).contains(&(self.last_s - first.ended_s)));
+        let unknown = first.is_some_and(|first| (KNOWN_S..STALE_S).contains(&(self.last_s - first.begun_s)));
         (1.0 + self.excess).max(if unknown { UNKNOWN } else { 1.0 })
     }
 
@@ -302,18 +303,17 @@ impl Named {
         Self { which, since_s, windows: 1, mean_k, steady: true }
     }
 
+    /// How far it is off itself where the difference is, K.
+    fn of_its_own(&self, off_k: f64) -> f64 {
+        if self.which == 0 { off_k } else { -off_k }
+    }
+
     /// After a further window, with the difference in it, K.
     fn goes_on(self, off_k: f64) -> Self {
         let windows = self.windows + 1;
         let mean_k = self.mean_k + (off_k - self.mean_k) / f64::from(windows);
         Self { windows, mean_k, steady: self.steady && (off_k - mean_k).abs() < LASTING_K, ..self }
     }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 #[cfg(test)]

@@ -140,7 +140,7 @@ impl Pair {
     /// What both did at the last samples.
     pub fn moved(&self) -> Moved {
         let (by_k, together_k) = (self.by_k, self.together_k);
-        let surprise_k = largest(&self.surprises_k, 0..MOVED_SAMPLES - 1);
+        let surprise_k = largest(&self.surprises_k, 0..SURPRISE_SAMPLES);
         let quickened = |samples| largest(&self.quickened_k, samples);
         Moved {
             by_k,

@@ -3,6 +3,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
+use crate::monitor::median::median;
 use crate::monitor::readings::thermometers::Moved;
 
 /// Samples within which a spike comes back.
@@ -212,9 +213,7 @@ impl Examination {
 
     /// Median of the last errors, Pa: spikes among them count for nothing.
     fn recent_median_pa(&self, samples: usize) -> f64 {
-        let mut errors: Vec<f64> = self.recent.iter().rev().take(samples).map(|(_, error)| *error).collect();
-        errors.sort_by(f64::total_cmp);
-        errors.get(errors.len() / 2).copied().unwrap_or(0.0)
+        median(self.recent.iter().rev().take(samples).map(|(_, error)| *error))
     }
 }
 

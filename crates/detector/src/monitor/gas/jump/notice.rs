@@ -72,13 +72,13 @@ impl JumpWatch {
             return None;
         }
         let last = self.last.replace(now)?;
-        if now.time_s - last.time_s > LONGEST_INTERVAL_S {
+        let interval_s = now.time_s - last.time_s;
+        if interval_s > LONGEST_INTERVAL_S {
             return None;
         }
         let change_pa = now.innovation_pa - last.innovation_pa;
         let by_reading_pa = now.reading_pa - last.reading_pa;
         // A slope leads no farther than the interval that it was taken over.
-        let interval_s = now.time_s - last.time_s;
         let second_pa = by_reading_pa - self.slope_pa_s * interval_s.min(self.interval_s);
         self.slope_pa_s = if interval_s > 0.0 { by_reading_pa / interval_s } else { 0.0 };
         self.interval_s = interval_s;
@@ -90,12 +90,7 @@ impl JumpWatch {
         let limit_pa = JUMP_PA
             + JUMP_PER_USUAL * self.usual_pa * grown
             + JUMP_PER_STEP * step_pa
-            + if interval_s > MINUTES_S {
-                JUMP_PER_CHANGE * (by_reading_pa - change_pa).abs()
-                    + JUMP_PER_K * (PER_CHANGE * moved.by_k + moved.surprise_k)
-            } else {
-                by_tunnel_pa(by_reading_pa - change_pa, second_pa, moved)
-            };
+            + by_tunnel_pa(interval_s, by_reading_pa - change_pa, second_pa, moved);
         self.usual_pa += ((change_pa.abs() / grown).min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
         let read = second_pa * change_pa.signum() > BY_READING * change_pa.abs();
         (read && !returns && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
@@ -107,18 +102,20 @@ impl JumpWatch {
     }
 }
 
-/// How far a tunnel can move it within a minute, Pa, in which the expectation changed by so much and the reading's second difference was so
-/// much, Pa.
-fn by_tunnel_pa(expected_pa: f64, second_pa: f64, moved: Moved) -> f64 {
-    let now_pa = (JUMP_PER_K * moved.quickened_k).min(MOUTH_PA);
-    let before_pa = (MOUTH_BEFORE_PER_K * moved.quickened_before_k).min(MOUTH_BEFORE_PA);
+/// How far a tunnel can move it within an interval, s, in which the expectation changed by so much and the reading's second difference
+/// was so much, Pa.
+fn by_tunnel_pa(interval_s: f64, expected_pa: f64, second_pa: f64, moved: Moved) -> f64 {
+    let by_change_pa = JUMP_PER_CHANGE * expected_pa.abs();
+    if interval_s > MINUTES_S {
+        return by_change_pa + JUMP_PER_K * (PER_CHANGE * moved.by_k + moved.surprise_k);
+    }
     if second_pa * moved.together_k < 0.0 {
         let quickened_k = moved.quickened_k.max(moved.quickened_before_k);
-        return JUMP_PER_CHANGE * expected_pa.abs()
-            + JUMP_PER_K_AGAINST * (PER_CHANGE * moved.by_k + quickened_k);
+        return by_change_pa + JUMP_PER_K_AGAINST * (PER_CHANGE * moved.by_k + quickened_k);
     }
-    let going_on_pa =
-        JUMP_PER_CHANGE * expected_pa.abs() + before_pa.max(JUMP_PER_K * PER_CHANGE * moved.by_k);
+    let now_pa = (JUMP_PER_K * moved.quickened_k).min(MOUTH_PA);
+    let before_pa = (MOUTH_BEFORE_PER_K * moved.quickened_before_k).min(MOUTH_BEFORE_PA);
+    let going_on_pa = by_change_pa + before_pa.max(JUMP_PER_K * PER_CHANGE * moved.by_k);
     if expected_pa > WARMING_PA { going_on_pa + now_pa } else { now_pa.max(going_on_pa.min(COOLING_PA)) }
 }
 

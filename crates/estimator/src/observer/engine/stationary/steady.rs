@@ -2,8 +2,8 @@
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use crate::EstimatorError;
-use crate::filter::{Linearisation, StateSpace, UdFactors, steady_state};
-use crate::observer::cylinder::Cylinder;
+use crate::filter::{StateSpace, UdFactors, steady_state};
+use crate::observer::cylinder::{Cylinder, LinearCylinder};
 
 /// Noise variances of the steady state, in those at rest: wall and gas a few tenths of a kelvin apart.
 const MARGIN: f64 = 2.0;
@@ -34,22 +34,9 @@ impl Steady {
     /// The process refuses the state, or the outputs do not see every state that walks.
     pub fn solve(cylinder: &mut Cylinder, point: &[f64], interval_s: f64) -> Result<Self, EstimatorError> {
         let (n, m, sensors) = (cylinder.states(), cylinder.leading(), cylinder.outputs());
-        let mut linear = Linearisation::zeros(n, m, cylinder.noises());
-        cylinder.propagate(&mut point.to_vec(), interval_s, Some(&mut linear))?;
-        let mut h = DMatrix::zeros(n, sensors);
-        for (sensor, mut column) in h.column_iter_mut().enumerate() {
-            cylinder.output(sensor, point, Some(column.as_mut_slice()))?;
-        }
-        let noise = |sensor: usize| {
-            let present_s = cylinder.interval_s(sensor);
-            cylinder.set_interval_s(sensor, interval_s);
-            let variance = cylinder.noise_variance(sensor, point);
-            cylinder.set_interval_s(sensor, present_s);
-            MARGIN * variance
-        };
-        let r: Vec<f64> = (0..sensors).map(noise).collect();
-        let f = linear.phi.columns(0, m).into_owned();
-        let q = &linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose();
+        let LinearCylinder { phi, q, h, r } = cylinder.linear_at(point, interval_s)?;
+        let r: Vec<f64> = r.iter().map(|variance| MARGIN * variance).collect();
+        let f = phi.columns(0, m).into_owned();
         let outputs = h.rows(0, m).transpose();
         let solution = steady_state(&f, &outputs, &q, &DVector::from_column_slice(&r))?;
         let mut covariance = DMatrix::zeros(n, n);

@@ -1,0 +1,20 @@
+//! What is unmoved by a few outliers.
+
+/// Median, of an even number the upper one of the two in the middle; 0 of none.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_five_of_four_and_of_none() {
+        assert_eq!(median([5.0, 1.0, 50.0, 2.0, -3.0].into_iter()), 2.0);
+        assert_eq!(median([5.0, 1.0, 50.0, 2.0].into_iter()), 5.0);
+        assert_eq!(median(std::iter::empty()), 0.0);
+    }
+}
