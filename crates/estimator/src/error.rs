@@ -186,6 +186,14 @@ pub enum EstimatorError {
         "the filter has no steady state: a state that moves or is driven by noise is not seen by the outputs"
     )]
     NoSteadyState,
+    /// A layout of sensors does not see a state.
+    #[error(
+        "the sensors do not see the state {state}: its error grows without bound; add a sensor that reads it"
+    )]
+    Unseen {
+        /// Name of the state.
+        state: String,
+    },
     /// A quantity that a layout of sensors should know is none that is estimated.
     #[error("the {quantity:?} is no state of this member of the bank: take one whose leak rate walks")]
     PlacementQuantity {

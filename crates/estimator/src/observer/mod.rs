@@ -486,7 +486,8 @@ impl Observer {
     }
 }
 
-fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
+/// The middle one of the members that have a leak rate.
+pub(crate) fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
     let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
     slow().nth(slow().count() / 2)
 }

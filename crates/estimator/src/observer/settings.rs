@@ -177,7 +177,7 @@ pub struct ObserverSettings {
     pub ln_inside_film: Walk,
     /// Logarithm of the multiplier on the heat capacity of wall and valve.
     pub ln_capacity: Walk,
-    /// Sun on the topmost wall node, W.
+    /// Sun on the upper quarter of the wall, W.
     pub sun: Walk,
     /// Change of the outside film from bottom to top, relative to that in the middle.
     pub film_slope: Walk,

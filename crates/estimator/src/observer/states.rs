@@ -28,7 +28,7 @@ pub enum StateKind {
     Air,
     /// Logarithm of the outside film's multiplier.
     OutsideFilm,
-    /// Sun on the topmost wall node, W.
+    /// Sun on the upper quarter of the wall, W.
     Sun,
     /// Reading behind the lag of a sensor, K or Pa.
     Lag {

@@ -72,6 +72,8 @@ pub struct SitedCylinder {
     transition: DMatrix<f64>,
     process_noise: DMatrix<f64>,
     outputs: Vec<CandidateOutput>,
+    leak_drive: DVector<f64>,
+    sun_drive: Option<DVector<f64>>,
 }
 
 impl SitedCylinder {
@@ -100,7 +102,7 @@ impl SitedCylinder {
         }
         let is_known = |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < STANDS;
         let kept: Vec<usize> = (0..n).filter(|&state| !is_known(state)).collect();
-        let States { kinds, names, .. } = cylinder.state_map();
+        let States { kinds, names, leak, sun, .. } = cylinder.state_map();
         let scales: Vec<f64> = kept.iter().map(|&state| scale(&kinds[state], candidates)).collect();
         let output = |(gradient, variance): (DVectorView<'_, f64>, &f64)| {
             let scaled = |(&state, scale): (&usize, &f64)| gradient[state] * scale;
@@ -115,6 +117,13 @@ impl SitedCylinder {
                 of[(kept[i], kept[j])] * columns(scales[j]) / scales[i]
             })
         };
+        // What comes on top of a state is not in the state itself.
+        let drive = |by: usize| {
+            let at = |state: usize| if state == by { 0.0 } else { f[(state, by)] };
+            let each = kept.iter().zip(&scales).map(|(&state, scale)| at(state) / scale);
+            DVector::from_iterator(kept.len(), each)
+        };
+        let (leak_drive, sun_drive) = (drive(*leak), sun.map(drive));
         let kinds: Vec<StateKind> = kept.iter().map(|&state| kinds[state].clone()).collect();
         let owner = |kind: &StateKind| match *kind {
             StateKind::Lag { sensor } | StateKind::Parameter { sensor, .. } => Some(sensor),
@@ -129,6 +138,8 @@ impl SitedCylinder {
             process_noise: scaled(&q, f64::recip),
             outputs,
             scales,
+            leak_drive,
+            sun_drive,
         })
     }
 
@@ -168,19 +179,48 @@ impl SitedCylinder {
     /// # Errors
     /// [`EstimatorError::PlacementQuantity`]: the member does not estimate it.
     pub fn problem(&self, quantity: Quantity) -> Result<GroupedProblem, EstimatorError> {
+        let functional = self.functional(quantity)?;
+        let outputs = self.outputs.clone();
+        let whole =
+            LinearProblem::new(self.transition.clone(), self.process_noise.clone(), functional, outputs)?;
+        GroupedProblem::new(whole, &self.owners)
+    }
+
+    /// Change of the states over an interval by what comes on top of them, in their scales: (n). By a leak of 1 kg/s.
+    pub(super) fn leak_drive(&self) -> &DVector<f64> {
+        &self.leak_drive
+    }
+
+    /// By 1 W of sun on the wall; `None` where no sun is supposed.
+    pub(super) fn sun_drive(&self) -> Option<&DVector<f64>> {
+        self.sun_drive.as_ref()
+    }
+
+    /// Number of candidates.
+    pub fn candidates(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// Index of a quantity's state.
+    fn state_of(&self, quantity: Quantity) -> Result<usize, EstimatorError> {
         let wanted = match quantity {
             Quantity::GasTemperature => StateKind::Gas,
             Quantity::Mass => StateKind::Mass,
             Quantity::LeakRate => StateKind::Leak,
         };
         let state = self.kinds.iter().position(|kind| *kind == wanted);
-        let state = state.ok_or(EstimatorError::PlacementQuantity { quantity })?;
+        state.ok_or(EstimatorError::PlacementQuantity { quantity })
+    }
+
+    /// The functional of a quantity: (n).
+    ///
+    /// # Errors
+    /// [`EstimatorError::PlacementQuantity`]: the member does not estimate it.
+    pub(super) fn functional(&self, quantity: Quantity) -> Result<DVector<f64>, EstimatorError> {
+        let state = self.state_of(quantity)?;
         let mut functional = DVector::zeros(self.kinds.len());
         functional[state] = self.scales[state];
-        let outputs = self.outputs.clone();
-        let whole =
-            LinearProblem::new(self.transition.clone(), self.process_noise.clone(), functional, outputs)?;
-        GroupedProblem::new(whole, &self.owners)
+        Ok(functional)
     }
 
     /// The state that a layout does not see, where it has no steady state: of those that do not return by themselves that whose variance grows most in

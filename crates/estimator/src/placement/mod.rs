@@ -18,16 +18,26 @@
 //! criterion (Ye, Roy and Sundaram 2017), and says nothing about it.
 //!
 //! Sources: Joshi and Boyd 2009 (relaxation and gap); Sagnol 2011 (optimal design as a second-order cone program).
+mod candidate;
 pub mod certificate;
 mod constraints;
+pub mod course;
 pub mod cylinder;
 mod grouped;
 mod objective;
 mod problem;
+mod response;
 pub mod search;
+mod site;
 
+pub use candidate::{
+    Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
+};
 pub use constraints::{Constraints, Group};
+pub use course::{Along, AlongCourse, Course, CourseNumber, Variant};
 pub use cylinder::{Conditions, Quantity, SitedCylinder};
 pub use grouped::GroupedProblem;
 pub use objective::{Objective, Relaxed};
 pub use problem::{CandidateOutput, LinearProblem};
+pub use response::{DetectionSettings, Disturbance, Response};
+pub use site::{Certainty, Site, SiteSettings, SmallestLeak};

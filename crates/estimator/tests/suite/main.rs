@@ -20,5 +20,6 @@ mod matched;
 mod observer;
 mod placement;
 mod placement_cylinder;
+mod placement_response;
 mod properties;
 mod sensors;

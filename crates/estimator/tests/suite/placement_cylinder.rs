@@ -156,7 +156,7 @@ fn a_sensor_more_and_a_finer_sensor_never_know_less() {
     let values: Vec<f64> = (1..=order.len()).map(|count| value(&problem, &order[..count])).collect();
     assert!(values.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-9)), "{values:?}");
     assert_eq!(values[0], f64::INFINITY, "a pressure alone does not tell the mass from the temperature");
-    assert!((0.2..0.7).contains(&values[1]) && values[5] < 0.5 * values[1], "{values:?}");
+    assert!((0.2..0.7).contains(&values[1]) && values[5] < 0.6 * values[1], "{values:?}");
     let before = value(&problem, &["pressure", "shoulder"]);
     sensors[index("shoulder")].noise_sd *= 10.0;
     let coarse = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();

@@ -81,8 +81,8 @@ impl ReducedModel {
     ) {
         let n = self.states();
         for (node, column) in self.mesh.columns.iter().enumerate() {
-            let sunlit = node + 1 == self.wall_nodes();
-            let sun_w = if sunlit { unknowns.sun_w } else { 0.0 };
+            let lit = self.spread.lit[node];
+            let sun_w = lit * unknowns.sun_w;
             let height = self.above_middle[node];
             let everywhere = column.outer_area_m2 * film_w_m2_k;
             let slope = everywhere * (1.0 + unknowns.film_slope * height);
@@ -96,9 +96,7 @@ impl ReducedModel {
             j[(node, n + Unknowns::OUTSIDE)] -= face.film_factor * slope * (face.surface_k - unknowns.air_k);
             j[(node, n + Unknowns::SLOPE)] -=
                 face.film_factor * everywhere * height * (face.surface_k - unknowns.air_k);
-            if sunlit {
-                j[(node, n + Unknowns::SUN)] += face.film_factor;
-            }
+            j[(node, n + Unknowns::SUN)] += lit * face.film_factor;
         }
     }
 

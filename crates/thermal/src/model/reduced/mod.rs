@@ -42,7 +42,7 @@ pub struct Unknowns {
     pub ln_inside_film: f64,
     /// Logarithm of the multiplier on the heat capacity of wall and valve.
     pub ln_capacity: f64,
-    /// Sun absorbed by the topmost wall node, W; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
+    /// Sun absorbed by the upper quarter of the wall, W, on each node in proportion to what of it is lit; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
     pub sun_w: f64,
     /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
     pub film_slope: f64,
@@ -143,7 +143,7 @@ pub struct ReducedModel {
 }
 
 impl ReducedModel {
-    /// Part of the sun on the topmost wall node that the valve absorbs beside.
+    /// Part of the sun on the wall that the valve absorbs beside.
     pub const VALVE_SUN: f64 = 0.25;
 
     /// A vessel's model with so many wall nodes (at most as many as its wall has columns) and an outside film

@@ -38,6 +38,8 @@ pub(super) struct Spread {
     pub share: Vec<f64>,
     /// Rise of each column over its node in the sun, K/W.
     pub rise_k_w: Vec<f64>,
+    /// Part of the sun on the wall that each node absorbs.
+    pub lit: Vec<f64>,
 }
 
 impl Spread {
@@ -52,7 +54,10 @@ impl Spread {
             if contact_w_k > 0.0 { (contact_w_k.recip() + valve[last]).recip() } else { 0.0 };
         let share: Vec<f64> = valve.iter().map(|above| conductance_w_k * above).collect();
         let rise_k_w = sun.iter().zip(&share).map(|(rise, share)| rise - share * sun[last]).collect();
-        Self { conductance_w_k, top_rise_k_w: sun[last], share, rise_k_w }
+        let all_m2: f64 = lit_m2.iter().sum();
+        let mut lit = vec![0.0; node_of_column[last] + 1];
+        lit_m2.iter().zip(node_of_column).for_each(|(area_m2, &node)| lit[node] += area_m2 / all_m2);
+        Self { conductance_w_k, top_rise_k_w: sun[last], share, rise_k_w, lit }
     }
 }
 

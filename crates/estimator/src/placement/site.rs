@@ -1,0 +1,189 @@
+//! What a layout is worth at rest, by all that the ordinary observer gives.
+//!
+//! The members of its bank do what they do there: the first gives the mass, the middle one of those with a leak rate gives the gas temperature, the
+//! rate and the innovations that a leak is found by.
+use serde::{Deserialize, Serialize};
+
+use super::GroupedProblem;
+use super::cylinder::{Conditions, Quantity, SitedCylinder};
+use super::objective::{Objective, Relaxed};
+use super::response::{DetectionSettings, Disturbance, Response};
+use crate::EstimatorError;
+use crate::observer::{LeakHypothesis, ObserverSettings, middle_slow};
+use crate::sensor::Sensor;
+use crate::thermal::vessel::Vessel;
+
+/// Wall nodes of the observer that judges: places between them count as one.
+const WALL_NODES: usize = 6;
+
+/// How layouts are judged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SiteSettings {
+    /// The observer; a finer wall than in a vehicle tells heights apart.
+    pub observer: ObserverSettings,
+    /// Where the cylinder rests.
+    pub conditions: Conditions,
+    /// When a leak counts as found.
+    pub detection: DetectionSettings,
+}
+
+impl Default for SiteSettings {
+    fn default() -> Self {
+        Self {
+            observer: ObserverSettings { wall_nodes: WALL_NODES, ..ObserverSettings::default() },
+            conditions: Conditions::default(),
+            detection: DetectionSettings::default(),
+        }
+    }
+}
+
+/// A vessel with all candidates as the members of the bank see it.
+#[derive(Clone, Debug)]
+pub struct Site {
+    settings: SiteSettings,
+    slow: SitedCylinder,
+    first: SitedCylinder,
+    gas: GroupedProblem,
+    mass: GroupedProblem,
+    leak: GroupedProblem,
+}
+
+/// What the observer knows at rest with a layout.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certainty {
+    /// Standard deviation of the mean gas temperature, K.
+    pub gas_sd_k: f64,
+    /// Of the mass against the filling, kg.
+    pub mass_sd_kg: f64,
+    /// Of the leak rate, kg/s.
+    pub leak_sd_kg_s: f64,
+    /// Smallest leak that is found in the time of [`DetectionSettings`], kg/s.
+    pub smallest_leak_kg_s: f64,
+}
+
+impl Site {
+    /// A vessel with candidates. There are never more wall nodes than the vessel has columns.
+    ///
+    /// # Errors
+    /// As [`SitedCylinder::new`]; or no member of the bank has a leak rate.
+    pub fn new(
+        vessel: &Vessel,
+        candidates: &[Sensor],
+        settings: &SiteSettings,
+    ) -> Result<Self, EstimatorError> {
+        let mut settings = settings.clone();
+        let columns = crate::thermal::wall::mesh::Mesh::new(&vessel.geometry).columns.len();
+        settings.observer.wall_nodes = settings.observer.wall_nodes.min(columns);
+        let bank = &settings.observer.bank;
+        let no_rate = EstimatorError::PlacementQuantity { quantity: Quantity::LeakRate };
+        let slow = middle_slow(bank).ok_or(no_rate)?;
+        let sited = |member: &LeakHypothesis| {
+            SitedCylinder::new(vessel, candidates, &settings.observer, member, &settings.conditions)
+        };
+        let (slow, first) = (sited(&bank[slow])?, sited(&bank[0])?);
+        Ok(Self {
+            gas: slow.problem(Quantity::GasTemperature)?,
+            leak: slow.problem(Quantity::LeakRate)?,
+            mass: first.problem(Quantity::Mass)?,
+            slow,
+            first,
+            settings,
+        })
+    }
+
+    /// How it judges.
+    pub fn settings(&self) -> &SiteSettings {
+        &self.settings
+    }
+
+    /// The member that gives gas temperature and leak rate.
+    pub fn slow(&self) -> &SitedCylinder {
+        &self.slow
+    }
+
+    /// The member that gives the mass.
+    pub fn first(&self) -> &SitedCylinder {
+        &self.first
+    }
+
+    /// The search for the least variance of a quantity.
+    pub fn problem(&self, quantity: Quantity) -> &GroupedProblem {
+        match quantity {
+            Quantity::GasTemperature => &self.gas,
+            Quantity::Mass => &self.mass,
+            Quantity::LeakRate => &self.leak,
+        }
+    }
+
+    /// Standard deviations and smallest leak with a layout.
+    ///
+    /// # Errors
+    /// [`EstimatorError::Unseen`]: it does not see every state.
+    pub fn certainty(&self, layout: &[usize]) -> Result<Certainty, EstimatorError> {
+        let sd = |quantity| {
+            let variance = self.problem(quantity).value(layout);
+            if variance.is_finite() { Ok(variance.sqrt()) } else { Err(self.slow.unseen_error(layout)) }
+        };
+        Ok(Certainty {
+            gas_sd_k: sd(Quantity::GasTemperature)?,
+            mass_sd_kg: sd(Quantity::Mass)?,
+            leak_sd_kg_s: sd(Quantity::LeakRate)?,
+            smallest_leak_kg_s: self.smallest_leak_kg_s(layout)?,
+        })
+    }
+
+    /// Response of the member whose innovations tell a leak.
+    ///
+    /// # Errors
+    /// As [`SitedCylinder::response`].
+    pub fn response(
+        &self,
+        layout: &[usize],
+        disturbances: &[Disturbance],
+    ) -> Result<Response, EstimatorError> {
+        self.slow.response(&self.leak, layout, disturbances)
+    }
+
+    /// Samples within which a leak is to be found.
+    pub fn samples(&self) -> u64 {
+        self.settings.detection.samples(self.settings.conditions.interval_s)
+    }
+
+    /// Smallest leak that is found in time, kg/s.
+    ///
+    /// # Errors
+    /// As [`Site::certainty`].
+    pub fn smallest_leak_kg_s(&self, layout: &[usize]) -> Result<f64, EstimatorError> {
+        let response = self.response(layout, &[Disturbance::Leak])?;
+        Ok(self.settings.detection.smallest(response.information(self.samples())[(0, 0)]))
+    }
+
+    /// Time until a leak of a rate, kg/s, is found, s; `None`: never.
+    ///
+    /// # Errors
+    /// As [`Site::certainty`].
+    pub fn delay_s(&self, layout: &[usize], rate_kg_s: f64) -> Result<Option<f64>, EstimatorError> {
+        let needed = (self.settings.detection.needed_sd() / rate_kg_s).powi(2);
+        let samples = self.response(layout, &[Disturbance::Leak])?.samples_to(0, needed);
+        Ok(samples.map(|samples| samples as f64 * self.settings.conditions.interval_s))
+    }
+}
+
+/// The smallest leak as what is searched for: its square, kg²/s², the variance that stands for it. It has no relaxation, hence no certificate: every
+/// layout has to be looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct SmallestLeak<'a>(pub &'a Site);
+
+impl Objective for SmallestLeak<'_> {
+    fn candidates(&self) -> usize {
+        self.0.slow.candidates()
+    }
+
+    fn value(&self, layout: &[usize]) -> f64 {
+        self.0.smallest_leak_kg_s(layout).map_or(f64::INFINITY, |rate| rate * rate)
+    }
+
+    fn relaxed(&self, _: &[f64]) -> Option<Relaxed> {
+        None
+    }
+}
