@@ -13,6 +13,10 @@
 //! | [`Constraints`] | how many, at what cost, which together |
 //! | [`search`] | every layout; branch and bound; greedy with swaps |
 //! | [`certificate`] | what no layout can fall below |
+//! | [`Candidates`] | places on a vessel with sensors, costs and rules |
+//! | [`Site`], [`Response`] | a layout at rest: certainty, smallest leak, delay, biases, faults |
+//! | [`Course`] | a layout along a scenario, with model error as consider parameters |
+//! | [`study`] | the study that puts all of it together |
 //!
 //! The gap between the best that was found and the bound is part of every result: greedy search can be arbitrarily bad for this
 //! criterion (Ye, Roy and Sundaram 2017), and says nothing about it.
@@ -22,6 +26,7 @@ mod candidate;
 pub mod certificate;
 mod constraints;
 pub mod course;
+mod criterion;
 pub mod cylinder;
 mod grouped;
 mod objective;
@@ -29,12 +34,14 @@ mod problem;
 mod response;
 pub mod search;
 mod site;
+pub mod study;
 
 pub use candidate::{
     Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
 };
 pub use constraints::{Constraints, Group};
 pub use course::{Along, AlongCourse, Course, CourseNumber, Variant};
+pub use criterion::Criterion;
 pub use cylinder::{Conditions, Quantity, SitedCylinder};
 pub use grouped::GroupedProblem;
 pub use objective::{Objective, Relaxed};

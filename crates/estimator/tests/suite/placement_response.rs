@@ -51,11 +51,7 @@ fn sums_by_doubling_are_those_of_the_samples() {
     let functional = site.problem(Quantity::GasTemperature).of_layout(&layout).functional().clone();
     for samples in [1, 2, 37, 600] {
         let (information, after) = one_by_one(&site, &layout, shoulder, samples);
-        assert_relative_eq!(
-            response.information(samples as u64)[(0, 0)],
-            information,
-            max_relative = 1e-8
-        );
+        assert_relative_eq!(response.information(samples as u64)[(0, 0)], information, max_relative = 1e-8);
         let bias_k = response.bias(Quantity::GasTemperature, samples as u64)[0];
         assert_relative_eq!(bias_k, -functional.dot(&after), max_relative = 1e-6, epsilon = 1e-9);
     }
@@ -79,9 +75,13 @@ fn the_information_of_a_leak_is_what_a_filter_with_a_state_for_it_learns() {
     f.view_mut((0, n), (n, 1)).copy_from(&column);
     f[(n, n)] = 1.0;
     let q = problem.process_noise().clone().resize(n + 1, n + 1, 0.0);
-    let h = DMatrix::from_fn(layout.len(), n + 1, |i, j| {
-        if j < n { problem.outputs()[i].gradient[j] } else { 0.0 }
-    });
+    let h = DMatrix::from_fn(
+        layout.len(),
+        n + 1,
+        |i, j| {
+            if j < n { problem.outputs()[i].gradient[j] } else { 0.0 }
+        },
+    );
     let r = DVector::from_fn(layout.len(), |i, _| problem.outputs()[i].variance);
     let h_n = h.columns(0, n).into_owned();
     let steady = steady_state(problem.transition(), &h_n, problem.process_noise(), &r).unwrap();
@@ -96,7 +96,8 @@ fn the_information_of_a_leak_is_what_a_filter_with_a_state_for_it_learns() {
         p = &left * &p * left.transpose() + &k * DMatrix::from_diagonal(&r) * k.transpose();
         p = &f * p * f.transpose() + &q;
     }
-    let scale = site.slow().scales()[site.slow().names().iter().position(|of| of.starts_with("leak")).unwrap()];
+    let scale =
+        site.slow().scales()[site.slow().names().iter().position(|of| of.starts_with("leak")).unwrap()];
     let information = site.response(&layout, &[Disturbance::Leak]).unwrap().information(samples)[(0, 0)];
     assert_relative_eq!(1.0 / p[(n, n)] - 1.0 / prior, information * scale * scale, max_relative = 1e-4);
 }

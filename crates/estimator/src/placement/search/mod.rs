@@ -151,3 +151,20 @@ impl Shortlist {
         self.layouts
     }
 }
+
+/// The cost of a layout as what is searched for: whether any is allowed.
+pub(super) struct Costs<'a>(pub &'a [f64]);
+
+impl Objective for Costs<'_> {
+    fn candidates(&self) -> usize {
+        self.0.len()
+    }
+
+    fn value(&self, layout: &[usize]) -> f64 {
+        layout.iter().map(|index| self.0[*index]).sum()
+    }
+
+    fn relaxed(&self, _: &[f64]) -> Option<super::objective::Relaxed> {
+        None
+    }
+}

@@ -1,0 +1,94 @@
+//! Layouts by every number.
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{ALL_LAYOUTS, JUDGED, Numbered, Placement};
+use crate::EstimatorError;
+use crate::placement::course::Along;
+use crate::placement::criterion::Criterion;
+use crate::placement::search::{Method, Watch, search};
+use crate::placement::site::Certainty;
+
+/// A layout by every number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
+    /// Indices of its candidates, increasing.
+    pub sensors: Vec<usize>,
+    /// Its cost.
+    pub cost: f64,
+    /// At rest.
+    pub certainty: Certainty,
+    /// Time until the leak of the settings is found, s; `None`: never.
+    pub delay_s: Option<f64>,
+    /// Along each scenario.
+    pub along: Vec<Along>,
+}
+
+impl Judged {
+    /// The number of a criterion, in SI; `None` for a course where there is none.
+    pub fn number(&self, criterion: Criterion) -> Option<f64> {
+        Some(match criterion {
+            Criterion::GasTemperature => self.certainty.gas_sd_k,
+            Criterion::Mass => self.certainty.mass_sd_kg,
+            Criterion::LeakRate => self.certainty.leak_sd_kg_s,
+            Criterion::SmallestLeak => self.certainty.smallest_leak_kg_s,
+            Criterion::Course(number) => number.of(self.along.first()?),
+        })
+    }
+}
+
+impl Placement {
+    /// A layout by every number.
+    ///
+    /// # Errors
+    /// [`EstimatorError::Unseen`]: it does not see every state.
+    pub fn judge(&self, layout: &[usize]) -> Result<Judged, EstimatorError> {
+        Ok(Judged {
+            sensors: layout.to_vec(),
+            cost: layout.iter().map(|&index| self.candidates.list[index].cost).sum(),
+            certainty: self.site.certainty(layout)?,
+            delay_s: self.site.delay_s(layout, self.settings.leak_kg_s)?,
+            along: self.courses.iter().map(|course| course.along(layout)).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The best by the criterion, then those that are best by another number, for each number of sensors.
+    pub(super) fn judge_all(
+        &self,
+        numbers: &[Numbered],
+        watch: &Watch,
+    ) -> Result<Vec<Judged>, EstimatorError> {
+        let mut judged = Vec::new();
+        for number in numbers {
+            let mut layouts: Vec<Vec<usize>> =
+                number.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone()).collect();
+            for criterion in
+                Criterion::ALL.into_iter().filter(|criterion| !matches!(criterion, Criterion::Course(_)))
+            {
+                if watch.stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                let best = self.best_by(criterion, number.sensors, watch)?;
+                layouts.extend(best.filter(|best| !layouts.contains(best)));
+            }
+            let of_number: Vec<Judged> =
+                layouts.par_iter().map(|layout| self.judge(layout)).collect::<Result<_, _>>()?;
+            judged.extend(of_number);
+        }
+        Ok(judged)
+    }
+
+    fn best_by(
+        &self,
+        criterion: Criterion,
+        sensors: usize,
+        watch: &Watch,
+    ) -> Result<Option<Vec<usize>>, EstimatorError> {
+        let worth = criterion.worth(&self.site, &self.courses)?;
+        let method = if self.layouts(sensors) <= ALL_LAYOUTS { Method::Exhaustive } else { Method::Greedy };
+        let found = search(&worth, &self.constraints(sensors), method, 0.0, watch)?;
+        Ok(found.best().map(|best| best.sensors.clone()))
+    }
+}

@@ -1,0 +1,359 @@
+//! The study: which layouts are best, what the next sensor is worth, what is lost with one, and where on the wall it matters.
+//!
+//! Layouts are searched by one [`Criterion`], but never ranked by one alone: what is found is judged by all ([`Judged`]), beside the
+//! best layouts by the other numbers. Each part says of itself what it is:
+//!
+//! | part | what it says |
+//! |---|---|
+//! | [`Numbered`] | best layouts of so many sensors, bound and gap, what the last sensor brought |
+//! | [`Judged`] | a layout by every number, and by every scenario |
+//! | [`Front`] | layouts that none is better than at their cost |
+//! | [`Failure`] | what is left without a sensor, and how large a fault of it is found and told from all others |
+//! | [`Bias`] | what a sensor's offset, its mounting and the sun do to the estimates |
+//! | [`Position`] | one thermometer anywhere on the wall |
+//!
+//! A study that is stopped keeps what it has and says that it is partial.
+mod failure;
+mod front;
+mod judged;
+mod position;
+
+use std::sync::atomic::Ordering;
+
+use serde::{Deserialize, Serialize};
+
+use super::candidate::Candidates;
+use super::certificate::{CertificateSettings, certify};
+use super::constraints::Constraints;
+use super::course::Course;
+use super::criterion::Criterion;
+use super::search::{Layout, Method, Watch, search};
+use super::site::{Site, SiteSettings};
+use crate::EstimatorError;
+use crate::thermal::scenario::Scenario;
+use crate::thermal::vessel::Vessel;
+
+pub use failure::{Bias, BiasSource, Failure};
+pub use front::{Front, Point};
+pub use judged::Judged;
+pub use position::Position;
+
+/// Layouts up to which all are looked at if no method is asked for.
+const ALL_LAYOUTS: f64 = 20_000.0;
+/// Layouts by one criterion that are judged by all others, for each number of sensors.
+const JUDGED: usize = 5;
+
+/// What is asked of a study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StudySettings {
+    /// How layouts are judged at rest.
+    pub site: SiteSettings,
+    /// Most sensors of a layout, those that it must have among them.
+    pub sensors: usize,
+    /// Largest cost of a layout.
+    pub budget: f64,
+    /// What is searched by.
+    pub criterion: Criterion,
+    /// How; `None`: all layouts as long as there are no more than 20 000, or of a course 400, else greedy with swaps.
+    pub method: Option<Method>,
+    /// Part of the best within which layouts are listed, of the number itself.
+    pub within: f64,
+    /// Leak whose delay is told, kg/s.
+    pub leak_kg_s: f64,
+}
+
+impl Default for StudySettings {
+    /// Up to four sensors by the leak rate, at any cost, and the delay of 10 g/h.
+    fn default() -> Self {
+        Self {
+            site: SiteSettings::default(),
+            sensors: 4,
+            budget: f64::INFINITY,
+            criterion: Criterion::LeakRate,
+            method: None,
+            within: 0.02,
+            leak_kg_s: 0.01 / 3600.0,
+        }
+    }
+}
+
+/// The best layouts of so many sensors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Numbered {
+    /// Number of sensors.
+    pub sensors: usize,
+    /// Layouts within the tolerance of the best, the best first, by the criterion, in its SI unit.
+    pub layouts: Vec<Layout>,
+    /// What no layout of so many sensors falls below.
+    pub bound: f64,
+    /// Where the bound comes from.
+    pub proof: Proof,
+    /// What no layout falls below by the convex relaxation, if the criterion has one.
+    pub relaxation: Option<f64>,
+    /// The same by the gap of Frank and Wolfe.
+    pub frank_wolfe: Option<f64>,
+    /// How it was searched.
+    pub method: Method,
+    /// Layouts that were evaluated.
+    pub evaluated: u64,
+    /// Best of so many over best of one less, less one: what the last sensor brought, negative if it helped.
+    pub marginal: Option<f64>,
+    /// The search was stopped.
+    pub partial: bool,
+}
+
+impl Numbered {
+    /// Distance of the best from the bound, relative to the best.
+    pub fn gap(&self) -> Option<f64> {
+        self.layouts.first().map(|best| (1.0 - self.bound / best.value).max(0.0))
+    }
+
+    /// Distance of the best from what the relaxation proves, relative to the best.
+    pub fn relaxation_gap(&self) -> Option<f64> {
+        let (best, bound) = self.layouts.first().zip(self.relaxation)?;
+        Some((1.0 - bound / best.value).max(0.0))
+    }
+}
+
+/// Where a bound comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Proof {
+    /// Every layout was looked at, or could be left out.
+    Search,
+    /// The convex relaxation.
+    Relaxation,
+    /// None: the bound is zero.
+    None,
+}
+
+/// A study.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Study {
+    /// Name of the vessel.
+    pub vessel: String,
+    /// Names of the candidates.
+    pub candidates: Vec<String>,
+    /// Height of each above the outer bottom, m.
+    pub heights_m: Vec<Option<f64>>,
+    /// Names of the scenarios.
+    pub scenarios: Vec<String>,
+    /// What was asked.
+    pub settings: StudySettings,
+    /// By number of sensors.
+    pub numbers: Vec<Numbered>,
+    /// Layouts by every number: the best by the criterion first, for each number of sensors.
+    pub judged: Vec<Judged>,
+    /// Cost against the standard deviation of the gas temperature.
+    pub accuracy_front: Front,
+    /// Cost against the delay of the leak.
+    pub delay_front: Front,
+    /// Of the best layout of most sensors: what a lost sensor leaves.
+    pub failures: Vec<Failure>,
+    /// What disturbs the estimates of that layout, and how much.
+    pub biases: Vec<Bias>,
+    /// One thermometer beside what is required, anywhere.
+    pub positions: Vec<Position>,
+    /// It was stopped before its end.
+    pub partial: bool,
+}
+
+/// Everything that layouts of a vessel are judged by.
+#[derive(Debug)]
+pub struct Placement {
+    candidates: Candidates,
+    site: Site,
+    courses: Vec<Course>,
+    vessel: Vessel,
+    settings: StudySettings,
+}
+
+impl Placement {
+    /// A vessel with candidates and scenarios.
+    ///
+    /// # Errors
+    /// A setting is out of its bounds, a scenario cannot be simulated, or a candidate has no place.
+    pub fn new(
+        vessel: &Vessel,
+        candidates: &Candidates,
+        scenarios: &[Scenario],
+        settings: &StudySettings,
+    ) -> Result<Self, EstimatorError> {
+        let site = Site::new(vessel, &candidates.sensors(), &settings.site)?;
+        let course =
+            |scenario| Course::new(vessel, scenario, &candidates.sensors(), &site.settings().observer);
+        let courses = scenarios.iter().map(course).collect::<Result<_, _>>()?;
+        Ok(Self {
+            candidates: candidates.clone(),
+            site,
+            courses,
+            vessel: vessel.clone(),
+            settings: settings.clone(),
+        })
+    }
+
+    /// The candidates.
+    pub fn candidates(&self) -> &Candidates {
+        &self.candidates
+    }
+
+    /// What judges at rest.
+    pub fn site(&self) -> &Site {
+        &self.site
+    }
+
+    /// What judges along scenarios.
+    pub fn courses(&self) -> &[Course] {
+        &self.courses
+    }
+
+    /// What was asked.
+    pub fn settings(&self) -> &StudySettings {
+        &self.settings
+    }
+
+    fn constraints(&self, sensors: usize) -> Constraints {
+        self.candidates.constraints(sensors, self.settings.budget)
+    }
+
+    /// Layouts that a search looks at in the worst case.
+    pub fn layouts(&self, sensors: usize) -> f64 {
+        let constraints = self.constraints(sensors);
+        let free = constraints.free(self.candidates.list.len()).len();
+        let wanted = sensors.saturating_sub(constraints.must.len());
+        (0..wanted).map(|taken| free.saturating_sub(taken) as f64 / (taken + 1) as f64).product()
+    }
+
+    /// How layouts of so many sensors are searched.
+    pub fn method(&self, sensors: usize) -> Method {
+        // A layout along a course takes a thousand times as long as one at rest.
+        let most = if let Criterion::Course(_) = self.settings.criterion { 400.0 } else { ALL_LAYOUTS };
+        let usual = if self.layouts(sensors) <= most { Method::Exhaustive } else { Method::Greedy };
+        self.settings.method.unwrap_or(usual)
+    }
+
+    /// Run the study. What is stopped by the watch is left out and said to be partial.
+    ///
+    /// # Errors
+    /// The constraints contradict each other, or no layout sees what it should: the state is named.
+    pub fn run(&self, watch: &Watch) -> Result<Study, EstimatorError> {
+        let numbers = self.numbers(watch)?;
+        let best: Vec<Vec<usize>> = numbers.iter().map(|number| number.layouts[0].sensors.clone()).collect();
+        let judged = self.judge_all(&numbers, watch)?;
+        let (accuracy_front, delay_front) = self.fronts(&judged, watch)?;
+        let most = best.last().cloned().unwrap_or_default();
+        let going = || !watch.stop.load(Ordering::Relaxed);
+        let (failures, biases) =
+            if going() { (self.failures(&most)?, self.biases(&most)?) } else { (Vec::new(), Vec::new()) };
+        let positions = if going() { self.positions()? } else { Vec::new() };
+        let list = &self.candidates.list;
+        Ok(Study {
+            vessel: self.vessel.name.clone(),
+            candidates: list.iter().map(|candidate| candidate.sensor.name.clone()).collect(),
+            heights_m: list.iter().map(|candidate| candidate.height_m).collect(),
+            scenarios: self.courses.iter().map(|course| course.name().to_owned()).collect(),
+            settings: self.settings.clone(),
+            numbers,
+            judged,
+            accuracy_front,
+            delay_front,
+            failures,
+            biases,
+            positions,
+            partial: !going(),
+        })
+    }
+
+    /// The best layouts for each number of sensors that can see what they should.
+    fn numbers(&self, watch: &Watch) -> Result<Vec<Numbered>, EstimatorError> {
+        let fewest = self.constraints(self.settings.sensors).must.len().max(1);
+        let mut numbers: Vec<Numbered> = Vec::new();
+        let mut refused = None;
+        for sensors in fewest..=self.settings.sensors {
+            match self.numbered(sensors, watch) {
+                Ok(mut number) => {
+                    let before = numbers.last().map(|before| before.layouts[0].value);
+                    number.marginal = before.map(|before| number.layouts[0].value / before - 1.0);
+                    numbers.push(number);
+                }
+                // Fewer or more may do: what is dear may not be, what is few may not see.
+                Err(error) => refused = Some(error),
+            }
+            if watch.stop.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        match refused {
+            Some(error) if numbers.is_empty() => Err(error),
+            _ if numbers.is_empty() => {
+                let what = format!("{fewest} are required, but only {} asked for", self.settings.sensors);
+                Err(EstimatorError::PlacementConstraints { what })
+            }
+            _ => Ok(numbers),
+        }
+    }
+
+    fn numbered(&self, sensors: usize, watch: &Watch) -> Result<Numbered, EstimatorError> {
+        let constraints = self.constraints(sensors);
+        let criterion = self.settings.criterion;
+        let worth = criterion.worth(&self.site, &self.courses)?;
+        let method = self.method(sensors);
+        // The worth is the square of the number that people read.
+        let within = (1.0 + self.settings.within).powi(2) - 1.0;
+        let found = search(&worth, &constraints, method, within, watch)?;
+        if found.layouts.is_empty() {
+            return Err(self.nothing_found(&constraints));
+        }
+        let is_stopped = watch.stop.load(Ordering::Relaxed);
+        let certificate = if criterion.is_convex() && !is_stopped {
+            Some(certify(&worth, &constraints, &CertificateSettings::default())?)
+        } else {
+            None
+        };
+        let relaxation = certificate.as_ref().map(|of| of.bound().max(0.0).sqrt());
+        let (bound, proof) = match (found.bound, relaxation) {
+            (Some(bound), _) => (bound.sqrt(), Proof::Search),
+            (None, Some(bound)) => (bound, Proof::Relaxation),
+            (None, None) => (0.0, Proof::None),
+        };
+        let root = |layout: Layout| Layout { value: layout.value.sqrt(), ..layout };
+        Ok(Numbered {
+            sensors,
+            layouts: found.layouts.into_iter().map(root).collect(),
+            bound,
+            proof,
+            relaxation,
+            frank_wolfe: certificate.map(|of| of.frank_wolfe.max(0.0).sqrt()),
+            method,
+            evaluated: found.evaluated,
+            marginal: None,
+            partial: found.partial,
+        })
+    }
+
+    /// Why no layout was found: what not even all that may be taken see, or nothing is allowed.
+    fn nothing_found(&self, constraints: &Constraints) -> EstimatorError {
+        let mut all = constraints.free(self.candidates.list.len());
+        all.extend(&constraints.must);
+        all.sort_unstable();
+        if let Err(error) = self.site.certainty(&all) {
+            return error;
+        }
+        match self.cheapest_allowed(constraints) {
+            Some(layout) => self.site.slow().unseen_error(&layout),
+            None => EstimatorError::PlacementConstraints {
+                what: format!(
+                    "of {} sensors none meets groups, distances and the budget {} together",
+                    constraints.sensors, constraints.budget
+                ),
+            },
+        }
+    }
+
+    /// A layout that is allowed, whatever it is worth.
+    fn cheapest_allowed(&self, constraints: &Constraints) -> Option<Vec<usize>> {
+        let costs = super::search::Costs(&constraints.costs);
+        let found = search(&costs, constraints, Method::Greedy, 0.0, &Watch::default()).ok()?;
+        found.best().map(|best| best.sensors.clone())
+    }
+}
