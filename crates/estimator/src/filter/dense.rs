@@ -69,6 +69,7 @@ pub(crate) fn reflect(beta: f64, v: &[f64], y: &mut [f64]) {
 /// Factors of a square matrix with row exchanges, in place: `L` below the diagonal, `U` on and above it.
 ///
 /// Returns whether the matrix has an inverse; `exchanges`: (n).
+#[inline(always)]
 pub(crate) fn factor_lu(a: &mut [f64], n: usize, exchanges: &mut [usize]) -> bool {
     for j in 0..n {
         let (left, right) = a.split_at_mut((j + 1) * n);

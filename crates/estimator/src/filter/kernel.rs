@@ -61,19 +61,93 @@ pub(crate) fn padded(n: usize) -> usize {
     n.next_multiple_of(4)
 }
 
-/// `y <- A x` for `A` with `rows` rows, a multiple of four, and as many columns as `x` has entries.
+/// Columns of a product that are summed up together.
+const TOGETHER: usize = 4;
+
+/// `C <- A B` of matrices (n, n) that have `high` rows, a multiple of four, of which those of `B` beyond `n` do not count.
 ///
-/// Eight rows at a time, then four, stay in registers over all columns.
-#[inline]
-pub(crate) fn multiply(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
-    let (eights, four) = y[..rows].as_chunks_mut::<8>();
-    let done = 8 * eights.len();
-    for (block, y) in eights.iter_mut().enumerate() {
-        *y = multiply_rows(a, rows, 8 * block, x);
+/// Each element is summed up in the order of the columns of `A`; a block of rows and columns stays in registers meanwhile.
+#[inline(always)]
+pub(crate) fn multiply_columns(a: &[f64], b: &[f64], high: usize, n: usize, c: &mut [f64]) {
+    let mut groups = c.chunks_exact_mut(TOGETHER * high);
+    let mut first = 0;
+    for group in &mut groups {
+        let mut columns = group.chunks_exact_mut(high);
+        if let [Some(c0), Some(c1), Some(c2), Some(c3)] = std::array::from_fn(|_| columns.next()) {
+            let b = std::array::from_fn(|k| &column(b, high, first + k)[..n]);
+            multiply_together::<TOGETHER>(a, high, b, [c0, c1, c2, c3]);
+        }
+        first += TOGETHER;
     }
-    if let Some(y) = four.first_chunk_mut::<4>() {
-        *y = multiply_rows(a, rows, done, x);
+    for (c, b) in groups.into_remainder().chunks_exact_mut(high).zip(b[first * high..].chunks_exact(high)) {
+        multiply_together::<1>(a, high, [&b[..n]], [c]);
     }
+}
+
+/// `Y <- A X` for `A` with `high` rows and columns `X` and `Y`.
+#[inline(always)]
+fn multiply_together<const N: usize>(a: &[f64], high: usize, x: [&[f64]; N], mut y: [&mut [f64]; N]) {
+    for first in (0..high / 8 * 8).step_by(8) {
+        multiply_block::<N, 8>(a, high, first, x, &mut y);
+    }
+    if high % 8 != 0 {
+        multiply_block::<N, 4>(a, high, high / 8 * 8, x, &mut y);
+    }
+}
+
+/// `ROWS` rows of it from row `first` on.
+#[inline(always)]
+fn multiply_block<const N: usize, const ROWS: usize>(
+    a: &[f64],
+    high: usize,
+    first: usize,
+    x: [&[f64]; N],
+    y: &mut [&mut [f64]; N],
+) {
+    let mut sum = [[0.0; ROWS]; N];
+    let n = x[0].len();
+    let x = x.map(|x| &x[..n]);
+    for (i, column) in a.chunks_exact(high).take(n).enumerate() {
+        if let Some(values) = column[first..].first_chunk::<ROWS>() {
+            for k in 0..N {
+                let c = x[k][i];
+                for lane in 0..ROWS {
+                    sum[k][lane] += c * values[lane];
+                }
+            }
+        }
+    }
+    for (y, sum) in y.iter_mut().zip(sum) {
+        y[first..first + ROWS].copy_from_slice(&sum);
+    }
+}
+
+/// `y <- y - A x` for `A` with as many rows as `y`, a multiple of eight; the shorter of `x` and the columns counts.
+#[inline(always)]
+pub(crate) fn subtract_columns(y: &mut [f64], a: &[f64], x: &[f64]) {
+    let rows = y.len();
+    let (blocks, rest) = y.as_chunks_mut::<16>();
+    let done = 16 * blocks.len();
+    for (block, y) in blocks.iter_mut().enumerate() {
+        subtract_rows(y, a, rows, 16 * block, x);
+    }
+    if let Some(y) = rest.first_chunk_mut::<8>() {
+        subtract_rows(y, a, rows, done, x);
+    }
+}
+
+/// `N` rows of it from row `first` on.
+#[inline(always)]
+fn subtract_rows<const N: usize>(y: &mut [f64; N], a: &[f64], rows: usize, first: usize, x: &[f64]) {
+    let mut left = *y;
+    for (column, x) in a.chunks_exact(rows).zip(x) {
+        if let Some(values) = column[first..].first_chunk::<N>() {
+            for lane in 0..N {
+                left[lane] -= x * values[lane];
+            }
+        }
+    }
+    *y = left;
 }
 
 /// `N` rows of `A x` from row `first` on.

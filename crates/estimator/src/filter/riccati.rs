@@ -9,9 +9,10 @@
 //!
 //! Source: Chu, Fan, Lin and Wang 2004 (Anderson 1978).
 use nalgebra::{DMatrix, DVector};
+use pulp::{Arch, Simd, WithSimd};
 
 use super::dense::{factor_cholesky, factor_lu, solve_upper, solve_upper_transposed, symmetrise};
-use super::kernel::{axpy, column, column_mut, multiply, padded};
+use super::kernel::{column, column_mut, multiply_columns, padded, subtract_columns};
 use crate::EstimatorError;
 
 /// Doublings after which a growing covariance counts as unbounded: `2^60` filter steps.
@@ -86,8 +87,9 @@ fn settle(
     q: &DMatrix<f64>,
 ) -> Result<(DMatrix<f64>, usize), EstimatorError> {
     let mut doubling = Doubling::new(f, information, q);
+    let arch = Arch::new();
     for doublings in 1..=DOUBLINGS {
-        match doubling.step() {
+        match arch.dispatch(&mut doubling) {
             Growth::Settled => return Ok((doubling.solution(), doublings)),
             Growth::Grows => {}
             Growth::Unbounded => break,
@@ -151,6 +153,15 @@ struct Doubling {
     product_2: Vec<f64>,
 }
 
+impl WithSimd for &mut Doubling {
+    type Output = Growth;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Growth {
+        self.step()
+    }
+}
+
 impl Doubling {
     fn new(f: &DMatrix<f64>, information: &DMatrix<f64>, q: &DMatrix<f64>) -> Self {
         let n = f.nrows();
@@ -184,6 +195,7 @@ impl Doubling {
     }
 
     /// One doubling.
+    #[inline(always)]
     fn step(&mut self) -> Growth {
         let (n, high) = (self.n, self.high);
         if n == 0 {
@@ -206,6 +218,7 @@ impl Doubling {
     }
 
     /// `stack = [A; X] (I + G X)^-1`, column by column, all rows at once.
+    #[inline(always)]
     fn divide_by_w(&mut self) {
         let (n, high) = (self.n, self.high);
         let tall = 2 * high;
@@ -216,18 +229,14 @@ impl Doubling {
         for j in 0..n {
             let (before, rest) = self.stack.split_at_mut(j * tall);
             let (target, u) = (&mut rest[..tall], column(&self.w, n, j));
-            for (source, u) in before.chunks_exact(tall).zip(u) {
-                axpy(-u, source, target);
-            }
+            subtract_columns(target, before, u);
             let inverse = 1.0 / u[j];
             target.iter_mut().for_each(|t| *t *= inverse);
         }
         for j in (0..n).rev() {
             let (rest, after) = self.stack.split_at_mut((j + 1) * tall);
             let (target, l) = (&mut rest[j * tall..], &column(&self.w, n, j)[j + 1..]);
-            for (source, l) in after.chunks_exact(tall).zip(l) {
-                axpy(-l, source, target);
-            }
+            subtract_columns(target, after, l);
         }
         for (j, &other) in self.exchanges.iter().enumerate().rev() {
             if other != j {
@@ -238,6 +247,7 @@ impl Doubling {
     }
 
     /// `X <- X + A^T (X W) A`; its growth is positive semi-definite.
+    #[inline(always)]
     fn grow_covariance(&mut self) -> Growth {
         let (n, high) = (self.n, self.high);
         for (to, from) in self.half.chunks_exact_mut(high).zip(self.stack.chunks_exact(2 * high)) {
@@ -260,6 +270,7 @@ impl Doubling {
     }
 
     /// `G <- G + (A W) G A^T` and `A <- (A W) A`.
+    #[inline(always)]
     fn double_dynamics(&mut self) {
         let (n, high) = (self.n, self.high);
         for (to, from) in self.half.chunks_exact_mut(high).zip(self.stack.chunks_exact(2 * high)) {
@@ -278,14 +289,8 @@ impl Doubling {
     }
 }
 
-/// `C <- A B` of matrices (n, n) with `high` rows.
-fn multiply_columns(a: &[f64], b: &[f64], high: usize, n: usize, c: &mut [f64]) {
-    for (c, b) in c.chunks_exact_mut(high).zip(b.chunks_exact(high)) {
-        multiply(a, high, &b[..n], c);
-    }
-}
-
 /// `A <- A + (B + B^T)/2` of matrices (n, n) with `high` rows.
+#[inline(always)]
 fn add_symmetric(a: &mut [f64], b: &[f64], high: usize, n: usize) {
     for j in 0..n {
         for i in 0..=j {

@@ -153,11 +153,27 @@ impl LinearProblem {
         let left = (DMatrix::identity(n, n) + &predicted * information).try_inverse()?;
         let (mut updated, error) = (&left * &predicted, &left * &self.transition);
         updated = 0.5 * (&updated + updated.transpose());
+        self.stands(&predicted, &updated).then_some(Steady { updated, left, error })
+    }
+
+    /// Whether a sample leads from the covariance after an update back to that before it.
+    fn stands(&self, predicted: &DMatrix<f64>, updated: &DMatrix<f64>) -> bool {
         // What is not seen grows so slowly that rounding can end the doubling.
-        let next = &self.transition * &updated * self.transition.transpose() + &self.process_noise;
-        let stands = (next - &predicted).norm() <= SOLVED * predicted.norm();
-        let is_covariance = updated.diagonal().min() >= 0.0;
-        (stands && is_covariance).then_some(Steady { updated, left, error })
+        let next = &self.transition * updated * self.transition.transpose() + &self.process_noise;
+        (next - predicted).norm() <= SOLVED * predicted.norm() && updated.diagonal().min() >= 0.0
+    }
+
+    /// Variance of the functional after an update with a layout, reading by reading.
+    fn settled_variance(&self, layout: &[usize]) -> Option<f64> {
+        let information = self.information(layout.iter().map(|index| (*index, 1.0)));
+        let predicted = steady_prediction(&self.transition, &information, &self.process_noise).ok()?;
+        let mut updated = predicted.clone();
+        for index in layout {
+            let CandidateOutput { gradient, variance } = &self.candidates[*index];
+            let cross = &updated * gradient;
+            updated.ger(-1.0 / (gradient.dot(&cross) + variance), &cross, &cross, 1.0);
+        }
+        self.stands(&predicted, &updated).then(|| self.functional.dot(&(&updated * &self.functional)))
     }
 
     pub(super) fn variance(&self, steady: &Steady) -> f64 {
@@ -189,8 +205,7 @@ impl Objective for LinearProblem {
     }
 
     fn value(&self, layout: &[usize]) -> f64 {
-        let information = self.information(layout.iter().map(|index| (*index, 1.0)));
-        self.steady(&information).map_or(f64::INFINITY, |steady| self.variance(&steady))
+        self.settled_variance(layout).unwrap_or(f64::INFINITY)
     }
 
     fn relaxed(&self, weights: &[f64]) -> Option<Relaxed> {
