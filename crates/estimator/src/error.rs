@@ -206,6 +206,16 @@ pub enum EstimatorError {
         /// The contradiction.
         what: String,
     },
+    /// A setting of a confirmation by Monte Carlo is out of its bounds.
+    #[error("confirmation setting `{setting}` = {value} must be {bound}")]
+    ConfirmSetting {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        bound: &'static str,
+    },
     /// The program that bounds the layouts of sensors has no solution.
     #[error(
         "the bound of the layouts could not be computed: {what}; try fewer candidates or a shorter window"

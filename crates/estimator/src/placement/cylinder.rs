@@ -254,7 +254,7 @@ fn scale(kind: &StateKind, candidates: &[Sensor]) -> f64 {
 }
 
 /// The state of a cylinder at rest, its surroundings at a temperature of their own.
-fn state_at(
+pub(super) fn state_at(
     cylinder: &mut Cylinder,
     vessel: &Vessel,
     conditions: &Conditions,

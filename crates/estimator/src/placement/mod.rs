@@ -17,6 +17,7 @@
 //! | [`Site`], [`Response`] | a layout at rest: certainty, smallest leak, delay, biases, faults |
 //! | [`Course`] | a layout along a scenario, with model error as consider parameters |
 //! | [`study`] | the study that puts all of it together |
+//! | [`confirm`] | whether layouts achieve what is predicted, by Monte Carlo |
 //!
 //! The gap between the best that was found and the bound is part of every result: greedy search can be arbitrarily bad for this
 //! criterion (Ye, Roy and Sundaram 2017), and says nothing about it.
@@ -24,6 +25,7 @@
 //! Sources: Joshi and Boyd 2009 (relaxation and gap); Sagnol 2011 (optimal design as a second-order cone program).
 mod candidate;
 pub mod certificate;
+pub mod confirm;
 mod constraints;
 pub mod course;
 mod criterion;
@@ -39,6 +41,7 @@ pub mod study;
 pub use candidate::{
     Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
 };
+pub use confirm::{Achieved, Claim, ConfirmSettings, Confirmation, Confirmed};
 pub use constraints::{Constraints, Group};
 pub use course::{Along, AlongCourse, Course, CourseNumber, Variant};
 pub use criterion::Criterion;

@@ -18,7 +18,7 @@ mod weather;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
-use cylwatch_thermal::vessel::presets;
+use cylwatch_thermal::vessel::{Vessel, presets};
 use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
@@ -242,7 +242,22 @@ pub fn simulate_through(
     settings: &TruthSettings,
     happenings: &Happenings,
 ) -> Result<(Cylinder, Trajectory), EstimatorError> {
-    let cylinder = draw_cylinder(&presets::load(&settings.vessel)?, settings, seed)?;
+    simulate_around(&presets::load(&settings.vessel)?, course, seed, sample_time_s, settings, happenings)
+}
+
+/// The same with a cylinder that is drawn around any vessel, instead of the built-in one that the settings name.
+///
+/// # Errors
+/// As [`simulate_truth`].
+pub fn simulate_around(
+    nominal: &Vessel,
+    course: &Course,
+    seed: u64,
+    sample_time_s: f64,
+    settings: &TruthSettings,
+    happenings: &Happenings,
+) -> Result<(Cylinder, Trajectory), EstimatorError> {
+    let cylinder = draw_cylinder(nominal, settings, seed)?;
     let mut scenario =
         cylinder.parameters.expose(weather::draw_spaced(course, seed, settings.weather_spacing_s)?)?;
     scenario.sample_time_s = sample_time_s;
