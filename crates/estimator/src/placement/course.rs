@@ -7,7 +7,7 @@
 //! `P_S(t) = P(t) + e_0(t)^2 + sum_v w_v (e_v(t) - e_0(t))^2`
 //!
 //! to its variance, with the nominal course 0 and the weights of [`Variant::weight`]; the worst case is `P(t) + max_v e_v(t)^2`. So model error is not
-//! taken for information. A scenario that begins settled has six hours of rest before it.
+//! taken for information. A scenario that begins settled has three hours of rest before it.
 //!
 //! Assumes that the variants' errors add: each is small beside what it varies. Films that the observer learns are in `P` and among
 //! the variants, so `P_S` is rather too large.
@@ -27,7 +27,7 @@ use crate::thermal::wall::geometry::Orientation;
 /// Factors of an uncertain film: ±50 %.
 const FILM: [f64; 2] = [0.5, 1.5];
 /// Rest before a scenario that begins settled, s: the observer has begun before the air changes.
-const REST_S: f64 = 6.0 * 3600.0;
+const REST_S: f64 = 3.0 * 3600.0;
 /// Gas cells of stratified gas, its exchange length in diameters and the mixing of its core.
 const STRATIFICATION: Stratification =
     Stratification { cells: 8, exchange_length_diameters: 1.0, core_mixing: 0.05 };

@@ -21,5 +21,6 @@ mod observer;
 mod placement;
 mod placement_cylinder;
 mod placement_response;
+mod placement_study;
 mod properties;
 mod sensors;

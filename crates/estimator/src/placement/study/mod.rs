@@ -115,6 +115,15 @@ impl Numbered {
     }
 }
 
+/// A number of sensors for which no layout was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Refused {
+    /// Number of sensors.
+    pub sensors: usize,
+    /// Why.
+    pub reason: String,
+}
+
 /// Where a bound comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -142,6 +151,8 @@ pub struct Study {
     pub settings: StudySettings,
     /// By number of sensors.
     pub numbers: Vec<Numbered>,
+    /// Numbers of sensors for which there is no layout.
+    pub refused: Vec<Refused>,
     /// Layouts by every number: the best by the criterion first, for each number of sensors.
     pub judged: Vec<Judged>,
     /// Cost against the standard deviation of the gas temperature.
@@ -237,14 +248,17 @@ impl Placement {
     /// # Errors
     /// The constraints contradict each other, or no layout sees what it should: the state is named.
     pub fn run(&self, watch: &Watch) -> Result<Study, EstimatorError> {
-        let numbers = self.numbers(watch)?;
-        let best: Vec<Vec<usize>> = numbers.iter().map(|number| number.layouts[0].sensors.clone()).collect();
+        let (numbers, refused) = self.numbers_and_refused(watch)?;
         let judged = self.judge_all(&numbers, watch)?;
         let (accuracy_front, delay_front) = self.fronts(&judged, watch)?;
-        let most = best.last().cloned().unwrap_or_default();
         let going = || !watch.stop.load(Ordering::Relaxed);
-        let (failures, biases) =
-            if going() { (self.failures(&most)?, self.biases(&most)?) } else { (Vec::new(), Vec::new()) };
+        let (failures, biases) = match numbers.last() {
+            Some(most) if going() => {
+                let best = &most.layouts[0].sensors;
+                (self.failures(best)?, self.biases(best)?)
+            }
+            _ => (Vec::new(), Vec::new()),
+        };
         let positions = if going() { self.positions()? } else { Vec::new() };
         let list = &self.candidates.list;
         Ok(Study {
@@ -254,6 +268,7 @@ impl Placement {
             scenarios: self.courses.iter().map(|course| course.name().to_owned()).collect(),
             settings: self.settings.clone(),
             numbers,
+            refused,
             judged,
             accuracy_front,
             delay_front,
@@ -265,32 +280,42 @@ impl Placement {
     }
 
     /// The best layouts for each number of sensors that can see what they should.
-    fn numbers(&self, watch: &Watch) -> Result<Vec<Numbered>, EstimatorError> {
-        let fewest = self.constraints(self.settings.sensors).must.len().max(1);
+    ///
+    /// # Errors
+    /// As [`Placement::run`].
+    pub fn numbers(&self, watch: &Watch) -> Result<Vec<Numbered>, EstimatorError> {
+        Ok(self.numbers_and_refused(watch)?.0)
+    }
+
+    fn numbers_and_refused(&self, watch: &Watch) -> Result<(Vec<Numbered>, Vec<Refused>), EstimatorError> {
+        let most = self.settings.sensors;
+        let at_any_cost = self.candidates.constraints(most, f64::INFINITY);
+        at_any_cost.validate(self.candidates.list.len())?;
         let mut numbers: Vec<Numbered> = Vec::new();
-        let mut refused = None;
-        for sensors in fewest..=self.settings.sensors {
+        let mut errors = Vec::new();
+        for sensors in at_any_cost.must.len().max(1)..=most {
             match self.numbered(sensors, watch) {
                 Ok(mut number) => {
                     let before = numbers.last().map(|before| before.layouts[0].value);
                     number.marginal = before.map(|before| number.layouts[0].value / before - 1.0);
                     numbers.push(number);
                 }
+                _ if watch.stop.load(Ordering::Relaxed) => {}
                 // Fewer or more may do: what is dear may not be, what is few may not see.
-                Err(error) => refused = Some(error),
+                Err(error) => errors.push((sensors, error)),
             }
             if watch.stop.load(Ordering::Relaxed) {
-                break;
+                return Ok((numbers, Vec::new()));
             }
         }
-        match refused {
-            Some(error) if numbers.is_empty() => Err(error),
-            _ if numbers.is_empty() => {
-                let what = format!("{fewest} are required, but only {} asked for", self.settings.sensors);
-                Err(EstimatorError::PlacementConstraints { what })
-            }
-            _ => Ok(numbers),
+        if numbers.is_empty()
+            && let Some((_, error)) = errors.pop()
+        {
+            return Err(error);
         }
+        let refused =
+            |(sensors, error): (usize, EstimatorError)| Refused { sensors, reason: error.to_string() };
+        Ok((numbers, errors.into_iter().map(refused).collect()))
     }
 
     fn numbered(&self, sensors: usize, watch: &Watch) -> Result<Numbered, EstimatorError> {
