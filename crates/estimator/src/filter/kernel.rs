@@ -90,7 +90,7 @@ fn multiply_together<const N: usize>(a: &[f64], high: usize, x: [&[f64]; N], mut
     for first in (0..high / 8 * 8).step_by(8) {
         multiply_block::<N, 8>(a, high, first, x, &mut y);
     }
-    if high % 8 != 0 {
+    if !high.is_multiple_of(8) {
         multiply_block::<N, 4>(a, high, high / 8 * 8, x, &mut y);
     }
 }
