@@ -206,6 +206,7 @@ pub enum EstimatorError {
         /// The contradiction.
         what: String,
     },
+<<<<<<< HEAD
     /// A setting of a confirmation by Monte Carlo is out of its bounds.
     #[error("confirmation setting `{setting}` = {value} must be {bound}")]
     ConfirmSetting {
@@ -214,6 +215,16 @@ pub enum EstimatorError {
         /// Its value.
         value: f64,
         /// What it must be.
+=======
+    /// A setting of the scores of positions is out of its range.
+    #[error("placement setting {setting} = {value} must be {bound}")]
+    PlacementSetting {
+        /// Setting by its field name.
+        setting: &'static str,
+        /// As given.
+        value: f64,
+        /// Its range.
+>>>>>>> 327c63f (Placement: positions by the paper's own measure, with intervals over specimens and position against position)
         bound: &'static str,
     },
     /// The program that bounds the layouts of sensors has no solution.

@@ -18,6 +18,7 @@
 //! | [`Course`] | a layout along a scenario, with model error as consider parameters |
 //! | [`study`] | the study that puts all of it together |
 //! | [`confirm`] | whether layouts achieve what is predicted, by Monte Carlo |
+//! | [`published_scores`] | each position by itself, by the paper's own measure |
 //!
 //! The gap between the best that was found and the bound is part of every result: greedy search can be arbitrarily bad for this
 //! criterion (Ye, Roy and Sundaram 2017), and says nothing about it.
@@ -34,6 +35,7 @@ mod grouped;
 mod objective;
 mod problem;
 mod response;
+mod published;
 pub mod search;
 mod site;
 pub mod study;
@@ -51,3 +53,7 @@ pub use objective::{Objective, Relaxed};
 pub use problem::{CandidateOutput, LinearProblem};
 pub use response::{DetectionSettings, Disturbance, Response};
 pub use site::{Certainty, Site, SiteSettings, SmallestLeak};
+pub use published::{
+    PublishedDuel, PublishedMerit, PublishedRecord, PublishedScore, PublishedScores, PublishedSettings,
+    Specimens, Spread, published_scores,
+};

@@ -22,5 +22,6 @@ mod placement;
 mod placement_cylinder;
 mod placement_response;
 mod placement_study;
+mod placement_published;
 mod properties;
 mod sensors;
