@@ -19,7 +19,7 @@ use super::grouped::GroupedProblem;
 use super::problem::{CandidateOutput, LinearProblem};
 use crate::EstimatorError;
 use crate::filter::StateSpace;
-use crate::observer::cylinder::Cylinder;
+use crate::observer::cylinder::{Cylinder, LinearCylinder};
 use crate::observer::states::{StateKind, States};
 use crate::observer::{Commissioning, LeakHypothesis, ObserverSettings};
 use crate::sensor::Sensor;
@@ -39,12 +39,44 @@ pub struct Conditions {
     pub air_k: f64,
     /// Interval of the readings, s.
     pub interval_s: f64,
+    /// Difference of wall and gas that the film between them is linearised for, K: the mean of the gas so much warmer and so much colder.
+    /// At rest, 0, that film is the least there is: it grows with the cubic root of the difference, and noise always makes one.
+    #[serde(default)]
+    pub apart_k: f64,
 }
 
 impl Default for Conditions {
     /// 200 bar at 15 °C, at rest at that temperature, read every minute.
     fn default() -> Self {
-        Self { filling: (200e5, 288.15), body_k: 288.15, air_k: 288.15, interval_s: 60.0 }
+        Self { filling: (200e5, 288.15), body_k: 288.15, air_k: 288.15, interval_s: 60.0, apart_k: 0.0 }
+    }
+}
+
+/// Difference for which the film's slope is its mean over differences `N(0, 1)`: `d^(1/3) = E |z|^(1/3)`.
+const TYPICAL: f64 = 0.6307;
+/// Doublings of the interval until wall and gas are as far apart as they get.
+const APART_DOUBLINGS: usize = 11;
+
+impl Conditions {
+    /// The same with the difference of wall and gas that the process noise of the settings itself makes: statistical linearisation (Gelb 1974,
+    /// chapter 6) of a film that goes with the cubic root.
+    ///
+    /// # Errors
+    /// As [`SitedCylinder::new`].
+    pub fn at_typical_difference(
+        self,
+        vessel: &Vessel,
+        settings: &ObserverSettings,
+    ) -> Result<Self, EstimatorError> {
+        // A difference of d makes one that goes with d^(-1/6): each iteration leaves a sixth of the error.
+        const ITERATIONS: usize = 6;
+        const START_K: f64 = 0.1;
+        let mut conditions = Self { apart_k: START_K, ..self };
+        for _ in 0..ITERATIONS {
+            let sited = SitedCylinder::new(vessel, &[], settings, &settings.bank[0], &conditions)?;
+            conditions.apart_k = TYPICAL * sited.wall_to_gas_sd_k();
+        }
+        Ok(conditions)
     }
 }
 
@@ -92,7 +124,7 @@ impl SitedCylinder {
         cylinder.suppose(member);
         let (n, m) = (cylinder.states(), cylinder.leading());
         let point = state_at(&mut cylinder, vessel, conditions)?;
-        let linear = cylinder.linear_at(&point, conditions.interval_s)?;
+        let linear = linear_around(&mut cylinder, &point, conditions)?;
         let mut f = DMatrix::zeros(n, n);
         let mut q = DMatrix::zeros(n, n);
         f.rows_mut(0, m).copy_from(&linear.phi);
@@ -141,6 +173,24 @@ impl SitedCylinder {
             leak_drive,
             sun_drive,
         })
+    }
+
+    /// Standard deviation of the difference of gas and mean wall that is not read, K.
+    fn wall_to_gas_sd_k(&self) -> f64 {
+        let is_wall = |kind: &&StateKind| matches!(kind, StateKind::Wall(_));
+        let nodes = self.kinds.iter().filter(is_wall).count() as f64;
+        let part = |kind: &StateKind| match kind {
+            StateKind::Gas => 1.0,
+            StateKind::Wall(_) => -nodes.recip(),
+            _ => 0.0,
+        };
+        let difference = DVector::from_iterator(self.kinds.len(), self.kinds.iter().map(part));
+        let (mut transition, mut p) = (self.transition.clone(), self.process_noise.clone());
+        for _ in 0..APART_DOUBLINGS {
+            p += &transition * &p * transition.transpose();
+            transition = &transition * &transition;
+        }
+        difference.dot(&(p * &difference)).sqrt()
     }
 
     /// Names of the states, in the order of the matrices.
@@ -232,6 +282,30 @@ impl SitedCylinder {
         let most = growth.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
         Some(&self.names[states[most.0]])
     }
+}
+
+/// The linearisation at a point, or the mean of those with the gas warmer and colder than it.
+fn linear_around(
+    cylinder: &mut Cylinder,
+    point: &[f64],
+    conditions: &Conditions,
+) -> Result<LinearCylinder, EstimatorError> {
+    let gas = cylinder.state_map().gas;
+    let mut at = |apart_k: f64| {
+        let mut beside = point.to_vec();
+        beside[gas] += apart_k;
+        cylinder.linear_at(&beside, conditions.interval_s)
+    };
+    if conditions.apart_k == 0.0 {
+        return at(0.0);
+    }
+    let (warm, cold) = (at(conditions.apart_k)?, at(-conditions.apart_k)?);
+    Ok(LinearCylinder {
+        phi: 0.5 * (warm.phi + cold.phi),
+        q: 0.5 * (warm.q + cold.q),
+        h: 0.5 * (warm.h + cold.h),
+        r: warm.r.iter().zip(&cold.r).map(|(warm, cold)| 0.5 * (warm + cold)).collect(),
+    })
 }
 
 /// A typical size of a state's error.

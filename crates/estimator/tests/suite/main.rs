@@ -19,6 +19,7 @@ mod linear_model;
 mod matched;
 mod observer;
 mod placement;
+mod placement_confirm;
 mod placement_cylinder;
 mod placement_response;
 mod placement_study;

@@ -36,7 +36,7 @@ const CONSTANTS: u64 = 1;
 /// The usual ones stand for a vehicle: air that walks 40 K in an hour carries a truth that really does so out of the gas's equation within a
 /// day, and films that vary by a factor of two between air and wall that differ by kelvins leave little of any linearisation. Here the
 /// air walks slowly, and comes back in weeks only, for a known mean would be a thermometer by itself; unknown heat and films are those of calm
-/// air.
+/// air. A row is one step, of truth, observer and prediction alike.
 pub fn calm(settings: &ObserverSettings, conditions: &Conditions) -> ObserverSettings {
     let walk_k_per_sqrt_s = 0.3 / HOUR_S.sqrt();
     ObserverSettings {
@@ -44,6 +44,7 @@ pub fn calm(settings: &ObserverSettings, conditions: &Conditions) -> ObserverSet
         gas_walk_k_per_sqrt_s: walk_k_per_sqrt_s,
         air: Walk { memory_s: Some(20.0 * DAY_S), ..Walk::per_sqrt_hour(1.0, 0.15) },
         air_rest_k: conditions.air_k,
+        longest_step_s: conditions.interval_s,
         ln_outside_film: Walk::forgetting(0.15, 2.0 * HOUR_S),
         sun: Walk::forgetting(1.0, 0.5 * HOUR_S),
         ..settings.clone()
