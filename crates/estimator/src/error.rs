@@ -206,17 +206,7 @@ pub enum EstimatorError {
         /// The contradiction.
         what: String,
     },
-<<<<<<< HEAD
-    /// A setting of a confirmation by Monte Carlo is out of its bounds.
-    #[error("confirmation setting `{setting}` = {value} must be {bound}")]
-    ConfirmSetting {
-        /// Name of the setting.
-        setting: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-=======
-    /// A setting of the scores of positions is out of its range.
+    /// A setting of a placement is out of its range.
     #[error("placement setting {setting} = {value} must be {bound}")]
     PlacementSetting {
         /// Setting by its field name.
@@ -224,7 +214,6 @@ pub enum EstimatorError {
         /// As given.
         value: f64,
         /// Its range.
->>>>>>> 327c63f (Placement: positions by the paper's own measure, with intervals over specimens and position against position)
         bound: &'static str,
     },
     /// The program that bounds the layouts of sensors has no solution.

@@ -34,8 +34,8 @@ pub mod cylinder;
 mod grouped;
 mod objective;
 mod problem;
-mod response;
 mod published;
+mod response;
 pub mod search;
 mod site;
 pub mod study;
@@ -51,9 +51,9 @@ pub use cylinder::{Conditions, Quantity, SitedCylinder};
 pub use grouped::GroupedProblem;
 pub use objective::{Objective, Relaxed};
 pub use problem::{CandidateOutput, LinearProblem};
-pub use response::{DetectionSettings, Disturbance, Response};
-pub use site::{Certainty, Site, SiteSettings, SmallestLeak};
 pub use published::{
     PublishedDuel, PublishedMerit, PublishedRecord, PublishedScore, PublishedScores, PublishedSettings,
     Specimens, Spread, published_scores,
 };
+pub use response::{DetectionSettings, Disturbance, Response};
+pub use site::{Certainty, Site, SiteSettings, SmallestLeak};

@@ -21,7 +21,7 @@ const WALL_NODES: usize = 6;
 pub struct SiteSettings {
     /// The observer; a finer wall than in a vehicle tells heights apart.
     pub observer: ObserverSettings,
-    /// Where the cylinder rests.
+    /// Where the cylinder rests; its film is taken at the difference of wall and gas that noise makes.
     pub conditions: Conditions,
     /// When a leak counts as found.
     pub detection: DetectionSettings,
@@ -74,6 +74,7 @@ impl Site {
         let mut settings = settings.clone();
         let columns = crate::thermal::wall::mesh::Mesh::new(&vessel.geometry).columns.len();
         settings.observer.wall_nodes = settings.observer.wall_nodes.min(columns);
+        settings.conditions = settings.conditions.at_typical_difference(vessel, &settings.observer)?;
         let bank = &settings.observer.bank;
         let no_rate = EstimatorError::PlacementQuantity { quantity: Quantity::LeakRate };
         let slow = middle_slow(bank).ok_or(no_rate)?;

@@ -165,7 +165,7 @@ impl Rows {
     fn new(claim: &Claim<'_>, settings: &ConfirmSettings) -> Result<Self, EstimatorError> {
         let interval_s = claim.conditions.interval_s;
         let require = |ok: bool, setting: &'static str, value: f64, bound: &'static str| {
-            if ok { Ok(()) } else { Err(EstimatorError::ConfirmSetting { setting, value, bound }) }
+            if ok { Ok(()) } else { Err(EstimatorError::PlacementSetting { setting, value, bound }) }
         };
         let ConfirmSettings { seeds, duration_s, burn_in_s, every_s, noise_factor, .. } = *settings;
         require(interval_s > 0.0 && interval_s.is_finite(), "interval_s", interval_s, "positive")?;
