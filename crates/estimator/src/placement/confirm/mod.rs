@@ -8,8 +8,8 @@
 //!
 //! | world | truth | observer |
 //! |---|---|---|
-//! | [`matched`] | the observer's own equations, nonlinear, with its own noise | one member, no allowance for the model |
-//! | [`mismatched`] | drawn cylinders in railway weather ([`crate::truth`]) read by drawn specimens | as the settings say |
+//! | [`matched()`] | the observer's own equations, nonlinear, with its own noise | one member, no allowance for the model |
+//! | [`mismatched()`] | drawn cylinders in railway weather ([`crate::truth`]) read by drawn specimens | as the settings say |
 //!
 //! The interval of an rms is that of a bootstrap over seeds, since the times of one run hang together. In the matched world the constants
 //! of all seeds are drawn together, with exactly the moments of their prior; the bootstrap does not know that, so its interval is too wide
