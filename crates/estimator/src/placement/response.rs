@@ -50,6 +50,8 @@ pub struct Response {
     left: DMatrix<f64>,
     by_reading: DMatrix<f64>,
     functionals: [Option<DVector<f64>>; 3],
+    /// What the innovations see of errors and disturbances, divided by their covariance: (m, n + u).
+    seen: DMatrix<f64>,
     /// Sums over `2^m` samples, and the states after them.
     doublings: Vec<Passage>,
 }
@@ -118,7 +120,8 @@ impl SitedCylinder {
         seen.columns_mut(0, n).copy_from(&h);
         seen.columns_mut(n, count).copy_from(&by_reading);
         let whitened = steady.innovation.clone().cholesky().map(|root| root.solve(&seen));
-        let information = seen.transpose() * whitened.ok_or_else(|| self.unseen_error(layout))?;
+        let whitened = whitened.ok_or_else(|| self.unseen_error(layout))?;
+        let information = seen.transpose() * &whitened;
         let mut doublings = vec![Passage { information, transition }];
         for _ in 0..DOUBLINGS {
             let last = &doublings[doublings.len() - 1];
@@ -126,7 +129,7 @@ impl SitedCylinder {
         }
         let functional = |quantity| Some(self.functional(quantity).ok()?.select_rows(&states));
         let functionals = [Quantity::GasTemperature, Quantity::Mass, Quantity::LeakRate].map(functional);
-        Ok(Response { steady, left, by_reading, functionals, doublings })
+        Ok(Response { steady, left, by_reading, functionals, seen: whitened, doublings })
     }
 
     /// The state that a layout does not see, as an error.
@@ -167,6 +170,22 @@ impl Response {
             }
         }
         (samples + 1 < 2 << DOUBLINGS).then_some(samples + 1)
+    }
+
+    /// Weights of the innovations of so many samples since the onset, (samples)(m), whose sum is the best statistic of a disturbance: of variance one
+    /// while there is none, and of mean `u sqrt(J)` where it has the size `u`.
+    pub fn weights(&self, disturbance: usize, samples: u64) -> Vec<DVector<f64>> {
+        let at = self.errors() + disturbance;
+        let transition = &self.doublings[0].transition;
+        let scale = self.passage(samples).information[(at, at)].sqrt().recip();
+        let mut state = DVector::zeros(transition.nrows());
+        state[at] = scale;
+        let mut weight = |_| {
+            let weight = &self.seen * &state;
+            state = transition * &state;
+            weight
+        };
+        (0..samples).map(&mut weight).collect()
     }
 
     /// Change of the estimate of a quantity, K, kg or kg/s, after so many samples, per unit of each disturbance: (u). Empty where the

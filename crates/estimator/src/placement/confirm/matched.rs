@@ -52,7 +52,7 @@ pub fn calm(settings: &ObserverSettings, conditions: &Conditions) -> ObserverSet
 }
 
 /// The candidates and the settings with everything known that never changes.
-fn told(candidates: &[Sensor], settings: &ObserverSettings) -> (Vec<Sensor>, ObserverSettings) {
+pub(super) fn told(candidates: &[Sensor], settings: &ObserverSettings) -> (Vec<Sensor>, ObserverSettings) {
     let stands = |walk: &Walk| walk.per_sqrt_s == 0.0 && walk.memory_s.is_none();
     let tell = |sensor: &Sensor| {
         let mut told = sensor.clone();

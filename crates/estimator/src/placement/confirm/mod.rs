@@ -16,6 +16,7 @@
 //! rather than too narrow.
 //!
 //! Source: Efron and Tibshirani 1993, chapter 13 (percentile interval).
+mod detection;
 mod draws;
 mod jury;
 mod listener;
@@ -33,6 +34,7 @@ use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 use crate::truth::TruthLeak;
 
+pub use detection::{Detected, detected_matched, detected_mismatched};
 pub use listener::{Listener, Recorder, RunId};
 pub use matched::{calm, matched};
 pub use mismatched::mismatched;
