@@ -7,6 +7,9 @@
 //! Assumed as in the reproduction of Table 1: samples a minute apart, scenario 2 from the next minute on, temperatures in °C, no
 //! offset in the model, gain free, state at the start fitted, in validation too. The gas temperature is the simulated mean, without error.
 //!
+//! Over the minute between scenarios 1 and 2 a reading that feels the air is taken as straight, though it jumps. That costs the places that follow
+//! the gas closely more than the valve, and can turn the order on the joined record; the scenarios by themselves do not have it.
+//!
 //! An interval holds what the sensors themselves bring: their offset, mounting, noise, steps and losses, as their priors have them. It does
 //! not hold what the vessel's model does not know, such as films and contacts, nor another chamber or another filling.
 //!

@@ -37,7 +37,7 @@ impl<'a> ExposedSensor<'a> {
             parameters,
             time_s: &trajectory.time_s,
             air_k: &surroundings.air_k,
-            air_difference: difference_k.zip(above_middle(trajectory, sensor)),
+            air_difference: difference_k.and_then(|series| Some((series, above_middle(trajectory, sensor)?))),
             pressure_pa: &trajectory.pressure_pa,
             body_k: body_k(trajectory, sensor)?,
             electronics_k: electronics_k(trajectory),
@@ -107,11 +107,11 @@ fn position(time_s: &[f64], t_s: f64) -> (usize, f64) {
 
 fn body_k(trajectory: &Trajectory, sensor: &Sensor) -> Result<Vec<f64>, EstimatorError> {
     let vessel = &trajectory.vessel;
-    if let Some(missing) = sensor.misfit(vessel) {
+    let mesh = Mesh::new(&vessel.geometry);
+    if let Some(missing) = sensor.misfit_on(vessel, &mesh) {
         let (name, vessel) = (sensor.name.clone(), vessel.name.clone());
         return Err(EstimatorError::SensorMisfit { name, vessel, missing });
     }
-    let mesh = Mesh::new(&vessel.geometry);
     let column = |cells: &[Vec<f64>], cell: usize| cells.iter().map(|sample| sample[cell]).collect();
     let found = match sensor.kind {
         SensorKind::Surface { place: SurfacePlace::Valve } => trajectory.valve_k.clone(),

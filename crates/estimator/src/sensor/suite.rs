@@ -70,17 +70,21 @@ impl Sensor {
 
     /// What the sensor needs and the vessel does not have; `None`: it can sit there.
     pub fn misfit(&self, vessel: &Vessel) -> Option<String> {
-        let mesh = Mesh::new(&vessel.geometry);
+        self.misfit_on(vessel, &Mesh::new(&vessel.geometry))
+    }
+
+    /// The same with the vessel's mesh at hand.
+    pub(super) fn misfit_on(&self, vessel: &Vessel, mesh: &Mesh) -> Option<String> {
         match self.kind {
             SensorKind::Surface { place: SurfacePlace::Valve } => {
                 vessel.valve.is_none().then(|| "a valve".to_owned())
             }
-            SensorKind::Surface { place } => match (place.column(&vessel.geometry, &mesh), place) {
+            SensorKind::Surface { place } => match (place.column(&vessel.geometry, mesh), place) {
                 (Some(_), _) => None,
                 (None, SurfacePlace::Height { height_m }) => Some(format!("a wall at {height_m} m")),
                 (None, place) => Some(format!("a {}", place.as_str())),
             },
-            SensorKind::Gas { place } => match (place.cell(vessel, &mesh), place) {
+            SensorKind::Gas { place } => match (place.cell(vessel, mesh), place) {
                 (Some(_), _) => None,
                 (None, GasPlace::Cell { number }) => Some(format!("{number} gas cells")),
                 (None, GasPlace::Height { height_m }) => Some(format!("gas at {height_m} m")),
