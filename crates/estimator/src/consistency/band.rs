@@ -1,5 +1,5 @@
 //! Quantiles, and the band in which a mean of chi-square variables lies.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 use crate::EstimatorError;
@@ -44,7 +44,7 @@ impl Significance {
 }
 
 /// Values that a correct filter gives, but for the significance, half of which lies on either side.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// Lower end.
     pub low: f64,

@@ -284,7 +284,10 @@ impl SitedCylinder {
     }
 }
 
-/// The linearisation at a point, or the mean of those with the gas warmer and colder than it.
+/// The linearisation at a point; of what temperatures do to each other, the mean of those with the gas warmer and colder than it.
+///
+/// What mass, films and constants do stays that at the point: beside it heat flows, and the mass is in its effect on the temperature of the gas. The
+/// two sides do not quite cancel, and a mass that nobody reads would seem to be seen.
 fn linear_around(
     cylinder: &mut Cylinder,
     point: &[f64],
@@ -296,16 +299,37 @@ fn linear_around(
         beside[gas] += apart_k;
         cylinder.linear_at(&beside, conditions.interval_s)
     };
+    let mut linear = at(0.0)?;
     if conditions.apart_k == 0.0 {
-        return at(0.0);
+        return Ok(linear);
     }
     let (warm, cold) = (at(conditions.apart_k)?, at(-conditions.apart_k)?);
-    Ok(LinearCylinder {
-        phi: 0.5 * (warm.phi + cold.phi),
-        q: 0.5 * (warm.q + cold.q),
-        h: 0.5 * (warm.h + cold.h),
-        r: warm.r.iter().zip(&cold.r).map(|(warm, cold)| 0.5 * (warm + cold)).collect(),
-    })
+    let is_temperature = |kind: &StateKind| {
+        matches!(
+            kind,
+            StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Air | StateKind::Sun
+        )
+    };
+    let kinds = &cylinder.state_map().kinds;
+    let temperatures: Vec<usize> =
+        (0..linear.phi.nrows()).filter(|&state| is_temperature(&kinds[state])).collect();
+    for &row in &temperatures {
+        let mut gained = 0.0;
+        for &column in &temperatures {
+            let mean =
+                |warm: &DMatrix<f64>, cold: &DMatrix<f64>| 0.5 * (warm[(row, column)] + cold[(row, column)]);
+            let by = mean(&warm.phi, &cold.phi);
+            if kinds[column] != StateKind::Sun {
+                gained += by - linear.phi[(row, column)];
+            }
+            linear.phi[(row, column)] = by;
+            linear.q[(row, column)] = mean(&warm.q, &cold.q);
+        }
+        // What is as warm as everything else stays so: else the film, which changes with the temperature, would hold it.
+        linear.phi[(row, row)] -= gained;
+    }
+    linear.r = warm.r.iter().zip(&cold.r).map(|(warm, cold)| 0.5 * (warm + cold)).collect();
+    Ok(linear)
 }
 
 /// A typical size of a state's error.

@@ -97,6 +97,12 @@ impl Site {
         &self.settings
     }
 
+    /// The first member of the bank, and the one that gives gas temperature, leak rate and the innovations that tell a leak.
+    pub(super) fn members(&self) -> (&LeakHypothesis, &LeakHypothesis) {
+        let bank = &self.settings.observer.bank;
+        (&bank[0], &bank[middle_slow(bank).unwrap_or(0)])
+    }
+
     /// The member that gives gas temperature and leak rate.
     pub fn slow(&self) -> &SitedCylinder {
         &self.slow

@@ -3,9 +3,9 @@ use std::sync::atomic::Ordering;
 
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
-use cylwatch_estimator::placement::confirm::{Recorder, calm, matched, mismatched};
+use cylwatch_estimator::placement::confirm::{Recorder, calm, detected_matched, matched, mismatched};
 use cylwatch_estimator::placement::search::Watch;
-use cylwatch_estimator::placement::{Claim, Conditions, ConfirmSettings, Confirmation};
+use cylwatch_estimator::placement::{Claim, Conditions, ConfirmSettings, Confirmation, DetectionSettings};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 use cylwatch_estimator::truth::{TruthLeak, TruthSettings};
@@ -148,11 +148,11 @@ fn what_is_stopped_says_so_and_what_cannot_be_is_refused() {
         matched(&case.claim(), &settings, &Watch::default(), &|_| ()).unwrap_err().to_string()
     };
     for (settings, part) in [
-        (seeds(0), "`seeds` = 0"),
-        (ConfirmSettings { duration_s: f64::NAN, ..seeds(1) }, "`duration_s` = NaN"),
-        (ConfirmSettings { burn_in_s: 1e9, ..seeds(1) }, "`burn_in_s`"),
-        (ConfirmSettings { every_s: 0.0, ..seeds(1) }, "`every_s` = 0"),
-        (ConfirmSettings { noise_factor: -1.0, ..seeds(1) }, "`noise_factor` = -1"),
+        (seeds(0), "seeds = 0"),
+        (ConfirmSettings { duration_s: f64::NAN, ..seeds(1) }, "duration_s = NaN"),
+        (ConfirmSettings { burn_in_s: 1e9, ..seeds(1) }, "burn_in_s ="),
+        (ConfirmSettings { every_s: 0.0, ..seeds(1) }, "every_s = 0"),
+        (ConfirmSettings { noise_factor: -1.0, ..seeds(1) }, "noise_factor = -1"),
     ] {
         assert!(refused(settings, &case).contains(part), "{part}");
     }
@@ -160,4 +160,28 @@ fn what_is_stopped_says_so_and_what_cannot_be_is_refused() {
     let empty = Case::quiet(&[&[]]);
     let error = matched(&empty.claim(), &seeds(1), &Watch::default(), &|_| ()).unwrap_err();
     assert!(matches!(error, EstimatorError::NoSensors), "{error}");
+}
+
+/// The film between wall and gas is not linear: 15 % of the leak's signature are left to that. Of 40 runs a standard deviation is known to
+/// 11 %.
+#[test]
+fn the_smallest_leak_is_near_the_predicted_one() {
+    let mut case = Case::quiet(&[&[0, 1, 3], &[1, 2, 3]]);
+    case.member = case.settings.bank[2];
+    let run = |case: &Case, settings: ConfirmSettings| {
+        let detection = DetectionSettings::default();
+        detected_matched(&case.claim(), &settings, &detection, &Watch::default()).unwrap()
+    };
+    let found = run(&case, seeds(40));
+    for of in &found {
+        println!("{of:?}");
+        assert!((0.85..1.15).contains(&of.answer), "{of:?}");
+        assert!((0.7..1.4).contains(&of.sd) && of.mean.abs() < 0.6, "{of:?}");
+        assert!(of.false_alarms == 0.0 && (0.65..1.5).contains(&(of.achieved_kg_s / of.predicted_kg_s)));
+    }
+    assert!((found[0].found_predicted - 0.95).abs() < 1e-3 && found[0].leak_kg_s == found[0].predicted_kg_s);
+    // A world with more noise than the filter supposes hides leaks of the predicted size.
+    case.layouts.truncate(1);
+    let noisy = run(&case, ConfirmSettings { noise_factor: 3.0, ..seeds(12) });
+    assert!(noisy[0].sd > 1.6 && noisy[0].achieved_kg_s > 1.5 * noisy[0].predicted_kg_s, "{noisy:?}");
 }

@@ -6,7 +6,7 @@
 //! that keeps the rate of false alarms lies `b s` above its mean, and the smallest leak is `s / a` times the predicted one.
 //!
 //! Every seed is run twice, tight and with one leak, so that `a` has no noise of its own.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::matched::told;
@@ -19,7 +19,7 @@ use crate::placement::search::Watch;
 use crate::truth::{TruthLeak, TruthSettings};
 
 /// A leak before each layout.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Detected {
     /// Indices of its candidates.
     pub layout: Vec<usize>,

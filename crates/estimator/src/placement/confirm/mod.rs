@@ -94,7 +94,7 @@ impl Default for ConfirmSettings {
 }
 
 /// Predicted, stated and achieved, in the unit of the quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Achieved {
     /// Standard deviation of the steady state; `None`: the layout has none, or the member does not estimate the quantity.
     pub predicted: Option<f64>,
@@ -120,7 +120,7 @@ impl Achieved {
 }
 
 /// What a layout achieves.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Confirmed {
     /// Indices of its candidates.
     pub layout: Vec<usize>,

@@ -11,17 +11,22 @@
 //! | [`Failure`] | what is left without a sensor, and how large a fault of it is found and told from all others |
 //! | [`Bias`] | what a sensor's offset, its mounting and the sun do to the estimates |
 //! | [`Position`] | one thermometer anywhere on the wall |
+//! | [`ByPaper`] | the same positions by the paper's measure |
+//! | [`ClosedLoop`] | what the best layouts achieve in Monte Carlo runs |
 //!
 //! A study that is stopped keeps what it has and says that it is partial.
+mod closed_loop;
 mod failure;
 mod front;
 mod judged;
 mod position;
+mod published;
 
 use std::sync::atomic::Ordering;
 
 use serde::{Deserialize, Serialize};
 
+use super::PublishedSettings;
 use super::candidate::Candidates;
 use super::certificate::{CertificateSettings, certify};
 use super::constraints::Constraints;
@@ -33,10 +38,12 @@ use crate::EstimatorError;
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
 
+pub use closed_loop::{ClosedLoop, ClosedLoopSettings};
 pub use failure::{Bias, BiasSource, Failure};
 pub use front::{Front, Point};
 pub use judged::Judged;
 pub use position::Position;
+pub use published::ByPaper;
 
 /// Layouts up to which all are looked at if no method is asked for.
 const ALL_LAYOUTS: f64 = 20_000.0;
@@ -60,6 +67,10 @@ pub struct StudySettings {
     pub within: f64,
     /// Leak whose delay is told, kg/s.
     pub leak_kg_s: f64,
+    /// The paper's measure.
+    pub published: PublishedSettings,
+    /// Monte Carlo runs of the best layouts of most sensors.
+    pub closed_loop: ClosedLoopSettings,
 }
 
 impl Default for StudySettings {
@@ -73,6 +84,8 @@ impl Default for StudySettings {
             method: None,
             within: 0.02,
             leak_kg_s: 0.01 / 3600.0,
+            published: PublishedSettings::default(),
+            closed_loop: ClosedLoopSettings::default(),
         }
     }
 }
@@ -165,6 +178,10 @@ pub struct Study {
     pub biases: Vec<Bias>,
     /// One thermometer beside what is required, anywhere.
     pub positions: Vec<Position>,
+    /// The same positions by the paper's measure; `None`: it was stopped before.
+    pub published: Option<ByPaper>,
+    /// What the best layouts of most sensors achieve; `None`: no runs were asked for.
+    pub closed_loop: Option<ClosedLoop>,
     /// It was stopped before its end.
     pub partial: bool,
 }
@@ -260,6 +277,17 @@ impl Placement {
             _ => (Vec::new(), Vec::new()),
         };
         let positions = if going() { self.positions()? } else { Vec::new() };
+        let published = if going() { Some(self.by_paper()?) } else { None };
+        let closed_loop = match numbers.last() {
+            Some(most)
+                if going()
+                    && self.settings.closed_loop.matched + self.settings.closed_loop.mismatched > 0 =>
+            {
+                let best = most.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone());
+                Some(self.confirm(&best.collect::<Vec<_>>(), &self.settings.closed_loop, watch)?)
+            }
+            _ => None,
+        };
         let list = &self.candidates.list;
         Ok(Study {
             vessel: self.vessel.name.clone(),
@@ -275,6 +303,8 @@ impl Placement {
             failures,
             biases,
             positions,
+            published,
+            closed_loop,
             partial: !going(),
         })
     }
