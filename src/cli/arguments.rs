@@ -4,6 +4,7 @@ use super::calibrate::CalibrateArguments;
 use super::fill::GivenFill;
 use super::identify::IdentifyArguments;
 use super::monitor::MonitorArguments;
+use super::place::PlaceArguments;
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cylwatch::estimator::EstimatorError;
@@ -31,11 +32,12 @@ Examples:
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
+  cylwatch place nitrogen-20l --sensors 3 --plot places.svg
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
 
-Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive (monitor). Data goes to stdout, words to stderr; NO_COLOR is respected.";
+Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive (monitor) or ended early (place). Data goes to stdout, words to stderr; NO_COLOR is respected.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -54,11 +56,13 @@ pub enum Command {
     Calibrate(Box<CalibrateArguments>),
     /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; takes minutes.
     BenchDetector(BenchDetectorArguments),
+    /// Find where sensors should sit, with a proof that no better layout was missed; takes seconds to minutes.
+    Place(Box<PlaceArguments>),
     /// Print the properties of a gas, at one state or for every row of a file.
     Properties(PropertiesArguments),
     /// Write start files vessel.toml and scenario.toml, with comments, to edit.
     Init(InitArguments),
-    /// Print the JSON schema of vessel and scenario files, for editors.
+    /// Print the JSON schema of vessel, scenario and candidates files, for editors.
     Schema(SchemaArguments),
     /// Print a completion script for a shell.
     Completions(CompletionsArguments),
@@ -281,12 +285,14 @@ pub enum Document {
     Vessel,
     /// Scenario files.
     Scenario,
+    /// Files of `place --candidates`.
+    Candidates,
 }
 
 /// Arguments of `schema`.
 #[derive(Debug, Args)]
 pub struct SchemaArguments {
-    /// Which schema [default: both, as one object].
+    /// Which schema [default: all, as one object].
     #[arg(value_enum)]
     pub document: Option<Document>,
 }

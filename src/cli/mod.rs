@@ -1,7 +1,7 @@
 //! The command line: raw arguments ([`arguments`]), validated options (the start of every command), the run, the output.
 //!
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error; of `monitor`
-//! also 1 leak found, 3 inconclusive.
+//! also 1 leak found, 3 inconclusive; of `place` 3 ended early.
 mod arguments;
 mod bench_detector;
 mod calibrate;
@@ -14,6 +14,7 @@ mod input;
 mod message;
 mod monitor;
 mod output;
+mod place;
 mod plot;
 mod progress;
 mod properties;
@@ -50,6 +51,7 @@ pub fn main() -> ExitCode {
 fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
     let done = match command {
         Command::Monitor(arguments) => return monitor::run(*arguments, messages),
+        Command::Place(arguments) => return place::run(*arguments, messages),
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),
         Command::Estimate(arguments) => estimate::run(*arguments, messages),

@@ -5,6 +5,7 @@ pub mod estimate;
 pub mod figure;
 pub mod identify;
 pub mod monitor;
+pub mod place;
 mod provenance;
 mod readings;
 pub mod simulation;

@@ -191,8 +191,14 @@ impl Candidates {
         Ok(self.index(name).ok_or_else(unknown)?)
     }
 
-    fn rule(&mut self, number: usize, rule: &RuleSpec) -> Result<(), EstimatorError> {
-        let index = self.known(&rule.sensor, &format!("rule[{number}].sensor"))?;
+    fn rule(&mut self, number: usize, rules: &[RuleSpec]) -> Result<(), EstimatorError> {
+        let rule = &rules[number];
+        let path = format!("rule[{number}].sensor");
+        let index = self.known(&rule.sensor, &path)?;
+        if rules[..number].iter().any(|before| before.sensor == rule.sensor) {
+            let name = format!("{:?}", rule.sensor);
+            return Err(check::broken(&path, name, "a sensor without a rule yet", "put both into one").into());
+        }
         let candidate = &mut self.list[index];
         if let Some(cost) = rule.cost {
             if !(cost >= 0.0 && cost.is_finite()) {
@@ -222,7 +228,33 @@ impl Candidates {
             let bound = format!("at most {}", most.min(members.len()));
             return Err(check::broken(&path, fewest, &bound, "a group cannot give more than it has").into());
         }
+        let with = |status| members.iter().filter(|member| self.list[**member].status == status).count();
+        let (required, open) = (with(Status::Required), members.len() - with(Status::Forbidden));
+        if fewest > open {
+            let (path, bound) = (format!("group[{number}].at_least"), format!("at most {open}"));
+            return Err(check::broken(&path, fewest, &bound, "the others are forbidden").into());
+        }
+        if most < required {
+            let (path, bound) = (format!("group[{number}].at_most"), format!("at least {required}"));
+            return Err(check::broken(&path, most, &bound, "so many are required").into());
+        }
         self.groups.push(Group { members, fewest, most });
+        Ok(())
+    }
+
+    /// The least distance is one that the required ones have.
+    fn check_distance(&self) -> Result<(), EstimatorError> {
+        let distance_m = self.minimum_distance_m;
+        if !(distance_m >= 0.0 && distance_m.is_finite()) {
+            let (bound, remedy) = ("finite and at least 0", "it is measured along the axis");
+            return Err(check::broken("minimum_distance_m", distance_m, bound, remedy).into());
+        }
+        let required = |index: usize| self.list[index].status == Status::Required;
+        if let Some((a, b)) = self.too_close().into_iter().find(|(a, b)| required(*a) && required(*b)) {
+            let names = self.names(&[a, b]).join(" and ");
+            let remedy = format!("{names} are required and nearer to each other");
+            return Err(check::broken("minimum_distance_m", distance_m, "smaller", &remedy).into());
+        }
         Ok(())
     }
 }
@@ -239,18 +271,14 @@ impl CandidatesSpec {
             let suite = SensorsSpec { sensor: self.sensor.clone() }.build()?;
             Candidates::of_sensors(vessel, suite.sensors().to_vec())?
         };
-        for (number, rule) in self.rule.iter().enumerate() {
-            candidates.rule(number, rule)?;
+        for number in 0..self.rule.len() {
+            candidates.rule(number, &self.rule)?;
         }
         for (number, group) in self.group.iter().enumerate() {
             candidates.group(number, group)?;
         }
-        let distance_m = self.minimum_distance_m.unwrap_or(0.0);
-        if !(distance_m >= 0.0 && distance_m.is_finite()) {
-            let (bound, remedy) = ("finite and at least 0", "it is measured along the axis");
-            return Err(check::broken("minimum_distance_m", distance_m, bound, remedy).into());
-        }
-        candidates.minimum_distance_m = distance_m;
+        candidates.minimum_distance_m = self.minimum_distance_m.unwrap_or(0.0);
+        candidates.check_distance()?;
         Ok(candidates)
     }
 }

@@ -137,6 +137,23 @@ pub struct Refused {
     pub reason: String,
 }
 
+/// Why there is a layout of no number of sensors: the first contradiction after what is not seen with fewer.
+fn no_number(errors: Vec<(usize, EstimatorError)>) -> EstimatorError {
+    let mut unseen = None;
+    for (sensors, error) in errors {
+        let EstimatorError::PlacementConstraints { what } = error else {
+            unseen = Some(error);
+            continue;
+        };
+        let what = match unseen {
+            Some(unseen) => format!("with fewer than {sensors} {unseen}; of {sensors}, {what}"),
+            None => what,
+        };
+        return EstimatorError::PlacementConstraints { what };
+    }
+    unseen.unwrap_or(EstimatorError::NoSteadyState)
+}
+
 /// Where a bound comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -325,12 +342,12 @@ impl Placement {
         let mut errors = Vec::new();
         for sensors in at_any_cost.must.len().max(1)..=most {
             match self.numbered(sensors, watch) {
-                Ok(mut number) => {
+                Ok(Some(mut number)) => {
                     let before = numbers.last().map(|before| before.layouts[0].value);
                     number.marginal = before.map(|before| number.layouts[0].value / before - 1.0);
                     numbers.push(number);
                 }
-                _ if watch.stop.load(Ordering::Relaxed) => {}
+                Ok(None) => {}
                 // Fewer or more may do: what is dear may not be, what is few may not see.
                 Err(error) => errors.push((sensors, error)),
             }
@@ -338,17 +355,16 @@ impl Placement {
                 return Ok((numbers, Vec::new()));
             }
         }
-        if numbers.is_empty()
-            && let Some((_, error)) = errors.pop()
-        {
-            return Err(error);
+        if numbers.is_empty() {
+            return Err(no_number(errors));
         }
         let refused =
             |(sensors, error): (usize, EstimatorError)| Refused { sensors, reason: error.to_string() };
         Ok((numbers, errors.into_iter().map(refused).collect()))
     }
 
-    fn numbered(&self, sensors: usize, watch: &Watch) -> Result<Numbered, EstimatorError> {
+    /// `None`: it was stopped before any layout was looked at.
+    fn numbered(&self, sensors: usize, watch: &Watch) -> Result<Option<Numbered>, EstimatorError> {
         let constraints = self.constraints(sensors);
         let criterion = self.settings.criterion;
         let worth = criterion.worth(&self.site, &self.courses)?;
@@ -356,10 +372,10 @@ impl Placement {
         // The worth is the square of the number that people read.
         let within = (1.0 + self.settings.within).powi(2) - 1.0;
         let found = search(&worth, &constraints, method, within, watch)?;
-        if found.layouts.is_empty() {
-            return Err(self.nothing_found(&constraints));
-        }
         let is_stopped = watch.stop.load(Ordering::Relaxed);
+        if found.layouts.is_empty() {
+            return if is_stopped { Ok(None) } else { Err(self.nothing_found(&constraints)) };
+        }
         let certificate = if criterion.is_convex() && !is_stopped {
             Some(certify(&worth, &constraints, &CertificateSettings::default())?)
         } else {
@@ -372,7 +388,7 @@ impl Placement {
             (None, None) => (0.0, Proof::None),
         };
         let root = |layout: Layout| Layout { value: layout.value.sqrt(), ..layout };
-        Ok(Numbered {
+        Ok(Some(Numbered {
             sensors,
             layouts: found.layouts.into_iter().map(root).collect(),
             bound,
@@ -383,7 +399,7 @@ impl Placement {
             evaluated: found.evaluated,
             marginal: None,
             partial: found.partial,
-        })
+        }))
     }
 
     /// Why no layout was found: what not even all that may be taken see, or nothing is allowed.

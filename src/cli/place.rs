@@ -1,0 +1,124 @@
+//! `cylwatch place`: where sensors should sit.
+mod amounts;
+mod arguments;
+mod options;
+mod stop;
+
+pub use arguments::PlaceArguments;
+
+use super::arguments::Format;
+use super::input::Inputs;
+use super::message::Messages;
+use super::output::Target;
+use super::plot::Plot;
+use super::progress::Progress;
+use anyhow::bail;
+use cylwatch::estimator::placement::search::Watch;
+use cylwatch::estimator::placement::study::{Placement, Study, StudySettings};
+use cylwatch::estimator::placement::{Candidates, Status, read_candidates};
+use cylwatch::report::Provenance;
+use cylwatch::report::place::{Placed, matrices};
+use cylwatch::thermal::scenario::Scenario;
+use cylwatch::thermal::vessel::Vessel;
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
+
+/// Exit code of a search that was ended early.
+const PARTIAL: u8 = 3;
+
+/// Validated options.
+struct Options {
+    vessel: String,
+    scenarios: Vec<String>,
+    candidates: Option<String>,
+    settings: StudySettings,
+    time_limit: Option<Duration>,
+    data: Target,
+    format: Option<Format>,
+    plot: Option<Plot>,
+    matrices: Option<Target>,
+}
+
+/// Searches, judges, writes; exit code 3 if it was ended early.
+pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
+    let begun = Instant::now();
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let vessel = inputs.vessel(&options.vessel)?;
+    let candidates = options.candidates(&inputs, &vessel)?;
+    let scenarios: Vec<Scenario> =
+        options.scenarios.iter().map(|name| inputs.scenario(name)).collect::<anyhow::Result<_>>()?;
+    stop::listen()?;
+    let deadline = options.time_limit.and_then(|limit| begun.checked_add(limit));
+    let progress = Progress::open_ended(messages, "running the scenarios");
+    let placement = Placement::new(&vessel, &candidates, &scenarios, &options.settings)?;
+    let study = study(&placement, deadline, &progress)?;
+    drop(progress);
+    let placed = Placed { study: &study, candidates: &candidates, vessel: &vessel };
+    options.write(&placed, &placement, &inputs.provenance(), messages)?;
+    if study.partial {
+        messages.caution("the search was ended early: what was written is partial");
+        return Ok(ExitCode::from(PARTIAL));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Runs the study beside a thread that ends it when it is due.
+fn study(placement: &Placement, deadline: Option<Instant>, progress: &Progress) -> anyhow::Result<Study> {
+    let watch = Watch::default();
+    watch.stop.store(stop::is_due(deadline), Ordering::Relaxed);
+    let study = std::thread::scope(|scope| {
+        let (done, ended) = channel();
+        let watch = &watch;
+        scope.spawn(move || stop::attend(watch, deadline, progress, &ended));
+        let study = placement.run(watch);
+        drop(done);
+        study
+    });
+    Ok(study?)
+}
+
+impl Options {
+    /// The candidates of the file, or every place, with no more sensors wanted than may be taken.
+    fn candidates(&self, inputs: &Inputs, vessel: &Vessel) -> anyhow::Result<Candidates> {
+        let candidates = match &self.candidates {
+            Some(file) => read_candidates(&inputs.read(file)?, &super::input::shown(file), vessel)?,
+            None => Candidates::of_vessel(vessel)?,
+        };
+        let open = candidates.list.iter().filter(|candidate| candidate.status != Status::Forbidden).count();
+        if self.settings.sensors > open {
+            bail!("--sensors {}: only {open} candidates may be taken", self.settings.sensors);
+        }
+        Ok(candidates)
+    }
+
+    /// Everything is made before anything is written.
+    fn write(
+        &self,
+        placed: &Placed,
+        placement: &Placement,
+        provenance: &Provenance,
+        messages: &Messages,
+    ) -> anyhow::Result<()> {
+        let words = placed.text();
+        let text = match self.format {
+            None => words.clone(),
+            Some(Format::Csv) => placed.csv(provenance),
+            Some(Format::Json) => serde_json::to_string_pretty(&placed.document(provenance))? + "\n",
+        };
+        let of_matrices = match &self.matrices {
+            Some(target) => Some((target, serde_json::to_string(&matrices(placement, provenance))? + "\n")),
+            None => None,
+        };
+        if let Some((target, text)) = of_matrices {
+            target.write(text.as_bytes())?;
+        }
+        self.data.write(text.as_bytes())?;
+        if self.format.is_some() {
+            messages.say(&words);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,132 @@
+//! The raw arguments of `place`.
+use super::amounts::Amounts;
+use crate::cli::arguments::Format;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
+use cylwatch::estimator::placement::Criterion;
+use cylwatch::estimator::placement::search::Method;
+use std::path::PathBuf;
+
+/// Arguments of `place`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct PlaceArguments {
+    /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
+    pub vessel: String,
+    /// Scenario that layouts go along, too: a TOML file or the name of a built-in one; may be given again; none: at rest
+    /// only [default: tunnel-winter].
+    #[arg(long = "scenario", value_name = "SCENARIO")]
+    pub scenarios: Vec<String>,
+    /// Most sensors of a layout, those that it must have among them.
+    #[arg(long, value_name = "NUMBER", default_value_t = 4)]
+    pub sensors: usize,
+    /// What layouts are searched by; the best by every other number is judged beside it.
+    #[arg(long, value_name = "NAME", default_value = "leak-rate", value_parser = criterion())]
+    pub criterion: Criterion,
+    /// Largest cost of a layout, in the unit of the costs, 1 for each sensor unless --candidates says otherwise [default: any].
+    #[arg(long, value_name = "NUMBER")]
+    pub budget: Option<f64>,
+    /// TOML file of what could sit where, at what cost, and what goes together [default: every place of the vessel].
+    #[arg(long, value_name = "FILE")]
+    pub candidates: Option<PathBuf>,
+    /// How layouts are searched [default: every one up to 20 000 of a number of sensors, along a scenario up to 400, else
+    /// greedy with swaps].
+    #[arg(long, value_enum)]
+    pub method: Option<SearchMethod>,
+    /// Layouts are listed up to so much worse than the best, in %.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
+    pub within_percent: f64,
+    /// Mean time between false alarms that the threshold is set for, in years.
+    #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
+    pub false_alarm_years: f64,
+    /// Nodes of the wall along the axis that the observer has: places between two of them count as one [default: 6].
+    #[arg(long, value_name = "NUMBER")]
+    pub wall_nodes: Option<usize>,
+    /// What has a unit.
+    #[command(flatten)]
+    pub amounts: Amounts,
+    /// File for the data; - is stdout [default: tables for people on stdout].
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Format of the data, CSV with a row for each judged layout [default: json for a file that ends in .json, else csv].
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// The same as --format json.
+    #[arg(long, conflicts_with = "format")]
+    pub json: bool,
+    /// Figure of places, cost and failures; the ending .svg or .png decides the format.
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+    /// JSON file for all matrices that layouts are judged by: states, transition, process noise, readings.
+    #[arg(long, value_name = "FILE")]
+    pub matrices: Option<PathBuf>,
+}
+
+/// How layouts are searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SearchMethod {
+    /// Every layout that is allowed.
+    Exhaustive,
+    /// Branch and bound: as certain, with fewer layouts; criteria gas-temperature, mass and leak-rate only.
+    BranchAndBound,
+    /// Greedy, then swaps as long as one is better; proves nothing by itself.
+    Greedy,
+}
+
+impl From<SearchMethod> for Method {
+    fn from(method: SearchMethod) -> Self {
+        match method {
+            SearchMethod::Exhaustive => Self::Exhaustive,
+            SearchMethod::BranchAndBound => Self::BranchAndBound,
+            SearchMethod::Greedy => Self::Greedy,
+        }
+    }
+}
+
+/// A criterion by its word.
+fn criterion() -> impl TypedValueParser<Value = Criterion> {
+    let words = PossibleValuesParser::new(Criterion::ALL.map(Criterion::as_str));
+    words.try_map(|word| {
+        let found = Criterion::ALL.into_iter().find(|criterion| criterion.as_str() == word);
+        found.ok_or("there is no such criterion")
+    })
+}
+
+const HELP: &str = "\
+Which sensors, and where: for each number of sensors the best layout by one criterion, what no
+layout can fall below, all that are as good within 2 %, and the same layouts by every other
+number: gas temperature, mass, leak rate, smallest leak found in time, delay of a leak, and the
+error along a scenario when films, couplings and gas are not as supposed. Then cost against
+accuracy and delay, every sensor lost and at fault, the effect of errors that nobody knows of,
+and one thermometer at each place.
+
+Criteria: gas-temperature, mass, leak-rate (standard deviation at rest; a bound is proven),
+smallest-leak, and along the first scenario course-mean, course-worst, robust-mean, robust-worst
+(of the gas temperature; robust: with model error).
+
+Candidates are every axial cell of the wall, valve, ambient, pressure (required) and gas_1 (a
+thermocouple in the gas, forbidden: a reference). A file changes that; all of it may be left out:
+
+  minimum_distance_mm = 100     # of thermometers on the wall, along the axis
+
+  [[sensor]]                    # instead of all places: as in a file of --sensors
+  name = \"wall_300mm\"
+  height_mm = 300
+
+  [[rule]]
+  sensor = \"shoulder\"
+  cost = 2.5                    # 1 by default
+  status = \"required\"           # or allowed, forbidden
+
+  [[group]]
+  members = [\"valve\", \"neck\"]
+  at_least = 0
+  at_most = 1
+
+Ctrl-C or --time-limit-min end the search with what it has; exit code 3 then.
+
+Examples:
+  cylwatch place nitrogen-20l
+  cylwatch place nitrogen-20l --sensors 3 --criterion smallest-leak --plot places.svg
+  cylwatch place my-cylinder.toml --candidates places.toml --budget 6 --json -o study.json
+  cylwatch place nitrogen-20l --scenario none --matrices matrices.json";

@@ -1,0 +1,41 @@
+//! What ends a search early: Ctrl-C and the time limit. Meanwhile the progress is shown.
+use crate::cli::progress::Progress;
+use cylwatch::estimator::placement::search::Watch;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+/// How often limit and Ctrl-C are looked at.
+const TICK: Duration = Duration::from_millis(50);
+/// What a shell expects of a program that SIGINT ended.
+const INTERRUPTED_CODE: i32 = 130;
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Lets Ctrl-C end the search; a second one ends the program.
+pub fn listen() -> anyhow::Result<()> {
+    let interrupt = || {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED_CODE);
+        }
+    };
+    Ok(ctrlc::set_handler(interrupt)?)
+}
+
+/// Whether the user or the time has ended the search.
+pub fn is_due(deadline: Option<Instant>) -> bool {
+    INTERRUPTED.load(Ordering::Relaxed) || deadline.is_some_and(|deadline| Instant::now() >= deadline)
+}
+
+/// Shows what has been looked at, and stops the search when it is due, until the other end of the channel is gone.
+pub fn attend(watch: &Watch, deadline: Option<Instant>, progress: &Progress, ended: &Receiver<()>) {
+    while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+        if is_due(deadline) {
+            watch.stop.store(true, Ordering::Relaxed);
+            progress.say("ending with what there is");
+        } else {
+            let evaluated = watch.evaluated.load(Ordering::Relaxed);
+            progress.say(&format!("placing sensors: {evaluated} layouts looked at"));
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Sensors that are lost or wrong, and errors that nobody knows of.
+use super::rankings::wrapped;
+use super::summary::titled;
+use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit, WATT};
+use crate::estimator::placement::study::{Bias, BiasSource, Failure};
+
+impl Placed<'_> {
+    /// The layout that failures are of.
+    fn of_layout(&self) -> String {
+        let layout: Vec<usize> = self.study.failures.iter().map(|failure| failure.sensor).collect();
+        self.names(&layout)
+    }
+
+    /// What is left without each sensor.
+    pub(super) fn losses(&self) -> String {
+        let header = ["lost", "gas sd / K", "mass / g", "leak / g/h", "smallest leak / g/h"];
+        let rows: Vec<Vec<String>> = self.study.failures.iter().map(|failure| self.loss(failure)).collect();
+        titled(&format!("A sensor lost, of {}", self.of_layout()), &header, &rows, "")
+    }
+
+    fn loss(&self, failure: &Failure) -> Vec<String> {
+        let mut cells = vec![self.name(failure.sensor).to_owned()];
+        match (&failure.without, &failure.unseen) {
+            (Some(left), _) => cells.extend([
+                KELVIN.number(left.gas_sd_k),
+                GRAM.number(left.mass_sd_kg),
+                GRAM_PER_HOUR.number(left.leak_sd_kg_s),
+                GRAM_PER_HOUR.number(left.smallest_leak_kg_s),
+            ]),
+            (None, Some(state)) => cells.push(format!("the others do not see {state}")),
+            (None, None) => cells.push("the others have no steady state".into()),
+        }
+        cells
+    }
+
+    /// A constant error of each sensor.
+    pub(super) fn faults(&self) -> String {
+        let header = [
+            "at fault",
+            "found from",
+            "told apart from",
+            "else taken for",
+            "1 K or 1 bar",
+            "gas / K",
+            "mass / g",
+        ];
+        let row = |failure: &Failure| {
+            let unit = self.unit_of(failure.sensor);
+            let other = failure.confused_with.map_or("a leak", |sensor| self.name(sensor));
+            let isolated = if failure.isolated.is_finite() {
+                unit.with_symbol(failure.isolated)
+            } else {
+                "never".into()
+            };
+            vec![
+                self.name(failure.sensor).to_owned(),
+                unit.with_symbol(failure.found),
+                isolated,
+                other.to_owned(),
+                if failure.is_isolable { "told apart" } else { "NOT told apart" }.into(),
+                KELVIN.number(failure.gas_k),
+                GRAM.number(failure.mass_kg),
+            ]
+        };
+        let rows: Vec<Vec<String>> = self.study.failures.iter().map(row).collect();
+        let explained = "smallest constant error that is found in time, and that is also told from a leak and from every other sensor's; \
+                         gas, mass: error that 1 K or 1 bar makes in a day\n";
+        titled(&format!("A sensor at fault, of {}", self.of_layout()), &header, &rows, &wrapped(explained))
+    }
+
+    /// What a standard deviation of something unknown does in an hour, a day and a week.
+    pub(super) fn biases(&self) -> String {
+        let header = [
+            "unknown",
+            "one sd",
+            "gas 1 h",
+            "1 d",
+            "7 d / K",
+            "mass 1 h",
+            "1 d",
+            "7 d / g",
+            "leak 1 h",
+            "1 d",
+            "7 d / g/h",
+        ];
+        let rows: Vec<Vec<String>> = self.study.biases.iter().map(|bias| self.bias(bias)).collect();
+        let explained = "one sd of what nobody knows of, from some moment on, in the estimates after so long; coupling: with 10 K between \
+                         air and wall\n";
+        titled("Unknown errors in the estimates", &header, &rows, &wrapped(explained))
+    }
+
+    fn bias(&self, bias: &Bias) -> Vec<String> {
+        let (what, unit): (String, Unit) = match bias.source {
+            BiasSource::Offset(sensor) => (format!("offset {}", self.name(sensor)), self.unit_of(sensor)),
+            BiasSource::Coupling(sensor) => (format!("coupling {}", self.name(sensor)), KELVIN),
+            BiasSource::Sun => ("sun on the upper quarter".into(), WATT),
+        };
+        let mut cells = vec![what, unit.with_symbol(bias.size)];
+        for (unit, values) in [(KELVIN, bias.gas_k), (GRAM, bias.mass_kg), (GRAM_PER_HOUR, bias.leak_kg_s)] {
+            cells.extend(values.map(|value| short(unit, value)));
+        }
+        cells
+    }
+}
+
+/// Two digits, and nothing beyond three decimals.
+fn short(unit: Unit, si: f64) -> String {
+    let value = unit.per_si * si;
+    if value.abs() < 5e-4 { "0".into() } else { crate::report::number(value, 2) }
+}

@@ -1,0 +1,127 @@
+//! A study of sensor positions as words, as a figure, as CSV and JSON.
+//!
+//! | part | what it says |
+//! |---|---|
+//! | `summary` | what was asked, and the order of the tables |
+//! | `rankings` | the best layouts, and layouts by every number |
+//! | `places` | cost against accuracy, and one thermometer anywhere |
+//! | `faults` | sensors lost and at fault, errors that nobody knows of |
+//! | `document` | CSV, JSON, matrices |
+mod document;
+mod faults;
+mod places;
+mod rankings;
+mod summary;
+
+pub use document::matrices;
+
+use super::number;
+use crate::estimator::log::Quantity;
+use crate::estimator::placement::study::Study;
+use crate::estimator::placement::{Candidates, Criterion, Status};
+use crate::estimator::sensor::{SensorKind, SurfacePlace};
+use crate::thermal::vessel::Vessel;
+
+const HOUR_S: f64 = 3600.0;
+const DAY_S: f64 = 86_400.0;
+const GRAMS: f64 = 1e3;
+/// g/h in a kg/s.
+const GRAMS_PER_HOUR: f64 = GRAMS * HOUR_S;
+const MILLIMETRES: f64 = 1e3;
+/// Significant digits of the tables.
+const DIGITS: usize = 3;
+
+/// A study with what it is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its candidates.
+    pub candidates: &'a Candidates,
+    /// Its vessel.
+    pub vessel: &'a Vessel,
+}
+
+/// A unit that people think in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Unit {
+    symbol: &'static str,
+    /// Of it in the SI unit.
+    per_si: f64,
+}
+
+const KELVIN: Unit = Unit { symbol: "K", per_si: 1.0 };
+const BAR: Unit = Unit { symbol: "bar", per_si: 1e-5 };
+const WATT: Unit = Unit { symbol: "W", per_si: 1.0 };
+const GRAM: Unit = Unit { symbol: "g", per_si: GRAMS };
+const GRAM_PER_HOUR: Unit = Unit { symbol: "g/h", per_si: GRAMS_PER_HOUR };
+const HOUR: Unit = Unit { symbol: "h", per_si: 1.0 / HOUR_S };
+
+impl Unit {
+    fn of(criterion: Criterion) -> Self {
+        match criterion {
+            Criterion::GasTemperature | Criterion::Course(_) => KELVIN,
+            Criterion::Mass => GRAM,
+            Criterion::LeakRate | Criterion::SmallestLeak => GRAM_PER_HOUR,
+        }
+    }
+
+    /// The number of an SI value; infinite: empty.
+    fn number(self, si: f64) -> String {
+        if si.is_finite() { number(self.per_si * si, DIGITS) } else { String::new() }
+    }
+
+    /// With its symbol.
+    fn with_symbol(self, si: f64) -> String {
+        format!("{} {}", self.number(si), self.symbol)
+    }
+}
+
+impl Placed<'_> {
+    fn name(&self, sensor: usize) -> &str {
+        self.study.candidates.get(sensor).map_or("?", String::as_str)
+    }
+
+    fn is(&self, sensor: usize, status: Status) -> bool {
+        self.candidates.list.get(sensor).is_some_and(|candidate| candidate.status == status)
+    }
+
+    /// Names of all sensors of a layout.
+    fn names(&self, layout: &[usize]) -> String {
+        layout.iter().map(|&sensor| self.name(sensor)).collect::<Vec<_>>().join(" + ")
+    }
+
+    /// Names of those that were chosen: what every layout has goes without saying.
+    fn chosen(&self, layout: &[usize]) -> String {
+        let chosen: Vec<usize> =
+            layout.iter().copied().filter(|sensor| !self.is(*sensor, Status::Required)).collect();
+        if chosen.is_empty() { "nothing else".into() } else { self.names(&chosen) }
+    }
+
+    /// Names of what every layout has.
+    fn required(&self) -> Option<String> {
+        let required: Vec<usize> =
+            (0..self.study.candidates.len()).filter(|sensor| self.is(*sensor, Status::Required)).collect();
+        (!required.is_empty()).then(|| self.names(&required))
+    }
+
+    /// Unit of what a sensor reads.
+    fn unit_of(&self, sensor: usize) -> Unit {
+        match self.candidates.list.get(sensor).map(|candidate| candidate.sensor.quantity()) {
+            Some(Quantity::Pressure) => BAR,
+            _ => KELVIN,
+        }
+    }
+
+    /// Whether a sensor sits on a place that the paper asks about: its name.
+    fn asked_about(&self, sensor: usize) -> Option<&'static str> {
+        match self.candidates.list.get(sensor)?.sensor.kind {
+            SensorKind::Surface { place: SurfacePlace::Shoulder } => Some("shoulder"),
+            SensorKind::Surface { place: SurfacePlace::Valve } => Some("valve"),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

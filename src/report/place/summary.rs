@@ -1,0 +1,82 @@
+//! A study in words: what was asked, then one table after the other.
+use super::{BAR, DAY_S, GRAM_PER_HOUR, HOUR, Placed};
+use crate::report::number;
+use crate::thermal::units::ZERO_CELSIUS_K;
+
+impl Placed<'_> {
+    /// Tables for people, at most 110 characters wide.
+    pub fn text(&self) -> String {
+        let mut parts = vec![self.asked()];
+        if self.study.numbers.is_empty() {
+            parts.push("No layout was looked at before the end.\n".into());
+        }
+        parts.extend([
+            self.best_layouts(),
+            self.judged_layouts(),
+            self.differences(),
+            self.along_scenarios(),
+            self.fronts(),
+            self.losses(),
+            self.faults(),
+            self.biases(),
+            self.positions(),
+        ]);
+        parts.retain(|part| !part.is_empty());
+        parts.join("\n")
+    }
+
+    /// What was asked, and under which conditions.
+    fn asked(&self) -> String {
+        let study = self.study;
+        let settings = &study.settings;
+        let (conditions, detection) = (&settings.site.conditions, &settings.site.detection);
+        let degc = |kelvin: f64| format!("{} °C", number(kelvin - ZERO_CELSIUS_K, 3));
+        let partial =
+            if study.partial { "PARTIAL: the search was ended early, what is here is not all\n" } else { "" };
+        let budget = if settings.budget.is_finite() {
+            format!(", at a cost of at most {}", number(settings.budget, 4))
+        } else {
+            String::new()
+        };
+        let required = self.required().map_or(String::new(), |names| format!("every layout has: {names}\n"));
+        let (pressure_pa, filled_k) = conditions.filling;
+        let air = if conditions.air_k == conditions.body_k {
+            String::new()
+        } else {
+            format!(" in air of {}", degc(conditions.air_k))
+        };
+        let scenarios = match &*study.scenarios {
+            [] => "at rest only".into(),
+            names => format!("and along: {}", names.join("; ")),
+        };
+        let per = conditions.interval_s;
+        let interval = if per < 60.0 { format!("{per} s") } else { format!("{} min", number(per / 60.0, 3)) };
+        let within = if detection.within_s < DAY_S {
+            HOUR.with_symbol(detection.within_s)
+        } else {
+            format!("{} d", number(detection.within_s / DAY_S, 3))
+        };
+        format!(
+            "{partial}Where sensors should sit on: {}\n{} candidates, up to {} sensors, by the {}{budget}\n{required}\
+             at rest at {}{air}, filled to {} at {}, read every {interval}; {scenarios}\n\
+             found: within {within} with 95 %, at a threshold of {} sd; delay: of a leak of {}\n",
+            study.vessel,
+            study.candidates.len(),
+            settings.sensors,
+            settings.criterion.words(),
+            degc(conditions.body_k),
+            BAR.with_symbol(pressure_pa),
+            degc(filled_k),
+            number(detection.threshold_sd, 3),
+            GRAM_PER_HOUR.with_symbol(settings.leak_kg_s),
+        )
+    }
+}
+
+/// A table under its title; nothing without rows.
+pub(super) fn titled(title: &str, header: &[&str], rows: &[Vec<String>], remarks: &str) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    format!("{title}\n{}{remarks}", crate::report::aligned(header, rows))
+}
