@@ -112,6 +112,11 @@ impl Options {
             Some(target) => Some((target, serde_json::to_string(&matrices(placement, provenance))? + "\n")),
             None => None,
         };
+        let picture =
+            self.plot.as_ref().map(|plot| plot.draw_sheet(&placed.figure(), provenance)).transpose()?;
+        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
+            plot.write(&bytes)?;
+        }
         if let Some((target, text)) = of_matrices {
             target.write(text.as_bytes())?;
         }

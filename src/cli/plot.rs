@@ -2,7 +2,7 @@
 use super::output::Target;
 use anyhow::bail;
 use cylwatch::report::Provenance;
-use cylwatch::report::figure::Figure;
+use cylwatch::report::figure::{Figure, Sheet};
 use std::path::Path;
 
 /// A checked place for a figure.
@@ -40,6 +40,14 @@ impl Plot {
         Ok(match self.picture {
             Picture::Svg => figure.to_svg(provenance)?.into_bytes(),
             Picture::Png => figure.to_png(provenance)?,
+        })
+    }
+
+    /// The bytes of the picture of a sheet.
+    pub fn draw_sheet(&self, sheet: &Sheet, provenance: &Provenance) -> anyhow::Result<Vec<u8>> {
+        Ok(match self.picture {
+            Picture::Svg => sheet.to_svg(provenance)?.into_bytes(),
+            Picture::Png => sheet.to_png(provenance)?,
         })
     }
 

@@ -38,6 +38,16 @@ impl Kind {
 }
 
 impl Scale {
+    /// A linear map from ends to paper.
+    pub fn linear(ends: (f64, f64), paper: (f64, f64)) -> Self {
+        Self { kind: Kind::Linear, ends, paper }
+    }
+
+    /// A linear map that has all values with a margin.
+    pub fn around(values: impl Iterator<Item = f64>, paper: (f64, f64)) -> Self {
+        Self::linear(widened(range(values), 0.06), paper)
+    }
+
     pub fn at(&self, value: f64) -> f64 {
         let share = (self.kind.of(value) - self.ends.0) / (self.ends.1 - self.ends.0);
         self.paper.0 + share * (self.paper.1 - self.paper.0)

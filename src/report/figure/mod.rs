@@ -1,18 +1,25 @@
 //! Figures: panels above one another that share the horizontal axis, drawn as SVG or PNG.
 //!
-//! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. plotters is named in this folder only.
+//! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. A [`Sheet`] puts figures below one another with parts of other
+//! kinds: a body drawn to scale ([`Elevation`]), a table ([`Grid`]). plotters is named in this folder only.
 //! Looks are decided in [`style`] alone.
 mod axis;
 mod canvas;
 mod correlation;
+mod elevation;
+mod grid;
 mod output;
 mod panel;
 mod path;
+mod sheet;
 mod strip;
 pub mod style;
 mod ticks;
 
 pub use correlation::correlation;
+pub use elevation::{Column, Elevation, Place, Profile, Shape};
+pub use grid::{Cell, Grid};
+pub use sheet::{Part, Sheet};
 use style::Stroke;
 
 /// A figure of panels above one another.

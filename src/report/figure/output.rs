@@ -1,9 +1,10 @@
 //! A figure as SVG text or PNG bytes.
 use super::canvas::{Canvas, FINE, FONT};
-use super::{Figure, panel, style};
+use super::{Figure, Sheet, panel, style};
 use crate::report::{Provenance, ReportError};
 use plotters::backend::{BitMapBackend, SVGBackend};
 use plotters::drawing::IntoDrawingArea;
+use plotters::prelude::DrawingBackend;
 use plotters::style::{FontStyle, register_font};
 use std::sync::OnceLock;
 
@@ -25,7 +26,7 @@ fn fonts() -> Result<(), ReportError> {
 
 impl Figure {
     /// Height in figure units, with all that stands below.
-    fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.own_height() + self.below.as_ref().map_or(0.0, |below| below.height())
     }
 
@@ -35,32 +36,12 @@ impl Figure {
         style::TOP + panels + style::GAP * (self.panels.len().max(1) - 1) as f64 + style::BOTTOM
     }
 
-    fn fine_size(&self) -> (u32, u32) {
-        ((style::WIDTH * FINE) as u32, (self.height() * FINE).ceil() as u32)
-    }
-
     /// The figure as the text of an SVG file.
     ///
     /// # Errors
     /// The embedded font cannot be used, or the drawing library fails.
     pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
-        fonts()?;
-        let size = self.fine_size();
-        let mut text = String::new();
-        {
-            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            panel::draw(self, &Canvas::vector(&area))?;
-            area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
-        }
-        // The fine grid stays in the view box; the picture opens at its natural size.
-        let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
-        let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
-        let about = format!(
-            ">\n<title>{}</title>\n<desc>{}</desc>",
-            escaped(&self.title),
-            escaped(&provenance.lines())
-        );
-        Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
+        svg(self, provenance)
     }
 
     /// The figure as the bytes of a PNG file.
@@ -68,19 +49,95 @@ impl Figure {
     /// # Errors
     /// The embedded font cannot be used, or the drawing library or the encoder fails.
     pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
-        fonts()?;
-        let over = FINE as usize / PNG_PER_UNIT;
-        let (width, height) = self.fine_size();
-        let mut fine = vec![255; width as usize * height as usize * 3];
-        {
-            let area = BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area();
-            panel::draw(self, &Canvas::raster(&area))?;
-            area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
-        }
-        let (columns, rows) = (width as usize / over, height as usize / over);
-        let pixels = shrink(&fine, width as usize, (columns, rows), over);
-        encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
+        png(self, provenance)
     }
+}
+
+impl Sheet {
+    /// The sheet as the text of an SVG file.
+    ///
+    /// # Errors
+    /// As [`Figure::to_svg`].
+    pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
+        svg(self, provenance)
+    }
+
+    /// The sheet as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// As [`Figure::to_png`].
+    pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
+        png(self, provenance)
+    }
+}
+
+/// What fills a paper of the usual width.
+pub(super) trait Drawn {
+    /// Title.
+    fn title(&self) -> &str;
+
+    /// Height in figure units.
+    fn height(&self) -> f64;
+
+    /// Draws it on white paper.
+    fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), ReportError>;
+}
+
+impl Drawn for Figure {
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn height(&self) -> f64 {
+        self.height()
+    }
+
+    fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), ReportError> {
+        panel::draw(self, canvas, 0.0)
+    }
+}
+
+fn fine_size(picture: &impl Drawn) -> (u32, u32) {
+    ((style::WIDTH * FINE) as u32, (picture.height() * FINE).ceil() as u32)
+}
+
+fn svg(picture: &impl Drawn, provenance: &Provenance) -> Result<String, ReportError> {
+    fonts()?;
+    let size = fine_size(picture);
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        let canvas = Canvas::vector(&area);
+        canvas.paper()?;
+        picture.draw(&canvas)?;
+        area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
+    }
+    // The fine grid stays in the view box; the picture opens at its natural size.
+    let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
+    let about = format!(
+        ">\n<title>{}</title>\n<desc>{}</desc>",
+        escaped(picture.title()),
+        escaped(&provenance.lines())
+    );
+    Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
+}
+
+fn png(picture: &impl Drawn, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
+    fonts()?;
+    let over = FINE as usize / PNG_PER_UNIT;
+    let (width, height) = fine_size(picture);
+    let mut fine = vec![255; width as usize * height as usize * 3];
+    {
+        let area = BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area();
+        let canvas = Canvas::raster(&area);
+        canvas.paper()?;
+        picture.draw(&canvas)?;
+        area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
+    }
+    let (columns, rows) = (width as usize / over, height as usize / over);
+    let pixels = shrink(&fine, width as usize, (columns, rows), over);
+    encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
 }
 
 fn escaped(text: &str) -> String {

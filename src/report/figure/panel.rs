@@ -16,10 +16,13 @@ struct Frame<'a> {
     y: Scale,
 }
 
-/// Draws the whole figure with what stands below it.
-pub(super) fn draw<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>) -> Result<(), ReportError> {
-    canvas.paper()?;
-    let mut at = Some((figure, 0.0));
+/// Draws the whole figure with what stands below it, from a place downwards.
+pub(super) fn draw<DB: DrawingBackend>(
+    figure: &Figure,
+    canvas: &Canvas<DB>,
+    from: f64,
+) -> Result<(), ReportError> {
+    let mut at = Some((figure, from));
     while let Some((part, from)) = at {
         draw_part(part, canvas, from)?;
         at = part.below.as_deref().map(|below| (below, from + part.own_height()));

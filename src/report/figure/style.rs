@@ -82,6 +82,23 @@ pub const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
 /// Measured points.
 pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
+/// A number at rest against the place.
+pub const AT_REST: Stroke = stroke(Rgb::BLUE, 1.8, &[]);
+/// The same with model error.
+pub const ROBUST: Stroke = stroke(Rgb::VERMILLION, 1.8, &[8.0, 3.0]);
+/// What a reference that no vehicle has would give.
+pub const REFERENCE: Stroke = stroke(Rgb::GREY, 1.6, &[1.5, 3.0]);
+/// A place that was chosen.
+pub const CHOSEN: Stroke = stroke(Rgb::VERMILLION, 2.0, &[]);
+/// Layouts that others are better than.
+pub const BEATEN: Stroke = stroke(Rgb::GREY, 1.0, &[]);
+/// Layouts that none is better than.
+pub const FRONT: Stroke = stroke(Rgb::BLUE, 2.0, &[]);
+/// Steel of a drawn vessel.
+pub const STEEL: Rgb = Rgb(150, 150, 150);
+/// Brass of its valve.
+pub const BRASS: Rgb = Rgb(222, 196, 120);
+
 /// What cannot be passed.
 pub const BOUND: Stroke = stroke(Rgb::GREY, 2.6, &[1.5, 3.0]);
 
@@ -138,6 +155,8 @@ pub fn below_model(stroke: Stroke) -> Stroke {
 pub const WIDTH: f64 = 860.0;
 /// Height of a panel of weight 1.
 pub const PANEL_HEIGHT: f64 = 250.0;
+/// Room beside what has no axis.
+pub const MARGIN: f64 = 24.0;
 /// Room on the left for tick labels and the axis name.
 pub const LEFT: f64 = 72.0;
 /// Room on the right for the legend.

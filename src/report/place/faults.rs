@@ -1,6 +1,5 @@
 //! Sensors that are lost or wrong, and errors that nobody knows of.
-use super::rankings::wrapped;
-use super::summary::titled;
+use super::layout::{titled, wrapped};
 use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit, WATT};
 use crate::estimator::placement::study::{Bias, BiasSource, Failure};
 
@@ -105,6 +104,5 @@ impl Placed<'_> {
 
 /// Two digits, and nothing beyond three decimals.
 fn short(unit: Unit, si: f64) -> String {
-    let value = unit.per_si * si;
-    if value.abs() < 5e-4 { "0".into() } else { crate::report::number(value, 2) }
+    crate::report::number((1e3 * unit.per_si * si).round() / 1e3, 2)
 }

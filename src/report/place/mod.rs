@@ -7,8 +7,13 @@
 //! | `places` | cost against accuracy, and one thermometer anywhere |
 //! | `faults` | sensors lost and at fault, errors that nobody knows of |
 //! | `document` | CSV, JSON, matrices |
+//! | `figure`, `outline` | the picture |
+//! | `layout` | what fits a terminal |
 mod document;
 mod faults;
+mod figure;
+mod layout;
+mod outline;
 mod places;
 mod rankings;
 mod summary;

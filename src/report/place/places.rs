@@ -1,6 +1,5 @@
 //! What accuracy costs, and one thermometer at each place.
-use super::rankings::wrapped;
-use super::summary::titled;
+use super::layout::{titled, titled_with_layouts, wrapped};
 use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
 use crate::estimator::placement::Status;
 use crate::estimator::placement::study::{Front, Position};
@@ -25,7 +24,7 @@ impl Placed<'_> {
         let rows: Vec<Vec<String>> = front.points.iter().map(row).collect();
         let compared = if front.complete { "all layouts" } else { "not all layouts, only judged ones" };
         let title = format!("{title} ({compared}: {})", front.compared);
-        titled(&title, &["cost", value, "layout"], &rows, "")
+        titled_with_layouts(&title, &["cost", value, "layout"], rows, 2, "")
     }
 
     /// One thermometer beside what is required, from the top down.
@@ -50,7 +49,7 @@ impl Placed<'_> {
         let rows: Vec<Vec<String>> = positions.into_iter().map(|position| self.position(position)).collect();
         let beside = self.required().map_or(String::new(), |names| format!(" beside {names}"));
         let title = format!("One sensor{beside}, anywhere");
-        let explained = "< shoulder and valve; ref: may not be chosen, a reference; smallest leak in g/h\n";
+        let explained = "< shoulder and valve; ref: may not be chosen, a reference; blind: does not see every state; smallest leak in g/h\n";
         titled(&title, &header, &rows, &wrapped(explained))
     }
 
@@ -67,7 +66,7 @@ impl Placed<'_> {
             position.height_m.map_or(String::new(), height),
         ];
         let Some(certainty) = &position.certainty else {
-            cells.push("does not see every state".into());
+            cells.push("blind".into());
             return cells;
         };
         cells.extend([

@@ -1,5 +1,5 @@
 //! The best layouts for each number of sensors, and the same and others by every number.
-use super::summary::titled;
+use super::layout::{titled, titled_with_layouts, wrapped};
 use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
 use crate::estimator::placement::CourseNumber;
 use crate::estimator::placement::search::Method;
@@ -54,9 +54,10 @@ impl Placed<'_> {
         };
         let rows: Vec<Vec<String>> = self.study.numbers.iter().map(row).collect();
         let title = format!("Best layouts by the {}", criterion.words());
-        let explained = "gap: of the best to what the search or the relaxation proves; relaxed: to the convex relaxation alone; \n\
-                         change: against one sensor less\n";
-        titled(&title, &header, &rows, &format!("{}{}", explained.replace(" \n", "\n"), self.near_best()))
+        let explained = "gap: of the best to what the search or the relaxation proves; relaxed: to the convex relaxation \
+                         alone; change: against one sensor less";
+        let remarks = format!("{}{}", wrapped(explained), self.near_best());
+        titled_with_layouts(&title, &header, rows, 1, &remarks)
     }
 
     /// The first few that are as good as the best.
@@ -72,7 +73,7 @@ impl Placed<'_> {
             (!named.is_empty()).then(|| format!("  {}: {}{more}\n", number.sensors, named.join("; ")))
         };
         let lines: String = self.study.numbers.iter().filter_map(line).collect();
-        if lines.is_empty() { lines } else { format!("nearly as good:\n{lines}") }
+        if lines.is_empty() { lines } else { format!("nearly as good:\n{}", wrapped(&lines)) }
     }
 
     /// Layouts by every number, the best of each number of sensors marked.
@@ -107,7 +108,7 @@ impl Placed<'_> {
         let explained = format!(
             "* best of so many sensors; sd of gas temperature, mass, leak rate at rest; smallest leak in g/h{robust}"
         );
-        titled("Layouts by every number", &header, &rows, &wrapped(&explained))
+        titled_with_layouts("Layouts by every number", &header, rows, 1, &wrapped(&explained))
     }
 
     /// Best of so many sensors by a number.
@@ -202,29 +203,4 @@ fn searched(number: &Numbered) -> String {
     };
     let partial = if number.partial { ", ended early" } else { "" };
     format!("{method}, {}{partial}", number.evaluated)
-}
-
-/// Lines of at most 110 characters, broken at blanks, with a line feed at the end.
-pub(super) fn wrapped(text: &str) -> String {
-    const WIDTH: usize = 110;
-    let mut out = String::new();
-    for line in text.lines() {
-        let indent = line.len() - line.trim_start().len();
-        let mut length = 0;
-        for word in line.split(' ') {
-            let size = word.chars().count();
-            if length > 0 && length + 1 + size > WIDTH {
-                let pad = indent + 2;
-                out.push_str(&format!("\n{}", " ".repeat(pad)));
-                length = pad;
-            } else if length > 0 || !out.is_empty() && !out.ends_with('\n') {
-                out.push(' ');
-                length += 1;
-            }
-            out.push_str(word);
-            length += size;
-        }
-        out.push('\n');
-    }
-    out
 }

@@ -72,11 +72,3 @@ impl Placed<'_> {
         )
     }
 }
-
-/// A table under its title; nothing without rows.
-pub(super) fn titled(title: &str, header: &[&str], rows: &[Vec<String>], remarks: &str) -> String {
-    if rows.is_empty() {
-        return String::new();
-    }
-    format!("{title}\n{}{remarks}", crate::report::aligned(header, rows))
-}
