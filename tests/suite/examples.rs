@@ -33,6 +33,9 @@ mod scenario_3;
 #[path = "../../examples/scenario_4.rs"]
 mod scenario_4;
 #[allow(dead_code)]
+#[path = "../../examples/sensor_placement.rs"]
+mod sensor_placement;
+#[allow(dead_code)]
 #[path = "../../examples/tunnel_passage.rs"]
 mod tunnel_passage;
 
@@ -201,4 +204,23 @@ fn a_refill_is_recognised_and_its_cooling_is_no_leak() {
     assert!(refill.verdicts.iter().any(|(_, verdict)| *verdict == Verdict::Refill));
     assert!(refill.verdicts.iter().all(|(_, verdict)| *verdict != Verdict::Leak));
     assert_eq!(refill.verdicts.last().map(|(_, verdict)| *verdict), Some(Verdict::Tight));
+}
+
+#[test]
+fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or_valve_in_either_attitude() {
+    for attitude in sensor_placement::run().unwrap() {
+        let of = |place: &str| {
+            let position = attitude.position(place).unwrap();
+            (position.certainty.unwrap(), position.robust_k[0])
+        };
+        let (middle, robust_k) = of("middle");
+        for place in ["shoulder", "valve"] {
+            let (other, other_robust_k) = of(place);
+            let name = attitude.name;
+            assert!(middle.gas_sd_k < other.gas_sd_k && robust_k < other_robust_k, "{name}, {place}");
+            assert!(middle.smallest_leak_kg_s < 0.7 * other.smallest_leak_kg_s, "{name}, {place}");
+        }
+        assert_eq!(attitude.study.numbers.len(), 2);
+        assert!(attitude.placed().figure().title.contains("20 L"));
+    }
 }

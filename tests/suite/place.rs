@@ -97,21 +97,21 @@ fn a_search_that_is_ended_early_says_so_and_writes_what_it_has() {
 #[test]
 fn what_a_file_of_candidates_has_wrong_is_named_with_its_line() {
     let rule = |rest: &str| format!("[[rule]]\n{rest}\n");
-    refuses(&rule("sensor = \"sholder\""), &[], &["places.toml", "line 2", "sholder", "shoulder"]);
-    refuses(&rule("sensor = \"valve\"\ncost = -2"), &[], &["places.toml", "line 3", "-2", "at least 0"]);
-    refuses(&rule("sensor = \"valve\"\nstatus = \"perhaps\""), &[], &["places.toml", "line 3", "perhaps"]);
+    refuses(&rule("sensor = \"sholder\""), &[], &["places.toml:2", "sholder", "shoulder"]);
+    refuses(&rule("sensor = \"valve\"\ncost = -2"), &[], &["places.toml:3", "-2", "at least 0"]);
+    refuses(&rule("sensor = \"valve\"\nstatus = \"perhaps\""), &[], &["places.toml:3", "perhaps"]);
     let twice = "[[rule]]\nsensor = \"valve\"\nstatus = \"required\"\n[[rule]]\nsensor = \"valve\"\nstatus = \"forbidden\"\n";
-    refuses(twice, &[], &["places.toml", "line 5", "valve"]);
+    refuses(twice, &[], &["places.toml:5", "valve"]);
     let group = |rest: &str| format!("[[group]]\nmembers = [\"valve\", \"shoulder\"]\n{rest}\n");
-    refuses(&group("at_least = 3"), &[], &["places.toml", "line 3", "at most 2"]);
-    refuses(&group("at_least = 2\nat_most = 1"), &[], &["places.toml", "line 3", "at most 1"]);
+    refuses(&group("at_least = 3"), &[], &["places.toml:3", "at most 2"]);
+    refuses(&group("at_least = 2\nat_most = 1"), &[], &["places.toml:3", "at most 1"]);
     let none_left =
         format!("{}{}", group("at_least = 2"), rule("sensor = \"valve\"\nstatus = \"forbidden\""));
-    refuses(&none_left, &[], &["places.toml", "line 3", "forbidden"]);
-    refuses("minimum_distance_mm = -1\n", &[], &["places.toml", "line 1", "-1"]);
-    refuses("minimum_distance = 1\n", &[], &["places.toml", "line 1", "minimum_distance"]);
+    refuses(&none_left, &[], &["places.toml:3", "forbidden"]);
+    refuses("minimum_distance_mm = -1\n", &[], &["places.toml:1", "-1"]);
+    refuses("minimum_distance = 1\n", &[], &["places.toml:1", "minimum_distance"]);
     let near = "minimum_distance_mm = 5000\n[[rule]]\nsensor = \"shoulder\"\nstatus = \"required\"\n[[rule]]\nsensor = \"middle\"\nstatus = \"required\"\n";
-    refuses(near, &[], &["places.toml", "line 1", "middle", "shoulder"]);
+    refuses(near, &[], &["places.toml:1", "middle", "shoulder"]);
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn options_that_are_wrong_are_refused_by_name_before_anything_runs() {
     refuse(&["--within-percent", "nan"], &["--within-percent"]);
     refuse(&["--within-s", "10"], &["--within", "every 1 min"]);
     refuse(&["--false-alarm-years", "0"], &["--false-alarm-years 0"]);
-    refuse(&["--wall-nodes", "0"], &["wall_nodes", "at least 1"]);
+    refuse(&["--wall-nodes", "0"], &["--wall-nodes 0", "at least 1"]);
     refuse(&["--leak-g-h", "-3"], &["--leak-g-h"]);
     refuse(&["--sample-time-s", "60", "--sample-time-min", "1"], &["--sample-time-min", "keep one"]);
     refuse(&["--scenario", "no-such"], &["no-such", "scenario"]);

@@ -24,7 +24,7 @@ pub struct PlaceArguments {
     #[arg(long, value_name = "NAME", default_value = "leak-rate", value_parser = criterion())]
     pub criterion: Criterion,
     /// Largest cost of a layout, in the unit of the costs, 1 for each sensor unless --candidates says otherwise [default: any].
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     pub budget: Option<f64>,
     /// TOML file of what could sit where, at what cost, and what goes together [default: every place of the vessel].
     #[arg(long, value_name = "FILE")]
@@ -34,10 +34,10 @@ pub struct PlaceArguments {
     #[arg(long, value_enum)]
     pub method: Option<SearchMethod>,
     /// Layouts are listed up to so much worse than the best, in %.
-    #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 2.0)]
     pub within_percent: f64,
     /// Mean time between false alarms that the threshold is set for, in years.
-    #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 10.0)]
     pub false_alarm_years: f64,
     /// Nodes of the wall along the axis that the observer has: places between two of them count as one [default: 6].
     #[arg(long, value_name = "NUMBER")]

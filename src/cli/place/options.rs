@@ -4,6 +4,7 @@ use cylwatch::detector::calibrate::signature_threshold_sd;
 use cylwatch::detector::performance::YEAR_S;
 use cylwatch::estimator::placement::search::Method;
 use cylwatch::estimator::placement::{Criterion, DetectionSettings, SiteSettings};
+use cylwatch::report::number;
 use std::path::Path;
 
 /// Scenario where none is named: a train in a tunnel in winter, for which the paper places its sensors.
@@ -111,16 +112,18 @@ fn site(arguments: &PlaceArguments) -> anyhow::Result<SiteSettings> {
     let conditions = arguments.amounts.conditions()?;
     let within_s = arguments.amounts.within_s()?.unwrap_or(usual.detection.within_s);
     if within_s < conditions.interval_s {
-        let (hours, minutes) = (within_s / 3600.0, conditions.interval_s / 60.0);
-        bail!("--within is {hours} h, but readings come every {minutes} min: allow at least as long");
+        let [within, interval] = [within_s, conditions.interval_s].map(|time_s| number(time_s / 60.0, 3));
+        bail!("--within is {within} min, but readings come every {interval} min: allow at least as long");
     }
     let years = arguments.false_alarm_years;
     if !(years > 0.0 && years.is_finite()) {
         bail!("--false-alarm-years {years}: it must be above 0 and finite");
     }
+    if arguments.wall_nodes == Some(0) {
+        bail!("--wall-nodes 0: the wall has at least 1");
+    }
     let mut observer = usual.observer;
     observer.wall_nodes = arguments.wall_nodes.unwrap_or(observer.wall_nodes);
-    observer.validate()?;
     let threshold_sd = signature_threshold_sd(within_s, conditions.interval_s, years * YEAR_S)?;
     let detection = DetectionSettings { within_s, threshold_sd, ..usual.detection };
     Ok(SiteSettings { observer, conditions, detection })

@@ -69,23 +69,17 @@ impl Placed<'_> {
 
     /// What a standard deviation of something unknown does in an hour, a day and a week.
     pub(super) fn biases(&self) -> String {
-        let header = [
-            "unknown",
-            "one sd",
-            "gas 1 h",
-            "1 d",
-            "7 d / K",
-            "mass 1 h",
-            "1 d",
-            "7 d / g",
-            "leak 1 h",
-            "1 d",
-            "7 d / g/h",
-        ];
+        let header =
+            ["unknown", "one sd", "K: 1 h", "1 d", "7 d", "g: 1 h", "1 d", "7 d", "g/h: 1 h", "1 d", "7 d"];
         let rows: Vec<Vec<String>> = self.study.biases.iter().map(|bias| self.bias(bias)).collect();
         let explained = "one sd of what nobody knows of, from some moment on, in the estimates after so long; coupling: with 10 K between \
                          air and wall\n";
-        titled("Unknown errors in the estimates", &header, &rows, &wrapped(explained))
+        titled(
+            "Unknown errors in the estimates: gas temperature in K, mass in g, leak rate in g/h",
+            &header,
+            &rows,
+            &wrapped(explained),
+        )
     }
 
     fn bias(&self, bias: &Bias) -> Vec<String> {

@@ -49,7 +49,7 @@ impl Placed<'_> {
         let rows: Vec<Vec<String>> = positions.into_iter().map(|position| self.position(position)).collect();
         let beside = self.required().map_or(String::new(), |names| format!(" beside {names}"));
         let title = format!("One sensor{beside}, anywhere");
-        let explained = "< shoulder and valve; ref: may not be chosen, a reference; blind: does not see every state; smallest leak in g/h\n";
+        let explained = "< shoulder and valve; ref: may not be chosen, a reference; blind: sees not every state; smallest leak in g/h\n";
         titled(&title, &header, &rows, &wrapped(explained))
     }
 

@@ -16,12 +16,12 @@ type Measure = (&'static str, Unit, fn(&Judged) -> Option<f64>);
 
 /// What the filter states of itself at rest.
 const STATED: [Measure; 3] = [
-    ("gas sd / K", KELVIN, |of| Some(of.certainty.gas_sd_k)),
+    ("gas / K", KELVIN, |of| Some(of.certainty.gas_sd_k)),
     ("mass / g", GRAM, |of| Some(of.certainty.mass_sd_kg)),
     ("leak / g/h", GRAM_PER_HOUR, |of| Some(of.certainty.leak_sd_kg_s)),
 ];
 /// What a leak is found by.
-const SMALLEST: Measure = ("smallest leak", GRAM_PER_HOUR, |of| Some(of.certainty.smallest_leak_kg_s));
+const SMALLEST: Measure = ("finds / g/h", GRAM_PER_HOUR, |of| Some(of.certainty.smallest_leak_kg_s));
 const DELAY: Measure = ("delay / h", HOUR, |of| of.delay_s);
 /// With model error, along the first scenario.
 const ROBUST: [Measure; 2] = [
@@ -106,7 +106,7 @@ impl Placed<'_> {
             None => String::new(),
         };
         let explained = format!(
-            "* best of so many sensors; sd of gas temperature, mass, leak rate at rest; smallest leak in g/h{robust}"
+            "* best of so many sensors; sd of gas temperature, mass and leak rate at rest; finds: smallest leak found in time{robust}"
         );
         titled_with_layouts("Layouts by every number", &header, rows, 1, &wrapped(&explained))
     }

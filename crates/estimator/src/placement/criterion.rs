@@ -88,7 +88,7 @@ impl Criterion {
             Self::Course(number) => {
                 let what = format!("the criterion {} is that of a scenario; name one", self.as_str());
                 let course = courses.first().ok_or(EstimatorError::PlacementConstraints { what })?;
-                return Ok(Worth::Along(AlongCourse { course, number }));
+                return Ok(Worth::Along(AlongCourse { course, number }, site));
             }
         };
         Ok(Worth::Steady(site.problem(quantity)))
@@ -100,7 +100,8 @@ impl Criterion {
 pub(super) enum Worth<'a> {
     Steady(&'a GroupedProblem),
     Leak(SmallestLeak<'a>),
-    Along(AlongCourse<'a>),
+    /// Of layouts that see every state at rest: a course ends before what is not seen has grown.
+    Along(AlongCourse<'a>, &'a Site),
 }
 
 impl Objective for Worth<'_> {
@@ -108,7 +109,7 @@ impl Objective for Worth<'_> {
         match self {
             Self::Steady(of) => of.candidates(),
             Self::Leak(of) => of.candidates(),
-            Self::Along(of) => of.candidates(),
+            Self::Along(of, _) => of.candidates(),
         }
     }
 
@@ -116,7 +117,8 @@ impl Objective for Worth<'_> {
         match self {
             Self::Steady(of) => of.value(layout),
             Self::Leak(of) => of.value(layout),
-            Self::Along(of) => of.value(layout),
+            Self::Along(_, site) if site.certainty(layout).is_err() => f64::INFINITY,
+            Self::Along(of, _) => of.value(layout),
         }
     }
 
@@ -124,7 +126,7 @@ impl Objective for Worth<'_> {
         match self {
             Self::Steady(of) => of.relaxed(weights),
             Self::Leak(of) => of.relaxed(weights),
-            Self::Along(of) => of.relaxed(weights),
+            Self::Along(of, _) => of.relaxed(weights),
         }
     }
 }

@@ -1,0 +1,133 @@
+//! Where should the thermometers of a cylinder sit: at its middle, or at shoulder and valve as the paper has them, standing and lying?
+//!
+//! `cargo run --release --example sensor_placement -- <folder>` (default `out`)
+//!
+//! Beside a pressure, one and then two of three thermometers are searched for by the certainty of the leak rate at rest. Then each is
+//! judged while a train leaves a warm hall for cold air and comes back, with films, couplings and gas that are not as the observer
+//! supposes. The attitude matters where the gas is stratified, as it is in two of the nine variants. `cylwatch place` takes every place.
+#![allow(clippy::print_stdout)]
+
+use cylwatch::estimator::placement::Candidates;
+use cylwatch::estimator::placement::search::Watch;
+use cylwatch::estimator::placement::study::{Placement, Position, Study, StudySettings};
+use cylwatch::estimator::sensor::Sensor;
+use cylwatch::report::place::Placed;
+use cylwatch::report::{Provenance, aligned};
+use cylwatch::thermal::scenario;
+use cylwatch::thermal::vessel::{Vessel, presets};
+use cylwatch::thermal::wall::geometry::Orientation;
+use std::path::PathBuf;
+
+const SCENARIO: &str = r#"
+name = "out of a warm hall and back"
+duration_h = 2
+sample_time_min = 4
+
+[initial]
+fill_pressure_bar = 200
+temperature_degc = 20
+
+[ambient]
+air_degc = 20
+film_w_m2_k = 20
+
+[[ambient.air_change]]
+at_min = 0
+to_degc = -15
+
+[[ambient.air_change]]
+at_h = 1
+to_degc = 20
+"#;
+
+/// What may sit on the cylinder; the pressure is always there.
+const SENSORS: [&str; 4] = ["middle", "shoulder", "valve", "pressure"];
+const ATTITUDES: [(&str, Orientation); 2] =
+    [("standing", Orientation::Vertical), ("lying", Orientation::Horizontal)];
+/// Nodes of the observer's wall, enough to tell these places apart.
+const WALL_NODES: usize = 3;
+
+/// The study of a cylinder in one attitude.
+pub struct Attitude {
+    /// Its name.
+    pub name: &'static str,
+    /// The vessel.
+    pub vessel: Vessel,
+    /// What may sit on it.
+    pub candidates: Candidates,
+    /// What was found.
+    pub study: Study,
+}
+
+impl Attitude {
+    /// The study as it is shown.
+    pub fn placed(&self) -> Placed<'_> {
+        Placed { study: &self.study, candidates: &self.candidates, vessel: &self.vessel }
+    }
+
+    /// One thermometer at a place, beside the pressure.
+    pub fn position(&self, place: &str) -> Option<&Position> {
+        let sensor = self.candidates.index(place)?;
+        self.study.positions.iter().find(|position| position.sensor == sensor)
+    }
+
+    /// The thermometers of the best layouts.
+    pub fn best(&self) -> Vec<String> {
+        let names = |layout: &[usize]| {
+            let names = self.candidates.names(layout).into_iter().filter(|name| *name != "pressure");
+            names.collect::<Vec<_>>().join(" + ")
+        };
+        self.study.numbers.iter().map(|number| names(&number.layouts[0].sensors)).collect()
+    }
+}
+
+/// Searches for both attitudes.
+pub fn run() -> anyhow::Result<[Attitude; 2]> {
+    let [standing, lying] = ATTITUDES;
+    Ok([study(standing)?, study(lying)?])
+}
+
+fn study((name, orientation): (&'static str, Orientation)) -> anyhow::Result<Attitude> {
+    let mut vessel = presets::load("nitrogen-20l")?;
+    vessel.geometry.orientation = orientation;
+    let scenario = scenario::read_scenario(SCENARIO, "the hall", &scenario::presets::table)?;
+    let sensors = SENSORS.map(Sensor::typical).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let candidates = Candidates::of_sensors(&vessel, sensors)?;
+    let mut settings = StudySettings { sensors: 3, ..StudySettings::default() };
+    settings.site.observer.wall_nodes = WALL_NODES;
+    let placement = Placement::new(&vessel, &candidates, &[scenario], &settings)?;
+    let study = placement.run(&Watch::default())?;
+    Ok(Attitude { name, vessel, candidates, study })
+}
+
+fn main() -> anyhow::Result<()> {
+    let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "out".into()));
+    std::fs::create_dir_all(&folder)?;
+    let attitudes = run()?;
+    let command = "cargo run --release --example sensor_placement".to_owned();
+    let provenance = Provenance { command, inputs: Vec::new(), seed: None };
+    let mut rows = Vec::new();
+    for attitude in &attitudes {
+        let sheet = attitude.placed().figure();
+        let file = format!("sensor-placement-{}", attitude.name);
+        std::fs::write(folder.join(format!("{file}.svg")), sheet.to_svg(&provenance)?)?;
+        std::fs::write(folder.join(format!("{file}.png")), sheet.to_png(&provenance)?)?;
+        println!("{}: best beside the pressure: {}", attitude.name, attitude.best().join(", then "));
+        for place in ["middle", "shoulder", "valve"] {
+            let position = attitude.position(place);
+            let certainty = position.and_then(|position| position.certainty);
+            let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
+            rows.push(vec![
+                attitude.name.to_owned(),
+                place.to_owned(),
+                number(certainty.map(|of| of.gas_sd_k)),
+                number(position.and_then(|of| of.robust_k.first().copied())),
+                number(certainty.map(|of| 3.6e6 * of.smallest_leak_kg_s)),
+            ]);
+        }
+    }
+    let header = ["attitude", "one at", "sd at rest / K", "with model error / K", "smallest leak / g/h"];
+    print!("\n{}", aligned(&header, &rows));
+    println!("\nFigures: sensor-placement-standing.svg and -lying.svg in {}", folder.display());
+    Ok(())
+}
