@@ -4,7 +4,7 @@
 //!
 //! Beside a pressure, one and then two of three thermometers are searched for by the certainty of the leak rate at rest. Then each is
 //! judged while a train leaves a warm hall for cold air and comes back, with films, couplings and gas that are not as the observer
-//! supposes. The attitude matters where the gas is stratified, as it is in two of the nine variants. `cylwatch place` takes every place.
+//! supposes. The attitude matters since the gas is stratified, which the observer does not know. `cylwatch place` takes every place.
 #![allow(clippy::print_stdout)]
 
 use cylwatch::estimator::placement::Candidates;
@@ -14,7 +14,7 @@ use cylwatch::estimator::sensor::Sensor;
 use cylwatch::report::place::Placed;
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::scenario;
-use cylwatch::thermal::vessel::{Vessel, presets};
+use cylwatch::thermal::vessel::{GasResolution, Stratification, Vessel, presets};
 use cylwatch::thermal::wall::geometry::Orientation;
 use std::path::PathBuf;
 
@@ -44,8 +44,12 @@ to_degc = 20
 const SENSORS: [&str; 4] = ["middle", "shoulder", "valve", "pressure"];
 const ATTITUDES: [(&str, Orientation); 2] =
     [("standing", Orientation::Vertical), ("lying", Orientation::Horizontal)];
+/// The gas as it is; the observer takes it to be well mixed.
+const GAS: Stratification = Stratification { cells: 8, exchange_length_diameters: 1.0, core_mixing: 0.05 };
 /// Nodes of the observer's wall, enough to tell these places apart.
 const WALL_NODES: usize = 3;
+/// Longest step of the observer, s: coarser than usual, for a third of the time.
+const LONGEST_STEP_S: f64 = 60.0;
 
 /// The study of a cylinder in one attitude.
 pub struct Attitude {
@@ -77,7 +81,13 @@ impl Attitude {
             let names = self.candidates.names(layout).into_iter().filter(|name| *name != "pressure");
             names.collect::<Vec<_>>().join(" + ")
         };
-        self.study.numbers.iter().map(|number| names(&number.layouts[0].sensors)).collect()
+        // Of the pressure alone there is no choice.
+        self.study
+            .numbers
+            .iter()
+            .filter(|number| number.sensors > 1)
+            .map(|number| names(&number.layouts[0].sensors))
+            .collect()
     }
 }
 
@@ -90,11 +100,13 @@ pub fn run() -> anyhow::Result<[Attitude; 2]> {
 fn study((name, orientation): (&'static str, Orientation)) -> anyhow::Result<Attitude> {
     let mut vessel = presets::load("nitrogen-20l")?;
     vessel.geometry.orientation = orientation;
+    vessel.gas = GasResolution::Stratified(GAS);
     let scenario = scenario::read_scenario(SCENARIO, "the hall", &scenario::presets::table)?;
     let sensors = SENSORS.map(Sensor::typical).into_iter().collect::<Result<Vec<_>, _>>()?;
     let candidates = Candidates::of_sensors(&vessel, sensors)?;
     let mut settings = StudySettings { sensors: 3, ..StudySettings::default() };
     settings.site.observer.wall_nodes = WALL_NODES;
+    settings.site.observer.longest_step_s = LONGEST_STEP_S;
     let placement = Placement::new(&vessel, &candidates, &[scenario], &settings)?;
     let study = placement.run(&Watch::default())?;
     Ok(Attitude { name, vessel, candidates, study })

@@ -16,17 +16,17 @@ type Measure = (&'static str, Unit, fn(&Judged) -> Option<f64>);
 
 /// What the filter states of itself at rest.
 const STATED: [Measure; 3] = [
-    ("gas / K", KELVIN, |of| Some(of.certainty.gas_sd_k)),
-    ("mass / g", GRAM, |of| Some(of.certainty.mass_sd_kg)),
-    ("leak / g/h", GRAM_PER_HOUR, |of| Some(of.certainty.leak_sd_kg_s)),
+    ("gas K", KELVIN, |of| Some(of.certainty.gas_sd_k)),
+    ("mass g", GRAM, |of| Some(of.certainty.mass_sd_kg)),
+    ("leak g/h", GRAM_PER_HOUR, |of| Some(of.certainty.leak_sd_kg_s)),
 ];
 /// What a leak is found by.
-const SMALLEST: Measure = ("finds / g/h", GRAM_PER_HOUR, |of| Some(of.certainty.smallest_leak_kg_s));
-const DELAY: Measure = ("delay / h", HOUR, |of| of.delay_s);
+const SMALLEST: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.certainty.smallest_leak_kg_s));
+const DELAY: Measure = ("delay h", HOUR, |of| of.delay_s);
 /// With model error, along the first scenario.
 const ROBUST: [Measure; 2] = [
-    ("robust / K", KELVIN, |of| Some(CourseNumber::Schmidt.of(of.along.first()?))),
-    ("worst / K", KELVIN, |of| Some(CourseNumber::WorstCase.of(of.along.first()?))),
+    ("robust K", KELVIN, |of| Some(CourseNumber::Schmidt.of(of.along.first()?))),
+    ("worst K", KELVIN, |of| Some(CourseNumber::WorstCase.of(of.along.first()?))),
 ];
 
 impl Placed<'_> {
