@@ -57,7 +57,9 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
     let study = study(&placement, deadline, &progress)?;
     drop(progress);
     let placed = Placed { study: &study, candidates: &candidates, vessel: &vessel };
-    options.write(&placed, &placement, &inputs.provenance(), messages)?;
+    let seed = Some(options.settings.published.first_seed);
+    let provenance = Provenance { seed, ..inputs.provenance() };
+    options.write(&placed, &placement, &provenance, messages)?;
     if study.partial {
         messages.caution("the search was ended early: what was written is partial");
         return Ok(ExitCode::from(PARTIAL));

@@ -55,6 +55,7 @@ impl Amounts {
             body_k,
             air_k: temperature("air-temperature")?.unwrap_or(body_k),
             interval_s: self.si("sample-time", Dimension::Time)?.unwrap_or(usual.interval_s),
+            ..usual
         })
     }
 

@@ -42,6 +42,13 @@ pub struct PlaceArguments {
     /// Nodes of the wall along the axis that the observer has: places between two of them count as one [default: 6].
     #[arg(long, value_name = "NUMBER")]
     pub wall_nodes: Option<usize>,
+    /// Monte Carlo runs of the best layouts in the observer's own world, and a fifth as many in drawn cylinders; 100 take some
+    /// minutes [default: none].
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, hide_default_value = true)]
+    pub confirm: u64,
+    /// First seed of drawn sensors and of Monte Carlo runs, a whole number of at least 0.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
     /// What has a unit.
     #[command(flatten)]
     pub amounts: Amounts,
@@ -98,7 +105,8 @@ layout can fall below, all that are as good within 2 %, and the same layouts by 
 number: gas temperature, mass, leak rate, smallest leak found in time, delay of a leak, and the
 error along a scenario when films, couplings and gas are not as supposed. Then cost against
 accuracy and delay, every sensor lost and at fault, the effect of errors that nobody knows of,
-and one thermometer at each place.
+one thermometer at each place, and the same by the measure of the paper that this starts from:
+the fit of a first-order model.
 
 Criteria: gas-temperature, mass, leak-rate (standard deviation at rest; a bound is proven),
 smallest-leak, and along the first scenario course-mean, course-worst, robust-mean, robust-worst
@@ -129,4 +137,5 @@ Examples:
   cylwatch place nitrogen-20l
   cylwatch place nitrogen-20l --sensors 3 --criterion smallest-leak --plot places.svg
   cylwatch place my-cylinder.toml --candidates places.toml --budget 6 --json -o study.json
+  cylwatch place nitrogen-20l --confirm 100 --seed 7
   cylwatch place nitrogen-20l --scenario none --matrices matrices.json";

@@ -3,7 +3,8 @@ use super::*;
 use cylwatch::detector::calibrate::signature_threshold_sd;
 use cylwatch::detector::performance::YEAR_S;
 use cylwatch::estimator::placement::search::Method;
-use cylwatch::estimator::placement::{Criterion, DetectionSettings, SiteSettings};
+use cylwatch::estimator::placement::study::ClosedLoopSettings;
+use cylwatch::estimator::placement::{Criterion, DetectionSettings, PublishedSettings, SiteSettings};
 use cylwatch::report::number;
 use std::path::Path;
 
@@ -103,6 +104,12 @@ fn settings(arguments: &PlaceArguments, at_rest_only: bool) -> anyhow::Result<St
         method,
         within: not_negative("within-percent", arguments.within_percent)? / 100.0,
         leak_kg_s: arguments.amounts.leak_kg_s()?.unwrap_or(usual.leak_kg_s),
+        published: PublishedSettings { first_seed: arguments.seed, ..usual.published },
+        closed_loop: ClosedLoopSettings {
+            matched: arguments.confirm,
+            mismatched: arguments.confirm.div_ceil(5),
+            first_seed: arguments.seed,
+        },
     })
 }
 

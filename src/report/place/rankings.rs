@@ -3,7 +3,7 @@ use super::layout::{titled, titled_with_layouts, wrapped};
 use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
 use crate::estimator::placement::CourseNumber;
 use crate::estimator::placement::search::Method;
-use crate::estimator::placement::study::{Judged, Numbered, Proof};
+use crate::estimator::placement::study::{Judged, Numbered, Proof, Refused};
 use crate::report::number;
 
 /// Layouts near the best that are named.
@@ -74,6 +74,12 @@ impl Placed<'_> {
         };
         let lines: String = self.study.numbers.iter().filter_map(line).collect();
         if lines.is_empty() { lines } else { format!("nearly as good:\n{}", wrapped(&lines)) }
+    }
+
+    /// Numbers of sensors without a layout.
+    pub(super) fn refused(&self) -> String {
+        let line = |of: &Refused| wrapped(&format!("{} sensors: {}", of.sensors, of.reason));
+        self.study.refused.iter().map(line).collect()
     }
 
     /// Layouts by every number, the best of each number of sensors marked.

@@ -12,6 +12,7 @@ impl Placed<'_> {
         }
         parts.extend([
             self.best_layouts(),
+            self.refused(),
             self.judged_layouts(),
             self.differences(),
             self.along_scenarios(),
@@ -20,6 +21,8 @@ impl Placed<'_> {
             self.faults(),
             self.biases(),
             self.positions(),
+            self.by_paper(),
+            self.achieved(),
         ]);
         parts.retain(|part| !part.is_empty());
         parts.join("\n")

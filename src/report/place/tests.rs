@@ -135,6 +135,9 @@ fn known() -> Known {
             position(valve, Some(certainty(0.5, 9.0))),
             position(gas, None),
         ],
+        refused: Vec::new(),
+        published: None,
+        closed_loop: None,
         partial: false,
     };
     Known { vessel, candidates, study }

@@ -65,6 +65,18 @@ impl PublishedRecord {
         Self::RampWarm,
         Self::CoolDown,
     ];
+
+    /// Words for people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Identification => "scenarios 1 + 2",
+            Self::Validation => "scenarios 3 + 4",
+            Self::ShockCold => "scenario 1",
+            Self::TunnelWinter => "scenario 2",
+            Self::RampWarm => "scenario 3",
+            Self::CoolDown => "scenario 4",
+        }
+    }
 }
 
 /// Which specimens of the sensors are read.
