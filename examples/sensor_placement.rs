@@ -4,12 +4,13 @@
 //!
 //! Beside a pressure, one and then two of three thermometers are searched for by the certainty of the leak rate at rest. Then each is
 //! judged while a train leaves a warm hall for cold air and comes back, with films, couplings and gas that are not as the observer
-//! supposes. The attitude matters since the gas is stratified, which the observer does not know. `cylwatch place` takes every place.
+//! supposes. The attitude matters since the gas is stratified, which the observer does not know,
+//! but it matters little: the middle is the better place standing and lying. `cylwatch place` takes every place.
 #![allow(clippy::print_stdout)]
 
-use cylwatch::estimator::placement::Candidates;
 use cylwatch::estimator::placement::search::Watch;
 use cylwatch::estimator::placement::study::{Placement, Position, Study, StudySettings};
+use cylwatch::estimator::placement::{Candidates, Group};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::report::place::Placed;
 use cylwatch::report::{Provenance, aligned};
@@ -41,7 +42,7 @@ to_degc = 20
 "#;
 
 /// What may sit on the cylinder; the pressure is always there.
-const SENSORS: [&str; 4] = ["middle", "shoulder", "valve", "pressure"];
+const THERMOMETERS: [&str; 3] = ["middle", "shoulder", "valve"];
 const ATTITUDES: [(&str, Orientation); 2] =
     [("standing", Orientation::Vertical), ("lying", Orientation::Horizontal)];
 /// The gas as it is; the observer takes it to be well mixed.
@@ -102,8 +103,12 @@ fn study((name, orientation): (&'static str, Orientation)) -> anyhow::Result<Att
     vessel.geometry.orientation = orientation;
     vessel.gas = GasResolution::Stratified(GAS);
     let scenario = scenario::read_scenario(SCENARIO, "the hall", &scenario::presets::table)?;
-    let sensors = SENSORS.map(Sensor::typical).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let candidates = Candidates::of_sensors(&vessel, sensors)?;
+    let names = THERMOMETERS.into_iter().chain(["pressure"]);
+    let sensors = names.map(Sensor::typical).collect::<Result<Vec<_>, _>>()?;
+    let mut candidates = Candidates::of_sensors(&vessel, sensors)?;
+    let thermometers: Vec<usize> = THERMOMETERS.iter().filter_map(|name| candidates.index(name)).collect();
+    // The pressure alone knows nothing of the mass.
+    candidates.groups.push(Group { fewest: 1, most: thermometers.len(), members: thermometers });
     let mut settings = StudySettings { sensors: 3, ..StudySettings::default() };
     settings.site.observer.wall_nodes = WALL_NODES;
     settings.site.observer.longest_step_s = LONGEST_STEP_S;
@@ -125,7 +130,7 @@ fn main() -> anyhow::Result<()> {
         std::fs::write(folder.join(format!("{file}.svg")), sheet.to_svg(&provenance)?)?;
         std::fs::write(folder.join(format!("{file}.png")), sheet.to_png(&provenance)?)?;
         println!("{}: best beside the pressure: {}", attitude.name, attitude.best().join(", then "));
-        for place in ["middle", "shoulder", "valve"] {
+        for place in THERMOMETERS {
             let position = attitude.position(place);
             let certainty = position.and_then(|position| position.certainty);
             let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
