@@ -78,7 +78,7 @@ impl Placed<'_> {
 
     /// Numbers of sensors without a layout.
     pub(super) fn refused(&self) -> String {
-        let line = |of: &Refused| wrapped(&format!("{} sensors: {}", of.sensors, of.reason));
+        let line = |of: &Refused| wrapped(&format!("no layout of {}: {}", of.sensors, of.reason));
         self.study.refused.iter().map(line).collect()
     }
 
