@@ -13,6 +13,11 @@ const SOLVED: f64 = 1e-6;
 const DAY_SAMPLES: usize = 1440;
 /// Return of a state towards itself within a sample that is none.
 const STAYS: f64 = 1e-9;
+/// Variance of a state from which on it may be one that nobody sees: states are of a size near one.
+const SUSPECT: f64 = 1e6;
+/// Doublings of samples after which an error is forgotten, years of minutes, and what may be left of its variance.
+const FORGETTING: usize = 24;
+const FORGOTTEN: f64 = 1e-3;
 /// Growth of the sum, relative, below which it has settled.
 const SETTLED: f64 = 1e-14;
 
@@ -153,14 +158,27 @@ impl LinearProblem {
         let left = (DMatrix::identity(n, n) + &predicted * information).try_inverse()?;
         let (mut updated, error) = (&left * &predicted, &left * &self.transition);
         updated = 0.5 * (&updated + updated.transpose());
-        self.stands(&predicted, &updated).then_some(Steady { updated, left, error })
+        self.stands(information, &predicted, &updated).then_some(Steady { updated, left, error })
     }
 
     /// Whether a sample leads from the covariance after an update back to that before it.
-    fn stands(&self, predicted: &DMatrix<f64>, updated: &DMatrix<f64>) -> bool {
+    fn stands(&self, information: &DMatrix<f64>, predicted: &DMatrix<f64>, updated: &DMatrix<f64>) -> bool {
         // What is not seen grows so slowly that rounding can end the doubling.
         let next = &self.transition * updated * self.transition.transpose() + &self.process_noise;
-        (next - predicted).norm() <= SOLVED * predicted.norm() && updated.diagonal().min() >= 0.0
+        (next - predicted).norm() <= SOLVED * predicted.norm()
+            && updated.diagonal().min() >= 0.0
+            && (updated.diagonal().max() < SUSPECT || self.forgets(information, predicted))
+    }
+
+    /// Whether the filter forgets an error of the size of its own covariance: one that nobody sees stays for ever.
+    fn forgets(&self, information: &DMatrix<f64>, predicted: &DMatrix<f64>) -> bool {
+        let n = predicted.nrows();
+        let left = (DMatrix::identity(n, n) + predicted * information).try_inverse();
+        let Some(mut power) = left.map(|left| left * &self.transition) else { return false };
+        for _ in 0..FORGETTING {
+            power = &power * &power;
+        }
+        (&power * predicted * power.transpose()).norm() <= FORGOTTEN * predicted.norm()
     }
 
     /// Variance of the functional after an update with a layout, reading by reading.
@@ -173,7 +191,8 @@ impl LinearProblem {
             let cross = &updated * gradient;
             updated.ger(-1.0 / (gradient.dot(&cross) + variance), &cross, &cross, 1.0);
         }
-        self.stands(&predicted, &updated).then(|| self.functional.dot(&(&updated * &self.functional)))
+        self.stands(&information, &predicted, &updated)
+            .then(|| self.functional.dot(&(&updated * &self.functional)))
     }
 
     pub(super) fn variance(&self, steady: &Steady) -> f64 {

@@ -212,9 +212,10 @@ pub struct DetectionSettings {
 }
 
 impl Default for DetectionSettings {
-    /// Within a day with 95 %, at a threshold of 5.9 standard deviations: one false alarm in ten years of samples every minute.
+    /// Within a day with 95 %, at a threshold of 5.42 standard deviations: one false alarm in ten years of samples every minute, for a ramp in
+    /// white noise.
     fn default() -> Self {
-        Self { within_s: 86_400.0, threshold_sd: 5.9, power_sd: 1.645 }
+        Self { within_s: 86_400.0, threshold_sd: 5.42, power_sd: 1.645 }
     }
 }
 
