@@ -121,7 +121,7 @@ fn what_no_layout_can_be_is_said() {
     refuses("", &["--budget", "0.5"], &["cost at least 1", "budget is 0.5"]);
     refuses("", &["--budget", "1.5"], &["cost at least 2", "budget is 1.5"]);
     let all = "[[rule]]\nsensor = \"shoulder\"\nstatus = \"required\"\n[[rule]]\nsensor = \"middle\"\nstatus = \"required\"\n";
-    refuses(all, &[], &["3 are required", "2 asked for"]);
+    refuses(all, &[], &["3 sensors are required", "2 asked for"]);
     // No two thermometers on the wall, but the group wants two.
     let apart = "minimum_distance_mm = 5000\n[[group]]\nmembers = [\"bottom\", \"middle\"]\nat_least = 2\n";
     refuses(apart, &["--sensors", "3"], &["no layout"]);

@@ -90,7 +90,7 @@ impl Placed<'_> {
         if let (Some(valve), Some(shoulder)) = (of("valve"), of("shoulder")) {
             let more = |valve: f64, shoulder: f64| 100.0 * (valve / shoulder - 1.0);
             lines.push_str(&format!(
-                "  by the observer, with the valve instead of the shoulder: sd of the gas temperature {:+.0} %, smallest leak {:+.0} %\n",
+                "  by the observer with the valve, not the shoulder: gas temperature sd {:+.0} %, smallest leak {:+.0} %\n",
                 more(valve.gas_sd_k, shoulder.gas_sd_k),
                 more(valve.smallest_leak_kg_s, shoulder.smallest_leak_kg_s),
             ));
