@@ -140,6 +140,7 @@ fn options_that_are_wrong_are_refused_by_name_before_anything_runs() {
         &["smallest-leak", "exhaustive"],
     );
     refuse(&["--sensors", "0"], &["--sensors 0"]);
+    refuse(&["--confirm", "1"], &["--confirm 1", "at least 2"]);
     refuse(&["--sensors", "99", "--scenario", "none"], &["--sensors 99", "only"]);
     refuse(&["--budget", "-1"], &["--budget -1"]);
     refuse(&["--within-percent", "nan"], &["--within-percent"]);

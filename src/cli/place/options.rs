@@ -86,6 +86,9 @@ fn settings(arguments: &PlaceArguments, at_rest_only: bool) -> anyhow::Result<St
     if arguments.sensors == 0 {
         bail!("--sensors 0: a layout has at least 1 sensor");
     }
+    if arguments.confirm == 1 {
+        bail!("--confirm 1: at least 2 runs have a spread");
+    }
     if at_rest_only && matches!(criterion, Criterion::Course(_)) {
         bail!("--criterion {word} is a number along a scenario: name one with --scenario");
     }
@@ -107,7 +110,7 @@ fn settings(arguments: &PlaceArguments, at_rest_only: bool) -> anyhow::Result<St
         published: PublishedSettings { first_seed: arguments.seed, ..usual.published },
         closed_loop: ClosedLoopSettings {
             matched: arguments.confirm,
-            mismatched: arguments.confirm.div_ceil(5),
+            mismatched: if arguments.confirm > 0 { arguments.confirm.div_ceil(5).max(2) } else { 0 },
             first_seed: arguments.seed,
         },
     })
