@@ -54,7 +54,13 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
     let deadline = options.time_limit.and_then(|limit| begun.checked_add(limit));
     let progress = Progress::open_ended(messages, "running the scenarios");
     let placement = Placement::new(&vessel, &candidates, &scenarios, &options.settings)?;
-    let study = study(&placement, deadline, &progress)?;
+    drop(progress);
+    let expected = placement.evaluations();
+    let progress = match expected {
+        Some(_) => Progress::new(messages),
+        None => Progress::open_ended(messages, "placing sensors"),
+    };
+    let study = study(&placement, deadline, (&progress, expected))?;
     drop(progress);
     let placed = Placed { study: &study, candidates: &candidates, vessel: &vessel };
     let seed = Some(options.settings.published.first_seed);
@@ -68,7 +74,11 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
 }
 
 /// Runs the study beside a thread that ends it when it is due.
-fn study(placement: &Placement, deadline: Option<Instant>, progress: &Progress) -> anyhow::Result<Study> {
+fn study(
+    placement: &Placement,
+    deadline: Option<Instant>,
+    progress: (&Progress, Option<f64>),
+) -> anyhow::Result<Study> {
     let watch = Watch::default();
     watch.stop.store(stop::is_due(deadline), Ordering::Relaxed);
     let study = std::thread::scope(|scope| {

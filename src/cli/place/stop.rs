@@ -28,14 +28,25 @@ pub fn is_due(deadline: Option<Instant>) -> bool {
 }
 
 /// Shows what has been looked at, and stops the search when it is due, until the other end of the channel is gone.
-pub fn attend(watch: &Watch, deadline: Option<Instant>, progress: &Progress, ended: &Receiver<()>) {
+pub fn attend(
+    watch: &Watch,
+    deadline: Option<Instant>,
+    (progress, expected): (&Progress, Option<f64>),
+    ended: &Receiver<()>,
+) {
     while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
         if is_due(deadline) {
             watch.stop.store(true, Ordering::Relaxed);
             progress.say("ending with what there is");
         } else {
             let evaluated = watch.evaluated.load(Ordering::Relaxed);
-            progress.say(&format!("placing sensors: {evaluated} layouts looked at"));
+            match expected {
+                Some(expected) if (evaluated as f64) < expected => {
+                    progress.show("searching layouts", evaluated as f64 / expected);
+                }
+                Some(_) => progress.show("judging the best", 1.0),
+                None => progress.say(&format!("placing sensors: {evaluated} layouts looked at")),
+            }
         }
     }
 }

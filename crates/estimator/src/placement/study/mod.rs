@@ -269,6 +269,17 @@ impl Placement {
         (0..wanted).map(|taken| free.saturating_sub(taken) as f64 / (taken + 1) as f64).product()
     }
 
+    /// Layouts that the searches of a study look at, for a progress bar; `None` where one of them is no exhaustive one.
+    pub fn evaluations(&self) -> Option<f64> {
+        // By the criterion, by each number at rest, and for the fronts.
+        const SEARCHES: f64 = 6.0;
+        let fewest = self.constraints(self.settings.sensors).must.len().max(1);
+        let mut numbers = fewest..=self.settings.sensors;
+        let all: f64 = numbers.clone().map(|sensors| self.layouts(sensors)).sum();
+        let exhaustive = numbers.all(|sensors| self.method(sensors) == Method::Exhaustive);
+        (exhaustive && all <= ALL_LAYOUTS).then_some(SEARCHES * all)
+    }
+
     /// How layouts of so many sensors are searched.
     pub fn method(&self, sensors: usize) -> Method {
         // A layout along a course takes a thousand times as long as one at rest.
