@@ -83,6 +83,12 @@ impl Format {
         let ending = output.and_then(Path::extension);
         if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json")) { Self::Json } else { Self::Csv }
     }
+
+    /// The format that is asked for by `--format`, `--json` or the output; `None`: words for people, on stdout.
+    pub fn asked(format: Option<Self>, json: bool, output: Option<&Path>) -> Option<Self> {
+        let named = if json { Some(Self::Json) } else { format };
+        named.or_else(|| output.map(|output| Self::of(Some(output))))
+    }
 }
 
 /// Arguments of `reproduce`.

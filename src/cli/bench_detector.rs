@@ -87,9 +87,7 @@ impl Options {
     fn checked(arguments: BenchDetectorArguments) -> anyhow::Result<Self> {
         let data = Target::checked(arguments.output.as_deref(), &[])?;
         let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &[], &[&data])).transpose()?;
-        let asked = if arguments.json { Some(Format::Json) } else { arguments.format };
-        let for_people = asked.is_none() && arguments.output.is_none();
-        let format = (!for_people).then(|| asked.unwrap_or_else(|| Format::of(arguments.output.as_deref())));
+        let format = Format::asked(arguments.format, arguments.json, arguments.output.as_deref());
         let plan = plan(&arguments)?;
         Ok(Self { plan, data, format, plot })
     }

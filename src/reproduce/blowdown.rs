@@ -2,7 +2,8 @@
 //! pressure record alone asks for. Temperatures are not fitted.
 use super::ReproduceError;
 use super::measured::{Curve, Measured, interpolated};
-use super::minimum::{evaluations, golden_section};
+
+use crate::estimator::minimum::{evaluations, golden_section};
 use crate::thermal::flow::FlowKind;
 use crate::thermal::scenario::{self, Scenario};
 use crate::thermal::simulate::{SimulationSettings, simulate};

@@ -5,7 +5,6 @@ pub mod blowdown;
 pub mod cylinder;
 mod figures;
 pub mod measured;
-mod minimum;
 pub mod rows;
 
 use crate::estimator::EstimatorError;

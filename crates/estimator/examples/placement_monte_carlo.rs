@@ -39,7 +39,7 @@ impl Study {
     fn new() -> Self {
         Self {
             vessel: presets::load("nitrogen-20l").unwrap(),
-            candidates: NAMES.iter().map(|name| candidate(name)).collect(),
+            candidates: NAMES.iter().map(|name| Sensor::typical(name).unwrap()).collect(),
             conditions: Conditions::default(),
         }
     }
@@ -69,14 +69,6 @@ impl Study {
             search(&problem, &constraints, Method::Exhaustive, f64::INFINITY, &Watch::default()).unwrap();
         found.layouts.into_iter().take(BEST).map(|layout| layout.sensors).collect()
     }
-}
-
-/// The typical sensor of a place; the wall's carry its name.
-fn candidate(name: &str) -> Sensor {
-    let named = |place: &str| Sensor::typical(place);
-    let mut sensor = named(name).or_else(|_| named(&format!("wall_{name}"))).unwrap();
-    name.clone_into(&mut sensor.name);
-    sensor
 }
 
 fn line(name: &str, unit: f64, achieved: &Achieved) {

@@ -12,6 +12,7 @@ pub mod filter;
 pub mod identify;
 mod least_squares;
 pub mod log;
+pub mod minimum;
 pub mod observer;
 pub mod placement;
 pub mod sensor;

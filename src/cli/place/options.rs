@@ -31,9 +31,7 @@ impl Options {
         let mut others = vec![&data];
         others.extend(&matrices);
         let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
-        let asked = if arguments.json { Some(Format::Json) } else { arguments.format };
-        let for_people = asked.is_none() && arguments.output.is_none();
-        let format = (!for_people).then(|| asked.unwrap_or_else(|| Format::of(arguments.output.as_deref())));
+        let format = Format::asked(arguments.format, arguments.json, arguments.output.as_deref());
         let time_limit = arguments.amounts.time_limit()?;
         Ok(Self {
             vessel: arguments.vessel,

@@ -7,6 +7,9 @@
 //! Assumes a stationary Ornstein-Uhlenbeck process, seen without a noise of its own for each sample.
 //!
 //! Source: P. J. Brockwell and R. A. Davis, Time Series: Theory and Methods, 1991.
+use std::convert::Infallible;
+
+use cylwatch_estimator::minimum::golden_section;
 use serde::{Deserialize, Serialize};
 
 use super::blocks::check;
@@ -17,6 +20,8 @@ use crate::statistic::{Noise, Residual};
 const WHITE: f64 = 0.2;
 /// Points of the first search over the correlation time.
 const SEARCH_POINTS: i32 = 60;
+/// Width of the logarithm of the correlation time at which the search ends.
+const WIDTH: f64 = 1e-6;
 
 /// Noise that fits residuals best.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,7 +50,9 @@ pub fn fit_noise(residuals: &[Residual]) -> Result<NoiseFit, DetectorError> {
     let points: Vec<f64> = (0..=SEARCH_POINTS).map(|i| low + step * f64::from(i)).collect();
     let value = |log_tau: &f64| profile.at(*log_tau).0;
     let coarse = points.iter().copied().min_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(low);
-    let best = golden_section(coarse - step, coarse + step, |log_tau| profile.at(log_tau).0);
+    let Ok(best) = golden_section((coarse - step, coarse + step), WIDTH, |log_tau| {
+        Ok::<_, Infallible>(profile.at(log_tau).0)
+    });
     if best <= low {
         let (_, variance) = profile.at(f64::NEG_INFINITY);
         return Ok(NoiseFit { noise: Noise::white(variance.sqrt()), mean, log_correlation_time_sd: 0.0 });
@@ -79,25 +86,6 @@ impl Profile<'_> {
         }
         ((squares / n).ln() + logs / n, squares / n)
     }
-}
-
-/// Smallest value of a function with one minimum between two bounds.
-fn golden_section(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
-    let (mut at_a, mut at_b) = (f(a), f(b));
-    while high - low > 1e-6 {
-        if at_a < at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - ratio * (high - low);
-            at_a = f(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + ratio * (high - low);
-            at_b = f(b);
-        }
-    }
-    0.5 * (low + high)
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod learned;
 mod member;
 mod observability;
 mod pass;
+mod roles;
 mod screen;
 pub mod settings;
 mod smoother;
@@ -55,6 +56,8 @@ pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
+pub(crate) use roles::middle_slow;
+use roles::{freest, thermometer};
 pub use screen::{Fault, FaultCount};
 pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
 pub use smoother::Smoother;
@@ -484,22 +487,6 @@ impl Observer {
         let covariance = self.bank.covariance(0);
         Some(observability::given_constants(&covariance, states.mass, states.leading).sqrt())
     }
-}
-
-/// The middle one of the members that have a leak rate.
-pub(crate) fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
-    let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
-    slow().nth(slow().count() / 2)
-}
-
-fn thermometer(bank: &[LeakHypothesis]) -> usize {
-    middle_slow(bank).filter(|&index| bank[index].caution_pa_k == 0.0).unwrap_or(0)
-}
-
-/// The first of those whose mass walks farthest.
-fn freest(bank: &[LeakHypothesis]) -> usize {
-    let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
-    (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -28,10 +28,6 @@ use crate::thermal::wall::geometry::Orientation;
 const FILM: [f64; 2] = [0.5, 1.5];
 /// Rest before a scenario that begins settled, s: the observer has begun before the air changes.
 const REST_S: f64 = 3.0 * 3600.0;
-/// Gas cells of stratified gas, its exchange length in diameters and the mixing of its core.
-const STRATIFICATION: Stratification =
-    Stratification { cells: 8, exchange_length_diameters: 1.0, core_mixing: 0.05 };
-
 /// How the cylinder differs from what the vessel file says.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -97,9 +93,9 @@ impl Variant {
                 InsideFilm::Rayleigh { multiplier, .. } => *multiplier *= by,
                 InsideFilm::Coefficient { film_w_m2_k } => *film_w_m2_k *= by,
             },
-            Self::StratifiedGas => vessel.gas = GasResolution::Stratified(STRATIFICATION),
+            Self::StratifiedGas => vessel.gas = GasResolution::Stratified(Stratification::default()),
             Self::OtherAttitude => {
-                vessel.gas = GasResolution::Stratified(STRATIFICATION);
+                vessel.gas = GasResolution::Stratified(Stratification::default());
                 vessel.geometry.orientation = match vessel.geometry.orientation {
                     Orientation::Vertical => Orientation::Horizontal,
                     Orientation::Horizontal => Orientation::Vertical,
@@ -219,7 +215,7 @@ impl Course {
             .collect::<Result<_, EstimatorError>>()?;
         let time_s = simulated.first().map(|(_, time_s)| time_s.clone()).unwrap_or_default();
         let initial = &scenario.initial;
-        let settled = initial.wall_temperature_k == initial.gas_temperature_k;
+        let settled = simulated.first().is_some_and(|(run, _)| run.rest.is_some());
         let commissioning = Commissioning {
             fill: initial.fill,
             settled,

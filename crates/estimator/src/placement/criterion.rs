@@ -24,6 +24,9 @@ pub enum Criterion {
 }
 
 impl Criterion {
+    /// Those of a cylinder at rest.
+    pub const AT_REST: [Self; 4] = [Self::GasTemperature, Self::Mass, Self::LeakRate, Self::SmallestLeak];
+
     /// All, in the order of a list.
     pub const ALL: [Self; 8] = [
         Self::GasTemperature,

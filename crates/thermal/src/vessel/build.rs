@@ -233,10 +233,11 @@ fn gas(spec: &GasSpec) -> Result<GasResolution, ThermalError> {
         }
         return Ok(GasResolution::WellMixed);
     }
-    let exchange = spec.exchange_length_diameters.unwrap_or(1.0);
-    let mixing = spec.core_mixing.unwrap_or(0.05);
+    let usual = Stratification::default();
+    let exchange = spec.exchange_length_diameters.unwrap_or(usual.exchange_length_diameters);
+    let mixing = spec.core_mixing.unwrap_or(usual.core_mixing);
     Ok(GasResolution::Stratified(Stratification {
-        cells: check::cells("gas.cells", spec.cells.unwrap_or(8), 2)?,
+        cells: check::cells("gas.cells", spec.cells.unwrap_or(usual.cells), 2)?,
         exchange_length_diameters: check::positive(
             "gas.exchange_length_diameters",
             exchange,

@@ -119,6 +119,13 @@ pub struct Stratification {
     pub core_mixing: f64,
 }
 
+impl Default for Stratification {
+    /// Eight cells, an exchange length of one diameter, hardly any mixing of the core.
+    fn default() -> Self {
+        Self { cells: 8, exchange_length_diameters: 1.0, core_mixing: 0.05 }
+    }
+}
+
 impl InnerVolume {
     /// Volume at a mean wall temperature and a pressure, m³.
     pub fn volume_m3(&self, wall_k: f64, pressure_pa: f64) -> f64 {

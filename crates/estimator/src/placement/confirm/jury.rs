@@ -95,19 +95,21 @@ pub(super) fn confirmation<L>(
     verdicts: Vec<Verdict<L>>,
     partial: bool,
 ) -> Confirmation<L> {
+    let quantities = [Quantity::GasTemperature, Quantity::Mass, Quantity::LeakRate];
+    let problems = quantities.map(|quantity| sited.problem(quantity).ok());
     let confirmed = |(index, layout): (usize, &Vec<usize>)| {
-        let achieved = |position: usize, quantity: Quantity| -> Option<Achieved> {
+        let achieved = |position: usize| -> Option<Achieved> {
             let runs: Vec<Tally> = verdicts.iter().map(|verdict| verdict[index].0[position]).collect();
-            let variance = sited.problem(quantity).ok().map(|problem| problem.value(layout));
+            let variance = problems[position].as_ref().map(|problem| problem.value(layout));
             let predicted = variance.filter(|variance| variance.is_finite()).map(f64::sqrt);
             Tally::achieved(&runs, predicted)
         };
         Some(Confirmed {
             layout: layout.clone(),
             seeds: verdicts.len() as u64,
-            gas_k: achieved(0, Quantity::GasTemperature)?,
-            mass_kg: achieved(1, Quantity::Mass)?,
-            leak_kg_s: achieved(2, Quantity::LeakRate),
+            gas_k: achieved(0)?,
+            mass_kg: achieved(1)?,
+            leak_kg_s: achieved(2),
         })
     };
     Confirmation {

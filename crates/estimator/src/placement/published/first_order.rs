@@ -4,8 +4,11 @@
 //! errors' squares depend on `tau` alone, which is scanned and then narrowed by golden section. It is the minimum that
 //! [`crate::identify::identify`] finds by output error, but where the data do not determine a lag there is still one, and its limit
 //! `tau = 0` is that of a reading that does not lead the gas.
+use std::convert::Infallible;
+
 use crate::identify::IdentifyError;
 use crate::identify::published::TransferFunction;
+use crate::minimum::golden_section;
 
 /// Estimated: gain, time constant, start.
 const PARAMETERS: usize = 3;
@@ -13,8 +16,6 @@ const PARAMETERS: usize = 3;
 const SHORTEST: f64 = 0.1;
 /// Time constants that are tried first grow by this factor.
 const STEP: f64 = 1.6;
-/// What golden section keeps of an interval.
-const GOLDEN: f64 = 0.618_033_988_749_895;
 /// Width of the logarithm of the time constant at which it ends.
 const NARROW: f64 = 1e-5;
 
@@ -111,7 +112,9 @@ impl Record {
         let by_left = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
         let best = (0..=tried).map(|number| (number, left(at(number)))).min_by(by_left);
         let nearest = at(best.map_or(0, |(number, _)| number));
-        let narrowed = narrow(left, nearest - STEP.ln(), nearest + STEP.ln()).exp();
+        let around = (nearest - STEP.ln(), nearest + STEP.ln());
+        let Ok(narrowed) = golden_section(around, NARROW, |logarithm| Ok::<_, Infallible>(left(logarithm)));
+        let narrowed = narrowed.exp();
         let without = self.moments(0.0).left() <= self.moments(narrowed).left();
         let time_constant_s = if without { 0.0 } else { narrowed };
         Ok(FirstOrder { gain: self.moments(time_constant_s).gain(), time_constant_s })
@@ -148,22 +151,4 @@ impl Record {
             },
         )
     }
-}
-
-/// Where a function of one minimum between two bounds has it.
-fn narrow(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let (mut left, mut right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut of_left, mut of_right) = (of(left), of(right));
-    while high - low > NARROW {
-        if of_left < of_right {
-            (high, right, of_right) = (right, left, of_left);
-            left = high - GOLDEN * (high - low);
-            of_left = of(left);
-        } else {
-            (low, left, of_left) = (left, right, of_right);
-            right = low + GOLDEN * (high - low);
-            of_right = of(right);
-        }
-    }
-    0.5 * (low + high)
 }

@@ -53,8 +53,7 @@ impl Front {
 impl Placement {
     /// Cost against gas temperature, and against the delay of the leak.
     pub(super) fn fronts(&self, judged: &[Judged], watch: &Watch) -> Result<(Front, Front), EstimatorError> {
-        let fewest = self.constraints(self.settings.sensors).must.len().max(1);
-        let numbers = fewest..=self.settings.sensors;
+        let numbers = self.sensors();
         let complete = numbers.clone().map(|sensors| self.layouts(sensors)).sum::<f64>() <= ALL_LAYOUTS;
         let of_judged = |value: &dyn Fn(&Judged) -> Option<f64>| {
             let point =

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALL_LAYOUTS, JUDGED, Numbered, Placement};
+use super::{ALL_LAYOUTS, JUDGED, Numbered, Placement, Proof};
 use crate::EstimatorError;
 use crate::placement::course::Along;
 use crate::placement::criterion::Criterion;
@@ -64,9 +64,9 @@ impl Placement {
         for number in numbers {
             let mut layouts: Vec<Vec<usize>> =
                 number.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone()).collect();
-            for criterion in
-                Criterion::ALL.into_iter().filter(|criterion| !matches!(criterion, Criterion::Course(_)))
-            {
+            // What the search has proven needs no second one.
+            let is_known = |of: &Criterion| *of == self.settings.criterion && number.proof == Proof::Search;
+            for criterion in Criterion::AT_REST.into_iter().filter(|of| !is_known(of)) {
                 if watch.stop.load(Ordering::Relaxed) {
                     break;
                 }

@@ -22,6 +22,7 @@ mod judged;
 mod position;
 mod published;
 
+use std::ops::RangeInclusive;
 use std::sync::atomic::Ordering;
 
 use serde::{Deserialize, Serialize};
@@ -261,6 +262,12 @@ impl Placement {
         self.candidates.constraints(sensors, self.settings.budget)
     }
 
+    /// Numbers of sensors, from those that a layout must have.
+    fn sensors(&self) -> RangeInclusive<usize> {
+        let most = self.settings.sensors;
+        self.constraints(most).must.len().max(1)..=most
+    }
+
     /// Layouts that a search looks at in the worst case.
     pub fn layouts(&self, sensors: usize) -> f64 {
         let constraints = self.constraints(sensors);
@@ -271,13 +278,13 @@ impl Placement {
 
     /// Layouts that the searches of a study look at, for a progress bar; `None` where one of them is no exhaustive one.
     pub fn evaluations(&self) -> Option<f64> {
-        // By the criterion, by each number at rest, and for the fronts.
-        const SEARCHES: f64 = 6.0;
-        let fewest = self.constraints(self.settings.sensors).must.len().max(1);
-        let mut numbers = fewest..=self.settings.sensors;
+        // By the criterion, by each other number at rest, and for the fronts.
+        let others = Criterion::AT_REST.iter().filter(|of| **of != self.settings.criterion);
+        let searches = (2 + others.count()) as f64;
+        let mut numbers = self.sensors();
         let all: f64 = numbers.clone().map(|sensors| self.layouts(sensors)).sum();
         let exhaustive = numbers.all(|sensors| self.method(sensors) == Method::Exhaustive);
-        (exhaustive && all <= ALL_LAYOUTS).then_some(SEARCHES * all)
+        (exhaustive && all <= ALL_LAYOUTS).then_some(searches * all)
     }
 
     /// How layouts of so many sensors are searched.
@@ -351,7 +358,7 @@ impl Placement {
         at_any_cost.validate(self.candidates.list.len())?;
         let mut numbers: Vec<Numbered> = Vec::new();
         let mut errors = Vec::new();
-        for sensors in at_any_cost.must.len().max(1)..=most {
+        for sensors in self.sensors() {
             match self.numbered(sensors, watch) {
                 Ok(Some(mut number)) => {
                     let before = numbers.last().map(|before| before.layouts[0].value);

@@ -1,0 +1,19 @@
+//! Which member of the bank gives what.
+use super::settings::LeakHypothesis;
+
+/// The middle one of the members that have a leak rate.
+pub(crate) fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
+    let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
+    slow().nth(slow().count() / 2)
+}
+
+/// The one that gives the gas temperature: the same, if it trusts the pressure, or the first.
+pub(super) fn thermometer(bank: &[LeakHypothesis]) -> usize {
+    middle_slow(bank).filter(|&index| bank[index].caution_pa_k == 0.0).unwrap_or(0)
+}
+
+/// The first of those whose mass walks farthest.
+pub(super) fn freest(bank: &[LeakHypothesis]) -> usize {
+    let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
+    (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
+}
