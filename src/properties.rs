@@ -1,5 +1,5 @@
 //! Properties of a gas at a state that any two of temperature, pressure and density fix.
-use crate::report::{Table, aligned, number};
+use crate::report::{Story, Table, number};
 use crate::thermal::ThermalError;
 use crate::thermal::fluid::{Fluid, State};
 
@@ -136,7 +136,7 @@ pub fn table(states: &[Properties]) -> Table {
 }
 
 /// One state for people.
-pub fn text(properties: &Properties) -> String {
+pub fn story(fluid: &str, properties: &Properties) -> Story {
     let degc = properties.state.temperature_k - 273.15;
     let bar = properties.state.pressure_pa / 1e5;
     let rows: Vec<Vec<String>> = PROPERTIES
@@ -151,5 +151,14 @@ pub fn text(properties: &Properties) -> String {
             vec![(*name).to_owned(), number(value(properties), 8), (*unit).to_owned(), also]
         })
         .collect();
-    aligned(&[], &rows)
+    Story::new(format!("Properties of {fluid}")).rows::<&str>("", &[], rows)
+}
+
+/// Many states for people.
+pub fn story_of_many(fluid: &str, states: &[Properties]) -> Story {
+    let header = PROPERTIES
+        .map(|(_, name, unit, _)| if unit.is_empty() { name.into() } else { format!("{name} in {unit}") });
+    let row =
+        |state: &Properties| PROPERTIES.iter().map(|(_, _, _, value)| number(value(state), 6)).collect();
+    Story::new(format!("Properties of {fluid}")).rows("", &header, states.iter().map(row).collect())
 }

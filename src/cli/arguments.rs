@@ -42,7 +42,7 @@ Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive 
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Compute the paper's scenarios and a measured blowdown, with plots and a table of what was reached.
+    /// Rebuild every figure and table of the paper beside its own numbers, in one report; under a minute.
     Reproduce(ReproduceArguments),
     /// Simulate a vessel in a scenario: temperatures, pressure, mass and sensor readings against time.
     Simulate(SimulateArguments),
@@ -94,9 +94,18 @@ impl Format {
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArguments {
-    /// Folder for figures (SVG and PNG), CSV files and results.json; it is made if it is not there.
+    /// Folder for report.html, figures (SVG and PNG), CSV files and results.json; it is made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
     pub out: PathBuf,
+    /// Seed of noise and drawn cylinders, a whole number of at least 0.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
+    /// Drawn cylinders of each case, 1 to 1000; the time goes with it.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub cylinders: u64,
+    /// The report once more, under this name.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
     #[arg(long, value_name = "NUMBER")]
     pub relative_tolerance: Option<f64>,
@@ -118,6 +127,9 @@ pub struct SimulateArguments {
     /// Figure of temperatures and pressure; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// Format of the data [default: json for a file that ends in .json, else csv].
     #[arg(long, value_enum)]
     pub format: Option<Format>,
@@ -160,6 +172,9 @@ pub struct EstimateArguments {
     /// Figure of estimates and innovations; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
     #[arg(long = "map", value_name = "OURS=THEIRS")]
     pub mappings: Vec<Mapping>,
@@ -259,6 +274,9 @@ pub struct PropertiesArguments {
     /// Format [default: a table for people for one state on stdout, else json for a file that ends in .json, else csv].
     #[arg(long, value_enum)]
     pub format: Option<Format>,
+    /// Report with a table: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// File for the data; - is stdout [default: stdout].
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -3,12 +3,13 @@ use super::arguments::Format;
 use super::command_line;
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
+use super::views::{Made, Views, Wanted};
 use anyhow::bail;
 use clap::Args;
 use cylwatch::detector::performance::YEAR_S;
 use cylwatch::detector::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
+use cylwatch::report::figure::Picture;
 use cylwatch::report::{Provenance, bench_detector as report};
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -53,6 +54,9 @@ pub struct BenchDetectorArguments {
     /// Figure of delay against leak rate; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
 }
 
 const HELP: &str = "\
@@ -73,7 +77,7 @@ struct Options {
     plan: Plan,
     data: Target,
     format: Option<Format>,
-    plot: Option<Plot>,
+    views: Views,
 }
 
 /// Simulates, judges, writes.
@@ -86,10 +90,11 @@ pub fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Re
 impl Options {
     fn checked(arguments: BenchDetectorArguments) -> anyhow::Result<Self> {
         let data = Target::checked(arguments.output.as_deref(), &[])?;
-        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &[], &[&data])).transpose()?;
+        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &[], &[&data])?;
         let format = Format::asked(arguments.format, arguments.json, arguments.output.as_deref());
         let plan = plan(&arguments)?;
-        Ok(Self { plan, data, format, plot })
+        Ok(Self { plan, data, format, views })
     }
 
     fn bench(&self, messages: &Messages) -> anyhow::Result<Outcome> {
@@ -108,9 +113,19 @@ impl Options {
     fn write(&self, outcome: &Outcome, messages: &Messages) -> anyhow::Result<()> {
         let provenance =
             Provenance { command: command_line(), inputs: Vec::new(), seed: Some(self.plan.seed) };
-        let words = report::text(outcome);
-        let picture = self.plot.as_ref().map(|plot| plot.draw(&report::figure(outcome), &provenance));
-        let picture = picture.transpose()?;
+        let story = report::story(outcome);
+        let words = story.to_text();
+        let views = if self.views.is_wanted() {
+            let picture = Picture::Figure(report::figure(outcome));
+            self.views.make(
+                &picture,
+                |picture| story.picture(picture, report::CAPTION),
+                Vec::new(),
+                &provenance,
+            )?
+        } else {
+            Made::default()
+        };
         let text = match self.format {
             None => words.clone(),
             Some(Format::Csv) => {
@@ -123,9 +138,7 @@ impl Options {
             }
         };
         self.data.write(text.as_bytes())?;
-        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
-            plot.write(&bytes)?;
-        }
+        views.write()?;
         if self.format.is_some() {
             messages.say(&words);
         }

@@ -3,9 +3,9 @@ use super::fill::GivenFill;
 use super::input::{Inputs, shown};
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
 use super::selection;
+use super::views::{self, Made, Views};
 use anyhow::{Context, bail};
 use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut, SearchStep};
 use cylwatch::estimator::sensor::Sensor;
@@ -13,6 +13,7 @@ use cylwatch::log::Mapping;
 use cylwatch::report::Input;
 use cylwatch::report::calibrate as report;
 use cylwatch::report::calibrate::Study;
+use cylwatch::report::figure::Picture;
 use cylwatch::thermal::vessel::{Vessel, VesselSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -53,7 +54,7 @@ struct Options {
     date: String,
     vessel_file: Option<Target>,
     format: CalibrationFormat,
-    plot: Option<Plot>,
+    views: Views,
 }
 
 /// What is held out.
@@ -190,20 +191,24 @@ impl Options {
         messages: &Messages,
     ) -> anyhow::Result<()> {
         let provenance = inputs.provenance();
-        let words = report::text(study);
+        let story = report::story(study);
+        let words = story.to_text();
         // Everything is made before any file appears.
         let logs = self.logs.iter().map(|log| (shown(log), inputs.record_of(log)));
         let logs: Vec<(String, Input)> = logs.filter_map(|(name, input)| Some((name, input?))).collect();
         let record = vessel_file::record(study, &start.origin, &logs, &self.date);
         let vessel = vessel_file::text(study, &start.specification, record, &provenance)?;
-        let picture = self.plot.as_ref().map(|plot| plot.draw(&report::figure(study), &provenance));
-        let picture = picture.transpose()?;
+        let views = if self.views.is_wanted() {
+            let picture = Picture::Figure(report::figure(study));
+            let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
+            self.views.make(&picture, with, inputs.sources(), &provenance)?
+        } else {
+            Made::default()
+        };
         if let Some(target) = &self.vessel_file {
             target.write(vessel.as_bytes())?;
         }
-        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
-            plot.write(&bytes)?;
-        }
+        views.write()?;
         match (self.format, &self.vessel_file) {
             (CalibrationFormat::Json, _) => {
                 let document = report::document(study, &self.date, &provenance);

@@ -4,10 +4,10 @@ use super::fill::{self, FillSource, GivenFill};
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
 use super::selection::{self, Selection};
 use super::start;
+use super::views::{Views, Wanted};
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
@@ -30,7 +30,7 @@ struct Options {
     log: String,
     data: Target,
     format: Format,
-    plot: Option<Plot>,
+    views: Views,
     mappings: Vec<Mapping>,
     sensors: Option<PathBuf>,
     fill: GivenFill,
@@ -64,7 +64,7 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
     for doubt in report::doubts(&summary) {
         messages.caution(&doubt);
     }
-    messages.say(&report::text(&summary));
+    messages.say(&report::story(&summary).to_text());
     Ok(())
 }
 
@@ -82,7 +82,8 @@ impl Options {
         let learned_out = arguments.learned_out.as_deref();
         let learned_out = learned_out.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
         let others: Vec<&Target> = [Some(&data), learned_out.as_ref()].into_iter().flatten().collect();
-        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
+        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &inputs, &others)?;
         if let Some(target) = &learned_out
             && (target.is_same_file(&data) || matches!((target, &data), (Target::Stdout, Target::Stdout)))
         {
@@ -95,7 +96,7 @@ impl Options {
             log,
             data,
             format,
-            plot,
+            views,
             mappings,
             sensors,
             fill,

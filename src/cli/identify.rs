@@ -3,11 +3,12 @@ use super::arguments::Format;
 use super::input::{Inputs, shown};
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
+use super::views::{Made, Views, Wanted};
 use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{Data, Method, Settings, Structure, identify};
 use cylwatch::log::{LogOptions, Mapping};
+use cylwatch::report::figure::Picture;
 use cylwatch::report::identify as report;
 use cylwatch::report::identify::{Signal, Study};
 use serde_json::{Value, json};
@@ -35,7 +36,7 @@ struct Options {
     mappings: Vec<Mapping>,
     data: Target,
     format: Option<Format>,
-    plot: Option<Plot>,
+    views: Views,
 }
 
 /// Identifies and writes.
@@ -62,8 +63,8 @@ impl Options {
             inputs.push(Path::new(log));
         }
         let data = Target::checked(arguments.out.as_deref(), &inputs)?;
-        let plot =
-            arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &[&data])).transpose()?;
+        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &inputs, &[&data])?;
         let for_people = arguments.format.is_none() && matches!(data, Target::Stdout);
         let structure = arguments.structure(&arguments.amounts)?;
         Ok(Self {
@@ -82,7 +83,7 @@ impl Options {
             choice,
             validation,
             data,
-            plot,
+            views,
         })
     }
 
@@ -164,10 +165,16 @@ impl Options {
         messages: &Messages,
     ) -> anyhow::Result<()> {
         let provenance = inputs.provenance();
-        let words = report::text(study);
+        let story = report::story(study);
+        let words = story.to_text();
         // Everything is made before any file appears.
-        let picture = self.plot.as_ref().map(|plot| plot.draw(&report::figure(study), &provenance));
-        let picture = picture.transpose()?;
+        let views = if self.views.is_wanted() {
+            let picture = Picture::Figure(report::figure(study));
+            let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
+            self.views.make(&picture, with, inputs.sources(), &provenance)?
+        } else {
+            Made::default()
+        };
         let text = match self.format {
             None => words.clone(),
             Some(Format::Csv) => {
@@ -181,9 +188,7 @@ impl Options {
             }
         };
         self.data.write(text.as_bytes())?;
-        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
-            plot.write(&bytes)?;
-        }
+        views.write()?;
         if self.format.is_some() {
             messages.say(&words);
         }

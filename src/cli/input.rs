@@ -15,6 +15,8 @@ use std::rc::Rc;
 #[derive(Debug, Default)]
 pub struct Inputs {
     records: RefCell<Vec<Input>>,
+    /// Texts of the documents, which a report shows: names and texts.
+    sources: RefCell<Vec<(String, String)>>,
     stdin_taken: Cell<bool>,
 }
 
@@ -44,7 +46,15 @@ impl Inputs {
             std::fs::read(name).with_context(|| format!("{name} cannot be read"))?
         };
         self.records.borrow_mut().push(Input::of(name, &bytes));
-        String::from_utf8(bytes).ok().with_context(|| format!("{name} is not UTF-8 text: save it as UTF-8"))
+        let text = String::from_utf8(bytes).ok();
+        let text = text.with_context(|| format!("{name} is not UTF-8 text: save it as UTF-8"))?;
+        self.sources.borrow_mut().push((shown(name), text.clone()));
+        Ok(text)
+    }
+
+    /// Texts that were read, with their names; logs are not among them.
+    pub fn sources(&self) -> Vec<(String, String)> {
+        self.sources.borrow().clone()
     }
 
     /// Records something that was read elsewhere.
@@ -156,7 +166,9 @@ impl Inputs {
             return Ok(Document { text: self.read(name)?, shown: shown(name), built_in: false });
         }
         let Some(text) = preset(name) else { bail!("{}", neither(kind, name, &known)) };
-        self.records.borrow_mut().push(Input::of(format!("preset {name}"), text.as_bytes()));
+        let preset = format!("preset {name}");
+        self.records.borrow_mut().push(Input::of(&preset, text.as_bytes()));
+        self.sources.borrow_mut().push((preset, text.to_owned()));
         Ok(Document { text: text.to_owned(), shown: format!("preset {name}"), built_in: true })
     }
 }

@@ -15,7 +15,6 @@ mod message;
 mod monitor;
 mod output;
 mod place;
-mod plot;
 mod progress;
 mod properties;
 mod reproduce;
@@ -25,6 +24,7 @@ mod simulate;
 mod start;
 mod states;
 mod unit_options;
+mod views;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

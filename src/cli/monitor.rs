@@ -4,10 +4,10 @@ use super::fill::{self, FillSource, GivenFill};
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
 use super::selection::{self, Selection};
 use super::start;
+use super::views::{Made, Views, Wanted};
 use anyhow::{Context, bail};
 use cylwatch::log::{LogOptions, Row};
 use cylwatch::report::monitor::Summary;
@@ -59,7 +59,7 @@ pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<E
         messages.say("nothing can be said yet: all rows wait in the state for late ones");
         return Ok(ExitCode::from(INCONCLUSIVE));
     };
-    messages.say(&cylwatch::report::monitor::text(&summary));
+    messages.say(&cylwatch::report::monitor::story(&summary).to_text());
     Ok(if summary.has_leak() {
         ExitCode::from(LEAK)
     } else if summary.is_inconclusive() {

@@ -10,14 +10,15 @@ use super::arguments::Format;
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
+use super::views::{Made, Views, Wanted};
 use anyhow::bail;
 use cylwatch::estimator::placement::search::Watch;
 use cylwatch::estimator::placement::study::{Placement, Study, StudySettings};
 use cylwatch::estimator::placement::{Candidates, Status, read_candidates};
-use cylwatch::report::Provenance;
-use cylwatch::report::place::{Placed, matrices};
+use cylwatch::report::figure::Picture;
+use cylwatch::report::place::{CAPTION, Placed, matrices};
+use cylwatch::report::{Provenance, Story};
 use cylwatch::thermal::scenario::Scenario;
 use cylwatch::thermal::vessel::Vessel;
 use std::process::ExitCode;
@@ -37,7 +38,7 @@ struct Options {
     time_limit: Option<Duration>,
     data: Target,
     format: Option<Format>,
-    plot: Option<Plot>,
+    views: Views,
     matrices: Option<Target>,
 }
 
@@ -65,7 +66,7 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
     let placed = Placed { study: &study, candidates: &candidates, vessel: &vessel };
     let seed = Some(options.settings.published.first_seed);
     let provenance = Provenance { seed, ..inputs.provenance() };
-    options.write(&placed, &placement, &provenance, messages)?;
+    options.write(&placed, &placement, (&inputs, &provenance), messages)?;
     if study.partial {
         messages.caution("the search was ended early: what was written is partial");
         return Ok(ExitCode::from(PARTIAL));
@@ -111,10 +112,11 @@ impl Options {
         &self,
         placed: &Placed,
         placement: &Placement,
-        provenance: &Provenance,
+        (inputs, provenance): (&Inputs, &Provenance),
         messages: &Messages,
     ) -> anyhow::Result<()> {
-        let words = placed.text();
+        let story = placed.story();
+        let words = story.to_text();
         let text = match self.format {
             None => words.clone(),
             Some(Format::Csv) => placed.csv(provenance),
@@ -124,11 +126,15 @@ impl Options {
             Some(target) => Some((target, serde_json::to_string(&matrices(placement, provenance))? + "\n")),
             None => None,
         };
-        let picture =
-            self.plot.as_ref().map(|plot| plot.draw_sheet(&placed.figure(), provenance)).transpose()?;
-        if let (Some(plot), Some(bytes)) = (&self.plot, picture) {
-            plot.write(&bytes)?;
-        }
+        let views = if self.views.is_wanted() {
+            let picture = Picture::Sheet(placed.figure());
+            let title = format!("Where sensors should sit: {}", placed.vessel.name);
+            let with = |picture| Story::new(title).picture(picture, CAPTION).then(story);
+            self.views.make(&picture, with, inputs.sources(), provenance)?
+        } else {
+            Made::default()
+        };
+        views.write()?;
         if let Some((target, text)) = of_matrices {
             target.write(text.as_bytes())?;
         }

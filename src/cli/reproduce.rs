@@ -1,35 +1,38 @@
-//! `cylwatch reproduce`: the paper's scenarios and a measured blowdown, as files and as a table.
+//! `cylwatch reproduce`: the paper rebuilt, as a report, as files and as tables.
 use super::arguments::ReproduceArguments;
 use super::command_line;
 use super::message::Messages;
 use super::output::{self, Target};
 use super::progress::Progress;
+use super::views::{Views, Wanted};
 use cylwatch::report::Provenance;
-use cylwatch::reproduce::{self, rows};
-use cylwatch::thermal::simulate::SimulationSettings;
+use cylwatch::reproduce::{self, Settings, rows};
 
-/// Computes, writes the files, prints the table.
+/// Computes, writes the files, prints the tables.
 pub fn run(arguments: ReproduceArguments, messages: &Messages) -> anyhow::Result<()> {
-    let mut settings = SimulationSettings::default();
+    let mut settings =
+        Settings { seed: arguments.seed, cylinders: arguments.cylinders, ..Settings::default() };
     if let Some(tolerance) = arguments.relative_tolerance {
-        settings.relative_tolerance = tolerance;
+        settings.simulation.relative_tolerance = tolerance;
     }
-    settings.validate()?;
+    settings.simulation.validate()?;
     output::make_folder(&arguments.out)?;
+    let views = Views::checked(Wanted { plot: None, report: arguments.report.as_deref() }, &[], &[])?;
     let progress = Progress::new(messages);
     let results = reproduce::run(&settings, &mut |what, done| progress.show(what, done))?;
-    let provenance = Provenance { command: command_line(), inputs: reproduce::inputs(), seed: None };
+    let provenance =
+        Provenance { command: command_line(), inputs: reproduce::inputs(), seed: Some(settings.seed) };
     progress.show("figures", 1.0);
     let files = results.files(&provenance)?;
     drop(progress);
     for (name, bytes) in &files {
         output::write_file(&arguments.out.join(name), bytes)?;
     }
-    let table = rows::rows(&results);
-    let missed = table.iter().filter(|row| row.met() == Some(false)).count();
-    let text = format!("{}\n{}", rows::text(&table), rows::scenarios_text(&results));
-    Target::Stdout.write(text.as_bytes())?;
-    messages.say(&format!("\nwrote {} files to {}", files.len(), arguments.out.display()));
+    views.make_report(|| results.story(), Vec::new(), &provenance)?.write()?;
+    let missed = rows::rows(&results).iter().filter(|row| row.met() == Some(false)).count();
+    Target::Stdout.write(results.text().as_bytes())?;
+    let out = arguments.out.display();
+    messages.say(&format!("\nwrote {} files to {out}: open {out}/report.html in a browser", files.len()));
     if missed > 0 {
         messages.caution(&format!("{missed} of the bars are not met, marked NO"));
     }

@@ -3,9 +3,10 @@ use super::arguments::{Format, SimulateArguments};
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
-use super::plot::Plot;
 use super::progress::Progress;
+use super::views::{Made, Views, Wanted};
 use anyhow::bail;
+use cylwatch::report::figure::Picture;
 use cylwatch::report::{Provenance, Readings, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
@@ -18,7 +19,7 @@ struct Options {
     scenario: String,
     data: Target,
     format: Format,
-    plot: Option<Plot>,
+    views: Views,
     settings: SimulationSettings,
     seed: u64,
 }
@@ -45,14 +46,17 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
     // Everything is made before anything is written.
     let data = data(&run, &readings, options.format, &provenance)?;
-    let figure = options.plot.is_some().then(|| simulation::figure(&run, &readings));
-    let picture = options.plot.as_ref().zip(figure);
-    let picture = picture.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
-    if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
-        plot.write(&bytes)?;
-    }
+    let story = simulation::story(&run);
+    let views = if options.views.is_wanted() {
+        let picture = Picture::Figure(simulation::figure(&run, &readings));
+        let with = |picture| story.clone().picture(picture, simulation::CAPTION);
+        options.views.make(&picture, with, inputs.sources(), &provenance)?
+    } else {
+        Made::default()
+    };
+    views.write()?;
     options.data.write(data.as_bytes())?;
-    messages.say(&simulation::summary(&run));
+    messages.say(&story.to_text());
     Ok(())
 }
 
@@ -66,15 +70,15 @@ impl Options {
         }
         let inputs = [Path::new(&vessel), Path::new(&scenario)];
         let data = Target::checked(arguments.output.as_deref(), &inputs)?;
-        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &[&data]));
-        let plot = plot.transpose()?;
+        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &inputs, &[&data])?;
         let mut settings = SimulationSettings::default();
         if let Some(tolerance) = arguments.relative_tolerance {
             settings.relative_tolerance = tolerance;
         }
         settings.validate()?;
         let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
-        Ok(Self { vessel, scenario, data, format, plot, settings, seed: arguments.seed })
+        Ok(Self { vessel, scenario, data, format, views, settings, seed: arguments.seed })
     }
 }
 

@@ -1,18 +1,26 @@
-//! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal. Pure functions; nothing here reads or writes.
+//! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal, pages for a browser. Pure functions; nothing here reads
+//! or writes.
+//!
+//! What a result says is a [`Story`]: a terminal and a page show the same one.
 pub mod bench_detector;
 pub mod calibrate;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
 pub mod monitor;
+mod page;
 pub mod place;
 mod provenance;
 mod readings;
 pub mod simulation;
+mod story;
 mod table;
+mod terminal;
 
+pub use page::Page;
 pub use provenance::{Fingerprint, Input, Provenance};
 pub use readings::Readings;
+pub use story::{Block, Story};
 pub use table::{Column, Table, aligned, number, rounded};
 
 /// What can go wrong while results become text or pictures.

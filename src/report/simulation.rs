@@ -1,7 +1,7 @@
 //! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
 use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
 use super::table::{Table, number};
-use super::{Provenance, Readings, aligned, readings};
+use super::{Provenance, Readings, Story, readings};
 use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use crate::thermal::units::PASCAL_PER_BAR;
@@ -238,39 +238,45 @@ pub fn statistics(run: &Trajectory) -> Value {
     })
 }
 
+/// What the figure of a run shows.
+pub const CAPTION: &str = "Temperatures; how wall, valve and sensors differ from the mean gas; pressure with the scenario's limits; \
+                           the gas mass where it changes. Lines named sensor are readings.";
+
 /// The run in a few lines for people.
-pub fn summary(run: &Trajectory) -> String {
+pub fn story(run: &Trajectory) -> Story {
+    let story = Story::new(title(run));
     let (Some(&first), Some(&last)) = (run.pressure_pa.first(), run.pressure_pa.last()) else {
-        return String::new();
+        return story;
     };
     let extremes =
         run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
-    let row = |what: &str, value: String| vec![what.to_owned(), value];
-    let mut rows = vec![
-        row(
-            "pressure, start and end",
+    let mut facts = vec![
+        (
+            "pressure, start and end".to_owned(),
             format!("{:.2} and {:.2} bar", first / PASCAL_PER_BAR, last / PASCAL_PER_BAR),
         ),
-        row(
-            "gas mean, lowest and highest",
+        (
+            "gas mean, lowest and highest".to_owned(),
             format!("{:.2} and {:.2} °C", extremes.0 - ZERO_CELSIUS_K, extremes.1 - ZERO_CELSIUS_K),
         ),
-        row(
-            "gas mass, start and end",
+        (
+            "gas mass, start and end".to_owned(),
             format!("{:.4} and {:.4} kg", run.ledger.mass_start_kg, run.ledger.mass_end_kg),
         ),
-        row(
-            "balance",
+        (
+            "balance".to_owned(),
             format!(
                 "mass within {}, energy within {}",
                 residual(run.ledger.mass_residual()),
                 residual(run.ledger.energy_residual())
             ),
         ),
-        row("solver", format!("{} steps with {} states", run.statistics.steps, run.statistics.states)),
+        (
+            "solver".to_owned(),
+            format!("{} steps with {} states", run.statistics.steps, run.statistics.states),
+        ),
     ];
-    for event in &run.events {
-        rows.push(row(&format!("event at {:.0} s", event.time_s), event_name(event)));
-    }
-    format!("{}\n{}", title(run), aligned(&[], &rows))
+    let event = |event: &Event| (format!("event at {:.0} s", event.time_s), event_name(event));
+    facts.extend(run.events.iter().map(event));
+    story.facts(facts)
 }

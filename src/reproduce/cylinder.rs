@@ -19,7 +19,15 @@ pub const FILL_PRESSURE_PA: f64 = 200e5;
 /// Temperature at which the fill is stated, K.
 pub const FILL_TEMPERATURE_K: f64 = 288.15;
 /// Volume of the cylinder, m³.
-const VOLUME_M3: f64 = 0.02;
+pub const VOLUME_M3: f64 = 0.02;
+
+/// Text of a built-in scenario.
+///
+/// # Errors
+/// There is none of this name.
+pub fn text_of(name: &'static str) -> Result<&'static str, ReproduceError> {
+    scenario::presets::text(name).ok_or(ReproduceError::Scenario { name })
+}
 
 /// A simulated scenario.
 #[derive(Clone, Debug)]

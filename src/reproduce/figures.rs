@@ -1,9 +1,221 @@
 //! Figures of the reproduction.
+use super::beside::ScenarioScore;
 use super::blowdown::{Blowdown, Variant, extreme, wall_middle_k};
 use super::cylinder::{FILL_TEMPERATURE_K, SLOPE_OF_PAPER_BAR_K, TightCylinder};
+use super::identification::{Identification, Validation};
 use super::measured::Curve;
-use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+use super::passage::{ENTRY_S, LEAK_G_H, ONSET_S, Passage};
+use super::scheme::{LOSS_BAR_H, SchemeRun, THRESHOLD_BAR};
+use super::watch::WHO;
+use crate::report::figure::style::Stroke;
+use crate::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use crate::thermal::units::ZERO_CELSIUS_K;
 use std::collections::BTreeSet;
+
+/// Strokes of those who watch, in their order.
+const STROKES: [Stroke; 3] = [style::FIRST, style::THIRD, style::GAS_MEAN];
+
+fn line(name: &str, x: &[f64], y: &[f64], stroke: Stroke) -> Item {
+    Item::line(name, x, y.iter().copied(), stroke)
+}
+
+fn panel(quantity: &str, height: f64, items: Vec<Item>) -> Panel {
+    Panel { quantity: quantity.into(), items, height }
+}
+
+fn over_time(title: &str, panels: Vec<Panel>, marks: Vec<Mark>) -> Figure {
+    Figure { title: title.into(), horizontal: Horizontal::Time, panels, marks, below: None }
+}
+
+fn mark(at: f64, name: &str) -> Mark {
+    Mark { at, name: name.into() }
+}
+
+fn differences(values: &[f64], truth: &[f64]) -> Vec<f64> {
+    values.iter().zip(truth).map(|(value, truth)| value - truth).collect()
+}
+
+/// Figure 2: what the models make of the shoulder on the data that they come from.
+pub fn figure_2(study: &Identification) -> Figure {
+    let (record, t) = (&study.record, study.record.time_s());
+    let [identified, published] = &study.simulated_degc;
+    let gas = record.gas_degc();
+    let temperatures = vec![
+        line("shoulder as read", t, record.shoulder_degc(), style::SHOULDER),
+        line("published,\nstart at 0 °C", t, published, style::SECOND),
+        line("identified here", t, identified, style::THIRD),
+        line("gas", t, gas, style::GAS_MEAN),
+    ];
+    let errors = vec![
+        line("published,\nstart at 0 °C", t, &differences(published, gas), style::SECOND),
+        line("identified here", t, &differences(identified, gas), style::THIRD),
+    ];
+    let panels = vec![panel("temperature in °C", 1.1, temperatures), panel("error in K", 0.8, errors)];
+    over_time("Figure 2: scenarios 1 and 2, one after the other", panels, Vec::new())
+}
+
+/// Figure 3: the models on scenarios that they do not come from.
+pub fn figure_3(study: &Identification) -> Figure {
+    let of = |validation: &Validation| {
+        let (record, t) = (&validation.record, validation.record.time_s());
+        let gas = record.gas_degc();
+        let [first, zero] = &validation.published_degc;
+        let identified = &validation.identified_degc[0];
+        let temperatures = vec![
+            line("shoulder as read", t, record.shoulder_degc(), style::SHOULDER),
+            line("published,\nstart at 0 °C", t, zero, style::AIR),
+            line("published, start\nat the gas", t, first, style::SECOND),
+            line("gas", t, gas, style::GAS_MEAN),
+        ];
+        let errors = vec![
+            line("published,\nstart at 0 °C", t, &clipped(&differences(zero, gas)), style::AIR),
+            line("published, start\nat the gas", t, &differences(first, gas), style::SECOND),
+            line("identified here", t, &differences(identified, gas), style::THIRD),
+        ];
+        let panels = vec![panel("temperature in °C", 0.9, temperatures), panel("error in K", 0.7, errors)];
+        over_time(&format!("Figure 3: scenario {}", validation.scenario), panels, Vec::new())
+    };
+    let mut parts = study.validations.iter().map(of);
+    let first = parts.next().unwrap_or_else(|| over_time("Figure 3", Vec::new(), Vec::new()));
+    Figure { below: parts.next().map(Box::new), ..first }
+}
+
+/// Errors of a start at zero, K, without those that would flatten all others.
+fn clipped(errors: &[f64]) -> Vec<f64> {
+    const SHOWN_K: f64 = 4.0;
+    errors.iter().map(|error| if error.abs() <= SHOWN_K { *error } else { f64::NAN }).collect()
+}
+
+/// Figure 6: the tunnel, by the paper's scheme, and on a simulated cylinder.
+pub fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Figure {
+    let until = scheme.time_s.partition_point(|&t| t <= 10_800.0);
+    let x = &scheme.time_s[..until];
+    let own = vec![
+        panel(
+            "temperature in °C",
+            0.7,
+            vec![
+                line("shoulder", x, &scheme.shoulder_degc[..until], style::SHOULDER),
+                line("gas, published\ntransfer function", x, &scheme.gas_degc[..until], style::GAS_MEAN),
+            ],
+        ),
+        panel(
+            "pressure in bar",
+            0.6,
+            vec![line("expected", x, &scheme.expected_bar[..until], style::PRESSURE)],
+        ),
+    ];
+    let marks = || vec![mark(ENTRY_S, "t1: tunnel")];
+    let mut below = watched("a simulated tight cylinder in the same passage", passage, Vec::new());
+    below.marks = marks();
+    let first = over_time("Figure 6: the paper's scheme, where model and cylinder are one", own, marks());
+    Figure { below: Some(Box::new(below)), ..first }
+}
+
+/// Figure 8: a leak after the tunnel, by the paper's scheme, and on a simulated cylinder, with the alarms, s, of those who watch.
+pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3]) -> Figure {
+    let t = &scheme.time_s;
+    let mut errors = vec![
+        Item::Limit { name: "threshold".into(), value: THRESHOLD_BAR },
+        line("error", t, &scheme.error_bar, style::PRESSURE),
+    ];
+    errors.extend(alarm("alarm", t, &scheme.error_bar, scheme.alarm_s, style::PRESSURE));
+    let own = vec![
+        panel(
+            "temperature in °C",
+            0.6,
+            vec![
+                line("shoulder", t, &scheme.shoulder_degc, style::SHOULDER),
+                line("gas, published\ntransfer function", t, &scheme.gas_degc, style::GAS_MEAN),
+            ],
+        ),
+        panel(
+            "pressure in bar",
+            0.7,
+            vec![
+                line("expected, p_t", t, &scheme.expected_bar, style::FIRST),
+                line("actual, p_a", t, &scheme.actual_bar, style::PRESSURE),
+            ],
+        ),
+        panel("error in bar", 0.7, errors),
+    ];
+    let watched_t = &passage.watched.time_s;
+    let points = alarms_s.iter().enumerate().filter_map(|(who, alarm_s)| {
+        let name = if who == 2 { "alarms" } else { "" };
+        alarm(name, watched_t, &passage.watched.missing_bar[who], *alarm_s, STROKES[who])
+    });
+    let marks = || vec![mark(ENTRY_S, "t1: tunnel"), mark(ONSET_S, "t2: leak")];
+    let title = format!("a simulated cylinder that loses {LEAK_G_H} g/h");
+    let mut below = watched(&title, passage, points.collect());
+    below.marks = marks();
+    let title = format!("Figure 8: the paper's scheme (figure 7) with a loss of {LOSS_BAR_H} bar/h");
+    Figure { below: Some(Box::new(below)), ..over_time(&title, own, marks()) }
+}
+
+/// Temperatures, pressures and what seems to be missing.
+fn watched(title: &str, passage: &Passage, points: Vec<Item>) -> Figure {
+    let watched = &passage.watched;
+    let t = &watched.time_s;
+    let mut missing: Vec<Item> =
+        (0..3).map(|who| line(WHO[who], t, &watched.missing_bar[who], STROKES[who])).collect();
+    missing.extend(points);
+    let expected: Vec<f64> = watched.missing_bar[0]
+        .iter()
+        .zip(&watched.pressure_bar)
+        .map(|(missing, read)| missing + read)
+        .collect();
+    let panels = vec![
+        panel(
+            "temperature in °C",
+            0.8,
+            vec![
+                line("air", t, &passage.air_degc, style::AIR),
+                line("shoulder as read", t, &watched.shoulder_degc, style::SHOULDER),
+                line("gas", t, &passage.gas_degc, style::GAS_MEAN),
+            ],
+        ),
+        panel(
+            "pressure in bar",
+            0.8,
+            vec![
+                line("expected,\npublished", t, &expected, style::FIRST),
+                line("as read", t, &watched.pressure_bar, style::PRESSURE),
+            ],
+        ),
+        panel("missing in bar", 0.9, missing),
+    ];
+    over_time(title, panels, Vec::new())
+}
+
+fn alarm(name: &str, t: &[f64], values: &[f64], alarm_s: Option<f64>, stroke: Stroke) -> Option<Item> {
+    let row = t.iter().position(|t| Some(*t) == alarm_s)?;
+    let stroke = Stroke { dash: &[], width: 1.6, ..stroke };
+    Some(Item::Points { name: name.into(), x: vec![t[row]], y: vec![values[row]], stroke })
+}
+
+/// A scenario on the first of the drawn cylinders.
+pub fn beside(score: &ScenarioScore) -> Figure {
+    let (truth, watched) = (&score.shown.truth, &score.shown.watched);
+    let t = &truth.time_s;
+    let celsius = |k: &[f64]| k.iter().map(|k| k - ZERO_CELSIUS_K).collect::<Vec<f64>>();
+    let high: Vec<f64> = watched.gas_sd_k.iter().map(|sd| 2.0 * sd).collect();
+    let low = high.iter().map(|high| -high).collect();
+    let band = Item::Band { name: "observer's\n± 2 sd".into(), x: t.clone(), low, high };
+    let errors = (0..3).map(|who| line(WHO[who], t, &score.shown.gas_error_k(who), STROKES[who]));
+    let missing = (0..3).map(|who| line(WHO[who], t, &watched.missing_bar[who], STROKES[who]));
+    let temperatures = vec![
+        line("air", t, &celsius(&truth.ambient_k), style::AIR),
+        line("shoulder as read", t, &watched.shoulder_degc, style::noisy(style::SHOULDER)),
+        line("gas", t, &celsius(&truth.gas_mean_k), style::GAS_MEAN),
+    ];
+    let panels = vec![
+        panel("temperature in °C", 0.8, temperatures),
+        panel("gas error in K", 0.8, std::iter::once(band).chain(errors).collect()),
+        panel("missing in bar", 0.8, missing.collect()),
+    ];
+    let marks = vec![mark(truth.course.change_s(), "the air changes")];
+    over_time(&format!("{}, one drawn cylinder", score.title), panels, marks)
+}
 
 /// Pressure of a tight full cylinder against its gas temperature.
 pub fn tight(tight: &TightCylinder) -> Figure {

@@ -1,8 +1,7 @@
 //! What was reached: one row per number, beside its reference and the bar it has to meet.
 use super::Reproduction;
 use super::blowdown::{Score, Stacked, Variant};
-use super::cylinder::time_63_s;
-use crate::report::aligned;
+use super::cylinder::{ScenarioRun, time_63_s};
 use crate::report::simulation::residual;
 use serde_json::{Value, json};
 
@@ -57,7 +56,8 @@ impl Row {
         })
     }
 
-    fn cells(&self) -> Vec<String> {
+    /// As a row of a table.
+    pub fn cells(&self) -> Vec<String> {
         let with_unit =
             |text: String| if self.unit.is_empty() { text } else { format!("{text} {}", self.unit) };
         let reference =
@@ -77,34 +77,36 @@ fn short(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-4 { format!("{value:.1e}") } else { crate::report::number(value, 5) }
 }
 
-/// The rows as an aligned table.
-pub fn text(rows: &[Row]) -> String {
-    aligned(&["what", "here", "reference", "bar", "met"], &rows.iter().map(Row::cells).collect::<Vec<_>>())
-}
+/// Names of the columns.
+pub const HEADER: [&str; 5] = ["what", "here", "reference", "bar", "met"];
 
-/// What the scenarios took and where they ended, as an aligned table.
-pub fn scenarios_text(results: &Reproduction) -> String {
-    let rows: Vec<Vec<String>> = results
-        .scenarios
-        .iter()
-        .map(|scenario| {
-            let run = &scenario.run;
-            let end = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
-            vec![
-                scenario.name.to_owned(),
-                format!("{:.2}", end(&run.gas_mean_k) - 273.15),
-                format!("{:.2}", end(&run.pressure_pa) / 1e5),
-                run.statistics.states.to_string(),
-                run.statistics.steps.to_string(),
-                format!("{:.0}", scenario.wall_time_s * 1e3),
-                residual(run.ledger.mass_residual()),
-                residual(run.ledger.energy_residual()),
-            ]
-        })
-        .collect();
-    let header =
-        ["scenario", "gas end/°C", "p end/bar", "states", "steps", "ms", "mass residual", "energy residual"];
-    aligned(&header, &rows)
+/// What the scenarios took and where they ended: names of columns, rows.
+pub fn scenarios(results: &Reproduction) -> ([&'static str; 8], Vec<Vec<String>>) {
+    let row = |scenario: &ScenarioRun| {
+        let run = &scenario.run;
+        let end = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
+        vec![
+            scenario.name.to_owned(),
+            format!("{:.2}", end(&run.gas_mean_k) - 273.15),
+            format!("{:.2}", end(&run.pressure_pa) / 1e5),
+            run.statistics.states.to_string(),
+            run.statistics.steps.to_string(),
+            format!("{:.0}", scenario.wall_time_s * 1e3),
+            residual(run.ledger.mass_residual()),
+            residual(run.ledger.energy_residual()),
+        ]
+    };
+    let header = [
+        "scenario",
+        "gas at the end in °C",
+        "pressure in bar",
+        "states",
+        "steps",
+        "time in ms",
+        "mass residual",
+        "energy residual",
+    ];
+    (header, results.scenarios.iter().map(row).collect())
 }
 
 /// All rows of a reproduction.

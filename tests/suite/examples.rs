@@ -3,20 +3,11 @@
 #[path = "../../examples/cold_night.rs"]
 mod cold_night;
 #[allow(dead_code)]
-#[path = "../../examples/figure_6.rs"]
-mod figure_6;
-#[allow(dead_code)]
-#[path = "../../examples/figure_7_8.rs"]
-mod figure_7_8;
-#[allow(dead_code)]
 #[path = "../../examples/leak.rs"]
 mod leak;
 #[allow(dead_code)]
 #[path = "../../examples/leak_masked_by_warming.rs"]
 mod leak_masked_by_warming;
-#[allow(dead_code)]
-#[path = "../../examples/observe_scenarios.rs"]
-mod observe_scenarios;
 #[allow(dead_code)]
 #[path = "../../examples/refill.rs"]
 mod refill;
@@ -114,55 +105,6 @@ fn a_cold_and_a_leaking_cylinder_show_the_same_pressure_and_differ_by_their_mass
     assert_abs_diff_eq!(cold.lost_g, 0.0, epsilon = 0.01);
     assert_abs_diff_eq!(leaking.lost_g, 60.0 * leaking.time_h, epsilon = 0.01);
     assert!(leaking.lost_g > 500.0 && leaking.gas_degc > cold.gas_degc + 29.0);
-}
-
-#[test]
-fn the_observer_is_nearer_to_gas_and_mass_than_the_transfer_function_and_knows_how_near() {
-    let nominal = cylwatch::thermal::vessel::presets::load("nitrogen-20l").unwrap();
-    for (course, title) in observe_scenarios::COURSES {
-        let comparison = observe_scenarios::Comparison::new(&course, &nominal, 1).unwrap();
-        let errors = comparison.errors();
-        let [gas, transfer] = errors.gas_k;
-        assert!(gas < 0.6 && gas < 0.5 * transfer, "{title}: {gas} K and {transfer} K");
-        let [mass, transfer] = errors.mass_g;
-        assert!(mass < 25.0 && mass < transfer, "{title}: {mass} g and {transfer} g");
-        assert!(errors.covered > 0.95, "{title}: {}", errors.covered);
-        assert_eq!(comparison.figure(title).panels.len(), 3);
-    }
-}
-
-#[test]
-fn the_published_expectation_fits_its_own_scheme_and_misses_a_simulated_tight_cylinder_by_bars() {
-    let scheme = figure_6::scheme().unwrap();
-    let end = scheme.time_s.len() - 1;
-    // 45 K times a gain of 1.0331 times 0.8457 bar/K; 63 % of it after 331 s.
-    let rise = |n: usize| scheme.pressure_bar[n] - scheme.pressure_bar[0];
-    assert_abs_diff_eq!(rise(end), 39.31, epsilon = 0.01);
-    let later = scheme.time_s.iter().position(|&t| t >= 600.0 + 331.0).unwrap();
-    assert_abs_diff_eq!(rise(later) / rise(end), 0.632, epsilon = 0.02);
-    let passage = figure_6::passage().unwrap();
-    let largest = |who: usize| passage.missing_bar[who].iter().fold(0.0, |most: f64, e| most.max(e.abs()));
-    assert!(largest(0) > 3.0 && largest(1) < 2.0 && largest(2) < 0.5, "{:?}", [0, 1, 2].map(largest));
-    assert_eq!(figure_6::figure(&scheme, &passage).panels.len(), 2);
-}
-
-#[test]
-fn the_papers_detector_finds_a_leak_in_its_scheme_after_minutes_and_on_a_cylinder_an_hour_after_the_others() {
-    let (course, said) = figure_7_8::scheme().unwrap();
-    // 0.1 bar at 3 bar/h after 2 min, then 10 min; noise of 10 mbar must have left the threshold.
-    let delay_min = said.delay_min.unwrap();
-    assert!((12.0..13.0).contains(&delay_min), "{delay_min} min");
-    assert_abs_diff_eq!(said.rate_bar_h, figure_7_8::SCHEME_BAR_H, epsilon = 0.03);
-    // 218 bar less three hours of 3 bar/h, 160 bar: 49 bar.
-    assert_abs_diff_eq!(said.left_h.unwrap(), 16.3, epsilon = 0.3);
-    assert_eq!(course.time_s.len(), 1441);
-    let (_, [published, refitted, monitor]) = figure_7_8::cylinder().unwrap();
-    let delay = |said: &figure_7_8::Said| said.delay_min.unwrap_or(f64::INFINITY);
-    for said in [&refitted, &monitor] {
-        assert!(delay(said) > 0.0 && delay(said) + 30.0 < delay(&published), "{}", said.detector);
-    }
-    // 60 g/h are 3.13 bar/h at 15 degC (19.18 g/bar).
-    assert_abs_diff_eq!(monitor.rate_bar_h, 3.13, epsilon = 0.15);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bench_detector;
+mod browser;
 mod calibrate;
 mod estimate;
 mod examples;
@@ -19,3 +20,4 @@ mod report;
 mod reproduce;
 mod simulate;
 mod support;
+mod table_1;

@@ -1,29 +1,47 @@
 //! `cylwatch reproduce`.
 use crate::support::{column, files, refused, run};
+use cylwatch::report::figure::{Figure, Item, Part, Picture};
+use cylwatch::reproduce::{self, Reproduction, Settings};
+use std::sync::OnceLock;
 use tempfile::tempdir;
 
+/// The paper rebuilt with one cylinder of each case, once for all tests.
+fn rebuilt() -> &'static Reproduction {
+    static REBUILT: OnceLock<Reproduction> = OnceLock::new();
+    REBUILT.get_or_init(|| {
+        let settings = Settings { cylinders: 1, ..Settings::default() };
+        reproduce::run(&settings, &mut |_, done| assert!((0.0..=1.0).contains(&done))).unwrap()
+    })
+}
+
 #[test]
-fn the_paper_is_reproduced_with_figures_tables_and_provenance() {
+fn the_paper_is_rebuilt_with_report_figures_tables_and_provenance() {
     let folder = tempdir().unwrap();
-    let outcome = run(folder.path(), &["reproduce", "--out", "made/here"]);
+    let outcome = run(folder.path(), &["reproduce", "--out", "made/here", "--cylinders", "1", "--seed", "3"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     let out = folder.path().join("made/here");
     let found = files(&out);
-    for scenario in ["shock-cold", "tunnel-winter", "ramp-warm", "cool-down", "bottle-step", "blowdown-i1"] {
-        for ending in ["svg", "png", "csv"] {
-            assert!(
-                found.contains(&format!("{scenario}.{ending}")),
-                "{scenario}.{ending} is missing in {found:?}"
-            );
-        }
+    let runs = ["shock-cold", "tunnel-winter", "ramp-warm", "cool-down", "bottle-step", "blowdown-i1"];
+    let figures = ["figure-2", "figure-3", "figure-4-5-7", "figure-6", "figure-8", "tight-cylinder"];
+    let wanted = runs
+        .iter()
+        .flat_map(|name| ["svg", "png", "csv"].map(|ending| format!("{name}.{ending}")))
+        .chain(figures.iter().flat_map(|name| ["svg", "png"].map(|ending| format!("{name}.{ending}"))))
+        .chain((1..=4).map(|k| format!("observer-scenario-{k}.svg")))
+        .chain(["report.html".into(), "results.json".into()]);
+    for name in wanted {
+        assert!(found.contains(&name), "{name} is missing in {found:?}");
     }
     assert!(found.iter().all(|name| !name.contains("part")), "{found:?}");
-    for words in ["what", "reference", "full cylinder at -25 °C", "I1, gas mean rms", "shock-cold"] {
+    for words in ["Table 1", "reference", "full cylinder at -25 °C", "I1, gas mean rms", "Paper and here"] {
         assert!(outcome.stdout.contains(words), "{words} is missing in\n{}", outcome.stdout);
     }
+    let widest = outcome.stdout.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!(widest <= 110, "{widest}");
     let text = std::fs::read_to_string(out.join("results.json")).unwrap();
     let results: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(results["provenance"]["seed"], serde_json::Value::Null);
+    assert_eq!(results["provenance"]["seed"], 3);
+    assert_eq!(results["drawn_cylinders"]["scenarios"].as_array().unwrap().len(), 4);
     let missed: Vec<&str> = results["results"]
         .as_array()
         .unwrap()
@@ -49,4 +67,108 @@ fn an_output_folder_that_cannot_be_made_is_found_before_the_run() {
         &["reproduce", "--out", "file/deeper"],
         &["file/deeper", "cannot be made", "--out"],
     );
+    refused(folder.path(), &["reproduce", "--report", "report.txt"], &["report.txt", ".html"]);
+    refused(folder.path(), &["reproduce", "--cylinders", "0"], &["--cylinders", "1..=1000"]);
+}
+
+#[test]
+fn the_published_expectation_misses_a_simulated_tight_cylinder_by_bars_and_the_observer_does_not() {
+    let missing = &rebuilt().tunnel.watched.missing_bar;
+    let largest = |who: usize| missing[who].iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    assert!(largest(0) > 3.0 && largest(1) < 2.0 && largest(2) < 0.5, "{:?}", [0, 1, 2].map(largest));
+}
+
+#[test]
+fn the_papers_detector_finds_the_leak_of_a_cylinder_long_after_the_others() {
+    let [published, refitted, monitor] = rebuilt().figure_8_said();
+    let delay = |delay_min: Option<f64>| delay_min.unwrap_or(f64::INFINITY);
+    for said in [refitted, monitor] {
+        assert!(delay(said.delay_min) > 0.0, "{}", said.who);
+        assert!(delay(said.delay_min) + 30.0 < delay(published.delay_min), "{}", said.who);
+    }
+    // 60 g/h are 3.13 bar/h at 15 degC (19.18 g/bar).
+    assert!((monitor.rate_bar_h.unwrap() - 3.13).abs() < 0.15, "{monitor:?}");
+    assert!(rebuilt().leak[0].watched.found_s.is_none(), "a leak in a tight cylinder");
+}
+
+#[test]
+fn on_drawn_cylinders_the_observer_is_nearer_than_the_published_function_and_knows_how_near() {
+    for score in &rebuilt().beside {
+        let [published, _, observer] = score.gas_k;
+        assert!(observer.value < 0.7 && observer.value < 0.6 * published.value, "{}", score.title);
+        assert!(score.missing_bar[2].value < 0.6 * score.missing_bar[0].value, "{}", score.title);
+        assert!(score.covered > 0.9, "{}: {}", score.title, score.covered);
+        // The bound is that of another world: it only has to be of the observer's order.
+        assert!((0.05..0.4).contains(&score.bound_k), "{}: {}", score.title, score.bound_k);
+    }
+}
+
+#[test]
+fn a_leak_after_a_tunnel_is_found_on_a_drawn_cylinder_without_an_alarm_on_tight_ones() {
+    let leak = &rebuilt().leaks[0];
+    assert_eq!((leak.cylinders, leak.delay_min[2].len(), leak.false_alarms[2]), (1, 1, 0));
+    assert_eq!(leak.tight_alarms, [0; 3]);
+    let bound_min = leak.bound_min.unwrap();
+    assert!((5.0..60.0).contains(&bound_min), "{bound_min}");
+    assert!((leak.leak_bar_h - 3.13).abs() < 0.05, "{}", leak.leak_bar_h);
+    assert!((leak.rate_bar_h[2][0] / leak.leak_bar_h - 1.0).abs() < 0.25, "{:?}", leak.rate_bar_h);
+    assert!(rebuilt().leaks[1].bound_min.unwrap() > 2.0 * bound_min);
+}
+
+#[test]
+fn every_answer_says_paper_here_and_why() {
+    let answers = reproduce::answers::answers(rebuilt());
+    assert!(answers.len() >= 12);
+    for answer in answers {
+        assert!(!answer.paper.is_empty() && !answer.here.is_empty() && !answer.why.is_empty(), "{answer:?}");
+        assert!(!format!("{answer:?}").contains("NaN"), "{answer:?}");
+    }
+}
+
+/// All figures of a story.
+fn figures(story: &cylwatch::report::Story) -> Vec<Figure> {
+    let mut all = Vec::new();
+    for block in &story.blocks {
+        let cylwatch::report::Block::Picture { picture, .. } = block else { continue };
+        match picture {
+            Picture::Figure(figure) => all.push(figure.clone()),
+            Picture::Sheet(sheet) => all.extend(sheet.parts.iter().filter_map(|part| match part {
+                Part::Figure(figure) => Some(figure.clone()),
+                _ => None,
+            })),
+        }
+    }
+    let below: Vec<Figure> = all.iter().filter_map(|figure| figure.below.as_deref().cloned()).collect();
+    all.into_iter().chain(below).collect()
+}
+
+#[test]
+fn curves_of_a_panel_are_told_apart_in_grey_and_every_axis_has_a_unit() {
+    let luminance = |rgb: cylwatch::report::figure::style::Rgb| {
+        (0.299 * f64::from(rgb.0) + 0.587 * f64::from(rgb.1) + 0.114 * f64::from(rgb.2)) / 255.0
+    };
+    let figures = figures(&rebuilt().story());
+    assert!(figures.len() >= 14, "{}", figures.len());
+    for figure in figures {
+        for panel in &figure.panels {
+            assert!(panel.quantity.contains(" in "), "{}: {}", figure.title, panel.quantity);
+            let strokes: Vec<_> = panel
+                .items
+                .iter()
+                .filter_map(|item| match item {
+                    Item::Line { name, stroke, .. } if !name.is_empty() => Some((name, stroke)),
+                    _ => None,
+                })
+                .collect();
+            for (k, (one, a)) in strokes.iter().enumerate() {
+                for (other, b) in &strokes[k + 1..] {
+                    let apart = (a.dash != b.dash
+                        && (a.dash.len() != b.dash.len() || (a.dash[0] / b.dash[0]).ln().abs() > 0.4))
+                        || (a.width - b.width).abs() >= 0.5
+                        || (luminance(a.color) - luminance(b.color)).abs() >= 0.2;
+                    assert!(apart, "{}: {one} and {other}", figure.title);
+                }
+            }
+        }
+    }
 }

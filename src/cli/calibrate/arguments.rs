@@ -23,6 +23,9 @@ pub struct CalibrateArguments {
     /// Figure of readings, model, residuals and their autocorrelation; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// What happened while the log was recorded: a TOML file or a built-in scenario, whose time is that of the log; of several
     /// logs say LOG=SCENARIO for each [default: the log's column ambient is the air].
     #[arg(long = "scenario", value_name = "SCENARIO")]

@@ -18,7 +18,8 @@ impl Options {
             bail!("-o - and --format json both want stdout: name a file for the vessel");
         }
         let others: Vec<&Target> = vessel_file.iter().collect();
-        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
+        let wanted = views::Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &inputs, &others)?;
         let words = Words {
             fit: &arguments.fit,
             hold: &arguments.hold,
@@ -48,7 +49,7 @@ impl Options {
             date: date::date(arguments.date.as_deref())?,
             vessel_file,
             format: arguments.format,
-            plot,
+            views,
         })
     }
 }

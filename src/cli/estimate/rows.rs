@@ -1,10 +1,12 @@
 //! The loop's body: a row in, an estimate out, everything else counted.
 use super::*;
 use crate::cli::output::Stream;
+use crate::cli::views::Made;
 use cylwatch::estimator::observer::cylinder::Cylinder;
 use cylwatch::estimator::observer::{Estimate, Innovation};
 use cylwatch::log::Truth;
 use cylwatch::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
+use cylwatch::report::figure::Picture;
 use cylwatch::report::{Input, Provenance};
 
 /// Change of the mass, relative, after which the slope of the settled pressure is taken anew.
@@ -67,7 +69,7 @@ impl<'a> Rows<'a> {
             last: None,
             slope: (f64::NAN, f64::NAN),
             cylinder,
-            figure: options.plot.is_some().then(|| FigureData::new(names)),
+            figure: options.views.is_wanted().then(|| FigureData::new(names)),
         };
         Ok(Self { pass, selection, readings: Vec::new(), results })
     }
@@ -105,15 +107,22 @@ impl<'a> Rows<'a> {
         };
         let late = inputs.record_log(log);
         let provenance = inputs.provenance();
-        let figure = results.figure.take().map(|data| report::figure(&summary.title, &data));
         // Everything is made before any file appears.
-        let plot = options.plot.as_ref().zip(figure);
-        let picture = plot.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
+        let views = match results.figure.take() {
+            Some(data) => {
+                let picture = Picture::Figure(report::figure(&summary.title, &data));
+                let with = |picture| {
+                    let cautions =
+                        summary.cautions.iter().map(ToString::to_string).chain(report::doubts(&summary));
+                    report::story(&summary).cautions(cautions).picture(picture, report::CAPTION)
+                };
+                options.views.make(&picture, with, inputs.sources(), &provenance)?
+            }
+            None => Made::default(),
+        };
         let learned = options.learned_out.as_ref().zip(observer.learned());
         results.stream.write(&tail(results.format, &summary, &provenance, late, log))?;
-        if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
-            plot.write(&bytes)?;
-        }
+        views.write()?;
         if let Some((target, learned)) = learned {
             let document = json!({ "provenance": provenance.to_json(), "learned": learned });
             target.write(format!("{}\n", serde_json::to_string_pretty(&document)?).as_bytes())?;

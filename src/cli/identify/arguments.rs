@@ -80,6 +80,9 @@ pub struct IdentifyArguments {
     /// Figure of data, model, errors and their correlations; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\

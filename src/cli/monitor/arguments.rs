@@ -60,6 +60,9 @@ pub struct MonitorArguments {
     /// Figure of pressures, mass, leak rate and verdict; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
     #[arg(long = "map", value_name = "OURS=THEIRS")]
     pub mappings: Vec<Mapping>,

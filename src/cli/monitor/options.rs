@@ -19,7 +19,7 @@ pub struct Options {
     pub log: String,
     pub data: Target,
     pub format: Format,
-    pub plot: Option<Plot>,
+    pub views: Views,
     pub mappings: Vec<Mapping>,
     pub sensors: Option<PathBuf>,
     pub fill: GivenFill,
@@ -53,7 +53,8 @@ impl Options {
         apart(&[("--output", Some(&data)), ("--events", events.as_ref()), ("--state", state.as_ref())])?;
         let state = state.map(state_file).transpose()?;
         let others: Vec<&Target> = std::iter::once(&data).chain(&events).collect();
-        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
+        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &inputs, &others)?;
         let years = arguments.false_alarm_years;
         if !(years > 0.0 && years <= LONGEST_YEARS) {
             bail!("--false-alarm-years = {years} must be above 0 and at most {LONGEST_YEARS}");
@@ -73,7 +74,7 @@ impl Options {
             vessel,
             log,
             data,
-            plot,
+            views,
             mappings,
             sensors,
             fill,

@@ -7,6 +7,7 @@ use super::*;
 use cylwatch::detector::monitor::intake::Counts;
 use cylwatch::detector::monitor::{EventKind, Monitor, Output};
 use cylwatch::log::Truth;
+use cylwatch::report::figure::Picture;
 use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowFates, Summary};
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -81,7 +82,10 @@ impl<'a> Session<'a> {
             naming,
             sink,
             rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
-            figure: options.plot.is_some().then(|| FigureData::new(circumstances.limit_pa, engine.full_pa)),
+            figure: options
+                .views
+                .is_wanted()
+                .then(|| FigureData::new(circumstances.limit_pa, engine.full_pa)),
             readings: Vec::new(),
             truths: VecDeque::new(),
             last: state.and_then(|state| state.last.clone()),
@@ -245,14 +249,19 @@ impl<'a> Session<'a> {
         });
         self.last = summary.as_ref().map(|summary| summary.last.clone());
         let provenance = inputs.provenance();
-        let data = self.figure.take().zip(summary.as_ref());
-        let figure = data.map(|(data, summary)| report::figure(&summary.title, &data));
         // Everything is made before any file appears.
-        let plot = options.plot.as_ref().zip(figure);
-        let picture = plot.map(|(plot, figure)| plot.draw(&figure, &provenance)).transpose()?;
-        if let (Some(plot), Some(bytes)) = (&options.plot, picture) {
-            plot.write(&bytes)?;
-        }
+        let views = match self.figure.take().zip(summary.as_ref()) {
+            Some((data, summary)) => {
+                let picture = Picture::Figure(report::figure(&summary.title, &data));
+                let with = |picture| {
+                    let cautions = summary.cautions.iter().map(ToString::to_string);
+                    report::story(summary).cautions(cautions).picture(picture, report::CAPTION)
+                };
+                options.views.make(&picture, with, inputs.sources(), &provenance)?
+            }
+            None => Made::default(),
+        };
+        views.write()?;
         self.save(log)?;
         self.rows.finish(inputs, log, summary.as_ref(), None)?;
         Ok(summary)

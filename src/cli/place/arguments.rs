@@ -64,6 +64,9 @@ pub struct PlaceArguments {
     /// Figure of places, cost and failures; the ending .svg or .png decides the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
     /// JSON file for all matrices that layouts are judged by: states, transition, process noise, readings.
     #[arg(long, value_name = "FILE")]
     pub matrices: Option<PathBuf>,

@@ -30,7 +30,8 @@ impl Options {
         let matrices = matrices.transpose()?;
         let mut others = vec![&data];
         others.extend(&matrices);
-        let plot = arguments.plot.as_deref().map(|path| Plot::checked(path, &inputs, &others)).transpose()?;
+        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
+        let views = Views::checked(wanted, &inputs, &others)?;
         let format = Format::asked(arguments.format, arguments.json, arguments.output.as_deref());
         let time_limit = arguments.amounts.time_limit()?;
         Ok(Self {
@@ -41,7 +42,7 @@ impl Options {
             time_limit,
             data,
             format,
-            plot,
+            views,
             matrices,
         })
     }

@@ -5,7 +5,10 @@ mod summary;
 
 pub use document::{csv, document};
 pub use figure::figure;
-pub use summary::text;
+pub use summary::story;
+
+/// What the figure shows.
+pub const CAPTION: &str = "Median delay against the leak rate of each detector with its interval, and the shortest delay that is possible.";
 
 const PASCAL_PER_BAR: f64 = 1e5;
 const HOUR_S: f64 = 3600.0;

@@ -2,7 +2,7 @@
 use super::bar_h;
 use crate::detector::performance::bench::{Judged, Outcome};
 use crate::detector::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
-use crate::report::{aligned, number};
+use crate::report::{Story, number};
 
 const DAY_S: f64 = 86_400.0;
 const HOUR_S: f64 = 3600.0;
@@ -10,15 +10,15 @@ const HOUR_S: f64 = 3600.0;
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
 /// What stands behind the numbers, what each detector reaches, and its delays.
-pub fn text(outcome: &Outcome) -> String {
-    format!(
-        "{}\n{}{}\n\n{}{}\n",
-        behind(outcome),
-        aligned(&header(), &outcome.judged.iter().map(reached).collect::<Vec<_>>()),
+pub fn story(outcome: &Outcome) -> Story {
+    let reached = outcome.judged.iter().map(reached).collect();
+    let story = Story::new("Leak detectors side by side").text(behind(outcome)).explained_rows(
+        "",
+        &header(),
+        reached,
         explained(outcome),
-        delays(outcome),
-        bound(outcome)
-    )
+    );
+    delays(outcome, story).remark(bound(outcome))
 }
 
 /// How many cylinders for how long.
@@ -113,8 +113,8 @@ fn explained(outcome: &Outcome) -> String {
 }
 
 /// Median delay of every detector at every rate, with the part that was found.
-fn delays(outcome: &Outcome) -> String {
-    let Some(first) = outcome.judged.first() else { return String::new() };
+fn delays(outcome: &Outcome, story: Story) -> Story {
+    let Some(first) = outcome.judged.first() else { return story };
     let names = outcome.judged.iter().map(|judged| judged.performance.detector.as_str());
     let header: Vec<&str> = ["leak / bar/h", "bound / h"].into_iter().chain(names).collect();
     let row = |(k, at): (usize, &Sensitivity)| {
@@ -124,7 +124,7 @@ fn delays(outcome: &Outcome) -> String {
         cells
     };
     let rows: Vec<Vec<String>> = first.performance.sensitivity.iter().enumerate().map(row).collect();
-    if rows.is_empty() { String::new() } else { aligned(&header, &rows) }
+    story.rows("", &header, rows)
 }
 
 /// Median delay in hours; what was found where it is not half.

@@ -9,4 +9,8 @@ pub use caution::cautions;
 pub use document::document;
 pub use figure::figure;
 pub use study::{Line, Study, shown_unit};
-pub use summary::text;
+pub use summary::story;
+
+/// What the figure shows.
+pub const CAPTION: &str =
+    "Readings and model of every channel, residuals, and their autocorrelation within bounds of 99 %.";

@@ -16,5 +16,9 @@ pub use innovation::{Counts, Innovations};
 pub use row::{COLUMNS, DOCUMENTATION, EstimateRow, csv_header, csv_row, json_row};
 pub(in crate::report) use row::{csv_cells, json_cells, push_number};
 pub use score::{Score, Spread};
-pub use summary::{Summary, document, doubts, text};
+pub use summary::{Summary, document, doubts, story};
 pub(in crate::report) use summary::{duration, log as sampling_words};
+
+/// What the figure of a run shows.
+pub const CAPTION: &str = "Gas temperature, mass and leak rate with bands of two standard deviations, truth where the log has it, and the \
+                           innovations: readings less what was expected of them.";

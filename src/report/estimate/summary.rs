@@ -4,7 +4,7 @@ use super::row::EstimateRow;
 use super::score::{Score, Spread};
 use crate::estimator::consistency::{Finding, OutputReport};
 use crate::log::{Caution, Sampling};
-use crate::report::aligned;
+use crate::report::Story;
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
@@ -31,24 +31,18 @@ pub struct Summary {
     pub restarts: u64,
 }
 
-/// The run in a few lines.
-pub fn text(summary: &Summary) -> String {
-    let mut rows = vec![("log", log(&summary.sampling))];
-    rows.extend(end(summary));
+/// The run in a few lines, and its sensors.
+pub fn story(summary: &Summary) -> Story {
+    let mut facts = vec![("log", log(&summary.sampling))];
+    facts.extend(end(summary));
     match summary.restarts {
         0 => {}
-        1 => rows.push(("restarts", "once from the prior".to_owned())),
-        many => rows.push(("restarts", format!("{many} times from the prior"))),
+        1 => facts.push(("restarts", "once from the prior".to_owned())),
+        many => facts.push(("restarts", format!("{many} times from the prior"))),
     }
-    rows.extend(score(&summary.score));
-    let width = rows.iter().map(|(what, _)| what.chars().count()).max().unwrap_or(0);
-    let mut text = format!("{}\n", summary.title);
-    for (what, value) in rows {
-        text.push_str(&format!("{what:width$}  {value}\n"));
-    }
-    text.push('\n');
-    text.push_str(&sensors(&summary.innovations));
-    text
+    facts.extend(score(&summary.score));
+    let (header, rows) = sensors(&summary.innovations);
+    Story::new(&summary.title).facts(facts).rows("", &header, rows)
 }
 
 /// What speaks against the model: sensors whose readings it refused so often that it does not describe them.
@@ -144,7 +138,7 @@ fn score(score: &Score) -> Vec<(&'static str, String)> {
 }
 
 /// Readings and innovations of every sensor as a table.
-fn sensors(innovations: &Innovations) -> String {
+fn sensors(innovations: &Innovations) -> ([&'static str; 8], Vec<Vec<String>>) {
     let row = |(counts, output): (&Counts, &OutputReport)| {
         let mut row = vec![output.name.clone()];
         row.extend([counts.used, counts.rejected, counts.missing].map(|count| count.to_string()));
@@ -159,7 +153,7 @@ fn sensors(innovations: &Innovations) -> String {
     let rows: Vec<Vec<String>> = innovations.counts().iter().zip(&report.outputs).map(row).collect();
     let header =
         ["sensor", "used", "rejected", "missing", "NIS (1)", "innovations", "autocorrelation (0)", "in time"];
-    aligned(&header, &rows)
+    (header, rows)
 }
 
 /// A finding in few words.

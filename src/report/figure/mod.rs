@@ -6,6 +6,8 @@
 mod axis;
 mod canvas;
 mod correlation;
+mod described;
+mod diagram;
 mod elevation;
 mod grid;
 mod output;
@@ -17,8 +19,10 @@ pub mod style;
 mod ticks;
 
 pub use correlation::correlation;
+pub use diagram::{Arrow, Diagram, Form, Node};
 pub use elevation::{Column, Elevation, Place, Profile, Shape};
 pub use grid::{Cell, Grid};
+pub use output::Picture;
 pub use sheet::{Part, Sheet};
 use style::Stroke;
 

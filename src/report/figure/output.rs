@@ -2,6 +2,7 @@
 use super::canvas::{Canvas, FINE, FONT};
 use super::{Figure, Sheet, panel, style};
 use crate::report::{Provenance, ReportError};
+use maud::html;
 use plotters::backend::{BitMapBackend, SVGBackend};
 use plotters::drawing::IntoDrawingArea;
 use plotters::prelude::DrawingBackend;
@@ -71,6 +72,68 @@ impl Sheet {
     }
 }
 
+/// Anything that can be drawn.
+#[derive(Clone, Debug)]
+pub enum Picture {
+    /// Panels.
+    Figure(Figure),
+    /// Parts below one another.
+    Sheet(Sheet),
+}
+
+impl Picture {
+    /// Title.
+    pub fn title(&self) -> &str {
+        match self {
+            Self::Figure(figure) => &figure.title,
+            Self::Sheet(sheet) => &sheet.title,
+        }
+    }
+
+    /// The picture in words.
+    pub fn described(&self) -> String {
+        match self {
+            Self::Figure(figure) => figure.described(),
+            Self::Sheet(sheet) => sheet.described(),
+        }
+    }
+
+    /// As the text of an SVG file.
+    ///
+    /// # Errors
+    /// As [`Figure::to_svg`].
+    pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
+        match self {
+            Self::Figure(figure) => svg(figure, provenance),
+            Self::Sheet(sheet) => svg(sheet, provenance),
+        }
+    }
+
+    /// As the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// As [`Figure::to_png`].
+    pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
+        match self {
+            Self::Figure(figure) => png(figure, provenance),
+            Self::Sheet(sheet) => png(sheet, provenance),
+        }
+    }
+
+    /// As an element of a page, as wide as its place, with its words for who cannot see it.
+    ///
+    /// # Errors
+    /// As [`Figure::to_svg`].
+    pub fn to_element(&self) -> Result<String, ReportError> {
+        let words = self.described();
+        let element = match self {
+            Self::Figure(figure) => element(figure, &words),
+            Self::Sheet(sheet) => element(sheet, &words),
+        };
+        element
+    }
+}
+
 /// What fills a paper of the usual width.
 pub(super) trait Drawn {
     /// Title.
@@ -101,7 +164,8 @@ fn fine_size(picture: &impl Drawn) -> (u32, u32) {
     ((style::WIDTH * FINE) as u32, (picture.height() * FINE).ceil() as u32)
 }
 
-fn svg(picture: &impl Drawn, provenance: &Provenance) -> Result<String, ReportError> {
+/// What plotters writes, and the attributes of its size on the fine grid.
+fn drawing(picture: &impl Drawn) -> Result<(String, String), ReportError> {
     fonts()?;
     let size = fine_size(picture);
     let mut text = String::new();
@@ -112,8 +176,19 @@ fn svg(picture: &impl Drawn, provenance: &Provenance) -> Result<String, ReportEr
         picture.draw(&canvas)?;
         area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
     }
+    Ok((text, format!("width=\"{}\" height=\"{}\"", size.0, size.1)))
+}
+
+fn element(picture: &impl Drawn, words: &str) -> Result<String, ReportError> {
+    let (text, fine) = drawing(picture)?;
+    let named = format!("role=\"img\" aria-label=\"{}\"", escaped(words));
+    Ok(text.replacen(&fine, &named, 1))
+}
+
+fn svg(picture: &impl Drawn, provenance: &Provenance) -> Result<String, ReportError> {
+    let (text, fine) = drawing(picture)?;
+    let size = fine_size(picture);
     // The fine grid stays in the view box; the picture opens at its natural size.
-    let fine = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
     let about = format!(
         ">\n<title>{}</title>\n<desc>{}</desc>",
@@ -140,8 +215,9 @@ fn png(picture: &impl Drawn, provenance: &Provenance) -> Result<Vec<u8>, ReportE
     encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
 }
 
+/// A text as content or quoted attribute of an element.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    html! { (text) }.into_string()
 }
 
 /// Mean of every square of `over` by `over` pixels: what makes edges smooth.

@@ -1,5 +1,6 @@
 //! Sheets: parts of different kinds below one another in one picture.
 use super::canvas::Canvas;
+use super::diagram::Diagram;
 use super::elevation::Elevation;
 use super::grid::Grid;
 use super::output::Drawn;
@@ -25,6 +26,8 @@ pub enum Part {
     Elevation(Elevation),
     /// A table.
     Grid(Grid),
+    /// Blocks and signals.
+    Diagram(Diagram),
 }
 
 impl Part {
@@ -33,6 +36,7 @@ impl Part {
             Self::Figure(figure) => figure.height(),
             Self::Elevation(elevation) => elevation.height(),
             Self::Grid(grid) => grid.height(),
+            Self::Diagram(diagram) => diagram.height(),
         }
     }
 
@@ -41,6 +45,7 @@ impl Part {
             Self::Figure(figure) => panel::draw(figure, canvas, from),
             Self::Elevation(elevation) => elevation.draw(canvas, from),
             Self::Grid(grid) => grid.draw(canvas, from),
+            Self::Diagram(diagram) => diagram.draw(canvas, from),
         }
     }
 }

@@ -9,4 +9,8 @@ pub use caution::cautions;
 pub use figure::figure;
 pub use series::{document, table};
 pub use study::{Judged, Part, Signal, Start, Study};
-pub use summary::text;
+pub use summary::story;
+
+/// What the figure shows.
+pub const CAPTION: &str = "Input, output, identified and published model; their errors; autocorrelation of the errors and their correlation with the \
+                           input within bounds of 99 %.";

@@ -1,20 +1,20 @@
 //! An identification in a few lines for people.
 use super::{Part, Study};
 use crate::estimator::identify::{Interval, Parameter, Pole, Residuals, Statistics};
-use crate::report::{aligned, number};
+use crate::report::{Story, number};
 
 /// Digits of values that people compare.
 const DIGITS: usize = 5;
 
 /// The study in words and tables.
-pub fn text(study: &Study) -> String {
-    let mut text = format!("{}\n{}\n{}\n\n", study.title(), log(&study.fitted), study.method);
-    text.push_str(&aligned(&["", "value", "95 % low", "95 % high", "unit"], &parameters(study)));
-    text.push('\n');
-    text.push_str(&merits(study));
-    text.push('\n');
-    text.push_str(&errors(&study.identified.residuals));
-    text
+pub fn story(study: &Study) -> Story {
+    let header = ["", "value", "95 % low", "95 % high", "unit"];
+    let story = Story::new(study.title()).text(format!("{}\n{}", log(&study.fitted), study.method)).rows(
+        "",
+        &header,
+        parameters(study),
+    );
+    merits(study, story).text(errors(&study.identified.residuals))
 }
 
 fn log(part: &Part) -> String {
@@ -84,7 +84,7 @@ fn row(name: &str, interval: &Interval, unit: &str) -> Vec<String> {
 }
 
 /// Figures of merit of all models on all data.
-fn merits(study: &Study) -> String {
+fn merits(study: &Study, story: Story) -> Story {
     let squared = format!("MSE / {}^2", study.output.difference);
     let rms = format!("rms / {}", study.output.difference);
     let header =
@@ -105,14 +105,13 @@ fn merits(study: &Study) -> String {
             rows.push(line(judged.model, data, judged.start.words(), &judged.comparison.statistics));
         }
     }
-    let mut text = aligned(&header, &rows);
-    if let Some(part) = &study.held_out {
-        text.push_str(&format!("held out: {}\n", log(part)));
-    }
-    if study.fitted.published().is_some() {
-        text.push_str("published: G(s) = 0.003121/(s + 0.003021), shoulder to gas in °C, gain 1.0331\n");
-    }
-    text
+    let held_out =
+        study.held_out.as_ref().map_or_else(String::new, |part| format!("held out: {}\n", log(part)));
+    let published = match study.fitted.published() {
+        Some(_) => "published: G(s) = 0.003121/(s + 0.003021), shoulder to gas in °C, gain 1.0331\n",
+        None => "",
+    };
+    story.explained_rows("", &header, rows, held_out + published)
 }
 
 /// What is left in the errors.

@@ -18,9 +18,13 @@ pub use figure::{FigureData, figure};
 pub use prognosis::{passage_words, reaction_reason, reaction_word, reaction_words};
 pub use row::{COLUMNS, DOCUMENTATION, MonitorRow, csv_header, csv_row, json_row};
 pub use strip::VerdictStrip;
-pub use summary::{Circumstances, RowFates, Summary, document, text};
+pub use summary::{Circumstances, RowFates, Summary, document, story};
 
 use crate::thermal::units::PASCAL_PER_BAR;
+
+/// What the figure of a run shows.
+pub const CAPTION: &str = "Pressure at 15 °C and as read with the limit, mass and leak rate with their intervals, verdicts as colours, events \
+                           and alarms as marks.";
 
 const GRAM_PER_HOUR: f64 = 3.6e6;
 const GRAM: f64 = 1e3;

@@ -9,6 +9,7 @@ use crate::detector::monitor::alarm::AlarmPanel;
 use crate::detector::monitor::{Health, LeakFinding, Outlook, Output, Verdict};
 use crate::detector::prognosis::Quantiles;
 use crate::log::{Caution, Sampling};
+use crate::report::Story;
 use crate::report::estimate::sampling_words;
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
@@ -69,30 +70,23 @@ pub struct Summary {
 }
 
 /// The run in a few lines.
-pub fn text(summary: &Summary) -> String {
-    let mut rows = vec![("verdict", summary.last.verdict.to_string())];
-    rows.extend(summary.last.leak.iter().flat_map(|leak| leak_rows(leak, &summary.naming)));
+pub fn story(summary: &Summary) -> Story {
+    let mut facts = vec![("verdict", summary.last.verdict.to_string())];
+    facts.extend(summary.last.leak.iter().flat_map(|leak| leak_rows(leak, &summary.naming)));
     if summary.last.leak.is_none() {
-        rows.push((
+        facts.push((
             "leak",
             format!("none found; one that matters is there with {}", percent(summary.last.leak_probability)),
         ));
     }
-    rows.extend(pressure_rows(summary));
+    facts.extend(pressure_rows(summary));
     if let Some(outlook) = &summary.last.outlook {
-        rows.extend(outlook_rows(outlook, summary.circumstances.next_service_s));
+        facts.extend(outlook_rows(outlook, summary.circumstances.next_service_s));
     }
-    rows.extend(alarm_rows(summary));
-    rows.push(("sensors", sensors(&summary.last.health, &summary.naming)));
-    rows.push(("log", log(summary)));
-    let width = rows.iter().map(|(what, _)| what.chars().count()).max().unwrap_or(0);
-    let mut text = format!("{}\n", summary.title);
-    for (what, value) in rows {
-        // Character counts: the names have letters beyond ASCII.
-        let pad = width - what.chars().count();
-        text.push_str(&format!("{what}{:pad$}  {value}\n", ""));
-    }
-    text
+    facts.extend(alarm_rows(summary));
+    facts.push(("sensors", sensors(&summary.last.health, &summary.naming)));
+    facts.push(("log", log(summary)));
+    Story::new(&summary.title).facts(facts)
 }
 
 fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3] {

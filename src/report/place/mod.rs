@@ -10,12 +10,10 @@
 //! | `achieved` | what Monte Carlo runs achieve |
 //! | `document` | CSV, JSON, matrices |
 //! | `figure`, `outline` | the picture |
-//! | `layout` | what fits a terminal |
 mod achieved;
 mod document;
 mod faults;
 mod figure;
-mod layout;
 mod outline;
 mod paper;
 mod places;
@@ -30,6 +28,10 @@ use crate::estimator::placement::study::Study;
 use crate::estimator::placement::{Candidates, Criterion, Status};
 use crate::estimator::sensor::{SensorKind, SurfacePlace};
 use crate::thermal::vessel::Vessel;
+
+/// What the figure shows.
+pub const CAPTION: &str = "The cylinder to scale with its candidates and what a thermometer at each height is worth; cost against accuracy; what the best \
+                           layouts reach.";
 
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;

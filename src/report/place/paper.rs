@@ -1,14 +1,13 @@
 //! The same places by the paper's own measure, beside the observer's.
-use super::layout::{titled, wrapped};
 use super::{GRAM_PER_HOUR, KELVIN, Placed};
 use crate::estimator::placement::study::ByPaper;
 use crate::estimator::placement::{PublishedRecord, PublishedScore, Spread};
-use crate::report::number;
+use crate::report::{Story, number};
 
 impl Placed<'_> {
     /// Each thermometer by the fit of a first-order model, and by what the observer knows with it.
-    pub(super) fn by_paper(&self) -> String {
-        let Some(by_paper) = &self.study.published else { return String::new() };
+    pub(super) fn by_paper(&self) -> Story {
+        let Some(by_paper) = &self.study.published else { return Story::default() };
         let (identified, validated) = (PublishedRecord::Identification, PublishedRecord::Validation);
         let header = [
             "place",
@@ -57,8 +56,9 @@ impl Placed<'_> {
                          scenarios 1 and 2 and validated on 3 and 4, over drawn specimens of the sensor; rank: by the \
                          validation's MSE. Right: the observer with the place alone beside what is required; rank: by the \
                          smallest leak that it finds";
-        titled("Places by the paper's measure and by the observer's", &header, &rows, &wrapped(explained))
-            + &self.question(by_paper)
+        Story::default()
+            .explained_rows("Places by the paper's measure and by the observer's", &header, rows, explained)
+            .remark(self.question(by_paper))
     }
 
     /// The paper's question: is the valve the better place than the shoulder?

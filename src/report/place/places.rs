@@ -1,34 +1,33 @@
 //! What accuracy costs, and one thermometer at each place.
-use super::layout::{titled, titled_with_layouts, wrapped};
 use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
 use crate::estimator::placement::Status;
 use crate::estimator::placement::study::{Front, Position};
-use crate::report::number;
+use crate::report::{Story, number};
 
 impl Placed<'_> {
     /// Layouts that none is better than at their cost.
-    pub(super) fn fronts(&self) -> String {
+    pub(super) fn fronts(&self) -> Story {
         let study = self.study;
         let leak = GRAM_PER_HOUR.with_symbol(study.settings.leak_kg_s);
         let gas =
             self.front("Cost against the sd of the gas temperature", "sd / K", KELVIN, &study.accuracy_front);
         let delay = format!("Cost against the delay of a leak of {leak}");
         let delay = self.front(&delay, "delay / h", HOUR, &study.delay_front);
-        [gas, delay].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n")
+        gas.then(delay)
     }
 
-    fn front(&self, title: &str, value: &str, unit: Unit, front: &Front) -> String {
+    fn front(&self, title: &str, value: &str, unit: Unit, front: &Front) -> Story {
         let row = |point: &crate::estimator::placement::study::Point| {
             vec![number(point.cost, 4), unit.number(point.value), self.chosen(&point.sensors)]
         };
         let rows: Vec<Vec<String>> = front.points.iter().map(row).collect();
         let compared = if front.complete { "all layouts" } else { "not all layouts, only judged ones" };
         let title = format!("{title} ({compared}: {})", front.compared);
-        titled_with_layouts(&title, &["cost", value, "layout"], rows, 2, "")
+        Story::default().rows(title, &["cost", value, "layout"], rows)
     }
 
     /// One thermometer beside what is required, from the top down.
-    pub(super) fn positions(&self) -> String {
+    pub(super) fn positions(&self) -> Story {
         let mut positions: Vec<&Position> = self.study.positions.iter().collect();
         positions.sort_by(|a, b| self.top_m(b).total_cmp(&self.top_m(a)));
         let mut header = vec![
@@ -49,8 +48,8 @@ impl Placed<'_> {
         let rows: Vec<Vec<String>> = positions.into_iter().map(|position| self.position(position)).collect();
         let beside = self.required().map_or(String::new(), |names| format!(" beside {names}"));
         let title = format!("One sensor{beside}, anywhere");
-        let explained = "< shoulder and valve; ref: may not be chosen, a reference; blind: sees not every state; smallest leak in g/h\n";
-        titled(&title, &header, &rows, &wrapped(explained))
+        let explained = "< shoulder and valve; ref: may not be chosen, a reference; blind: sees not every state; smallest leak in g/h";
+        Story::default().explained_rows(title, &header, rows, explained)
     }
 
     fn position(&self, position: &Position) -> Vec<String> {

@@ -1,10 +1,9 @@
 //! The best layouts for each number of sensors, and the same and others by every number.
-use super::layout::{titled, titled_with_layouts, wrapped};
 use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
 use crate::estimator::placement::CourseNumber;
 use crate::estimator::placement::search::Method;
 use crate::estimator::placement::study::{Judged, Numbered, Proof, Refused};
-use crate::report::number;
+use crate::report::{Story, number};
 
 /// Layouts near the best that are named.
 const NAMED: usize = 3;
@@ -31,7 +30,7 @@ const ROBUST: [Measure; 2] = [
 
 impl Placed<'_> {
     /// For each number of sensors the best by the criterion, and what it cannot fall below.
-    pub(super) fn best_layouts(&self) -> String {
+    pub(super) fn best_layouts(&self) -> Story {
         let criterion = self.study.settings.criterion;
         let unit = Unit::of(criterion);
         let value = format!("value / {}", unit.symbol);
@@ -56,8 +55,7 @@ impl Placed<'_> {
         let title = format!("Best layouts by the {}", criterion.words());
         let explained = "gap: of the best to what the search or the relaxation proves; relaxed: to the convex relaxation \
                          alone; change: against one sensor less";
-        let remarks = format!("{}{}", wrapped(explained), self.near_best());
-        titled_with_layouts(&title, &header, rows, 1, &remarks)
+        Story::default().explained_rows(title, &header, rows, explained).remark(self.near_best())
     }
 
     /// The first few that are as good as the best.
@@ -73,17 +71,17 @@ impl Placed<'_> {
             (!named.is_empty()).then(|| format!("  {}: {}{more}\n", number.sensors, named.join("; ")))
         };
         let lines: String = self.study.numbers.iter().filter_map(line).collect();
-        if lines.is_empty() { lines } else { format!("nearly as good:\n{}", wrapped(&lines)) }
+        if lines.is_empty() { lines } else { format!("nearly as good:\n{lines}") }
     }
 
     /// Numbers of sensors without a layout.
-    pub(super) fn refused(&self) -> String {
-        let line = |of: &Refused| wrapped(&format!("no layout of {}: {}", of.sensors, of.reason));
-        self.study.refused.iter().map(line).collect()
+    pub(super) fn refused(&self) -> Story {
+        let line = |of: &Refused| format!("no layout of {}: {}\n", of.sensors, of.reason);
+        Story::default().text(self.study.refused.iter().map(line).collect::<String>())
     }
 
     /// Layouts by every number, the best of each number of sensors marked.
-    pub(super) fn judged_layouts(&self) -> String {
+    pub(super) fn judged_layouts(&self) -> Story {
         let study = self.study;
         let mut measures: Vec<Measure> = STATED.to_vec();
         measures.extend([SMALLEST, DELAY]);
@@ -114,7 +112,7 @@ impl Placed<'_> {
         let explained = format!(
             "* best of so many sensors; sd of gas temperature, mass and leak rate at rest; finds: smallest leak found in time{robust}"
         );
-        titled_with_layouts("Layouts by every number", &header, rows, 1, &wrapped(&explained))
+        Story::default().explained_rows("Layouts by every number", &header, rows, explained)
     }
 
     /// Best of so many sensors by a number.
@@ -125,7 +123,7 @@ impl Placed<'_> {
     }
 
     /// Where certainty and the smallest leak ask for different layouts: a small covariance alone finds no leak.
-    pub(super) fn differences(&self) -> String {
+    pub(super) fn differences(&self) -> Story {
         let line = |number: &Numbered| {
             let (_, unit, smallest) = SMALLEST;
             let finds = self.best_of(number.sensors, smallest)?;
@@ -152,16 +150,14 @@ impl Placed<'_> {
         };
         let lines: Vec<String> = self.study.numbers.iter().filter_map(line).collect();
         if lines.is_empty() {
-            return String::new();
+            return Story::default();
         }
-        format!(
-            "Posterior covariance against the smallest leak, by number of sensors\n{}",
-            wrapped(&lines.concat())
-        )
+        let title = "Posterior covariance against the smallest leak, by number of sensors";
+        Story::default().text(format!("{title}\n{}", lines.concat()))
     }
 
     /// The best layouts along every scenario, with what they suffer from most.
-    pub(super) fn along_scenarios(&self) -> String {
+    pub(super) fn along_scenarios(&self) -> Story {
         let header =
             ["scenario", "n", "sd mean", "sd worst", "robust mean", "worst case", "largest error by", "K"];
         let bests = self.study.numbers.iter().filter_map(|number| {
@@ -188,7 +184,7 @@ impl Placed<'_> {
                 ]);
             }
         }
-        titled("The best layouts along scenarios: gas temperature, K", &header, &rows, "")
+        Story::default().rows("The best layouts along scenarios: gas temperature, K", &header, rows)
     }
 }
 

@@ -1,16 +1,16 @@
 //! A study in words: what was asked, then one table after the other.
 use super::{BAR, DAY_S, GRAM_PER_HOUR, HOUR, Placed};
-use crate::report::number;
+use crate::report::{Story, number};
 use crate::thermal::units::ZERO_CELSIUS_K;
 
 impl Placed<'_> {
-    /// Tables for people, at most 110 characters wide.
-    pub fn text(&self) -> String {
-        let mut parts = vec![self.asked()];
+    /// What was asked, then one table after the other.
+    pub fn story(&self) -> Story {
+        let mut story = Story::new("").text(self.asked());
         if self.study.numbers.is_empty() {
-            parts.push("No layout was looked at before the end.\n".into());
+            story = story.text("No layout was looked at before the end.");
         }
-        parts.extend([
+        let parts = [
             self.best_layouts(),
             self.refused(),
             self.judged_layouts(),
@@ -23,9 +23,13 @@ impl Placed<'_> {
             self.positions(),
             self.by_paper(),
             self.achieved(),
-        ]);
-        parts.retain(|part| !part.is_empty());
-        parts.join("\n")
+        ];
+        parts.into_iter().fold(story, Story::then)
+    }
+
+    /// Tables for people, at most 110 characters wide.
+    pub fn text(&self) -> String {
+        self.story().to_text()
     }
 
     /// What was asked, and under which conditions.

@@ -8,6 +8,7 @@ mod course;
 mod cylinder;
 pub mod disturbance;
 mod file;
+pub mod matched;
 pub mod process;
 mod railway;
 mod random;

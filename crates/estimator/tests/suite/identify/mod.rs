@@ -7,4 +7,3 @@ mod noisy;
 mod peer;
 mod structure;
 mod system;
-mod table_1;

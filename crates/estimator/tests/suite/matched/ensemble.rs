@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
 
-use super::world::{Chamber, Draws, World};
+use cylwatch_estimator::truth::matched::{Chamber, Draws, World};
 
 /// Fixed times at which errors are judged.
 const TIMES: usize = 10;
@@ -70,8 +70,8 @@ fn fixed(samples: usize) -> Vec<usize> {
 }
 
 fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
-    let mut world = World::new(plan.chamber, &plan.truth, plan.spread);
-    let model = World::new(plan.chamber, &plan.filter, plan.spread);
+    let mut world = World::new(plan.chamber, &plan.truth, plan.spread).unwrap();
+    let model = World::new(plan.chamber, &plan.filter, plan.spread).unwrap();
     let (mean, p) = (model.prior().0, UdFactors::from_covariance(&model.prior_covariance()).unwrap());
     let mut run = Run {
         nis: NisAccumulator::default(),
@@ -92,9 +92,9 @@ fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
         world.time_s = k.saturating_sub(1) as f64 * sample_s;
         filter.model_mut().time_s = world.time_s;
         if k > 0 {
-            draws.advance(&mut world, &mut x, sample_s);
+            draws.advance(&mut world, &mut x, sample_s).unwrap();
         }
-        let z = draws.readings(&mut world, &x);
+        let z = draws.readings(&mut world, &x).unwrap();
         filter.step(dt_s, &z).unwrap();
         run.nis.add_step(filter.report());
         let error: Vec<f64> = filter.state().iter().zip(&x).map(|(estimate, x)| estimate - x).collect();
@@ -127,7 +127,7 @@ impl Bound {
 
 impl Ensemble {
     pub fn of(plan: &Plan) -> Self {
-        let world = World::new(plan.chamber, &plan.truth, plan.spread);
+        let world = World::new(plan.chamber, &plan.truth, plan.spread).unwrap();
         let prior = world.prior_covariance();
         let functionals = [world.map().gas, world.map().mass];
         let samples = (plan.chamber.duration_s / plan.chamber.sample_s) as usize + 1;
@@ -171,7 +171,7 @@ impl Ensemble {
         let paths: Vec<&Bound> = self.runs.iter().filter_map(|run| run.bound.as_ref()).collect();
         let along =
             [0, 1].map(|w| paths.iter().map(|path| path.variances[w]).sum::<f64>() / paths.len() as f64);
-        let world = World::new(self.plan.chamber, &self.plan.truth, self.plan.spread);
+        let world = World::new(self.plan.chamber, &self.plan.truth, self.plan.spread).unwrap();
         let mut bound =
             PosteriorBound::try_new(&world.prior_covariance(), world.leading(), Expectation::Full).unwrap();
         let mut published = [0.0; 2];

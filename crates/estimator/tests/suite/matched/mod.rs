@@ -10,14 +10,13 @@
 //! beside it: constants with a spread make it far too small.
 mod ensemble;
 mod observer;
-mod world;
 
 use cylwatch_estimator::bound::Efficiency;
 use cylwatch_estimator::consistency::{Finding, Significance};
 use cylwatch_estimator::observer::LeakHypothesis;
 
+use cylwatch_estimator::truth::matched::{COLD, COMMISSIONED, Chamber, leak_member, mass_member, settings};
 use ensemble::{Ensemble, Plan};
-use world::{COLD, COMMISSIONED, Chamber, leak_member, mass_member, settings};
 
 const SEEDS: u64 = 200;
 const ONE: Significance = Significance::ONE_PERCENT;
@@ -25,7 +24,7 @@ const ONE: Significance = Significance::ONE_PERCENT;
 fn plan(scenario: usize, member: LeakHypothesis) -> Plan {
     let settings = settings(member);
     Plan {
-        chamber: Chamber::scenario(scenario),
+        chamber: Chamber::scenarios()[scenario - 1],
         truth: settings.clone(),
         filter: settings,
         spread: COMMISSIONED,

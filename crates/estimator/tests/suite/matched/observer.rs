@@ -8,8 +8,8 @@ use nalgebra::DVector;
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 
-use super::world::{Chamber, Draws, World, leak_member, mass_member, settings};
 use crate::linear_model::{covariance_difference, state_difference};
+use cylwatch_estimator::truth::matched::{Chamber, Draws, World, leak_member, mass_member, settings};
 
 /// Intervals of irregular samples, s, some of them longer than the longest step.
 const INTERVALS_S: [f64; 5] = [60.0, 20.0, 45.0, 7.5, 300.0];
@@ -29,19 +29,19 @@ fn observed(member: LeakHypothesis) -> ObserverSettings {
 
 /// Rows of time, s, and readings of a drawn truth; some readings are missing.
 fn rows(settings: &ObserverSettings) -> Vec<(f64, Vec<f64>)> {
-    let chamber = Chamber { change_k: 0.0, ..Chamber::scenario(1) };
-    let mut world = World::new(chamber, settings, 0.3);
+    let chamber = Chamber { change_k: 0.0, ..Chamber::scenarios()[0] };
+    let mut world = World::new(chamber, settings, 0.3).unwrap();
     let mut draws = Draws(ChaCha12Rng::seed_from_u64(11));
     let (mut x, mut time_s) = (draws.state(&world), 0.0);
     (0..150)
         .map(|k| {
-            let mut z = draws.readings(&mut world, &x);
+            let mut z = draws.readings(&mut world, &x).unwrap();
             if k > 0 {
                 (0..z.len()).filter(|j| (k + j) % 7 == 0).for_each(|j| z[j] = f64::NAN);
             }
             let row = (time_s, z);
             let dt_s = INTERVALS_S[k % INTERVALS_S.len()];
-            draws.advance(&mut world, &mut x, dt_s);
+            draws.advance(&mut world, &mut x, dt_s).unwrap();
             time_s += dt_s;
             row
         })

@@ -1,21 +1,16 @@
 //! Table 1 of the paper from simulated scenarios 1 and 2: what physics explains of it, and what it does not.
-#[allow(dead_code)]
-#[path = "../../../examples/identify_transfer_function.rs"]
-mod identify_transfer_function;
-
-use cylwatch_estimator::identify::{Gain, Hold, InitialState, published};
-use identify_transfer_function as table;
-use table::{Course, Place, TABLE_1};
+use cylwatch::estimator::identify::{Gain, Hold, InitialState, published};
+use cylwatch::reproduce::table_1::{self as table, Place, Record, TABLE_1};
 
 /// Share of the way to the air that the presets' thermometers read.
 const COUPLING: [f64; 2] = [0.15; 2];
 
-fn course() -> Course {
-    Course::of_table_1(COUPLING).unwrap()
+fn course() -> Record {
+    Record::of_table_1(COUPLING).unwrap()
 }
 
 /// The pole of the shoulder by hold and start, relative to the published one.
-fn pole(course: &Course, hold: Hold, initial: InitialState, gain: Gain) -> f64 {
+fn pole(course: &Record, hold: Hold, initial: InitialState, gain: Gain) -> f64 {
     let found = table::first_order(course, Place::Shoulder, hold, initial, gain).unwrap();
     found.model.den[1] / published::POLE_PER_S - 1.0
 }
@@ -69,9 +64,9 @@ fn the_gain_is_one_and_no_offset_of_a_thermometer_makes_the_published_one() {
 
 #[test]
 fn the_valve_fits_better_than_the_shoulder_only_if_both_thermometers_feel_much_of_the_air() {
-    let fit = |course: &Course, place| table::row(course, place).unwrap().statistics.fit_percent;
+    let fit = |course: &Record, place| table::row(course, place).unwrap().statistics.fit_percent;
     let both = |share: f64| {
-        let course = Course::of_table_1([share; 2]).unwrap();
+        let course = Record::of_table_1([share; 2]).unwrap();
         [Place::Shoulder, Place::Valve].map(|place| fit(&course, place))
     };
     let ([shoulder, valve], [shoulder_in_air, valve_in_air]) = (both(0.15), both(0.3));
@@ -87,7 +82,7 @@ fn on_scenarios_3_and_4_the_identified_model_is_right_to_a_fifth_of_a_kelvin_and
  {
     let identified = table::row(&course(), Place::Shoulder).unwrap().model;
     for scenario in ["ramp-warm", "cool-down"] {
-        let course = Course::simulated(scenario, COUPLING).unwrap();
+        let course = Record::simulated(scenario, COUPLING).unwrap();
         let rms = |model| table::validation(model, &course).unwrap().map(|c| c.statistics.mse.sqrt());
         let [fitted, first, zero] = rms(&identified);
         assert!(fitted < 0.2 && first < 0.2, "{scenario}: {fitted} K, {first} K");

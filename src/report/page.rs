@@ -1,0 +1,248 @@
+//! A story as a page for a browser: one file that refers to nothing outside, with its pictures inside.
+//!
+//! The page is legible without scripts, on a phone (wide tables and pictures scroll in their own frames), in grey (curves differ in dash and
+//! width), and on paper. Every picture has its words for who cannot see it.
+use super::figure::Picture;
+use super::story::{Block, Story};
+use super::{Provenance, ReportError};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// Looks of all pages.
+const STYLE: &str = include_str!("page.css");
+
+/// A page.
+#[derive(Clone, Copy, Debug)]
+pub struct Page<'a> {
+    /// What it says.
+    pub story: &'a Story,
+    /// Where it comes from.
+    pub provenance: &'a Provenance,
+}
+
+impl Page<'_> {
+    /// The text of the file.
+    ///
+    /// # Errors
+    /// A picture cannot be drawn.
+    pub fn to_html(&self) -> Result<String, ReportError> {
+        let blocks = self.story.blocks.iter().enumerate().map(|(k, block)| element(k, block));
+        let blocks = blocks.collect::<Result<Vec<Markup>, ReportError>>()?;
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content={ "cylwatch " (Provenance::VERSION) };
+                    title { (self.story.title) }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    header { p.program { "cylwatch " (Provenance::VERSION) } h1 { (self.story.title) } }
+                    (contents(&self.story.blocks))
+                    main { @for block in &blocks { (block) } }
+                    (self.origin())
+                }
+            }
+        };
+        Ok(page.into_string())
+    }
+
+    /// Command, inputs and seed.
+    fn origin(&self) -> Markup {
+        let provenance = self.provenance;
+        html! {
+            footer {
+                h2 #origin { "Where this comes from" }
+                div.wide {
+                    table {
+                        tbody {
+                            tr { th scope="row" { "program" } td { "cylwatch " (Provenance::VERSION) } }
+                            tr { th scope="row" { "command" } td { code { (provenance.command) } } }
+                            @for input in &provenance.inputs {
+                                tr {
+                                    th scope="row" { "input" }
+                                    td { (input.name) br; small { "SHA-256 " code { (input.sha256) } } }
+                                }
+                            }
+                            tr {
+                                th scope="row" { "seed" }
+                                td {
+                                    @match provenance.seed {
+                                        Some(seed) => (seed),
+                                        None => "none, nothing is random",
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Anchor of a heading.
+fn anchor(index: usize) -> String {
+    format!("s{index}")
+}
+
+/// Links to the headings, where there are some.
+fn contents(blocks: &[Block]) -> Markup {
+    let headings: Vec<(usize, &str)> = blocks
+        .iter()
+        .enumerate()
+        .filter_map(|(k, block)| match block {
+            Block::Heading(words) => Some((k, words.as_str())),
+            _ => None,
+        })
+        .collect();
+    html! {
+        @if headings.len() > 2 {
+            nav aria-label="Contents" {
+                ol { @for (k, words) in &headings { li { a href={ "#" (anchor(*k)) } { (words) } } } }
+            }
+        }
+    }
+}
+
+fn element(index: usize, block: &Block) -> Result<Markup, ReportError> {
+    Ok(match block {
+        Block::Heading(words) => html! { h2 id=(anchor(index)) { (words) } },
+        Block::Text(words) => {
+            html! { p { @for (k, line) in words.lines().enumerate() { @if k > 0 { br; } (line) } } }
+        }
+        Block::Remark(words) => {
+            html! { p.remark { @for (k, line) in words.lines().enumerate() { @if k > 0 { br; } (line) } } }
+        }
+        Block::Caution(words) => html! { p.caution { strong { "Caution: " } (words) } },
+        Block::Facts(facts) => html! {
+            div.wide { table.facts { tbody {
+                @for (name, value) in facts {
+                    tr { th scope="row" { (name) } td { (value) } }
+                }
+            } } }
+        },
+        Block::Rows { caption, header, rows } => table(caption, header, rows),
+        Block::Picture { picture, caption } => figure(picture, caption)?,
+        Block::Source { name, text } => html! {
+            details { summary { (name) } pre { (text) } }
+        },
+    })
+}
+
+/// Whether a column holds numbers, each with a unit or an interval at most; they stand to the right.
+fn is_numeric(rows: &[Vec<String>], column: usize) -> bool {
+    let is_number = |cell: &String| {
+        let mut words = cell.split_whitespace();
+        let first = words.next().unwrap_or("").trim_start_matches(['<', '>', '\u{2264}', '±']);
+        let number = first.replace('\u{2212}', "-").parse::<f64>().is_ok() || first.is_empty();
+        number && words.next().is_none_or(|second| second.starts_with(['(', '[']) || words.next().is_none())
+    };
+    rows.iter().filter_map(|row| row.get(column)).all(|cell| cell.is_empty() || is_number(cell))
+}
+
+fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> Markup {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(header.len());
+    let class = |column: usize| is_numeric(rows, column).then_some("number");
+    html! {
+        div.wide {
+            table {
+                @if !caption.is_empty() { caption { (caption) } }
+                @if !header.is_empty() {
+                    thead { tr {
+                        @for (k, name) in header.iter().enumerate() { th scope="col" class=[class(k)] { (name) } }
+                    } }
+                }
+                tbody {
+                    @for row in rows {
+                        tr {
+                            @for k in 0..columns {
+                                @let cell = row.get(k).map_or("", String::as_str);
+                                @if k == 0 { th scope="row" class=[class(k)] { (cell) } }
+                                @else { td class=[class(k)] { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {
+    let drawing = picture.to_element()?;
+    Ok(html! {
+        figure {
+            div.wide { (PreEscaped(drawing)) }
+            @if !caption.is_empty() { figcaption { (caption) } }
+            details.words { summary { "The picture in words" } p { (picture.described()) } }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Input;
+    use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+
+    fn story() -> Story {
+        let items = vec![Item::line("a < b & \"c\"", &[0.0, 60.0], [1.0, 2.0], style::GAS_MEAN)];
+        let panels = vec![Panel { quantity: "temperature in °C".into(), items, height: 1.0 }];
+        let figure = Figure {
+            title: "<run>".into(),
+            horizontal: Horizontal::Time,
+            panels,
+            marks: Vec::new(),
+            below: None,
+        };
+        Story::new("A <b>run</b>")
+            .heading("one")
+            .text("5 < 6 & 7 > 3")
+            .cautions(["<script>".to_owned()])
+            .heading("two")
+            .facts([("gas", "1 °C".to_owned())])
+            .rows("c", &["what", "n"], vec![vec!["<i>".into(), "-10".into()], vec!["b".into()]])
+            .heading("three")
+            .figure(figure, "what it shows")
+            .source("vessel.toml", "name = \"<x>\"")
+    }
+
+    fn page() -> String {
+        let inputs = vec![Input::of("a<b.toml", b"abc")];
+        let provenance = Provenance { command: "cylwatch x '<y>'".into(), inputs, seed: None };
+        Page { story: &story(), provenance: &provenance }.to_html().unwrap()
+    }
+
+    #[test]
+    fn nothing_that_is_said_becomes_markup() {
+        let page = page();
+        for raw in ["<b>run", "<script>:", "<i>", "name = \"<x>", "a<b.toml", "'<y>'", "a < b & \"c\""] {
+            assert!(!page.contains(raw), "{raw}");
+        }
+        assert!(!page.contains("<script"));
+        assert!(page.contains("A &lt;b&gt;run&lt;/b&gt;") && page.contains("5 &lt; 6 &amp; 7 &gt; 3"));
+    }
+
+    #[test]
+    fn a_page_refers_to_nothing_outside() {
+        let page = page();
+        for outside in ["src=", "@import", "url(", "<link", "<iframe", "fetch(", "href=\"http"] {
+            assert!(!page.contains(outside), "{outside}");
+        }
+        let without_namespace = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!without_namespace.contains("http"));
+    }
+
+    #[test]
+    fn a_picture_has_its_words_a_table_its_heads_and_numbers_stand_right() {
+        let page = page();
+        assert!(page.contains("role=\"img\" aria-label=\"&lt;run&gt;. Horizontal: time, 0 s to 60 s."));
+        assert!(page.contains("<th scope=\"col\" class=\"number\">n</th>"));
+        assert!(
+            page.contains("<td class=\"number\">-10</td>") && page.contains("<td class=\"number\"></td>")
+        );
+        assert!(page.contains("<nav") && page.contains("href=\"#s0\""));
+    }
+}
