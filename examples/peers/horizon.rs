@@ -1,7 +1,8 @@
 //! Moving horizon on the observer's linearisation with a leak that is not negative, to compare with do-mpc.
 //!
-//! States are in units of their prior standard deviations, so that the solver that does not scale has a fair start. Windows
-//! stand for themselves: each has its own prior and samples, so that both sides minimise the same function.
+//! States are in units of their prior standard deviations, so that the solver that does not scale has a fair start, and the
+//! mass has no noise of its own, whose weight (1e14) would be none to invert. Windows stand for themselves: each has its
+//! own prior and samples, so that both sides minimise the same function.
 use super::filter::readings;
 use super::linear::{self, Process, matrix, rows};
 use super::stopwatch::{Stopwatch, Timing};
@@ -30,6 +31,7 @@ pub struct Inputs {
 /// Scaled matrices and readings.
 pub fn inputs(of: &linear::Inputs) -> anyhow::Result<Inputs> {
     let bounded = of.names.iter().position(|name| name.starts_with("leak")).context("no leak rate")?;
+    let mass = of.names.iter().position(|name| name == "mass_kg").context("no mass")?;
     let prior = matrix(&of.prior);
     let scale: Vec<f64> = prior.diagonal().iter().map(|variance| variance.sqrt()).collect();
     let n = scale.len();
@@ -49,6 +51,7 @@ pub fn inputs(of: &linear::Inputs) -> anyhow::Result<Inputs> {
         readings: Vec::new(),
         ..of.clone()
     };
+    linear.g[mass].fill(0.0);
     let spread = matrix(&linear.prior);
     let windows = (1..=WINDOWS).map(|seed| readings(&linear, &spread, SAMPLES, seed));
     let windows = windows.collect::<Result<_, _>>()?;
