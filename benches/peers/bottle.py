@@ -66,7 +66,8 @@ class Bottle:
         coefficients = self.film @ ((gas - self.middle_k) / self.half_k) ** np.arange(self.film.shape[1])
 
         def film(film_k: Array) -> Array:
-            return np.exp(polynomial.polyval((film_k - self.middle_k) / self.half_k, coefficients))
+            unit = (film_k - self.middle_k) / self.half_k
+            return np.asarray(np.exp(polynomial.polyval(unit, coefficients)))
 
         return self.balance(y, gas, film)
 

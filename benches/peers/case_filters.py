@@ -36,11 +36,13 @@ class Problem:
 
 def extended(problem: Problem, g: Array, q: Array) -> tuple[Array, Array]:
     """The Kalman filter in extended precision."""
+    p: Array
     f, h, r, p, z = (m.astype(np.longdouble) for m in (problem.f, problem.h, problem.r, problem.p, problem.z))
     g, q = g.astype(np.longdouble), q.astype(np.longdouble)
     noise = np.zeros_like(p)
     noise[: len(g), : len(g)] = (g * q) @ g.T
-    x, one = np.zeros(len(p), dtype=np.longdouble), np.eye(len(p), dtype=np.longdouble)
+    x: Array = np.zeros(len(p), dtype=np.longdouble)
+    one: Array = np.eye(len(p), dtype=np.longdouble)
     p = (p + p.T) / 2
     for sample in z:
         x, p = f @ x, f @ p @ f.T + noise
@@ -65,24 +67,15 @@ def errors(x: Array, p: Array, exact: tuple[Array, Array]) -> dict[str, float]:
     }
 
 
-def filterpy(problem: Problem, square_root: bool) -> Callable[[], tuple[Array, Array]]:
-    from filterpy.kalman import KalmanFilter, SquareRootKalmanFilter
+def filterpy(problem: Problem) -> Callable[[], tuple[Array, Array]]:
+    from filterpy.kalman import KalmanFilter
 
     n, m = len(problem.p), len(problem.r)
 
     def run() -> tuple[Array, Array]:
-        kf = (SquareRootKalmanFilter if square_root else KalmanFilter)(dim_x=n, dim_z=m)
-        kf.x = np.zeros((n, 1))
-        kf.F, kf.H = problem.f, problem.h
-        if square_root:
-            # It takes Cholesky factors of what it is given; the noise of constants is none.
-            kf.P = problem.p
-            kf._Q = np.diag(np.sqrt(np.maximum(np.linalg.eigvalsh(problem.q), 0)))
-            values, vectors = np.linalg.eigh(problem.q)
-            kf._Q1_2 = vectors * np.sqrt(np.maximum(values, 0))
-            kf.R = problem.r
-        else:
-            kf.P, kf.Q, kf.R = problem.p.copy(), problem.q, problem.r
+        kf = KalmanFilter(dim_x=n, dim_z=m)
+        kf.x, kf.F, kf.H = np.zeros((n, 1)), problem.f, problem.h
+        kf.P, kf.Q, kf.R = problem.p.copy(), problem.q, problem.r
         for z in problem.z:
             kf.predict()
             kf.update(z.reshape(m, 1))
@@ -116,7 +109,9 @@ def stone_soup(problem: Problem) -> Callable[[], tuple[Array, Array]]:
     start = datetime.datetime(2000, 1, 1)
     step = datetime.timedelta(seconds=problem.interval_s)
     # Detections are what comes in: they are made before the clock runs.
-    detections = [Detection(z.reshape(-1, 1), timestamp=start + (k + 1) * step) for k, z in enumerate(problem.z)]
+    detections = [
+        Detection(z.reshape(-1, 1), timestamp=start + (k + 1) * step) for k, z in enumerate(problem.z)
+    ]
 
     def run() -> tuple[Array, Array]:
         state = GaussianState(np.zeros((n, 1)), problem.p, timestamp=start)
@@ -150,13 +145,17 @@ def case(inputs: Any, first: bool) -> Results:
     exact = extended(problem, np.array(inputs["filter"]["g"]), np.array(inputs["filter"]["q"]))
     peers: dict[str, Callable[[], tuple[Array, Array]]] = {"NumPy alone, textbook form": numpy(problem)}
     if importlib.util.find_spec("filterpy"):
-        peers["filterpy, KalmanFilter"] = filterpy(problem, square_root=False)
+        peers["filterpy, KalmanFilter"] = filterpy(problem)
     if importlib.util.find_spec("stonesoup"):
         peers["Stone Soup, KalmanPredictor and KalmanUpdater"] = stone_soup(problem)
     rows = []
     for name, run in peers.items():
         rows.append({"name": name} | errors(*run(), exact) | {"time": measure(run, parts=len(problem.z))})
-    return {"peers": rows, "exact_x": exact[0].astype(float).tolist(), "exact_p": exact[1].astype(float).tolist()}
+    return {
+        "peers": rows,
+        "exact_x": exact[0].astype(float).tolist(),
+        "exact_p": exact[1].astype(float).tolist(),
+    }
 
 
 if __name__ == "__main__":

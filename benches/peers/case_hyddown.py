@@ -110,7 +110,9 @@ def ends(model: Any, air_k: float) -> tuple[float, float, float]:
 
 def bottles(air_k: float, first: bool) -> list[Results]:
     # Euler's error is proportional to the step: two runs give the limit.
-    fine, finest = (ends(run(bottle(step_s)), air_k) for step_s in FINE_STEPS_S) if first else ((0.0,) * 3,) * 2
+    fine, finest = (
+        (ends(run(bottle(step_s)), air_k) for step_s in FINE_STEPS_S) if first else ((0.0,) * 3,) * 2
+    )
     limit = [2 * b - a for a, b in zip(fine, finest)]
     rows = []
     for step_s in BOTTLE_STEPS_S:

@@ -109,7 +109,12 @@ def casadi(bottle: Bottle) -> Callable[[float], Outcome]:
     def run(tolerance: float) -> Outcome:
         # Building the integrator is set-up, which no side is charged for.
         if tolerance not in made:
-            options = {"reltol": tolerance, "abstol": 100 * tolerance, "max_num_steps": 100000, "step0": FIRST_STEP_S}
+            options = {
+                "reltol": tolerance,
+                "abstol": 100 * tolerance,
+                "max_num_steps": 100000,
+                "step0": FIRST_STEP_S,
+            }
             made[tolerance] = ca.integrator("bottle", "cvodes", {"x": y, "ode": ode}, 0.0, times[1:], options)
         solver = made[tolerance]
         end = np.asarray(solver(x0=bottle.start)["xf"])
@@ -124,7 +129,16 @@ def compiled(folder: Path) -> Path | None:
     """CVODE's driver in C, if gcc and SUNDIALS are there."""
     program = folder / "bottle"
     libraries = [f"-lsundials_{name}" for name in ("cvode", "nvecserial", "sunmatrixdense", "sunlinsoldense")]
-    command = ["gcc", "-O3", "-march=native", "-o", program, HERE / "bottle.c", *libraries, "-lm"]
+    command: list[str | Path] = [
+        "gcc",
+        "-O3",
+        "-march=native",
+        "-o",
+        program,
+        HERE / "bottle.c",
+        *libraries,
+        "-lm",
+    ]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except FileNotFoundError:

@@ -35,7 +35,7 @@ temperature is not fitted. HydDown also takes mixtures, two phases, fire and rel
 """,
     "properties": """210 states, 220 to 350 K and 1 to 300 bar, one gas phase. Differences are relative, the largest over the grid, between two
 implementations of the same equations (Span et al. 2000, Lemmon and Jacobsen 2004): neither is the truth. CoolProp updates a whole state
-at each call and knows more than a hundred fluids, mixtures and two phases; its tables, which are faster and less accurate, were not tried. From the low-level
+at each call and knows more than a hundred fluids, mixtures and two phases; its tables were not tried. From the low-level
 interface two to six empty calls are taken off for each state ({overhead_ns:.0f} ns for two); PropsSI is as it is.
 """,
     "integration": """The closed bottle over 6 h, 61 samples, the same relative tolerance, an absolute one of 100 K times as much, the same first step. The
@@ -50,14 +50,14 @@ writes surfaces, places and heat flows at each sample. scipy and scikit-SUNDAE c
 """,
     "filter": """The observer half an hour after a cylinder entered a tunnel in winter, its transition, noise, gradients and covariance held constant, 500 samples every
 10 s. Accuracy is the largest error after the last one, of the state in standard deviations or of the covariance relative to those of row
-and column, against the same filter in extended precision. On this problem every form is exact to rounding: what factors are for is
-elsewhere, in [ill-conditioned updates](https://docs.rs/cylwatch-estimator). Ours knows that nine states are constants; the others multiply whole matrices.
+and column, against the same filter in extended precision. On this problem every form is exact to rounding: what factors are for
+is shown by ill-conditioned ones, in the tests. Ours knows that nine states are constants; the others multiply whole matrices.
 Stone Soup carries time stamps, types and hypotheses with each step, which is what it is for.
 """,
     "horizon": """The same process with states in standard deviations, the mass without noise of its own, weights, prior, samples and the bound as given, 20 windows. Accuracy
 is of the newest state against the optimum by an active-set method in Python. Our time is that of a sample in a moving window, estimate and
 covariance included; do-mpc's is the solution of one window alone by IPOPT, started from the last one, without what do-mpc does around it. do-mpc takes any smooth
-nonlinear model and constraint and differentiates it; ours takes linear constraints. A solver for quadratic programs behind CasADi would be faster than IPOPT here.
+nonlinear model and constraint and differentiates it; ours takes linear constraints. IPOPT is a solver for any smooth program, and this one is quadratic.
 """,
 }
 
@@ -94,13 +94,17 @@ def circumstances(results: dict[str, Any]) -> str:
     loads = ", ".join(f"{name} {load:.1f}" for name, load in results["load"].items())
     parts = [
         f"{results['date']}; {machine['cpu']}, {machine['cores']} cores, {machine['system']}; {machine['rustc']}, Python "
-        f"{machine['python']}; " + ", ".join(f"{name} {version}" for name, version in sorted(versions.items())) + ".",
+        f"{machine['python']}; "
+        + ", ".join(f"{name} {version}" for name, version in sorted(versions.items()))
+        + ".",
         f"Load: {loads}.",
     ]
     if max(results["load"].values()) > float(machine["cores"]):
         parts.append("**The machine was busy with other work.**")
     if results["skipped"]:
-        parts.append("Skipped: " + "; ".join(f"{name} ({why})" for name, why in results["skipped"].items()) + ".")
+        parts.append(
+            "Skipped: " + "; ".join(f"{name} ({why})" for name, why in results["skipped"].items()) + "."
+        )
     return " ".join(parts) + "\n"
 
 
@@ -115,5 +119,7 @@ def render(results: dict[str, Any]) -> str:
         everything += case["rows"]
     found = comparison.better(everything)
     parts.append("## Where a peer is better\n")
-    parts.append("\n".join(f"* {sentence}" for sentence in found) + "\n" if found else "In none of the rows.\n")
+    parts.append(
+        "\n".join(f"* {sentence}" for sentence in found) + "\n" if found else "In none of the rows.\n"
+    )
     return "\n".join(parts)

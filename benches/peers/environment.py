@@ -40,7 +40,7 @@ def prepare() -> dict[str, str]:
         if installed().get(name.lower()) == version:
             continue
         print(f"installing {name} {version}", file=sys.stderr)
-        pip = [python(), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        pip: list[str | Path] = [python(), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         done = subprocess.run([*pip, f"{name}=={version}"], capture_output=True, text=True, check=False)
         if done.returncode:
             reason = (done.stderr.strip().splitlines() or ["pip failed"])[-1]

@@ -47,7 +47,9 @@ def vessels(ours: Any, peer: Any) -> list[Row]:
     at = f"run I1, Cd {coefficient}, "
     rows.append(row(at + "one wall node on both sides", "HydDown", score(lumped), score(theirs)))
     for other in peer["blowdown"][1:]:
-        rows.append(row(at + "wall resolved: 60 cells, 11 nodes", "HydDown, 1-D wall", score(resolved), score(other)))
+        rows.append(
+            row(at + "wall resolved: 60 cells, 11 nodes", "HydDown, 1-D wall", score(resolved), score(other))
+        )
     what = f"run I1, ours with Cd {fitted['discharge_coefficient']:.2f} fitted to the pressure, HydDown with {coefficient}"
     rows.append(row(what, "HydDown", score(fitted), score(theirs)))
     high, low = ours["stratified_high_rms_k"], ours["stratified_low_rms_k"]
@@ -64,7 +66,9 @@ def vessels(ours: Any, peer: Any) -> list[Row]:
         # The loosest tolerance whose time constant is at least as near to its limit.
         fits = [run for run in ours["bottle"] if abs(run["time_63_error_s"]) <= abs(step["time_63_error_s"])]
         run = fits[0] if fits else ours["bottle"][-1]
-        what = f"closed bottle, 6 h: ours at {run['tolerance']:.0e}, HydDown in steps of {step['step_s']:.0f} s"
+        what = (
+            f"closed bottle, 6 h: ours at {run['tolerance']:.0e}, HydDown in steps of {step['step_s']:.0f} s"
+        )
         rows.append(row(what, "HydDown", ends(run), ends(step)))
     return rows
 
@@ -84,13 +88,21 @@ def properties(ours: Any, peer: Any) -> list[Row]:
     groups = {
         "pressure": ("p(rho, T)", ["p"]),
         "density": ("rho(p, T)", ["rho"]),
-        "all": ("rho, cp, cv, viscosity, conductivity at (p, T)", ["rho", "cp", "cv", "viscosity", "conductivity"]),
+        "all": (
+            "rho, cp, cv, viscosity, conductivity at (p, T)",
+            ["rho", "cp", "cv", "viscosity", "conductivity"],
+        ),
     }
     rows = []
     for key, (what, parts) in groups.items():
-        words = "differ by " + ", ".join(f"{off[part]:.1e}" + (f" ({part})" if len(parts) > 1 else "") for part in parts)
+        words = "differ by " + ", ".join(
+            f"{off[part]:.1e}" + (f" ({part})" if len(parts) > 1 else "") for part in parts
+        )
         mine = (best(ours[f"{key}_time"]), math.nan, words)
-        for peer_name, timing in (("low-level interface", f"{key}_time"), ("PropsSI over the grid", f"bulk_{key}_time")):
+        for peer_name, timing in (
+            ("low-level interface", f"{key}_time"),
+            ("PropsSI over the grid", f"bulk_{key}_time"),
+        ):
             rows.append(row(what, f"CoolProp, {peer_name}", mine, (best(peer[timing]), math.nan, "the same")))
     return rows
 
@@ -139,7 +151,9 @@ def horizon(ours: Any, peer: Any) -> list[Row]:
     mine = max(max(abs(a - b) for a, b in zip(x, best_x)) for x, best_x in pairs)
     what = f"20 samples, 18 states, 3 readings, leak not negative; bound pushes in {ours['active']} of 20 windows"
     side = (best(ours["time"]), mine, f"{mine:.0e} sd")
-    return [row(what, "do-mpc, IPOPT", side, (best(peer["time"]), peer["error_sd"], f"{peer['error_sd']:.0e} sd"))]
+    return [
+        row(what, "do-mpc, IPOPT", side, (best(peer["time"]), peer["error_sd"], f"{peer['error_sd']:.0e} sd"))
+    ]
 
 
 ROWS = {

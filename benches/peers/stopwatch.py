@@ -1,4 +1,7 @@
-"""CPU time of a call: repetitions of batches after a warm-up. Load of the machine lengthens it less than wall time."""
+"""CPU time of a call: repetitions of batches after a warm-up.
+
+Load of the machine lengthens it less than wall time.
+"""
 
 import json
 import sys
@@ -52,7 +55,7 @@ def quartiles(batches: list[float]) -> Timing:
 
 
 def main(case: Callable[[Any, bool], Results], packages: list[str]) -> None:
-    """Run a case on the file of inputs and print its results; `first` is the word for a round that also judges."""
+    """Run a case on the file of inputs and print its results; the word `first` asks for more than times."""
     inputs = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
     results = case(inputs, "first" in sys.argv[2:])
     results["versions"] = {name: metadata.version(name) for name in packages}
