@@ -1,8 +1,8 @@
-"""The closed bottle's right-hand side in Python, with the properties of nitrogen as polynomials or from CoolProp.
+"""The closed bottle's right-hand side in Python, with properties as polynomials or from CoolProp.
 
-State: wall cells, K, then the gas energy over a constant heat capacity, so that one absolute tolerance in kelvins
-holds for all. Between wall and gas `q = c exp(L) (theta^2 + flat^2)^(1/6) theta`, `L = ln k + ln R / 3` at the film
-temperature; the surface follows from `G (T_wall - T_s) = A q(T_s)` by Newton's method.
+State: wall cells, K, then the gas energy over a constant heat capacity, so that one absolute tolerance in
+kelvins holds for all. Between wall and gas `q = c exp(L) (theta^2 + flat^2)^(1/6) theta`, `L = ln k + ln R / 3`
+at the film temperature; the surface follows from `G (T_wall - T_s) = A q(T_s)` by Newton's method.
 """
 
 from typing import Any

@@ -1,6 +1,7 @@
-"""CoolProp's nitrogen over a grid of states: its low-level interface state by state, and PropsSI over the whole grid.
+"""CoolProp's nitrogen over a grid of states.
 
-Of the low-level times, those of as many calls that compute nothing are taken off: what is left is nearly the library.
+Its low-level interface goes state by state, PropsSI over the whole grid. Of the low-level times, those of
+as many calls that compute nothing are taken off: what is left is nearly the library.
 """
 
 from collections.abc import Callable

@@ -1,7 +1,7 @@
 """filterpy and Stone Soup on the linearised observer: 500 steps of prediction and update.
 
-Errors are against the same recursion in extended precision (Joseph's form, 64 bits of mantissa): of the state in
-standard deviations, of the covariance relative to the standard deviations of row and column.
+Errors are against the same recursion in extended precision (Joseph's form, 64 bits of mantissa): of the
+state in standard deviations, of the covariance relative to the standard deviations of row and column.
 """
 
 import datetime
@@ -56,7 +56,7 @@ def extended(problem: Problem, g: Array, q: Array) -> tuple[Array, Array]:
 
 
 def errors(x: Array, p: Array, exact: tuple[Array, Array]) -> dict[str, float]:
-    """Largest errors of state and covariance, and the smallest eigenvalue of the covariance in those units."""
+    """Largest errors, and the smallest eigenvalue of the covariance in those units."""
     spread = np.sqrt(np.diag(exact[1]))
     scaled = np.asarray(p / np.outer(spread, spread), dtype=float)
     return {

@@ -1,7 +1,8 @@
 """do-mpc (CasADi, IPOPT) on the same windows: prior, weights, samples and bound as given, states scaled.
 
-Only the solution of the program is timed, not what do-mpc does around it (its records, its default of a constant
-weight of the prior). Errors are against the optimum by an active-set method on orthogonal factors of the whole window.
+Only the solution of the program is timed, not what do-mpc does around it (its records, its default of a
+constant weight of the prior). Errors are against the optimum by an active-set method on orthogonal factors
+of the whole window.
 """
 
 import contextlib
@@ -79,7 +80,7 @@ def solve(mhe: Any, problem: Problem, window: Array) -> Array:
 
 
 def cost(problem: Problem, root: Array, window: Array) -> tuple[Array, Array, Array]:
-    """Residuals `A v - b` of a window in `v = (start, noises)`, with the matrix that gives the newest state."""
+    """Residuals `A v - b` of a window in `v = (start, noises)`, with the matrices that give the states."""
     k = problem.g.shape[1]
     columns = problem.n + problem.samples * k
     state = np.zeros((problem.n, columns))

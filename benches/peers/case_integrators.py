@@ -1,7 +1,8 @@
-"""scipy, scikit-SUNDAE, CasADi's CVODES and, where Debian's SUNDIALS is there, CVODE from C: one right-hand side.
+"""One right-hand side for scipy, scikit-SUNDAE, CasADi and, where Debian's SUNDIALS is there, CVODE from C.
 
-The Python ones call the right-hand side in NumPy; CasADi evaluates it as a graph with exact derivatives; C is compiled.
-All use the same polynomials for the properties, so the equation of state costs them nothing: that is in their favour.
+The Python ones call the right-hand side in NumPy; CasADi evaluates it as a graph with exact derivatives; C
+is compiled. All use the same polynomials for the properties, so the equation of state costs them nothing:
+that is in their favour.
 """
 
 import importlib.util
@@ -179,7 +180,7 @@ def row(name: str, tolerance: float, outcome: Outcome, exact: Array) -> Results:
 
 
 def agreement(bottle: Bottle, rate: Callable[[float, Array], Array]) -> dict[str, float]:
-    """Largest differences from the other side's derivatives, relative to the largest derivative of their kind."""
+    """Largest differences from the other side's derivatives, relative to the largest of their kind."""
     wall, gas = 0.0, 0.0
     for specimen in bottle.inputs["specimens"]:
         y = np.append(specimen["wall_k"], specimen["energy_j"] / bottle.scale_j_k)

@@ -46,11 +46,14 @@ def vessels(ours: Any, peer: Any) -> list[Row]:
     coefficient = lumped["discharge_coefficient"]
     at = f"run I1, Cd {coefficient}, "
     rows.append(row(at + "one wall node on both sides", "HydDown", score(lumped), score(theirs)))
+    coarse = (best(lumped["coarse_time"]), *score(lumped)[1:])
+    rows.append(row(at + "the same, ours with a sample every 0.5 s", "HydDown", coarse, score(theirs)))
     for other in peer["blowdown"][1:]:
         rows.append(
             row(at + "wall resolved: 60 cells, 11 nodes", "HydDown, 1-D wall", score(resolved), score(other))
         )
-    what = f"run I1, ours with Cd {fitted['discharge_coefficient']:.2f} fitted to the pressure, HydDown with {coefficient}"
+    fit = fitted["discharge_coefficient"]
+    what = f"run I1, ours with Cd {fit:.2f} fitted to the pressure, HydDown with {coefficient}"
     rows.append(row(what, "HydDown", score(fitted), score(theirs)))
     high, low = ours["stratified_high_rms_k"], ours["stratified_low_rms_k"]
     words = f"warmest gas {high:.2f} K, coldest {low:.2f} K (constants fitted to this run)"
@@ -115,7 +118,7 @@ def integration(ours: Any, peer: Any) -> list[Row]:
             run = runs[other["tolerance"]]
             words = f"{run['error_k']:.1e} K, {run['steps']} steps, {run['newton_iterations']} iterations"
             steps = f", {other['steps']} steps" if other["steps"] else ""
-            said = f"{other['error_k']:.1e} K{steps}, {other['rates']} rates"
+            said = f"{other['error_k']:.1e} K{steps}, {other['rates']} evaluations"
             rows.append(
                 row(
                     f"{mine['name']}, {other['tolerance']:.0e}",
@@ -149,7 +152,8 @@ def filters(ours: Any, peer: Any) -> list[Row]:
 def horizon(ours: Any, peer: Any) -> list[Row]:
     pairs = zip(ours["newest"], peer["exact_newest"])
     mine = max(max(abs(a - b) for a, b in zip(x, best_x)) for x, best_x in pairs)
-    what = f"20 samples, 18 states, 3 readings, leak not negative; bound pushes in {ours['active']} of 20 windows"
+    pushes = f"bound pushes in {ours['active']} of {len(ours['newest'])} windows"
+    what = f"20 samples, 18 states, 3 readings, leak not negative; {pushes}"
     side = (best(ours["time"]), mine, f"{mine:.0e} sd")
     return [
         row(what, "do-mpc, IPOPT", side, (best(peer["time"]), peer["error_sd"], f"{peer['error_sd']:.0e} sd"))

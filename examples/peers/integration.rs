@@ -21,6 +21,8 @@ const SAMPLE_S: f64 = 360.0;
 const TOLERANCES: [f64; 3] = [1e-4, 1e-6, 1e-8];
 /// Tolerance of the run that counts as exact.
 const REFERENCE: f64 = 1e-12;
+/// Length of a run that shows what every run costs before it has begun, s.
+const SHORT_S: f64 = 1.0;
 /// Range of the polynomials, K, and their number of nodes.
 const RANGE_K: (f64, f64) = (284.0, 312.0);
 const NODES: usize = 16;
@@ -240,6 +242,8 @@ pub struct Results {
     states: usize,
     /// Time of one right-hand side.
     rate_time: Timing,
+    /// Time of a run that ends after a second: mesh, model, first entries of the film's table.
+    short_time: Timing,
     reference_gas_k: Vec<f64>,
     runs: Vec<Run>,
     runs_one_step: Vec<Run>,
@@ -278,6 +282,9 @@ fn results(
         };
         TOLERANCES.into_iter().map(one).collect::<anyhow::Result<Vec<_>>>()
     };
+    let short = Scenario { duration_s: SHORT_S, sample_time_s: SHORT_S, ..scenario.clone() };
+    let short_time =
+        stopwatch.time(1, || simulate(vessel, &short, &SimulationSettings::default(), &mut |_| ()));
     let model = Model::new(vessel, scenario)?;
     let x0 = model.initial_state(vessel, &scenario.initial)?;
     let inputs = InputPieces::new(scenario, 0.0, scenario.duration_s).at(0.0);
@@ -286,6 +293,7 @@ fn results(
     Ok(Results {
         name: name.into(),
         states: x0.len(),
+        short_time,
         rate_time: stopwatch.time(1, || model.rate(&x0, &inputs, &[], &mut rate)),
         runs: by(Method::Bdf)?,
         runs_one_step: by(Method::Esdirk34)?,
