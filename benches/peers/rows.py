@@ -170,16 +170,29 @@ ROWS = {
 
 
 def better(rows: list[Row]) -> list[str]:
-    """Sentences on where the peer is faster or more accurate."""
+    """By peer, in how many of its rows it is faster or more accurate, with the row where it is most so."""
     found = []
-    for one in rows:
-        mine, theirs = one["ours_error"], one["peer_error"]
+    for peer in dict.fromkeys(row["peer"] for row in rows):
+        of = [row for row in rows if row["peer"] == peer]
         said = []
-        if one["ratio"] < 1:
-            said.append(f"{1 / one['ratio']:.1f} times as fast")
-        known = mine is not None and theirs is not None and mine == mine and theirs == theirs
-        if known and theirs < 0.9 * mine and mine > ROUNDING:
-            said.append(f"error {theirs:.2g} against {mine:.2g}")
+        fast = [row for row in of if row["ratio"] < 1]
+        if fast:
+            most = min(fast, key=lambda row: float(row["ratio"]))
+            times = f"{1 / most['ratio']:.2g} times as fast"
+            said.append(f"faster in {len(fast)} of {len(of)} rows, at most {times} ({most['what']})")
+        near = [row for row in of if is_nearer(row)]
+        if near:
+            most = min(near, key=lambda row: float(row["peer_error"] / row["ours_error"]))
+            errors = f"{most['peer_error']:.2g} against {most['ours_error']:.2g}"
+            said.append(f"more accurate in {len(near)} of {len(of)} rows, at most {errors} ({most['what']})")
         if said:
-            found.append(f"{one['peer']}, {one['what']}: {', '.join(said)}.")
+            found.append(f"{peer}: {'; '.join(said)}.")
     return found
+
+
+def is_nearer(row: Row) -> bool:
+    """Whether the peer's error is the smaller one, by more than a tenth and more than rounding."""
+    mine, theirs = row["ours_error"], row["peer_error"]
+    if mine is None or theirs is None or mine != mine or theirs != theirs:
+        return False
+    return bool(mine > ROUNDING and theirs < 0.9 * mine)
