@@ -155,7 +155,8 @@ int main(int argc, char **argv) {
             times[i] = ((double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec)) / calls;
         }
         qsort(times, REPETITIONS, sizeof(double), ascending);
-        printf("%s{\"tolerance\": %.17g, \"steps\": %ld, \"rates\": %ld,\n", k ? ",\n" : "[", tolerance, steps, rates);
+        printf("%s{\"version\": \"%s\", \"tolerance\": %.17g, \"steps\": %ld, \"rates\": %ld,\n", k ? ",\n" : "[",
+               SUNDIALS_VERSION, tolerance, steps, rates);
         printf("\"time\": {\"minimum_s\": %.17g, \"lower_s\": %.17g, \"median_s\": %.17g, \"upper_s\": %.17g, \"repetitions\": %d},\n",
                times[0], times[REPETITIONS / 4], times[REPETITIONS / 2], times[3 * REPETITIONS / 4], REPETITIONS);
         printf("\"energy\": [");

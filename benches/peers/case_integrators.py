@@ -208,7 +208,7 @@ def system(inputs: Any, first: bool, program: Path | None, folder: Path) -> Resu
         for found in c_rows(bottle, program, folder):
             outcome = Outcome(bottle.gas_k(np.array(found["energy"])), found["steps"], found["rates"])
             made = row("CVODE from C", found["tolerance"], outcome, exact)
-            rows.append(made | {"time": found["time"]})
+            rows.append(made | {"time": found["time"], "version": found["version"]})
     results: Results = {
         "name": inputs["name"],
         "reference_gas_k": exact.tolist(),
