@@ -17,9 +17,9 @@ const COEFFICIENTS: (f64, f64) = (0.55, 0.95);
 /// How finely it is found: a tenth of what 0.1 bar of pressure means.
 const COEFFICIENT_WIDTH: f64 = 5e-4;
 /// End of the run, s: the last digitised point lies at 100.11 s.
-const DURATION_S: f64 = 100.5;
+pub const DURATION_S: f64 = 100.5;
 /// Sample time of the run, s: fine enough to interpolate the model, never the measurement.
-const SAMPLE_S: f64 = 0.05;
+pub const SAMPLE_S: f64 = 0.05;
 
 /// Simulations that [`study`] runs.
 pub fn runs() -> usize {
@@ -125,20 +125,24 @@ pub fn study(
     Ok(Blowdown { measured, carrier, fitted, stacked })
 }
 
+/// The vessel with the stratified gas.
+pub fn stacked_vessel(vessel: &Vessel) -> Vessel {
+    let constants =
+        Stratification { cells: STACKED_CELLS, exchange_length_diameters: 1.0, core_mixing: 0.05 };
+    Vessel {
+        gas: GasResolution::Stratified(constants),
+        inside_film: InsideFilm::Rayleigh { factor: 0.104, exponent: 0.352, multiplier: 1.0 },
+        ..vessel.clone()
+    }
+}
+
 fn stacked(
     vessel: &Vessel,
     scenario: &Scenario,
     settings: &SimulationSettings,
     measured: &Measured,
 ) -> Result<Stacked, ReproduceError> {
-    let constants =
-        Stratification { cells: STACKED_CELLS, exchange_length_diameters: 1.0, core_mixing: 0.05 };
-    let vessel = Vessel {
-        gas: GasResolution::Stratified(constants),
-        inside_film: InsideFilm::Rayleigh { factor: 0.104, exponent: 0.352, multiplier: 1.0 },
-        ..vessel.clone()
-    };
-    let run = simulated(&vessel, &with_coefficient(scenario, STACKED_COEFFICIENT), settings)?;
+    let run = simulated(&stacked_vessel(vessel), &with_coefficient(scenario, STACKED_COEFFICIENT), settings)?;
     let edge = |pick: fn(f64, f64) -> f64, truth: &Curve| {
         score(&run.time_s, &extreme(&run.gas_cells_k, pick), truth)
     };
@@ -165,7 +169,8 @@ fn simulated(
     Ok(simulate(vessel, scenario, settings, &mut |_| ())?)
 }
 
-fn with_coefficient(scenario: &Scenario, coefficient: f64) -> Scenario {
+/// The scenario with another discharge coefficient.
+pub fn with_coefficient(scenario: &Scenario, coefficient: f64) -> Scenario {
     let mut changed = scenario.clone();
     for flow in &mut changed.flows {
         if let FlowKind::Orifice { discharge_coefficient, .. } = &mut flow.kind {
@@ -181,7 +186,8 @@ pub fn wall_middle_k(run: &Trajectory) -> Vec<f64> {
     run.wall_inner_k.iter().map(|sample| sample[cell]).collect()
 }
 
-fn scored(coefficient: f64, run: Trajectory, measured: &Measured) -> Variant {
+/// A run at a discharge coefficient beside the measurement.
+pub fn scored(coefficient: f64, run: Trajectory, measured: &Measured) -> Variant {
     let pressure_bar: Vec<f64> = run.pressure_pa.iter().map(|p| p / 1e5).collect();
     let gas = score(&run.time_s, &run.gas_mean_k, &measured.gas_middle_k());
     let pressure = score(&run.time_s, &pressure_bar, &measured.pressure_bar);

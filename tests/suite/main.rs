@@ -14,6 +14,7 @@ mod log;
 mod log_parquet;
 mod monitor;
 mod pages;
+mod peers;
 mod place;
 mod properties;
 mod report;
