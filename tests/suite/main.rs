@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bench_detector;
+mod book;
 mod calibrate;
 mod estimate;
 mod examples;
