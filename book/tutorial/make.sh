@@ -7,14 +7,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cp true-cylinder.toml what-happened.toml "$work"
 
-# Air of an unheated depot over 35 days, a value every 10 min: rest, then weather, days, and a gate that opens now and then.
+# Air of an unheated depot over three weeks, a value every 10 min: rest, then weather, days, and a gate that opens now and then.
 awk '
 function uniform() { seed = (16807 * seed) % 2147483647; return seed / 2147483647 }
 function normal() { return sqrt(-2 * log(uniform())) * cos(6.283185307179586 * uniform()) }
 BEGIN {
     seed = 20260112
     print "time_h,air_degc"
-    for (n = 0; n <= 35 * 144; n++) {
+    for (n = 0; n <= 21 * 144; n++) {
         hour = n / 6
         weather = n ? 0.9966 * weather + 0.247 * normal() : 0
         if (hour % 24 == 0) swing = 3 + 3 * uniform()
@@ -37,7 +37,7 @@ function german(x) { x = sprintf("%.1f", x); sub(/\./, ",", x); return x }
 {
     minute = int($at["time_s"] / 60 + 0.5)
     row++
-    if (row > 2310 && row <= 2340) next
+    if (row > 1500 && row <= 1530) next
     printf "2026-%02d-%02d %02d:%02d:00", minute < 28800 ? 1 : 2, minute < 28800 ? 12 + int(minute / 1440) : int((minute - 28800) / 1440) + 1, int(minute / 60) % 24, minute % 60
     split("shoulder valve ambient", names, " ")
     for (i = 1; i <= 3; i++) { x = $at["measured_" names[i] "_degc"]; printf ";%s", x == "" ? "---" : german(x) }

@@ -20,3 +20,4 @@ mod report;
 mod reproduce;
 mod simulate;
 mod support;
+mod tutorial;
