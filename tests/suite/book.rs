@@ -225,7 +225,9 @@ fn every_command_of_the_program_in_a_block_has_the_options_that_stand_there() {
                 let words = help.stdout.split(|c: char| !(c.is_alphanumeric() || c == '-'));
                 words.filter(|word| word.starts_with('-')).map(str::to_owned).collect()
             });
-            for option in arguments.iter().skip(1).filter(|word| word.starts_with('-') && word.len() > 1) {
+            let is_option =
+                |word: &&String| word.starts_with('-') && word.len() > 1 && word.parse::<f64>().is_err();
+            for option in arguments.iter().skip(1).filter(is_option) {
                 let option = option.split('=').next().unwrap();
                 assert!(knows(known, option), "{}: {name} has no {option}", page.display());
             }
