@@ -54,6 +54,7 @@ pub struct Reading {
     pub lost_g: f64,
 }
 
+// ANCHOR: run
 /// Runs both; the second is read when its gauge shows what the first one's shows at the end.
 pub fn run() -> anyhow::Result<[Reading; 2]> {
     let cold = simulated(COLD)?;
@@ -87,6 +88,7 @@ fn reading(cylinder: &'static str, run: &Trajectory, k: usize) -> anyhow::Result
         lost_g: 1e3 * (mass_kg(0)? - mass_kg(k)?),
     })
 }
+// ANCHOR_END: run
 
 fn main() -> anyhow::Result<()> {
     let rows = run()?.map(|Reading { cylinder, time_h, pressure_bar, gas_degc, mass_kg, lost_g }| {

@@ -54,6 +54,7 @@ pub fn run() -> anyhow::Result<[Passage; 2]> {
     Ok([passage("tight, 200 bar at 15 degC", SCENARIO)?, passage("leaky, 170 bar at 15 degC", &poor)?])
 }
 
+// ANCHOR: passage
 fn passage(cylinder: &'static str, text: &str) -> anyhow::Result<Passage> {
     let vessel = vessel::presets::load("nitrogen-20l")?;
     let scenario = scenario::read_scenario(text, "tunnel passage", &scenario::presets::table)?;
@@ -70,6 +71,7 @@ fn passage(cylinder: &'static str, text: &str) -> anyhow::Result<Passage> {
         changes_min: changes.map(|k| run.time_s[k] / 60.0).collect(),
     })
 }
+// ANCHOR_END: passage
 
 fn main() -> anyhow::Result<()> {
     let rows = run()?.map(|Passage { cylinder, pressure_bar: [low, high], alarm_at_start, changes_min }| {

@@ -9,6 +9,9 @@ mod leak;
 #[path = "../../examples/leak_masked_by_warming.rs"]
 mod leak_masked_by_warming;
 #[allow(dead_code)]
+#[path = "../../examples/own_detector.rs"]
+mod own_detector;
+#[allow(dead_code)]
 #[path = "../../examples/refill.rs"]
 mod refill;
 #[allow(dead_code)]
@@ -165,4 +168,26 @@ fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or
         assert_eq!(attitude.best().len(), 2);
         assert!(attitude.placed().figure().title.contains("20 L"));
     }
+}
+
+#[test]
+fn a_detector_of_ones_own_is_judged_beside_the_papers_and_finds_a_large_leak() {
+    use cylwatch::detector::baseline::Reading;
+    use cylwatch::detector::statistic::Statistic;
+    // A tight cylinder that warms by 10 K from one day to the next misses nothing; one that has lost a bar misses it.
+    let mut statistic = own_detector::DayBefore::default();
+    let reading = |time_s, shoulder_k, pressure_bar: f64| Reading {
+        time_s,
+        shoulder_k,
+        pressure_pa: 1e5 * pressure_bar,
+    };
+    statistic.update(reading(0.0, 288.15, 200.0));
+    assert_abs_diff_eq!(statistic.update(reading(86_400.0, 298.15, 209.92)), 0.0, epsilon = 1.0);
+    statistic.reset();
+    statistic.update(reading(0.0, 288.15, 200.0));
+    assert_abs_diff_eq!(statistic.update(reading(86_400.0, 288.15, 199.0)), 1e5, epsilon = 1.0);
+    let judged = own_detector::run().unwrap();
+    let [own, paper] = &judged[..] else { panic!("two detectors") };
+    assert_eq!([&own.detector[..], &paper.detector[..]], ["day before", "paper"]);
+    assert_eq!(own.found[1], (3, 3));
 }

@@ -4,6 +4,7 @@
 
 mod bench_detector;
 mod browser;
+mod book;
 mod calibrate;
 mod estimate;
 mod examples;
@@ -22,3 +23,4 @@ mod reproduce;
 mod simulate;
 mod support;
 mod table_1;
+mod tutorial;

@@ -100,7 +100,7 @@ fn help() -> String {
     format!(
         "\
 Logs are read as by `estimate`, but rows may come late or twice, and the clock may jump: see
---lateness-s and docs/monitor.md.
+--lateness-s and book/src/monitor.md.
 
 {}
 

@@ -34,7 +34,7 @@ fn mounted(place: &str, name: &str, coupling: f64, offset_sd_k: f64) -> Sensor {
     sensor
 }
 
-/// What docs/identify.md states of the simulated Table 1, to its digits.
+/// What book/src/identify.md states of the simulated Table 1, to its digits.
 #[test]
 fn ideal_thermometers_have_the_models_of_the_reproduced_table_1() {
     let sensors = [mounted("shoulder", "shoulder", 0.15, 0.0), mounted("valve", "valve", 0.15, 0.0)];

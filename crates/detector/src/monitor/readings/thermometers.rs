@@ -14,7 +14,7 @@
 //! that is restless while the other one is not. For an hour after its jump a thermometer is not used: if it reads the air, it shows by then.
 //!
 //! Noise of 0.05 K makes 0.09 K of `s_2` and 0.12 K of `s_1`; what is beside the parts is some three times that. How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
-//! and `fault_campaign` (row T2); see `docs/measured.md`.
+//! and `fault_campaign` (row T2); see `book/src/measured.md`.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
