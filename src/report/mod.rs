@@ -4,6 +4,7 @@ pub mod calibrate;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
+pub mod inspect;
 pub mod monitor;
 pub mod place;
 mod provenance;
@@ -11,7 +12,7 @@ mod readings;
 pub mod simulation;
 mod table;
 
-pub use provenance::{Fingerprint, Input, Provenance};
+pub use provenance::{Fingerprint, Input, Provenance, quoted};
 pub use readings::Readings;
 pub use table::{Column, Table, aligned, number, rounded};
 

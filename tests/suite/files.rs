@@ -64,6 +64,7 @@ fn every_command_has_help_and_the_shells_their_completions() {
         "init",
         "schema",
         "completions",
+        "inspect",
     ] {
         assert!(help.stdout.contains(command));
         assert_eq!(run(folder.path(), &[command, "--help"]).code, Some(0));

@@ -8,7 +8,9 @@ mod estimate;
 mod examples;
 mod files;
 mod identify;
+mod inspect;
 mod log;
+mod log_forms;
 #[cfg(feature = "parquet")]
 mod log_parquet;
 mod monitor;
