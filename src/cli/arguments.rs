@@ -5,6 +5,7 @@ use super::fill::GivenFill;
 use super::identify::IdentifyArguments;
 use super::inspect::InspectArguments;
 use super::log_options::LogArguments;
+use super::man::ManArguments;
 use super::monitor::MonitorArguments;
 use super::place::PlaceArguments;
 use super::states::GivenQuantities;
@@ -68,6 +69,8 @@ pub enum Command {
     Init(InitArguments),
     /// Print the JSON schema of vessel, scenario and candidates files, for editors.
     Schema(SchemaArguments),
+    /// Write manual pages, as for `man`.
+    Man(ManArguments),
     /// Print a completion script for a shell.
     Completions(CompletionsArguments),
 }

@@ -13,6 +13,7 @@ mod init;
 mod input;
 mod inspect;
 mod log_options;
+mod man;
 mod message;
 mod monitor;
 mod output;
@@ -65,6 +66,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),
+        Command::Man(arguments) => man::run(arguments, messages),
         Command::Completions(arguments) => completions::run(arguments),
     };
     done.map(|()| ExitCode::SUCCESS)

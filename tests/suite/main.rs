@@ -14,6 +14,7 @@ mod log_forms;
 #[cfg(feature = "parquet")]
 mod log_parquet;
 mod monitor;
+mod packaging;
 mod pages;
 mod place;
 mod properties;
