@@ -3,13 +3,15 @@ use super::bench_detector::BenchDetectorArguments;
 use super::calibrate::CalibrateArguments;
 use super::fill::GivenFill;
 use super::identify::IdentifyArguments;
+use super::inspect::InspectArguments;
+use super::log_options::LogArguments;
+use super::man::ManArguments;
 use super::monitor::MonitorArguments;
 use super::place::PlaceArguments;
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cylwatch::estimator::EstimatorError;
 use cylwatch::estimator::observer::Engine;
-use cylwatch::log::Mapping;
 use cylwatch::report::estimate;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +30,7 @@ pub struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   cylwatch simulate nitrogen-20l shock-cold -o run.csv --plot run.svg
+  cylwatch inspect logger.csv
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
@@ -46,6 +49,8 @@ pub enum Command {
     Reproduce(ReproduceArguments),
     /// Simulate a vessel in a scenario: temperatures, pressure, mass and sensor readings against time.
     Simulate(SimulateArguments),
+    /// Say what an unknown log holds, what is odd about it, and which command can use it.
+    Inspect(InspectArguments),
     /// Estimate gas temperature, mass and leak rate from a log of sensors outside.
     Estimate(Box<EstimateArguments>),
     /// Decide whether gas is being lost: verdict, leak rate, onset, time left, events and alarms from a log.
@@ -64,6 +69,8 @@ pub enum Command {
     Init(InitArguments),
     /// Print the JSON schema of vessel, scenario and candidates files, for editors.
     Schema(SchemaArguments),
+    /// Write manual pages, as for `man`.
+    Man(ManArguments),
     /// Print a completion script for a shell.
     Completions(CompletionsArguments),
 }
@@ -175,9 +182,9 @@ pub struct EstimateArguments {
     /// Report with tables, figure and inputs: one HTML file that needs nothing else.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
-    /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
-    #[arg(long = "map", value_name = "OURS=THEIRS")]
-    pub mappings: Vec<Mapping>,
+    /// Foreign names and zone of the log.
+    #[command(flatten)]
+    pub reading: LogArguments,
     /// Filter of the observer.
     #[arg(long, value_enum, default_value = "ekf")]
     pub filter: Filter,

@@ -1,6 +1,7 @@
 //! `cylwatch calibrate`: physical parameters of a vessel from logs, as a new vessel file.
 use super::fill::GivenFill;
 use super::input::{Inputs, shown};
+use super::log_options::LogArguments;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
@@ -9,7 +10,6 @@ use super::views::{self, Made, Views};
 use anyhow::{Context, bail};
 use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut, SearchStep};
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::log::Mapping;
 use cylwatch::report::Input;
 use cylwatch::report::calibrate as report;
 use cylwatch::report::calibrate::Study;
@@ -44,7 +44,7 @@ struct Options {
     scenarios: BTreeMap<String, String>,
     /// Vessels of logs that are not of the main one.
     vessels: BTreeMap<String, String>,
-    mappings: Vec<Mapping>,
+    reading: LogArguments,
     sensors: Option<PathBuf>,
     wanted: Wanted,
     validation: Option<Validation>,
@@ -99,7 +99,7 @@ impl Options {
     fn cases(&self, main: &Vessel, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Vec<Case>> {
         let sensors: Option<Vec<Sensor>> =
             self.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
-        let reading = Reading { inputs, mappings: &self.mappings, sensors: sensors.as_deref(), messages };
+        let reading = Reading { inputs, reading: &self.reading, sensors: sensors.as_deref(), messages };
         let exposure = Exposure { amounts: &self.amounts, fill: &self.fill, source: self.fill.source()? };
         let case = |log: &String| -> anyhow::Result<Case> {
             let vessel = self.vessels.get(log).map(|name| inputs.vessel(name)).transpose()?;

@@ -2,6 +2,7 @@
 use super::arguments::{EstimateArguments, Format};
 use super::fill::{self, FillSource, GivenFill};
 use super::input::{Inputs, LogInput};
+use super::log_options::LogArguments;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
@@ -12,7 +13,7 @@ use anyhow::{Context, bail};
 use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::log::{LogOptions, Mapping, Row};
+use cylwatch::log::Row;
 use cylwatch::report::estimate as report;
 use cylwatch::thermal::vessel::Vessel;
 use serde_json::json;
@@ -31,7 +32,7 @@ struct Options {
     data: Target,
     format: Format,
     views: Views,
-    mappings: Vec<Mapping>,
+    reading: LogArguments,
     sensors: Option<PathBuf>,
     fill: GivenFill,
     source: FillSource,
@@ -49,12 +50,8 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
     let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
     let learned =
         options.learned_in.as_deref().map(|path| start::learned(&inputs, path, &vessel)).transpose()?;
-    let log_options = LogOptions {
-        mappings: options.mappings.clone(),
-        sensors: sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect(),
-        ..LogOptions::default()
-    };
-    let mut log = inputs.log(&options.log, &log_options)?;
+    let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
+    let mut log = inputs.log(&options.log, &options.reading.options(names))?;
     let outcome = estimate(&options, &inputs, &vessel, sensors, learned, &mut log, messages);
     // What was strange about the log may explain an error.
     for caution in log.reader.cautions() {
@@ -70,7 +67,7 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
 
 impl Options {
     fn checked(arguments: EstimateArguments) -> anyhow::Result<Self> {
-        let EstimateArguments { vessel, log, fill, filter, smooth, mappings, sensors, learned_in, .. } =
+        let EstimateArguments { vessel, log, fill, filter, smooth, reading, sensors, learned_in, .. } =
             arguments;
         if vessel == "-" && log == "-" {
             bail!("stdin can be the vessel or the log, not both: give the other one as a file");
@@ -97,7 +94,7 @@ impl Options {
             data,
             format,
             views,
-            mappings,
+            reading,
             sensors,
             fill,
             source,

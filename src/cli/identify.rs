@@ -1,13 +1,13 @@
 //! `cylwatch identify`: a transfer function from one column of a log to another.
 use super::arguments::Format;
 use super::input::{Inputs, shown};
+use super::log_options::LogArguments;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
 use super::views::{Made, Views, Wanted};
 use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{Data, Method, Settings, Structure, identify};
-use cylwatch::log::{LogOptions, Mapping};
 use cylwatch::report::figure::Picture;
 use cylwatch::report::identify as report;
 use cylwatch::report::identify::{Signal, Study};
@@ -33,7 +33,7 @@ struct Options {
     structure: Structure,
     settings: Settings,
     validation: Option<Validation>,
-    mappings: Vec<Mapping>,
+    reading: LogArguments,
     data: Target,
     format: Option<Format>,
     views: Views,
@@ -79,7 +79,7 @@ impl Options {
                 .then(|| arguments.format.unwrap_or_else(|| Format::of(arguments.out.as_deref()))),
             log: arguments.log,
             amounts: arguments.amounts,
-            mappings: arguments.mappings,
+            reading: arguments.reading,
             choice,
             validation,
             data,
@@ -89,12 +89,7 @@ impl Options {
 
     /// Reads the columns of a log.
     fn read(&self, name: &str, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Record> {
-        let options = LogOptions {
-            mappings: self.mappings.clone(),
-            sensors: self.columns.clone(),
-            ..LogOptions::default()
-        };
-        let mut log = inputs.log(name, &options)?;
+        let mut log = inputs.log(name, &self.reading.options(self.columns.clone()))?;
         let progress = Progress::new(messages);
         let read = Record::read(&mut log, &self.columns, |fraction| progress.show(name, fraction));
         drop(progress);

@@ -1,7 +1,8 @@
 //! What a run reads: files, stdin, built-in vessels and scenarios. Everything read is recorded with its SHA-256.
 use super::command_line;
 use anyhow::{Context, bail};
-use cylwatch::log::{LogOptions, LogReader, is_parquet};
+use cylwatch::log::inspect::Inspector;
+use cylwatch::log::{LogError, LogOptions, LogReader, is_parquet};
 use cylwatch::report::{Fingerprint, Input, Provenance};
 use cylwatch::thermal::scenario::{self, Scenario};
 use cylwatch::thermal::vessel::{self, Vessel, VesselSpec};
@@ -108,17 +109,35 @@ impl Inputs {
     }
 
     /// Opens a log for reading row by row; - is stdin.
-    ///
-    /// A file is hashed first and then read up to the length that it had, so that a logger may go on writing. What
-    /// cannot be read twice is hashed on the way and recorded at its end.
     pub fn log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
+        self.opened(name, |content, shown| match content {
+            Content::Text(text) => LogReader::from_text(text, shown, options),
+            Content::Parquet(file) => LogReader::from_parquet(file, shown, options),
+        })
+    }
+
+    /// Opens a log for inspection; - is stdin.
+    pub fn inspector(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput<Inspector>> {
+        self.opened(name, |content, shown| match content {
+            Content::Text(text) => Inspector::new(text, shown, options),
+            Content::Parquet(file) => Inspector::of_parquet(file, shown, options),
+        })
+    }
+
+    /// Opens a log. A file is hashed first and then read up to the length that it had, so that a logger may go on writing.
+    /// What cannot be read twice is hashed on the way and recorded at its end.
+    fn opened<R>(
+        &self,
+        name: &str,
+        reader: impl FnOnce(Content, &str) -> Result<R, LogError>,
+    ) -> anyhow::Result<LogInput<R>> {
         let passed = Rc::new(Passed::default());
         if name == "-" {
             if self.stdin_taken.replace(true) {
                 bail!("stdin can be read once: give the other input as a file");
             }
             let input = Box::new(Metered { input: std::io::stdin(), passed: passed.clone(), hashes: true });
-            let reader = LogReader::from_text(input, "stdin", options)?;
+            let reader = reader(Content::Text(input), "stdin")?;
             return Ok(LogInput { reader, name: name.to_owned(), passed, length: None });
         }
         let failed = || format!("{name} cannot be read");
@@ -130,22 +149,26 @@ impl Inputs {
         let name = name.to_owned();
         if !metadata.is_file() {
             let input = Box::new(Metered { input: file, passed: passed.clone(), hashes: true });
-            let reader = LogReader::from_text(input, &name, options)?;
+            let reader = reader(Content::Text(input), &name)?;
             return Ok(LogInput { reader, name, passed, length: None });
         }
         let (record, length) = hashed(&mut file, &name).with_context(failed)?;
         self.records.borrow_mut().push(record);
-        let reader = if is_parquet(Path::new(&name)) {
-            LogReader::from_parquet(file, &name, options)?
+        let content = if is_parquet(Path::new(&name)) {
+            Content::Parquet(file)
         } else {
-            let input = Box::new(Metered { input: file.take(length), passed: passed.clone(), hashes: false });
-            LogReader::from_text(input, &name, options)?
+            Content::Text(Box::new(Metered {
+                input: file.take(length),
+                passed: passed.clone(),
+                hashes: false,
+            }))
         };
+        let reader = reader(content, &name)?;
         Ok(LogInput { reader, name, passed, length: Some(length) })
     }
 
     /// Records a log that was hashed on the way, when it has been read; `None` if it was recorded before.
-    pub fn record_log(&self, log: &LogInput) -> Option<Input> {
+    pub fn record_log<R>(&self, log: &LogInput<R>) -> Option<Input> {
         if !log.is_hashed_late() {
             return None;
         }
@@ -173,26 +196,38 @@ impl Inputs {
     }
 }
 
+/// What a log is, by its name.
+enum Content {
+    Text(Box<dyn Read>),
+    Parquet(File),
+}
+
 /// A log that is being read.
-pub struct LogInput {
+pub struct LogInput<R = LogReader> {
     /// Its rows.
-    pub reader: LogReader,
+    pub reader: R,
     name: String,
     passed: Rc<Passed>,
     /// Bytes, where they are known beforehand.
     length: Option<u64>,
 }
 
-impl LogInput {
+impl<R> LogInput<R> {
     /// Whether its hash is known at its end only.
     pub fn is_hashed_late(&self) -> bool {
         self.length.is_none()
     }
 
-    /// Share that has been read; 0 where nobody knows how much there will be.
+    /// Share of the bytes that has been read, as they are in the file; 0 where nobody knows how many there will be.
+    pub fn fraction_of_bytes(&self) -> f64 {
+        self.length.map_or(0.0, |length| self.passed.bytes.get() as f64 / length.max(1) as f64)
+    }
+}
+
+impl LogInput {
+    /// Share that has been read.
     pub fn fraction(&self) -> f64 {
-        let of_bytes = || self.length.map(|length| self.passed.bytes.get() as f64 / length.max(1) as f64);
-        self.reader.fraction().or_else(of_bytes).unwrap_or(0.0)
+        self.reader.fraction().unwrap_or_else(|| self.fraction_of_bytes())
     }
 }
 

@@ -11,6 +11,9 @@ mod fill;
 mod identify;
 mod init;
 mod input;
+mod inspect;
+mod log_options;
+mod man;
 mod message;
 mod monitor;
 mod output;
@@ -28,6 +31,7 @@ mod views;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
+use cylwatch::report::quoted;
 use message::Messages;
 use std::process::ExitCode;
 
@@ -55,12 +59,14 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
+        Command::Inspect(arguments) => inspect::run(arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
         Command::BenchDetector(arguments) => bench_detector::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),
+        Command::Man(arguments) => man::run(arguments, messages),
         Command::Completions(arguments) => completions::run(arguments),
     };
     done.map(|()| ExitCode::SUCCESS)
@@ -81,13 +87,4 @@ fn command_line() -> String {
         if k == 0 { "cylwatch".to_owned() } else { quoted(&word) }
     });
     words.collect::<Vec<_>>().join(" ")
-}
-
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }

@@ -41,13 +41,9 @@ pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<E
     let inputs = Inputs::default();
     let beginning = Beginning::find(&options, &inputs, messages)?;
     let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
-    let log_options = LogOptions {
-        mappings: options.mappings.clone(),
-        sensors: sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect(),
-        origin: beginning.origin()?,
-        any_order: true,
-        ..LogOptions::default()
-    };
+    let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
+    let log_options =
+        LogOptions { origin: beginning.origin()?, any_order: true, ..options.reading.options(names) };
     let mut log = inputs.log(&options.log, &log_options)?;
     let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
     let outcome =

@@ -34,6 +34,10 @@ pub enum Kind {
     Perfect,
     /// Columns that nobody knows: set aside.
     SetAside,
+    /// Lines above the header: passed over.
+    Preamble,
+    /// Names of columns that are no UTF-8: read as Windows-1252.
+    Windows1252,
 }
 
 /// Something that a log has and should not have, or that was left out of it.
@@ -84,7 +88,7 @@ impl fmt::Display for Caution {
             Kind::WithoutZone => write!(
                 f,
                 "{first}: {column} = {detail} has no zone and is taken as UTC: local time repeats and leaves \
-                 out an hour a year"
+                 out an hour a year; --zone +01:00 says another one"
             ),
             Kind::DecimalComma => {
                 write!(f, "{first}: {column} = {detail} is taken as a number with a decimal comma")
@@ -92,6 +96,11 @@ impl fmt::Display for Caution {
             Kind::Perfect => {
                 write!(f, "{first}: {column} is simulated without a sensor and taken as a perfect reading")
             }
+            Kind::Preamble => {
+                let lines = if detail == "1" { "line" } else { "lines" };
+                write!(f, "{first}: the header is taken to stand here; {detail} {lines} above it passed over")
+            }
+            Kind::Windows1252 => write!(f, "{first}: the header is no UTF-8 and read as Windows-1252"),
             Kind::SetAside => write!(f, "{first}: columns set aside: {column}{detail}"),
         }
     }

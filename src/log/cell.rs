@@ -16,8 +16,8 @@ pub(super) enum Cell {
     Unreadable,
 }
 
-/// Words for a missing value, in small letters.
-const MISSING: [&str; 8] = ["nan", "na", "n/a", "#n/a", "null", "none", "-", "--"];
+/// Words for a missing value, in small letters; dashes are one, too.
+const MISSING: [&str; 6] = ["nan", "na", "n/a", "#n/a", "null", "none"];
 
 impl Cell {
     /// Reads a cell; `decimal_comma` allows `12,5` for 12.5.
@@ -31,6 +31,7 @@ impl Cell {
             Ok(number) if number.is_finite() => Self::Number(number),
             Ok(number) if number.is_infinite() => Self::Infinite,
             Ok(_) => Self::Missing,
+            Err(_) if text.bytes().all(|byte| byte == b'-') => Self::Missing,
             Err(_) if MISSING.iter().any(|word| word.eq_ignore_ascii_case(text)) => Self::Missing,
             Err(_) if decimal_comma && text.bytes().filter(|&b| b == b',').count() == 1 => {
                 let number = text.replace(',', ".").parse::<f64>().ok().filter(|number| number.is_finite());
@@ -65,7 +66,7 @@ mod tests {
 
     #[test]
     fn words_for_nothing_are_missing_in_any_case() {
-        for text in ["", "  ", "NaN", "nan", "NA", "N/A", "null", "None", "-"] {
+        for text in ["", "  ", "NaN", "nan", "NA", "N/A", "null", "None", "-", "----"] {
             assert_eq!(Cell::read(text.as_bytes(), false), Cell::Missing, "{text}");
         }
     }

@@ -1,13 +1,16 @@
 //! Logs as text: comments, one header, rows; separated by commas, semicolons or tabs, whichever the header has most of.
 //!
-//! With semicolons or tabs a decimal comma is understood. A byte order mark, CRLF and blank lines are no fault.
+//! With semicolons or tabs a decimal comma is understood. A byte order mark, CRLF and blank lines are no fault; gzip is
+//! unpacked.
 use super::caution::{Cautions, Kind};
 use super::cell::{Cell, shown};
 use super::columns::Columns;
+use super::header::{self, Header, decoded};
+use super::inspect::{Survey, Tap};
 use super::reader::RawRow;
 use super::record::Records;
 use super::time::TimeReader;
-use super::{LogError, LogOptions};
+use super::{LogError, LogOptions, Packing, date};
 use crate::thermal::units::Unit;
 use std::io::Read;
 
@@ -20,8 +23,12 @@ pub(super) struct CsvSource {
     decimal_comma: bool,
     time: TimeReader,
     time_at: usize,
+    /// Column of the time of day, where date and time stand in two.
+    clock_at: Option<usize>,
     /// Position, name, unit of every number.
     values: Vec<(usize, String, &'static Unit)>,
+    /// What counts all cells, where a log is inspected.
+    tap: Option<Box<Tap>>,
 }
 
 impl CsvSource {
@@ -32,27 +39,53 @@ impl CsvSource {
         options: &LogOptions,
         cautions: &mut Cautions,
     ) -> Result<(Self, Columns), LogError> {
-        let mut records = Records::new(input, file);
-        if !records.advance()? {
+        let mut records = Records::new(input, file)?;
+        let Some(header) = Header::read(&mut records, options)? else {
             return Err(LogError::Empty { file: file.to_owned() });
-        }
-        let separator = separator(records.text());
-        records.separate(separator);
-        let at = records.place();
-        let header: Vec<Vec<u8>> = records.iter().map(<[u8]>::to_vec).collect();
-        let columns = Columns::find(&names(&header, &at)?, &at, options, cautions)?;
-        let decimal_comma = separator != b',';
-        let (time_at, name, form) = &columns.time;
-        let source = Self {
+        };
+        say(&header, cautions);
+        let columns = Columns::find(&header.names, &header.at, options, cautions)?;
+        Ok((Self::of(file, records, header, &columns, options), columns))
+    }
+
+    /// As [`CsvSource::open`] for a log that is inspected: what a run would refuse is told, not refused.
+    pub fn inspect(
+        input: Box<dyn Read>,
+        file: &str,
+        options: &LogOptions,
+        cautions: &mut Cautions,
+    ) -> Result<(Self, Columns, Survey), LogError> {
+        let mut records = Records::new(input, file)?;
+        let Some(header) = Header::read(&mut records, options)? else {
+            return Err(LogError::Empty { file: file.to_owned() });
+        };
+        say(&header, cautions);
+        let first = records.ahead(0)?.map(|line| header::cut(line, header.separator)).unwrap_or_default();
+        let (columns, survey) = Survey::new(&header, &first, records.packing(), options, cautions)?;
+        let count = header.names.len();
+        let source = Self::of(file, records, header, &columns, options);
+        Ok((Self { tap: Some(Box::new(Tap::new(count))), ..source }, columns, survey))
+    }
+
+    /// What counted the cells of a log that is inspected.
+    pub fn tap(&self) -> Option<&Tap> {
+        self.tap.as_deref()
+    }
+
+    fn of(file: &str, records: Records, header: Header, columns: &Columns, options: &LogOptions) -> Self {
+        let decimal_comma = header.separator != b',';
+        let time = &columns.time;
+        Self {
             file: file.to_owned(),
             records,
-            header,
+            header: header.cells,
             decimal_comma,
-            time: TimeReader::new(name, *form, decimal_comma).with_origin(options.origin),
-            time_at: *time_at,
+            time: TimeReader::new(&time.header, time.form, decimal_comma, options),
+            time_at: time.index,
+            clock_at: time.clock,
             values: columns.values().map(|(i, name, unit)| (i, name.to_owned(), unit)).collect(),
-        };
-        Ok((source, columns))
+            tap: None,
+        }
     }
 
     /// Reads the next row that has a time; `false` at the end.
@@ -64,16 +97,45 @@ impl CsvSource {
             if self.records.len() != self.header.len() && !self.has_width(cautions)? {
                 continue;
             }
-            let (records, at) = (&self.records, || self.records.place());
-            let Some(time_s) = self.time.read(records.cell(self.time_at), at, cautions)? else {
-                cautions.count(Kind::WithoutTime, "", || (at(), String::new()));
+            let Some(time_s) = self.time(cautions)? else {
+                cautions.count(Kind::WithoutTime, "", || (self.records.place(), String::new()));
                 continue;
             };
-            (row.time_s, row.number) = (time_s, records.line());
+            if let Some(tap) = &mut self.tap {
+                tap.push(&self.records, self.decimal_comma, time_s);
+            }
+            (row.time_s, row.number) = (time_s, self.records.line());
             self.numbers(row, cautions);
             return Ok(true);
         }
         Ok(false)
+    }
+
+    /// Time of the row, s; `None` is a missing one.
+    fn time(&mut self, cautions: &mut Cautions) -> Result<Option<f64>, LogError> {
+        let (records, at) = (&self.records, || self.records.place());
+        let cell = records.cell(self.time_at);
+        match self.clock_at {
+            None => self.time.read(cell, at, cautions),
+            Some(clock) => {
+                let joined = date::joined(&decoded(cell), &decoded(records.cell(clock)));
+                self.time.read(joined.as_bytes(), at, cautions)
+            }
+        }
+    }
+
+    /// What is wrong with a packed stream, which is read to its end for that; an inspection reads on anyway.
+    pub fn damage(&mut self) -> Option<LogError> {
+        if self.tap.is_some() || self.records.packing() == Packing::Plain {
+            return None;
+        }
+        loop {
+            match self.records.advance() {
+                Ok(true) => {}
+                Ok(false) | Err(LogError::Overlong { .. }) => return None,
+                Err(damage) => return Some(damage),
+            }
+        }
     }
 
     /// Date of second 0, if the log has dates.
@@ -135,22 +197,12 @@ impl CsvSource {
     }
 }
 
-/// The separator that the header has most of; a comma where it has none.
-fn separator(header: &[u8]) -> u8 {
-    let count = |separator: u8| header.iter().filter(|&&byte| byte == separator).count();
-    // The last of equals wins.
-    [b'\t', b';', b','].into_iter().max_by_key(|&separator| count(separator)).unwrap_or(b',')
-}
-
-fn names(header: &[Vec<u8>], at: &str) -> Result<Vec<String>, LogError> {
-    let refuse = |what: String| LogError::NotUtf8 { at: at.to_owned(), what };
-    let name = |cell: &Vec<u8>| {
-        let cell = cell.trim_ascii();
-        if cell.contains(&b'\r') {
-            return Err(refuse("lines end in carriage returns alone".to_owned()));
-        }
-        let text = std::str::from_utf8(cell).map(str::to_owned);
-        text.map_err(|_| refuse(format!("column {} is not UTF-8 text", shown(cell))))
-    };
-    header.iter().map(name).collect()
+/// Says what was supposed of the header.
+fn say(header: &Header, cautions: &mut Cautions) {
+    if header.passed > 0 {
+        cautions.count(Kind::Preamble, "", || (header.at.clone(), header.passed.to_string()));
+    }
+    if header.is_windows_1252 {
+        cautions.count(Kind::Windows1252, "", || (header.at.clone(), String::new()));
+    }
 }

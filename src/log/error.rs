@@ -39,6 +39,38 @@ pub enum LogError {
         /// What was found.
         what: String,
     },
+    /// The first bytes are those of something else.
+    #[error("{file} is {what}: {remedy}")]
+    NoText {
+        /// File.
+        file: String,
+        /// What it is.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A packed stream that cannot be unpacked to its end.
+    #[error(
+        "{at}: the gzip stream {what}: copy the file again; `gzip -cd` saves what stands before this line"
+    )]
+    Gzip {
+        /// Place, in the unpacked text.
+        at: String,
+        /// Whether it is cut off or damaged.
+        what: &'static str,
+        /// What the unpacking says.
+        #[source]
+        source: std::io::Error,
+    },
+    /// A zone that is no fixed offset.
+    #[error(
+        "{text:?} is no offset from UTC: write one as +01:00 or UTC; a place such as Europe/Berlin repeats an hour a \
+             year"
+    )]
+    Zone {
+        /// Zone as written.
+        text: String,
+    },
     /// A line that is too long to be a row.
     #[error("{at}: the row is longer than {limit} bytes: look for a quotation mark that is not closed")]
     Overlong {
@@ -57,8 +89,8 @@ pub enum LogError {
     },
     /// There is no time.
     #[error(
-        "{at}: there is no column of time: name it time_s, time_min, time_h, or time for RFC 3339, \
-             or give --map time_s=NAME; the columns are {columns}"
+        "{at}: there is no column of time: name it time_s, time_min, time_h, or time for dates, \
+             or give --map time_s=NAME or --map time=DATE+TIME; `cylwatch inspect` proposes one; the columns are {columns}"
     )]
     NoTime {
         /// Place of the header.
@@ -69,7 +101,7 @@ pub enum LogError {
     /// There is no reading.
     #[error(
         "{at}: there is no column to estimate from: name one of {known} with its unit, or give \
-             --map shoulder_degc=NAME; the columns are {columns}"
+             --map shoulder_degc=NAME; `cylwatch inspect` proposes some; the columns are {columns}"
     )]
     NoReadings {
         /// Place of the header.

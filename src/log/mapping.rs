@@ -1,5 +1,6 @@
 //! `ours=theirs`: a column of a log under a foreign name.
 use super::LogError;
+use super::columns::Label;
 
 /// One foreign column: `shoulder_degc=T1 (C)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -8,6 +9,25 @@ pub struct Mapping {
     pub ours: String,
     /// Name in the file.
     pub theirs: String,
+}
+
+impl Mapping {
+    /// Whether it names this header, with or without its unit in brackets, or as one of `Datum+Zeit`.
+    pub(super) fn names(&self, header: &str) -> bool {
+        let is_it = |name: &str| is_named(header, name);
+        is_it(&self.theirs) || self.pair().is_some_and(|(date, clock)| is_it(date) || is_it(clock))
+    }
+
+    /// Columns of date and time of day in `time=Datum+Zeit`.
+    pub(super) fn pair(&self) -> Option<(&str, &str)> {
+        let (date, clock) = self.theirs.split_once('+').filter(|_| self.ours == "time")?;
+        Some((date.trim(), clock.trim()))
+    }
+}
+
+/// Whether a header is called so, with or without its unit.
+pub(super) fn is_named(header: &str, name: &str) -> bool {
+    header == name || Label::of(header).base == name
 }
 
 impl std::str::FromStr for Mapping {

@@ -18,7 +18,10 @@ mod caution;
 mod cell;
 pub mod columns;
 mod csv;
+mod date;
 mod error;
+mod header;
+pub mod inspect;
 mod mapping;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -27,12 +30,16 @@ mod record;
 mod sampling;
 mod stuck;
 mod time;
+mod unpack;
+mod zone;
 
 pub use caution::{Caution, Kind};
 pub use error::LogError;
 pub use mapping::Mapping;
 pub use reader::{LogReader, Row, Truth, is_parquet};
 pub use sampling::Sampling;
+pub use unpack::Packing;
+pub use zone::Zone;
 
 use crate::estimator::log::Quantity;
 use jiff::Timestamp;
@@ -48,6 +55,8 @@ pub struct LogOptions {
     pub temperature_range_k: (f64, f64),
     /// Lowest and highest absolute pressure that a sensor can read, Pa. What lies outside is taken as missing.
     pub pressure_range_pa: (f64, f64),
+    /// Zone of dates that do not say theirs. `None`: they are taken as UTC, with a caution.
+    pub zone: Option<Zone>,
     /// Date of second 0 of a log with dates, for one that goes on from another. `None`: the first date of the log.
     pub origin: Option<Timestamp>,
     /// Whether rows whose time runs backwards are handed out as they come, for whoever can sort late ones in, and rows of
@@ -63,6 +72,7 @@ impl Default for LogOptions {
             sensors: Vec::new(),
             temperature_range_k: (173.15, 473.15),
             pressure_range_pa: (0.0, 1.5e8),
+            zone: None,
             origin: None,
             any_order: false,
         }

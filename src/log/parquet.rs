@@ -2,6 +2,10 @@
 //!
 //! Row groups are read in batches of a few thousand rows, so that memory does not grow with the file. Numbers may be
 //! integers or floating point; a null is a missing value; `time` may be a timestamp or a text of RFC 3339.
+mod text;
+
+pub(super) use text::text;
+
 use super::caution::{Cautions, Kind};
 use super::columns::{Columns, TimeForm};
 use super::reader::RawRow;
@@ -73,14 +77,18 @@ impl ParquetSource {
         let schema = reader.metadata().file_metadata().schema_descr_ptr();
         let names: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
         let found = Columns::find(&names, file, options, cautions)?;
-        let (time_at, time_name, form) = &found.time;
-        let time_form = time_form(&schema.column(*time_at), *form).ok_or_else(|| LogError::Parquet {
+        let (time_at, time_name, form) = (found.time.index, &found.time.header, found.time.form);
+        if found.time.clock.is_some() {
+            let reason = format!("date and time stand in two columns, {time_name}: write one timestamp");
+            return Err(LogError::Parquet { file: file.to_owned(), reason });
+        }
+        let time_form = time_form(&schema.column(time_at), form).ok_or_else(|| LogError::Parquet {
             file: file.to_owned(),
             reason: format!(
                 "column {time_name} must be a timestamp, a text of RFC 3339, or a number with its unit"
             ),
         })?;
-        let mut columns = vec![SourceColumn::new(*time_at, time_name, time_form)];
+        let mut columns = vec![SourceColumn::new(time_at, time_name, time_form)];
         for (index, header, unit) in found.values() {
             check_number(&schema.column(index), file, header)?;
             columns.push(SourceColumn::new(index, header, Form::Number(unit)));
@@ -90,7 +98,7 @@ impl ParquetSource {
             reader,
             next_group: 0,
             columns,
-            time: TimeReader::new(time_name, *form, false).with_origin(options.origin),
+            time: TimeReader::new(time_name, form, false, options),
             at: 0,
             length: 0,
             rows_before: 0,
@@ -237,9 +245,12 @@ impl SourceColumn {
                 let Some(tick) = ticks[at] else { return Ok(None) };
                 let instant = jiff::Timestamp::from_nanosecond(i128::from(tick) * i128::from(nanosecond));
                 let instant = instant.map_err(|_| refuse(tick.to_string()))?;
-                if !is_zoned {
-                    cautions.count(Kind::WithoutZone, &self.header, || (place(), instant.to_string()));
+                if is_zoned {
+                    return Ok(Some(reader.since_origin(instant)));
                 }
+                reader.without_zone(|| (place(), instant.to_string()), cautions);
+                let local = jiff::tz::Offset::UTC.to_datetime(instant);
+                let instant = reader.instant(local).ok_or_else(|| refuse(tick.to_string()))?;
                 Ok(Some(reader.since_origin(instant)))
             }
             _ => match self.number(at) {

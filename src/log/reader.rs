@@ -2,6 +2,7 @@
 use super::caution::{Caution, Cautions, Kind};
 use super::columns::{Columns, TimeForm, TruthQuantity};
 use super::csv::CsvSource;
+use super::inspect::{Survey, Tap};
 use super::sampling::Sampling;
 use super::stuck::StuckWatch;
 use super::{LogError, LogOptions};
@@ -59,6 +60,15 @@ impl Source {
             Self::Csv(source) => source.next(row, cautions),
             #[cfg(feature = "parquet")]
             Self::Parquet(source) => source.next(row, cautions),
+        }
+    }
+
+    /// Why a row is wrong: because the packed stream is damaged, if it is; else as it was said.
+    fn explained(&mut self, error: LogError) -> LogError {
+        match self {
+            Self::Csv(source) => source.damage().unwrap_or(error),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => error,
         }
     }
 
@@ -144,6 +154,30 @@ impl LogReader {
         Err(LogError::WithoutParquet { file: file.to_owned() })
     }
 
+    /// Reads a text for inspection; what a run would refuse is told in the survey.
+    ///
+    /// # Errors
+    /// The text has no header, or a mapping cannot be.
+    pub(super) fn inspect(
+        input: Box<dyn Read>,
+        file: &str,
+        options: &LogOptions,
+    ) -> Result<(Self, Survey), LogError> {
+        let mut cautions = Cautions::default();
+        let (source, columns, survey) = CsvSource::inspect(input, file, options, &mut cautions)?;
+        let options = LogOptions { any_order: true, ..options.clone() };
+        Ok((Self::new(Source::Csv(Box::new(source)), columns, file, &options, cautions), survey))
+    }
+
+    /// What counted the cells of a log that is inspected.
+    pub(super) fn tap(&self) -> Option<&Tap> {
+        match &self.source {
+            Source::Csv(source) => source.tap(),
+            #[cfg(feature = "parquet")]
+            Source::Parquet(_) => None,
+        }
+    }
+
     fn new(source: Source, columns: Columns, file: &str, options: &LogOptions, cautions: Cautions) -> Self {
         let channels: Vec<Channel> = columns.readings.iter().map(|column| column.meaning.clone()).collect();
         let count = channels.len();
@@ -187,7 +221,7 @@ impl LogReader {
 
     /// Whether the rows have dates rather than times.
     pub fn has_dates(&self) -> bool {
-        matches!(self.columns.time.2, TimeForm::Date)
+        self.columns.time.form == TimeForm::Date
     }
 
     /// The same as an instant.
@@ -224,7 +258,8 @@ impl LogReader {
     /// # Errors
     /// The log cannot be read on, runs backwards or contradicts itself; or it has ended without one usable reading.
     pub fn next_row(&mut self) -> Result<Option<&Row>, LogError> {
-        if !self.advance()? {
+        let found = self.advance();
+        if !found.map_err(|error| self.source.explained(error))? {
             return self.end().map(|()| None);
         }
         self.screen();

@@ -1,5 +1,7 @@
 //! Records of a text: lines cut into cells, with the line they stand in.
 use super::LogError;
+use super::unpack::{Packing, unpacked};
+use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read};
 
 /// Longest record, bytes: what lies above is no row but a quotation mark without its twin.
@@ -12,6 +14,9 @@ const BUFFER: usize = 1 << 16;
 pub(super) struct Records {
     file: String,
     input: BufReader<Box<dyn Read>>,
+    packing: Packing,
+    /// Lines that were looked at and not yet read.
+    ahead: VecDeque<Vec<u8>>,
     /// Separator of cells; until it is known a record is one cell.
     separator: Option<u8>,
     bytes: Vec<u8>,
@@ -25,17 +30,43 @@ pub(super) struct Records {
 }
 
 impl Records {
-    pub fn new(input: Box<dyn Read>, file: &str) -> Self {
-        Self {
+    /// The records of a text that may be packed.
+    pub fn new(input: Box<dyn Read>, file: &str) -> Result<Self, LogError> {
+        let (input, packing) = unpacked(input, file)?;
+        Ok(Self {
             file: file.to_owned(),
             input: BufReader::with_capacity(BUFFER, input),
+            packing,
+            ahead: VecDeque::new(),
             separator: None,
             bytes: Vec::new(),
             cells: Vec::new(),
             line: 0,
             lines: 0,
             is_ended: true,
+        })
+    }
+
+    /// How the text is packed.
+    pub fn packing(&self) -> Packing {
+        self.packing
+    }
+
+    /// A line that comes, 0 the next, with its end; `None`: the text ends before it.
+    pub fn ahead(&mut self, index: usize) -> Result<Option<&[u8]>, LogError> {
+        while self.ahead.len() <= index {
+            let mut line = Vec::new();
+            if read_line(&mut self.input, &mut line).map_err(|error| self.failed(error))? == 0 {
+                return Ok(None);
+            }
+            self.ahead.push_back(line);
         }
+        Ok(self.ahead.get(index).map(Vec::as_slice))
+    }
+
+    /// Leaves out lines that were looked at.
+    pub fn skip(&mut self, lines: usize) {
+        self.lines += self.ahead.drain(..lines.min(self.ahead.len())).len() as u64;
     }
 
     /// Reads the next record; `false` at the end.
@@ -108,15 +139,23 @@ impl Records {
     }
 
     fn append_line(&mut self) -> Result<bool, LogError> {
-        let room = (LONGEST + 1).saturating_sub(self.bytes.len()) as u64;
-        let read = self.input.by_ref().take(room).read_until(b'\n', &mut self.bytes);
-        let count = read.map_err(|source| LogError::Io { file: self.file.clone(), source })?;
+        let count = match self.ahead.pop_front() {
+            Some(line) => {
+                self.bytes.extend_from_slice(&line);
+                line.len()
+            }
+            None => read_line(&mut self.input, &mut self.bytes).map_err(|error| self.failed(error))?,
+        };
         if self.bytes.len() > LONGEST {
             return Err(LogError::Overlong { at: self.place(), limit: LONGEST });
         }
         self.lines += 1;
         self.is_ended = self.bytes.ends_with(b"\n");
         Ok(count > 0)
+    }
+
+    fn failed(&self, source: std::io::Error) -> LogError {
+        self.packing.error(&self.file, format!("{}:{}", self.file, self.lines + 1), source)
     }
 
     fn byte_order_mark(&mut self) -> Result<(), LogError> {
@@ -174,6 +213,19 @@ impl Records {
     }
 }
 
+/// Appends a line, or as much of one as a record can have and a byte.
+fn read_line(input: &mut impl BufRead, bytes: &mut Vec<u8>) -> std::io::Result<usize> {
+    let room = (LONGEST + 1).saturating_sub(bytes.len()) as u64;
+    input.take(room).read_until(b'\n', bytes)
+}
+
+/// The separator that a line has most of; a comma where it has none.
+pub(super) fn separator(line: &[u8]) -> u8 {
+    let count = |separator: u8| line.iter().filter(|&&byte| byte == separator).count();
+    // The last of equals wins.
+    [b'\t', b';', b','].into_iter().max_by_key(|&separator| count(separator)).unwrap_or(b',')
+}
+
 /// Where a text stands between quotation marks.
 #[derive(Debug, Default)]
 struct Marks {
@@ -207,7 +259,7 @@ mod tests {
     use super::*;
 
     fn records(text: &'static str, separator: u8) -> Vec<(u64, Vec<String>)> {
-        let mut records = Records::new(Box::new(text.as_bytes()), "x");
+        let mut records = Records::new(Box::new(text.as_bytes()), "x").unwrap();
         records.separate(separator);
         let mut out = Vec::new();
         while records.advance().unwrap() {
@@ -245,7 +297,7 @@ mod tests {
     #[test]
     fn the_last_record_tells_whether_its_line_ended() {
         for (text, cut) in [("a\nb", true), ("a\nb\n", false)] {
-            let mut records = Records::new(Box::new(text.as_bytes()), "x");
+            let mut records = Records::new(Box::new(text.as_bytes()), "x").unwrap();
             assert!(records.advance().unwrap() && !records.is_cut());
             assert!(records.advance().unwrap());
             assert_eq!(records.is_cut(), cut);

@@ -73,6 +73,11 @@ impl Sampling {
         self.last_s - self.first_s
     }
 
+    /// Times of the first and the last row, s; NaN without rows.
+    pub fn span_s(&self) -> (f64, f64) {
+        (self.first_s, self.last_s)
+    }
+
     /// Median of the intervals, s, within 5 %; NaN below two rows.
     pub fn usual_interval_s(&self) -> f64 {
         let half = self.rows.saturating_sub(1).div_ceil(2);

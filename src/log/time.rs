@@ -1,11 +1,10 @@
-//! Times of a log: numbers in a unit, or dates of RFC 3339.
-use super::LogError;
+//! Times of a log: numbers in a unit, or dates of RFC 3339, or as [`date`] understands them.
 use super::caution::{Cautions, Kind};
 use super::cell::{Cell, shown};
 use super::columns::TimeForm;
+use super::{LogError, LogOptions, Zone, date};
 use jiff::Timestamp;
 use jiff::civil::DateTime;
-use jiff::tz::Offset;
 
 /// Reads the times of one log, s. Dates count from the first one, so that no digits are lost on the year.
 #[derive(Debug)]
@@ -14,17 +13,26 @@ pub(super) struct TimeReader {
     form: TimeForm,
     decimal_comma: bool,
     origin: Option<Timestamp>,
+    /// Zone of dates that do not say theirs.
+    zone: Option<Zone>,
     zoned: Option<bool>,
+    /// Rows, where they are counted.
+    rows: u64,
 }
 
 impl TimeReader {
-    pub fn new(column: &str, form: TimeForm, decimal_comma: bool) -> Self {
-        Self { column: column.to_owned(), form, decimal_comma, origin: None, zoned: None }
-    }
-
-    /// The same with a date of second 0 that is known beforehand; of no use to a log without dates.
-    pub fn with_origin(self, origin: Option<Timestamp>) -> Self {
-        Self { origin: origin.filter(|_| matches!(self.form, TimeForm::Date)), ..self }
+    /// A reader of this column; a date of second 0 that is known beforehand is of no use to a log without dates.
+    pub fn new(column: &str, form: TimeForm, decimal_comma: bool, options: &LogOptions) -> Self {
+        let origin = options.origin.filter(|_| form == TimeForm::Date);
+        Self {
+            column: column.to_owned(),
+            form,
+            decimal_comma,
+            origin,
+            zone: options.zone,
+            zoned: None,
+            rows: 0,
+        }
     }
 
     /// Date of second 0, if the log has dates.
@@ -51,8 +59,24 @@ impl TimeReader {
                     Err(self.refuse(cell, at(), "a finite number, with a decimal point"))
                 }
             },
+            TimeForm::Rows => {
+                self.rows += 1;
+                Ok(Some(self.rows as f64))
+            }
             TimeForm::Date => self.date(cell, at, cautions),
         }
+    }
+
+    /// Counts a date without zone where nobody has said which one it has.
+    pub fn without_zone(&self, shown: impl FnOnce() -> (String, String), cautions: &mut Cautions) {
+        if self.zone.is_none() {
+            cautions.count(Kind::WithoutZone, &self.column, shown);
+        }
+    }
+
+    /// The instant of a local time.
+    pub fn instant(&self, local: DateTime) -> Option<Timestamp> {
+        self.zone.unwrap_or(Zone::UTC).offset().to_timestamp(local).ok()
     }
 
     fn date(
@@ -61,8 +85,10 @@ impl TimeReader {
         at: impl Fn() -> String,
         cautions: &mut Cautions,
     ) -> Result<Option<f64>, LogError> {
-        const EXPECTED: &str = "a date and time of RFC 3339, as 2026-01-31T08:00:00Z or 2026-01-31T08:00:00+01:00; \
-                                a number has its unit in the column's name, as time_s";
+        const EXPECTED: &str = "a date and time of RFC 3339, as 2026-01-31T08:00:00Z or 2026-01-31T08:00:00+01:00, or \
+                                31.01.2026 08:00:00; a number has its unit in the column's name, as time_s";
+        const AMBIGUOUS: &str = "a date that says which number is the day: year first, as 2026-01-31 08:00:00, or day first \
+                                 with dots, as 31.01.2026 08:00:00";
         let text = cell.trim_ascii();
         if Cell::read(text, false) == Cell::Missing {
             return Ok(None);
@@ -72,10 +98,14 @@ impl TimeReader {
         let instant = match zoned {
             Some(instant) => instant,
             None => {
-                let local = text.parse::<DateTime>().ok();
-                let instant = local.and_then(|local| Offset::UTC.to_timestamp(local).ok());
-                let instant = instant.ok_or_else(|| self.refuse(cell, at(), EXPECTED))?;
-                cautions.count(Kind::WithoutZone, &self.column, || (at(), shown(cell)));
+                let local = match date::as_rfc3339(text) {
+                    Some(text) => text.parse::<DateTime>(),
+                    None => text.parse::<DateTime>(),
+                };
+                let expected = if date::is_ambiguous(text) { AMBIGUOUS } else { EXPECTED };
+                let instant = local.ok().and_then(|local| self.instant(local));
+                let instant = instant.ok_or_else(|| self.refuse(cell, at(), expected))?;
+                self.without_zone(|| (at(), shown(cell)), cautions);
                 instant
             }
         };
@@ -101,7 +131,7 @@ mod tests {
     use super::*;
 
     fn read(cells: &[&str]) -> Result<Vec<Option<f64>>, LogError> {
-        let mut reader = TimeReader::new("time", TimeForm::Date, false);
+        let mut reader = TimeReader::new("time", TimeForm::Date, false, &LogOptions::default());
         let mut cautions = Cautions::default();
         cells.iter().map(|cell| reader.read(cell.as_bytes(), || "log.csv:2".into(), &mut cautions)).collect()
     }
@@ -119,6 +149,17 @@ mod tests {
     }
 
     #[test]
+    fn a_zone_that_is_given_moves_local_times_and_saves_the_caution() {
+        let options = LogOptions { zone: Some("+01:00".parse().unwrap()), ..LogOptions::default() };
+        let mut reader = TimeReader::new("Datum", TimeForm::Date, true, &options);
+        let mut cautions = Cautions::default();
+        let mut read = |text: &str| reader.read(text.as_bytes(), || "x:2".into(), &mut cautions).unwrap();
+        assert_eq!((read("22.11.2026 14:05"), read("22.11.26 14:05:30,5")), (Some(0.0), Some(30.5)));
+        assert!(cautions.list().is_empty());
+        assert_eq!(reader.origin().unwrap().to_string(), "2026-11-22T13:05:00Z");
+    }
+
+    #[test]
     fn dates_with_and_without_zone_do_not_mix() {
         let error = read(&["2026-01-01T00:00:00", "2026-01-01T00:00:10Z"]).unwrap_err();
         assert!(error.to_string().contains("in all rows or in none"), "{error}");
@@ -126,7 +167,11 @@ mod tests {
 
     #[test]
     fn what_is_no_date_is_refused_with_the_form_that_is_right() {
-        for text in ["12.5", "01/31/2026 08:00", "2026-02-30T00:00:00Z", "08:00:00", "\u{fc}"] {
+        let error = read(&["01/31/2026 08:00"]).unwrap_err().to_string();
+        assert!(error.contains("log.csv:2: time = 01/31/2026") && error.contains("31.01.2026"), "{error}");
+        for text in
+            ["12.5", "31.02.2026 08:00", "1.1.2026 25:00", "2026-02-30T00:00:00Z", "08:00:00", "\u{fc}"]
+        {
             let error = read(&[text]).unwrap_err().to_string();
             assert!(
                 error.contains("log.csv:2: time = ") && error.contains("2026-01-31T08:00:00Z"),

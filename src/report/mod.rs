@@ -7,6 +7,7 @@ pub mod calibrate;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
+pub mod inspect;
 pub mod monitor;
 mod page;
 pub mod place;
@@ -18,7 +19,7 @@ mod table;
 mod terminal;
 
 pub use page::Page;
-pub use provenance::{Fingerprint, Input, Provenance};
+pub use provenance::{Fingerprint, Input, Provenance, quoted};
 pub use readings::Readings;
 pub use story::{Block, Story};
 pub use table::{Column, Table, aligned, number, rounded};

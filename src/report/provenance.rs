@@ -89,6 +89,16 @@ impl Provenance {
     }
 }
 
+/// A word of a command line, quoted so that a shell reads it as one.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
 /// A line feed in a file's name must not end a comment.
 fn one_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")

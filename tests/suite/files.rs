@@ -64,6 +64,8 @@ fn every_command_has_help_and_the_shells_their_completions() {
         "init",
         "schema",
         "completions",
+        "inspect",
+        "man",
     ] {
         assert!(help.stdout.contains(command));
         assert_eq!(run(folder.path(), &[command, "--help"]).code, Some(0));
@@ -72,4 +74,22 @@ fn every_command_has_help_and_the_shells_their_completions() {
         assert!(run(folder.path(), &["completions", shell]).stdout.contains("cylwatch"));
     }
     refused(folder.path(), &["simulat"], &["simulate"]);
+}
+
+#[test]
+fn there_is_a_manual_page_for_every_command_and_the_main_one_goes_to_stdout() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &["man"]);
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""));
+    assert!(outcome.stdout.contains(".TH cylwatch 1") && outcome.stdout.contains("NAME"));
+    let outcome = run(folder.path(), &["man", "--out", "man1"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let pages = files(&folder.path().join("man1"));
+    for page in ["cylwatch.1", "cylwatch-estimate.1", "cylwatch-inspect.1", "cylwatch-man.1"] {
+        assert!(pages.iter().any(|found| found == page), "{page} is missing in {pages:?}");
+    }
+    let estimate = std::fs::read_to_string(folder.path().join("man1/cylwatch-estimate.1")).unwrap();
+    assert!(estimate.contains("cylwatch estimate") && estimate.contains("\\-\\-zone"), "{estimate}");
+    std::fs::write(folder.path().join("taken"), "").unwrap();
+    refused(folder.path(), &["man", "--out", "taken"], &["taken is a file"]);
 }

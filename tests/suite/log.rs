@@ -218,7 +218,8 @@ fn what_is_no_text_is_refused() {
     let utf16: Vec<u8> = "\u{feff}time_s,shoulder_degc\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
     refused("time_s,shoulder_degc\r0,15\r", &["log.csv:1", "carriage returns", "line feeds"]);
     refused(utf16, &["log.csv:1", "UTF-16", "save the log as UTF-8"]);
-    refused(b"time_s,shoulder_\xb0C\n0,1\n", &["log.csv:1", "not UTF-8", "save the log as UTF-8"]);
+    refused(b"PK\x03\x04\0", &["log.csv is a ZIP archive or a workbook", "save the sheet as CSV"]);
+    refused(b"PAR1\0", &["log.csv is a Parquet file", "ending .parquet"]);
     // A foreign remark in a column that nobody reads does no harm.
     let (rows, _) = read_with(b"time_s,shoulder_degc,note\n0,15,20 \xb0C\n", &LogOptions::default()).unwrap();
     assert_eq!(rows[0].readings, [288.15]);

@@ -10,10 +10,13 @@ mod estimate;
 mod examples;
 mod files;
 mod identify;
+mod inspect;
 mod log;
+mod log_forms;
 #[cfg(feature = "parquet")]
 mod log_parquet;
 mod monitor;
+mod packaging;
 mod pages;
 mod peers;
 mod place;

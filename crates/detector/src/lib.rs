@@ -6,7 +6,28 @@
 //! shortest delay that any detector can have. [`baseline`] holds the paper's detector and others without an observer.
 //! [`evidence`] turns what the observer says into statistics on time scales from an hour to a month, with thresholds.
 //! [`prognosis`] turns mass and leak rate with their joint uncertainty into the time until a limit and the reaction that
-//! is due.
+//! is due. [`monitor`] puts all of it behind one call a row: readings in, [`Verdict`](monitor::Verdict), events and
+//! alarms out; [`performance`] measures what detectors are worth.
+//!
+//! ```
+//! use cylwatch_detector::monitor::{Monitor, MonitorSettings};
+//! use cylwatch_detector::estimator::observer::Commissioning;
+//! use cylwatch_detector::estimator::sensor::Sensor;
+//! use cylwatch_detector::estimator::thermal::vessel;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let vessel = vessel::presets::load("nitrogen-20l")?;
+//! let sensors = [Sensor::typical("shoulder")?, Sensor::typical("pressure")?];
+//! let filled = Commissioning::filled(200e5, 288.15);
+//! let mut monitor = Monitor::new(&vessel, &sensors, &filled, &MonitorSettings::default())?;
+//! for minute in 0..10 {
+//!     for output in monitor.step(60.0 * f64::from(minute), &[288.15, 200e5])? {
+//!         println!("{:?}", output.verdict);
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
 pub mod baseline;
 pub mod calibrate;
 pub mod error;
@@ -18,3 +39,8 @@ pub mod statistic;
 
 pub use cylwatch_estimator as estimator;
 pub use error::DetectorError;
+
+/// The code of the README, so that it is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -3,6 +3,31 @@
 //!
 //! A trajectory (simulated) becomes a [`log::Log`] through [`sensor`]; an observer turns a log, row by row,
 //! into the mean gas temperature, the gas mass and the leak rate, each with its standard deviation.
+//!
+//! | part | what |
+//! |---|---|
+//! | [`sensor`], [`log`] | what a sensor reads, with its errors; readings in rows |
+//! | [`filter`], [`observer`] | linear algebra of filters and smoothers; the cylinder's states on top of it |
+//! | [`identify`], [`calibrate`] | transfer functions and physical parameters from logs |
+//! | [`placement`] | where sensors should sit, with a bound on what was missed |
+//! | [`consistency`], [`bound`], [`truth`] | how an estimator is judged |
+//!
+//! ```
+//! use cylwatch_estimator::observer::{Commissioning, Observer, ObserverSettings};
+//! use cylwatch_estimator::sensor::Sensor;
+//! use cylwatch_estimator::thermal::vessel;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let vessel = vessel::presets::load("nitrogen-20l")?;
+//! let sensors = [Sensor::typical("shoulder")?, Sensor::typical("pressure")?];
+//! let filled = Commissioning::filled(200e5, 288.15);
+//! let mut observer = Observer::new(&vessel, &sensors, &filled, &ObserverSettings::default())?;
+//! // A reading that is missing is NaN.
+//! let estimate = observer.step(60.0, &[288.1, f64::NAN])?;
+//! assert!((estimate.mass_kg - 4.46).abs() < 0.1);
+//! # Ok(())
+//! # }
+//! ```
 pub mod bound;
 pub mod calibrate;
 mod cone;
@@ -20,3 +45,8 @@ pub mod truth;
 
 pub use cylwatch_thermal as thermal;
 pub use error::EstimatorError;
+
+/// The code of the README, so that it is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -5,6 +5,27 @@
 //! [`vessel::VesselSpec`] and [`scenario::ScenarioSpec`] are what a file says; validated they become a
 //! [`vessel::Vessel`] and a [`scenario::Scenario`]; [`simulate::simulate`] turns the pair into a
 //! [`trajectory::Trajectory`]. All signatures are SI, with the unit in the name.
+//!
+//! | part | what |
+//! |---|---|
+//! | [`fluid`] | equations of state and transport properties; coefficients are data with their source |
+//! | [`wall`], [`transfer`], [`flow`] | conduction in a mesh without temperatures; films, radiation, sun; orifices and leaks |
+//! | [`vessel`], [`scenario`] | files, presets and what they become when they are valid; [`units`] reads the suffixes of their keys |
+//! | [`model`], [`simulate`] | state, right-hand side, Jacobian and ledger; the solver |
+//!
+//! ```
+//! use cylwatch_thermal::simulate::{SimulationSettings, simulate};
+//! use cylwatch_thermal::{scenario, vessel};
+//!
+//! # fn main() -> Result<(), cylwatch_thermal::ThermalError> {
+//! let vessel = vessel::presets::load("nitrogen-20l")?;
+//! let scenario = scenario::presets::load("shock-cold")?;
+//! let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_done| ())?;
+//! let (first_pa, last_pa) = (run.pressure_pa[0], run.pressure_pa[run.pressure_pa.len() - 1]);
+//! assert!(last_pa < 0.9 * first_pa, "a tight cylinder loses pressure in the cold");
+//! # Ok(())
+//! # }
+//! ```
 pub mod document;
 pub mod error;
 pub mod flow;
@@ -19,3 +40,8 @@ pub mod vessel;
 pub mod wall;
 
 pub use error::ThermalError;
+
+/// The code of the README, so that it is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,8 +1,8 @@
 //! The raw arguments of `calibrate`.
 use super::amounts::Amounts;
 use crate::cli::fill::GivenFill;
+use crate::cli::log_options::LogArguments;
 use clap::{Args, ValueEnum};
-use cylwatch::log::Mapping;
 use std::path::PathBuf;
 
 /// Arguments of `calibrate`.
@@ -33,9 +33,9 @@ pub struct CalibrateArguments {
     /// Another vessel that a log belongs to; factors are shared by all vessels; may be given again.
     #[arg(long = "vessel-of", value_name = "LOG=VESSEL")]
     pub vessels: Vec<String>,
-    /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
-    #[arg(long = "map", value_name = "OURS=THEIRS")]
-    pub mappings: Vec<Mapping>,
+    /// Foreign names and zone of the log.
+    #[command(flatten)]
+    pub reading: LogArguments,
     /// TOML file of the sensors with their errors [default: on the columns shoulder, valve, wall_<place> Pt100 of class
     /// B, on pressure a transmitter of 250 bar and 0.25 %].
     #[arg(long, value_name = "FILE")]

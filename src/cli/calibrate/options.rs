@@ -40,7 +40,7 @@ impl Options {
             vessels,
             vessel: arguments.vessel,
             logs,
-            mappings: arguments.mappings,
+            reading: arguments.reading,
             sensors: arguments.sensors,
             validation,
             settings,

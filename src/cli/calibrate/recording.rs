@@ -1,11 +1,11 @@
 //! A log in memory: the readings of its sensors, and the air.
 use crate::cli::input::{Inputs, shown};
+use crate::cli::log_options::LogArguments;
 use crate::cli::message::Messages;
 use crate::cli::progress::Progress;
 use crate::cli::selection::Selection;
 use cylwatch::estimator::log::{Channel, Log, Quantity};
 use cylwatch::estimator::sensor::{Sensor, SensorKind};
-use cylwatch::log::{LogOptions, Mapping};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
 use cylwatch::thermal::vessel::Vessel;
 
@@ -15,7 +15,7 @@ pub const AMBIENT: &str = "ambient";
 /// How logs are read.
 pub struct Reading<'a> {
     pub inputs: &'a Inputs,
-    pub mappings: &'a [Mapping],
+    pub reading: &'a LogArguments,
     /// Sensors of a file; none: typical ones.
     pub sensors: Option<&'a [Sensor]>,
     pub messages: &'a Messages,
@@ -42,11 +42,8 @@ impl Reading<'_> {
             let on_vessel = |sensor: &&Sensor| sensor.kind != SensorKind::Ambient;
             sensors.iter().filter(on_vessel).cloned().collect::<Vec<_>>()
         });
-        let options = LogOptions {
-            mappings: self.mappings.to_vec(),
-            sensors: sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect(),
-            ..LogOptions::default()
-        };
+        let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
+        let options = self.reading.options(names);
         let mut input = self.inputs.log(name, &options)?;
         let selection = Selection::new(&mut input.reader, sensors, vessel, &[AMBIENT], self.messages)?;
         let air = input.reader.channels().iter().position(|channel| {

@@ -1,11 +1,11 @@
 //! The raw arguments of `identify`.
 use super::amounts::Amounts;
 use crate::cli::arguments::Format;
+use crate::cli::log_options::LogArguments;
 use clap::{Args, ValueEnum};
 use cylwatch::estimator::identify::{
     DeadTime, ErrorModel, Gain, InitialState, InputCourse, Settings, StartMethod, Structure,
 };
-use cylwatch::log::Mapping;
 use std::path::PathBuf;
 
 /// Arguments of `identify`.
@@ -20,9 +20,9 @@ pub struct IdentifyArguments {
     /// Column of the output, with or without its unit.
     #[arg(long, value_name = "COLUMN")]
     pub output: String,
-    /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
-    #[arg(long = "map", value_name = "OURS=THEIRS")]
-    pub mappings: Vec<Mapping>,
+    /// Foreign names and zone of the log.
+    #[command(flatten)]
+    pub reading: LogArguments,
     /// Method.
     #[arg(long, value_enum, default_value = "output-error")]
     pub method: MethodName,

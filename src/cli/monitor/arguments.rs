@@ -1,9 +1,9 @@
 //! The raw arguments of `monitor`.
 use crate::cli::arguments::Format;
 use crate::cli::fill::GivenFill;
+use crate::cli::log_options::LogArguments;
 use crate::cli::unit_options::{Choice, Choices, Given};
 use clap::Args;
-use cylwatch::log::Mapping;
 use cylwatch::report::monitor;
 use cylwatch::thermal::units::Dimension;
 use std::path::PathBuf;
@@ -63,9 +63,9 @@ pub struct MonitorArguments {
     /// Report with tables, figure and inputs: one HTML file that needs nothing else.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
-    /// Column of the log with a foreign name, as shoulder_degc=T1; may be given again.
-    #[arg(long = "map", value_name = "OURS=THEIRS")]
-    pub mappings: Vec<Mapping>,
+    /// Foreign names and zone of the log.
+    #[command(flatten)]
+    pub reading: LogArguments,
     /// TOML file of the sensors with their errors [default: typical ones, as for `estimate`].
     #[arg(long, value_name = "FILE")]
     pub sensors: Option<PathBuf>,

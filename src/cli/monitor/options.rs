@@ -1,9 +1,9 @@
 //! Validated options of `monitor`.
 use super::arguments::MonitorArguments;
 use super::*;
+use crate::cli::log_options::LogArguments;
 use crate::cli::unit_options::Given;
 use cylwatch::detector::monitor::intake::IntakeSettings;
-use cylwatch::log::Mapping;
 use cylwatch::report::monitor::Circumstances;
 use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub struct Options {
     pub data: Target,
     pub format: Format,
     pub views: Views,
-    pub mappings: Vec<Mapping>,
+    pub reading: LogArguments,
     pub sensors: Option<PathBuf>,
     pub fill: GivenFill,
     pub source: FillSource,
@@ -39,7 +39,7 @@ pub struct Options {
 impl Options {
     /// Checks places and numbers.
     pub fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
-        let MonitorArguments { vessel, log, fill, given, mappings, sensors, learned_in, .. } = arguments;
+        let MonitorArguments { vessel, log, fill, given, reading, sensors, learned_in, .. } = arguments;
         if vessel == "-" && log == "-" {
             bail!("stdin can be the vessel or the log, not both: give the other one as a file");
         }
@@ -75,7 +75,7 @@ impl Options {
             log,
             data,
             views,
-            mappings,
+            reading,
             sensors,
             fill,
             learned_in,

@@ -1,18 +1,25 @@
 //! What the columns of a log mean.
 //!
 //! A name is a quantity and its unit, as in `shoulder_degc` or `pressure_barg`; capital letters do not matter.
-//! * **Time**: `time_<unit>`, or `time` for RFC 3339. A number goes before a date where both are there.
+//! * **Time**: `time_<unit>`, or `time` for a date. A number goes before a date where both are there. A log without either
+//!   may have `Datum` and `Zeit`, or `Date` and `Time`, in two columns or in one.
 //! * **Readings**: `shoulder`, `valve`, `ambient`, `wall_<place>`, `gas_<name>`, `pressure`, and the names of sensors
 //!   that the options give.
 //! * **Truth**: `gas_mean`, `mass`, `outflow`, for plots and scores, never for the estimate.
 //! * `measured_<name>` is a reading in a log that was simulated. There the plain columns are what is true, not what
 //!   was read, and set aside; of these only a pressure without `measured_pressure` is taken as a reading.
 //!
-//! `--map` goes before all of this. Everything else is set aside.
+//! A unit may stand in brackets, too: `Pressure [bar]`. `--map` goes before all of this. Everything else is set aside.
+mod label;
+mod mapped;
+mod survey;
 mod units;
 
+pub(super) use label::{Label, suffixes};
+pub(super) use survey::survey;
+
 use super::caution::{Cautions, Kind};
-use super::{LogError, LogOptions, Mapping};
+use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Quantity};
 use crate::thermal::document::Problem;
 use crate::thermal::units::{Dimension, Unit};
@@ -23,13 +30,45 @@ pub(super) const KNOWN: &str = "shoulder, valve, ambient, pressure, wall_<place>
 /// Columns of a simulation that no observer has a use for.
 const SIMULATED_ONLY: [&str; 1] = ["heat_to_gas_w"];
 
+/// Names of a column of dates, in small letters.
+const DATE: [&str; 3] = ["date", "datum", "tag"];
+/// Names of a column of times of day.
+const CLOCK: [&str; 4] = ["time", "zeit", "uhrzeit", "clock"];
+/// Names of a column of both.
+const DATE_AND_CLOCK: [&str; 9] = [
+    "date/time",
+    "date time",
+    "datetime",
+    "datum/zeit",
+    "datum/uhrzeit",
+    "datum zeit",
+    "datum uhrzeit",
+    "datum und zeit",
+    "date and time",
+];
+
 /// How the column of time is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeForm {
     /// A number in this unit.
     Number(&'static Unit),
-    /// Date and time of RFC 3339.
+    /// Date and time.
     Date,
+    /// None: rows are counted. Only while a log is inspected that has no time.
+    Rows,
+}
+
+/// Where the time of a row stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeColumn {
+    /// Position in the file, from 0.
+    pub index: usize,
+    /// Name as written; of two columns `Datum+Zeit`.
+    pub header: String,
+    /// How it is written.
+    pub form: TimeForm,
+    /// Position of the time of day, where `index` holds the date alone.
+    pub clock: Option<usize>,
 }
 
 /// Something true that only a simulation or a weighing knows.
@@ -59,8 +98,8 @@ pub struct ValueColumn<M> {
 /// The columns of a log by what they are for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// Column of time: position, name, form.
-    pub time: (usize, String, TimeForm),
+    /// Time.
+    pub time: TimeColumn,
     /// Readings.
     pub readings: Vec<ValueColumn<Channel>>,
     /// Truth.
@@ -71,7 +110,14 @@ pub struct Columns {
 #[derive(Clone, Debug, PartialEq)]
 enum Meaning {
     Time(TimeForm),
-    Reading { name: String, quantity: Quantity, unit: &'static Unit, measured: bool },
+    /// Time of day, beside a column of dates.
+    Clock,
+    Reading {
+        name: String,
+        quantity: Quantity,
+        unit: &'static Unit,
+        measured: bool,
+    },
     Truth(TruthQuantity, &'static Unit),
     Unknown,
 }
@@ -92,23 +138,8 @@ impl Columns {
         options: &LogOptions,
         cautions: &mut Cautions,
     ) -> Result<Self, LogError> {
-        let mapped = mapped(names, &options.mappings)?;
-        let mut found = Vec::with_capacity(names.len());
-        for (index, header) in names.iter().enumerate() {
-            let own = header.to_ascii_lowercase();
-            let name = mapped[index].as_deref().unwrap_or(&own);
-            let meaning = meaning(name, &options.sensors).map_err(|problem| match mapped[index] {
-                Some(_) => {
-                    LogError::Mapping { mapping: format!("{name}={header}"), reason: problem.to_string() }
-                }
-                None => LogError::Column { at: at.to_owned(), problem: Box::new(problem) },
-            })?;
-            if mapped[index].is_some() && meaning == Meaning::Unknown {
-                let reason = format!("{name} is nothing that is read; known are time, {KNOWN}");
-                return Err(LogError::Mapping { mapping: format!("{name}={header}"), reason });
-            }
-            found.push(Found { index, header, mapped: mapped[index].is_some(), meaning });
-        }
+        let mut found = found(names, at, options, Err)?;
+        pair(&mut found);
         set_aside(&found, at, cautions);
         let columns = Self {
             time: time(&found, at)?,
@@ -125,24 +156,74 @@ impl Columns {
     }
 }
 
-/// Our name of every column that a mapping names.
-fn mapped(names: &[String], mappings: &[Mapping]) -> Result<Vec<Option<String>>, LogError> {
-    let mut mapped = vec![None; names.len()];
-    for (k, mapping) in mappings.iter().enumerate() {
-        let refuse = |reason: String| LogError::Mapping { mapping: mapping.to_string(), reason };
-        let same = |name: &&String| **name == mapping.theirs;
-        let index = names.iter().position(|name| same(&name)).ok_or_else(|| {
-            refuse(format!("the log has no column {}; it has {}", mapping.theirs, names.join(", ")))
-        })?;
-        if names.iter().filter(same).count() > 1 {
-            return Err(refuse(format!("the log has several columns {}: rename them", mapping.theirs)));
-        }
-        if mappings[..k].iter().any(|other| other.theirs == mapping.theirs) {
-            return Err(refuse(format!("column {} is mapped twice: keep one", mapping.theirs)));
-        }
-        mapped[index] = Some(units::with_unit_of(&mapping.ours, &mapping.theirs));
+/// What each column is by itself; `on_problem` decides what becomes of one whose unit is wrong.
+fn found<'a>(
+    names: &'a [String],
+    at: &str,
+    options: &LogOptions,
+    mut on_problem: impl FnMut(LogError) -> Result<Meaning, LogError>,
+) -> Result<Vec<Found<'a>>, LogError> {
+    let mapped = mapped::names(names, &options.mappings)?;
+    let mut found = Vec::with_capacity(names.len());
+    for (index, (header, mapped)) in names.iter().zip(&mapped).enumerate() {
+        let own = Label::of(header).own();
+        let name = mapped.as_deref().unwrap_or(&own);
+        let refuse = |reason| LogError::Mapping { mapping: format!("{name}={header}"), reason };
+        let meaning = match meaning(name, &options.sensors) {
+            _ if name == mapped::CLOCK => Meaning::Clock,
+            Ok(Meaning::Unknown) if mapped.is_some() => {
+                return Err(refuse(format!("{name} is nothing that is read; known are time, {KNOWN}")));
+            }
+            Ok(meaning) => meaning,
+            Err(problem) if mapped.is_some() => return Err(refuse(problem.to_string())),
+            Err(problem) => on_problem(LogError::Column { at: at.to_owned(), problem: Box::new(problem) })?,
+        };
+        found.push(Found { index, header, mapped: mapped.is_some(), meaning });
     }
-    Ok(mapped)
+    Ok(found)
+}
+
+/// Whether a name in small letters is one of ours, with its unit.
+pub(super) fn is_ours(name: &str, sensors: &[String]) -> bool {
+    let known = meaning(name, sensors);
+    known.is_ok_and(|known| {
+        !matches!(known, Meaning::Unknown | Meaning::Clock | Meaning::Time(TimeForm::Date))
+    })
+}
+
+/// Whether a name in small letters says that its column is a date or a time.
+pub(super) fn is_time_word(name: &str) -> bool {
+    [&DATE[..], &CLOCK, &DATE_AND_CLOCK].concat().contains(&name)
+}
+
+/// Finds date and time of day in a log that has no other time.
+fn pair(found: &mut [Found<'_>]) {
+    let is_time = |column: &Found<'_>| matches!(column.meaning, Meaning::Time(_));
+    let is_plain = |column: &Found<'_>| {
+        !column.mapped
+            && column.meaning == Meaning::Time(TimeForm::Date)
+            && Label::of(column.header).own() == "time"
+    };
+    if found.iter().any(|column| is_time(column) && !is_plain(column)) {
+        return;
+    }
+    let position = |words: &[&str]| {
+        let is_it = |column: &Found<'_>| {
+            let is_free = column.meaning == Meaning::Unknown || is_plain(column);
+            is_free && words.contains(&Label::of(column.header).own().as_str())
+        };
+        found.iter().position(is_it)
+    };
+    match (position(&DATE_AND_CLOCK), position(&DATE), position(&CLOCK)) {
+        (Some(whole), ..) if !found.iter().any(is_time) => {
+            found[whole].meaning = Meaning::Time(TimeForm::Date)
+        }
+        (_, Some(date), Some(clock)) => {
+            found[date].meaning = Meaning::Time(TimeForm::Date);
+            found[clock].meaning = Meaning::Clock;
+        }
+        _ => {}
+    }
 }
 
 /// What a name in small letters means.
@@ -184,7 +265,7 @@ fn meaning(name: &str, sensors: &[String]) -> Result<Meaning, Problem> {
     Ok(prefixed.and_then(|(base, unit)| reading(base, unit)).unwrap_or(Meaning::Unknown))
 }
 
-fn time(found: &[Found<'_>], at: &str) -> Result<(usize, String, TimeForm), LogError> {
+fn time(found: &[Found<'_>], at: &str) -> Result<TimeColumn, LogError> {
     let times = found.iter().filter_map(|column| match column.meaning {
         Meaning::Time(form) => Some((column, form)),
         _ => None,
@@ -200,8 +281,12 @@ fn time(found: &[Found<'_>], at: &str) -> Result<(usize, String, TimeForm), LogE
             _ => best = Some((column, form)),
         }
     }
-    best.map(|(column, form)| (column.index, column.header.to_owned(), form))
-        .ok_or_else(|| LogError::NoTime { at: at.to_owned(), columns: headers(found) })
+    let (column, form) =
+        best.ok_or_else(|| LogError::NoTime { at: at.to_owned(), columns: headers(found) })?;
+    let clock = found.iter().find(|column| column.meaning == Meaning::Clock && form == TimeForm::Date);
+    let header =
+        clock.map_or(column.header.to_owned(), |clock| format!("{}+{}", column.header, clock.header));
+    Ok(TimeColumn { index: column.index, header, form, clock: clock.map(|clock| clock.index) })
 }
 
 fn readings(

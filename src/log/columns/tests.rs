@@ -1,4 +1,5 @@
 use super::*;
+use crate::log::Mapping;
 
 fn find(names: &str, options: &LogOptions) -> (Result<Columns, LogError>, Cautions) {
     let names: Vec<String> = names.split(',').map(str::to_owned).collect();
@@ -28,7 +29,7 @@ fn readings(columns: &Columns) -> Vec<(&str, &str, &str)> {
 fn every_known_name_is_a_reading_in_any_of_its_units() {
     let found =
         columns("time_min,shoulder_degC,Valve_K,ambient_degc,wall_mid_low_k,gas_1_degc,pressure_barg");
-    assert_eq!(found.time.1, "time_min");
+    assert_eq!(found.time.header, "time_min");
     assert_eq!(
         readings(&found),
         [
@@ -45,7 +46,7 @@ fn every_known_name_is_a_reading_in_any_of_its_units() {
 #[test]
 fn truth_is_no_reading() {
     let found = columns("time,shoulder_degc,gas_mean_degc,mass_g,outflow_g_h");
-    assert_eq!(found.time.2, TimeForm::Date);
+    assert_eq!(found.time.form, TimeForm::Date);
     assert_eq!(readings(&found).len(), 1);
     let truth: Vec<TruthQuantity> = found.truth.iter().map(|column| column.meaning).collect();
     assert_eq!(truth, [TruthQuantity::GasMean, TruthQuantity::Mass, TruthQuantity::Outflow]);
@@ -91,7 +92,7 @@ fn a_mapping_brings_its_unit_or_takes_that_of_the_file() {
         readings(&found),
         [("shoulder", "T1 (C)", "degc"), ("pressure", "P_raw_barg", "barg"), ("valve", "T2", "k")]
     );
-    assert_eq!((found.time.1.as_str(), found.time.2), ("Zeit", TimeForm::Date));
+    assert_eq!((found.time.header.as_str(), found.time.form), ("Zeit", TimeForm::Date));
     assert_eq!(cautions.list()[0].column, "Note");
 }
 
@@ -151,7 +152,7 @@ fn one_quantity_twice_is_refused() {
 #[test]
 fn elapsed_time_goes_before_dates() {
     let found = columns("time,time_s,shoulder_degc");
-    assert_eq!(found.time.1, "time_s");
+    assert_eq!(found.time.header, "time_s");
 }
 
 #[test]
@@ -171,4 +172,53 @@ fn what_nobody_knows_is_set_aside_once_with_a_guess() {
     let [caution] = cautions.list() else { panic!("{:?}", cautions.list()) };
     assert_eq!(caution.column, "note, gas_type, valve_state, wall_thickness_mm, vlave_degc");
     assert!(caution.to_string().ends_with("did you mean valve_degc?"), "{caution}");
+}
+
+#[test]
+fn date_and_time_of_day_are_found_in_two_columns_and_in_one() {
+    for (names, header, clock) in [
+        ("Datum,Zeit,shoulder_degc", "Datum+Zeit", Some(1)),
+        ("DATUM:,ZEIT:,shoulder_degc", "DATUM:+ZEIT:", Some(1)),
+        ("Date,Time,shoulder_degc", "Date+Time", Some(1)),
+        ("Datum/Zeit,shoulder_degc", "Datum/Zeit", None),
+        ("time,shoulder_degc,Note", "time", None),
+    ] {
+        let time = columns(names).time;
+        assert_eq!((time.header.as_str(), time.clock, time.form), (header, clock, TimeForm::Date), "{names}");
+    }
+    let (found, _) = find("Tag [d.m.y],Wann,shoulder_degc", &mapped(&["time=Tag+Wann"]));
+    assert_eq!(found.unwrap().time.clock, Some(1));
+    let found = columns("Datum,Zeit,time_s,shoulder_degc");
+    assert_eq!((found.time.header.as_str(), found.time.clock), ("time_s", None));
+    let error = refusal("Datum,Zeit,shoulder_degc", &["time=Datum+Uhr"]);
+    assert!(error.contains("no column Uhr; it has Datum, Zeit"), "{error}");
+}
+
+#[test]
+fn units_in_brackets_are_units_and_may_not_contradict_a_mapping() {
+    let found = columns("time_s,Shoulder [°C],Pressure [bar],Valve (K)");
+    assert_eq!(readings(&found).iter().map(|(_, _, unit)| *unit).collect::<Vec<_>>(), ["degc", "bar", "k"]);
+    let names = "Zeit [s],Druck [bar],T1 [°C],P2 [mbar],T3 [°F]";
+    for maps in
+        [["pressure_bar=Druck", "shoulder=T1"], ["pressure_barg=Druck [bar]", "shoulder_degc=T1 [°C]"]]
+    {
+        let (found, _) = find(names, &mapped(&[&maps[..], &["time=Zeit"]].concat()));
+        let found = found.unwrap();
+        assert_eq!(
+            found.time.form,
+            TimeForm::Number(crate::thermal::units::find("s", Dimension::Time).unwrap())
+        );
+        assert_eq!(found.readings.len(), 2);
+    }
+    for (map, words) in [
+        ("pressure_bar=P2", "the header says mbar: write pressure_mbar=P2"),
+        ("shoulder_k=T1", "the header says °C: write shoulder_degc=T1"),
+        ("shoulder_degc=T3", "in °F, which is no unit that is read"),
+        ("pressure_bar=T1", "the header says °C"),
+    ] {
+        let error = refusal(names, &["time_s=Zeit", map]);
+        assert!(error.contains("--map") && error.contains(words), "{error}");
+    }
+    let error = refusal("time_s,T1 [°C],T1 [K]", &["shoulder=T1"]);
+    assert!(error.contains("T1 [°C] and T1 [K] are both called T1"), "{error}");
 }

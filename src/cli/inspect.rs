@@ -1,0 +1,80 @@
+//! `cylwatch inspect`: what an unknown log holds, and what to do with it.
+use super::input::Inputs;
+use super::log_options::LogArguments;
+use super::message::Messages;
+use super::output::Target;
+use super::progress::Progress;
+use clap::{Args, ValueEnum};
+use cylwatch::report::inspect as report;
+use std::path::{Path, PathBuf};
+
+/// Rows between two looks at the bar.
+const ROWS: u64 = 1024;
+
+/// Arguments of `inspect`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct InspectArguments {
+    /// Log: a CSV file, also packed with gzip, a Parquet file, or - for CSV on stdin.
+    pub log: String,
+    /// Foreign names and zone of the log.
+    #[command(flatten)]
+    pub reading: LogArguments,
+    /// What comes out [default: json for a file that ends in .json, else text].
+    #[arg(long, value_enum)]
+    pub format: Option<InspectionFormat>,
+    /// File for it; - is stdout [default: stdout].
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// What comes out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum InspectionFormat {
+    /// Words and tables for people.
+    Text,
+    /// One JSON document with a provenance object.
+    Json,
+}
+
+const EXAMPLES: &str = "\
+Says how the file is written, which times and columns it has and what they are taken for, what is
+odd, which --map may be right for the columns that nobody knows, and which of estimate, monitor,
+identify and calibrate can use it, with the command line to run next. A log that these commands
+would refuse is inspected all the same.
+
+Examples:
+  cylwatch inspect logger.csv
+  cylwatch inspect logger.csv.gz --map 'shoulder_degc=T1' --zone +01:00
+  cylwatch inspect logger.csv --format json | jq .columns";
+
+/// Reads, counts and writes.
+pub fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<()> {
+    let target = Target::checked(arguments.output.as_deref(), &[Path::new(&arguments.log)])?;
+    let inputs = Inputs::default();
+    let mut log = inputs.inspector(&arguments.log, &arguments.reading.options(Vec::new()))?;
+    let progress = Progress::new(messages);
+    let mut rows = 0_u64;
+    while log.reader.step()? {
+        rows += 1;
+        if rows.is_multiple_of(ROWS) {
+            progress.show(&arguments.log, log.fraction_of_bytes());
+        }
+    }
+    drop(progress);
+    inputs.record_log(&log);
+    let inspection = log.reader.finish();
+    let is_json =
+        arguments.output.as_deref().and_then(Path::extension).is_some_and(|ending| ending == "json");
+    let text = match arguments.format {
+        Some(InspectionFormat::Json) => true,
+        Some(InspectionFormat::Text) => false,
+        None => is_json,
+    };
+    let text = if text {
+        serde_json::to_string_pretty(&report::document(&inspection, &inputs.provenance()))? + "\n"
+    } else {
+        report::text(&inspection)
+    };
+    target.write(text.as_bytes())
+}

@@ -1,0 +1,160 @@
+//! Which column may be what: by the words of its name, the unit in its header, and the range of its values.
+use super::{ColumnReport, Role};
+use crate::log::columns::{self, Label};
+use crate::log::header::is_value;
+use crate::log::{Mapping, date};
+use crate::thermal::units::{self, Dimension};
+
+/// A mapping that may be right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proposal {
+    /// For `--map`.
+    pub mapping: Mapping,
+    /// Whether the name says so; otherwise the quantity is likely and the place is not known.
+    pub is_likely: bool,
+    /// Why.
+    pub reason: String,
+}
+
+/// Parts of names, in small letters, of places and quantities; the first that fits wins.
+const WORDS: [(&[&str], &str); 9] = [
+    (&["schulter", "shoulder"], "shoulder"),
+    (&["ventil", "valve", "armatur"], "valve"),
+    (
+        &["umgebung", "ambient", "außen", "aussen", "luft", "raum", "kammer", "chamber", "outdoor", "room"],
+        "ambient",
+    ),
+    (&["boden", "bottom", "unten"], "wall_bottom"),
+    (&["hals", "neck"], "wall_neck"),
+    (&["mantel", "wand", "mitte", "wall", "middle", "surface", "oberfl"], "wall_middle"),
+    (&["gas"], "gas_mean"),
+    (&["druck", "pressure", "manometer", "press"], "pressure"),
+    (&["temp", "pt100", "pt1000", "thermo"], "shoulder"),
+];
+/// What thermometers without a place may be, in this order.
+const PLACES: [&str; 4] = ["shoulder", "valve", "wall_middle", "wall_bottom"];
+
+/// A column of times, by its first cell and its name.
+pub(super) fn time(names: &[String], first: &[String]) -> Option<Mapping> {
+    let cell = |k: usize| first.get(k).map_or("", |cell| cell.trim());
+    let is_date =
+        |k: &usize| date::as_rfc3339(cell(*k)).is_some() || cell(*k).parse::<jiff::civil::Date>().is_ok();
+    let is_clock = |k: &usize| cell(*k).contains(':') && !is_date(k) && is_value(cell(*k));
+    let all = 0..names.len();
+    let mapping = |ours: &str, theirs: String| Some(Mapping { ours: ours.to_owned(), theirs });
+    if let Some(day) = all.clone().find(is_date) {
+        if cell(day).contains(':') {
+            return mapping("time", names[day].clone());
+        }
+        if let Some(clock) = all.clone().find(is_clock) {
+            let [day, clock] = [day, clock].map(|k| Label::of(&names[k]).base.to_owned());
+            return mapping("time", format!("{day}+{clock}"));
+        }
+    }
+    let is_time = |name: &str| {
+        ["zeit", "time", "elapsed", "dauer", "sec", "sek"].iter().any(|word| name.contains(word))
+    };
+    let numbered =
+        all.into_iter().find(|&k| is_time(&names[k].to_lowercase()) && is_value(cell(k)) && !is_clock(&k))?;
+    let unit = Label::of(&names[numbered]).suffixes().and_then(|suffixes| suffixes.first());
+    let unit = unit.filter(|unit| units::find(unit, Dimension::Time).is_some()).unwrap_or(&"s");
+    mapping(&format!("time_{unit}"), names[numbered].clone())
+}
+
+/// Gives every column that is set aside and may be something a proposal; no quantity twice.
+pub(super) fn propose(reports: &mut [ColumnReport]) {
+    let mut taken: Vec<String> = reports.iter().filter_map(|report| report.role.quantity()).collect();
+    for is_likely in [true, false] {
+        for k in 0..reports.len() {
+            let report = &reports[k];
+            if report.role != Role::Aside || report.proposal.is_some() || !report.has_numbers() {
+                continue;
+            }
+            if let Some((quantity, unit, reason)) = guess(report, is_likely, &taken) {
+                let theirs = unique_name(reports, k);
+                let mapping = Mapping { ours: format!("{quantity}_{unit}"), theirs };
+                taken.push(quantity);
+                reports[k].proposal = Some(Proposal { mapping, is_likely, reason });
+            }
+        }
+    }
+}
+
+impl Role {
+    /// Name of the quantity, if it is one.
+    pub(super) fn quantity(&self) -> Option<String> {
+        match self {
+            Self::Reading(name, _) => Some(name.clone()),
+            Self::Truth(name, _) => Some((*name).to_owned()),
+            Self::Time | Self::Simulated | Self::Aside => None,
+        }
+    }
+}
+
+/// Quantity, unit and reason; `by_name`: only if the name has a word for its place.
+fn guess(report: &ColumnReport, by_name: bool, taken: &[String]) -> Option<(String, &'static str, String)> {
+    let label = Label::of(&report.header);
+    let base = label.base.to_lowercase();
+    let word = WORDS.iter().find(|(parts, _)| parts.iter().any(|part| base.contains(part)));
+    let is_place = word.is_some_and(|(parts, _)| parts[0] != "temp");
+    let dimension = match (word, label.suffixes()) {
+        (_, Some(suffixes)) => suffixes.iter().find_map(|suffix| dimension_of(suffix))?,
+        (Some((_, "pressure")), None) => Dimension::Pressure,
+        (Some(_), None) => Dimension::Temperature,
+        (None, None) => return None,
+    };
+    let named = word
+        .map(|(_, name)| *name)
+        .filter(|name| (*name == "pressure") == (dimension == Dimension::Pressure));
+    let quantity = match (dimension, named) {
+        (Dimension::Pressure, _) => "pressure",
+        (_, Some(name)) if is_place => name,
+        _ if by_name => return None,
+        _ => PLACES.into_iter().find(|place| !taken.iter().any(|name| name == place))?,
+    };
+    if taken.iter().any(|name| name == quantity) {
+        return None;
+    }
+    let unit = match label.suffixes() {
+        Some(suffixes) => suffixes.iter().copied().find(|suffix| units::find(suffix, dimension).is_some())?,
+        None => by_range(dimension, report.range)?,
+    };
+    let by = match (named.is_some() && is_place, label.unit) {
+        (true, Some(_)) => "by its name and unit".to_owned(),
+        (true, None) => "by its name and range".to_owned(),
+        (false, _) if dimension == Dimension::Pressure => "by its unit".to_owned(),
+        _ => "a temperature; where it sits is not known".to_owned(),
+    };
+    Some((quantity.to_owned(), unit, by))
+}
+
+fn dimension_of(suffix: &str) -> Option<Dimension> {
+    [Dimension::Temperature, Dimension::Pressure].into_iter().find(|&of| units::find(suffix, of).is_some())
+}
+
+/// The unit in which a cylinder has such values.
+pub(super) fn by_range(dimension: Dimension, [low, median, high]: [f64; 3]) -> Option<&'static str> {
+    match dimension {
+        Dimension::Temperature if low >= -90.0 && high <= 150.0 => Some("degc"),
+        Dimension::Temperature if low >= 180.0 && high <= 430.0 => Some("k"),
+        Dimension::Pressure => match median {
+            5.0..700.0 => Some("bar"),
+            700.0..7e3 => Some("psi"),
+            7e3..7e4 => Some("kpa"),
+            7e4..7e5 => Some("mbar"),
+            7e5..7e7 => Some("pa"),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The name without unit, or with it where that alone is unique.
+fn unique_name(reports: &[ColumnReport], k: usize) -> String {
+    let header = &reports[k].header;
+    let base = Label::of(header).base;
+    let others = reports.iter().enumerate().filter(|(other, _)| *other != k);
+    let is_unique = others.clone().all(|(_, other)| Label::of(&other.header).base != base);
+    let name = if is_unique { base } else { header };
+    if columns::suffixes(name).is_some() { header.clone() } else { name.to_owned() }
+}

@@ -1,0 +1,212 @@
+//! An inspection in words and tables of at most 100 columns.
+use crate::log::Packing;
+use crate::log::inspect::{ColumnReport, Inspection, Role, Times, Use};
+use crate::report::estimate::duration;
+use crate::report::monitor::Clock;
+use crate::report::{aligned, number, quoted};
+
+/// Longest name in a table, letters.
+const NAME: usize = 26;
+/// Length of a line of words.
+const LINE: usize = 96;
+/// Significant digits of a value.
+const DIGITS: usize = 6;
+/// Jumps, gaps and cautions of one kind that are listed.
+const LISTED: usize = 12;
+
+/// All of it.
+pub fn text(inspection: &Inspection) -> String {
+    let mut text = form(inspection);
+    text.push('\n');
+    text.push_str(&times(&inspection.times));
+    text.push('\n');
+    text.push_str(&columns(&inspection.columns));
+    let cautions = inspection.cautions.iter().map(ToString::to_string);
+    let refused = inspection.refusals.iter().map(|refusal| match refusal.count {
+        1 => refusal.message.clone(),
+        count => format!("{} ({count} times)", refusal.message),
+    });
+    list(&mut text, "proposed, look whether they are right", proposals(inspection));
+    list(&mut text, "a command would refuse it", refused);
+    list(&mut text, "a command would caution", cautions);
+    list(&mut text, "odd", inspection.oddities.iter().cloned());
+    text.push_str("\nwhat can be done with it\n");
+    inspection.uses.iter().for_each(|one| text.push_str(&usage(one)));
+    text.push_str("  In place of nitrogen-20l write your own vessel file, see `cylwatch init`.\n");
+    text
+}
+
+fn form(inspection: &Inspection) -> String {
+    let form = &inspection.form;
+    let mut words = vec![match (form.is_parquet, form.separator) {
+        (true, _) => "Parquet",
+        (false, ';') => "semicolons",
+        (false, '\t') => "tabs",
+        (false, _) => "commas",
+    }];
+    if !form.is_parquet {
+        words.push(if form.decimal_comma { "decimal comma" } else { "decimal point" });
+        words.push(form.encoding);
+        words.extend((form.packing == Packing::Gzip).then_some("gzip"));
+    }
+    let mut text = format!("{}: {}", inspection.name, words.join(", "));
+    if !form.is_parquet {
+        text.push_str(&format!(", header in line {}", form.header_line));
+    }
+    match form.lines_above {
+        0 => {}
+        1 => text.push_str(", 1 line above it"),
+        lines => text.push_str(&format!(", {lines} lines above it")),
+    }
+    text + "\n"
+}
+
+fn times(times: &Times) -> String {
+    let clock = Clock::new(times.origin);
+    let mut rows: Vec<(&str, String)> = Vec::new();
+    let mut say = |what, words: String| rows.push((what, words));
+    match (&times.column, &times.supposed) {
+        (None, _) => say("time", "none found: rows are counted instead".to_owned()),
+        (Some(column), Some(map)) => {
+            say("time", format!("{column}, supposed: --map {}", quoted(&map.to_string())))
+        }
+        (Some(column), None) => say("time", column.clone()),
+    }
+    if let Some(zone) = &times.zone {
+        say("zone", zone.clone());
+    }
+    if times.rows > 0 && times.column.is_some() {
+        let (from, to) = times.span_s;
+        say("from, to", format!("{}, {}", clock.words(from), clock.words(to)));
+        say("length", format!("{}, {} rows", duration(to - from), times.rows));
+    } else {
+        say("length", format!("{} rows", times.rows));
+    }
+    if times.interval_s.is_finite() && times.column.is_some() {
+        let (usual, jitter) = (duration(times.interval_s), duration(times.jitter_s));
+        say("interval", format!("median {usual}, 90 of 100 within {jitter} of each other"));
+        let gap = |gap: &crate::log::inspect::Interval| {
+            format!("{} from {} on (line {})", duration(gap.length_s), clock.words(gap.begin_s), gap.line)
+        };
+        let gaps: Vec<String> = times.gaps.iter().take(LISTED).map(gap).collect();
+        say("gaps", if gaps.is_empty() { "none".to_owned() } else { gaps.join("\n") });
+    }
+    if let (count @ 1.., Some(first)) = times.steps_back {
+        say(
+            "steps back",
+            format!("{count}, the first by {} in line {}", duration(-first.length_s), first.line),
+        );
+    }
+    let line = |(what, words): &(&str, String)| {
+        words
+            .lines()
+            .enumerate()
+            .map(|(k, line)| {
+                let what = if k == 0 { what } else { &"" };
+                format!("{what:10}  {line}\n")
+            })
+            .collect::<String>()
+    };
+    rows.iter().map(line).collect()
+}
+
+fn columns(columns: &[ColumnReport]) -> String {
+    let header = ["column", "taken for", "values", "empty", "min", "median", "max", "step", "run"];
+    let row = |column: &ColumnReport| {
+        let (numbers, missing, others) = column.cells;
+        let all = (numbers + missing + others).max(1);
+        let empty = format!("{} %", number(100.0 * missing as f64 / all as f64, 3));
+        let mut cells = vec![short(&column.header), role(&column.role), numbers.to_string(), empty];
+        if !column.has_numbers() || column.role == Role::Time {
+            if let Some(text) = column.text.as_ref().filter(|_| column.role != Role::Time) {
+                cells[1].push_str(&format!(", as {text}"));
+            }
+            cells.extend(std::iter::repeat_n(String::new(), 5));
+            return cells;
+        }
+        cells.extend(column.range.map(|value| number(value, DIGITS)));
+        cells.push(if column.step.is_finite() { number(column.step, 3) } else { "none".to_owned() });
+        cells.push(column.longest.count.to_string());
+        cells
+    };
+    let rows: Vec<Vec<String>> = columns.iter().map(row).collect();
+    aligned(&header, &rows)
+}
+
+fn role(role: &Role) -> String {
+    match role {
+        Role::Time => "time".to_owned(),
+        Role::Reading(name, unit) => format!("{name}, {unit}"),
+        Role::Truth(name, unit) => format!("{name}, {unit} (true)"),
+        Role::Simulated => "true, not read".to_owned(),
+        Role::Aside => "set aside".to_owned(),
+    }
+}
+
+fn proposals(inspection: &Inspection) -> Vec<String> {
+    let of_time = inspection.times.supposed.iter().map(|map| format!("--map {}", quoted(&map.to_string())));
+    let of_columns = inspection
+        .columns
+        .iter()
+        .filter_map(|column| column.proposal.as_ref())
+        .map(|proposal| format!("--map {}  {}", quoted(&proposal.mapping.to_string()), proposal.reason));
+    of_time.chain(of_columns).collect()
+}
+
+fn usage(usage: &Use) -> String {
+    let Use { command, lacks, but, line } = usage;
+    let mut text = format!("  {command:10}");
+    if lacks.is_empty() {
+        text.push_str(if but.is_empty() { "yes\n" } else { "yes, but\n" });
+        but.iter().for_each(|words| text.push_str(&wrapped(words, "    - ", "      ")));
+        let line: Vec<String> = line.iter().map(|word| quoted(word)).collect();
+        text.push_str(&format!("    {}\n", line.join(" ")));
+    } else {
+        text.push_str("no, it lacks\n");
+        lacks.iter().for_each(|words| text.push_str(&wrapped(words, "    - ", "      ")));
+    }
+    text
+}
+
+fn list(text: &mut String, title: &str, items: impl IntoIterator<Item = String>) {
+    let items: Vec<String> = items.into_iter().collect();
+    if items.is_empty() {
+        return;
+    }
+    text.push_str(&format!("\n{title}\n"));
+    for item in items.iter().take(LISTED) {
+        text.push_str(&wrapped(item, "  ", "    "));
+    }
+    if items.len() > LISTED {
+        text.push_str(&format!("  and {} more, all of them with --format json\n", items.len() - LISTED));
+    }
+}
+
+/// Words in lines, broken at spaces.
+fn wrapped(words: &str, first: &str, next: &str) -> String {
+    let mut text = first.to_owned();
+    let mut length = first.chars().count();
+    for (k, word) in words.split(' ').enumerate() {
+        let size = word.chars().count();
+        if k > 0 && length + 1 + size > LINE {
+            text.push_str(&format!("\n{next}"));
+            length = next.chars().count();
+        } else if k > 0 {
+            text.push(' ');
+            length += 1;
+        }
+        text.push_str(word);
+        length += size;
+    }
+    text + "\n"
+}
+
+/// A name that fits the table.
+fn short(name: &str) -> String {
+    let shown: String = name.chars().flat_map(char::escape_debug).collect();
+    match shown.chars().count() {
+        0 => "\"\"".to_owned(),
+        1..=NAME => shown,
+        _ => shown.chars().take(NAME - 3).collect::<String>() + "...",
+    }
+}
