@@ -8,6 +8,7 @@ use super::log_options::LogArguments;
 use super::man::ManArguments;
 use super::monitor::MonitorArguments;
 use super::place::PlaceArguments;
+use super::simulate::SimulationFormat;
 use super::states::GivenQuantities;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use cylwatch::estimator::EstimatorError;
@@ -59,7 +60,7 @@ pub enum Command {
     Identify(Box<IdentifyArguments>),
     /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.
     Calibrate(Box<CalibrateArguments>),
-    /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; takes minutes.
+    /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; ten minutes and more.
     BenchDetector(BenchDetectorArguments),
     /// Find where sensors should sit, with a proof that no better layout was missed; takes seconds to minutes.
     Place(Box<PlaceArguments>),
@@ -137,9 +138,9 @@ pub struct SimulateArguments {
     /// Report with tables, figure and inputs: one HTML file that needs nothing else.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
-    /// Format of the data [default: json for a file that ends in .json, else csv].
+    /// Format of the data [default: by the ending .json or .parquet of the file, else csv].
     #[arg(long, value_enum)]
-    pub format: Option<Format>,
+    pub format: Option<SimulationFormat>,
     /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
     #[arg(long, value_name = "NUMBER")]
     pub relative_tolerance: Option<f64>,

@@ -4,6 +4,7 @@ use super::log_options::LogArguments;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
+use super::views::{Views, Wanted};
 use clap::{Args, ValueEnum};
 use cylwatch::report::inspect as report;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,9 @@ pub struct InspectArguments {
     /// File for it; - is stdout [default: stdout].
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Report with the same tables: one HTML file that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
 }
 
 /// What comes out.
@@ -51,6 +55,8 @@ Examples:
 /// Reads, counts and writes.
 pub fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<()> {
     let target = Target::checked(arguments.output.as_deref(), &[Path::new(&arguments.log)])?;
+    let wanted = Wanted { plot: None, report: arguments.report.as_deref() };
+    let views = Views::checked(wanted, &[Path::new(&arguments.log)], &[&target])?;
     let inputs = Inputs::default();
     let mut log = inputs.inspector(&arguments.log, &arguments.reading.options(Vec::new()))?;
     let progress = Progress::new(messages);
@@ -71,10 +77,12 @@ pub fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<(
         Some(InspectionFormat::Text) => false,
         None => is_json,
     };
+    let made = views.make_report(|| report::story(&inspection), inputs.sources(), &inputs.provenance())?;
     let text = if text {
         serde_json::to_string_pretty(&report::document(&inspection, &inputs.provenance()))? + "\n"
     } else {
         report::text(&inspection)
     };
+    made.write()?;
     target.write(text.as_bytes())
 }

@@ -28,7 +28,11 @@ impl Selection {
     ) -> anyhow::Result<Self> {
         let channels = reader.channels();
         let selection = match sensors {
-            Some(sensors) => Self::of(sensors, channels)?,
+            Some(sensors) => {
+                let selection = Self::of(sensors, channels)?;
+                selection.say_unused(channels, vessel, known, messages);
+                selection
+            }
             None => Self::typical(channels, vessel, known, messages)?,
         };
         for (sensor, &channel) in selection.sensors.iter().zip(&selection.channels) {
@@ -36,6 +40,22 @@ impl Selection {
             reader.set_range(channel, low, high);
         }
         Ok(selection)
+    }
+
+    /// A file of sensors replaces all typical ones, which is easily forgotten.
+    fn say_unused(&self, channels: &[Channel], vessel: &Vessel, known: &[&str], messages: &Messages) {
+        let is_unused = |(index, channel): &(usize, &Channel)| {
+            let name = channel.name.as_str();
+            !self.channels.contains(index) && !known.contains(&name) && typical(channel, vessel).is_ok()
+        };
+        let unused: Vec<&str> =
+            channels.iter().enumerate().filter(is_unused).map(|(_, channel)| channel.name.as_str()).collect();
+        if !unused.is_empty() {
+            let names = unused.join(", ");
+            messages.caution(&format!(
+                "not used: {names}; a file of sensors replaces all typical ones, name there whatever is to be used"
+            ));
+        }
     }
 
     fn of(sensors: Vec<Sensor>, channels: &[Channel]) -> anyhow::Result<Self> {

@@ -6,6 +6,8 @@ use super::output::Target;
 use super::progress::Progress;
 use super::views::{Made, Views, Wanted};
 use anyhow::bail;
+use clap::ValueEnum;
+use cylwatch::log::is_parquet;
 use cylwatch::report::figure::Picture;
 use cylwatch::report::{Provenance, Readings, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
@@ -13,12 +15,34 @@ use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
 use std::path::Path;
 
+/// Format of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SimulationFormat {
+    /// Comma-separated columns; lines that begin with # say where they come from.
+    Csv,
+    /// A column of doubles each, with the provenance as metadata; in a program that was built with the feature parquet.
+    Parquet,
+    /// One JSON document with a provenance object.
+    Json,
+}
+
+impl SimulationFormat {
+    /// The format that an output's name asks for.
+    fn of(output: Option<&Path>) -> Self {
+        match Format::of(output) {
+            Format::Json => Self::Json,
+            Format::Csv if output.is_some_and(is_parquet) => Self::Parquet,
+            Format::Csv => Self::Csv,
+        }
+    }
+}
+
 /// Validated options.
 struct Options {
     vessel: String,
     scenario: String,
     data: Target,
-    format: Format,
+    format: SimulationFormat,
     views: Views,
     settings: SimulationSettings,
     seed: u64,
@@ -55,7 +79,7 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
         Made::default()
     };
     views.write()?;
-    options.data.write(data.as_bytes())?;
+    options.data.write(&data)?;
     messages.say(&story.to_text());
     Ok(())
 }
@@ -77,7 +101,13 @@ impl Options {
             settings.relative_tolerance = tolerance;
         }
         settings.validate()?;
-        let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
+        let format = arguments.format.unwrap_or_else(|| SimulationFormat::of(arguments.output.as_deref()));
+        if format == SimulationFormat::Parquet && !cfg!(feature = "parquet") {
+            bail!(
+                "this program was built without Parquet: build it with `cargo build --release --features parquet`, or \
+                 choose --format csv or json"
+            );
+        }
         Ok(Self { vessel, scenario, data, format, views, settings, seed: arguments.seed })
     }
 }
@@ -85,12 +115,19 @@ impl Options {
 fn data(
     run: &Trajectory,
     readings: &Readings,
-    format: Format,
+    format: SimulationFormat,
     provenance: &Provenance,
-) -> anyhow::Result<String> {
+) -> anyhow::Result<Vec<u8>> {
+    let table = || simulation::table(run, readings);
     Ok(match format {
-        Format::Csv => simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run)),
-        Format::Json => serde_json::to_string(&simulation::document(run, readings, provenance))? + "\n",
+        SimulationFormat::Csv => table().to_csv(provenance, &simulation::remarks(run)).into_bytes(),
+        SimulationFormat::Json => {
+            (serde_json::to_string(&simulation::document(run, readings, provenance))? + "\n").into_bytes()
+        }
+        #[cfg(feature = "parquet")]
+        SimulationFormat::Parquet => table().to_parquet(provenance, &simulation::remarks(run))?,
+        #[cfg(not(feature = "parquet"))]
+        SimulationFormat::Parquet => bail!("this program was built without Parquet"),
     })
 }
 

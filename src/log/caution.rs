@@ -91,7 +91,10 @@ impl fmt::Display for Caution {
                  out an hour a year; --zone +01:00 says another one"
             ),
             Kind::DecimalComma => {
-                write!(f, "{first}: {column} = {detail} is taken as a number with a decimal comma")
+                write!(
+                    f,
+                    "{first}: {detail} is taken as a number with a decimal comma, as are all others like it"
+                )
             }
             Kind::Perfect => {
                 write!(f, "{first}: {column} is simulated without a sensor and taken as a perfect reading")

@@ -190,7 +190,9 @@ impl CsvSource {
                 Cell::Unreadable => (f64::NAN, Some(Kind::Unreadable)),
             };
             if let Some(kind) = fault {
-                cautions.count(kind, header, || (self.records.place(), shown(cell)));
+                // A file that writes one number so writes all so: once for all columns.
+                let column = if kind == Kind::DecimalComma { "" } else { header };
+                cautions.count(kind, column, || (self.records.place(), shown(cell)));
             }
             row.values.push(value);
         }

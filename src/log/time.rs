@@ -51,7 +51,7 @@ impl TimeReader {
             TimeForm::Number(unit) => match Cell::read(cell, self.decimal_comma) {
                 Cell::Number(number) => Ok(Some(unit.to_si(number))),
                 Cell::WithComma(number) => {
-                    cautions.count(Kind::DecimalComma, &self.column, || (at(), shown(cell)));
+                    cautions.count(Kind::DecimalComma, "", || (at(), shown(cell)));
                     Ok(Some(unit.to_si(number)))
                 }
                 Cell::Missing => Ok(None),

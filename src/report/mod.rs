@@ -10,6 +10,8 @@ pub mod identify;
 pub mod inspect;
 pub mod monitor;
 mod page;
+#[cfg(feature = "parquet")]
+mod parquet;
 pub mod place;
 mod provenance;
 mod readings;
@@ -31,6 +33,12 @@ pub enum ReportError {
     /// The embedded font is damaged.
     #[error("the embedded font cannot be read: the program is damaged, install it again")]
     Font,
+    /// The library for Parquet failed.
+    #[error("the table cannot be written as Parquet: {reason}; write CSV or JSON")]
+    Parquet {
+        /// What the library says.
+        reason: String,
+    },
     /// The drawing library failed.
     #[error("the figure cannot be drawn: {reason}")]
     Drawing {

@@ -90,33 +90,41 @@ pub fn number(value: f64, digits: usize) -> String {
 
 /// Rows of words, aligned; a column whose cells all begin like numbers stands to the right.
 pub fn aligned(header: &[&str], rows: &[Vec<String>]) -> String {
+    let header: Vec<Vec<String>> = match header {
+        [] => Vec::new(),
+        names => vec![names.iter().map(|name| (*name).to_owned()).collect()],
+    };
+    aligned_below(&header, rows)
+}
+
+/// The same below a header of several lines.
+pub(super) fn aligned_below(header: &[Vec<String>], rows: &[Vec<String>]) -> String {
     let width = |k: usize| {
-        rows.iter().filter_map(|row| row.get(k)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        rows.iter()
+            .chain(header)
+            .filter_map(|row| row.get(k))
+            .map(|cell| cell.chars().count())
+            .max()
+            .unwrap_or(0)
     };
     let numeric = |k: usize| {
         let begins = |cell: &String| cell.starts_with(|c: char| c.is_ascii_digit() || "-+".contains(c));
         rows.iter().filter_map(|row| row.get(k)).all(|cell| cell.is_empty() || begins(cell))
     };
-    let count = rows.iter().map(Vec::len).max().unwrap_or(header.len());
-    let layout: Vec<(usize, bool)> = (0..count)
-        .map(|k| (width(k).max(header.get(k).map_or(0, |name| name.chars().count())), numeric(k)))
-        .collect();
-    let line = |cells: &[&str]| {
+    let count = rows.iter().chain(header).map(Vec::len).max().unwrap_or(0);
+    let layout: Vec<(usize, bool)> = (0..count).map(|k| (width(k), numeric(k))).collect();
+    let line = |cells: &[String]| {
         let padded = layout.iter().zip(cells).map(|(&(width, right), cell)| {
             let pad = " ".repeat(width - cell.chars().count());
             if right { format!("{pad}{cell}") } else { format!("{cell}{pad}") }
         });
         padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
     };
-    let mut text = String::new();
+    let mut text: String = header.iter().map(|names| line(names)).collect();
     if !header.is_empty() {
-        text.push_str(&line(header));
-        let rules: Vec<String> = layout.iter().map(|(width, _)| "-".repeat(*width)).collect();
-        text.push_str(&line(&rules.iter().map(String::as_str).collect::<Vec<_>>()));
+        text.push_str(&line(&layout.iter().map(|(width, _)| "-".repeat(*width)).collect::<Vec<_>>()));
     }
-    for row in rows {
-        text.push_str(&line(&row.iter().map(String::as_str).collect::<Vec<_>>()));
-    }
+    text.extend(rows.iter().map(|row| line(row)));
     text
 }
 

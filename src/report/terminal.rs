@@ -1,55 +1,58 @@
 //! Tables and sentences that fit a terminal.
-use super::table::aligned;
+use super::table::{aligned, aligned_below};
 
 /// Width of a terminal that everything fits, characters.
-pub(super) const WIDTH: usize = 110;
-/// Least width that a column is narrowed to, characters.
-const NARROWEST: usize = 14;
+const WIDTH: usize = 110;
+/// What stands between two columns, characters.
+const BETWEEN: usize = 2;
 
-/// A table; where it would be too wide, cells of its widest columns go on in further lines.
+/// A table; where it would be too wide, its widest columns are narrowed and their cells go on in further lines.
 pub(super) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
-    let mut rows = rows.to_vec();
-    // Each pass narrows the widest column by what is too much, or to the least width: as many passes as columns do.
-    for _ in 0..header.len().max(1) {
-        let table = aligned(header, &rows);
-        let wide = table.lines().map(|line| line.chars().count()).max().unwrap_or(0);
-        let widest = (0..header.len()).map(|column| (width(&rows, column), column)).max();
-        let Some((broad, column)) = widest.filter(|(broad, _)| wide > WIDTH && *broad > NARROWEST) else {
-            return table;
-        };
-        let room = broad.saturating_sub(wide - WIDTH).max(NARROWEST);
-        rows = rows.into_iter().flat_map(|row| continued(row, column, room)).collect();
+    let all: Vec<Vec<&str>> = std::iter::once(header.to_vec())
+        .chain(rows.iter().map(|row| row.iter().map(String::as_str).collect()))
+        .collect();
+    let columns = all.iter().map(Vec::len).max().unwrap_or(0);
+    let cells = |k: usize| all.iter().filter_map(move |row| row.get(k).copied());
+    let size = |words: &str| words.chars().count();
+    let mut widths: Vec<usize> = (0..columns).map(|k| cells(k).map(size).max().unwrap_or(0)).collect();
+    let least: Vec<usize> = (0..columns)
+        .map(|k| cells(k).flat_map(|cell| cell.split(' ')).map(size).max().unwrap_or(0))
+        .collect();
+    let room = WIDTH.saturating_sub(BETWEEN * columns.saturating_sub(1));
+    if widths.iter().sum::<usize>() <= room {
+        return aligned(header, rows);
     }
-    aligned(header, &rows)
+    while widths.iter().sum::<usize>() > room {
+        let narrowable = (0..columns).filter(|&k| widths[k] > least[k]);
+        let Some(widest) = narrowable.max_by_key(|&k| widths[k]) else { break };
+        widths[widest] -= 1;
+    }
+    let lines = |row: &[&str]| broken(row, &widths);
+    let header = if header.is_empty() { Vec::new() } else { lines(header) };
+    let rows: Vec<Vec<String>> = all[1..].iter().flat_map(|row| lines(row)).collect();
+    aligned_below(&header, &rows)
 }
 
-fn width(rows: &[Vec<String>], column: usize) -> usize {
-    rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+/// A row in as many lines as its longest cell needs.
+fn broken(row: &[&str], widths: &[usize]) -> Vec<Vec<String>> {
+    let cells: Vec<Vec<String>> = row.iter().zip(widths).map(|(cell, width)| words(cell, *width)).collect();
+    let height = cells.iter().map(Vec::len).max().unwrap_or(0);
+    (0..height).map(|k| cells.iter().map(|cell| cell.get(k).cloned().unwrap_or_default()).collect()).collect()
 }
 
-/// A row, and further ones for what a cell has too many words for.
-fn continued(row: Vec<String>, column: usize, room: usize) -> Vec<Vec<String>> {
-    let Some(cell) = row.get(column).filter(|cell| cell.chars().count() > room) else { return vec![row] };
+/// Words in lines of a width.
+fn words(cell: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in cell.split(' ') {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= room => {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
                 line.push(' ');
                 line.push_str(word);
             }
             _ => lines.push(word.to_owned()),
         }
     }
-    let further = lines.split_off(lines.len().min(1));
-    let mut first = row;
-    first[column] = lines.concat();
-    let mut rows = vec![first];
-    for line in further {
-        let mut cells = vec![String::new(); column];
-        cells.push(line);
-        rows.push(cells);
-    }
-    rows
+    lines
 }
 
 /// Lines that are no wider than a terminal, broken at blanks and then indented by two more, with a line feed at the end.

@@ -205,7 +205,7 @@ pub fn beside(score: &ScenarioScore) -> Figure {
     let missing = (0..3).map(|who| line(WHO[who], t, &watched.missing_bar[who], STROKES[who]));
     let temperatures = vec![
         line("air", t, &celsius(&truth.ambient_k), style::AIR),
-        line("shoulder as read", t, &watched.shoulder_degc, style::noisy(style::SHOULDER)),
+        line("shoulder as read", t, &watched.shoulder_degc, style::SHOULDER),
         line("gas", t, &celsius(&truth.gas_mean_k), style::GAS_MEAN),
     ];
     let panels = vec![
@@ -257,11 +257,12 @@ pub fn blowdown(study: &Blowdown) -> Figure {
     }
     gas_items.extend(models(study, "mean, ", &gas));
     let stacked = &study.stacked.run;
-    for (name, pick) in
-        [("warmest of 40 cells,\nfitted", f64::max as fn(f64, f64) -> f64), ("coldest of them", f64::min)]
-    {
+    for (name, pick, stroke) in [
+        ("warmest of 40 cells,\nfitted", f64::max as fn(f64, f64) -> f64, style::THIRD),
+        ("coldest of them", f64::min, style::FOURTH),
+    ] {
         let edge = extreme(&stacked.gas_cells_k, pick).into_iter().map(|t| t - 273.15).collect::<Vec<_>>();
-        gas_items.push(Item::line(name, &stacked.time_s, edge, style::THIRD));
+        gas_items.push(Item::line(name, &stacked.time_s, edge, stroke));
     }
     let mut wall_items = band("measured, lowest\nto highest", &measured.wall_low_k, &measured.wall_high_k);
     wall_items.extend(models(study, "mid height, ", &wall));

@@ -44,7 +44,7 @@ pub enum Stage {
     /// Gas temperature to expected pressure.
     Expectation(Expectation),
     /// Noise of the pressure.
-    Noise(SimulatedNoise),
+    Noise(Box<SimulatedNoise>),
     /// What a constant flow has taken since its onset.
     Loss {
         /// Rate, Pa/s.
@@ -136,7 +136,7 @@ impl Scheme {
         let mut scheme = Self { title: "Figure 7: the same with a simulated leak", blocks: Vec::new() };
         let expected = scheme.expected()?;
         let noise = SimulatedNoise::try_new(Noise::white(NOISE_PA), SAMPLE_S, seed)?;
-        let noise = scheme.add("noise\n10 mbar", "", (1.0, 2.1), Stage::Noise(noise), &[]);
+        let noise = scheme.add("noise\n10 mbar", "", (1.0, 2.1), Stage::Noise(Box::new(noise)), &[]);
         let loss = Stage::Loss { rate_pa_s: LOSS_BAR_H * BAR / HOUR_S, from_s: ONSET_S };
         let loss = scheme.add("constant flow\nfrom t2", "Δp_V", (1.0, 3.1), loss, &[]);
         let sum = Stage::Sum(&[1.0, 1.0, -1.0]);

@@ -91,12 +91,13 @@ fn reports(folder: &Path) -> Vec<&'static str> {
     };
     let n = "nitrogen-20l";
     ran(&["simulate", n, "tunnel-winter", "-o", "run.csv", "--report", "simulate.html"], &[0]);
+    ran(&["inspect", "run.csv", "-o", "inspection.txt", "--report", "inspect.html"], &[0]);
     ran(&["estimate", n, "run.csv", "-o", "est.csv", "--report", "estimate.html"], &[0]);
     ran(&["monitor", n, "run.csv", "-o", "rows.csv", "--report", "monitor.html"], &[0, 1, 3]);
     let columns = ["--input", "shoulder", "--output", "gas_mean"];
     ran(&[&["identify", "run.csv"], &columns[..], &["--report", "identify.html"]].concat(), &[0]);
     ran(&["calibrate", n, "run.csv", "--scenario", "tunnel-winter", "--report", "calibrate.html"], &[0]);
-    ran(&["place", n, "--sensors", "1", "--scenario", "none", "--report", "place.html"], &[0]);
+    ran(&["place", n, "--sensors", "2", "--scenario", "none", "--report", "place.html"], &[0]);
     let small = [
         "--seeds",
         "5",
@@ -115,6 +116,7 @@ fn reports(folder: &Path) -> Vec<&'static str> {
     ran(&["reproduce", "--out", "out", "--cylinders", "1", "--report", "reproduce.html"], &[0]);
     vec![
         "simulate.html",
+        "inspect.html",
         "estimate.html",
         "monitor.html",
         "identify.html",
@@ -153,7 +155,7 @@ fn every_command_writes_a_report_that_a_browser_shows_on_a_desk_and_on_a_phone()
             assert!(!seen.title.is_empty() && seen.headings >= 2 && seen.rows >= 4, "{at}");
             assert_eq!(seen.loaded, 0, "{at}");
             assert!(seen.wide <= seen.window, "{at}");
-            assert_eq!(seen.pictures.is_empty(), name == "properties.html", "{at}");
+            assert_eq!(seen.pictures.is_empty(), ["properties.html", "inspect.html"].contains(&name), "{at}");
             assert!(seen.pictures.iter().all(|height| *height > 100.0) && seen.unnamed == 0, "{at}");
             assert!(seen.covered.is_empty(), "{at}");
         }

@@ -176,6 +176,14 @@ fn what_a_command_refuses_is_told_and_the_inspection_goes_on() {
 }
 
 #[test]
+fn a_pressure_that_is_named_a_gauge_is_proposed_as_one() {
+    for (name, map) in [("Druck (Ueberdruck)", "pressure_barg=Druck"), ("Druck", "pressure_bar=Druck")] {
+        let found = inspected(&minutes(&format!("time_s,{name}"), 9, |k| format!("{}", 198 + k % 3)), &[]);
+        assert_eq!(found.columns[1].proposal.as_ref().unwrap().mapping.to_string(), map);
+    }
+}
+
+#[test]
 fn a_log_without_a_time_is_counted_in_rows() {
     let found = inspected("a,b\n1,2\n3,4\n", &[]);
     assert_eq!((found.times.column.as_deref(), found.times.rows), (None, 2));

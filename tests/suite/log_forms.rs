@@ -86,14 +86,7 @@ fn what_was_supposed_of_an_export_is_said_once_each() {
     let maps = options(&["shoulder_degc=T Schulter", "pressure_bar=Druck"]);
     let Taken { cautions, .. } = read(&sample("handheld.csv"), &maps).unwrap();
     let kinds: Vec<Kind> = cautions.iter().map(|caution| caution.kind).collect();
-    let expected = [
-        Kind::Preamble,
-        Kind::Windows1252,
-        Kind::SetAside,
-        Kind::WithoutZone,
-        Kind::DecimalComma,
-        Kind::DecimalComma,
-    ];
+    let expected = [Kind::Preamble, Kind::Windows1252, Kind::SetAside, Kind::WithoutZone, Kind::DecimalComma];
     assert_eq!(kinds, expected);
     assert!(
         cautions[0]

@@ -1,4 +1,5 @@
 //! Logs as Parquet; built with the feature `parquet` only.
+use crate::support::run;
 use cylwatch::log::{Caution, Kind, LogError, LogOptions, LogReader, Row};
 use parquet::basic::Compression;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -147,4 +148,20 @@ fn columns_of_another_type_and_damaged_files_are_refused() {
     refused(&path, &["log.parquet", "save the log as CSV"]);
     std::fs::write(&path, "time_s,shoulder_degc\n0,15\n").unwrap();
     refused(&path, &["log.parquet", "save the log as CSV"]);
+}
+
+#[test]
+fn a_simulation_in_parquet_is_the_log_that_its_csv_is() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path();
+    for file in ["run.csv", "run.parquet"] {
+        let outcome = run(folder, &["simulate", "nitrogen-20l", "shock-cold", "-o", file, "--seed", "3"]);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    }
+    let estimated = |file: &str| {
+        let outcome = run(folder, &["estimate", "nitrogen-20l", file]);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        outcome.stdout.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(estimated("run.parquet"), estimated("run.csv"));
 }

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod bench_detector;
-mod browser;
 mod book;
+mod browser;
 mod calibrate;
 mod estimate;
 mod examples;

@@ -317,3 +317,12 @@ fn a_device_is_written_and_not_replaced() {
     use std::os::unix::fs::FileTypeExt;
     assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
 }
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn parquet_is_refused_where_the_program_was_built_without_it() {
+    let folder = tempdir().unwrap();
+    let words = ["without Parquet", "--features parquet"];
+    refused(folder.path(), &["simulate", "nitrogen-20l", "shock-cold", "-o", "run.parquet"], &words);
+    assert!(files(folder.path()).is_empty());
+}

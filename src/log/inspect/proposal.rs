@@ -119,13 +119,29 @@ fn guess(report: &ColumnReport, by_name: bool, taken: &[String]) -> Option<(Stri
         Some(suffixes) => suffixes.iter().copied().find(|suffix| units::find(suffix, dimension).is_some())?,
         None => by_range(dimension, report.range)?,
     };
-    let by = match (named.is_some() && is_place, label.unit) {
+    let unit = if is_gauge(&report.header) { gauge(unit) } else { unit };
+    let by = match (named.is_some() && is_place, label.suffixes()) {
         (true, Some(_)) => "by its name and unit".to_owned(),
         (true, None) => "by its name and range".to_owned(),
         (false, _) if dimension == Dimension::Pressure => "by its unit".to_owned(),
         _ => "a temperature; where it sits is not known".to_owned(),
     };
     Some((quantity.to_owned(), unit, by))
+}
+
+/// Whether a name says that the pressure counts from that of the air.
+fn is_gauge(header: &str) -> bool {
+    let header = header.to_lowercase();
+    ["überdruck", "ueberdruck", "gauge", "relativdruck"].iter().any(|word| header.contains(word))
+}
+
+/// The unit of a gauge, where files have one.
+fn gauge(unit: &'static str) -> &'static str {
+    match unit {
+        "bar" => "barg",
+        "psi" => "psig",
+        other => other,
+    }
 }
 
 fn dimension_of(suffix: &str) -> Option<Dimension> {

@@ -1,5 +1,5 @@
 //! A bench that was never run.
-use super::{csv, figure, text};
+use super::{csv, figure, story};
 use crate::detector::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
 use crate::detector::performance::{Performance, Run, TrueLeak};
 use crate::detector::statistic::Noise;
@@ -34,7 +34,7 @@ fn outcome() -> Outcome {
 
 #[test]
 fn words_say_what_stands_behind_the_numbers() {
-    let words = text(&outcome());
+    let words = story(&outcome()).to_text();
     for expected in [
         "40 simulated cylinders (well-mixed gas)",
         "10 tight ones, 0.219 cylinder-years",

@@ -144,7 +144,7 @@ impl Elevation {
             canvas.text(label, (style::LEFT - 8.0, at), number)?;
         }
         let name = Text { size: style::NORMAL, side: Side::Center, upwards: true, ..PLAIN };
-        canvas.text(&self.height, (18.0, 0.5 * (bottom + top)), name)?;
+        canvas.text(&self.height, (style::AXIS_NAME, 0.5 * (bottom + top)), name)?;
         for shape in &self.shapes {
             let right = shape.contour.iter().map(|&at| body.at(at));
             let left = shape.contour.iter().rev().map(|&(radius, height)| body.at((-radius, height)));

@@ -126,11 +126,10 @@ impl Picture {
     /// As [`Figure::to_svg`].
     pub fn to_element(&self) -> Result<String, ReportError> {
         let words = self.described();
-        let element = match self {
+        match self {
             Self::Figure(figure) => element(figure, &words),
             Self::Sheet(sheet) => element(sheet, &words),
-        };
-        element
+        }
     }
 }
 

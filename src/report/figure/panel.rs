@@ -107,7 +107,7 @@ fn vertical_scale<DB: DrawingBackend>(
         canvas.line(&[(left - 2.5, at), (left, at)], axis)?;
     }
     let name = Text { size: style::NORMAL, side: Side::Center, upwards: true, ..PLAIN };
-    canvas.text(&panel.quantity, (18.0, 0.5 * (bottom + top)), name)
+    canvas.text(&panel.quantity, (style::AXIS_NAME, 0.5 * (bottom + top)), name)
 }
 
 fn horizontal_labels<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame) -> Result<(), ReportError> {

@@ -75,6 +75,8 @@ pub const FIRST: Stroke = stroke(Rgb::ORANGE, 2.2, &[7.0, 3.0]);
 pub const SECOND: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
 /// Third curve of a comparison.
 pub const THIRD: Stroke = stroke(Rgb::GREEN, 1.8, &[2.0, 2.2]);
+/// Fourth curve of a comparison.
+pub const FOURTH: Stroke = stroke(Rgb::PURPLE, 1.8, &[8.0, 2.5, 1.8, 2.5]);
 /// Middle of a measured band.
 pub const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
 /// A model over readings.
@@ -157,8 +159,10 @@ pub const WIDTH: f64 = 860.0;
 pub const PANEL_HEIGHT: f64 = 250.0;
 /// Room beside what has no axis.
 pub const MARGIN: f64 = 24.0;
+/// Where the name of a vertical axis stands.
+pub const AXIS_NAME: f64 = 14.0;
 /// Room on the left for tick labels and the axis name.
-pub const LEFT: f64 = 72.0;
+pub const LEFT: f64 = 84.0;
 /// Room on the right for the legend.
 pub const RIGHT: f64 = 182.0;
 /// Room above the first panel for the title.

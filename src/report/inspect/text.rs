@@ -1,9 +1,10 @@
-//! An inspection in words and tables of at most 100 columns.
+//! An inspection in words and tables of at most 100 columns for a terminal, and as a story for a page: the same parts, but command lines are
+//! not broken in a terminal, where they are copied from.
 use crate::log::Packing;
 use crate::log::inspect::{ColumnReport, Inspection, Role, Times, Use};
 use crate::report::estimate::duration;
 use crate::report::monitor::Clock;
-use crate::report::{aligned, number, quoted};
+use crate::report::{Story, aligned, number, quoted};
 
 /// Longest name in a table, letters.
 const NAME: usize = 26;
@@ -16,24 +17,69 @@ const LISTED: usize = 12;
 
 /// All of it.
 pub fn text(inspection: &Inspection) -> String {
-    let mut text = form(inspection);
+    let mut text = format!("{}: {}\n", inspection.name, form(inspection));
     text.push('\n');
-    text.push_str(&times(&inspection.times));
+    for (what, words) in times(&inspection.times) {
+        for (k, line) in words.lines().enumerate() {
+            text.push_str(&format!("{:10}  {line}\n", if k == 0 { what } else { "" }));
+        }
+    }
     text.push('\n');
-    text.push_str(&columns(&inspection.columns));
-    let cautions = inspection.cautions.iter().map(ToString::to_string);
+    text.push_str(&aligned(&COLUMNS, &columns(&inspection.columns)));
+    for (title, items) in lists(inspection) {
+        list(&mut text, title, &items);
+    }
+    text.push_str("\nwhat can be done with it\n");
+    inspection.uses.iter().for_each(|one| text.push_str(&usage(one)));
+    text.push_str(&format!("  {VESSEL}\n"));
+    text
+}
+
+/// What stands below the command lines.
+const VESSEL: &str = "In place of nitrogen-20l write your own vessel file, see `cylwatch init`.";
+
+/// The same for a page.
+pub fn story(inspection: &Inspection) -> Story {
+    let facts = std::iter::once(("form", form(inspection))).chain(times(&inspection.times));
+    let mut story = Story::new(format!("The log {}", inspection.name)).facts(facts).heading("Columns").rows(
+        "",
+        &COLUMNS,
+        columns(&inspection.columns),
+    );
+    for (title, items) in lists(inspection).into_iter().filter(|(_, items)| !items.is_empty()) {
+        let rows = items.into_iter().map(|item| vec![item]).collect();
+        story = story.rows::<&str>(title, &[], rows);
+    }
+    let row = |one: &Use| {
+        let line: Vec<String> = one.line.iter().map(|word| quoted(word)).collect();
+        let can = match (one.lacks.is_empty(), one.but.is_empty()) {
+            (false, _) => format!("no, it lacks {}", one.lacks.join("; ")),
+            (true, false) => format!("yes, but {}", one.but.join("; ")),
+            (true, true) => "yes".to_owned(),
+        };
+        vec![one.command.to_owned(), can, if one.lacks.is_empty() { line.join(" ") } else { String::new() }]
+    };
+    let uses = inspection.uses.iter().map(row).collect();
+    story.heading("What can be done with it").explained_rows(
+        "",
+        &["command", "possible", "line"],
+        uses,
+        VESSEL,
+    )
+}
+
+/// What is proposed, refused, cautioned about and odd, with titles.
+fn lists(inspection: &Inspection) -> [(&'static str, Vec<String>); 4] {
     let refused = inspection.refusals.iter().map(|refusal| match refusal.count {
         1 => refusal.message.clone(),
         count => format!("{} ({count} times)", refusal.message),
     });
-    list(&mut text, "proposed, look whether they are right", proposals(inspection));
-    list(&mut text, "a command would refuse it", refused);
-    list(&mut text, "a command would caution", cautions);
-    list(&mut text, "odd", inspection.oddities.iter().cloned());
-    text.push_str("\nwhat can be done with it\n");
-    inspection.uses.iter().for_each(|one| text.push_str(&usage(one)));
-    text.push_str("  In place of nitrogen-20l write your own vessel file, see `cylwatch init`.\n");
-    text
+    [
+        ("proposed, look whether they are right", proposals(inspection)),
+        ("a command would refuse it", refused.collect()),
+        ("a command would caution", inspection.cautions.iter().map(ToString::to_string).collect()),
+        ("odd", inspection.oddities.clone()),
+    ]
 }
 
 fn form(inspection: &Inspection) -> String {
@@ -49,7 +95,7 @@ fn form(inspection: &Inspection) -> String {
         words.push(form.encoding);
         words.extend((form.packing == Packing::Gzip).then_some("gzip"));
     }
-    let mut text = format!("{}: {}", inspection.name, words.join(", "));
+    let mut text = words.join(", ");
     if !form.is_parquet {
         text.push_str(&format!(", header in line {}", form.header_line));
     }
@@ -58,12 +104,12 @@ fn form(inspection: &Inspection) -> String {
         1 => text.push_str(", 1 line above it"),
         lines => text.push_str(&format!(", {lines} lines above it")),
     }
-    text + "\n"
+    text
 }
 
-fn times(times: &Times) -> String {
+fn times(times: &Times) -> Vec<(&'static str, String)> {
     let clock = Clock::new(times.origin);
-    let mut rows: Vec<(&str, String)> = Vec::new();
+    let mut rows: Vec<(&'static str, String)> = Vec::new();
     let mut say = |what, words: String| rows.push((what, words));
     match (&times.column, &times.supposed) {
         (None, _) => say("time", "none found: rows are counted instead".to_owned()),
@@ -97,21 +143,12 @@ fn times(times: &Times) -> String {
             format!("{count}, the first by {} in line {}", duration(-first.length_s), first.line),
         );
     }
-    let line = |(what, words): &(&str, String)| {
-        words
-            .lines()
-            .enumerate()
-            .map(|(k, line)| {
-                let what = if k == 0 { what } else { &"" };
-                format!("{what:10}  {line}\n")
-            })
-            .collect::<String>()
-    };
-    rows.iter().map(line).collect()
+    rows
 }
 
-fn columns(columns: &[ColumnReport]) -> String {
-    let header = ["column", "taken for", "values", "empty", "min", "median", "max", "step", "run"];
+const COLUMNS: [&str; 9] = ["column", "taken for", "values", "empty", "min", "median", "max", "step", "run"];
+
+fn columns(columns: &[ColumnReport]) -> Vec<Vec<String>> {
     let row = |column: &ColumnReport| {
         let (numbers, missing, others) = column.cells;
         let all = (numbers + missing + others).max(1);
@@ -129,8 +166,7 @@ fn columns(columns: &[ColumnReport]) -> String {
         cells.push(column.longest.count.to_string());
         cells
     };
-    let rows: Vec<Vec<String>> = columns.iter().map(row).collect();
-    aligned(&header, &rows)
+    columns.iter().map(row).collect()
 }
 
 fn role(role: &Role) -> String {
@@ -168,8 +204,7 @@ fn usage(usage: &Use) -> String {
     text
 }
 
-fn list(text: &mut String, title: &str, items: impl IntoIterator<Item = String>) {
-    let items: Vec<String> = items.into_iter().collect();
+fn list(text: &mut String, title: &str, items: &[String]) {
     if items.is_empty() {
         return;
     }

@@ -5,7 +5,7 @@
 //!
 //! | member | its part |
 //! |---|---|
-//! | the fastest with a leak rate `r`, standard deviation `s` | rate in standard deviations, `z = r/s` |
+//! | the fastest with a leak rate `r`, standard deviation `s` | rate in standard deviations, `z = r/s`, cut at 3 either way so that no single sample decides |
 //! | the slowest with a leak rate, mass `m` | the mass that there should be |
 //! | the freest, mass `m_free` | the mass that there is |
 //!
