@@ -18,7 +18,7 @@ mod log_parquet;
 mod monitor;
 mod packaging;
 mod pages;
-mod peers;
+mod peer_inputs;
 mod place;
 mod properties;
 mod report;
