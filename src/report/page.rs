@@ -145,10 +145,12 @@ fn is_numeric(rows: &[Vec<String>], column: usize) -> bool {
 fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> Markup {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(header.len());
     let class = |column: usize| is_numeric(rows, column).then_some("number");
+    // Beside the table, not in it: a caption inside is broken at the width of a narrow table.
+    let named = (!caption.is_empty()).then_some(caption);
     html! {
+        @if let Some(caption) = named { p.caption { (caption) } }
         div.wide {
-            table {
-                @if !caption.is_empty() { caption { (caption) } }
+            table aria-label=[named] {
                 @if !header.is_empty() {
                     thead { tr {
                         @for (k, name) in header.iter().enumerate() { th scope="col" class=[class(k)] { (name) } }

@@ -46,7 +46,10 @@ fn draw_part<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>, from: f64
             canvas.line(&[(at, bottom), (at, top)], &style::EVENT)?;
         }
         for item in &panel.items {
-            draw_item(canvas, &frame, item)?;
+            match item {
+                Item::Limit { name, value } => limit(canvas, &frame, panel, (name, *value))?,
+                _ => draw_item(canvas, &frame, item)?,
+            }
         }
         mark_names(canvas, &frame, named)?;
         legend(canvas, panel, top)?;
@@ -150,18 +153,19 @@ fn draw_item<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, item: &Item
             let outline: Vec<Point> = there.chain(back).collect();
             canvas.polygon(&outline, Rgb::BAND)?;
         }
-        Item::Limit { name, value } => limit(canvas, frame, name, *value)?,
+        // It is drawn with a look at the whole panel.
+        Item::Limit { .. } => {}
         Item::Strip { stretches } => strip::draw(canvas, stretches, |x| frame.x.scale.at(x), frame.y.paper)?,
     }
     Ok(())
 }
 
-/// A limit as a dashed line with its name on it; out of sight it is named at the edge where it lies.
+/// A limit as a dashed line with its name on it, where fewest curves pass; out of sight it is named at the edge where it lies.
 fn limit<DB: DrawingBackend>(
     canvas: &Canvas<DB>,
     frame: &Frame,
-    name: &str,
-    value: f64,
+    panel: &Panel,
+    (name, value): (&str, f64),
 ) -> Result<(), ReportError> {
     let (left, right) = frame.x.scale.paper;
     let (bottom, top) = frame.y.paper;
@@ -175,8 +179,38 @@ fn limit<DB: DrawingBackend>(
     }
     let at = frame.y.at(value);
     canvas.line(&[(left, at), (right, at)], &style::LIMIT)?;
-    let above = if at - top > 22.0 { at - 9.0 } else { at + 10.0 };
-    canvas.text(name, (right - 8.0, above), text)
+    let sides = [(Side::Right, right - 8.0), (Side::Left, left + 8.0)];
+    let heights = [at - 9.0, at + 10.0].into_iter().filter(|y| (top + 9.0..bottom - 8.0).contains(y));
+    let places = heights.flat_map(|y| sides.map(|(side, x)| (side, (x, y))));
+    let width = 0.62 * style::SMALL * name.chars().count() as f64;
+    let crossed = |(side, (x, y)): &(Side, Point)| {
+        let from = if *side == Side::Right { x - width } else { *x };
+        crossings(frame, panel, (from, from + width), (y - 8.0, y + 8.0))
+    };
+    let Some((side, place)) = places.min_by_key(crossed) else { return Ok(()) };
+    canvas.text(name, place, Text { side, ..text })
+}
+
+/// Points of curves in a box on paper, looked for every other unit.
+fn crossings(frame: &Frame, panel: &Panel, (left, right): (f64, f64), (top, bottom): (f64, f64)) -> usize {
+    let of_curve = |x: &[f64], y: &[f64]| {
+        let paper = x.iter().zip(y).map(|(&x, &y)| (frame.x.scale.at(x), frame.y.at(y)));
+        let points: Vec<Point> = paper.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        let inside = |(a, b): (Point, Point)| {
+            let steps = (0.5 * (b.0 - a.0).hypot(b.1 - a.1)).clamp(1.0, 2000.0) as usize;
+            let along = (0..=steps).map(|k| k as f64 / steps as f64);
+            along
+                .map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1)))
+                .filter(|(x, y)| (left..right).contains(x) && (top..bottom).contains(y))
+                .count()
+        };
+        points.windows(2).map(|pair| inside((pair[0], pair[1]))).sum::<usize>()
+    };
+    let curves = panel.items.iter().map(|item| match item {
+        Item::Line { x, y, .. } | Item::Points { x, y, .. } => of_curve(x, y),
+        _ => 0,
+    });
+    curves.sum()
 }
 
 /// Names of marks beside their lines, in up to three rows so that near ones do not cover each other.
