@@ -37,7 +37,7 @@
 //! let vessel = vessel::presets::load("nitrogen-20l")?;
 //! let scenario = scenario::presets::load("leak-after-tunnel")?;
 //! let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_done| ())?;
-//! println!("{}", simulation::summary(&run));
+//! println!("{}", simulation::story(&run).to_text());
 //!
 //! // What two thermometers and a transmitter read, with the errors of drawn specimens.
 //! let sensors = vec![Sensor::typical("shoulder")?, Sensor::typical("valve")?, Sensor::typical("pressure")?];
@@ -55,7 +55,7 @@
 //! # }
 //! ```
 //!
-//! The programs in the folder `examples` answer one question each in the same way; `docs` says what the numbers mean.
+//! The programs in the folder `examples` answer one question each in the same way; the `book` says what the numbers mean.
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;
 pub use cylwatch_thermal as thermal;

@@ -4,7 +4,7 @@
 //! differ, the gas is stratified. Each rests for an hour before its air changes.
 //!
 //! **Bound** of the gas temperature: the posterior Cramér-Rao bound along paths of the observer's own model with its prior
-//! ([`matched`]); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
+//! ([`matched`](crate::estimator::truth::matched)); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
 //! steady observer at rest tell of it ([`Site`]), which knows no tunnel. No truth here comes from those models, so a bound is what
 //! could be hoped for, not what must hold.
 //!

@@ -6,7 +6,7 @@
 //! | [`cylinder`] | scenarios 1 to 4 (figure 1), the pressure line of a tight cylinder |
 //! | [`table_1`], [`identification`] | table 1, figures 2 and 3 |
 //! | [`scheme`] | figures 4, 5, 7 as graphs that run; figures 6 and 8 by them |
-//! | [`watch`], [`passage`] | figures 6 and 8 on a simulated cylinder |
+//! | [`mod@watch`], [`mod@passage`] | figures 6 and 8 on a simulated cylinder |
 //! | [`beside`] | published, refitted, observer and bound on drawn cylinders |
 //! | [`blowdown`], [`measured`] | the model beside a measured blowdown |
 //! | [`rows`], [`answers`] | numbers beside their references; paper, here, why |

@@ -1,5 +1,5 @@
 //! `cylwatch reproduce`.
-use crate::support::{column, files, refused, run};
+use crate::support::{column, files, refused, reproduced};
 use cylwatch::report::figure::{Figure, Item, Part, Picture};
 use cylwatch::reproduce::{self, Reproduction, Settings};
 use std::sync::OnceLock;
@@ -16,8 +16,7 @@ fn rebuilt() -> &'static Reproduction {
 
 #[test]
 fn the_paper_is_rebuilt_with_report_figures_tables_and_provenance() {
-    let folder = tempdir().unwrap();
-    let outcome = run(folder.path(), &["reproduce", "--out", "made/here", "--cylinders", "1", "--seed", "3"]);
+    let (folder, outcome) = reproduced();
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     let out = folder.path().join("made/here");
     let found = files(&out);

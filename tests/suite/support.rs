@@ -2,6 +2,8 @@
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+use tempfile::TempDir;
 
 /// The program with arguments, in a folder.
 pub fn program(folder: &Path, arguments: &[&str]) -> Command {
@@ -27,6 +29,18 @@ impl From<Output> for Outcome {
 /// Runs the program in a folder.
 pub fn run(folder: &Path, arguments: &[&str]) -> Outcome {
     program(folder, arguments).output().unwrap().into()
+}
+
+/// The paper rebuilt by the program with one cylinder of each case and seed 3, once for all tests: the folder, with `made/here` and
+/// `reproduce.html` in it, and what the program said.
+pub fn reproduced() -> &'static (TempDir, Outcome) {
+    static REPRODUCED: OnceLock<(TempDir, Outcome)> = OnceLock::new();
+    REPRODUCED.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let few = ["--cylinders", "1", "--seed", "3", "--report", "reproduce.html"];
+        let outcome = run(folder.path(), &[&["reproduce", "--out", "made/here"], &few[..]].concat());
+        (folder, outcome)
+    })
 }
 
 /// Runs the program with a text on stdin.

@@ -1,9 +1,9 @@
 //! What a log holds, for a person who does not know it: form, times, columns, oddities, and which command can use it.
 //!
 //! The log is read once, by the reader that every command uses, so that what is said here is what a command would do. A
-//! [`Tap`] counts the cells of all columns on the way, also of those that nobody reads. Where a command would refuse the log,
+//! `Tap` counts the cells of all columns on the way, also of those that nobody reads. Where a command would refuse the log,
 //! the inspection goes on and tells. Memory does not grow with the log: quantiles are those of a systematic sample of 4096
-//! values ([`sketch`]), gaps and jumps those of the largest few.
+//! values (`sketch`), gaps and jumps those of the largest few.
 mod clock;
 mod column;
 mod findings;
