@@ -25,8 +25,10 @@ pub mod rows;
 pub mod scheme;
 pub mod section_2;
 pub mod table_1;
+mod tables;
 mod told;
 pub mod watch;
+mod words;
 
 use crate::detector::DetectorError;
 use crate::estimator::EstimatorError;
