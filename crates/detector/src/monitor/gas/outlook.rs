@@ -1,6 +1,6 @@
 //! When the time that is left is computed, and from what.
 use crate::DetectorError;
-use crate::estimator::observer::{Estimate, Leak};
+use crate::estimator::observer::Leak;
 use crate::monitor::settings::MonitorSettings;
 use crate::monitor::{LeakFinding, Outlook};
 use crate::prognosis::{Contents, MassAndLeak, Prognosis, QUOTED_K};
@@ -32,11 +32,12 @@ impl LimitMasses {
         })
     }
 
-    /// What is left for the mass and the leak, that found or, without one, that of a slow member of the bank.
+    /// What is left for the mass and the leak, that found or, without one, that of a slow member of the bank. In a leak the mass is
+    /// that of the freest member: the estimate's walks little and lags behind a slow leak by days.
     pub fn outlook(
         &self,
         settings: &MonitorSettings,
-        estimate: &Estimate,
+        free: &Leak,
         finding: Option<&LeakFinding>,
         slow: &Leak,
         leak_probability: f64,
@@ -47,8 +48,8 @@ impl LimitMasses {
                 let rate = leak.rate_kg_s;
                 let sd_kg_s = (rate.high - rate.low) / WIDTH_SD;
                 // Rate and mass come from the same masses, but from their slope and their level: as good as independent.
-                let covariance = [[estimate.mass_sd_kg.powi(2), 0.0], [0.0, sd_kg_s * sd_kg_s]];
-                MassAndLeak::try_new(estimate.mass_kg, rate.value, covariance)?
+                let covariance = [[free.mass_sd_kg.powi(2), 0.0], [0.0, sd_kg_s * sd_kg_s]];
+                MassAndLeak::try_new(free.mass_kg, rate.value, covariance)?
             }
         };
         let until = |limit_kg| {
@@ -71,4 +72,42 @@ impl LimitMasses {
 /// Interval until the next one, s.
 pub(in crate::monitor) fn interval_s(leaking: bool) -> f64 {
     if leaking { LEAKING_S } else { TIGHT_S }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimator::thermal::vessel::presets;
+    use crate::monitor::Interval;
+    use crate::prognosis::Passage;
+
+    const HOUR_S: f64 = 3600.0;
+
+    #[test]
+    fn in_a_leak_the_time_left_counts_from_the_mass_of_the_freest_member() {
+        let contents = Contents::of(&presets::load("nitrogen-20l").unwrap());
+        let settings = MonitorSettings::default();
+        let masses = LimitMasses::new(&contents, &settings, 4.46).unwrap();
+        let exact = |value: f64| Interval { value, low: value, high: value };
+        let rate_kg_s = 6e-3 / HOUR_S;
+        let finding = LeakFinding {
+            rate_kg_s: exact(rate_kg_s),
+            rate_pa_s: exact(1.0),
+            onset_s: exact(0.0),
+            lost_kg: exact(0.1),
+        };
+        let member = |mass_kg: f64| Leak {
+            rate_kg_s,
+            sd_kg_s: 1e-9,
+            mass_kg,
+            mass_sd_kg: 1e-6,
+            covariance_kg2_s: 0.0,
+            begun_anew: false,
+        };
+        // The slow member still has the 100 g that are lost.
+        let outlook = masses.outlook(&settings, &member(4.3), Some(&finding), &member(4.4), 1.0).unwrap();
+        let expected_s = settings.loss.time_s(4.3, rate_kg_s, masses.operational_kg);
+        let Passage::In(found_s) = outlook.operational.p50 else { panic!("{:?}", outlook.operational) };
+        assert!((found_s / expected_s - 1.0).abs() < 1e-3, "{found_s} s, {expected_s} s");
+    }
 }

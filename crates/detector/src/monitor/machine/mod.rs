@@ -443,9 +443,9 @@ impl Monitor {
             self.leaks.clear();
             self.leaks.extend(self.observer.leaks());
             let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
+            let free = self.leaks.last().copied().unwrap_or(slow);
             let probability = self.state.leak.probability();
-            let outlook =
-                self.limits.outlook(&self.settings, &estimate, leak.as_ref(), &slow, probability)?;
+            let outlook = self.limits.outlook(&self.settings, &free, leak.as_ref(), &slow, probability)?;
             self.state.outlook = Some(outlook);
         }
         let mut output = Output {
