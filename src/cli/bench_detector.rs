@@ -2,9 +2,9 @@
 use super::arguments::Format;
 use super::command_line;
 use super::message::Messages;
-use super::output::Target;
+use super::output::{Target, remarks};
 use super::progress::Progress;
-use super::views::{Made, Views, Wanted};
+use super::views::{Views, Wanted};
 use anyhow::bail;
 use clap::Args;
 use cylwatch::detector::performance::YEAR_S;
@@ -115,24 +115,12 @@ impl Options {
             Provenance { command: command_line(), inputs: Vec::new(), seed: Some(self.plan.seed) };
         let story = report::story(outcome);
         let words = story.to_text();
-        let views = if self.views.is_wanted() {
-            let picture = Picture::Figure(report::figure(outcome));
-            self.views.make(
-                &picture,
-                |picture| story.picture(picture, report::CAPTION),
-                Vec::new(),
-                &provenance,
-            )?
-        } else {
-            Made::default()
-        };
+        let picture = || Picture::Figure(report::figure(outcome));
+        let with = |picture| story.picture(picture, report::CAPTION);
+        let views = self.views.make(picture, with, Vec::new(), &provenance)?;
         let text = match self.format {
             None => words.clone(),
-            Some(Format::Csv) => {
-                let remarks: Vec<String> =
-                    words.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
-                report::csv(outcome, &provenance, &remarks)
-            }
+            Some(Format::Csv) => report::csv(outcome, &provenance, &remarks(&words)),
             Some(Format::Json) => {
                 serde_json::to_string_pretty(&report::document(outcome, &provenance))? + "\n"
             }

@@ -6,7 +6,7 @@ use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
 use super::selection;
-use super::views::{self, Made, Views};
+use super::views::{self, Views};
 use anyhow::{Context, bail};
 use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut, SearchStep};
 use cylwatch::estimator::sensor::Sensor;
@@ -198,13 +198,9 @@ impl Options {
         let logs: Vec<(String, Input)> = logs.filter_map(|(name, input)| Some((name, input?))).collect();
         let record = vessel_file::record(study, &start.origin, &logs, &self.date);
         let vessel = vessel_file::text(study, &start.specification, record, &provenance)?;
-        let views = if self.views.is_wanted() {
-            let picture = Picture::Figure(report::figure(study));
-            let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
-            self.views.make(&picture, with, inputs.sources(), &provenance)?
-        } else {
-            Made::default()
-        };
+        let picture = || Picture::Figure(report::figure(study));
+        let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
+        let views = self.views.make(picture, with, inputs.sources(), &provenance)?;
         if let Some(target) = &self.vessel_file {
             target.write(vessel.as_bytes())?;
         }

@@ -3,9 +3,9 @@ use super::arguments::Format;
 use super::input::{Inputs, shown};
 use super::log_options::LogArguments;
 use super::message::Messages;
-use super::output::Target;
+use super::output::{Target, remarks};
 use super::progress::Progress;
-use super::views::{Made, Views, Wanted};
+use super::views::{Views, Wanted};
 use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{Data, Method, Settings, Structure, identify};
 use cylwatch::report::figure::Picture;
@@ -163,20 +163,12 @@ impl Options {
         let story = report::story(study);
         let words = story.to_text();
         // Everything is made before any file appears.
-        let views = if self.views.is_wanted() {
-            let picture = Picture::Figure(report::figure(study));
-            let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
-            self.views.make(&picture, with, inputs.sources(), &provenance)?
-        } else {
-            Made::default()
-        };
+        let picture = || Picture::Figure(report::figure(study));
+        let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
+        let views = self.views.make(picture, with, inputs.sources(), &provenance)?;
         let text = match self.format {
             None => words.clone(),
-            Some(Format::Csv) => {
-                let remarks: Vec<String> =
-                    words.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
-                report::table(study).to_csv(&provenance, &remarks)
-            }
+            Some(Format::Csv) => report::table(study).to_csv(&provenance, &remarks(&words)),
             Some(Format::Json) => {
                 let document = report::document(study, asked, &provenance);
                 serde_json::to_string_pretty(&document)? + "\n"

@@ -194,6 +194,11 @@ impl Stream {
     }
 }
 
+/// Lines of a summary as remarks at the top of a CSV.
+pub fn remarks(summary: &str) -> Vec<String> {
+    summary.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect()
+}
+
 /// Writes a file so that it appears complete or not at all.
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let failed = || format!("{} cannot be written", path.display());

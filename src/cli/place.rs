@@ -11,7 +11,7 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
-use super::views::{Made, Views, Wanted};
+use super::views::{Views, Wanted};
 use anyhow::bail;
 use cylwatch::estimator::placement::search::Watch;
 use cylwatch::estimator::placement::study::{Placement, Study, StudySettings};
@@ -126,14 +126,10 @@ impl Options {
             Some(target) => Some((target, serde_json::to_string(&matrices(placement, provenance))? + "\n")),
             None => None,
         };
-        let views = if self.views.is_wanted() {
-            let picture = Picture::Sheet(placed.figure());
-            let title = format!("Where sensors should sit: {}", placed.vessel.name);
-            let with = |picture| Story::new(title).picture(picture, CAPTION).then(story);
-            self.views.make(&picture, with, inputs.sources(), provenance)?
-        } else {
-            Made::default()
-        };
+        let title = format!("Where sensors should sit: {}", placed.vessel.name);
+        let with = |picture| Story::new(title).picture(picture, CAPTION).then(story);
+        let views =
+            self.views.make(|| Picture::Sheet(placed.figure()), with, inputs.sources(), provenance)?;
         views.write()?;
         if let Some((target, text)) = of_matrices {
             target.write(text.as_bytes())?;

@@ -4,7 +4,7 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
-use super::views::{Made, Views, Wanted};
+use super::views::{Views, Wanted};
 use anyhow::bail;
 use clap::ValueEnum;
 use cylwatch::log::is_parquet;
@@ -71,13 +71,9 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     // Everything is made before anything is written.
     let data = data(&run, &readings, options.format, &provenance)?;
     let story = simulation::story(&run);
-    let views = if options.views.is_wanted() {
-        let picture = Picture::Figure(simulation::figure(&run, &readings));
-        let with = |picture| story.clone().picture(picture, simulation::CAPTION);
-        options.views.make(&picture, with, inputs.sources(), &provenance)?
-    } else {
-        Made::default()
-    };
+    let picture = || Picture::Figure(simulation::figure(&run, &readings));
+    let with = |picture| story.clone().picture(picture, simulation::CAPTION);
+    let views = options.views.make(picture, with, inputs.sources(), &provenance)?;
     views.write()?;
     options.data.write(&data)?;
     messages.say(&story.to_text());

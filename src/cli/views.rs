@@ -55,20 +55,25 @@ impl Views {
         Ok(Self { plot, report: report.transpose()? })
     }
 
-    /// Whether a picture is wanted by either.
-    pub fn is_wanted(&self) -> bool {
+    /// Whether either is wanted: what a picture is made of has to be kept during the run.
+    pub fn are_wanted(&self) -> bool {
         self.plot.is_some() || self.report.is_some()
     }
 
-    /// Makes both, so that nothing is written if one fails. The story goes around the picture and gets `sources`, what was read, at its end.
+    /// Makes what is wanted, so that nothing is written if one fails. The story goes around the picture and gets `sources`, what was
+    /// read, at its end.
     pub fn make(
         &self,
-        picture: &Picture,
+        picture: impl FnOnce() -> Picture,
         story: impl FnOnce(Picture) -> Story,
         sources: Vec<(String, String)>,
         provenance: &Provenance,
     ) -> anyhow::Result<Made<'_>> {
         let mut made = Made::default();
+        if !self.are_wanted() {
+            return Ok(made);
+        }
+        let picture = picture();
         if let Some((target, format)) = &self.plot {
             made.files.push((
                 target,
@@ -79,7 +84,7 @@ impl Views {
             ));
         }
         if let Some(target) = &self.report {
-            made.files.push((target, page(story(picture.clone()), sources, provenance)?));
+            made.files.push((target, page(story(picture), sources, provenance)?));
         }
         Ok(made)
     }

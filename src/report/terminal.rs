@@ -35,49 +35,42 @@ pub(super) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
 
 /// A row in as many lines as its longest cell needs.
 fn broken(row: &[&str], widths: &[usize]) -> Vec<Vec<String>> {
-    let cells: Vec<Vec<String>> = row.iter().zip(widths).map(|(cell, width)| words(cell, *width)).collect();
+    let cells: Vec<Vec<String>> =
+        row.iter().zip(widths).map(|(cell, width)| lines(cell, "", "", *width)).collect();
     let height = cells.iter().map(Vec::len).max().unwrap_or(0);
     (0..height).map(|k| cells.iter().map(|cell| cell.get(k).cloned().unwrap_or_default()).collect()).collect()
 }
 
-/// Words in lines of a width.
-fn words(cell: &str, width: usize) -> Vec<String> {
+/// Words in lines of a width, the first behind `first`, the others behind `next`. A longer word stays whole.
+fn lines(words: &str, first: &str, next: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in cell.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
+    let mut line = first.to_owned();
+    let mut is_begun = false;
+    for word in words.split_whitespace() {
+        if is_begun && line.chars().count() + 1 + word.chars().count() > width {
+            lines.push(std::mem::replace(&mut line, next.to_owned()));
+        } else if is_begun {
+            line.push(' ');
         }
+        line.push_str(word);
+        is_begun = true;
     }
+    lines.push(line);
     lines
 }
 
-/// Lines that are no wider than a terminal, broken at blanks and then indented by two more, with a line feed at the end.
+/// Words that fit a terminal behind a mark, the lines that follow behind `next`, with a line feed at the end.
+pub(super) fn hanging(words: &str, first: &str, next: &str) -> String {
+    lines(words, first, next, WIDTH).join("\n") + "\n"
+}
+
+/// Lines that fit a terminal, broken at blanks and then indented by two more, with a line feed at the end.
 pub(super) fn wrapped(text: &str) -> String {
-    let mut out = String::new();
-    for line in text.lines() {
-        let indent = line.len() - line.trim_start().len();
-        let mut length = 0;
-        for word in line.split_whitespace() {
-            let size = word.chars().count();
-            let before = match length {
-                0 => " ".repeat(indent),
-                _ if length + 1 + size <= WIDTH => " ".to_owned(),
-                _ => {
-                    length = 0;
-                    format!("\n{}", " ".repeat(indent + 2))
-                }
-            };
-            length += before.trim_start_matches('\n').len() + size;
-            out.push_str(&before);
-            out.push_str(word);
-        }
-        out.push('\n');
-    }
-    out
+    let lines = text.lines().map(|line| {
+        let indent = " ".repeat(line.len() - line.trim_start().len());
+        hanging(line, &indent, &format!("{indent}  "))
+    });
+    lines.collect()
 }
 
 #[cfg(test)]

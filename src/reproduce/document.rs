@@ -20,8 +20,9 @@ impl Reproduction {
     /// A figure cannot be drawn.
     pub fn files(&self, provenance: &Provenance) -> Result<Vec<File>, ReportError> {
         let mut files = Vec::new();
-        for (name, picture) in self.pictures() {
-            files.extend(drawn(&name, &picture, provenance)?);
+        let pictures = self.pictures();
+        for (name, picture) in &pictures {
+            files.extend(drawn(name, picture, provenance)?);
         }
         for ScenarioRun { name, run, readings, .. } in self.scenarios.iter().chain([&self.closed]) {
             let csv = simulation::table(run, readings).to_csv(provenance, &simulation::remarks(run));
@@ -29,7 +30,7 @@ impl Reproduction {
         }
         files.push(("blowdown-i1.csv".into(), self.comparison().to_csv(provenance, &[]).into_bytes()));
         files.push(("results.json".into(), self.document(provenance).into_bytes()));
-        let story = self.story();
+        let story = self.story_with(&pictures);
         files.push(("report.html".into(), Page { story: &story, provenance }.to_html()?.into_bytes()));
         Ok(files)
     }

@@ -88,7 +88,11 @@ impl Reproduction {
 
     /// Everything in the order of the paper.
     pub fn story(&self) -> Story {
-        let pictures = self.pictures();
+        self.story_with(&self.pictures())
+    }
+
+    /// The story around pictures that are made.
+    pub(super) fn story_with(&self, pictures: &[(String, Picture)]) -> Story {
         let show = |story: Story, name: &str, caption: &str| match pictures
             .iter()
             .find(|(found, _)| found == name)

@@ -1,23 +1,10 @@
 //! `cylwatch bench-detector` on a few cylinders over a day.
-use crate::support::{column, files, refused, rows, run};
+use crate::support::{TINY_BENCH, column, files, refused, rows, run};
 use std::path::Path;
 use tempfile::tempdir;
 
-/// Five cylinders a time, hours of learning, a large leak: what a test can afford.
-const TINY: [&str; 9] = [
-    "bench-detector",
-    "--seeds",
-    "5",
-    "--days",
-    "1.1",
-    "--learning-days",
-    "0.3",
-    "--false-alarm-years",
-    "0.1",
-];
-
 fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&TINY, more].concat()
+    [&TINY_BENCH, more].concat()
 }
 
 #[test]

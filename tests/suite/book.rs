@@ -157,6 +157,28 @@ fn every_image_says_what_it_shows_and_none_is_left_over() {
     assert!(bytes < 3_300_000, "{bytes} bytes of pictures");
 }
 
+/// The command that a picture says it is from: a line of the description of an SVG, of a text chunk of a PNG.
+fn command_of(image: &Path) -> String {
+    let bytes = std::fs::read(image).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let line = text.split("command: ").nth(1).and_then(|rest| rest.lines().next());
+    line.unwrap_or_else(|| panic!("{} states no command", image.display())).to_owned()
+}
+
+#[test]
+fn every_image_states_a_command_that_works_in_any_folder() {
+    let folder = root().join("book/src/images");
+    for image in ["png", "svg"].iter().flat_map(|ending| files(&folder, ending)) {
+        let command = command_of(&image);
+        let is_known =
+            ["cylwatch ", "cargo run --release --example "].iter().any(|of| command.starts_with(of));
+        assert!(is_known, "{}: {command}", image.display());
+        for word in command.split([' ', '=', '\'', '"']) {
+            assert!(!Path::new(word).is_absolute(), "{}: {word} in: {command}", image.display());
+        }
+    }
+}
+
 #[test]
 fn every_include_resolves_and_every_included_example_runs_in_the_tests() {
     let tests = read(&root().join("tests/suite/examples.rs"));

@@ -78,7 +78,7 @@ fn an_export_whose_columns_are_all_foreign_gets_proposals_and_lines_that_run() {
             "{}",
             outcome.stdout
         );
-        assert!(outcome.stdout.lines().all(|line| line.chars().count() <= 100 || line.contains("cylwatch ")));
+        assert!(outcome.stdout.lines().all(|line| line.chars().count() <= 110 || line.contains("cylwatch ")));
     }
 }
 

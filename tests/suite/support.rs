@@ -93,3 +93,16 @@ pub fn column(csv: &str, name: &str) -> Vec<f64> {
     let index = header.iter().position(|found| *found == name).unwrap_or_else(|| panic!("no column {name}"));
     rows.iter().map(|row| row[index].parse().unwrap()).collect()
 }
+
+/// A bench of detectors that a test can afford: five cylinders a time, hours of learning.
+pub const TINY_BENCH: [&str; 9] = [
+    "bench-detector",
+    "--seeds",
+    "5",
+    "--days",
+    "1.1",
+    "--learning-days",
+    "0.3",
+    "--false-alarm-years",
+    "0.1",
+];

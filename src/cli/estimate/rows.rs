@@ -69,7 +69,7 @@ impl<'a> Rows<'a> {
             last: None,
             slope: (f64::NAN, f64::NAN),
             cylinder,
-            figure: options.views.is_wanted().then(|| FigureData::new(names)),
+            figure: options.views.are_wanted().then(|| FigureData::new(names)),
         };
         Ok(Self { pass, selection, readings: Vec::new(), results })
     }
@@ -110,13 +110,13 @@ impl<'a> Rows<'a> {
         // Everything is made before any file appears.
         let views = match results.figure.take() {
             Some(data) => {
-                let picture = Picture::Figure(report::figure(&summary.title, &data));
+                let picture = || Picture::Figure(report::figure(&summary.title, &data));
                 let with = |picture| {
                     let cautions =
                         summary.cautions.iter().map(ToString::to_string).chain(report::doubts(&summary));
                     report::story(&summary).cautions(cautions).picture(picture, report::CAPTION)
                 };
-                options.views.make(&picture, with, inputs.sources(), &provenance)?
+                options.views.make(picture, with, inputs.sources(), &provenance)?
             }
             None => Made::default(),
         };

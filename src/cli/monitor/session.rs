@@ -84,7 +84,7 @@ impl<'a> Session<'a> {
             rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
             figure: options
                 .views
-                .is_wanted()
+                .are_wanted()
                 .then(|| FigureData::new(circumstances.limit_pa, engine.full_pa)),
             readings: Vec::new(),
             truths: VecDeque::new(),
@@ -252,12 +252,12 @@ impl<'a> Session<'a> {
         // Everything is made before any file appears.
         let views = match self.figure.take().zip(summary.as_ref()) {
             Some((data, summary)) => {
-                let picture = Picture::Figure(report::figure(&summary.title, &data));
+                let picture = || Picture::Figure(report::figure(&summary.title, &data));
                 let with = |picture| {
                     let cautions = summary.cautions.iter().map(ToString::to_string);
                     report::story(summary).cautions(cautions).picture(picture, report::CAPTION)
                 };
-                options.views.make(&picture, with, inputs.sources(), &provenance)?
+                options.views.make(picture, with, inputs.sources(), &provenance)?
             }
             None => Made::default(),
         };

@@ -1,15 +1,14 @@
-//! An inspection in words and tables of at most 100 columns for a terminal, and as a story for a page: the same parts, but command lines are
+//! An inspection in words and tables for a terminal, and as a story for a page: the same parts, but command lines are
 //! not broken in a terminal, where they are copied from.
 use crate::log::Packing;
 use crate::log::inspect::{ColumnReport, Inspection, Role, Times, Use};
 use crate::report::estimate::duration;
 use crate::report::monitor::Clock;
+use crate::report::terminal::hanging;
 use crate::report::{Story, aligned, number, quoted};
 
 /// Longest name in a table, letters.
 const NAME: usize = 26;
-/// Length of a line of words.
-const LINE: usize = 96;
 /// Significant digits of a value.
 const DIGITS: usize = 6;
 /// Jumps, gaps and cautions of one kind that are listed.
@@ -194,12 +193,12 @@ fn usage(usage: &Use) -> String {
     let mut text = format!("  {command:10}");
     if lacks.is_empty() {
         text.push_str(if but.is_empty() { "yes\n" } else { "yes, but\n" });
-        but.iter().for_each(|words| text.push_str(&wrapped(words, "    - ", "      ")));
+        but.iter().for_each(|words| text.push_str(&hanging(words, "    - ", "      ")));
         let line: Vec<String> = line.iter().map(|word| quoted(word)).collect();
         text.push_str(&format!("    {}\n", line.join(" ")));
     } else {
         text.push_str("no, it lacks\n");
-        lacks.iter().for_each(|words| text.push_str(&wrapped(words, "    - ", "      ")));
+        lacks.iter().for_each(|words| text.push_str(&hanging(words, "    - ", "      ")));
     }
     text
 }
@@ -210,30 +209,11 @@ fn list(text: &mut String, title: &str, items: &[String]) {
     }
     text.push_str(&format!("\n{title}\n"));
     for item in items.iter().take(LISTED) {
-        text.push_str(&wrapped(item, "  ", "    "));
+        text.push_str(&hanging(item, "  ", "    "));
     }
     if items.len() > LISTED {
         text.push_str(&format!("  and {} more, all of them with --format json\n", items.len() - LISTED));
     }
-}
-
-/// Words in lines, broken at spaces.
-fn wrapped(words: &str, first: &str, next: &str) -> String {
-    let mut text = first.to_owned();
-    let mut length = first.chars().count();
-    for (k, word) in words.split(' ').enumerate() {
-        let size = word.chars().count();
-        if k > 0 && length + 1 + size > LINE {
-            text.push_str(&format!("\n{next}"));
-            length = next.chars().count();
-        } else if k > 0 {
-            text.push(' ');
-            length += 1;
-        }
-        text.push_str(word);
-        length += size;
-    }
-    text + "\n"
 }
 
 /// A name that fits the table.
