@@ -49,7 +49,7 @@ pub enum Health {
     /// As it should.
     #[default]
     Good,
-    /// No readings now.
+    /// No readings, for three rows or more.
     Missing,
     /// Readings outside what it can read, such as a broken wire.
     Implausible,
@@ -70,7 +70,8 @@ pub enum Health {
 pub struct Output {
     /// Time as the row was stamped, s; that of the estimate has no jumps of the clock in it.
     pub stamp_s: f64,
-    /// The observer's estimate.
+    /// The observer's estimate; in a leak with the mass of its freest member, since its own mass walks little and lags behind a
+    /// slow leak by days.
     pub estimate: Estimate,
     /// What is happening.
     pub verdict: Verdict,

@@ -33,7 +33,7 @@ impl LimitMasses {
     }
 
     /// What is left for the mass and the leak, that found or, without one, that of a slow member of the bank. In a leak the mass is
-    /// that of the freest member: the estimate's walks little and lags behind a slow leak by days.
+    /// that of the freest member, as in [`crate::monitor::Output`].
     pub fn outlook(
         &self,
         settings: &MonitorSettings,

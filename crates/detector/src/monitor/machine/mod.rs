@@ -435,15 +435,18 @@ impl Monitor {
     ) -> Result<Output, DetectorError> {
         let time_s = row.time_s;
         let leak = self.state.leak.found().copied();
+        self.leaks.clear();
+        self.leaks.extend(self.observer.leaks());
+        let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
+        let free = self.leaks.last().copied().unwrap_or(slow);
+        if leak.is_some() {
+            (estimate.mass_kg, estimate.mass_sd_kg) = (free.mass_kg, free.mass_sd_kg);
+        }
         estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
         self.warn_of_the_cold(time_s, cold_pressure_pa, &mut events);
         if changed || time_s >= self.state.outlook_due_s {
             self.state.outlook_due_s = time_s + outlook::interval_s(leak.is_some());
-            self.leaks.clear();
-            self.leaks.extend(self.observer.leaks());
-            let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
-            let free = self.leaks.last().copied().unwrap_or(slow);
             let probability = self.state.leak.probability();
             let outlook = self.limits.outlook(&self.settings, &free, leak.as_ref(), &slow, probability)?;
             self.state.outlook = Some(outlook);

@@ -1,6 +1,7 @@
 //! The health of each sensor, from its own readings.
 //!
-//! * *Missing*, *implausible*: no number, or one outside what the sensor can read or at the end of its range.
+//! * *Missing*: no number in three rows in a row. A cell that is empty now and then is how loggers are, and no fault of the sensor.
+//! * *Implausible*: a number outside what the sensor can read or at the end of its range.
 //! * *Stuck*: identical readings in a row. How many are too many depends on how often a reading of this logger repeats itself:
 //!   with the share `f` of repeated readings so far, `n` in a row have the probability `f^n`; below 2e-9 it is no chance.
 //! * *Spikes*: readings refused by the observer's gate within the last hour.
@@ -16,6 +17,8 @@ use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
 use crate::monitor::Health;
 
+/// Rows without a number that are too many in a row.
+const MISSING_ROWS: u32 = 3;
 /// Logarithm of the probability of a repetition that is no chance.
 const NO_CHANCE: f64 = 20.0;
 /// Fewest identical readings in a row that are too many.
@@ -36,6 +39,8 @@ pub struct SensorWatch {
     high: f64,
     latest: f64,
     in_a_row: u32,
+    /// Rows without a number in a row.
+    missing: u32,
     /// Smallest change lately, K or Pa.
     step: f64,
     /// Number of readings, at most the memory, and how many of them were repeated.
@@ -61,6 +66,7 @@ impl SensorWatch {
             high,
             latest: f64::NAN,
             in_a_row: 0,
+            missing: 0,
             step: f64::INFINITY,
             seen: 0.0,
             repeated: 0.0,
@@ -76,9 +82,13 @@ impl SensorWatch {
     /// Judge a reading as it came, K or Pa; the usable one, or NaN.
     pub fn judge(&mut self, time_s: f64, reading: f64) -> f64 {
         if reading.is_nan() {
-            self.health = Health::Missing;
+            self.missing = self.missing.saturating_add(1);
+            if self.missing >= MISSING_ROWS {
+                self.health = Health::Missing;
+            }
             return f64::NAN;
         }
+        self.missing = 0;
         if !(self.low..=self.high).contains(&reading) {
             self.health = Health::Implausible;
             return f64::NAN;
@@ -201,9 +211,20 @@ mod tests {
             assert!(watch.judge(0.0, reading).is_nan(), "{reading}");
             assert_eq!(watch.health(), Health::Implausible);
         }
-        assert!(watch.judge(0.0, f64::NAN).is_nan() && watch.health() == Health::Missing);
         assert_eq!(watch.judge(1.0, 1.013e5), 1.013e5);
         assert_eq!(watch.health(), Health::Good);
+    }
+
+    #[test]
+    fn cells_that_are_empty_now_and_then_are_no_fault_and_three_in_a_row_are() {
+        let mut watch = pressure();
+        let mut judged = |reading: f64| {
+            assert_eq!(watch.judge(0.0, reading).is_nan(), reading.is_nan());
+            watch.health()
+        };
+        let rows = [180e5, f64::NAN, f64::NAN, 181e5, f64::NAN, f64::NAN];
+        assert!(rows.into_iter().all(|reading| judged(reading) == Health::Good));
+        assert_eq!([f64::NAN, 182e5].map(judged), [Health::Missing, Health::Good]);
     }
 
     #[test]
