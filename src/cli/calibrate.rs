@@ -8,8 +8,10 @@ use super::progress::Progress;
 use super::selection;
 use super::views::{self, Views};
 use anyhow::{Context, bail};
-use cylwatch::estimator::calibrate::{Calibration, CalibrationSettings, Experiment, HoldOut, SearchStep};
-use cylwatch::estimator::sensor::Sensor;
+use cylwatch::estimator::calibrate::{
+    Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, SearchStep,
+};
+use cylwatch::estimator::sensor::SensorsSpec;
 use cylwatch::report::Input;
 use cylwatch::report::calibrate as report;
 use cylwatch::report::calibrate::Study;
@@ -17,6 +19,7 @@ use cylwatch::report::figure::Picture;
 use cylwatch::thermal::vessel::{Vessel, VesselSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 mod air;
 mod amounts;
@@ -32,8 +35,28 @@ use amounts::Amounts;
 pub use arguments::CalibrateArguments;
 use arguments::CalibrationFormat;
 use circumstances::{Circumstances, Exposure};
-use recording::{Reading, Recording};
+use recording::{AMBIENT, Reading, Recording};
 use wanted::{Subject, Wanted, Words};
+
+/// A first step of the search from which on it is said how long all of them take.
+const SLOW: Duration = Duration::from_secs(3);
+/// Steps of most searches. The first one has no trial before it, the others have: they take up to twice as long.
+const USUAL_STEPS: [f64; 2] = [4.0, 10.0];
+
+/// How long a calibration takes whose search took so long to begin.
+fn pace(first_step: Duration) -> String {
+    let [few, many] = USUAL_STEPS;
+    let step_s = first_step.as_secs_f64();
+    let words = |time_s: f64| match time_s {
+        ..90.0 => format!("{:.0} s", time_s.ceil()),
+        _ => format!("{:.0} min", (time_s / 60.0).ceil()),
+    };
+    format!(
+        "a search takes {few} to {many} steps, here {} to {}; fewer cells of the vessel, fewer rows or a shorter log make it faster",
+        words(few * step_s),
+        words(2.0 * many * step_s)
+    )
+}
 
 /// Validated options.
 struct Options {
@@ -53,6 +76,7 @@ struct Options {
     fill: GivenFill,
     date: String,
     vessel_file: Option<Target>,
+    sensors_file: Option<Target>,
     format: CalibrationFormat,
     views: Views,
 }
@@ -74,6 +98,13 @@ struct Start {
 }
 
 /// Logs with vessels and circumstances, in the order of the options.
+struct Cases {
+    cases: Vec<Case>,
+    /// Sensors as a file says them.
+    sensors: Option<SensorsSpec>,
+}
+
+/// A log with its vessel and circumstances.
 struct Case {
     vessel: Option<Vessel>,
     recording: Recording,
@@ -84,25 +115,25 @@ struct Case {
 pub fn run(arguments: CalibrateArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let (specification, vessel, origin) = inputs.vessel_specification(&options.vessel)?;
+    let (specification, vessel, origin) = inputs.vessel_specification(&options.vessel, messages)?;
     let start = Start { specification, vessel, origin };
-    let cases = options.cases(&start.vessel, &inputs, messages)?;
+    let Cases { cases, sensors } = options.cases(&start.vessel, &inputs, messages)?;
     let study = options.study(&start, cases, messages)?;
     for caution in report::cautions(&study) {
         messages.caution(&caution);
     }
-    options.write(&start, &study, &inputs, messages)
+    options.write(&start, &study, sensors, &inputs, messages)
 }
 
 impl Options {
     /// Reads all logs with their vessels and scenarios.
-    fn cases(&self, main: &Vessel, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Vec<Case>> {
-        let sensors: Option<Vec<Sensor>> =
-            self.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
+    fn cases(&self, main: &Vessel, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Cases> {
+        let read = self.sensors.as_deref().map(|path| selection::read_specification(inputs, path));
+        let (specification, sensors) = read.transpose()?.unzip();
         let reading = Reading { inputs, reading: &self.reading, sensors: sensors.as_deref(), messages };
         let exposure = Exposure { amounts: &self.amounts, fill: &self.fill, source: self.fill.source()? };
         let case = |log: &String| -> anyhow::Result<Case> {
-            let vessel = self.vessels.get(log).map(|name| inputs.vessel(name)).transpose()?;
+            let vessel = self.vessels.get(log).map(|name| inputs.vessel(name, messages)).transpose()?;
             let of_log = vessel.as_ref().unwrap_or(main);
             let recording = reading.read(log, of_log)?;
             let (recording, circumstances) = match self.scenarios.get(log) {
@@ -121,7 +152,8 @@ impl Options {
             circumstances.doubts.iter().for_each(|doubt| messages.caution(doubt));
             Ok(Case { vessel, recording, circumstances })
         };
-        self.logs.iter().map(case).collect()
+        let cases = self.logs.iter().map(case).collect::<anyhow::Result<_>>()?;
+        Ok(Cases { cases, sensors: specification })
     }
 
     /// Fits, scores what was held out, and computes profiles.
@@ -146,8 +178,12 @@ impl Options {
             settings: self.settings,
         };
         let progress = Progress::open_ended(messages, "calibrating");
+        let began = Instant::now();
         let mut watch = |step: SearchStep| {
             let SearchStep { number, distance_sd } = step;
+            if number == 1 && began.elapsed() > SLOW {
+                progress.suspended(|| messages.say(&pace(began.elapsed())));
+            }
             progress.say(&format!("step {number}: {distance_sd:.2} standard deviations from the minimum"));
         };
         let (calibrated, scores) = match &held_out {
@@ -187,6 +223,7 @@ impl Options {
         &self,
         start: &Start,
         study: &Study,
+        sensors: Option<SensorsSpec>,
         inputs: &Inputs,
         messages: &Messages,
     ) -> anyhow::Result<()> {
@@ -201,8 +238,12 @@ impl Options {
         let picture = || Picture::Figure(report::figure(study));
         let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
         let views = self.views.make(picture, with, inputs.sources(), &provenance)?;
-        if let Some(target) = &self.vessel_file {
-            target.write(vessel.as_bytes())?;
+        let sensors = sensors.unwrap_or_else(|| typical_sensors(study));
+        let sensors = vessel_file::sensors(study, &sensors, &provenance)?;
+        for (target, text) in [(&self.vessel_file, vessel), (&self.sensors_file, sensors)] {
+            if let Some(target) = target {
+                target.write(text.as_bytes())?;
+            }
         }
         views.write()?;
         match (self.format, &self.vessel_file) {
@@ -214,13 +255,25 @@ impl Options {
             (CalibrationFormat::Text, Some(Target::Stdout)) => messages.say(&words),
             (CalibrationFormat::Text, _) => Target::Stdout.write(words.as_bytes())?,
         }
-        match &self.vessel_file {
-            Some(Target::File(path)) => messages.say(&format!("wrote {}", path.display())),
-            Some(_) => {}
-            None => messages.say("no vessel file was asked for: -o NEW.toml writes one"),
+        for target in [&self.vessel_file, &self.sensors_file] {
+            if let Some(Target::File(path)) = target {
+                messages.say(&format!("wrote {}", path.display()));
+            }
+        }
+        if self.vessel_file.is_none() {
+            messages.say("no vessel file was asked for: -o NEW.toml writes one");
         }
         Ok(())
     }
+}
+
+/// Typical sensors on what was fitted, and on the air where the log has it.
+fn typical_sensors(study: &Study) -> SensorsSpec {
+    let experiment = &study.calibration.experiments[study.main_experiment()];
+    let is_of_air = |line: &report::Line<'_>| line.spec.kind == ParameterKind::AirOffset;
+    let has_air = study.lines().iter().any(is_of_air);
+    let of_log = experiment.channels.iter().map(|sensor| sensor.name.as_str());
+    SensorsSpec::typical(&of_log.chain(has_air.then_some(AMBIENT)).collect::<Vec<_>>())
 }
 
 impl Case {

@@ -46,7 +46,7 @@ struct Options {
 pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let vessel = inputs.vessel(&options.vessel)?;
+    let vessel = inputs.vessel(&options.vessel, messages)?;
     let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
     let learned =
         options.learned_in.as_deref().map(|path| start::learned(&inputs, path, &vessel)).transpose()?;

@@ -1,5 +1,6 @@
 //! What a run reads: files, stdin, built-in vessels and scenarios. Everything read is recorded with its SHA-256.
 use super::command_line;
+use super::message::Messages;
 use anyhow::{Context, bail};
 use cylwatch::log::inspect::Inspector;
 use cylwatch::log::{LogError, LogOptions, LogReader, is_parquet};
@@ -64,17 +65,20 @@ impl Inputs {
     }
 
     /// A vessel by file name, by built-in name, or from stdin.
-    pub fn vessel(&self, name: &str) -> anyhow::Result<Vessel> {
-        let document =
-            self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
-        Ok(vessel::read_vessel(&document.text, &document.shown)?)
+    pub fn vessel(&self, name: &str, messages: &Messages) -> anyhow::Result<Vessel> {
+        Ok(self.vessel_specification(name, messages)?.1)
     }
 
     /// A vessel as of [`Inputs::vessel`] with the content of its file, and where it comes from.
-    pub fn vessel_specification(&self, name: &str) -> anyhow::Result<(VesselSpec, Vessel, Input)> {
+    pub fn vessel_specification(
+        &self,
+        name: &str,
+        messages: &Messages,
+    ) -> anyhow::Result<(VesselSpec, Vessel, Input)> {
         let document =
             self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
         let (specification, vessel) = vessel::read_specification(&document.text, &document.shown)?;
+        vessel.doubts().iter().for_each(|doubt| messages.caution(doubt));
         let origin = self.records.borrow().last().cloned().context("what was read is recorded")?;
         Ok((specification, vessel, origin))
     }

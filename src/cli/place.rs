@@ -47,7 +47,7 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
     let begun = Instant::now();
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let vessel = inputs.vessel(&options.vessel)?;
+    let vessel = inputs.vessel(&options.vessel, messages)?;
     let candidates = options.candidates(&inputs, &vessel)?;
     let scenarios: Vec<Scenario> =
         options.scenarios.iter().map(|name| inputs.scenario(name)).collect::<anyhow::Result<_>>()?;

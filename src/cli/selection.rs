@@ -3,7 +3,7 @@ use super::input::Inputs;
 use super::message::Messages;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::{Channel, Quantity};
-use cylwatch::estimator::sensor::{Sensor, read_sensors};
+use cylwatch::estimator::sensor::{Sensor, SensorsSpec, read_sensors};
 use cylwatch::log::{LogReader, Row};
 use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
@@ -156,6 +156,12 @@ fn typical(channel: &Channel, vessel: &Vessel) -> Result<Sensor, String> {
 
 /// Reads a file of sensors.
 pub fn read(inputs: &Inputs, path: &Path) -> anyhow::Result<Vec<Sensor>> {
+    Ok(read_specification(inputs, path)?.1)
+}
+
+/// Reads a file of sensors as it is written, too.
+pub fn read_specification(inputs: &Inputs, path: &Path) -> anyhow::Result<(SensorsSpec, Vec<Sensor>)> {
     let name = path.to_string_lossy();
-    Ok(read_sensors(&inputs.read(&name)?, &name)?.sensors().to_vec())
+    let (specification, suite) = read_sensors(&inputs.read(&name)?, &name)?;
+    Ok((specification, suite.sensors().to_vec()))
 }

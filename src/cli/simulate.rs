@@ -55,7 +55,7 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     }
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let vessel = inputs.vessel(&options.vessel)?;
+    let vessel = inputs.vessel(&options.vessel, messages)?;
     let scenario = inputs.scenario(&options.scenario)?;
     let progress = Progress::new(messages);
     let run =

@@ -40,6 +40,9 @@ pub struct CalibrateArguments {
     /// B, on pressure a transmitter of 250 bar and 0.25 %].
     #[arg(long, value_name = "FILE")]
     pub sensors: Option<PathBuf>,
+    /// File for what was found of the sensors, .toml, to be given to monitor or estimate as --sensors.
+    #[arg(long, value_name = "FILE")]
+    pub sensors_out: Option<PathBuf>,
     /// What is unknown, separated by commas [default: outside-film; inside-film where there is a pressure; valve-contact with
     /// the prior 1,0.5 where there is a thermometer on a valve].
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -92,7 +95,8 @@ const EXAMPLES: &str = "\
 Names of what can be fitted. Factors on what the vessel file says: outside-film, inside-film,
 wall-capacity, valve-capacity, valve-contact, volume. Of a flow of the scenario:
 discharge-coefficient:NAME. Of each log, fitted beside them by default: initial-temperature (K
-above the first readings), fill-mass (factor). Numbers of a sensor, fitted by default within its
+above the first readings), fill-mass (factor), air-offset (K, of the thermometer of the air that
+all others are compared with; not with a scenario). Numbers of a sensor, fitted by default within its
 data sheet: offset:NAME (K or bar), coupling:NAME, span:NAME, temperature-coefficient:NAME
 (mbar/K); and lag:NAME (s). A sensor's number that --fit names is free of the data sheet.
 
@@ -108,4 +112,5 @@ Examples:
   cylwatch calibrate my-cylinder.toml log.csv --film-w-m2-k 20 --fit outside-film,wall-capacity \\
       --prior wall-capacity=1,0.05 -o calibrated.toml
   cylwatch calibrate my-cylinder.toml a.csv b.csv --validate c.csv --format json > fit.json
-  cylwatch estimate calibrated.toml other.csv";
+  cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --sensors-out sensors.toml
+  cylwatch monitor calibrated.toml other.csv --sensors sensors.toml -o rows.csv";

@@ -6,6 +6,7 @@ use crate::cli::fill::{self, FillSource, GivenFill};
 use anyhow::{Context, bail};
 use cylwatch::estimator::observer::ObserverSettings;
 use cylwatch::estimator::observer::cylinder::Cylinder;
+use cylwatch::estimator::sensor::{Parameter, ParameterKind};
 use cylwatch::thermal::scenario::{
     AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Surroundings,
 };
@@ -31,6 +32,8 @@ pub struct Circumstances {
     pub temperature_sd_k: f64,
     /// Relative standard deviation of the gas mass.
     pub mass_sd: f64,
+    /// What is known of the offset of the air's thermometer, K; `None`: a scenario says what the air does.
+    pub air_offset: Option<Parameter>,
     /// What was taken from where, in words.
     pub words: String,
     /// What one should know of it.
@@ -102,6 +105,12 @@ impl Exposure<'_> {
             scenario,
             temperature_sd_k: if commissioning.settled { SETTLED_SD_K } else { UNSETTLED_SD_K },
             mass_sd: commissioning.mass_sd_kg / mass_kg,
+            air_offset: recording
+                .air_sensor
+                .parameters()
+                .iter()
+                .find(|of| of.kind == ParameterKind::Offset)
+                .copied(),
             words,
             doubts,
         })
@@ -144,7 +153,14 @@ impl Exposure<'_> {
         }
         let words = format!("{}: scenario `{}` with {of_fill}", recording.name, scenario.name);
         let mass_sd = commissioning.mass_sd_kg / mass_kg;
-        Ok(Circumstances { scenario, temperature_sd_k: SETTLED_SD_K, mass_sd, words, doubts })
+        Ok(Circumstances {
+            scenario,
+            temperature_sd_k: SETTLED_SD_K,
+            mass_sd,
+            air_offset: None,
+            words,
+            doubts,
+        })
     }
 
     fn film(&self) -> anyhow::Result<(OutsideFilm, String)> {

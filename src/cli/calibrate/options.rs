@@ -13,11 +13,17 @@ impl Options {
         inputs.extend(logs.iter().map(Path::new));
         inputs.extend(scenarios.values().chain(vessels.values()).map(Path::new));
         inputs.extend(arguments.sensors.as_deref());
-        let vessel_file = vessel_file(arguments.output.as_deref(), &inputs)?;
+        let vessel_file = document("-o", arguments.output.as_deref(), &inputs)?;
+        let sensors_file = document("--sensors-out", arguments.sensors_out.as_deref(), &inputs)?;
         if matches!(vessel_file, Some(Target::Stdout)) && arguments.format == CalibrationFormat::Json {
             bail!("-o - and --format json both want stdout: name a file for the vessel");
         }
-        let others: Vec<&Target> = vessel_file.iter().collect();
+        if let (Some(vessel), Some(sensors)) = (&vessel_file, &sensors_file)
+            && sensors.is_same_file(vessel)
+        {
+            bail!("-o and --sensors-out name the same file: choose two");
+        }
+        let others: Vec<&Target> = vessel_file.iter().chain(&sensors_file).collect();
         let wanted = views::Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
         let views = Views::checked(wanted, &inputs, &others)?;
         let words = Words {
@@ -48,6 +54,7 @@ impl Options {
             fill: arguments.fill,
             date: date::date(arguments.date.as_deref())?,
             vessel_file,
+            sensors_file,
             format: arguments.format,
             views,
         })
@@ -88,14 +95,14 @@ fn check_logs(vessel: &str, logs: &[String]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Place of the calibrated vessel.
-fn vessel_file(path: Option<&Path>, inputs: &[&Path]) -> anyhow::Result<Option<Target>> {
+/// Place of a file that is calibrated.
+fn document(option: &str, path: Option<&Path>, inputs: &[&Path]) -> anyhow::Result<Option<Target>> {
     let is_toml = |path: &Path| {
         path == Path::new("-") || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
     };
     if let Some(path) = path.filter(|path| !is_toml(path)) {
         bail!(
-            "-o {}: the calibrated vessel is a file that ends in .toml; --format json has all the rest",
+            "{option} {}: what is calibrated is a file that ends in .toml; --format json has all the rest",
             path.display()
         );
     }

@@ -31,6 +31,8 @@ pub struct Recording {
     pub sensors: Vec<Sensor>,
     /// Readings of the air, s and K; empty without a column for it.
     pub air: Vec<(f64, f64)>,
+    /// Thermometer of the air.
+    pub air_sensor: Sensor,
     /// Usual interval between rows, s.
     pub interval_s: f64,
 }
@@ -38,6 +40,11 @@ pub struct Recording {
 impl Reading<'_> {
     /// Reads a log.
     pub fn read(&self, name: &str, vessel: &Vessel) -> anyhow::Result<Recording> {
+        let of_air = |sensor: &&Sensor| sensor.kind == SensorKind::Ambient;
+        let air_sensor = match self.sensors.and_then(|sensors| sensors.iter().find(of_air)) {
+            Some(sensor) => sensor.clone(),
+            None => Sensor::typical(AMBIENT)?,
+        };
         let sensors = self.sensors.map(|sensors| {
             let on_vessel = |sensor: &&Sensor| sensor.kind != SensorKind::Ambient;
             sensors.iter().filter(on_vessel).cloned().collect::<Vec<_>>()
@@ -49,7 +56,7 @@ impl Reading<'_> {
         let air = input.reader.channels().iter().position(|channel| {
             channel.name.eq_ignore_ascii_case(AMBIENT) && channel.quantity == Quantity::Temperature
         });
-        let mut recording = Recording::empty(shown(name), &selection);
+        let mut recording = Recording::empty(shown(name), &selection, air_sensor);
         let progress = Progress::new(self.messages);
         let read = loop {
             match input.reader.next_row() {
@@ -79,11 +86,12 @@ impl Reading<'_> {
 }
 
 impl Recording {
-    fn empty(name: String, selection: &Selection) -> Self {
+    fn empty(name: String, selection: &Selection, air_sensor: Sensor) -> Self {
         let channel = |sensor: &Sensor| Channel { name: sensor.name.clone(), quantity: sensor.quantity() };
         let channels = selection.sensors.iter().map(channel).collect();
         let log = Log { channels, ..Log::default() };
-        Self { name, log, sensors: selection.sensors.clone(), air: Vec::new(), interval_s: f64::NAN }
+        let sensors = selection.sensors.clone();
+        Self { name, log, sensors, air: Vec::new(), air_sensor, interval_s: f64::NAN }
     }
 
     /// The same with the first row at time 0.

@@ -1,4 +1,5 @@
-//! The calibrated vessel as a file.
+//! The calibrated vessel, and its sensors, as files.
+use cylwatch::estimator::sensor::SensorsSpec;
 use cylwatch::report::calibrate::Study;
 use cylwatch::report::{Input, Provenance, number, rounded};
 use cylwatch::thermal::vessel::VesselSpec;
@@ -36,17 +37,26 @@ pub fn text(
     let place = study.main_experiment();
     let mut specification = study.calibrated.applied_to_specification(place, specification)?;
     specification.calibration = Some(record);
-    let text: String = specification.to_toml()?.lines().map(|line| tidy_line(line) + "\n").collect();
-    Ok(provenance.comment_lines() + "\n" + &text)
+    Ok(file(&specification.to_toml()?, CONVERTED_DIGITS, provenance))
 }
 
-/// A number without the rounding of its conversion to SI.
-fn tidy_line(line: &str) -> String {
-    let parsed = line.split_once(" = ").and_then(|(key, text)| Some((key, text.parse::<f64>().ok()?)));
-    match parsed {
-        Some((key, value)) if line.contains('.') => format!("{key} = {}", number(value, CONVERTED_DIGITS)),
-        _ => line.to_owned(),
-    }
+/// The file of sensors with what was found of them.
+pub fn sensors(study: &Study, sensors: &SensorsSpec, provenance: &Provenance) -> anyhow::Result<String> {
+    let sensors = study.calibrated.applied_to_sensors(study.main_experiment(), sensors);
+    sensors.build()?;
+    Ok(file(&sensors.to_toml()?, DIGITS, provenance))
+}
+
+/// A document with its provenance, numbers without more digits than they have.
+fn file(document: &str, digits: usize, provenance: &Provenance) -> String {
+    let tidy = |line: &str| {
+        let parsed = line.split_once(" = ").and_then(|(key, text)| Some((key, text.parse::<f64>().ok()?)));
+        match parsed {
+            Some((key, value)) if line.contains('.') => format!("{key} = {}\n", number(value, digits)),
+            _ => format!("{line}\n"),
+        }
+    };
+    provenance.comment_lines() + "\n" + &document.lines().map(tidy).collect::<String>()
 }
 
 fn tidy(line: FittedSpec) -> FittedSpec {

@@ -4,7 +4,7 @@ use super::recording::Recording;
 use anyhow::{Context, bail};
 use cylwatch::estimator::calibrate::{ParameterKind, ParameterNameError, ParameterSpec, Prior};
 use cylwatch::estimator::log::Quantity;
-use cylwatch::estimator::sensor::{Sensor, SensorKind, SurfacePlace};
+use cylwatch::estimator::sensor::{Parameter, Sensor, SensorKind, SurfacePlace};
 use cylwatch::report::calibrate::shown_unit;
 use cylwatch::thermal::vessel::Vessel;
 
@@ -61,7 +61,10 @@ impl Wanted {
     pub fn parameters(&self, subjects: &[Subject<'_>]) -> anyhow::Result<Vec<ParameterSpec>> {
         let wanted = if self.fit.is_empty() { usual(subjects) } else { self.fit.clone() };
         let is_own = |kind: &ParameterKind| {
-            matches!(kind, ParameterKind::InitialTemperature | ParameterKind::FillMass)
+            matches!(
+                kind,
+                ParameterKind::InitialTemperature | ParameterKind::FillMass | ParameterKind::AirOffset
+            )
         };
         let mut specs: Vec<ParameterSpec> = Vec::new();
         for kind in wanted.iter().filter(|kind| !is_own(kind)) {
@@ -152,7 +155,7 @@ fn usual(subjects: &[Subject<'_>]) -> Vec<ParameterKind> {
 fn free(kind: &ParameterKind, subjects: &[Subject<'_>]) -> anyhow::Result<ParameterSpec> {
     let start = match kind {
         ParameterKind::DischargeCoefficient { .. } => 0.8,
-        ParameterKind::InitialTemperature => 0.0,
+        ParameterKind::InitialTemperature | ParameterKind::AirOffset => 0.0,
         _ => 1.0,
     };
     let Some(name) = kind.sensor() else {
@@ -189,10 +192,13 @@ fn free(kind: &ParameterKind, subjects: &[Subject<'_>]) -> anyhow::Result<Parame
 fn nuisances(subjects: &[Subject<'_>]) -> Vec<ParameterSpec> {
     let mut specs = Vec::new();
     for (index, subject) in subjects.iter().enumerate() {
-        let Circumstances { temperature_sd_k, mass_sd, .. } = subject.circumstances;
+        let Circumstances { temperature_sd_k, mass_sd, air_offset, .. } = subject.circumstances;
         let own = |kind, start, sd| ParameterSpec::new(kind, start).with_prior(start, sd).only(vec![index]);
         specs.push(own(ParameterKind::InitialTemperature, 0.0, *temperature_sd_k));
         specs.push(own(ParameterKind::FillMass, 1.0, *mass_sd));
+        if let Some(Parameter { mean, sd, .. }) = air_offset.filter(|offset| offset.sd > 0.0) {
+            specs.push(own(ParameterKind::AirOffset, mean, sd));
+        }
     }
     for (index, subject) in subjects.iter().enumerate() {
         for spec in subject.recording.sensors.iter().flat_map(ParameterSpec::of_sensor) {

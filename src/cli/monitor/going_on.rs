@@ -24,7 +24,7 @@ pub struct Beginning {
 impl Beginning {
     /// Reads the vessel and the state.
     pub fn find(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Self> {
-        let (specification, vessel, _) = inputs.vessel_specification(&options.vessel)?;
+        let (specification, vessel, _) = inputs.vessel_specification(&options.vessel, messages)?;
         let fingerprint = fingerprint(&specification)?;
         let mut beginning = Self { vessel, fingerprint, state: None, cold_start: None };
         let Some(path) = &options.state else { return Ok(beginning) };

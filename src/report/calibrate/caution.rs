@@ -4,6 +4,10 @@ use crate::estimator::calibrate::{Combination, ParameterKind};
 
 /// Ratio of residuals and noise from which on the model is said to miss something.
 const MISSES: f64 = 2.0;
+/// Movement by a finer wall, in standard deviations, with which an estimate leaves its interval of 95 %.
+const COARSE_SD: f64 = 1.96;
+/// The same as a part of what such parameters are usually off: below it nobody would notice.
+const COARSE_PART: f64 = 0.1;
 /// Share of the prior's variance from which on the logs say nothing of a parameter.
 const UNLEARNT: f64 = 0.9;
 
@@ -12,6 +16,7 @@ pub fn cautions(study: &Study) -> Vec<String> {
     let found = &study.calibrated.identifiability;
     let mut cautions: Vec<String> = found.inseparable.iter().map(inseparable).collect();
     cautions.extend(misfits(study));
+    cautions.extend(coarse(study));
     let of_vessel = |kind: &ParameterKind| kind.sensor().is_none() && !is_of_start(kind);
     for line in
         study.lines().iter().filter(|line| of_vessel(&line.spec.kind) && 1.0 - line.learnt() > UNLEARNT)
@@ -28,7 +33,7 @@ pub fn cautions(study: &Study) -> Vec<String> {
 }
 
 fn is_of_start(kind: &ParameterKind) -> bool {
-    matches!(kind, ParameterKind::InitialTemperature | ParameterKind::FillMass)
+    matches!(kind, ParameterKind::InitialTemperature | ParameterKind::FillMass | ParameterKind::AirOffset)
 }
 
 fn inseparable(combination: &Combination) -> String {
@@ -45,6 +50,32 @@ fn inseparable(combination: &Combination) -> String {
             combination.deviation
         ),
     }
+}
+
+/// What a coarse wall does to the estimates.
+fn coarse(study: &Study) -> Option<String> {
+    let lines = study.lines();
+    let shift =
+        |line: &super::Line<'_>| study.calibrated.mesh_shift_sd.get(line.place).copied().unwrap_or(0.0);
+    let is_felt = |line: &&super::Line<'_>| {
+        let (kind, found) = (&line.spec.kind, line.estimate);
+        let sd = if kind.is_positive() { found.sd / found.value } else { found.sd };
+        let usual = kind.usual_width(study.calibrated.is_of_pressure(found));
+        // A contact contains half of the cell that it is on: it belongs to its mesh by nature.
+        *kind != ParameterKind::ValveContact && shift(line).abs() * sd > COARSE_PART * usual
+    };
+    let moved: Vec<String> = lines
+        .iter()
+        .filter(|line| shift(line).abs() > COARSE_SD && is_felt(line))
+        .map(|line| format!("{} by {:+.1}", study.name(line), shift(line)))
+        .collect();
+    (!moved.is_empty()).then(|| {
+        format!(
+            "the wall has few cells: with twice as many along it and through it these would leave their intervals, in standard \
+             deviations: {}; give the vessel more cells",
+            moved.join(", ")
+        )
+    })
 }
 
 fn misfits(study: &Study) -> impl Iterator<Item = String> + '_ {

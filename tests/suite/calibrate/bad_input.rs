@@ -100,7 +100,7 @@ fn too_few_rows_are_refused_with_both_numbers() {
         log.0.truncate(3);
         log
     };
-    refused(short, &[], &["6 usable readings cannot determine 11 parameters", "record more"]);
+    refused(short, &[], &["6 usable readings cannot determine 12 parameters", "record more"]);
 }
 
 #[test]

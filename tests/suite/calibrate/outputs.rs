@@ -37,6 +37,65 @@ fn the_vessel_file_says_what_was_fitted_from_what_and_when() {
 }
 
 #[test]
+fn what_was_found_of_the_sensors_is_a_file_that_others_take() {
+    let folder = tempdir().unwrap();
+    log(folder.path());
+    let options = ["log.csv", "-o", "new.toml", "--sensors-out", "found.toml"];
+    let outcome = calibrate(folder.path(), &[&options[..], &QUICK[..]].concat());
+    assert!(outcome.stderr.contains("wrote found.toml"), "{}", outcome.stderr);
+    let text = std::fs::read_to_string(folder.path().join("found.toml")).unwrap();
+    assert!(text.starts_with("# cylwatch ") && text.contains("[[sensor]]"), "{text}");
+    let (specification, suite) = cylwatch::estimator::sensor::read_sensors(&text, "found.toml").unwrap();
+    let names: Vec<&str> = specification.sensor.iter().map(|sensor| sensor.name.as_str()).collect();
+    assert_eq!(names, ["shoulder", "valve", "pressure", "ambient"]);
+    let vessel = std::fs::read_to_string(folder.path().join("new.toml")).unwrap();
+    let fitted = vessel::read_specification(&vessel, "new.toml").unwrap().0.calibration.unwrap().fitted;
+    let coupling = fitted.iter().find(|one| one.parameter == "coupling:shoulder").unwrap();
+    let number = &suite.sensors()[0].parameters()[1];
+    assert!(
+        (number.mean / coupling.value - 1.0).abs() < 1e-4 && (number.sd / coupling.sd - 1.0).abs() < 1e-4
+    );
+    // The air's thermometer is one of them, and all offsets are known about as well as it is.
+    let air = fitted.iter().find(|one| one.parameter == "air-offset").unwrap();
+    assert!((suite.sensors()[3].parameters()[0].sd / air.sd - 1.0).abs() < 1e-4 && air.sd > 0.1);
+    let arguments = ["estimate", "new.toml", "log.csv", "--sensors", "found.toml", "-o", "est.csv"];
+    assert_eq!(run(folder.path(), &arguments).code, Some(0));
+    let same = [&["log.csv", "-o", "same.toml", "--sensors-out", "same.toml"], &QUICK[..]].concat();
+    let outcome = run(folder.path(), &[&["calibrate", "nitrogen-20l"], &same[..]].concat());
+    assert_eq!(outcome.code, Some(2));
+    assert!(outcome.stderr.contains("name the same file"), "{}", outcome.stderr);
+}
+
+#[test]
+fn a_wall_of_few_cells_and_a_volume_off_the_contour_are_said() {
+    let folder = tempdir().unwrap();
+    log(folder.path());
+    let plain = vessel::presets::text("nitrogen-20l").unwrap();
+    let coarse = plain.replace("volume_l = 20.0", "volume_l = 22.5").replace("cells = 6", "cells = 2");
+    let coarse = coarse.replace("cells = 3", "cells = 1").replace("cells = 2", "cells = 1");
+    std::fs::write(folder.path().join("coarse.toml"), coarse).unwrap();
+    let options = ["calibrate", "coarse.toml", "log.csv", "--format", "json", "--date", DATE];
+    let outcome = run(folder.path(), &options);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("volume_l = 22.5000 is 1"), "{}", outcome.stderr);
+    let document: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
+    let cautions = document["cautions"].to_string();
+    assert!(
+        cautions.contains("the wall has few cells") && !cautions.contains("valve-contact by"),
+        "{cautions}"
+    );
+    let mut said = 0;
+    for one in document["parameters"].as_array().unwrap() {
+        let (name, shift) = (one["parameter"].as_str().unwrap(), one["mesh_shift_sd"].as_f64().unwrap());
+        if cautions.contains(&format!("{name} by")) {
+            assert!(shift.abs() > 1.96, "{name}: {shift}");
+            said += 1;
+        }
+    }
+    assert!(said > 0, "{cautions}");
+}
+
+#[test]
 fn the_same_run_gives_the_same_bytes_and_the_environment_may_give_the_date() {
     let folder = tempdir().unwrap();
     log(folder.path());

@@ -71,6 +71,13 @@ impl Setup {
                 scenario.initial.wall_temperature_k += value;
                 scenario.initial.gas_temperature_k += value;
             }
+            ParameterKind::AirOffset => {
+                let surroundings = &mut scenario.surroundings;
+                surroundings.air_k = surroundings.air_k.shifted(-value)?;
+                if let Some(radiation_k) = &mut surroundings.radiation_k {
+                    *radiation_k = radiation_k.shifted(-value)?;
+                }
+            }
             ParameterKind::OutsideFilm
             | ParameterKind::InsideFilm
             | ParameterKind::WallCapacity

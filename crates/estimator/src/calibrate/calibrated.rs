@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::fit::Fit;
 use super::identifiability::{check_determined, identifiability};
+use super::mesh;
 use super::parameter::Stage;
 use super::residuals::{channel_residuals, check_misfit};
 use super::solve::{SearchStep, Solution, search_watched};
@@ -55,6 +56,9 @@ pub struct Calibrated {
     pub degrees_of_freedom: usize,
     /// Steps of the search.
     pub iterations: usize,
+    /// How far each parameter would move with twice as many wall cells along and through the wall, in its standard deviations;
+    /// none where the finer wall cannot be simulated.
+    pub mesh_shift_sd: Vec<f64>,
     pub(super) fit: Fit,
     pub(super) solution: Solution,
 }
@@ -135,6 +139,7 @@ pub(super) fn calibrate(fit: &Fit, watch: &mut dyn FnMut(SearchStep)) -> Result<
         sum_of_squares: solution.cost,
         degrees_of_freedom: fit.samples().saturating_sub(fit.specs.len()),
         iterations: solution.iterations,
+        mesh_shift_sd: mesh::shift_sd(fit, &solution, &covariance).unwrap_or_default(),
         fit: fit.clone(),
         solution,
     })
@@ -273,7 +278,8 @@ impl From<&Estimate> for FittedParameter {
             (
                 ParameterKind::DischargeCoefficient { .. }
                 | ParameterKind::FillMass
-                | ParameterKind::InitialTemperature,
+                | ParameterKind::InitialTemperature
+                | ParameterKind::AirOffset,
                 _,
             ) => PartOf::Scenario,
             (_, Stage::Course) => PartOf::Vessel,

@@ -23,6 +23,7 @@ mod error;
 mod experiment;
 mod fit;
 mod identifiability;
+mod mesh;
 mod name;
 mod parameter;
 mod profile;

@@ -4,7 +4,7 @@ use std::str::FromStr;
 use super::ParameterKind;
 
 /// Names without an object.
-const PLAIN: [(&str, ParameterKind); 8] = [
+const PLAIN: [(&str, ParameterKind); 9] = [
     ("outside-film", ParameterKind::OutsideFilm),
     ("inside-film", ParameterKind::InsideFilm),
     ("wall-capacity", ParameterKind::WallCapacity),
@@ -13,6 +13,7 @@ const PLAIN: [(&str, ParameterKind); 8] = [
     ("volume", ParameterKind::Volume),
     ("fill-mass", ParameterKind::FillMass),
     ("initial-temperature", ParameterKind::InitialTemperature),
+    ("air-offset", ParameterKind::AirOffset),
 ];
 
 /// Names that are followed by a colon and the name of a sensor or a flow.
@@ -67,7 +68,7 @@ impl ParameterKind {
     /// Unit of its value in SI; `1` for factors.
     pub fn si_unit(&self, is_pressure: bool) -> &'static str {
         match self {
-            Self::InitialTemperature => "K",
+            Self::InitialTemperature | Self::AirOffset => "K",
             Self::SensorOffset { .. } if is_pressure => "Pa",
             Self::SensorOffset { .. } => "K",
             Self::SensorLag { .. } => "s",

@@ -28,6 +28,9 @@ pub enum ParameterKind {
     FillMass,
     /// Wall and gas at the start are this much warmer than the scenario says, K.
     InitialTemperature,
+    /// What the thermometer of the air reads too much, K: air and radiation are this much colder than the scenario says. All
+    /// other thermometers are compared with the air, so that their offsets are known no better than this one.
+    AirOffset,
     /// Mounting coupling of a surface sensor to the air, 0 to 1.
     SensorCoupling {
         /// Name of the sensor.
@@ -79,7 +82,7 @@ impl ParameterKind {
     /// Whether it is sought as its logarithm.
     pub fn is_positive(&self) -> bool {
         match self {
-            Self::InitialTemperature => false,
+            Self::InitialTemperature | Self::AirOffset => false,
             Self::SensorLag { .. } => true,
             other => other.stage() == Stage::Course,
         }
@@ -90,7 +93,7 @@ impl ParameterKind {
         match self {
             Self::DischargeCoefficient { .. } => (0.05, 1.0),
             Self::Volume | Self::FillMass => (0.5, 2.0),
-            Self::InitialTemperature => (-50.0, 50.0),
+            Self::InitialTemperature | Self::AirOffset => (-50.0, 50.0),
             Self::SensorCoupling { .. } => (0.0, 0.95),
             Self::SensorLag { .. } => (0.1, 1e5),
             Self::SensorOffset { .. } | Self::SensorTemperatureCoefficient { .. } => (-1e7, 1e7),
@@ -104,6 +107,7 @@ impl ParameterKind {
         match self {
             Self::Volume | Self::FillMass => 0.05,
             Self::InitialTemperature => 3.0,
+            Self::AirOffset => 1.0,
             Self::SensorCoupling { .. } => 0.1,
             Self::SensorOffset { .. } if is_pressure => 1e5,
             Self::SensorOffset { .. } => 1.0,
@@ -149,6 +153,7 @@ impl fmt::Display for ParameterKind {
             Self::DischargeCoefficient { flow } => write!(f, "discharge coefficient of {flow}"),
             Self::FillMass => f.write_str("fill mass"),
             Self::InitialTemperature => f.write_str("initial temperature"),
+            Self::AirOffset => f.write_str("offset of the air's thermometer"),
             Self::SensorCoupling { sensor } => write!(f, "coupling of {sensor}"),
             Self::SensorLag { sensor } => write!(f, "lag of {sensor}"),
             Self::SensorOffset { sensor } => write!(f, "offset of {sensor}"),

@@ -16,7 +16,7 @@ use crate::EstimatorError;
 /// Half distance of neighbours in a logarithm: its square is the derivatives' relative error.
 const HALF_DISTANCE: f64 = 1e-4;
 
-/// Change of the initial temperature that bends the course as much as a factor e of another parameter does, K.
+/// Change of a temperature that bends the course as much as a factor e of another parameter does, K.
 const TEMPERATURE_SCALE_K: f64 = 20.0;
 
 /// Relative tolerance of the run along which derivatives are taken. Their error, some hundred times as large, costs the search
@@ -152,7 +152,7 @@ impl Task<'_> {
 /// Half distance of a parameter's neighbours in the search's coordinate.
 fn half_distance(kind: &ParameterKind) -> f64 {
     match kind {
-        ParameterKind::InitialTemperature => HALF_DISTANCE * TEMPERATURE_SCALE_K,
+        ParameterKind::InitialTemperature | ParameterKind::AirOffset => HALF_DISTANCE * TEMPERATURE_SCALE_K,
         _ => HALF_DISTANCE,
     }
 }

@@ -1,9 +1,11 @@
 //! A calibrated vessel as a file: the factors in the fields that they belong to.
 use cylwatch_thermal::ThermalError;
+use cylwatch_thermal::scenario::sensor::{KindChoice, SensorSpec};
 use cylwatch_thermal::vessel::VesselSpec;
 use cylwatch_thermal::vessel::spec::{FittedSpec, LawChoice, PriorSpec};
 
 use super::{Calibrated, Estimate, ParameterKind, Prior, Scope};
+use crate::sensor::SensorsSpec;
 
 impl Calibrated {
     /// The content of a vessel file with the factors that were fitted to the vessel of an experiment. Whatever the file says
@@ -22,6 +24,19 @@ impl Calibrated {
         }
         changed.build()?;
         Ok(changed)
+    }
+
+    /// The content of a file of sensors with the numbers that were fitted to the sensors of an experiment, as means with standard
+    /// deviations: what is known of them from now on. What belongs together (two offsets whose difference is known better
+    /// than either) is written as if it did not.
+    pub fn applied_to_sensors(&self, experiment: usize, sensors: &SensorsSpec) -> SensorsSpec {
+        let mut changed = sensors.clone();
+        for estimate in self.estimates.iter().filter(|estimate| estimate.scope.contains(experiment)) {
+            for sensor in changed.sensor.iter_mut().filter(|sensor| is_of(sensor, &estimate.parameter)) {
+                know(sensor, estimate, self.is_of_pressure(estimate));
+            }
+        }
+        changed
     }
 
     /// The estimates as lines of a vessel file's record, in SI; `sources` are the names of the logs.
@@ -55,6 +70,36 @@ fn fitted(estimate: &Estimate, prior: Option<Prior>, is_pressure: bool, sources:
         low: estimate.interval.0,
         high: estimate.interval.1,
         prior: prior.map(|Prior { mean, sd }| PriorSpec { mean, sd }),
+    }
+}
+
+fn is_of(sensor: &SensorSpec, kind: &ParameterKind) -> bool {
+    match kind {
+        ParameterKind::AirOffset => sensor.kind_or_default() == KindChoice::Ambient,
+        kind => kind.sensor() == Some(sensor.name.as_str()),
+    }
+}
+
+/// Writes a sensor's number into its fields.
+fn know(sensor: &mut SensorSpec, estimate: &Estimate, is_pressure: bool) {
+    let (value, sd) = (Some(estimate.value), Some(estimate.sd));
+    match estimate.parameter {
+        ParameterKind::SensorOffset { .. } if is_pressure => {
+            (sensor.offset_pa, sensor.offset_sd_pa, sensor.offset_tolerance_pa) = (value, sd, None);
+        }
+        ParameterKind::SensorOffset { .. } | ParameterKind::AirOffset => {
+            (sensor.offset_k, sensor.offset_sd_k, sensor.offset_tolerance_k) = (value, sd, None);
+            sensor.class = None;
+        }
+        ParameterKind::SensorCoupling { .. } => {
+            (sensor.air_coupling, sensor.air_coupling_sd) = (value, sd);
+        }
+        ParameterKind::SensorSpan { .. } => (sensor.span_ratio, sensor.span_sd_ratio) = (value, sd),
+        ParameterKind::SensorTemperatureCoefficient { .. } => {
+            (sensor.temperature_coefficient_pa_k, sensor.temperature_coefficient_sd_pa_k) = (value, sd);
+        }
+        ParameterKind::SensorLag { .. } => sensor.lag_s = value,
+        _ => {}
     }
 }
 

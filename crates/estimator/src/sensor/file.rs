@@ -5,11 +5,11 @@ use crate::EstimatorError;
 use cylwatch_thermal::document;
 use cylwatch_thermal::scenario::sensor::{SensorSpec, mounted};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Raw content of a file of sensors. Whatever a table leaves out is that of the typical sensor of its kind
 /// ([`Sensor::typical`]); in a scenario it would be nothing.
-#[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema, PartialEq)]
 pub struct SensorsSpec {
     /// Sensors.
     pub sensor: Vec<SensorSpec>,
@@ -24,18 +24,33 @@ impl SensorsSpec {
         let complete: Vec<SensorSpec> = self.sensor.iter().map(completed).collect();
         SensorSuite::try_new(mounted(&complete, "sensor")?.iter().map(Sensor::from).collect())
     }
+
+    /// Typical sensors of these names.
+    pub fn typical(names: &[&str]) -> Self {
+        let of = |name: &&str| SensorSpec { name: (*name).to_owned(), ..SensorSpec::default() };
+        Self { sensor: names.iter().map(of).collect() }
+    }
+
+    /// The content as a file of sensors in SI units.
+    ///
+    /// # Errors
+    /// [`EstimatorError::Thermal`] if a value has no TOML form.
+    pub fn to_toml(&self) -> Result<String, EstimatorError> {
+        Ok(document::to_toml(self)?)
+    }
 }
 
 /// Reads a file of sensors; `source` is its name in messages.
 ///
 /// # Errors
 /// [`EstimatorError::Thermal`] with file, line, value and remedy for whatever is wrong with the text.
-pub fn read_sensors(text: &str, source: &str) -> Result<SensorSuite, EstimatorError> {
+pub fn read_sensors(text: &str, source: &str) -> Result<(SensorsSpec, SensorSuite), EstimatorError> {
     let (specification, places) = document::read::<SensorsSpec>(text, source)?;
-    specification.build().map_err(|error| match error {
+    let suite = specification.build().map_err(|error| match error {
         EstimatorError::Thermal(error) => places.locate(error).into(),
         other => other,
-    })
+    })?;
+    Ok((specification, suite))
 }
 
 /// JSON schema of files of sensors.

@@ -104,7 +104,9 @@ full_scale_bar = 400
 gauge = true
 temperature_coefficient_sd_mbar_k = 5
 ";
-    let suite = read_sensors(text, "sensors.toml").unwrap();
+    let (specification, suite) = read_sensors(text, "sensors.toml").unwrap();
+    let written = specification.to_toml().unwrap();
+    assert_eq!(read_sensors(&written, "written.toml").unwrap().1.sensors(), suite.sensors(), "{written}");
     let shoulder = suite.find("shoulder").unwrap();
     assert_eq!(prior(shoulder, ParameterKind::Coupling), (0.15, 0.04, Law::Normal));
     assert_eq!(prior(shoulder, ParameterKind::Offset), (0.0, 0.1, Law::Normal));

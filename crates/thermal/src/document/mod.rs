@@ -16,6 +16,7 @@ mod value;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde::de::value::BorrowedStrDeserializer;
 use toml::Spanned;
@@ -103,6 +104,14 @@ impl Context<'_> {
             None => line.to_owned(),
         }
     }
+}
+
+/// A specification as a document in SI units.
+///
+/// # Errors
+/// [`ThermalError::Unwritable`] if a value has no TOML form.
+pub fn to_toml<T: Serialize>(specification: &T) -> Result<String, ThermalError> {
+    toml::to_string(specification).map_err(|error| ThermalError::Unwritable { message: error.to_string() })
 }
 
 /// Reads a document into a specification.

@@ -71,6 +71,14 @@ impl Series {
         Self::try_new(self.time_s.clone(), self.value.iter().map(|value| value * factor).collect())
     }
 
+    /// The function plus a constant.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn shifted(&self, by: f64) -> Result<Self, ThermalError> {
+        Self::try_new(self.time_s.clone(), self.value.iter().map(|value| value + by).collect())
+    }
+
     /// Times at which the function jumps or changes its slope, s, increasing.
     pub fn edges_s(&self) -> impl Iterator<Item = f64> + '_ {
         let mut last = f64::NEG_INFINITY;

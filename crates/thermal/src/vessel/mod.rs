@@ -36,6 +36,29 @@ pub struct Vessel {
     pub gas: GasResolution,
 }
 
+/// Difference of stated volume and contour that drawings and data sheets do not have.
+const VOLUME_DOUBT: f64 = 0.05;
+
+impl Vessel {
+    /// What fits badly without being impossible, in words.
+    pub fn doubts(&self) -> Vec<String> {
+        let contour_m3 = self.geometry.contour_volume_m3();
+        let ratio = self.volume.volume_m3 / contour_m3 - 1.0;
+        let volume = (ratio.abs() > VOLUME_DOUBT).then(|| {
+            format!(
+                "{}: volume_l = {:.4} is {:.0} % {} the contour's {:.2} l, and the mass of gas goes with it: look at volume, diameters \
+                 and lengths",
+                self.name,
+                1e3 * self.volume.volume_m3,
+                100.0 * ratio.abs(),
+                if ratio > 0.0 { "above" } else { "below" },
+                1e3 * contour_m3
+            )
+        });
+        volume.into_iter().collect()
+    }
+}
+
 /// Inner volume `V = V_0 [1 + a (T_wall - T_0) + b (p - p_0)]` with the heat-capacity-weighted mean wall
 /// temperature; `a = b = 0` is a rigid vessel.
 #[derive(Clone, Copy, Debug, PartialEq)]

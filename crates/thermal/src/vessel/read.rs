@@ -27,7 +27,7 @@ impl VesselSpec {
     /// # Errors
     /// [`ThermalError::Unwritable`] if a value has no TOML form.
     pub fn to_toml(&self) -> Result<String, ThermalError> {
-        toml::to_string(self).map_err(|error| ThermalError::Unwritable { message: error.to_string() })
+        document::to_toml(self)
     }
 }
 

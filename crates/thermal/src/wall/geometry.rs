@@ -90,6 +90,18 @@ impl Geometry {
     pub fn thickness_m(&self) -> f64 {
         self.layers.iter().map(|layer| layer.thickness_m).sum()
     }
+
+    /// The same contour with every cell divided into so many, along the wall and through it.
+    pub fn refined(&self, by: usize) -> Self {
+        let mut fine = self.clone();
+        fine.cylinder_cells *= by;
+        for end in [&mut fine.bottom, &mut fine.shoulder] {
+            end.cells *= by;
+        }
+        fine.neck.iter_mut().for_each(|neck| neck.cells *= by);
+        fine.layers.iter_mut().for_each(|layer| layer.cells *= by);
+        fine
+    }
 }
 
 impl Geometry {

@@ -3,10 +3,10 @@
 //! IEC 60751:2008, tolerance classes of thermometers: the deviation from the reference function at a temperature
 //! `t` in °C is at most `a + b |t|` kelvins.
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Tolerance class after IEC 60751:2008.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 pub enum Pt100Class {
     /// ±(0.1 + 0.0017 |t|) K.
     AA,

@@ -1,12 +1,12 @@
 //! Raw content of a `[[sensor]]` table. Fields are SI; the file may use any unit of the field's dimension.
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::Pt100Class;
 
 /// A sensor. In a scenario it is ideal unless its errors are stated, and what is stated with a standard deviation, a
 /// tolerance or a class is drawn by the run's seed.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema, PartialEq)]
 pub struct SensorSpec {
     /// Name; it becomes part of a column's name.
     pub name: String,
@@ -88,7 +88,7 @@ pub struct SensorSpec {
 }
 
 /// What a sensor reads.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum KindChoice {
     /// Temperature of the outer surface or of the valve body.
