@@ -1,5 +1,5 @@
 //! `cylwatch estimate`: the observer on a log, row by row.
-use super::arguments::{EstimateArguments, Format};
+use super::arguments::Format;
 use super::fill::{self, FillSource, GivenFill};
 use super::input::{Inputs, LogInput};
 use super::log_options::LogArguments;
@@ -19,9 +19,11 @@ use cylwatch::thermal::vessel::Vessel;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
+mod arguments;
 mod pass;
 mod rows;
 
+pub use arguments::EstimateArguments;
 use pass::Pass;
 use rows::Rows;
 

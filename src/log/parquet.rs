@@ -8,7 +8,7 @@ pub(super) use text::text;
 
 use super::caution::{Cautions, Kind};
 use super::columns::{Columns, TimeForm};
-use super::reader::RawRow;
+use super::row::RawRow;
 use super::time::TimeReader;
 use super::{LogError, LogOptions};
 use crate::thermal::units::Unit;

@@ -1,51 +1,15 @@
 //! The reader: rows of a source in the order of time, checked.
 use super::caution::{Caution, Cautions, Kind};
-use super::columns::{Columns, TimeForm, TruthQuantity};
+use super::columns::{Columns, TimeForm};
 use super::csv::CsvSource;
 use super::inspect::{Survey, Tap};
+use super::row::{self, RawRow, Row, Truth};
 use super::sampling::Sampling;
 use super::stuck::StuckWatch;
 use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Log};
 use std::io::Read;
 use std::path::Path;
-
-/// One row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Time, s; increasing, unless the log is read in any order.
-    pub time_s: f64,
-    /// Readings in the order of [`LogReader::channels`], SI; NaN is a missing value.
-    pub readings: Vec<f64>,
-    /// What is true, where the log knows it.
-    pub truth: Truth,
-    /// Line of a text log, or number of the row.
-    pub number: u64,
-}
-
-/// True values of a row; NaN where the log does not know.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Truth {
-    /// Mean gas temperature, K.
-    pub gas_mean_k: f64,
-    /// Gas mass, kg.
-    pub mass_kg: f64,
-    /// Mass flow out of the cylinder, kg/s.
-    pub outflow_kg_s: f64,
-}
-
-impl Truth {
-    /// Nothing is known.
-    pub const UNKNOWN: Self = Self { gas_mean_k: f64::NAN, mass_kg: f64::NAN, outflow_kg_s: f64::NAN };
-}
-
-/// A row as a source gives it: readings, then truth, SI.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct RawRow {
-    pub time_s: f64,
-    pub number: u64,
-    pub values: Vec<f64>,
-}
 
 /// Where rows come from.
 enum Source {
@@ -295,7 +259,7 @@ impl LogReader {
             let is_other = self.fetched.time_s > pending.time_s
                 || (self.any_order && self.fetched.time_s < pending.time_s);
             if !found || is_other {
-                emit(pending, &self.columns, &mut self.row);
+                row::tell(pending, &self.columns, &mut self.row);
                 if found {
                     std::mem::swap(pending, &mut self.fetched);
                 } else {
@@ -401,19 +365,6 @@ impl LogReader {
 /// Whether a file's name says that it is Parquet.
 pub fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
-}
-
-fn emit(raw: &RawRow, columns: &Columns, row: &mut Row) {
-    (row.time_s, row.number, row.truth) = (raw.time_s, raw.number, Truth::UNKNOWN);
-    let (readings, truth) = raw.values.split_at(columns.readings.len());
-    row.readings.copy_from_slice(readings);
-    for (column, &value) in columns.truth.iter().zip(truth) {
-        match column.meaning {
-            TruthQuantity::GasMean => row.truth.gas_mean_k = value,
-            TruthQuantity::Mass => row.truth.mass_kg = value,
-            TruthQuantity::Outflow => row.truth.outflow_kg_s = value,
-        }
-    }
 }
 
 /// A converted number without the rounding of its conversion.

@@ -46,7 +46,7 @@ fn lines(words: &str, first: &str, next: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut line = first.to_owned();
     let mut is_begun = false;
-    for word in words.split_whitespace() {
+    for word in words.split(' ') {
         if is_begun && line.chars().count() + 1 + word.chars().count() > width {
             lines.push(std::mem::replace(&mut line, next.to_owned()));
         } else if is_begun {
@@ -68,7 +68,7 @@ pub(super) fn hanging(words: &str, first: &str, next: &str) -> String {
 pub(super) fn wrapped(text: &str) -> String {
     let lines = text.lines().map(|line| {
         let indent = " ".repeat(line.len() - line.trim_start().len());
-        hanging(line, &indent, &format!("{indent}  "))
+        hanging(line.trim(), &indent, &format!("{indent}  "))
     });
     lines.collect()
 }

@@ -40,7 +40,8 @@ pub struct CalibrateArguments {
     /// B, on pressure a transmitter of 250 bar and 0.25 %].
     #[arg(long, value_name = "FILE")]
     pub sensors: Option<PathBuf>,
-    /// File for what was found of the sensors, .toml, to be given to monitor or estimate as --sensors.
+    /// File for what was found of the sensors, .toml, to be given to monitor or estimate as --sensors with rows that were not
+    /// fitted.
     #[arg(long, value_name = "FILE")]
     pub sensors_out: Option<PathBuf>,
     /// What is unknown, separated by commas [default: outside-film; inside-film where there is a pressure; valve-contact with
