@@ -40,8 +40,8 @@ leak_masked_by_warming out
 cold_night out
 
 # The paper rebuilt, Compare detectors, Validation
-cylwatch reproduce --out reproduce
+cylwatch reproduce
 
 cp my-plant/tutorial-*.png {tunnel,monitor,identify,calibrate,placement}.png out/{leak-masked-by-warming,cold-night}.svg \
-    reproduce/{blowdown-i1,bottle-step,tight-cylinder,figure-4-5-7,figure-6,figure-8,observer-scenario-2}.svg \
+    out/reproduce/{blowdown-i1,bottle-step,tight-cylinder,figure-4-5-7,figure-6,figure-8,observer-scenario-2}.svg \
     "$root/book/src/images/"
