@@ -1,6 +1,8 @@
 //! Figures and tables as files.
 use cylwatch::report::Provenance;
-use cylwatch::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use cylwatch::report::figure::{
+    Arrow, Diagram, Figure, Form, Horizontal, Item, Mark, Node, Panel, Part, Sheet, style,
+};
 
 fn provenance() -> Provenance {
     Provenance { command: "cylwatch simulate 'a & b' --plot x.svg".into(), inputs: vec![], seed: None }
@@ -59,4 +61,69 @@ fn a_figure_becomes_an_svg_with_every_name_and_unit() {
         assert!(text.contains(words), "{words} is missing");
     }
     assert_eq!(text.matches("<svg").count(), 1);
+}
+
+/// The tag before a text of an SVG.
+fn tag<'a>(svg: &'a str, words: &str) -> &'a str {
+    let end = svg.find(&format!("\n{words}\n")).unwrap_or_else(|| panic!("{words} is missing"));
+    let begin = svg[..end].rfind("<text").unwrap();
+    &svg[begin..end]
+}
+
+#[test]
+fn a_limit_is_named_at_the_end_where_no_curve_passes() {
+    let named = |from: f64, to: f64| {
+        let x: Vec<f64> = (0..=100).map(f64::from).collect();
+        let values = x.iter().map(|t| if *t < 50.0 { from } else { to });
+        let items = vec![
+            Item::line("pressure", &x, values, style::PRESSURE),
+            Item::line("floor", &x, x.iter().map(|_| 100.0), style::AIR),
+            Item::line("top", &x, x.iter().map(|_| 220.0), style::GAS_MEAN),
+            Item::Limit { name: "the limit".into(), value: 160.0 },
+        ];
+        let panels = vec![Panel { quantity: "pressure in bar".into(), items, height: 1.0 }];
+        let figure = Figure {
+            title: "t".into(),
+            horizontal: Horizontal::Time,
+            panels,
+            marks: Vec::new(),
+            below: None,
+        };
+        figure.to_svg(&provenance()).unwrap()
+    };
+    // A curve that covers both places above and below the line on its half.
+    let (right, left) = (named(110.0, 165.0), named(165.0, 110.0));
+    assert!(tag(&right, "the limit").contains("text-anchor=\"start\""), "{}", tag(&right, "the limit"));
+    assert!(tag(&left, "the limit").contains("text-anchor=\"end\""), "{}", tag(&left, "the limit"));
+}
+
+#[test]
+fn an_arrow_of_a_diagram_points_to_the_block_that_it_goes_to() {
+    let node = |words: &str, at| Node { words: words.into(), at, form: Form::Box };
+    let arrow = |from, to| Arrow { from, to, signal: String::new(), sign: None };
+    let drawn = |arrow| {
+        let diagram = Diagram {
+            title: "t".into(),
+            nodes: vec![node("here", (0.0, 0.0)), node("right", (1.0, 0.0)), node("below", (0.0, 1.0))],
+            arrows: vec![arrow],
+        };
+        Sheet { title: "t".into(), parts: vec![Part::Diagram(diagram)] }.to_svg(&provenance()).unwrap()
+    };
+    // Tip first, then the other two corners.
+    let head = |svg: &str| -> Vec<[f64; 2]> {
+        let points = svg.split("<polygon").nth(1).unwrap().split("points=\"").nth(1).unwrap();
+        let pair = |point: &str| {
+            let (x, y) = point.split_once(',').unwrap();
+            [x.parse().unwrap(), y.parse().unwrap()]
+        };
+        points.split('"').next().unwrap().split_whitespace().map(pair).collect()
+    };
+    let right = head(&drawn(arrow(0, 1)));
+    assert!(right[0][0] > right[1][0] && right[1][0] == right[2][0], "{right:?}");
+    let down = head(&drawn(arrow(0, 2)));
+    assert!(down[0][1] > down[1][1] && down[1][1] == down[2][1], "{down:?}");
+    let up = head(&drawn(arrow(2, 0)));
+    assert!(up[0][1] < up[1][1], "{up:?}");
+    // The tip is at the edge of the block and not in its middle.
+    assert!(down[0][1] > up[0][1]);
 }
