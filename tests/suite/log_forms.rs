@@ -98,6 +98,11 @@ fn what_was_supposed_of_an_export_is_said_once_each() {
         "{}",
         cautions[3]
     );
+    let comma = cautions[4].to_string();
+    assert!(
+        comma.contains("is taken as a number with a decimal comma, as are all others like it"),
+        "{comma}"
+    );
 }
 
 #[test]

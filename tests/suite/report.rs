@@ -124,6 +124,11 @@ fn an_arrow_of_a_diagram_points_to_the_block_that_it_goes_to() {
     assert!(down[0][1] > down[1][1] && down[1][1] == down[2][1], "{down:?}");
     let up = head(&drawn(arrow(2, 0)));
     assert!(up[0][1] < up[1][1], "{up:?}");
-    // The tip is at the edge of the block and not in its middle.
-    assert!(down[0][1] > up[0][1]);
+    // Tips are at the near edge of the block: below the words of the upper one, above those of the lower one.
+    let line = |words: &str| -> f64 {
+        let svg = drawn(arrow(0, 2));
+        let y = tag(&svg, words).split(" y=\"").nth(1).unwrap();
+        y.split('"').next().unwrap().parse().unwrap()
+    };
+    assert!(up[0][1] > line("here") && down[0][1] < line("below"), "{up:?} {down:?}");
 }

@@ -160,6 +160,16 @@ fn a_fill_that_contradicts_the_first_pressure_is_cautioned_about_and_refused_bey
 }
 
 #[test]
+fn columns_that_a_file_of_sensors_forgets_are_said() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), "[[sensor]]\nname = \"pressure\"\n").unwrap();
+    let arguments = ["estimate", "nitrogen-20l", "-", "--sensors", "s.toml"];
+    let outcome = run_with_stdin(folder.path(), &arguments, &at_rest(5));
+    let said = "not used: shoulder, valve; a file of sensors replaces all typical ones, name there whatever is to be used";
+    assert!(cautions(&outcome).contains(&said), "{}", outcome.stderr);
+}
+
+#[test]
 fn a_vessel_without_the_place_of_a_column_leaves_it_out_and_refuses_it_where_it_was_asked_for() {
     let folder = tempdir().unwrap();
     let arguments = ["estimate", "closed-bottle", "-"];

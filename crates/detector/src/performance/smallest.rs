@@ -11,6 +11,8 @@
 //!
 //! Source: M. Ayer et al., Ann. Math. Stat. 26 (1955) 641; B. Efron and R. J. Tibshirani, An Introduction to the Bootstrap,
 //! 1993, percentile intervals.
+use std::cmp::Ordering;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -43,12 +45,14 @@ impl Reached {
     }
 
     /// In the order of what they say: at most, at, above.
-    fn order(self) -> (u8, f64) {
-        match self {
+    fn compare(&self, other: &Self) -> Ordering {
+        let order = |of: &Self| match *of {
             Self::AtMost(rate) => (0, rate),
             Self::At(rate) => (1, rate),
             Self::Above(rate) => (2, rate),
-        }
+        };
+        let (a, b) = (order(self), order(other));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     }
 }
 
@@ -71,12 +75,12 @@ impl SmallestLeak {
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
         let mut draws: Vec<Reached> =
             (0..DRAWS).filter_map(|_| reached(&redrawn(&tried, &mut random), probability)).collect();
-        draws.sort_by(|a, b| {
-            let (a, b) = (a.order(), b.order());
-            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-        });
+        draws.sort_by(Reached::compare);
         let tail = 0.5 * (1.0 - CONFIDENCE) * DRAWS as f64;
-        let interval = (draws[tail as usize], draws[DRAWS - 1 - tail as usize]);
+        let (low, high) = (draws[tail as usize], draws[DRAWS - 1 - tail as usize]);
+        // "All of 24" is not taken for certainty in the draws, so that all of them may lie above the rate.
+        let interval =
+            (std::cmp::min_by(low, rate, Reached::compare), std::cmp::max_by(high, rate, Reached::compare));
         Some(Self { probability, rate, interval })
     }
 }
@@ -142,6 +146,14 @@ mod tests {
         let Some(SmallestLeak { rate: Reached::At(rate), interval, .. }) = found else { panic!("{found:?}") };
         assert_relative_eq!(rate, 0.1 * 10.0_f64.sqrt(), max_relative = 1e-9);
         assert!(interval.0.rate_pa_s() < rate && rate < interval.1.rate_pa_s());
+    }
+
+    #[test]
+    fn the_interval_holds_the_rate_where_none_turns_into_all() {
+        let found = SmallestLeak::of(&detections(&[(0.01, 0, 24), (0.1, 24, 24), (1.0, 24, 24)]), 0.95);
+        let SmallestLeak { rate, interval, .. } = found.unwrap();
+        let (low, high) = (interval.0.rate_pa_s(), interval.1.rate_pa_s());
+        assert!(low <= rate.rate_pa_s() && rate.rate_pa_s() < high, "{low} {rate:?} {high}");
     }
 
     #[test]
