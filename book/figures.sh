@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the book's figures again, each by the command that stands under it. Takes some minutes. Then look at them.
+# Makes the book's figures again, each by the command that stands under it. Takes some minutes, with --long ten more for the
+# bench of detectors. Then look at them.
 # The commands run in a folder of their own with plain names: a picture states the command that made it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -42,6 +43,10 @@ cold_night out
 # The paper rebuilt, Compare detectors, Validation
 cylwatch reproduce
 
+if [ "${1:-}" = --long ]; then
+    cylwatch bench-detector --plot delay.svg -o detectors.csv
+    cp delay.svg "$root/book/src/images/"
+fi
 cp my-plant/tutorial-*.png {tunnel,monitor,identify,calibrate,placement}.png out/{leak-masked-by-warming,cold-night}.svg \
     out/reproduce/{blowdown-i1,bottle-step,tight-cylinder,figure-4-5-7,figure-6,figure-8,observer-scenario-2}.svg \
     "$root/book/src/images/"

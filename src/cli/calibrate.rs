@@ -39,7 +39,7 @@ use recording::{AMBIENT, Reading, Recording};
 use wanted::{Subject, Wanted, Words};
 
 /// A first step of the search from which on it is said how long all of them take.
-const SLOW: Duration = Duration::from_secs(3);
+const SLOW: Duration = Duration::from_secs(1);
 /// Steps of most searches. The first one has no trial before it, the others have: they take up to twice as long.
 const USUAL_STEPS: [f64; 2] = [4.0, 10.0];
 

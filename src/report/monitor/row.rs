@@ -37,6 +37,8 @@ pub const DOCUMENTATION: &str = "\
 Columns (those of `estimate`, then):
   leak_g_h, leak_sd_g_h  while a leak is found, the one that explains the masses best, else the
                          observer's; leak_bar_h is the same as fall of p15_bar
+  mass_kg, mass_sd_g     while a leak is found, by the observer's freest member, which does not
+                         lag; so p15_bar and cold_pressure_bar
   verdict                tight, leak, discharge, refill, sensor fault or unknown
   leak_probability       that gas is being lost faster than the rate that matters
   leak_low_g_h, _high_   95 % interval of the leak that is found

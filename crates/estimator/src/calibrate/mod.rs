@@ -16,6 +16,10 @@
 //! mean square of its weighted residuals times their integrated autocorrelation time, 1 for white residuals
 //! of the stated noise. A model that does not fit to the noise thus gets wider intervals, never narrower ones.
 //!
+//! The air is an input, and what its thermometer reads too much is a parameter like others ([`ParameterKind::AirOffset`]): without it all offsets
+//! are stated as if the air were exact. What the cells of the wall do to the estimates is said beside them
+//! ([`Calibrated::mesh_shift_sd`]).
+//!
 //! Source: Ljung 1999 (sections 9 and 10), Seber and Wild 1989 (sections 5.9 and 14), Raue et al. 2009 for the profile.
 mod apply;
 mod calibrated;
