@@ -238,12 +238,13 @@ impl Options {
         let picture = || Picture::Figure(report::figure(study));
         let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
         let views = self.views.make(picture, with, inputs.sources(), &provenance)?;
-        let sensors = sensors.unwrap_or_else(|| typical_sensors(study));
-        let sensors = vessel_file::sensors(study, &sensors, &provenance)?;
-        for (target, text) in [(&self.vessel_file, vessel), (&self.sensors_file, sensors)] {
-            if let Some(target) = target {
-                target.write(text.as_bytes())?;
-            }
+        let of_sensors = self.sensors_file.as_ref().map(|target| {
+            let sensors = sensors.unwrap_or_else(|| typical_sensors(study));
+            anyhow::Ok((target, vessel_file::sensors(study, &sensors, &provenance)?))
+        });
+        let of_vessel = self.vessel_file.as_ref().map(|target| (target, vessel));
+        for (target, text) in of_vessel.into_iter().chain(of_sensors.transpose()?) {
+            target.write(text.as_bytes())?;
         }
         views.write()?;
         match (self.format, &self.vessel_file) {

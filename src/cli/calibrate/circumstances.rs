@@ -32,7 +32,7 @@ pub struct Circumstances {
     pub temperature_sd_k: f64,
     /// Relative standard deviation of the gas mass.
     pub mass_sd: f64,
-    /// What is known of the offset of the air's thermometer, K; `None`: a scenario says what the air does.
+    /// What is known of the offset of the air's thermometer, K; `None`: it is certain, or a scenario says what the air does.
     pub air_offset: Option<Parameter>,
     /// What was taken from where, in words.
     pub words: String,
@@ -62,7 +62,12 @@ impl Exposure<'_> {
         };
         let commissioning = self.fill.commissioning(given, vessel, first_k)?;
         let mass_kg = commissioning.mass_kg(vessel, first_k)?;
-        let air = self.air(recording)?;
+        let of_air = recording.air_sensor.parameters().iter();
+        let air_offset = of_air.copied().find(|of| of.kind == ParameterKind::Offset);
+        let mut air = self.air(recording)?;
+        if let Some(certain) = air_offset.filter(|offset| offset.sd == 0.0) {
+            air = air.shifted(-certain.mean)?;
+        }
         let mut doubts = misfit(recording, vessel, mass_kg)?;
         doubts.extend(jump(recording));
         let apart_k = air.at(0.0) - first_k;
@@ -105,12 +110,7 @@ impl Exposure<'_> {
             scenario,
             temperature_sd_k: if commissioning.settled { SETTLED_SD_K } else { UNSETTLED_SD_K },
             mass_sd: commissioning.mass_sd_kg / mass_kg,
-            air_offset: recording
-                .air_sensor
-                .parameters()
-                .iter()
-                .find(|of| of.kind == ParameterKind::Offset)
-                .copied(),
+            air_offset: air_offset.filter(|offset| offset.sd > 0.0),
             words,
             doubts,
         })

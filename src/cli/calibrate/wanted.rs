@@ -196,7 +196,7 @@ fn nuisances(subjects: &[Subject<'_>]) -> Vec<ParameterSpec> {
         let own = |kind, start, sd| ParameterSpec::new(kind, start).with_prior(start, sd).only(vec![index]);
         specs.push(own(ParameterKind::InitialTemperature, 0.0, *temperature_sd_k));
         specs.push(own(ParameterKind::FillMass, 1.0, *mass_sd));
-        if let Some(Parameter { mean, sd, .. }) = air_offset.filter(|offset| offset.sd > 0.0) {
+        if let Some(Parameter { mean, sd, .. }) = *air_offset {
             specs.push(own(ParameterKind::AirOffset, mean, sd));
         }
     }

@@ -67,6 +67,35 @@ fn what_was_found_of_the_sensors_is_a_file_that_others_take() {
 }
 
 #[test]
+fn an_offset_of_the_air_that_is_certain_is_taken_off_and_not_fitted() {
+    let folder = tempdir().unwrap();
+    log(folder.path());
+    let sensors = |ambient: &str| {
+        let of = |name: &str| format!("[[sensor]]\nname = \"{name}\"\n");
+        ["shoulder", "valve", "pressure", "ambient"].map(of).concat() + ambient
+    };
+    let found = |ambient: &str, more: &[&str]| {
+        std::fs::write(folder.path().join("sensors.toml"), sensors(ambient)).unwrap();
+        let options =
+            [&["log.csv", "--format", "json", "--sensors", "sensors.toml"], &QUICK[..], more].concat();
+        let document: serde_json::Value =
+            serde_json::from_str(&calibrate(folder.path(), &options).stdout).unwrap();
+        let parameters = document["parameters"].as_array().unwrap().clone();
+        let value = |name: &str| {
+            let one = parameters.iter().find(|one| one["parameter"] == name);
+            one.map(|one| one["value"].as_f64().unwrap())
+        };
+        (value("air-offset"), value("offset:shoulder").unwrap())
+    };
+    let (none, held) = found("", &["--hold", "air-offset"]);
+    let (certain, shifted) = found("offset_k = 0.3\noffset_sd_k = 0\n", &[]);
+    assert_eq!((none, certain), (None, None));
+    assert!((shifted - held - 0.3).abs() < 0.02, "{held} {shifted}");
+    let (fitted, _) = found("", &[]);
+    assert!(fitted.is_some());
+}
+
+#[test]
 fn a_wall_of_few_cells_and_a_volume_off_the_contour_are_said() {
     let folder = tempdir().unwrap();
     log(folder.path());
@@ -77,7 +106,7 @@ fn a_wall_of_few_cells_and_a_volume_off_the_contour_are_said() {
     let options = ["calibrate", "coarse.toml", "log.csv", "--format", "json", "--date", DATE];
     let outcome = run(folder.path(), &options);
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
-    assert!(outcome.stderr.contains("volume_l = 22.5000 is 1"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("volume_l = 22.5 is 1"), "{}", outcome.stderr);
     let document: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
     let cautions = document["cautions"].to_string();
     assert!(

@@ -46,10 +46,10 @@ impl Vessel {
         let ratio = self.volume.volume_m3 / contour_m3 - 1.0;
         let volume = (ratio.abs() > VOLUME_DOUBT).then(|| {
             format!(
-                "{}: volume_l = {:.4} is {:.0} % {} the contour's {:.2} l, and the mass of gas goes with it: look at volume, diameters \
+                "{}: volume_l = {} is {:.0} % {} the contour's {:.2} l, and the mass of gas goes with it: look at volume, diameters \
                  and lengths",
                 self.name,
-                1e3 * self.volume.volume_m3,
+                (1e7 * self.volume.volume_m3).round() / 1e4,
                 100.0 * ratio.abs(),
                 if ratio > 0.0 { "above" } else { "below" },
                 1e3 * contour_m3
