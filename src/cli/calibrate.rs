@@ -196,9 +196,11 @@ impl Options {
         progress.say("profiles");
         let profiles =
             profiles.into_iter().map(|place| calibrated.profile(place)).collect::<Result<_, _>>()?;
+        progress.say("a finer wall");
+        let mesh_shift_sd = calibrated.mesh_shift_sd().unwrap_or_default();
         drop(progress);
         let held_out = held_out.map(|(_, words)| words);
-        Ok(Study { calibration, calibrated, circumstances, scores, held_out, profiles })
+        Ok(Study { calibration, calibrated, circumstances, scores, held_out, profiles, mesh_shift_sd })
     }
 
     fn hold_out(&self, cases: &[Case]) -> Option<(HoldOut, String)> {
@@ -286,5 +288,16 @@ impl Case {
             log: self.recording.log,
             channels: self.recording.sensors,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn how_long_it_takes_is_said_in_seconds_and_minutes() {
+        assert!(pace(Duration::from_secs(3)).contains("takes 4 to 10 steps, here 12 s to 60 s;"));
+        assert!(pace(Duration::from_secs(30)).contains("here 2 min to 10 min;"));
     }
 }

@@ -60,21 +60,15 @@ impl Wanted {
     /// Parameters for all subjects, those of the vessel first.
     pub fn parameters(&self, subjects: &[Subject<'_>]) -> anyhow::Result<Vec<ParameterSpec>> {
         let wanted = if self.fit.is_empty() { usual(subjects) } else { self.fit.clone() };
-        let is_own = |kind: &ParameterKind| {
-            matches!(
-                kind,
-                ParameterKind::InitialTemperature | ParameterKind::FillMass | ParameterKind::AirOffset
-            )
-        };
         let mut specs: Vec<ParameterSpec> = Vec::new();
-        for kind in wanted.iter().filter(|kind| !is_own(kind)) {
+        for kind in wanted.iter().filter(|kind| !kind.is_of_experiment()) {
             let spec = free(kind, subjects)?;
             let is_usual = self.fit.is_empty() && *kind == ParameterKind::ValveContact;
             specs.push(if is_usual { spec.with_prior(1.0, CONTACT_SD) } else { spec });
         }
         for spec in nuisances(subjects) {
             let is_there = |other: &ParameterSpec| other.kind == spec.kind && other.scope == spec.scope;
-            let free = wanted.contains(&spec.kind) && !is_own(&spec.kind);
+            let free = wanted.contains(&spec.kind) && !spec.kind.is_of_experiment();
             if !free && !self.hold.contains(&spec.kind) && !specs.iter().any(is_there) {
                 specs.push(spec);
             }
@@ -155,8 +149,8 @@ fn usual(subjects: &[Subject<'_>]) -> Vec<ParameterKind> {
 fn free(kind: &ParameterKind, subjects: &[Subject<'_>]) -> anyhow::Result<ParameterSpec> {
     let start = match kind {
         ParameterKind::DischargeCoefficient { .. } => 0.8,
-        ParameterKind::InitialTemperature | ParameterKind::AirOffset => 0.0,
-        _ => 1.0,
+        kind if kind.is_positive() => 1.0,
+        _ => 0.0,
     };
     let Some(name) = kind.sensor() else {
         let spec = ParameterSpec::new(kind.clone(), start);

@@ -17,7 +17,7 @@ pub fn cautions(study: &Study) -> Vec<String> {
     let mut cautions: Vec<String> = found.inseparable.iter().map(inseparable).collect();
     cautions.extend(misfits(study));
     cautions.extend(coarse(study));
-    let of_vessel = |kind: &ParameterKind| kind.sensor().is_none() && !is_of_start(kind);
+    let of_vessel = |kind: &ParameterKind| kind.sensor().is_none() && !kind.is_of_experiment();
     for line in
         study.lines().iter().filter(|line| of_vessel(&line.spec.kind) && 1.0 - line.learnt() > UNLEARNT)
     {
@@ -30,10 +30,6 @@ pub fn cautions(study: &Study) -> Vec<String> {
         ));
     }
     cautions
-}
-
-fn is_of_start(kind: &ParameterKind) -> bool {
-    matches!(kind, ParameterKind::InitialTemperature | ParameterKind::FillMass | ParameterKind::AirOffset)
 }
 
 fn inseparable(combination: &Combination) -> String {
@@ -55,14 +51,13 @@ fn inseparable(combination: &Combination) -> String {
 /// What a coarse wall does to the estimates.
 fn coarse(study: &Study) -> Option<String> {
     let lines = study.lines();
-    let shift =
-        |line: &super::Line<'_>| study.calibrated.mesh_shift_sd.get(line.place).copied().unwrap_or(0.0);
+    let shift = |line: &super::Line<'_>| study.mesh_shift_sd.get(line.place).copied().unwrap_or(0.0);
     let is_felt = |line: &&super::Line<'_>| {
         let (kind, found) = (&line.spec.kind, line.estimate);
-        let sd = if kind.is_positive() { found.sd / found.value } else { found.sd };
         let usual = kind.usual_width(study.calibrated.is_of_pressure(found));
         // A contact contains half of the cell that it is on: it belongs to its mesh by nature.
-        *kind != ParameterKind::ValveContact && shift(line).abs() * sd > COARSE_PART * usual
+        *kind != ParameterKind::ValveContact
+            && shift(line).abs() * found.coordinate_sd() > COARSE_PART * usual
     };
     let moved: Vec<String> = lines
         .iter()

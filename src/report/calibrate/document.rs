@@ -46,7 +46,7 @@ fn parameters(study: &Study) -> Vec<Value> {
         value["start"] = json!(line.spec.start);
         value["bounds"] = json!(line.spec.bounds());
         value["prior_share"] = json!(line.estimate.prior_share);
-        value["mesh_shift_sd"] = json!(study.calibrated.mesh_shift_sd.get(line.place));
+        value["mesh_shift_sd"] = json!(study.mesh_shift_sd.get(line.place));
         value
     };
     lines.iter().zip(fitted).map(one).collect()

@@ -24,6 +24,8 @@ pub struct Study {
     pub held_out: Option<String>,
     /// Profiles that were asked for.
     pub profiles: Vec<Profile>,
+    /// What a finer wall would change ([`Calibrated::mesh_shift_sd`]), in the order of the parameters; empty: not known.
+    pub mesh_shift_sd: Vec<f64>,
 }
 
 /// A fitted parameter for people.

@@ -104,6 +104,13 @@ fn too_few_rows_are_refused_with_both_numbers() {
 }
 
 #[test]
+fn a_solver_that_is_too_coarse_for_the_search_is_named_as_the_cause() {
+    let words =
+        ["no minimum after", "with a relative tolerance of 1e-2 the solver's error hides it", "take 1e-9"];
+    refused(|log| log, &["--relative-tolerance", "1e-2"], &words);
+}
+
+#[test]
 fn what_nobody_says_is_asked_for() {
     let words = ["no reading ambient", "--map ambient_degc=THEIRS", "--scenario"];
     refused(|log| log.without("ambient_degc"), &[], &words);

@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use super::fit::Fit;
 use super::identifiability::{check_determined, identifiability};
-use super::mesh;
 use super::parameter::Stage;
 use super::residuals::{channel_residuals, check_misfit};
 use super::solve::{SearchStep, Solution, search_watched};
@@ -33,6 +32,11 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// Standard deviation in the search's coordinate: that of a positive parameter is of its logarithm.
+    pub fn coordinate_sd(&self) -> f64 {
+        if self.parameter.is_positive() { self.sd / self.value } else { self.sd }
+    }
+
     /// Whether the interval holds a value.
     pub fn holds(&self, value: f64) -> bool {
         (self.interval.0..=self.interval.1).contains(&value)
@@ -56,9 +60,6 @@ pub struct Calibrated {
     pub degrees_of_freedom: usize,
     /// Steps of the search.
     pub iterations: usize,
-    /// How far each parameter would move with twice as many wall cells along and through the wall, in its standard deviations;
-    /// none where the finer wall cannot be simulated.
-    pub mesh_shift_sd: Vec<f64>,
     pub(super) fit: Fit,
     pub(super) solution: Solution,
 }
@@ -139,7 +140,6 @@ pub(super) fn calibrate(fit: &Fit, watch: &mut dyn FnMut(SearchStep)) -> Result<
         sum_of_squares: solution.cost,
         degrees_of_freedom: fit.samples().saturating_sub(fit.specs.len()),
         iterations: solution.iterations,
-        mesh_shift_sd: mesh::shift_sd(fit, &solution, &covariance).unwrap_or_default(),
         fit: fit.clone(),
         solution,
     })
@@ -274,16 +274,11 @@ impl Calibrated {
 
 impl From<&Estimate> for FittedParameter {
     fn from(estimate: &Estimate) -> Self {
-        let part_of = match (&estimate.parameter, estimate.parameter.stage()) {
-            (
-                ParameterKind::DischargeCoefficient { .. }
-                | ParameterKind::FillMass
-                | ParameterKind::InitialTemperature
-                | ParameterKind::AirOffset,
-                _,
-            ) => PartOf::Scenario,
-            (_, Stage::Course) => PartOf::Vessel,
-            (_, Stage::Reading) => PartOf::Sensor,
+        let part_of = match &estimate.parameter {
+            ParameterKind::DischargeCoefficient { .. } => PartOf::Scenario,
+            kind if kind.is_of_experiment() => PartOf::Scenario,
+            kind if kind.stage() == Stage::Course => PartOf::Vessel,
+            _ => PartOf::Sensor,
         };
         Self {
             name: estimate.parameter.to_string(),

@@ -215,18 +215,20 @@ pub enum CalibrateError {
         /// Length of the last step in standard deviations of the estimate.
         step: f64,
     },
-    /// The search found no lower sum of squares where there must be one, with a solver that is coarser than usual.
+    /// The search did not end, and the solver is coarser than usual.
     #[error(
-        "the solver's error hides the minimum: with a relative tolerance of {relative_tolerance:e} no step lowers the sum of squares, \
-         though the minimum is {step:.3} standard deviations away: take {usual:e}"
+        "no minimum after {iterations} steps, the last one of {step:.3} standard deviations: with a relative tolerance of \
+         {relative_tolerance:e} the solver's error hides it: take {usual:e}"
     )]
     SolverTooCoarse {
+        /// Steps.
+        iterations: usize,
+        /// Length of the last step in standard deviations of the estimate.
+        step: f64,
         /// Relative tolerance of the solver.
         relative_tolerance: f64,
         /// The usual one.
         usual: f64,
-        /// Distance to the minimum in standard deviations of the estimate.
-        step: f64,
     },
     /// The start, or a difference beside it, cannot be simulated.
     #[error("`{experiment}` cannot be simulated with the parameters given: {source}")]

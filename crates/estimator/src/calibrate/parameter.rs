@@ -79,13 +79,18 @@ impl ParameterKind {
         }
     }
 
-    /// Whether it is sought as its logarithm.
+    /// Whether it is sought as its logarithm. What acts on the course and is not is the shift of a temperature, K.
     pub fn is_positive(&self) -> bool {
         match self {
             Self::InitialTemperature | Self::AirOffset => false,
             Self::SensorLag { .. } => true,
             other => other.stage() == Stage::Course,
         }
+    }
+
+    /// Whether it is a number of one experiment: what it began with, and what its air was read by.
+    pub fn is_of_experiment(&self) -> bool {
+        matches!(self, Self::InitialTemperature | Self::FillMass | Self::AirOffset)
     }
 
     /// Bounds where none are given: beyond them nothing means anything.

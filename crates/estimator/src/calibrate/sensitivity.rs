@@ -149,12 +149,9 @@ impl Task<'_> {
     }
 }
 
-/// Half distance of a parameter's neighbours in the search's coordinate.
+/// Half distance of the neighbours of what the course depends on, in the search's coordinate.
 fn half_distance(kind: &ParameterKind) -> f64 {
-    match kind {
-        ParameterKind::InitialTemperature | ParameterKind::AirOffset => HALF_DISTANCE * TEMPERATURE_SCALE_K,
-        _ => HALF_DISTANCE,
-    }
+    if kind.is_positive() { HALF_DISTANCE } else { HALF_DISTANCE * TEMPERATURE_SCALE_K }
 }
 
 /// Coordinates with one of them moved.

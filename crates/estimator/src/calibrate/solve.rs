@@ -85,7 +85,6 @@ pub(super) fn search_watched(
     let mut here = Solution::at(fit, start, held)?;
     // What the model misses now is no information on the parameters: the first step trusts the widths as much.
     let mut damping = Damping::starting_at(here.cost / fit.samples() as f64);
-    let mut is_stuck = false;
     for iterations in 1..=fit.settings.iterations {
         here.iterations = iterations;
         here.jacobian = match sensitivities(fit, &here.z, &here.evaluation, held) {
@@ -106,21 +105,19 @@ pub(super) fn search_watched(
         match here.lower(fit, &normal, &mut damping, distance) {
             Some((z, evaluation, cost)) => (here.z, here.evaluation, here.cost) = (z, evaluation, cost),
             None if distance < SOLVER_ERROR_SD => return Ok(here),
-            None => {
-                is_stuck = true;
-                break;
-            }
+            None => break,
         }
     }
     // It ends here too.
     check_determined(fit, &identifiability(fit, &here))?;
-    let step = Normal::new(fit, &here).distance();
+    let (iterations, step) = (here.iterations, Normal::new(fit, &here).distance());
     let relative_tolerance = fit.settings.simulation.relative_tolerance;
     let usual = CalibrationSettings::default().simulation.relative_tolerance;
-    if is_stuck && relative_tolerance > usual {
-        return Err(CalibrateError::SolverTooCoarse { relative_tolerance, usual, step });
-    }
-    Err(CalibrateError::NotConverged { iterations: here.iterations, step })
+    Err(if relative_tolerance > usual {
+        CalibrateError::SolverTooCoarse { iterations, step, relative_tolerance, usual }
+    } else {
+        CalibrateError::NotConverged { iterations, step }
+    })
 }
 
 impl Solution {

@@ -367,6 +367,8 @@ impl Monitor {
         }
         self.state.start_s.get_or_insert(time_s);
         self.state.last_s = time_s;
+        self.leaks.clear();
+        self.leaks.extend(self.observer.leaks());
         self.judge_leak(&estimate, &mut events)?;
         self.tell_health(time_s, &mut events);
         let verdict = self.verdict(time_s);
@@ -390,8 +392,6 @@ impl Monitor {
             self.forget_masses();
             return Ok(());
         }
-        self.leaks.clear();
-        self.leaks.extend(self.observer.leaks());
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let degraded = self.is_degraded(time_s);
         let statistics = self.state.evidence.update(estimate, &self.leaks);
@@ -435,8 +435,6 @@ impl Monitor {
     ) -> Result<Output, DetectorError> {
         let time_s = row.time_s;
         let leak = self.state.leak.found().copied();
-        self.leaks.clear();
-        self.leaks.extend(self.observer.leaks());
         let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
         let free = self.leaks.last().copied().unwrap_or(slow);
         if leak.is_some() {
