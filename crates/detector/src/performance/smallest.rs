@@ -78,11 +78,13 @@ impl SmallestLeak {
         draws.sort_by(Reached::compare);
         let tail = 0.5 * (1.0 - CONFIDENCE) * DRAWS as f64;
         let (low, high) = (draws[tail as usize], draws[DRAWS - 1 - tail as usize]);
-        // "All of 24" is not taken for certainty in the draws, so that all of them may lie above the rate.
-        let interval =
-            (std::cmp::min_by(low, rate, Reached::compare), std::cmp::max_by(high, rate, Reached::compare));
-        Some(Self { probability, rate, interval })
+        Some(Self { probability, rate, interval: holding(rate, low, high) })
     }
+}
+
+/// The interval, widened to its rate: "all of 24" is not taken for certainty in the draws, which may all lie on one side of it.
+fn holding(rate: Reached, low: Reached, high: Reached) -> (Reached, Reached) {
+    (std::cmp::min_by(low, rate, Reached::compare), std::cmp::max_by(high, rate, Reached::compare))
 }
 
 /// Where the interpolated probability is reached.
@@ -154,6 +156,14 @@ mod tests {
         let SmallestLeak { rate, interval, .. } = found.unwrap();
         let (low, high) = (interval.0.rate_pa_s(), interval.1.rate_pa_s());
         assert!(low <= rate.rate_pa_s() && rate.rate_pa_s() < high, "{low} {rate:?} {high}");
+    }
+
+    #[test]
+    fn an_interval_on_one_side_of_its_rate_is_widened_to_it() {
+        let [a, b, c] = [1.0, 2.0, 3.0].map(Reached::At);
+        assert_eq!(holding(a, b, Reached::Above(3.0)), (a, Reached::Above(3.0)));
+        assert_eq!(holding(c, Reached::AtMost(1.0), b), (Reached::AtMost(1.0), c));
+        assert_eq!(holding(b, a, c), (a, c));
     }
 
     #[test]
