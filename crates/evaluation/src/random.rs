@@ -1,0 +1,90 @@
+//! Random numbers of a truth: one stream for each purpose, so that a change to one leaves the others as they are.
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+/// What a stream of random numbers is drawn for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Purpose {
+    Cylinder,
+    Sensors,
+    Climate,
+    Weather,
+    Tunnels,
+    Trips,
+    Sun,
+    Turbulence,
+    Gusts,
+    AxialDifference,
+    ShoulderNoise,
+    ValveNoise,
+    MiddleNoise,
+    BottomNoise,
+    PressureNoise,
+}
+
+/// Random numbers of one seed for one purpose.
+pub(crate) struct Random(ChaCha8Rng);
+
+impl Random {
+    pub fn new(seed: u64, purpose: Purpose) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(purpose as u64);
+        Self(generator)
+    }
+
+    /// Uniform between two bounds.
+    pub fn uniform(&mut self, (low, high): (f64, f64)) -> f64 {
+        low + (high - low) * self.0.random::<f64>()
+    }
+
+    /// A whole number, both bounds included.
+    pub fn whole(&mut self, (low, high): (usize, usize)) -> usize {
+        self.0.random_range(low..=high)
+    }
+
+    /// A magnitude between two bounds, of either sign.
+    pub fn either_sign(&mut self, magnitude: (f64, f64)) -> f64 {
+        let sign = if self.0.random::<bool>() { 1.0 } else { -1.0 };
+        sign * self.uniform(magnitude)
+    }
+
+    /// Standard normal.
+    pub fn normal(&mut self) -> f64 {
+        self.0.sample(StandardNormal)
+    }
+}
+
+/// Stationary Ornstein-Uhlenbeck process of unit variance on an even grid of times, linear between them.
+///
+/// The values are stretched by `[(2 + r)/3]^(-1/2)`, `r` the correlation of neighbours, which gives back
+/// the variance that the straight lines between them take away.
+pub(crate) struct OrnsteinUhlenbeck {
+    spacing_s: f64,
+    value: Vec<f64>,
+}
+
+impl OrnsteinUhlenbeck {
+    pub fn draw(random: &mut Random, correlation_time_s: f64, spacing_s: f64, duration_s: f64) -> Self {
+        let r = (-spacing_s / correlation_time_s).exp();
+        let stretch = (3.0 / (2.0 + r)).sqrt();
+        let steps = (duration_s / spacing_s).ceil() as usize + 1;
+        let mut x = random.normal();
+        let value = (0..=steps)
+            .map(|_| {
+                let now = x;
+                x = r * x + (1.0 - r * r).sqrt() * random.normal();
+                stretch * now
+            })
+            .collect();
+        Self { spacing_s, value }
+    }
+
+    /// Value at a time, s, of the drawn duration.
+    pub fn at(&self, t_s: f64) -> f64 {
+        let place = t_s / self.spacing_s;
+        let knot = (place.floor() as usize).min(self.value.len() - 2);
+        let weight = place - knot as f64;
+        self.value[knot] + weight * (self.value[knot + 1] - self.value[knot])
+    }
+}
