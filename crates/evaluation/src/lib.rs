@@ -4,6 +4,7 @@
 //! product depends on this crate.
 #[allow(dead_code, reason = "taken over with the truths")]
 mod random;
+pub mod world;
 
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;

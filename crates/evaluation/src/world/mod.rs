@@ -1,0 +1,80 @@
+//! Worlds that judge: a vessel, a climate, a gas, sensors and rows, drawn by seed, and what really happened in them.
+//!
+//! A [`Request`] decides a [`World`] on every machine: the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
+//! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
+//! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
+mod error;
+mod family;
+mod overlay;
+mod simulation;
+mod told;
+mod truth;
+
+use cylwatch_estimator::log::Log;
+use serde::{Deserialize, Serialize};
+
+pub use error::WorldError;
+pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
+pub use overlay::{FaultRow, Overlay};
+pub use simulation::{Simulated, SimulationKey};
+pub use told::Told;
+pub use truth::{Happening, HappeningKind, Regime, Truth};
+
+/// Everything that decides a world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// One of each axis.
+    pub family: Family,
+    /// Seed of the cylinder and its surroundings.
+    pub seed: u64,
+    /// Which set of sensors and rows is laid over the simulation; sets of one simulation are not independent of each other.
+    pub set: u64,
+    /// Length of the log, s.
+    pub length_s: f64,
+    /// What is laid over it.
+    pub overlay: Overlay,
+}
+
+impl Request {
+    /// A tight cylinder with the first set of sensors.
+    pub const fn tight(family: Family, seed: u64, length_s: f64) -> Self {
+        Self { family, seed, set: 0, length_s, overlay: Overlay::Nothing }
+    }
+
+    /// The same with something laid over it.
+    pub const fn with(self, overlay: Overlay) -> Self {
+        Self { overlay, ..self }
+    }
+}
+
+/// A world: what a candidate is given, and what really happened.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// What was asked for.
+    pub request: Request,
+    /// The simulation behind it: worlds with equal keys are not independent of each other.
+    pub simulation: SimulationKey,
+    /// What a candidate may know beforehand.
+    pub told: Told,
+    /// Rows in the order in which they arrive, with their stamps: channels `shoulder`, `valve`, `pressure`.
+    pub log: Log,
+    /// Rows that say that they are replayed from a store, by index; empty unless a fault replays.
+    pub historical: Vec<usize>,
+    /// Power cycles, each after a row of this index, and the snapshot that the monitor finds.
+    pub power_cycles: Vec<(usize, Snapshot)>,
+    /// What really happened at every row of the log.
+    pub truth: Truth,
+    /// What was done, in the order of its beginning.
+    pub happenings: Vec<Happening>,
+}
+
+/// State that a monitor finds when the power comes back.
+pub type Snapshot = cylwatch_detector::performance::fault::Snapshot;
+
+/// The world of a request.
+///
+/// # Errors
+/// A request out of range, or a simulation that fails.
+pub fn generate(request: &Request) -> Result<World, WorldError> {
+    Simulated::run(request)?.world(request)
+}
