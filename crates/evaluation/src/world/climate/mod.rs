@@ -2,9 +2,16 @@
 //!
 //! Each climate is a file with its law. It is made of [`part`]s, and a [`weather::Weather`] turns it into the surroundings of a
 //! simulation. To add one: a file beside this one, a line in [`draw`], and a kind in [`super::Climate`].
+mod arctic;
+mod chamber;
+mod desert;
 mod draw;
+mod hall;
+mod metro;
+mod parked;
 mod part;
 mod railway;
+mod showers;
 mod switching;
 mod weather;
 mod workshop;
@@ -60,9 +67,16 @@ pub(super) struct Drawn {
 
 fn draw(climate: Climate, span: &Span) -> Weather {
     match climate {
+        Climate::Railway => railway::draw(span),
         Climate::Switching => switching::draw(span),
+        Climate::Metro => metro::draw(span),
+        Climate::Desert => desert::draw(span),
+        Climate::Arctic => arctic::draw(span),
+        Climate::Parked => parked::draw(span),
+        Climate::Hall => hall::draw(span),
         Climate::Workshop => workshop::draw(span),
-        _ => railway::draw(span),
+        Climate::Chamber => chamber::draw(span),
+        Climate::Showers => showers::draw(span),
     }
 }
 

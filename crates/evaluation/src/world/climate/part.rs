@@ -63,6 +63,8 @@ pub(super) enum StayAir {
     Degc(f64),
     /// So much warmer than the air would be otherwise, up to a highest temperature, K and °C.
     Warmer(f64, f64),
+    /// So much colder than the air would be otherwise, K: rain.
+    Colder(f64),
     /// A mixture of inside and outside air, by the share of the latter: an open door.
     Outside(f64),
 }
@@ -89,15 +91,11 @@ impl Stay {
         rise.min(fall).clamp(0.0, 1.0)
     }
 
-    /// Longest ramp, s.
-    pub fn longest_ramp_s(&self) -> f64 {
-        self.flow.map_or(self.ramp_s, |(_, ramp_s)| ramp_s.max(self.ramp_s))
-    }
-
     pub fn air_degc(&self, t_s: f64, inside_degc: f64, outside_degc: f64) -> f64 {
         let target = match self.air {
             StayAir::Degc(degc) => degc,
             StayAir::Warmer(by_k, highest_degc) => (inside_degc + by_k).min(highest_degc.max(inside_degc)),
+            StayAir::Colder(by_k) => inside_degc - by_k,
             StayAir::Outside(share) => inside_degc + share * (outside_degc - inside_degc),
         };
         inside_degc + self.share(t_s, self.ramp_s) * (target - inside_degc)
