@@ -253,7 +253,7 @@ impl ObserverSettings {
     }
 
     /// Slow motion of a sensor's parameter about its prior, in the unit of its kind.
-    pub(crate) fn walk_of(&self, parameter: &Parameter, quantity: Quantity) -> Walk {
+    pub fn walk_of(&self, parameter: &Parameter, quantity: Quantity) -> Walk {
         let walk = |per_sqrt_s: f64, memory_s| Walk {
             prior_sd: parameter.sd,
             per_sqrt_s: per_sqrt_s.max(parameter.walk_per_sqrt_s),
