@@ -95,7 +95,7 @@ pub struct Drawn {
 }
 
 /// State that a monitor finds when the power comes back.
-pub type Snapshot = cylwatch_detector::performance::fault::Snapshot;
+pub type Snapshot = crate::fault::Snapshot;
 
 /// The world of a request.
 ///

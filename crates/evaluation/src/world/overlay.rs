@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::WorldError;
 
 /// A row of the fault table.
-pub type FaultRow = cylwatch_detector::performance::fault::TableRow;
+pub type FaultRow = crate::fault::TableRow;
 
 /// What is laid over a world. Parts are of the gas that the cylinder begins with; onsets are true times from the start of the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
