@@ -18,6 +18,8 @@ const LENGTH_S: (f64, f64) = (900.0, 400.0 * 86_400.0);
 /// Spacing of the knots of turbulence and gusts, s, for rows of up to 10 s and for slower ones.
 const FINE_SPACING_S: f64 = 60.0;
 const COARSE_SPACING_S: f64 = 300.0;
+/// Most samples of a simulation: some 2 GB while it runs.
+const SAMPLES_MOST: f64 = 3e6;
 /// Longest interval of the samples, s.
 const SAMPLE_S: f64 = 60.0;
 
@@ -260,6 +262,10 @@ impl Request {
         let (low, high) = LENGTH_S;
         if !(low..=high).contains(&self.length_s) {
             return Err(WorldError::Number { what: "length_s", value: self.length_s, low, high });
+        }
+        let samples = self.length_s / sample_s(self.family.rows);
+        if samples > SAMPLES_MOST {
+            return Err(WorldError::Number { what: "number of samples", value: samples, low: 1.0, high: SAMPLES_MOST });
         }
         self.overlay.validate()
     }

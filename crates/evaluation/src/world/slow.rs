@@ -12,8 +12,8 @@ const HOUR_S: f64 = 3600.0;
 /// A leak of constant mass flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SlowLeak {
-    rate_kg_s: f64,
-    onset_s: f64,
+    pub rate_kg_s: f64,
+    pub onset_s: f64,
 }
 
 impl SlowLeak {
