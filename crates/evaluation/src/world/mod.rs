@@ -106,7 +106,6 @@ pub struct Drawn {
     pub sensors: SensorDraw,
 }
 
-
 /// The world of a request.
 ///
 /// # Errors

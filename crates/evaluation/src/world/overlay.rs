@@ -81,8 +81,8 @@ impl Leak {
 
 /// Largest leak that is laid over a finished simulation, part of the gas per hour, and largest part that it may lose in all: that the
 /// gas is not cooled by its own expansion, and that less gas follows the wall sooner, then stays below a transmitter's noise.
-const SLOW_PART_PER_H: f64 = 2e-4;
-const SLOW_PART: f64 = 0.01;
+const SLOW_PART_PER_H: f64 = 1e-4;
+const SLOW_PART: f64 = 0.005;
 const HOUR_S: f64 = 3600.0;
 
 impl Overlay {

@@ -74,7 +74,8 @@ pub(crate) fn assert_equal_counts(what: &str, counts: &[usize]) {
     let pearson: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
     let freedom = (counts.len() - 1) as f64;
     // Wilson and Hilferty: the cube root is normal.
-    let normal = ((pearson / freedom).cbrt() - (1.0 - 2.0 / (9.0 * freedom))) / (2.0 / (9.0 * freedom)).sqrt();
+    let normal =
+        ((pearson / freedom).cbrt() - (1.0 - 2.0 / (9.0 * freedom))) / (2.0 / (9.0 * freedom)).sqrt();
     assert!(normal < 3.9, "{what}: {counts:?}");
 }
 

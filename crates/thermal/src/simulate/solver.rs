@@ -298,7 +298,8 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Wrapper<'a, 'm, S> {
         let end = self.solver.state().y;
         for (i, value) in out.iter_mut().enumerate() {
             let (from, to) = (self.begin.get_index(i), end.get_index(i));
-            let (leaving, arriving) = (self.buffer.get_index(i) * length_s, self.rate.get_index(i) * length_s);
+            let (leaving, arriving) =
+                (self.buffer.get_index(i) * length_s, self.rate.get_index(i) * length_s);
             let bend = (1.0 - x) * (leaving - (to - from)) + x * ((to - from) - arriving);
             *value = from + x * (to - from) + x * (1.0 - x) * bend;
         }

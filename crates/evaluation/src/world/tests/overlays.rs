@@ -3,7 +3,8 @@ use super::{DAY_S, family, request};
 use crate::fault::Fault;
 use crate::world::slow::SlowLeak;
 use crate::world::{
-    Family, FaultRow, HappeningKind, Leak, Overlay, Request, Simulated, VesselKind, World, compose, faulty, generate,
+    Family, FaultRow, HappeningKind, Leak, Overlay, Request, Simulated, VesselKind, World, compose, faulty,
+    generate,
 };
 
 const HOUR_S: f64 = 3600.0;
@@ -15,23 +16,30 @@ fn a_slow_leak_laid_over_is_that_of_a_full_simulation_within_the_noise_of_a_tran
         let family = Family { vessel, ..family("nitrogen-20l/switching/mixed/class-b/60s") };
         let tight = Request::tight(family, 7, 2.0 * DAY_S);
         // Just above what is laid over: simulated.
-        let leak = Overlay::Leak { part_per_h: 2.001e-4, onset_s: 6.0 * HOUR_S };
+        let leak = Overlay::Leak { part_per_h: 1.001e-4, onset_s: 6.0 * HOUR_S };
         assert!(leak.is_simulated(tight.length_s));
         let full = generate(&tight.with(leak)).unwrap().truth;
         let simulated = Simulated::run(&tight).unwrap();
-        let rate_kg_s = 2.001e-4 * simulated.samples.mass_kg[0] / HOUR_S;
+        let rate_kg_s = 1.001e-4 * simulated.samples.mass_kg[0] / HOUR_S;
         let slow = SlowLeak { rate_kg_s, onset_s: 6.0 * HOUR_S };
         let over = compose::truth(&simulated, &full.time_s, Some(&slow)).unwrap();
         let noise_pa = 4e-5 * vessel.full_scale_pa();
-        let (mut square, mut rows) = (0.0_f64, 0.0);
-        for row in 0..full.time_s.len() {
-            assert!((over.mass_kg[row] / full.mass_kg[row] - 1.0).abs() < 1e-6, "{vessel} mass, row {row}");
-            square += (over.pressure_pa[row] - full.pressure_pa[row]).powi(2);
-            rows += 1.0;
+        for (over, full) in over.mass_kg.iter().zip(&full.mass_kg) {
+            assert!((over / full - 1.0).abs() < 1e-6, "{vessel}: {over} kg, {full} kg");
         }
-        let rms_pa = (square / rows).sqrt();
-        assert!(rms_pa < noise_pa, "{vessel}: {rms_pa} Pa against a noise of {noise_pa} Pa");
+        // Two runs of the solver differ by its tolerance: seen by a loss that is none.
+        let nothing = Overlay::FastLoss { part: 1e-6, within_s: 1.0, onset_s: 6.0 * HOUR_S, goes_on: false };
+        let other = generate(&tight.with(nothing)).unwrap().truth;
+        let clean = compose::truth(&simulated, &full.time_s, None).unwrap();
+        let (off_pa, floor_pa) =
+            (rms(&over.pressure_pa, &full.pressure_pa), rms(&clean.pressure_pa, &other.pressure_pa));
+        let own_pa = (off_pa.powi(2) - floor_pa.powi(2)).max(0.0).sqrt();
+        assert!(own_pa < noise_pa, "{vessel}: {own_pa} Pa, {floor_pa} Pa by the solver, noise {noise_pa} Pa");
     }
+}
+
+fn rms(a: &[f64], b: &[f64]) -> f64 {
+    (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
 }
 
 #[test]
@@ -91,10 +99,10 @@ fn a_loss_that_goes_on_ends_at_a_fifth_of_the_pressure() {
         // The smallest pressure is that of a subsonic orifice's end: 1.5 atm for the tank.
         let least = (1.5 * 101_325.0 / world.drawn.cylinder.fill.pressure_pa).max(0.2);
         assert!((left - least).abs() < 0.03, "{vessel}: {left}");
-        let settled = world.truth.settled_pa[world.truth.settled_pa.len() - 1];
         let (closed_kg, last_kg) = (mass_at(&world, end_s + 30.0), mass_at(&world, 5.9 * HOUR_S));
-        assert!((closed_kg / last_kg - 1.0).abs() < 1e-9, "{vessel}: {closed_kg} kg, {last_kg} kg");
-        assert!(settled > least * world.drawn.cylinder.fill.pressure_pa, "the gas warms again");
+        assert!((closed_kg / last_kg - 1.0).abs() < 1e-6, "{vessel}: {closed_kg} kg, {last_kg} kg");
+        let last_pa = world.truth.pressure_pa[world.truth.pressure_pa.len() - 1];
+        assert!(last_pa > world.truth.pressure_pa[at_end], "{vessel}: the gas warms again");
     }
 }
 
@@ -129,7 +137,9 @@ fn every_row_of_the_fault_table_makes_a_world_whose_truth_has_an_entry_for_each_
             let truth = &world.truth;
             let rows = world.log.time_s.len();
             assert_eq!(world.log.values.len(), 3 * rows);
-            for column in [&truth.time_s, &truth.mass_kg, &truth.settled_pa, &truth.gas_mean_k, &truth.valve_k] {
+            for column in
+                [&truth.time_s, &truth.mass_kg, &truth.settled_pa, &truth.gas_mean_k, &truth.valve_k]
+            {
                 assert_eq!(column.len(), rows, "{row:?}");
                 assert!(column.iter().all(|value| value.is_finite()), "{row:?}");
             }
@@ -178,7 +188,9 @@ fn pressures_of_the_fault_table_are_parts_of_the_transmitters_range() {
                 _ => None,
             };
             match (size(&table), size(&tank)) {
-                (Some(of_table), Some(of_tank)) => assert!((of_tank / of_table - 0.04).abs() < 1e-12, "{row:?}"),
+                (Some(of_table), Some(of_tank)) => {
+                    assert!((of_tank / of_table - 0.04).abs() < 1e-12, "{row:?}")
+                }
                 _ if row == FaultRow::D4 => assert_eq!(table.name(), tank.name()),
                 _ => assert_eq!(table, tank, "{row:?}"),
             }
@@ -194,7 +206,8 @@ fn what_happens_to_the_gas_by_the_table_is_in_proportion_to_the_fill() {
         fault.lost_kg / world.truth.mass_kg[0]
     };
     for seed in 0..3 {
-        for family in ["nitrogen-20l/workshop/mixed/class-b/300s", "air-tank-8l/workshop/mixed/class-b/300s"] {
+        for family in ["nitrogen-20l/workshop/mixed/class-b/300s", "air-tank-8l/workshop/mixed/class-b/300s"]
+        {
             // From four fifths of the pressure to the whole.
             let refilled = -lost(FaultRow::G1, family, seed);
             assert!((0.2..0.27).contains(&refilled), "{family}: refilled {refilled}");
@@ -213,8 +226,10 @@ fn a_leak_beside_a_fault_is_the_leak_alone() {
     let base = request("nitrogen-20l/parked/mixed/class-b/300s", 3, 3.0);
     let alone = generate(&base.with(Overlay::Leak { part_per_h: 5e-4, onset_s: DAY_S })).unwrap();
     for row in [FaultRow::T1, FaultRow::E6] {
-        let both = generate(&base.with(Overlay::Fault { row, onset_s: 1.5 * DAY_S, leak: Some(leak) })).unwrap();
-        let of = |world: &World| world.happenings.iter().find(|h| h.kind == HappeningKind::Leak).unwrap().lost_kg;
+        let both =
+            generate(&base.with(Overlay::Fault { row, onset_s: 1.5 * DAY_S, leak: Some(leak) })).unwrap();
+        let of =
+            |world: &World| world.happenings.iter().find(|h| h.kind == HappeningKind::Leak).unwrap().lost_kg;
         assert!((of(&both) / of(&alone) - 1.0).abs() < 1e-6, "{row:?}");
         let last = |world: &World| world.truth.mass_kg[world.truth.mass_kg.len() - 1];
         assert!((last(&both) / last(&alone) - 1.0).abs() < 1e-6, "{row:?}");

@@ -64,7 +64,8 @@ fn read(surface_k: &[f64], around: &Surroundings, sensor: &Thermometer, times_s:
 #[test]
 fn a_lag_follows_a_ramp_as_the_closed_form_does_wherever_rows_lie() {
     // 0.01 K/s from 600 s on, a time on a sample.
-    let surface_k: Vec<f64> = (0..60).map(|k| 280.0 + 0.01 * (60.0 * f64::from(k) - 600.0).max(0.0)).collect();
+    let surface_k: Vec<f64> =
+        (0..60).map(|k| 280.0 + 0.01 * (60.0 * f64::from(k) - 600.0).max(0.0)).collect();
     let around = surroundings(Series::constant(280.0));
     let lagging = Thermometer { lag_s: 45.0, ..thermometer() };
     let times_s = [0.0, 599.0, 617.3, 700.0, 701.0, 1800.0, 3000.5];

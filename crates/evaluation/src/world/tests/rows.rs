@@ -22,7 +22,9 @@ fn rows_are_measured_within_two_percent_of_their_interval_and_one_second() {
 #[test]
 fn up_to_one_percent_of_the_rows_are_lost() {
     let lost: Vec<f64> = (0..300)
-        .map(|seed| 1.0 - Rows::draw(RowPattern::Minute, 20.0 * DAY_S, seed, true).time_s.len() as f64 / 28_801.0)
+        .map(|seed| {
+            1.0 - Rows::draw(RowPattern::Minute, 20.0 * DAY_S, seed, true).time_s.len() as f64 / 28_801.0
+        })
         .collect();
     // A share of 28801 trials has a standard deviation of up to 0.0006 of its own.
     assert!(lost.iter().all(|&share| (0.0..0.0125).contains(&share)));

@@ -1,12 +1,14 @@
 //! Simulations and what becomes of them: balances, repeatability, what sets share.
 use super::{DAY_S, family, request};
 use crate::world::{
-    Climate, Family, GasKind, Overlay, Request, SensorClass, Simulated, VesselKind, World, WorldError, generate,
+    Climate, Family, GasKind, Overlay, Request, SensorClass, Simulated, VesselKind, World, WorldError,
+    generate,
 };
 
 fn bits(world: &World) -> Vec<u64> {
     let truth = &world.truth;
-    let columns = [&world.log.time_s, &world.log.values, &truth.gas_mean_k, &truth.mass_kg, &truth.settled_pa];
+    let columns =
+        [&world.log.time_s, &world.log.values, &truth.gas_mean_k, &truth.mass_kg, &truth.settled_pa];
     columns.iter().flat_map(|column| column.iter().map(|value| value.to_bits())).collect()
 }
 
@@ -43,7 +45,8 @@ fn a_longer_log_begins_like_a_shorter_one() {
 #[test]
 fn mass_and_energy_are_balanced_in_every_vessel_and_a_tight_one_keeps_its_gas() {
     for &vessel in VesselKind::ALL {
-        let request = Request::tight(Family { vessel, ..family("nitrogen-20l/switching/mixed/class-b/60s") }, 2, DAY_S);
+        let request =
+            Request::tight(Family { vessel, ..family("nitrogen-20l/switching/mixed/class-b/60s") }, 2, DAY_S);
         let simulated = Simulated::run(&request).unwrap();
         let ledger = simulated.ledger();
         assert!(ledger.mass_residual().abs() < 1e-9, "{vessel}: mass {}", ledger.mass_residual());
@@ -79,7 +82,8 @@ fn a_tight_cylinder_has_the_stated_mass_times_the_error_of_the_statement_and_the
         for settled_pa in &world.truth.settled_pa {
             assert!((settled_pa / drawn.fill.pressure_pa - 1.0).abs() < 1e-6, "{vessel}: {settled_pa}");
         }
-        let density = |pa: f64| world.told.vessel.fluid.density_from_pressure_temperature(pa, 288.15).unwrap();
+        let density =
+            |pa: f64| world.told.vessel.fluid.density_from_pressure_temperature(pa, 288.15).unwrap();
         let told_kg = world.told.commissioning.mass_kg(&world.told.vessel, 288.15).unwrap();
         let statement = density(drawn.fill.stated_pa) / density(drawn.fill.pressure_pa);
         // Expansions of the real vessel are within 10 % of the nominal ones, which are 1 % at most.
@@ -137,6 +141,7 @@ fn numbers_out_of_range_are_refused_by_name() {
     assert!(error(good.with(Overlay::Leak { part_per_h: 1e-3, onset_s: -1.0 })).contains("onset_s"));
     let loss = |part| Overlay::FastLoss { part, within_s: 60.0, onset_s: 0.0, goes_on: false };
     assert!(error(good.with(loss(1.5))).contains("part"));
-    let second = Request { length_s: 60.0 * DAY_S, ..request("nitrogen-20l/workshop/mixed/class-b/1s", 1, 1.0) };
+    let second =
+        Request { length_s: 60.0 * DAY_S, ..request("nitrogen-20l/workshop/mixed/class-b/1s", 1, 1.0) };
     assert!(error(second).contains("samples"), "too many rows");
 }
