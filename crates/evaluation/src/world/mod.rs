@@ -16,6 +16,7 @@ mod overlay;
 mod reading;
 mod regime;
 mod rows;
+mod samples;
 mod sensors;
 mod simulation;
 mod slow;

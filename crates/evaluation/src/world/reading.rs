@@ -5,8 +5,8 @@
 use cylwatch_thermal::scenario::{OutsideFilm, Surroundings};
 use cylwatch_thermal::transfer::outside::{Body, convection_w_m2_k};
 
+use super::samples::Samples;
 use super::sensors::{Thermometer, Transmitter};
-use super::simulation::Samples;
 use crate::random::{Purpose, Random};
 
 /// Film by convection at which a mounting has its stated coupling, W/(m² K).

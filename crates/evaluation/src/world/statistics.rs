@@ -9,8 +9,6 @@ pub(crate) enum Law {
     Uniform(f64, f64),
     /// Even by the logarithm.
     Logarithmic(f64, f64),
-    /// Exponential with a mean.
-    Exponential(f64),
     /// Normal with a mean and a standard deviation.
     Normal(f64, f64),
 }
@@ -20,7 +18,6 @@ impl Law {
         match self {
             Self::Uniform(low, high) => ((x - low) / (high - low)).clamp(0.0, 1.0),
             Self::Logarithmic(low, high) => ((x / low).ln() / (high / low).ln()).clamp(0.0, 1.0),
-            Self::Exponential(mean) => 1.0 - (-x.max(0.0) / mean).exp(),
             Self::Normal(mean, sd) => {
                 0.5 * statrs::function::erf::erfc(-(x - mean) / (sd * std::f64::consts::SQRT_2))
             }
@@ -33,7 +30,6 @@ impl Law {
                 let edge = 1e-9 * (high.abs() + low.abs());
                 (low - edge..=high + edge).contains(&x)
             }
-            Self::Exponential(_) => x >= 0.0,
             Self::Normal(..) => x.is_finite(),
         }
     }

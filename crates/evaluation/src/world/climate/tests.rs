@@ -109,7 +109,7 @@ fn railway_tunnels_keep_to_their_number_hours_temperatures_and_stays() {
 fn wind_switches_at_the_mouths_within_one_to_sixty_seconds_and_tunnels_are_42_to_48_kelvin_warmer() {
     let stays = stays(Climate::Switching);
     let warmer = values(&stays, |stay| match stay.air {
-        StayAir::Warmer(by_k, most_degc) if most_degc == 55.0 => by_k,
+        StayAir::Warmer(by_k, 55.0) => by_k,
         _ => f64::NAN,
     });
     assert_law("warmer", &warmer, Law::Uniform(42.0, 48.0));

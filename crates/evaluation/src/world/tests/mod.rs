@@ -1,4 +1,5 @@
 //! Tests of worlds: laws of what is drawn, simulations, readings, overlays.
+mod disturbances;
 mod laws;
 mod overlays;
 mod readings;

@@ -8,8 +8,8 @@ use super::request;
 use crate::random::Purpose;
 use crate::world::generate;
 use crate::world::reading::{Place, read_pressure};
+use crate::world::samples::Samples;
 use crate::world::sensors::{Thermometer, Transmitter};
-use crate::world::simulation::Samples;
 use crate::world::statistics::{Law, assert_law, mean, sd};
 
 const BODY: Body = Body { orientation: Orientation::Vertical, diameter_m: 0.2, height_m: 0.8 };
