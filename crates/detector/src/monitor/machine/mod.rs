@@ -203,7 +203,7 @@ impl Monitor {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
-            filled_kg: (full_kg, commissioning.mass_sd_kg),
+            filled_kg: (full_kg, commissioning.mass_sd * full_kg),
             roles,
             compared,
             sensors: sensors.to_vec(),
