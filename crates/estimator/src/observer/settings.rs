@@ -110,6 +110,12 @@ impl LeakHypothesis {
         }
     }
 
+    /// The same with a leak that may be there from the first sample on: standard deviation of its rate, g/h.
+    pub fn from_the_start(mut self, sd_g_h: f64) -> Self {
+        self.rate.prior_sd = sd_g_h * 1e-3 * PER_HOUR;
+        self
+    }
+
     /// The same with so much error of the pressure per kelvin between wall and gas, Pa/K.
     pub fn cautious(self, caution_pa_k: f64) -> Self {
         Self { caution_pa_k, ..self }
@@ -239,8 +245,8 @@ impl Default for ObserverSettings {
             band: BandSettings::default(),
             bank: vec![
                 LeakHypothesis::walking_mass(1.5),
-                LeakHypothesis::walking_rate(0.02),
-                LeakHypothesis::walking_rate(0.005),
+                LeakHypothesis::walking_rate(0.02).from_the_start(20.0),
+                LeakHypothesis::walking_rate(0.005).from_the_start(20.0),
                 LeakHypothesis::walking_mass(30.0),
             ],
             free_mass_sd_kg: 1.0,
