@@ -2,9 +2,21 @@
 //!
 //! The truth that judges differs from the model inside the product, and from the family that its tuning saw. Nothing of the
 //! product depends on this crate.
-#[allow(dead_code, reason = "taken over with the truths")]
+//!
+//! | part | what |
+//! |---|---|
+//! | [`truth`] | drawn cylinders in railway weather, read by drawn sensors; how good an observer was |
+//! | [`fault`] | faults put into good rows, and what a monitor must make of them |
+//! | [`performance`] | what detectors are worth, side by side on the same cylinders |
+//! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
+pub mod error;
+pub mod fault;
+pub mod performance;
+pub mod placement;
 mod random;
+pub mod truth;
 
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;
 pub use cylwatch_thermal as thermal;
+pub use error::EvaluationError;
