@@ -5,6 +5,7 @@
 //!
 //! | part | what |
 //! |---|---|
+//! | [`world`] | worlds that judge: vessel, climate, gas, sensors and rows, drawn by seed, with what really happened |
 //! | [`truth`] | drawn cylinders in railway weather, read by drawn sensors; how good an observer was |
 //! | [`fault`] | faults put into good rows, and what a monitor must make of them |
 //! | [`performance`] | what detectors are worth, side by side on the same cylinders |
@@ -15,6 +16,7 @@ pub mod performance;
 pub mod placement;
 mod random;
 pub mod truth;
+pub mod world;
 
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;

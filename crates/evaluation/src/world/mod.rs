@@ -1,0 +1,112 @@
+//! Worlds that judge: a vessel, a climate, a gas, sensors and rows, drawn by seed, and what really happened in them.
+//!
+//! A [`Request`] decides a [`World`] on every machine: the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
+//! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
+//! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
+mod climate;
+mod compose;
+mod disturbed;
+mod error;
+mod family;
+mod faulty;
+mod fill;
+mod flows;
+mod gas;
+mod overlay;
+mod reading;
+mod regime;
+mod rows;
+mod sensors;
+mod simulation;
+mod slow;
+mod told;
+mod truth;
+mod vessel;
+
+use cylwatch_estimator::log::Log;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::Fault;
+
+pub use error::WorldError;
+pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
+pub use fill::FillDraw;
+pub use gas::GasDraw;
+pub use overlay::{FaultRow, Leak, Overlay};
+pub use sensors::{SensorDraw, Thermometer, Transmitter};
+pub use simulation::{CylinderDraw, Simulated, SimulationKey};
+pub use told::Told;
+pub use truth::{Happening, HappeningKind, Regime, Truth};
+pub use vessel::VesselDraw;
+
+/// Everything that decides a world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// One of each axis.
+    pub family: Family,
+    /// Seed of the cylinder and its surroundings.
+    pub seed: u64,
+    /// Which set of sensors and rows is laid over the simulation; sets of one simulation are not independent of each other.
+    pub set: u64,
+    /// Length of the log, s.
+    pub length_s: f64,
+    /// What is laid over it.
+    pub overlay: Overlay,
+}
+
+impl Request {
+    /// A tight cylinder with the first set of sensors.
+    pub const fn tight(family: Family, seed: u64, length_s: f64) -> Self {
+        Self { family, seed, set: 0, length_s, overlay: Overlay::Nothing }
+    }
+
+    /// The same with something laid over it.
+    pub const fn with(self, overlay: Overlay) -> Self {
+        Self { overlay, ..self }
+    }
+}
+
+/// A world: what a candidate is given, and what really happened.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// What was asked for.
+    pub request: Request,
+    /// The simulation behind it: worlds with equal keys are not independent of each other.
+    pub simulation: SimulationKey,
+    /// What a candidate may know beforehand.
+    pub told: Told,
+    /// Rows in the order in which they arrive, with their stamps: channels `shoulder`, `valve`, `pressure`.
+    pub log: Log,
+    /// Rows that say that they are replayed from a store, by index; empty unless a fault replays.
+    pub historical: Vec<usize>,
+    /// Power cycles, each after a row of this index, and the snapshot that the monitor finds.
+    pub power_cycles: Vec<(usize, Snapshot)>,
+    /// The fault of data that is in the rows.
+    pub fault: Option<Fault>,
+    /// What really happened at every row of the log.
+    pub truth: Truth,
+    /// What was done, in the order of its beginning.
+    pub happenings: Vec<Happening>,
+    /// What was drawn.
+    pub drawn: Drawn,
+}
+
+/// What was drawn for a world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drawn {
+    /// Cylinder, gas and fill.
+    pub cylinder: CylinderDraw,
+    /// Sensors.
+    pub sensors: SensorDraw,
+}
+
+/// State that a monitor finds when the power comes back.
+pub type Snapshot = crate::fault::Snapshot;
+
+/// The world of a request.
+///
+/// # Errors
+/// A request out of range, or a simulation that fails.
+pub fn generate(request: &Request) -> Result<World, WorldError> {
+    Simulated::run(request)?.world(request)
+}
