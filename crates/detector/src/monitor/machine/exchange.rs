@@ -8,15 +8,20 @@ use super::Monitor;
 use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Quality};
+use crate::estimator::sensor::ParameterKind;
+use crate::estimator::thermal::scenario::sensor::SensorKind;
+use crate::monitor::gas::bounds::{Certain, Contact, Seen};
 use crate::monitor::gas::jump::{Cause, Examination, Innovated};
 use crate::monitor::gas::leak::Change;
 use crate::monitor::{Event, EventKind, Reason};
 
-/// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
+/// Change of the pressure across a gap that is no error of the observer, Pa of a fill of 200 bar, and the gap, s.
 const ACROSS_PA: f64 = 2e5;
 const ACROSS_S: f64 = 900.0;
 /// Time for which a jump that remained unclear leaves doubt, s.
 const DOUBT_S: f64 = 86_400.0;
+/// Time by which an announced exchange may begin earlier or later than was said, s.
+const ANNOUNCED_WITHIN_S: f64 = 600.0;
 
 /// A jump under examination.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -27,11 +32,15 @@ pub(super) struct Examined {
     pub flowing: bool,
 }
 
+/// Part of the gas that no jump of a transmitter's offset stands for.
+const NO_OFFSET: f64 = 0.1;
+
 /// Gas that was exchanged.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Exchanged {
     pub at_s: f64,
     pub out: bool,
+    pub announced: bool,
 }
 
 impl Monitor {
@@ -49,9 +58,17 @@ impl Monitor {
         let before_kg = self.masses_kg();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
-        let innovation_pa = self.observer.innovations()[pressure].nu;
-        let now = Innovated { time_s, reading_pa: self.usable[pressure], innovation_pa };
-        let step_pa = self.state.watches[pressure].step();
+        if self.blindness(time_s).is_some() {
+            // Without a temperature every change of the air is a change of the pressure.
+            self.state.jumps.forget();
+            self.state.rewind.taken(&self.observer, time_s, &self.usable);
+            return Ok(estimate);
+        }
+        // The rules of jumps are stated for a fill of 200 bar.
+        let of_fill = self.scale.pressure.recip();
+        let innovation_pa = of_fill * self.observer.innovations()[pressure].nu;
+        let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa };
+        let step_pa = of_fill * self.state.watches[pressure].step();
         let jump = self.state.jumps.notice(now, step_pa, self.state.pair.moved());
         if let (Some(before_pa), Some(before_kg)) = (jump, before_kg)
             && estimate.quality != Quality::Restarted
@@ -66,6 +83,84 @@ impl Monitor {
         }
         self.state.rewind.taken(&self.observer, time_s, &self.usable);
         Ok(estimate)
+    }
+
+    /// Loss and gain of gas that no temperature explains, whatever the observer says.
+    pub(super) fn watch_bounds(
+        &mut self,
+        estimate: Estimate,
+        events: &mut Vec<Event>,
+    ) -> Result<Estimate, DetectorError> {
+        let time_s = estimate.time_s;
+        let Some(seen) = self.seen(time_s) else { return Ok(estimate) };
+        let contents = &self.contents;
+        let mass_kg = |pressure_pa, temperature_k| {
+            contents.mass_kg(pressure_pa, temperature_k).unwrap_or(f64::NAN)
+        };
+        let before_kg = self.masses_kg();
+        let Some(certain) = self.state.bounds.push(&seen, mass_kg) else { return Ok(estimate) };
+        // A jump that may be the transmitter's is being examined; so much is none.
+        let examined = self.state.examined.as_ref();
+        let open = examined.is_some_and(|examined| !examined.flowing);
+        if open && self.state.bounds.beyond() < NO_OFFSET {
+            return Ok(estimate);
+        }
+        let out = certain == Certain::Out;
+        let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
+        self.state.bounds.begin_anew();
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced: self.is_announced(onset_s) });
+        if self.state.examined.is_some() {
+            return Ok(estimate);
+        }
+        self.go_back()?;
+        self.observer.begin_exchange();
+        let estimate = self.observer.step(time_s, &self.usable)?;
+        self.observer.end_exchange();
+        self.state.rewind.begin(&self.observer);
+        let change_kg = self.masses_kg().zip(before_kg).map_or(f64::NAN, |(now, before)| now - before);
+        let change_kg = if out { change_kg.min(0.0) } else { change_kg.max(0.0) };
+        self.exchanged(time_s, onset_s, change_kg, out, events);
+        Ok(estimate)
+    }
+
+    /// What thermometers and pressure of the present row bound the mass by; `None` where one of them is missing.
+    fn seen(&self, time_s: f64) -> Option<Seen> {
+        let pressure = self.roles.pressure?;
+        let pressure_pa = Some(self.usable[pressure]).filter(|pressure_pa| pressure_pa.is_finite())?;
+        let usable = || {
+            let readings = self.roles.thermometers.iter().map(|&sensor| (sensor, self.usable[sensor]));
+            readings.filter(|(_, reading)| reading.is_finite())
+        };
+        let in_gas = |sensor: usize| matches!(self.sensors[sensor].kind, SensorKind::Gas { .. });
+        let any_in_gas = usable().any(|(sensor, _)| in_gas(sensor));
+        let counted = usable().filter(|&(sensor, _)| !any_in_gas || in_gas(sensor));
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let extremes_k = counted.fold(ends, |(low, high), (_, k)| (low.min(k), high.max(k)));
+        let transmitter = &self.sensors[pressure];
+        let mut coefficients =
+            transmitter.parameters().iter().filter(|of| of.kind == ParameterKind::TemperatureCoefficient);
+        extremes_k.0.is_finite().then(|| Seen {
+            time_s,
+            extremes_k,
+            contact: if any_in_gas { Contact::Gas } else { Contact::Wall },
+            pressure_pa,
+            coefficient_pa_k: coefficients.next().map_or(0.0, |of| of.sd),
+            noise_pa: transmitter.noise_variance().sqrt(),
+        })
+    }
+
+    /// An exchange of gas is announced for a time, s, as rows are stamped: what goes out then is no loss.
+    pub fn announce(&mut self, from_s: f64, until_s: f64) {
+        self.state.announced.push((from_s, until_s));
+    }
+
+    /// Whether an exchange that began then was announced.
+    pub(super) fn is_announced(&self, onset_s: f64) -> bool {
+        let stamp_s = onset_s + self.state.intake.offset_s();
+        let near = |&(from_s, until_s): &(f64, f64)| {
+            (from_s - ANNOUNCED_WITHIN_S..=until_s + ANNOUNCED_WITHIN_S).contains(&stamp_s)
+        };
+        self.state.announced.iter().any(near)
     }
 
     /// Mass by the freest member, kg.
@@ -104,12 +199,13 @@ impl Monitor {
         let reading_pa = std::mem::replace(&mut self.usable[pressure], f64::NAN);
         let blind = self.shadow.step(time_s, &self.usable)?;
         self.usable[pressure] = reading_pa;
-        let expected_pa = self.shadow.expected_reading(pressure)?;
+        let of_fill = self.scale.pressure.recip();
+        let expected_pa = of_fill * self.shadow.expected_reading(pressure)?;
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
         let cause = examined.examination.push(
             time_s,
-            (expected_pa, reading_pa),
+            (expected_pa, of_fill * reading_pa),
             blind.gas_mean_k,
             self.state.pair.moved(),
         );
@@ -121,7 +217,7 @@ impl Monitor {
                 self.observer.restore(&self.shadow.snapshot());
                 match cause {
                     Cause::Spike => self.state.watches[pressure].refused(time_s),
-                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa),
+                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa / of_fill),
                     _ => {}
                 }
             }
@@ -138,21 +234,35 @@ impl Monitor {
         let Some(examined) = &self.state.examined else { return };
         let onset_s = examined.examination.onset_s();
         // Which way it went the pressure says; in a tunnel the mass may not have come to it yet.
-        let by_pressure_kg = -examined.examination.error_pa() / self.state.p15.slope_pa_kg();
+        let error_pa = self.scale.pressure * examined.examination.error_pa();
+        let by_pressure_kg = -error_pa / self.state.p15.slope_pa_kg();
         let by_mass_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
         let change_kg = if by_mass_kg * by_pressure_kg < 0.0 { by_pressure_kg } else { by_mass_kg };
         self.observer.end_exchange();
         if unclear {
             self.state.look = (time_s + DOUBT_S, Reason::Jump);
         }
-        self.exchanged(time_s, onset_s, change_kg, events);
+        if !self.state.bounds.allow(examined.before_kg + change_kg) {
+            // What the shadow expects cannot be: it has been led astray, and the jump says nothing.
+            self.state.look = (time_s + DOUBT_S, Reason::Jump);
+            return;
+        }
+        self.exchanged(time_s, onset_s, change_kg, change_kg < 0.0, events);
     }
 
-    fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, events: &mut Vec<Event>) {
-        let out = change_kg < 0.0;
+    fn exchanged(
+        &mut self,
+        time_s: f64,
+        onset_s: f64,
+        change_kg: f64,
+        out: bool,
+        events: &mut Vec<Event>,
+    ) {
+        self.state.bounds.begin_anew();
         let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
         events.push(Event::new(time_s, onset_s, kind));
-        self.state.exchanged = Some(Exchanged { at_s: time_s, out });
+        let announced = self.is_announced(onset_s);
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced });
         self.state.filling.settle();
         self.state.undisturbed = Undisturbed::default();
         if self.state.leak.begin_anew() == Change::Ended {
@@ -175,7 +285,7 @@ impl Monitor {
             self.observer.begin_exchange();
             self.observer.end_exchange();
             self.state.rewind.begin(&self.observer);
-            self.exchanged(time_s, onset_s, gain_kg, events);
+            self.exchanged(time_s, onset_s, gain_kg, false, events);
         }
     }
 
@@ -207,7 +317,7 @@ impl Monitor {
         self.state.rewind.begin(&self.observer);
         if gained {
             let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
-            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), events);
+            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), false, events);
         } else {
             self.state.lost_across = true;
         }
