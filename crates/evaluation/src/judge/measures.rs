@@ -1,0 +1,5 @@
+//! The measures of runs that the judge shares with the bench.
+pub use crate::detector::performance::bench::{AlarmLevel, Trace, alarm_level};
+pub use crate::detector::performance::{
+    Class, Delay, Detection, Estimated, Horizon, Proportion, Reached, Run, SmallestLeak, TrueLeak, YEAR_S, by_rate,
+};
