@@ -9,8 +9,8 @@
 use std::collections::VecDeque;
 
 use cylwatch::detector::baseline::{Reading, Threshold};
-use cylwatch::detector::performance::bench::{Plan, bench, of_statistic};
 use cylwatch::detector::statistic::Statistic;
+use cylwatch::evaluation::performance::bench::{Plan, bench, of_statistic};
 use cylwatch::report::aligned;
 
 const DAY_S: f64 = 86_400.0;

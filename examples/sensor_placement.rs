@@ -12,6 +12,7 @@ use cylwatch::estimator::placement::search::Watch;
 use cylwatch::estimator::placement::study::{Placement, Position, Study, StudySettings};
 use cylwatch::estimator::placement::{Candidates, Group};
 use cylwatch::estimator::sensor::Sensor;
+use cylwatch::evaluation::placement::ClosedLoopSettings;
 use cylwatch::report::place::Placed;
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::scenario;
@@ -67,7 +68,13 @@ pub struct Attitude {
 impl Attitude {
     /// The study as it is shown.
     pub fn placed(&self) -> Placed<'_> {
-        Placed { study: &self.study, candidates: &self.candidates, vessel: &self.vessel }
+        Placed {
+            study: &self.study,
+            candidates: &self.candidates,
+            vessel: &self.vessel,
+            runs: ClosedLoopSettings::default(),
+            closed_loop: None,
+        }
     }
 
     /// One thermometer at a place, beside the pressure.

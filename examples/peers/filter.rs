@@ -10,7 +10,7 @@ use cylwatch::estimator::filter::{
 };
 use cylwatch::estimator::observer::{Commissioning, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::estimator::truth::{Course, generate};
+use cylwatch::evaluation::truth::{Course, generate};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
 use cylwatch::thermal::vessel::presets;
 use nalgebra::{DMatrix, Dyn};

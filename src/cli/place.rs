@@ -16,6 +16,7 @@ use anyhow::bail;
 use cylwatch::estimator::placement::search::Watch;
 use cylwatch::estimator::placement::study::{Placement, Study, StudySettings};
 use cylwatch::estimator::placement::{Candidates, Status, read_candidates};
+use cylwatch::evaluation::placement::{ClosedLoop, ClosedLoopSettings, confirm_study};
 use cylwatch::report::figure::Picture;
 use cylwatch::report::place::{CAPTION, Placed, matrices};
 use cylwatch::report::{Provenance, Story};
@@ -35,6 +36,7 @@ struct Options {
     scenarios: Vec<String>,
     candidates: Option<String>,
     settings: StudySettings,
+    runs: ClosedLoopSettings,
     time_limit: Option<Duration>,
     data: Target,
     format: Option<Format>,
@@ -61,36 +63,52 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
         Some(_) => Progress::new(messages),
         None => Progress::open_ended(messages, "placing sensors"),
     };
-    let study = study(&placement, deadline, (&progress, expected))?;
+    let (study, closed_loop) = study(&placement, &options.runs, deadline, (&progress, expected))?;
     drop(progress);
-    let placed = Placed { study: &study, candidates: &candidates, vessel: &vessel };
+    let placed = Placed {
+        study: &study,
+        candidates: &candidates,
+        vessel: &vessel,
+        runs: options.runs,
+        closed_loop: closed_loop.as_ref(),
+    };
     let seed = Some(options.settings.published.first_seed);
     let provenance = Provenance { seed, ..inputs.provenance() };
     options.write(&placed, &placement, (&inputs, &provenance), messages)?;
-    if study.partial {
+    if placed.is_partial() {
         messages.caution("the search was ended early: what was written is partial");
         return Ok(ExitCode::from(PARTIAL));
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Runs the study beside a thread that ends it when it is due.
+/// Runs the study, then its best layouts in closed loop, beside a thread that ends it when it is due.
 fn study(
     placement: &Placement,
+    runs: &ClosedLoopSettings,
     deadline: Option<Instant>,
     progress: (&Progress, Option<f64>),
-) -> anyhow::Result<Study> {
+) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
     let watch = Watch::default();
     watch.stop.store(stop::is_due(deadline), Ordering::Relaxed);
-    let study = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         let (done, ended) = channel();
         let watch = &watch;
         scope.spawn(move || stop::attend(watch, deadline, progress, &ended));
-        let study = placement.run(watch);
+        let found = judged(placement, runs, watch);
         drop(done);
-        study
-    });
-    Ok(study?)
+        found
+    })
+}
+
+fn judged(
+    placement: &Placement,
+    runs: &ClosedLoopSettings,
+    watch: &Watch,
+) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
+    let study = placement.run(watch)?;
+    let closed_loop = confirm_study(placement, &study, runs, watch)?;
+    Ok((study, closed_loop))
 }
 
 impl Options {

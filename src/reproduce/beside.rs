@@ -1,10 +1,10 @@
 //! The paper's cases on cylinders that nobody who watches knows: as published, refitted, by the observer, and what is possible.
 //!
-//! **Cylinders** are drawn from seeds around the built-in one ([`crate::estimator::truth`]): films, capacities, mounting, sensor errors and gusts
+//! **Cylinders** are drawn from seeds around the built-in one ([`crate::evaluation::truth`]): films, capacities, mounting, sensor errors and gusts
 //! differ, the gas is stratified. Each rests for an hour before its air changes.
 //!
 //! **Bound** of the gas temperature: the posterior Cramér-Rao bound along paths of the observer's own model with its prior
-//! ([`matched`](crate::estimator::truth::matched)); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
+//! ([`matched`](crate::evaluation::truth::matched)); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
 //! steady observer at rest tell of it ([`Site`]), which knows no tunnel. No truth here comes from those models, so a bound is what
 //! could be hoped for, not what must hold.
 //!
@@ -16,8 +16,8 @@ use super::watch::{Plan, Watched, watch};
 use crate::estimator::observer::ObserverSettings;
 use crate::estimator::placement::{Disturbance, Site, SiteSettings};
 use crate::estimator::sensor::Sensor;
-use crate::estimator::truth::matched::{Chamber, least_errors, mass_member, settings};
-use crate::estimator::truth::{Course, Truth, TruthLeak, TruthSettings, generate_with};
+use crate::evaluation::truth::matched::{Chamber, least_errors, mass_member, settings};
+use crate::evaluation::truth::{Course, Truth, TruthLeak, TruthSettings, generate_with};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use crate::thermal::vessel::{Vessel, presets};
 use rayon::prelude::*;

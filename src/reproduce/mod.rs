@@ -33,6 +33,7 @@ mod words;
 use crate::detector::DetectorError;
 use crate::estimator::EstimatorError;
 use crate::estimator::identify::IdentifyError;
+use crate::evaluation::EvaluationError;
 use crate::report::{Input, ReportError};
 use crate::thermal::ThermalError;
 use crate::thermal::simulate::SimulationSettings;
@@ -61,6 +62,9 @@ pub enum ReproduceError {
     /// A detector.
     #[error(transparent)]
     Detector(#[from] DetectorError),
+    /// The cylinders that nobody who watches knows.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
     /// A figure.
     #[error(transparent)]
     Report(#[from] ReportError),

@@ -264,8 +264,8 @@ fn every_command_of_the_program_in_a_block_has_the_options_that_stand_there() {
 
 #[test]
 fn every_example_and_bench_that_is_named_is_there() {
-    let folders =
-        [".", "crates/thermal", "crates/estimator", "crates/detector"].map(|name| root().join(name));
+    let folders = [".", "crates/thermal", "crates/estimator", "crates/detector", "crates/evaluation"]
+        .map(|name| root().join(name));
     for page in pages() {
         let text = read(&page);
         for (flag, folder) in [("--example ", "examples"), ("--bench ", "benches")] {

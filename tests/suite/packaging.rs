@@ -6,24 +6,37 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// The packages that a library is built from, itself among them.
+fn tree(package: &str, edges: &str) -> Vec<String> {
+    let arguments = ["tree", "-p", package, "-e", edges, "--prefix", "none", "--offline", "--locked"];
+    let output = Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let tree = String::from_utf8(output.stdout).unwrap();
+    assert!(tree.starts_with(package), "{tree}");
+    tree.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect()
+}
+
 #[test]
 fn the_libraries_depend_on_nothing_that_draws_reads_arguments_or_writes_files() {
-    for package in ["cylwatch-thermal", "cylwatch-estimator", "cylwatch-detector"] {
-        let arguments = ["tree", "-p", package, "-e", "normal", "--prefix", "none", "--offline", "--locked"];
-        let output = Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().unwrap();
-        let tree = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        assert!(tree.starts_with(package), "{tree}");
+    for package in ["cylwatch-thermal", "cylwatch-estimator", "cylwatch-detector", "cylwatch-evaluation"] {
+        let tree = tree(package, "normal");
         for foreign in ["plotters", "clap", "parquet", "indicatif", "flate2", "anyhow"] {
-            let found = tree.lines().any(|line| line.split(' ').next() == Some(foreign));
-            assert!(!found, "{package} depends on {foreign}:\n{tree}");
+            assert!(!tree.iter().any(|found| found == foreign), "{package} depends on {foreign}");
         }
     }
 }
 
 #[test]
+fn what_runs_beside_a_sensor_does_without_what_judges_it_even_in_its_tests() {
+    for package in ["cylwatch-thermal", "cylwatch-estimator", "cylwatch-detector"] {
+        let tree = tree(package, "all");
+        assert!(!tree.iter().any(|found| found == "cylwatch-evaluation"), "{package}");
+    }
+}
+
+#[test]
 fn every_package_has_a_readme_and_its_licences() {
-    for package in ["thermal", "estimator", "detector"] {
+    for package in ["thermal", "estimator", "detector", "evaluation"] {
         let folder = root().join("crates").join(package);
         for file in ["README.md", "LICENSE-MIT", "LICENSE-APACHE"] {
             assert!(folder.join(file).exists(), "{} has no {file}", folder.display());

@@ -97,14 +97,6 @@ pub enum DetectorError {
         /// Number of readings.
         found: usize,
     },
-    /// A record has no sensor of that name.
-    #[error("there is no sensor `{sensor}`: there are {known}")]
-    NoSuchSensor {
-        /// Name that was asked for.
-        sensor: String,
-        /// Names that there are.
-        known: String,
-    },
     /// An alarm is in a state in which something cannot be done to it.
     #[error("the alarm cannot be {act}: {reason}")]
     AlarmState {
@@ -122,18 +114,6 @@ pub enum DetectorError {
     /// The observer's bank lacks a member that the evidence needs.
     #[error("the observer's bank must have a member whose mass walks and another one whose leak rate walks")]
     Bank,
-    /// A detector's statistic says too little to set its threshold.
-    #[error(
-        "{detector} gives a statistic on {found} of the cylinders for training, {needed} are needed: give it more time to learn, or more cylinders"
-    )]
-    Silent {
-        /// Name of the detector.
-        detector: String,
-        /// Cylinders with a statistic.
-        found: usize,
-        /// Cylinders needed.
-        needed: usize,
-    },
 }
 
 /// `value` if it is positive and finite.

@@ -7,7 +7,7 @@
 //! [`evidence`] turns what the observer says into statistics on time scales from an hour to a month, with thresholds.
 //! [`prognosis`] turns mass and leak rate with their joint uncertainty into the time until a limit and the reaction that
 //! is due. [`monitor`] puts all of it behind one call a row: readings in, [`Verdict`](monitor::Verdict), events and
-//! alarms out; [`performance`] measures what detectors are worth.
+//! alarms out.
 //!
 //! ```
 //! use cylwatch_detector::monitor::{Monitor, MonitorSettings};
@@ -33,7 +33,6 @@ pub mod calibrate;
 pub mod error;
 pub mod evidence;
 pub mod monitor;
-pub mod performance;
 pub mod prognosis;
 pub mod statistic;
 

@@ -86,35 +86,6 @@ pub enum EstimatorError {
         /// Time of the last row, s; NaN: there was none.
         last_s: f64,
     },
-    /// A setting of the generator of truths is out of range.
-    #[error("truth setting {setting} = {value} must be between {low} and {high}")]
-    TruthSetting {
-        /// Name of the setting.
-        setting: &'static str,
-        /// Its value.
-        value: f64,
-        /// Smallest allowed value.
-        low: f64,
-        /// Largest allowed value.
-        high: f64,
-    },
-    /// The vessel has no such place for a sensor.
-    #[error("the vessel has no {place} for a sensor: take one with shoulder and valve")]
-    NoSuchPlace {
-        /// Name of the place.
-        place: &'static str,
-    },
-    /// A file of a truth cannot be read.
-    #[error("line {line} of the truth file: {reason}: write the file anew")]
-    TruthFile {
-        /// Line, from 1.
-        line: usize,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// Reading or writing failed.
-    #[error(transparent)]
-    Io(#[from] std::io::Error),
     /// A covariance has no inverse, and the chosen form carries the inverse.
     #[error("the covariance has no inverse: other states explain state {state}; carry it in another form")]
     CovarianceSingular {

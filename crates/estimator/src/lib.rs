@@ -10,7 +10,7 @@
 //! | [`filter`], [`observer`] | linear algebra of filters and smoothers; the cylinder's states on top of it |
 //! | [`identify`], [`calibrate`] | transfer functions and physical parameters from logs |
 //! | [`placement`] | where sensors should sit, with a bound on what was missed |
-//! | [`consistency`], [`bound`], [`truth`] | how an estimator is judged |
+//! | [`consistency`], [`bound`] | how an estimator is judged |
 //!
 //! ```
 //! use cylwatch_estimator::observer::{Commissioning, Observer, ObserverSettings};
@@ -41,7 +41,6 @@ pub mod minimum;
 pub mod observer;
 pub mod placement;
 pub mod sensor;
-pub mod truth;
 
 pub use cylwatch_thermal as thermal;
 pub use error::EstimatorError;

@@ -1,12 +1,26 @@
 //! Worlds that judge: cylinders, weather, sensors and faults drawn from seeds, and what an estimator or a monitor makes of them.
 //!
 //! The truth that judges differs from the model inside the product, and from the family that its tuning saw. Nothing of the
-//! product depends on this crate. [`world`] draws and simulates, [`judge`] runs candidates and scores them.
+//! product depends on this crate.
+//!
+//! | part | what |
+//! |---|---|
+//! | [`world`] | worlds that judge: vessel, climate, gas, sensors and rows, drawn by seed, with what really happened |
+//! | [`truth`] | drawn cylinders in railway weather, read by drawn sensors; how good an observer was |
+//! | [`fault`] | faults put into good rows, and what a monitor must make of them |
+//! | [`performance`] | what detectors are worth, side by side on the same cylinders |
+//! | [`judge`] | runs candidates on worlds and writes the table by family |
+//! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
+pub mod error;
+pub mod fault;
 pub mod judge;
-#[allow(dead_code, reason = "taken over with the truths")]
+pub mod performance;
+pub mod placement;
 mod random;
+pub mod truth;
 pub mod world;
 
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;
 pub use cylwatch_thermal as thermal;
+pub use error::EvaluationError;

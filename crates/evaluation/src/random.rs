@@ -21,6 +21,29 @@ pub(crate) enum Purpose {
     MiddleNoise,
     BottomNoise,
     PressureNoise,
+    WorldVessel,
+    WorldGas,
+    WorldFill,
+    WorldClock,
+    WorldAir,
+    WorldWeather,
+    WorldStays,
+    WorldTrips,
+    WorldWind,
+    WorldSun,
+    WorldHeater,
+    WorldShowers,
+    WorldTurbulence,
+    WorldGusts,
+    WorldDifference,
+    WorldFlow,
+    WorldSensors,
+    WorldShoulderNoise,
+    WorldValveNoise,
+    WorldPressureNoise,
+    WorldRows,
+    WorldGaps,
+    WorldFault,
 }
 
 /// Random numbers of one seed for one purpose.
@@ -47,6 +70,16 @@ impl Random {
     pub fn either_sign(&mut self, magnitude: (f64, f64)) -> f64 {
         let sign = if self.0.random::<bool>() { 1.0 } else { -1.0 };
         sign * self.uniform(magnitude)
+    }
+
+    /// Evenly by the logarithm between two positive bounds.
+    pub fn by_logarithm(&mut self, (low, high): (f64, f64)) -> f64 {
+        low * (high / low).powf(self.0.random::<f64>())
+    }
+
+    /// True with a probability.
+    pub fn happens(&mut self, probability: f64) -> bool {
+        self.0.random::<f64>() < probability
     }
 
     /// Standard normal.

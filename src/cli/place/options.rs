@@ -1,10 +1,9 @@
 //! Options that fit each other.
 use super::*;
 use cylwatch::detector::calibrate::signature_threshold_sd;
-use cylwatch::detector::performance::YEAR_S;
 use cylwatch::estimator::placement::search::Method;
-use cylwatch::estimator::placement::study::ClosedLoopSettings;
 use cylwatch::estimator::placement::{Criterion, DetectionSettings, PublishedSettings, SiteSettings};
+use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::report::number;
 use std::path::Path;
 
@@ -18,6 +17,7 @@ impl Options {
     pub fn checked(arguments: PlaceArguments) -> anyhow::Result<Self> {
         let scenarios = scenarios(&arguments.scenarios)?;
         let settings = settings(&arguments, scenarios.is_empty())?;
+        let runs = runs(&arguments);
         let candidates = arguments.candidates.as_ref().map(|path| path.to_string_lossy().into_owned());
         let mut inputs: Vec<&Path> = vec![Path::new(&arguments.vessel)];
         inputs.extend(scenarios.iter().map(Path::new));
@@ -39,6 +39,7 @@ impl Options {
             scenarios,
             candidates,
             settings,
+            runs,
             time_limit,
             data,
             format,
@@ -107,12 +108,16 @@ fn settings(arguments: &PlaceArguments, at_rest_only: bool) -> anyhow::Result<St
         within: not_negative("within-percent", arguments.within_percent)? / 100.0,
         leak_kg_s: arguments.amounts.leak_kg_s()?.unwrap_or(usual.leak_kg_s),
         published: PublishedSettings { first_seed: arguments.seed, ..usual.published },
-        closed_loop: ClosedLoopSettings {
-            matched: arguments.confirm,
-            mismatched: if arguments.confirm > 0 { arguments.confirm.div_ceil(5).max(2) } else { 0 },
-            first_seed: arguments.seed,
-        },
     })
+}
+
+/// Runs in the observer's own world as asked for, and a fifth as many in drawn cylinders.
+fn runs(arguments: &PlaceArguments) -> ClosedLoopSettings {
+    ClosedLoopSettings {
+        matched: arguments.confirm,
+        mismatched: if arguments.confirm > 0 { arguments.confirm.div_ceil(5).max(2) } else { 0 },
+        first_seed: arguments.seed,
+    }
 }
 
 /// Where the cylinder rests, and when a leak counts as found.

@@ -1,7 +1,7 @@
 //! A bench as CSV, a row for each detector and rate, and as JSON with all that is known.
 use super::{HOUR_S, PASCAL_PER_BAR, bar_h};
-use crate::detector::performance::Row;
-use crate::detector::performance::bench::{Judged, Outcome};
+use crate::evaluation::performance::Row;
+use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::report::{Provenance, number};
 use serde_json::{Value, json};
 
@@ -64,7 +64,7 @@ fn numbers(judged: &Judged, row: &Row) -> [Option<f64>; 25] {
         Some(reliability.alarms as f64),
         Some(reliability.cylinder_years()),
         Some(reliability.per_year()),
-        Some(reliability.per_year_interval(crate::detector::performance::CONFIDENCE).1),
+        Some(reliability.per_year_interval(crate::evaluation::performance::CONFIDENCE).1),
         Some(bar_h(row.rate_pa_s)),
         Some(row.leaks as f64),
         Some(row.found as f64),

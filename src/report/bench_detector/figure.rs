@@ -1,6 +1,6 @@
 //! Delay against leak rate, all detectors in one figure.
 use super::{HOUR_S, bar_h};
-use crate::detector::performance::bench::{Judged, Outcome};
+use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
 
 /// Median delays with their 95 % intervals, and the shortest possible delay.

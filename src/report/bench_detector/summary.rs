@@ -1,7 +1,7 @@
 //! A bench in a few lines and two tables for people.
 use super::bar_h;
-use crate::detector::performance::bench::{Judged, Outcome};
-use crate::detector::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
+use crate::evaluation::performance::bench::{Judged, Outcome};
+use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
 use crate::report::{Story, number};
 
 const DAY_S: f64 = 86_400.0;

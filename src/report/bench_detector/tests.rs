@@ -1,8 +1,8 @@
 //! A bench that was never run.
 use super::{csv, figure, story};
-use crate::detector::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
-use crate::detector::performance::{Performance, Run, TrueLeak};
 use crate::detector::statistic::Noise;
+use crate::evaluation::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
+use crate::evaluation::performance::{Performance, Run, TrueLeak};
 use crate::report::Provenance;
 use crate::report::figure::Item;
 

@@ -1,12 +1,12 @@
 //! What the best layouts achieve in Monte Carlo runs, beside what is predicted.
 use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit};
-use crate::estimator::placement::confirm::{Achieved, Confirmed, Detected};
+use crate::evaluation::placement::{Achieved, Confirmed, Detected};
 use crate::report::Story;
 
 impl Placed<'_> {
     /// Errors and smallest leaks in the observer's own world, then in drawn ones.
     pub(super) fn achieved(&self) -> Story {
-        let Some(closed_loop) = &self.study.closed_loop else { return Story::default() };
+        let Some(closed_loop) = self.closed_loop else { return Story::default() };
         let parts = [
             self.errors("In the observer's own world, a calm one", &closed_loop.matched),
             self.leaks("Smallest leak there", &closed_loop.matched_leaks),

@@ -55,13 +55,18 @@ impl Placed<'_> {
         let mut document = Map::new();
         let criterion = self.study.settings.criterion;
         document.insert("provenance".into(), provenance.to_json());
-        document.insert("partial".into(), json!(self.study.partial));
+        document.insert("partial".into(), json!(self.is_partial()));
         let words = json!({ "name": criterion.as_str(), "words": criterion.words(), "unit": Unit::of(criterion).symbol });
         document.insert("criterion".into(), words);
         document.insert("best".into(), self.study.numbers.iter().map(|number| self.best(number)).collect());
-        if let Ok(Value::Object(study)) = serde_json::to_value(self.study) {
+        if let Ok(Value::Object(mut study)) = serde_json::to_value(self.study) {
+            study.insert("partial".into(), json!(self.is_partial()));
             document.extend(study);
         }
+        if let Some(Value::Object(settings)) = document.get_mut("settings") {
+            settings.insert("closed_loop".into(), json!(self.runs));
+        }
+        document.insert("closed_loop".into(), json!(self.closed_loop));
         Value::Object(document)
     }
 

@@ -28,7 +28,7 @@ impl Placed<'_> {
         let outline = Outline::of(self.vessel);
         let lies = self.vessel.geometry.orientation == Orientation::Horizontal;
         let best = self.study.numbers.last().and_then(|number| number.layouts.first());
-        let partial = if self.study.partial { " (partial)" } else { "" };
+        let partial = if self.is_partial() { " (partial)" } else { "" };
         let title = match best {
             Some(best) => format!(
                 "Best {} sensors by the {}, and one anywhere{partial}",

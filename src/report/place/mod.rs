@@ -27,6 +27,7 @@ use crate::estimator::log::Quantity;
 use crate::estimator::placement::study::Study;
 use crate::estimator::placement::{Candidates, Criterion, Status};
 use crate::estimator::sensor::{SensorKind, SurfacePlace};
+use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings};
 use crate::thermal::vessel::Vessel;
 
 /// What the figure shows.
@@ -51,6 +52,10 @@ pub struct Placed<'a> {
     pub candidates: &'a Candidates,
     /// Its vessel.
     pub vessel: &'a Vessel,
+    /// Monte Carlo runs that were asked for.
+    pub runs: ClosedLoopSettings,
+    /// What the best layouts of most sensors achieve in them; `None`: there were none.
+    pub closed_loop: Option<&'a ClosedLoop>,
 }
 
 /// A unit that people think in.
@@ -89,6 +94,11 @@ impl Unit {
 }
 
 impl Placed<'_> {
+    /// Whether study or runs were stopped before their end.
+    pub fn is_partial(&self) -> bool {
+        self.study.partial || self.closed_loop.is_some_and(|found| found.partial)
+    }
+
     fn name(&self, sensor: usize) -> &str {
         self.study.candidates.get(sensor).map_or("?", String::as_str)
     }

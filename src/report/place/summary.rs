@@ -38,8 +38,11 @@ impl Placed<'_> {
         let settings = &study.settings;
         let (conditions, detection) = (&settings.site.conditions, &settings.site.detection);
         let degc = |kelvin: f64| format!("{} °C", number(kelvin - ZERO_CELSIUS_K, 3));
-        let partial =
-            if study.partial { "PARTIAL: the search was ended early, what is here is not all\n" } else { "" };
+        let partial = if self.is_partial() {
+            "PARTIAL: the search was ended early, what is here is not all\n"
+        } else {
+            ""
+        };
         let budget = if settings.budget.is_finite() {
             format!(", at a cost of at most {}", number(settings.budget, 4))
         } else {

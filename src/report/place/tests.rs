@@ -6,6 +6,7 @@ use crate::estimator::placement::study::{
     Bias, BiasSource, Failure, Front, Judged, Numbered, Point, Position, Proof, Study, StudySettings,
 };
 use crate::estimator::placement::{Along, Candidates, Certainty, Variant};
+use crate::evaluation::placement::ClosedLoopSettings;
 use crate::report::Provenance;
 use crate::thermal::vessel::{Vessel, presets};
 
@@ -20,7 +21,13 @@ struct Known {
 
 impl Known {
     fn placed(&self) -> Placed<'_> {
-        Placed { study: &self.study, candidates: &self.candidates, vessel: &self.vessel }
+        Placed {
+            study: &self.study,
+            candidates: &self.candidates,
+            vessel: &self.vessel,
+            runs: ClosedLoopSettings::default(),
+            closed_loop: None,
+        }
     }
 }
 
@@ -137,7 +144,6 @@ fn known() -> Known {
         ],
         refused: Vec::new(),
         published: None,
-        closed_loop: None,
         partial: false,
     };
     Known { vessel, candidates, study }

@@ -2,7 +2,7 @@
 //!
 //! The numbers were fitted to leak-free winters of mismatched cylinders under a train:
 //!
-//! `cargo run --release -p cylwatch-detector --example long_run -- FOLDER train`, then `... -- FOLDER fit`
+//! `cargo run --release -p cylwatch-evaluation --example long_run -- FOLDER train`, then `... -- FOLDER fit`
 use serde::{Deserialize, Serialize};
 
 use super::{Scale, Statistics, Tail, Tails};

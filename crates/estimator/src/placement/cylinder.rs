@@ -352,7 +352,10 @@ fn scale(kind: &StateKind, candidates: &[Sensor]) -> f64 {
 }
 
 /// The state of a cylinder at rest, its surroundings at a temperature of their own.
-pub(super) fn state_at(
+///
+/// # Errors
+/// The filling is no state of the gas.
+pub fn state_at(
     cylinder: &mut Cylinder,
     vessel: &Vessel,
     conditions: &Conditions,

@@ -17,7 +17,6 @@
 //! | [`Site`], [`Response`] | a layout at rest: certainty, smallest leak, delay, biases, faults |
 //! | [`Course`] | a layout along a scenario, with model error as consider parameters |
 //! | [`study`] | the study that puts all of it together |
-//! | [`confirm`] | whether layouts achieve what is predicted, by Monte Carlo |
 //! | [`published_scores`] | each position by itself, by the paper's own measure |
 //!
 //! The gap between the best that was found and the bound is part of every result: greedy search can be arbitrarily bad for this
@@ -26,7 +25,6 @@
 //! Sources: Joshi and Boyd 2009 (relaxation and gap); Sagnol 2011 (optimal design as a second-order cone program).
 mod candidate;
 pub mod certificate;
-pub mod confirm;
 mod constraints;
 pub mod course;
 mod criterion;
@@ -43,7 +41,6 @@ pub mod study;
 pub use candidate::{
     Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
 };
-pub use confirm::{Achieved, Claim, ConfirmSettings, Confirmation, Confirmed};
 pub use constraints::{Constraints, Group};
 pub use course::{Along, AlongCourse, Course, CourseNumber, Variant};
 pub use criterion::Criterion;

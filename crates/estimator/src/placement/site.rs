@@ -98,7 +98,7 @@ impl Site {
     }
 
     /// The first member of the bank, and the one that gives gas temperature, leak rate and the innovations that tell a leak.
-    pub(super) fn members(&self) -> (&LeakHypothesis, &LeakHypothesis) {
+    pub fn members(&self) -> (&LeakHypothesis, &LeakHypothesis) {
         let bank = &self.settings.observer.bank;
         (&bank[0], &bank[middle_slow(bank).unwrap_or(0)])
     }

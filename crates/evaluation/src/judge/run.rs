@@ -255,7 +255,7 @@ impl<S: Source> Running<'_, S> {
             let watched = watch(world, named.candidate.as_ref());
             times.candidates_s.push((named.name.clone(), watched.candidate_s));
             times.scoring_s += watched.scoring_s;
-            scores.push(watched.score);
+            scores.push(watched.score.and_then(readable));
         }
         Entry { facts: Ok(facts), scores }
     }
@@ -280,6 +280,13 @@ impl<S: Source> Running<'_, S> {
         (self.progress)(Progress { done, all, failed });
         Ok(())
     }
+}
+
+/// A score that can be read back: JSON has no numbers that are not finite.
+fn readable(score: Score) -> Result<Score, String> {
+    let text = serde_json::to_string(&score).map_err(|error| error.to_string())?;
+    serde_json::from_str::<Score>(&text).map_err(|error| format!("a sum is no number: {error}"))?;
+    Ok(score)
 }
 
 /// A result whose error is words, of something that may panic.

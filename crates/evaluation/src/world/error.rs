@@ -1,7 +1,8 @@
 //! What can be wrong with a request for a world.
-use cylwatch_detector::DetectorError;
 use cylwatch_estimator::EstimatorError;
 use cylwatch_thermal::ThermalError;
+
+use crate::EvaluationError;
 
 /// A world that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -51,5 +52,5 @@ pub enum WorldError {
     Estimator(#[from] EstimatorError),
     /// A fault cannot be laid over the rows.
     #[error(transparent)]
-    Detector(#[from] DetectorError),
+    Fault(#[from] EvaluationError),
 }

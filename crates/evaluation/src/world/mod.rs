@@ -3,22 +3,37 @@
 //! A [`Request`] decides a [`World`] on every machine: the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
 //! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
 //! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
+mod climate;
+mod compose;
 mod error;
 mod family;
+mod fill;
+mod flows;
+mod gas;
 mod overlay;
+mod reading;
+mod regime;
+mod rows;
+mod sensors;
 mod simulation;
+mod slow;
 mod told;
 mod truth;
+mod vessel;
 
 use cylwatch_estimator::log::Log;
 use serde::{Deserialize, Serialize};
 
 pub use error::WorldError;
 pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
+pub use fill::FillDraw;
+pub use gas::GasDraw;
 pub use overlay::{FaultRow, Overlay};
-pub use simulation::{Simulated, SimulationKey};
+pub use sensors::{SensorDraw, Thermometer, Transmitter};
+pub use simulation::{CylinderDraw, Simulated, SimulationKey};
 pub use told::Told;
 pub use truth::{Happening, HappeningKind, Regime, Truth};
+pub use vessel::VesselDraw;
 
 /// Everything that decides a world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,10 +81,21 @@ pub struct World {
     pub truth: Truth,
     /// What was done, in the order of its beginning.
     pub happenings: Vec<Happening>,
+    /// What was drawn.
+    pub drawn: Drawn,
+}
+
+/// What was drawn for a world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drawn {
+    /// Cylinder, gas and fill.
+    pub cylinder: CylinderDraw,
+    /// Sensors.
+    pub sensors: SensorDraw,
 }
 
 /// State that a monitor finds when the power comes back.
-pub type Snapshot = cylwatch_detector::performance::fault::Snapshot;
+pub type Snapshot = crate::fault::Snapshot;
 
 /// The world of a request.
 ///

@@ -1,8 +1,10 @@
 //! What is laid over a world: leaks, fast losses, discharges, refills, and the faults of the fault table.
 use serde::{Deserialize, Serialize};
 
+use super::WorldError;
+
 /// A row of the fault table.
-pub type FaultRow = cylwatch_detector::performance::fault::TableRow;
+pub type FaultRow = crate::fault::TableRow;
 
 /// What is laid over a world. Parts are of the gas that the cylinder begins with; onsets are true times from the start of the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -56,4 +58,58 @@ pub enum Overlay {
         /// Onset, s.
         onset_s: f64,
     },
+}
+
+/// Largest leak that is laid over a finished simulation, part of the gas per hour, and largest part that it may lose in all: what
+/// the gas then misses of its own cooling by expansion stays below a transmitter's noise.
+const SLOW_PART_PER_H: f64 = 1e-3;
+const SLOW_PART: f64 = 0.2;
+const HOUR_S: f64 = 3600.0;
+
+impl Overlay {
+    /// Whether it changes the simulation; else it is laid over a finished one.
+    pub fn is_simulated(&self, length_s: f64) -> bool {
+        match *self {
+            Self::Nothing => false,
+            Self::Leak { part_per_h, onset_s } => {
+                part_per_h > SLOW_PART_PER_H || part_per_h * (length_s - onset_s).max(0.0) / HOUR_S > SLOW_PART
+            }
+            Self::FastLoss { .. } | Self::Discharge { .. } | Self::Refill { .. } => true,
+            Self::Fault { row, .. } => !row.is_of_data(),
+        }
+    }
+
+    /// When it begins, s; `None` for nothing.
+    pub const fn onset_s(&self) -> Option<f64> {
+        match *self {
+            Self::Nothing => None,
+            Self::Leak { onset_s, .. }
+            | Self::FastLoss { onset_s, .. }
+            | Self::Discharge { onset_s, .. }
+            | Self::Refill { onset_s, .. }
+            | Self::Fault { onset_s, .. } => Some(onset_s),
+        }
+    }
+
+    /// Check its numbers.
+    ///
+    /// # Errors
+    /// [`WorldError::Number`] with the first one outside its range.
+    pub fn validate(&self) -> Result<(), WorldError> {
+        let check = |what, value: f64, (low, high): (f64, f64)| {
+            let is_within = value >= low && value <= high;
+            if is_within { Ok(()) } else { Err(WorldError::Number { what, value, low, high }) }
+        };
+        check("onset_s", self.onset_s().unwrap_or(0.0), (0.0, 1e9))?;
+        match *self {
+            Self::Leak { part_per_h, .. } => check("part_per_h", part_per_h, (0.0, 10.0)),
+            Self::FastLoss { part, within_s, .. }
+            | Self::Discharge { part, within_s, .. }
+            | Self::Refill { part, within_s, .. } => {
+                check("part", part, (1e-6, 0.95))?;
+                check("within_s", within_s, (1.0, 1e7))
+            }
+            Self::Nothing | Self::Fault { .. } => Ok(()),
+        }
+    }
 }

@@ -1,7 +1,24 @@
 //! One simulation, that several sets of sensors, slow leaks and faults can be laid over.
+use cylwatch_thermal::scenario::{Initial, Scenario, Surroundings};
+use cylwatch_thermal::simulate::{SimulationSettings, simulate};
+use cylwatch_thermal::trajectory::{Ledger, Trajectory};
+use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
 
-use super::{Climate, Family, GasKind, Request, VesselKind, World, WorldError};
+use super::climate::{self, Span};
+use super::fill::{FillDraw, QUOTED_K};
+use super::flows::Filled;
+use super::gas::GasDraw;
+use super::vessel::VesselDraw;
+use super::{Climate, Family, GasKind, Overlay, Request, RowPattern, VesselKind, World, WorldError, compose};
+
+/// Shortest and longest log, s.
+const LENGTH_S: (f64, f64) = (900.0, 400.0 * 86_400.0);
+/// Spacing of the knots of turbulence and gusts, s, for rows of up to 10 s and for slower ones.
+const FINE_SPACING_S: f64 = 60.0;
+const COARSE_SPACING_S: f64 = 300.0;
+/// Longest interval of the samples, s.
+const SAMPLE_S: f64 = 60.0;
 
 /// What decides the cylinder and its surroundings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -24,25 +41,212 @@ impl SimulationKey {
     }
 }
 
+/// What was drawn for a cylinder and its gas.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CylinderDraw {
+    /// Vessel.
+    pub vessel: VesselDraw,
+    /// Gas, where it is stacked.
+    pub gas: GasDraw,
+    /// Fill.
+    pub fill: FillDraw,
+}
+
+/// Samples of a simulation at even times from 0 on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Samples {
+    pub interval_s: f64,
+    pub gas_mean_k: Vec<f64>,
+    pub mass_kg: Vec<f64>,
+    pub pressure_pa: Vec<f64>,
+    pub outflow_kg_s: Vec<f64>,
+    pub wall_mean_k: Vec<f64>,
+    pub shoulder_k: Vec<f64>,
+    pub valve_k: Vec<f64>,
+}
+
+impl Samples {
+    /// A column at a time of the simulation, s, linear between samples.
+    pub fn at(&self, column: &[f64], t_s: f64) -> f64 {
+        let place = (t_s / self.interval_s).max(0.0);
+        let knot = (place.floor() as usize).min(column.len() - 2);
+        let weight = (place - knot as f64).min(1.0);
+        column[knot] + weight * (column[knot + 1] - column[knot])
+    }
+
+    /// Times of the samples, s.
+    pub fn times_s(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.mass_kg.len()).map(|sample| sample as f64 * self.interval_s)
+    }
+
+    fn of(trajectory: Trajectory, interval_s: f64) -> Self {
+        let shoulder_k = trajectory.surface_k("shoulder").unwrap_or_default();
+        let Trajectory { gas_mean_k, mass_kg, pressure_pa, outflow_kg_s, wall_mean_k, valve_k, .. } = trajectory;
+        let valve_k = valve_k.unwrap_or_else(|| shoulder_k.clone());
+        Self { interval_s, gas_mean_k, mass_kg, pressure_pa, outflow_kg_s, wall_mean_k, shoulder_k, valve_k }
+    }
+}
+
 /// A simulated cylinder without sensors.
 #[derive(Clone, Debug)]
-pub struct Simulated;
+pub struct Simulated {
+    pub(super) key: SimulationKey,
+    /// Length of the longest log, s.
+    pub(super) length_s: f64,
+    /// Spacing of the knots of the weather, s.
+    pub(super) spacing_s: f64,
+    /// What was simulated on top of the climate.
+    pub(super) overlay: Overlay,
+    pub(super) drawn: CylinderDraw,
+    pub(super) nominal: Vessel,
+    pub(super) vessel: Vessel,
+    pub(super) surroundings: Surroundings,
+    pub(super) jumps_s: Vec<f64>,
+    pub(super) heated_s: Vec<(f64, f64)>,
+    pub(super) calm_flow: f64,
+    pub(super) samples: Samples,
+    ledger: Ledger,
+}
 
 impl Simulated {
     /// Simulate what a request needs: its cylinder, its surroundings, its fast flows.
     ///
     /// # Errors
     /// A request out of range, or a simulation that fails.
-    pub fn run(_request: &Request) -> Result<Self, WorldError> {
-        todo!("types first")
+    pub fn run(request: &Request) -> Result<Self, WorldError> {
+        request.validate()?;
+        let key = SimulationKey::of(request);
+        let drawn = CylinderDraw {
+            vessel: VesselDraw::draw(key.seed),
+            gas: GasDraw::draw(key.seed),
+            fill: FillDraw::draw(key.vessel, key.seed),
+        };
+        let nominal = key.vessel.nominal()?;
+        let mut vessel = drawn.vessel.apply(&nominal);
+        key.gas.resolve(&mut vessel, &drawn.gas);
+        let (spacing_s, sample_s) = (spacing_s(request.family.rows), sample_s(request.family.rows));
+        let span = Span::draw(key.seed, drawn.fill.lead_s, request.length_s, spacing_s);
+        let around = climate::surroundings(key.climate, &span, drawn.vessel.outside_film, drawn.vessel.film_slope)?;
+        let overlay = if request.overlay.is_simulated(request.length_s) { request.overlay } else { Overlay::Nothing };
+        let mut scenario = scenario(&key, &span, &drawn.fill, around.surroundings, sample_s);
+        let fluid = &vessel.fluid;
+        let density = fluid.density_from_pressure_temperature(drawn.fill.pressure_pa, QUOTED_K)?;
+        let filled = Filled {
+            kind: key.vessel,
+            vessel: &vessel,
+            seed: key.seed,
+            pressure_pa: drawn.fill.pressure_pa,
+            mass_kg: density * vessel.volume.volume_m3(QUOTED_K, drawn.fill.pressure_pa),
+            lead_s: drawn.fill.lead_s,
+        };
+        scenario.flows = filled.flows(&overlay)?;
+        let settings = SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
+        let trajectory = simulate(&vessel, &scenario, &settings, &mut |_| ())?;
+        let ledger = trajectory.ledger;
+        Ok(Self {
+            key,
+            length_s: request.length_s,
+            spacing_s,
+            overlay,
+            drawn,
+            nominal,
+            vessel,
+            surroundings: scenario.surroundings,
+            jumps_s: around.jumps_s,
+            heated_s: around.heated_s,
+            calm_flow: around.calm_flow,
+            samples: Samples::of(trajectory, sample_s),
+            ledger,
+        })
     }
 
-    /// The world of a request over this simulation. The request may differ from that of [`Simulated::run`] in sensors, rows no
-    /// closer, set, a shorter length, slow leaks and faults of data.
+    /// The world of a request over this simulation. The request may differ from that of [`Simulated::run`] in sensors, set, rows
+    /// that need no other samples, a shorter length, slow leaks and faults of data.
     ///
     /// # Errors
     /// A request that needs another simulation.
-    pub fn world(&self, _request: &Request) -> Result<World, WorldError> {
-        todo!("types first")
+    pub fn world(&self, request: &Request) -> Result<World, WorldError> {
+        request.validate()?;
+        self.check(request)?;
+        compose::world(self, request)
+    }
+
+    /// Balance of mass and energy of the simulation.
+    pub const fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// What was drawn for the cylinder.
+    pub const fn drawn(&self) -> &CylinderDraw {
+        &self.drawn
+    }
+
+    /// Times at which the air begins to jump, s from the start of the log.
+    pub fn jumps_s(&self) -> impl Iterator<Item = f64> + '_ {
+        self.jumps_s.iter().map(|t| t - self.drawn.fill.lead_s)
+    }
+
+    fn check(&self, request: &Request) -> Result<(), WorldError> {
+        let needs = request.overlay.is_simulated(request.length_s);
+        let same_overlay = if needs { request.overlay == self.overlay } else { self.overlay == Overlay::Nothing };
+        let is_same = SimulationKey::of(request) == self.key
+            && same_overlay
+            && request.length_s <= self.length_s
+            && spacing_s(request.family.rows) == self.spacing_s
+            && sample_s(request.family.rows) >= self.samples.interval_s;
+        if is_same {
+            return Ok(());
+        }
+        let text = |key: &SimulationKey, overlay: &Overlay, length_s: f64, spacing_s: f64| {
+            let SimulationKey { vessel, climate, gas, seed } = key;
+            format!("{vessel}/{climate}/{gas}, seed {seed}, {length_s} s, knots every {spacing_s} s, {overlay:?}")
+        };
+        let spacing = spacing_s(request.family.rows);
+        Err(WorldError::OtherSimulation {
+            simulated: text(&self.key, &self.overlay, self.length_s, self.spacing_s),
+            needed: text(&SimulationKey::of(request), &request.overlay, request.length_s, spacing),
+        })
+    }
+}
+
+impl Request {
+    /// Check the numbers.
+    ///
+    /// # Errors
+    /// [`WorldError::Number`] with the first one outside its range.
+    pub fn validate(&self) -> Result<(), WorldError> {
+        let (low, high) = LENGTH_S;
+        if !(low..=high).contains(&self.length_s) {
+            return Err(WorldError::Number { what: "length_s", value: self.length_s, low, high });
+        }
+        self.overlay.validate()
+    }
+}
+
+/// Spacing of the weather's knots for rows, s.
+const fn spacing_s(rows: RowPattern) -> f64 {
+    match rows {
+        RowPattern::EverySecond | RowPattern::TenSeconds => FINE_SPACING_S,
+        RowPattern::Minute | RowPattern::TwoMinutes | RowPattern::FiveMinutes => COARSE_SPACING_S,
+    }
+}
+
+/// Interval of the samples for rows, s.
+const fn sample_s(rows: RowPattern) -> f64 {
+    rows.interval_s().min(SAMPLE_S)
+}
+
+fn scenario(key: &SimulationKey, span: &Span, fill: &FillDraw, surroundings: Surroundings, sample_s: f64) -> Scenario {
+    let settled_k = surroundings.air_k.at(0.0);
+    Scenario {
+        name: format!("{}, seed {}", key.climate, key.seed),
+        initial: Initial { fill: fill.fill(), wall_temperature_k: settled_k, gas_temperature_k: settled_k },
+        surroundings,
+        flows: Vec::new(),
+        pressure_limits_pa: Vec::new(),
+        sensors: Vec::new(),
+        // A sample beyond the last row.
+        duration_s: span.duration_s + sample_s,
+        sample_time_s: sample_s,
     }
 }

@@ -71,6 +71,13 @@ pub struct Happening {
     pub announced: bool,
 }
 
+impl Happening {
+    /// Something that happens to the rows alone.
+    pub(super) const fn of_rows(kind: HappeningKind, (start_s, end_s): (f64, f64)) -> Self {
+        Self { kind, start_s, end_s, lost_kg: 0.0, announced: false }
+    }
+}
+
 /// What was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -12,10 +12,8 @@
 //! | [`Bias`] | what a sensor's offset, its mounting and the sun do to the estimates |
 //! | [`Position`] | one thermometer anywhere on the wall |
 //! | [`ByPaper`] | the same positions by the paper's measure |
-//! | [`ClosedLoop`] | what the best layouts achieve in Monte Carlo runs |
 //!
 //! A study that is stopped keeps what it has and says that it is partial.
-mod closed_loop;
 mod failure;
 mod front;
 mod judged;
@@ -39,7 +37,6 @@ use crate::EstimatorError;
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
 
-pub use closed_loop::{ClosedLoop, ClosedLoopSettings};
 pub use failure::{Bias, BiasSource, Failure};
 pub use front::{Front, Point};
 pub use judged::Judged;
@@ -49,7 +46,7 @@ pub use published::ByPaper;
 /// Layouts up to which all are looked at if no method is asked for.
 const ALL_LAYOUTS: f64 = 20_000.0;
 /// Layouts by one criterion that are judged by all others, for each number of sensors.
-const JUDGED: usize = 5;
+pub const JUDGED: usize = 5;
 
 /// What is asked of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,8 +67,6 @@ pub struct StudySettings {
     pub leak_kg_s: f64,
     /// The paper's measure.
     pub published: PublishedSettings,
-    /// Monte Carlo runs of the best layouts of most sensors.
-    pub closed_loop: ClosedLoopSettings,
 }
 
 impl Default for StudySettings {
@@ -86,7 +81,6 @@ impl Default for StudySettings {
             within: 0.02,
             leak_kg_s: 0.01 / 3600.0,
             published: PublishedSettings::default(),
-            closed_loop: ClosedLoopSettings::default(),
         }
     }
 }
@@ -198,8 +192,6 @@ pub struct Study {
     pub positions: Vec<Position>,
     /// The same positions by the paper's measure; `None`: it was stopped before.
     pub published: Option<ByPaper>,
-    /// What the best layouts of most sensors achieve; `None`: no runs were asked for.
-    pub closed_loop: Option<ClosedLoop>,
     /// It was stopped before its end.
     pub partial: bool,
 }
@@ -241,6 +233,11 @@ impl Placement {
     /// The candidates.
     pub fn candidates(&self) -> &Candidates {
         &self.candidates
+    }
+
+    /// The vessel.
+    pub fn vessel(&self) -> &Vessel {
+        &self.vessel
     }
 
     /// What judges at rest.
@@ -313,16 +310,6 @@ impl Placement {
         };
         let positions = if going() { self.positions()? } else { Vec::new() };
         let published = if going() { Some(self.by_paper()?) } else { None };
-        let closed_loop = match numbers.last() {
-            Some(most)
-                if going()
-                    && self.settings.closed_loop.matched + self.settings.closed_loop.mismatched > 0 =>
-            {
-                let best = most.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone());
-                Some(self.confirm(&best.collect::<Vec<_>>(), &self.settings.closed_loop, watch)?)
-            }
-            _ => None,
-        };
         let list = &self.candidates.list;
         Ok(Study {
             vessel: self.vessel.name.clone(),
@@ -339,7 +326,6 @@ impl Placement {
             biases,
             positions,
             published,
-            closed_loop,
             partial: !going(),
         })
     }

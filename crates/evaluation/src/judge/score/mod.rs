@@ -157,7 +157,7 @@ impl<'a> Scorer<'a> {
             if statistic.is_finite() {
                 self.first_told_s.get_or_insert(now_s);
             }
-            self.trace.push(now_s, statistic, || None);
+            self.trace.push(now_s, statistic.min(f64::MAX), || None);
         }
         self.score.coverage.take(&moment, self.world);
         let innovation = said.innovation;

@@ -1,0 +1,91 @@
+//! Everything that can go wrong in this crate.
+
+/// What went wrong, with the offending value, the bound and the remedy.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// The thermal model refused.
+    #[error(transparent)]
+    Thermal(#[from] cylwatch_thermal::ThermalError),
+    /// The observer, or what its layouts are placed by, refused.
+    #[error(transparent)]
+    Estimator(#[from] cylwatch_estimator::EstimatorError),
+    /// A detector refused.
+    #[error(transparent)]
+    Detector(#[from] cylwatch_detector::DetectorError),
+    /// A setting is out of its bounds.
+    #[error("setting `{setting}` = {value} must be {bound}")]
+    Setting {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        bound: &'static str,
+    },
+    /// A setting of the generator of truths is out of range.
+    #[error("truth setting {setting} = {value} must be between {low} and {high}")]
+    TruthSetting {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Its value.
+        value: f64,
+        /// Smallest allowed value.
+        low: f64,
+        /// Largest allowed value.
+        high: f64,
+    },
+    /// The vessel has no such place for a sensor.
+    #[error("the vessel has no {place} for a sensor: take one with shoulder and valve")]
+    NoSuchPlace {
+        /// Name of the place.
+        place: &'static str,
+    },
+    /// A file of a truth cannot be read.
+    #[error("line {line} of the truth file: {reason}: write the file anew")]
+    TruthFile {
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A record has no sensor of that name.
+    #[error("there is no sensor `{sensor}`: there are {known}")]
+    NoSuchSensor {
+        /// Name that was asked for.
+        sensor: String,
+        /// Names that there are.
+        known: String,
+    },
+    /// Too few runs to set a threshold by.
+    #[error("{found} runs with a statistic are too few for a threshold: give at least {needed}")]
+    TooFewRuns {
+        /// Runs with a statistic.
+        found: usize,
+        /// Runs needed.
+        needed: usize,
+    },
+    /// A detector's statistic says too little to set its threshold.
+    #[error(
+        "{detector} gives a statistic on {found} of the cylinders for training, {needed} are needed: give it more time to learn, or more cylinders"
+    )]
+    Silent {
+        /// Name of the detector.
+        detector: String,
+        /// Cylinders with a statistic.
+        found: usize,
+        /// Cylinders needed.
+        needed: usize,
+    },
+    /// Reading or writing failed.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// `value` if it is positive and finite.
+pub(crate) fn positive(setting: &'static str, value: f64) -> Result<f64, EvaluationError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(EvaluationError::Setting { setting, value, bound: "positive and finite" })
+}

@@ -1,0 +1,122 @@
+//! The observers of all layouts before one truth.
+use super::tally::Tally;
+use super::{Achieved, Claim, Confirmation, Confirmed, Listener, Run, RunId};
+use crate::EvaluationError;
+use crate::estimator::observer::{Commissioning, Observer, ObserverSettings};
+use crate::estimator::placement::Objective;
+use crate::estimator::placement::cylinder::{Quantity, SitedCylinder};
+use crate::estimator::sensor::Sensor;
+
+/// The truth at a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Present {
+    pub gas_k: f64,
+    pub mass_kg: f64,
+    pub leak_kg_s: f64,
+}
+
+/// Errors of one run: gas temperature, mass, leak rate.
+type Tallies = [Tally; 3];
+
+/// One observer with what it has achieved so far.
+struct Seat<'a, L> {
+    layout: &'a [usize],
+    observer: Observer,
+    readings: Vec<f64>,
+    tallies: Tallies,
+    run: Run<L>,
+}
+
+/// The observers of all layouts.
+pub(super) struct Jury<'a, L> {
+    seats: Vec<Seat<'a, L>>,
+}
+
+/// What one seed leaves behind, layout by layout.
+pub(super) type Verdict<L> = Vec<(Tallies, Run<L>)>;
+
+impl<'a, L: Listener> Jury<'a, L> {
+    /// Observers that have read nothing yet, of candidates with priors as given.
+    pub fn new(
+        claim: &Claim<'a>,
+        candidates: &[Sensor],
+        settings: &ObserverSettings,
+        seed: u64,
+        listen: &impl Fn(RunId) -> L,
+    ) -> Result<Self, EvaluationError> {
+        let (pressure_pa, temperature_k) = claim.conditions.filling;
+        let commissioning = Commissioning::filled(pressure_pa, temperature_k);
+        let seat = |(index, layout): (usize, &'a Vec<usize>)| {
+            let sensors: Vec<Sensor> =
+                layout.iter().map(|candidate| candidates[*candidate].clone()).collect();
+            let id = RunId { seed, layout: index };
+            Ok(Seat {
+                layout,
+                observer: Observer::new(claim.vessel, &sensors, &commissioning, settings)?,
+                readings: vec![f64::NAN; layout.len()],
+                tallies: Tallies::default(),
+                run: Run { id, heard: listen(id) },
+            })
+        };
+        Ok(Self {
+            seats: claim.layouts.iter().enumerate().map(seat).collect::<Result<_, EvaluationError>>()?,
+        })
+    }
+
+    /// A row of readings of all candidates.
+    pub fn hear(
+        &mut self,
+        time_s: f64,
+        readings: &[f64],
+        truth: &Present,
+        is_judged: bool,
+    ) -> Result<(), EvaluationError> {
+        for Seat { layout, observer, readings: own, tallies, run } in &mut self.seats {
+            own.iter_mut().zip(*layout).for_each(|(own, candidate)| *own = readings[*candidate]);
+            let estimate = observer.step(time_s, own)?;
+            run.heard.hear(time_s, observer.innovations());
+            if is_judged {
+                let [gas, mass, leak] = tallies;
+                gas.add(estimate.gas_mean_k - truth.gas_k, estimate.gas_mean_sd_k);
+                mass.add(estimate.mass_kg - truth.mass_kg, estimate.mass_sd_kg);
+                leak.add(estimate.leak_kg_s - truth.leak_kg_s, estimate.leak_sd_kg_s);
+            }
+        }
+        Ok(())
+    }
+
+    pub fn verdict(self) -> Verdict<L> {
+        self.seats.into_iter().map(|seat| (seat.tallies, seat.run)).collect()
+    }
+}
+
+/// Verdicts of all seeds beside what was predicted.
+pub(super) fn confirmation<L>(
+    claim: &Claim<'_>,
+    sited: &SitedCylinder,
+    verdicts: Vec<Verdict<L>>,
+    partial: bool,
+) -> Confirmation<L> {
+    let quantities = [Quantity::GasTemperature, Quantity::Mass, Quantity::LeakRate];
+    let problems = quantities.map(|quantity| sited.problem(quantity).ok());
+    let confirmed = |(index, layout): (usize, &Vec<usize>)| {
+        let achieved = |position: usize| -> Option<Achieved> {
+            let runs: Vec<Tally> = verdicts.iter().map(|verdict| verdict[index].0[position]).collect();
+            let variance = problems[position].as_ref().map(|problem| problem.value(layout));
+            let predicted = variance.filter(|variance| variance.is_finite()).map(f64::sqrt);
+            Tally::achieved(&runs, predicted)
+        };
+        Some(Confirmed {
+            layout: layout.clone(),
+            seeds: verdicts.len() as u64,
+            gas_k: achieved(0)?,
+            mass_kg: achieved(1)?,
+            leak_kg_s: achieved(2),
+        })
+    };
+    Confirmation {
+        layouts: claim.layouts.iter().enumerate().filter_map(confirmed).collect(),
+        runs: verdicts.into_iter().flatten().map(|(_, run)| run).collect(),
+        partial,
+    }
+}

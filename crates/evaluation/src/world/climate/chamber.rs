@@ -1,0 +1,68 @@
+//! A climatic chamber that repeats four profiles, in an order drawn for each round.
+//!
+//! From 21 to -25 °C, -25 to 40 °C, evenly from 10 to 60 °C in 5 h, evenly from 60 to 28 °C in 14 h: the scenarios of Buecking, Pfaff,
+//! Dirksmeier, "Sensor positioning and thermal model for condition monitoring of pressure gas reservoirs in vehicles". Before each the
+//! chamber goes to its first temperature within an hour and rests there for 2 to 5 h; what they change at once takes 60 to 240 s here.
+//! Film 16 W/(m² K) by its fan; the walls have the temperature of the air.
+use super::Span;
+use super::part::{HOUR_S, MINUTE_S, Polyline};
+use super::weather::{Film, Unrest, Weather};
+use super::workshop::any_season;
+use crate::random::{Purpose, Random};
+
+/// From, °C; to, °C; duration of the change, s, 0: as fast as the chamber can; time until the next one, s.
+const PROFILES: [(f64, f64, f64, f64); 4] = [
+    (21.0, -25.0, 0.0, 3.0 * HOUR_S),
+    (-25.0, 40.0, 0.0, 3.45 * HOUR_S),
+    (10.0, 60.0, 5.0 * HOUR_S, 5.0 * HOUR_S),
+    (60.0, 28.0, 14.0 * HOUR_S, 14.0 * HOUR_S),
+];
+const FAST_S: (f64, f64) = (60.0, 240.0);
+const TRANSFER_S: f64 = HOUR_S;
+const REST_S: (f64, f64) = (2.0 * HOUR_S, 5.0 * HOUR_S);
+
+/// Air of the chamber, and the times at which fast changes begin.
+fn programme(span: &Span) -> (Polyline, Vec<f64>) {
+    let random = &mut Random::new(span.seed, Purpose::WorldHeater);
+    let (mut air, mut jumps_s) = (Polyline { time_s: Vec::new(), value: Vec::new() }, Vec::new());
+    let (mut t, mut round) = (0.0, Vec::new());
+    while t <= span.clock_end_s() {
+        if round.is_empty() {
+            round = PROFILES.to_vec();
+        }
+        let (from_degc, to_degc, change_s, after_s) = round.remove(random.whole((0, round.len() - 1)));
+        let is_fast = change_s == 0.0;
+        let change_s = if is_fast { random.uniform(FAST_S) } else { change_s };
+        let change_at_s = t + TRANSFER_S + random.uniform(REST_S);
+        for (at_s, degc) in [(t + TRANSFER_S, from_degc), (change_at_s, from_degc), (change_at_s + change_s, to_degc)] {
+            air.time_s.push(at_s);
+            air.value.push(degc);
+        }
+        t = change_at_s + after_s.max(change_s + MINUTE_S);
+        air.time_s.push(t);
+        air.value.push(to_degc);
+        jumps_s.extend(is_fast.then_some(change_at_s));
+    }
+    (air, jumps_s)
+}
+
+pub(super) fn draw(span: &Span) -> Weather {
+    let (air, jumps_s) = programme(span);
+    Weather {
+        outside: any_season().draw(span),
+        inside: Some(air),
+        stays: Vec::new(),
+        film: Film::Coefficient,
+        rest: 16.0,
+        rest_variation: 0.0,
+        trips: Vec::new(),
+        sun: Vec::new(),
+        daylight_s: (8.0 * HOUR_S, 16.0 * HOUR_S),
+        lit: (0.8, 1.0, false),
+        radiation_lag_s: 0.0,
+        sky_k: 0.0,
+        unrest: Unrest { turbulence_k: 0.2, gust: 0.05, difference_k: 0.5 },
+        jumps_s,
+        heated_s: Vec::new(),
+    }
+}

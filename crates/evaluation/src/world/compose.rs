@@ -1,0 +1,169 @@
+//! From a simulation to a world: rows, readings, truth, and what is laid over them.
+use cylwatch_estimator::log::{Channel, Log, Quantity};
+use cylwatch_estimator::sensor::SensorSuite;
+use cylwatch_thermal::transfer::outside::Body;
+
+use super::fill::QUOTED_K;
+use super::reading::{Place, read_pressure};
+use super::rows::Rows;
+use super::sensors::{SensorDraw, seed_of_set};
+use super::simulation::Simulated;
+use super::slow::SlowLeak;
+use super::truth::Truth;
+use super::{Drawn, Happening, HappeningKind, Overlay, Request, SimulationKey, Told, World, WorldError};
+use crate::random::Purpose;
+
+/// Heights of the thermometers above the middle, as fractions of the vessel's.
+const SHOULDER_ABOVE: f64 = 0.4;
+const VALVE_ABOVE: f64 = 0.5;
+
+/// The world of a request that fits a simulation.
+pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, WorldError> {
+    let family = request.family;
+    let seed = seed_of_set(request.seed, request.set);
+    let is_fault = matches!(request.overlay, Overlay::Fault { .. });
+    let rows = Rows::draw(family.rows, request.length_s, seed, is_fault);
+    let leak = SlowLeak::of(simulated, request);
+    let truth = truth(simulated, &rows.time_s, leak.as_ref())?;
+    let sensors = SensorDraw::draw(family.sensors, family.vessel, seed);
+    let log = readings(simulated, &sensors, &rows, &truth, seed);
+    let spec = sensors.told(family.sensors);
+    let suite: SensorSuite = spec.build()?;
+    let happenings = happenings(simulated, request, &rows, leak.as_ref());
+    let told = Told {
+        vessel: simulated.nominal.clone(),
+        vessel_toml: family.vessel.text(),
+        sensors: suite.sensors().to_vec(),
+        sensors_spec: spec,
+        commissioning: simulated.drawn.fill.commissioning(&simulated.nominal)?,
+        announced: announced(&happenings, &rows),
+    };
+    Ok(World {
+        request: *request,
+        simulation: SimulationKey::of(request),
+        told,
+        log,
+        historical: Vec::new(),
+        power_cycles: Vec::new(),
+        truth,
+        happenings,
+        drawn: Drawn { cylinder: simulated.drawn, sensors },
+    })
+}
+
+/// What really happened at times of the log, s.
+pub(super) fn truth(simulated: &Simulated, time_s: &[f64], leak: Option<&SlowLeak>) -> Result<Truth, WorldError> {
+    let lead_s = simulated.drawn.fill.lead_s;
+    let samples = &simulated.samples;
+    let column = |values: &[f64]| time_s.iter().map(|t| samples.at(values, t + lead_s)).collect::<Vec<f64>>();
+    let mut truth = Truth {
+        time_s: time_s.to_vec(),
+        gas_mean_k: column(&samples.gas_mean_k),
+        mass_absolute_kg: column(&samples.mass_kg),
+        pressure_pa: column(&samples.pressure_pa),
+        outflow_kg_s: column(&samples.outflow_kg_s),
+        air_k: time_s.iter().map(|t| simulated.surroundings.air_k.at(t + lead_s)).collect(),
+        wall_mean_k: column(&samples.wall_mean_k),
+        shoulder_k: column(&samples.shoulder_k),
+        valve_k: column(&samples.valve_k),
+        regime: simulated.regimes(time_s),
+        ..Truth::default()
+    };
+    if let Some(leak) = leak {
+        leak.apply(simulated, &mut truth);
+    }
+    let stated = 1.0 / simulated.drawn.vessel.volume;
+    truth.mass_kg = truth.mass_absolute_kg.iter().map(|mass| mass * stated).collect();
+    truth.outflow_kg_s.iter_mut().for_each(|flow| *flow *= stated);
+    truth.settled_pa = settled(simulated, &truth.mass_absolute_kg);
+    Ok(truth)
+}
+
+/// Pressures that masses have at 15 °C in the true vessel, Pa.
+fn settled(simulated: &Simulated, mass_kg: &[f64]) -> Vec<f64> {
+    let vessel = &simulated.vessel;
+    let (mut before_kg, mut pressure_pa) = (f64::NAN, simulated.drawn.fill.pressure_pa);
+    mass_kg
+        .iter()
+        .map(|&mass| {
+            if mass != before_kg {
+                // The volume gives way by 1e-5 per bar: two rounds leave less than 1 Pa.
+                for _ in 0..3 {
+                    let volume_m3 = vessel.volume.volume_m3(QUOTED_K, pressure_pa);
+                    pressure_pa = vessel.fluid.pressure_pa(mass / volume_m3, QUOTED_K);
+                }
+                before_kg = mass;
+            }
+            pressure_pa
+        })
+        .collect()
+}
+
+fn readings(simulated: &Simulated, sensors: &SensorDraw, rows: &Rows, truth: &Truth, seed: u64) -> Log {
+    let samples = &simulated.samples;
+    let geometry = &simulated.vessel.geometry;
+    let diameter_m = geometry.inner_diameter_m + 2.0 * geometry.thickness_m();
+    let cylinder = Body { orientation: geometry.orientation, diameter_m, height_m: geometry.outer_height_m() };
+    let valve_m = simulated.vessel.valve.as_ref().map_or(diameter_m, |valve| valve.diameter_m);
+    let valve = Body { diameter_m: valve_m, height_m: valve_m, ..cylinder };
+    let times_s: Vec<f64> = rows.time_s.iter().map(|t| t + simulated.drawn.fill.lead_s).collect();
+    let place = |body, surface_k, above_middle, noise| Place {
+        surroundings: &simulated.surroundings,
+        body,
+        samples,
+        surface_k,
+        above_middle,
+        noise,
+    };
+    let shoulder = place(cylinder, &samples.shoulder_k, SHOULDER_ABOVE, Purpose::WorldShoulderNoise);
+    let valve = place(valve, &samples.valve_k, VALVE_ABOVE, Purpose::WorldValveNoise);
+    let columns = [
+        shoulder.read(&sensors.shoulder, &times_s, seed),
+        valve.read(&sensors.valve, &times_s, seed),
+        read_pressure(&sensors.pressure, &truth.pressure_pa, &truth.valve_k, seed),
+    ];
+    let channel = |name: &str, quantity| Channel { name: name.into(), quantity };
+    Log {
+        channels: vec![
+            channel("shoulder", Quantity::Temperature),
+            channel("valve", Quantity::Temperature),
+            channel("pressure", Quantity::Pressure),
+        ],
+        time_s: rows.stamp_s.clone(),
+        values: (0..times_s.len()).flat_map(|row| columns.iter().map(move |column| column[row])).collect(),
+    }
+}
+
+fn happenings(simulated: &Simulated, request: &Request, rows: &Rows, leak: Option<&SlowLeak>) -> Vec<Happening> {
+    let mut all: Vec<Happening> = rows.gaps_s.iter().map(|&gap| Happening::of_rows(HappeningKind::Gap, gap)).collect();
+    all.extend(rows.clock.map(|(at_s, _)| Happening::of_rows(HappeningKind::ClockStep, (at_s, at_s))));
+    all.extend(of_gas(simulated, request, leak));
+    all.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
+    all
+}
+
+/// What the overlay does to the gas.
+fn of_gas(simulated: &Simulated, request: &Request, leak: Option<&SlowLeak>) -> Option<Happening> {
+    let length_s = request.length_s;
+    let (kind, end_s, announced) = match request.overlay {
+        Overlay::Leak { .. } => (HappeningKind::Leak, f64::INFINITY, false),
+        Overlay::FastLoss { goes_on: true, .. } => (HappeningKind::FastLoss, f64::INFINITY, false),
+        Overlay::FastLoss { within_s, onset_s, .. } => (HappeningKind::FastLoss, onset_s + within_s, false),
+        Overlay::Discharge { within_s, onset_s, announced, .. } => {
+            (HappeningKind::Discharge, onset_s + within_s, announced)
+        }
+        Overlay::Refill { within_s, onset_s, .. } => (HappeningKind::Refill, onset_s + within_s, false),
+        Overlay::Nothing | Overlay::Fault { .. } => return None,
+    };
+    let start_s = request.overlay.onset_s().unwrap_or(0.0);
+    let samples = &simulated.samples;
+    let mass_kg = |t_s: f64| samples.at(&samples.mass_kg, t_s + simulated.drawn.fill.lead_s);
+    let lost_kg = leak.map_or(mass_kg(0.0) - mass_kg(length_s), |leak| leak.lost_kg(length_s));
+    Some(Happening { kind, start_s, end_s, lost_kg: lost_kg / simulated.drawn.vessel.volume, announced })
+}
+
+/// Announced discharges by the clock of the log, s.
+fn announced(happenings: &[Happening], rows: &Rows) -> Vec<(f64, f64)> {
+    let told = happenings.iter().filter(|happening| happening.announced);
+    told.map(|happening| (rows.stamp(happening.start_s), rows.stamp(happening.end_s))).collect()
+}

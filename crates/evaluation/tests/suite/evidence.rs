@@ -1,0 +1,140 @@
+//! Evidence from an observer on a cylinder under a train: tight, leaking, with gaps, exchanged, and saved in between.
+use std::sync::OnceLock;
+
+use cylwatch_detector::evidence::{Evidence, Scale, Statistics, Thresholds, observer_settings};
+use cylwatch_estimator::observer::{Commissioning, Observer};
+use cylwatch_estimator::sensor::Sensor;
+use cylwatch_estimator::thermal::vessel::presets;
+use cylwatch_evaluation::truth::{Course, TruthLeak, TruthSettings, generate_with};
+
+const HOUR_S: f64 = 3600.0;
+const DAY_S: f64 = 24.0 * HOUR_S;
+const YEAR_S: f64 = 365.25 * DAY_S;
+const SEED: u64 = 77;
+const INTERVAL_S: f64 = 120.0;
+const ONSET_S: f64 = 5.0 * DAY_S;
+/// 1 bar at 15 °C in 20 L, kg.
+const KG_PER_BAR: f64 = 0.019_18;
+
+type Row = (f64, [f64; 3]);
+
+/// Readings of shoulder, valve and pressure over eight days, with a leak of so many bar/h from the sixth on.
+fn readings(rate_bar_h: f64) -> Vec<Row> {
+    let leak = TruthLeak { rate_kg_s: rate_bar_h * KG_PER_BAR / HOUR_S, start_s: ONSET_S };
+    let settings = TruthSettings { leak: (rate_bar_h > 0.0).then_some(leak), ..TruthSettings::fast() };
+    let truth = generate_with(&Course::RailwayWeeks { days: 8.0 }, SEED, INTERVAL_S, &settings).unwrap();
+    let column = |name: &str| truth.log.channels.iter().position(|c| c.name == name).unwrap();
+    let columns = ["shoulder", "valve", "pressure"].map(column);
+    truth.log.rows().map(|(time_s, row)| (time_s, columns.map(|column| row[column]))).collect()
+}
+
+fn tight() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| readings(0.0))
+}
+
+fn leaking() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| readings(0.3))
+}
+
+fn observer() -> Observer {
+    let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+    let vessel = presets::load("nitrogen-20l").unwrap();
+    Observer::new(&vessel, &sensors, &Commissioning::filled(2e7, 288.15), &observer_settings()).unwrap()
+}
+
+fn evidence() -> Evidence {
+    Evidence::try_new(&observer_settings()).unwrap()
+}
+
+/// Statistics after each row; `before` may do something to the observer before a row.
+fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, Statistics)> {
+    let (mut observer, mut evidence) = (observer(), evidence());
+    let step = |(time_s, row): &Row| {
+        before(*time_s, &mut observer);
+        let estimate = observer.step(*time_s, row).unwrap();
+        (*time_s, evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>()))
+    };
+    rows.iter().map(step).collect()
+}
+
+/// Time of the first alarm at one false alarm in ten years, s, and its scale.
+fn alarm(statistics: &[(f64, Statistics)]) -> Option<(f64, Scale)> {
+    let thresholds = Thresholds::for_mean_time_s(10.0 * YEAR_S).unwrap();
+    statistics.iter().find_map(|(time_s, statistics)| Some((*time_s, thresholds.alarm(statistics)?)))
+}
+
+#[test]
+fn a_tight_cylinder_raises_nothing() {
+    let statistics = run(tight(), |_, _| {});
+    assert_eq!(alarm(&statistics), None);
+    assert!(statistics.iter().all(|(_, values)| values.iter().all(|value| value.is_finite())));
+}
+
+#[test]
+fn a_leak_is_found_within_a_day_and_not_before_it_begins() {
+    let (alarm_s, scale) = alarm(&run(leaking(), |_, _| {})).unwrap();
+    println!("0.3 bar/h found after {:.1} h by {scale:?}", (alarm_s - ONSET_S) / HOUR_S);
+    assert!(alarm_s > ONSET_S && alarm_s < ONSET_S + DAY_S, "{alarm_s} {scale:?}");
+}
+
+#[test]
+fn a_fast_leak_is_found_within_an_hour() {
+    let (alarm_s, scale) = alarm(&run(&readings(8.0), |_, _| {})).unwrap();
+    println!("8 bar/h found after {:.2} h by {scale:?}", (alarm_s - ONSET_S) / HOUR_S);
+    assert!(alarm_s > ONSET_S && alarm_s < ONSET_S + HOUR_S, "{alarm_s} {scale:?}");
+}
+
+#[test]
+fn gaps_raise_nothing_and_what_leaks_in_them_is_found() {
+    let without = |rows: &[Row], from_d: f64, to_d: f64| -> Vec<Row> {
+        let kept = |row: &&Row| !(from_d * DAY_S..to_d * DAY_S).contains(&row.0);
+        rows.iter().filter(kept).copied().collect()
+    };
+    for (from_d, to_d) in [(3.3, 5.1), (0.4, 6.0)] {
+        assert_eq!(alarm(&run(&without(tight(), from_d, to_d), |_, _| {})), None, "{from_d} to {to_d} d");
+    }
+    // 0.3 bar/h through a day without rows.
+    let (alarm_s, _) = alarm(&run(&without(leaking(), 4.9, 6.0), |_, _| {})).unwrap();
+    assert!(alarm_s < 6.5 * DAY_S, "{} d", alarm_s / DAY_S);
+}
+
+#[test]
+fn after_an_exchange_the_leak_of_the_old_cylinder_is_forgotten() {
+    // The leaking cylinder gives way to a full, tight one on the eighth day.
+    let exchange_s = 7.0 * DAY_S;
+    let rows: Vec<Row> = leaking()
+        .iter()
+        .zip(tight())
+        .map(|(old, new)| if old.0 < exchange_s { *old } else { *new })
+        .collect();
+    let statistics = run(&rows, |time_s, observer| {
+        if time_s == exchange_s {
+            observer.begin_exchange();
+        }
+        if time_s == exchange_s + 600.0 {
+            observer.end_exchange();
+        }
+    });
+    let (old, new): (Vec<_>, Vec<_>) = statistics.into_iter().partition(|(time_s, _)| *time_s < exchange_s);
+    assert!(alarm(&old).is_some());
+    assert_eq!(alarm(&new), None);
+    assert!(new[0].1.iter().all(|value| value.abs() < 1e-9), "{:?}", new[0]);
+}
+
+#[test]
+fn saved_and_restored_at_any_sample_it_goes_on_bit_for_bit() {
+    let (mut observer, mut whole) = (observer(), evidence());
+    let mut restored = whole.clone();
+    for (n, (time_s, row)) in leaking().iter().enumerate().skip(3000).take(1500) {
+        let estimate = observer.step(*time_s, row).unwrap();
+        let leaks: Vec<_> = observer.leaks().collect();
+        if n % 7 == 0 {
+            restored = serde_json::from_str(&serde_json::to_string(&restored).unwrap()).unwrap();
+        }
+        let bits = |statistics: Statistics| statistics.map(f64::to_bits);
+        assert_eq!(bits(whole.update(&estimate, &leaks)), bits(restored.update(&estimate, &leaks)));
+    }
+    assert_eq!(whole, restored);
+}

@@ -1,0 +1,9 @@
+//! The tests of this crate in one binary, modules by kind.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+mod campaign;
+mod evidence;
+mod fault;
+mod matched;
+mod monitor;
+mod observer;
+mod placement_confirm;
