@@ -16,7 +16,7 @@ pub use pattern::{Axis, Pattern};
 
 use super::JudgeError;
 use super::candidate::{Candidate, Registry};
-use crate::detector::performance::YEAR_S;
+use crate::performance::YEAR_S;
 use crate::world::Family;
 
 /// A checked plan.

@@ -10,11 +10,11 @@
 //! | found | a leak is said, or a discharge |
 //!
 //! Where the row takes gas away, the leak and the exchange that it is do not count as false. The stricter judgement of single rows and delays is that of
-//! [`judge`](crate::detector::performance::fault::judge()).
+//! [`judge`](crate::fault::judge()).
 use serde::{Deserialize, Serialize};
 
 use super::Moment;
-use crate::detector::performance::fault::Requirement;
+use crate::fault::Requirement;
 use crate::judge::measures::Class;
 use crate::judge::said::Decision;
 use crate::world::{FaultRow, HappeningKind, Overlay, World};

@@ -167,7 +167,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::detector::performance::Proportion;
+    use crate::performance::Proportion;
     use crate::world::{Family, Request};
 
     fn key(seed: u64) -> SimulationKey {
