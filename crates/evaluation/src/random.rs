@@ -32,7 +32,7 @@ pub(crate) enum Purpose {
     WorldWind,
     WorldSun,
     WorldHeater,
-    WorldShowers,
+    WorldSite,
     WorldTurbulence,
     WorldGusts,
     WorldDifference,

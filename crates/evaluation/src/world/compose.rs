@@ -4,13 +4,16 @@ use cylwatch_estimator::sensor::SensorSuite;
 use cylwatch_thermal::transfer::outside::Body;
 
 use super::fill::QUOTED_K;
+use super::flows::{DISCHARGE, FAST_LOSS, LEAK, REFILL};
 use super::reading::{Place, read_pressure};
 use super::rows::Rows;
 use super::sensors::{SensorDraw, seed_of_set};
 use super::simulation::Simulated;
 use super::slow::SlowLeak;
 use super::truth::Truth;
-use super::{Drawn, Happening, HappeningKind, Overlay, Request, SimulationKey, Told, World, WorldError};
+use super::{
+    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, Told, World, WorldError, disturbed, faulty,
+};
 use crate::random::Purpose;
 
 /// Heights of the thermometers above the middle, as fractions of the vessel's.
@@ -21,8 +24,7 @@ const VALVE_ABOVE: f64 = 0.5;
 pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, WorldError> {
     let family = request.family;
     let seed = seed_of_set(request.seed, request.set);
-    let is_fault = matches!(request.overlay, Overlay::Fault { .. });
-    let rows = Rows::draw(family.rows, request.length_s, seed, is_fault);
+    let rows = rows(request, seed);
     let leak = SlowLeak::of(simulated, request);
     let truth = truth(simulated, &rows.time_s, leak.as_ref())?;
     let sensors = SensorDraw::draw(family.sensors, family.vessel, seed);
@@ -38,17 +40,51 @@ pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, W
         commissioning: simulated.drawn.fill.commissioning(&simulated.nominal)?,
         announced: announced(&happenings, &rows),
     };
-    Ok(World {
+    let world = World {
         request: *request,
         simulation: SimulationKey::of(request),
         told,
         log,
         historical: Vec::new(),
         power_cycles: Vec::new(),
+        fault: None,
         truth,
         happenings,
         drawn: Drawn { cylinder: simulated.drawn, sensors },
-    })
+    };
+    match request.overlay {
+        Overlay::Fault { row, onset_s, .. } => with_fault(world, simulated, &rows, leak.as_ref(), (row, onset_s), seed),
+        _ => Ok(world),
+    }
+}
+
+/// Rows of a request: with a good clock and without gaps where a fault is judged by itself.
+fn rows(request: &Request, seed: u64) -> Rows {
+    let Overlay::Fault { row, onset_s, .. } = request.overlay else {
+        return Rows::draw(request.family.rows, request.length_s, seed, false);
+    };
+    let mut rows = Rows::draw(request.family.rows, request.length_s, seed, true);
+    if let Some(away_s) = disturbed::away_s(row, request.seed) {
+        rows.remove((onset_s, onset_s + away_s));
+    }
+    rows
+}
+
+/// The same world with a fault of the table in its rows, if it is one of data.
+fn with_fault(
+    mut world: World,
+    simulated: &Simulated,
+    rows: &Rows,
+    leak: Option<&SlowLeak>,
+    (row, onset_s): (FaultRow, f64),
+    seed: u64,
+) -> Result<World, WorldError> {
+    let Some(fault) = faulty::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else { return Ok(world) };
+    let faulty = faulty::inject(&fault, &world.log, rows, &world.truth, onset_s, seed)?;
+    world.truth = truth(simulated, &faulty.time_s, leak)?;
+    (world.log, world.historical, world.power_cycles) = (faulty.log, faulty.historical, faulty.power_cycles);
+    world.fault = Some(fault);
+    Ok(world)
 }
 
 /// What really happened at times of the log, s.
@@ -137,29 +173,40 @@ fn readings(simulated: &Simulated, sensors: &SensorDraw, rows: &Rows, truth: &Tr
 fn happenings(simulated: &Simulated, request: &Request, rows: &Rows, leak: Option<&SlowLeak>) -> Vec<Happening> {
     let mut all: Vec<Happening> = rows.gaps_s.iter().map(|&gap| Happening::of_rows(HappeningKind::Gap, gap)).collect();
     all.extend(rows.clock.map(|(at_s, _)| Happening::of_rows(HappeningKind::ClockStep, (at_s, at_s))));
-    all.extend(of_gas(simulated, request, leak));
+    all.extend(of_overlay(simulated, request, leak));
     all.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     all
 }
 
-/// What the overlay does to the gas.
-fn of_gas(simulated: &Simulated, request: &Request, leak: Option<&SlowLeak>) -> Option<Happening> {
-    let length_s = request.length_s;
-    let (kind, end_s, announced) = match request.overlay {
-        Overlay::Leak { .. } => (HappeningKind::Leak, f64::INFINITY, false),
-        Overlay::FastLoss { goes_on: true, .. } => (HappeningKind::FastLoss, f64::INFINITY, false),
-        Overlay::FastLoss { within_s, onset_s, .. } => (HappeningKind::FastLoss, onset_s + within_s, false),
-        Overlay::Discharge { within_s, onset_s, announced, .. } => {
-            (HappeningKind::Discharge, onset_s + within_s, announced)
-        }
-        Overlay::Refill { within_s, onset_s, .. } => (HappeningKind::Refill, onset_s + within_s, false),
-        Overlay::Nothing | Overlay::Fault { .. } => return None,
-    };
-    let start_s = request.overlay.onset_s().unwrap_or(0.0);
+/// What the overlay does to the cylinder and its sensors.
+fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SlowLeak>) -> Vec<Happening> {
     let samples = &simulated.samples;
     let mass_kg = |t_s: f64| samples.at(&samples.mass_kg, t_s + simulated.drawn.fill.lead_s);
-    let lost_kg = leak.map_or(mass_kg(0.0) - mass_kg(length_s), |leak| leak.lost_kg(length_s));
-    Some(Happening { kind, start_s, end_s, lost_kg: lost_kg / simulated.drawn.vessel.volume, announced })
+    let simulated_kg = mass_kg(0.0) - mass_kg(request.length_s);
+    let happening = |kind, start_s, flow: &str, lost_kg: f64| Happening {
+        kind,
+        start_s,
+        end_s: simulated.closed_s(flow),
+        lost_kg: lost_kg / simulated.drawn.vessel.volume,
+        announced: matches!(request.overlay, Overlay::Discharge { announced: true, .. }),
+    };
+    let leak = request.overlay.leak().map(|leak| {
+        let lost_kg = match slow {
+            Some(slow) => slow.lost_kg(request.length_s),
+            None => simulated.lost_by_kg(&leak, request.length_s),
+        };
+        (lost_kg, happening(HappeningKind::Leak, leak.onset_s, LEAK, lost_kg))
+    });
+    let (kind, start_s, flow) = match request.overlay {
+        Overlay::Nothing | Overlay::Leak { .. } => return leak.into_iter().map(|(_, leak)| leak).collect(),
+        Overlay::FastLoss { onset_s, .. } => (HappeningKind::FastLoss, onset_s, FAST_LOSS),
+        Overlay::Discharge { onset_s, .. } => (HappeningKind::Discharge, onset_s, DISCHARGE),
+        Overlay::Refill { onset_s, .. } => (HappeningKind::Refill, onset_s, REFILL),
+        Overlay::Fault { row, onset_s, .. } => (HappeningKind::Fault(row), onset_s, ""),
+    };
+    let beside_kg = if slow.is_some() { 0.0 } else { leak.as_ref().map_or(0.0, |(lost_kg, _)| *lost_kg) };
+    let own = happening(kind, start_s, flow, simulated_kg - beside_kg);
+    std::iter::once(own).chain(leak.map(|(_, leak)| leak)).collect()
 }
 
 /// Announced discharges by the clock of the log, s.

@@ -46,6 +46,11 @@ impl FillDraw {
         Self { pressure_pa, stated_pa, is_wrong, lead_s }
     }
 
+    /// The same cylinder with a part of the gas, stated as well as before.
+    pub(super) fn part(self, part: f64) -> Self {
+        Self { pressure_pa: part * self.pressure_pa, stated_pa: part * self.stated_pa, ..self }
+    }
+
     /// The real fill.
     pub(super) const fn fill(&self) -> Fill {
         Fill::Settled { pressure_pa: self.pressure_pa, temperature_k: QUOTED_K }

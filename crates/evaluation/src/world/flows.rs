@@ -7,7 +7,7 @@ use cylwatch_thermal::flow::orifice::mass_flux;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::State;
 
-use super::{Overlay, VesselKind, WorldError};
+use super::{Leak, Overlay, VesselKind, WorldError};
 use crate::random::{Purpose, Random};
 use crate::thermal::vessel::Vessel;
 
@@ -21,6 +21,12 @@ const SOURCE_K: f64 = 288.15;
 /// Temperature that an orifice is sized for, K.
 const SIZED_K: f64 = 288.15;
 const HOUR_S: f64 = 3600.0;
+
+/// Names of the flows of overlays; processes of the fault table have others.
+pub(super) const LEAK: &str = "steady leak";
+pub(super) const FAST_LOSS: &str = "fast loss";
+pub(super) const DISCHARGE: &str = "ordered discharge";
+pub(super) const REFILL: &str = "ordered refill";
 
 /// What flows are made for.
 pub(super) struct Filled<'a> {
@@ -39,15 +45,14 @@ impl Filled<'_> {
     /// The simulated flows of an overlay.
     pub fn flows(&self, overlay: &Overlay) -> Result<Vec<Flow>, WorldError> {
         Ok(match *overlay {
-            Overlay::Leak { part_per_h, onset_s } => {
-                let mass_flow_kg_s = part_per_h * self.mass_kg / HOUR_S;
-                vec![self.flow("leak", (onset_s, f64::INFINITY), FlowKind::Leak { mass_flow_kg_s })]
+            Overlay::Leak { .. } | Overlay::Fault { .. } => {
+                overlay.leak().map(|leak| self.leak(&leak)).into_iter().collect()
             }
             Overlay::FastLoss { part, within_s, onset_s, goes_on } => {
-                vec![self.loss("fast loss", part, within_s, onset_s, goes_on)?]
+                vec![self.loss(FAST_LOSS, part, within_s, onset_s, goes_on)?]
             }
             Overlay::Discharge { part, within_s, onset_s, .. } => {
-                vec![self.loss("discharge", part, within_s, onset_s, false)?]
+                vec![self.loss(DISCHARGE, part, within_s, onset_s, false)?]
             }
             Overlay::Refill { part, within_s, onset_s } => {
                 let kind = FlowKind::Refill {
@@ -56,10 +61,21 @@ impl Filled<'_> {
                     source_pressure_pa: SOURCE * self.pressure_pa * (1.0 + part),
                     inlet_diameter_m: Some(self.kind.inlet_m()),
                 };
-                vec![self.flow("refill", (onset_s, onset_s + within_s), kind)]
+                vec![self.flow(REFILL, (onset_s, onset_s + within_s), kind)]
             }
-            Overlay::Nothing | Overlay::Fault { .. } => Vec::new(),
+            Overlay::Nothing => Vec::new(),
         })
+    }
+
+    fn leak(&self, leak: &Leak) -> Flow {
+        let mass_flow_kg_s = leak.part_per_h * self.mass_kg / HOUR_S;
+        let open = self.flow(LEAK, (leak.onset_s, f64::INFINITY), FlowKind::Leak { mass_flow_kg_s });
+        Flow { closes_below_pa: Some(self.least_pa()), ..open }
+    }
+
+    /// Pressure at which what goes on stops, Pa.
+    fn least_pa(&self) -> f64 {
+        (LEFT * self.pressure_pa).max(1.5 * BACK_PRESSURE_PA)
     }
 
     fn loss(&self, name: &str, part: f64, within_s: f64, onset_s: f64, goes_on: bool) -> Result<Flow, WorldError> {
@@ -75,7 +91,7 @@ impl Filled<'_> {
         };
         let stop_s = if goes_on { f64::INFINITY } else { onset_s + within_s };
         let open = self.flow(name, (onset_s, stop_s), kind);
-        Ok(Flow { closes_below_pa: Some((LEFT * self.pressure_pa).max(1.5 * BACK_PRESSURE_PA)), ..open })
+        Ok(Flow { closes_below_pa: Some(self.least_pa()), ..open })
     }
 
     /// Bore that loses a part of the gas within a time, m.

@@ -5,8 +5,10 @@
 //! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
 mod climate;
 mod compose;
+mod disturbed;
 mod error;
 mod family;
+mod faulty;
 mod fill;
 mod flows;
 mod gas;
@@ -24,11 +26,13 @@ mod vessel;
 use cylwatch_estimator::log::Log;
 use serde::{Deserialize, Serialize};
 
+use crate::fault::Fault;
+
 pub use error::WorldError;
 pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
 pub use fill::FillDraw;
 pub use gas::GasDraw;
-pub use overlay::{FaultRow, Overlay};
+pub use overlay::{FaultRow, Leak, Overlay};
 pub use sensors::{SensorDraw, Thermometer, Transmitter};
 pub use simulation::{CylinderDraw, Simulated, SimulationKey};
 pub use told::Told;
@@ -77,6 +81,8 @@ pub struct World {
     pub historical: Vec<usize>,
     /// Power cycles, each after a row of this index, and the snapshot that the monitor finds.
     pub power_cycles: Vec<(usize, Snapshot)>,
+    /// The fault of data that is in the rows.
+    pub fault: Option<Fault>,
     /// What really happened at every row of the log.
     pub truth: Truth,
     /// What was done, in the order of its beginning.

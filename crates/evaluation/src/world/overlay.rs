@@ -51,13 +51,33 @@ pub enum Overlay {
         /// Onset, s.
         onset_s: f64,
     },
-    /// A fault of the fault table, its parameters drawn by the request's seed.
+    /// A fault of the fault table, its parameters drawn by the request's seed and set.
     Fault {
         /// Row of the table.
         row: FaultRow,
         /// Onset, s.
         onset_s: f64,
+        /// A leak beside it.
+        #[serde(default)]
+        leak: Option<Leak>,
     },
+}
+
+/// A leak of constant mass flow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Leak {
+    /// Part of the gas per hour.
+    pub part_per_h: f64,
+    /// Onset, s.
+    pub onset_s: f64,
+}
+
+impl Leak {
+    /// Whether it has to be simulated.
+    fn is_simulated(&self, length_s: f64) -> bool {
+        let part = self.part_per_h * (length_s - self.onset_s).max(0.0) / HOUR_S;
+        self.part_per_h > SLOW_PART_PER_H || part > SLOW_PART
+    }
 }
 
 /// Largest leak that is laid over a finished simulation, part of the gas per hour, and largest part that it may lose in all: what
@@ -71,11 +91,31 @@ impl Overlay {
     pub fn is_simulated(&self, length_s: f64) -> bool {
         match *self {
             Self::Nothing => false,
-            Self::Leak { part_per_h, onset_s } => {
-                part_per_h > SLOW_PART_PER_H || part_per_h * (length_s - onset_s).max(0.0) / HOUR_S > SLOW_PART
-            }
+            Self::Leak { part_per_h, onset_s } => Leak { part_per_h, onset_s }.is_simulated(length_s),
             Self::FastLoss { .. } | Self::Discharge { .. } | Self::Refill { .. } => true,
-            Self::Fault { row, .. } => !row.is_of_data(),
+            Self::Fault { row, leak, .. } => {
+                !row.is_of_data() || leak.is_some_and(|leak| leak.is_simulated(length_s))
+            }
+        }
+    }
+
+    /// What of it is simulated: a fault of data leaves its leak alone.
+    pub(super) fn simulated_part(&self, length_s: f64) -> Self {
+        match *self {
+            _ if !self.is_simulated(length_s) => Self::Nothing,
+            Self::Fault { row, leak: Some(leak), .. } if row.is_of_data() => {
+                Self::Leak { part_per_h: leak.part_per_h, onset_s: leak.onset_s }
+            }
+            other => other,
+        }
+    }
+
+    /// Its leak.
+    pub fn leak(&self) -> Option<Leak> {
+        match *self {
+            Self::Leak { part_per_h, onset_s } => Some(Leak { part_per_h, onset_s }),
+            Self::Fault { leak, .. } => leak,
+            _ => None,
         }
     }
 
@@ -101,15 +141,18 @@ impl Overlay {
             if is_within { Ok(()) } else { Err(WorldError::Number { what, value, low, high }) }
         };
         check("onset_s", self.onset_s().unwrap_or(0.0), (0.0, 1e9))?;
+        if let Some(leak) = self.leak() {
+            check("part_per_h", leak.part_per_h, (0.0, 10.0))?;
+            check("leak onset_s", leak.onset_s, (0.0, 1e9))?;
+        }
         match *self {
-            Self::Leak { part_per_h, .. } => check("part_per_h", part_per_h, (0.0, 10.0)),
             Self::FastLoss { part, within_s, .. }
             | Self::Discharge { part, within_s, .. }
             | Self::Refill { part, within_s, .. } => {
                 check("part", part, (1e-6, 0.95))?;
                 check("within_s", within_s, (1.0, 1e7))
             }
-            Self::Nothing | Self::Fault { .. } => Ok(()),
+            Self::Nothing | Self::Leak { .. } | Self::Fault { .. } => Ok(()),
         }
     }
 }

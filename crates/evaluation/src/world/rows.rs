@@ -56,6 +56,15 @@ impl Rows {
         rows
     }
 
+    /// Take away the rows of a stretch, s.
+    pub fn remove(&mut self, (from_s, until_s): (f64, f64)) {
+        let kept = |time_s: f64| !(from_s..until_s).contains(&time_s);
+        let mut of_stamp = self.time_s.iter().copied();
+        self.stamp_s.retain(|_| of_stamp.next().is_some_and(kept));
+        self.time_s.retain(|&time_s| kept(time_s));
+        self.gaps_s.push((from_s, until_s));
+    }
+
     /// Stamp of a true time, s.
     pub fn stamp(&self, time_s: f64) -> f64 {
         match self.clock {

@@ -1,16 +1,17 @@
 //! One simulation, that several sets of sensors, slow leaks and faults can be laid over.
 use cylwatch_thermal::scenario::{Initial, Scenario, Surroundings};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
-use cylwatch_thermal::trajectory::{Ledger, Trajectory};
+use cylwatch_thermal::trajectory::{Event, EventKind, Ledger, Trajectory};
 use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
 
 use super::climate::{self, Span};
+use super::disturbed::{self, Disturbed};
 use super::fill::{FillDraw, QUOTED_K};
-use super::flows::Filled;
+use super::flows::{Filled, LEAK};
 use super::gas::GasDraw;
 use super::vessel::VesselDraw;
-use super::{Climate, Family, GasKind, Overlay, Request, RowPattern, VesselKind, World, WorldError, compose};
+use super::{Climate, Family, GasKind, Leak, Overlay, Request, RowPattern, VesselKind, World, WorldError, compose};
 
 /// Shortest and longest log, s.
 const LENGTH_S: (f64, f64) = (900.0, 400.0 * 86_400.0);
@@ -50,6 +51,50 @@ pub struct CylinderDraw {
     pub gas: GasDraw,
     /// Fill.
     pub fill: FillDraw,
+}
+
+impl CylinderDraw {
+    fn draw(key: &SimulationKey, overlay: &Overlay) -> Self {
+        let fill = FillDraw::draw(key.vessel, key.seed);
+        let is_low = matches!(overlay, Overlay::Fault { row, .. } if disturbed::begins_low(*row));
+        Self {
+            vessel: VesselDraw::draw(key.seed),
+            gas: GasDraw::draw(key.seed),
+            fill: if is_low { fill.part(disturbed::BEFORE_REFILL) } else { fill },
+        }
+    }
+}
+
+/// Simulate a drawn cylinder with what of an overlay is simulated.
+fn simulate_with(
+    key: &SimulationKey,
+    vessel: &Vessel,
+    drawn: &CylinderDraw,
+    mut scenario: Scenario,
+    overlay: &Overlay,
+) -> Result<Trajectory, WorldError> {
+    let FillDraw { pressure_pa, lead_s, .. } = drawn.fill;
+    let density = vessel.fluid.density_from_pressure_temperature(pressure_pa, QUOTED_K)?;
+    let mass_kg = density * vessel.volume.volume_m3(QUOTED_K, pressure_pa);
+    let filled = Filled { kind: key.vessel, vessel, seed: key.seed, pressure_pa, mass_kg, lead_s };
+    scenario.flows = filled.flows(overlay)?;
+    let settings = SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
+    match *overlay {
+        Overlay::Fault { row, onset_s, .. } => {
+            let (kind, seed, onset_s) = (key.vessel, key.seed, onset_s + lead_s);
+            Disturbed { row, kind, vessel, seed, fill_pa: pressure_pa, onset_s }.simulate(scenario, &settings)
+        }
+        _ => Ok(simulate(vessel, &scenario, &settings, &mut |_| ())?),
+    }
+}
+
+/// When flows closed, by their names, s from the start of the log.
+fn closed_s(trajectory: &Trajectory, lead_s: f64) -> Vec<(String, f64)> {
+    let closing = |event: &Event| match &event.kind {
+        EventKind::FlowClosed { flow } => Some((flow.clone(), event.time_s - lead_s)),
+        _ => None,
+    };
+    trajectory.events.iter().filter_map(closing).collect()
 }
 
 /// Samples of a simulation at even times from 0 on.
@@ -104,6 +149,8 @@ pub struct Simulated {
     pub(super) jumps_s: Vec<f64>,
     pub(super) heated_s: Vec<(f64, f64)>,
     pub(super) calm_flow: f64,
+    /// When flows closed, by their names, s from the start of the log.
+    closed_s: Vec<(String, f64)>,
     pub(super) samples: Samples,
     ledger: Ledger,
 }
@@ -116,32 +163,16 @@ impl Simulated {
     pub fn run(request: &Request) -> Result<Self, WorldError> {
         request.validate()?;
         let key = SimulationKey::of(request);
-        let drawn = CylinderDraw {
-            vessel: VesselDraw::draw(key.seed),
-            gas: GasDraw::draw(key.seed),
-            fill: FillDraw::draw(key.vessel, key.seed),
-        };
+        let overlay = request.overlay.simulated_part(request.length_s);
+        let drawn = CylinderDraw::draw(&key, &overlay);
         let nominal = key.vessel.nominal()?;
         let mut vessel = drawn.vessel.apply(&nominal);
         key.gas.resolve(&mut vessel, &drawn.gas);
         let (spacing_s, sample_s) = (spacing_s(request.family.rows), sample_s(request.family.rows));
         let span = Span::draw(key.seed, drawn.fill.lead_s, request.length_s, spacing_s);
         let around = climate::surroundings(key.climate, &span, drawn.vessel.outside_film, drawn.vessel.film_slope)?;
-        let overlay = if request.overlay.is_simulated(request.length_s) { request.overlay } else { Overlay::Nothing };
-        let mut scenario = scenario(&key, &span, &drawn.fill, around.surroundings, sample_s);
-        let fluid = &vessel.fluid;
-        let density = fluid.density_from_pressure_temperature(drawn.fill.pressure_pa, QUOTED_K)?;
-        let filled = Filled {
-            kind: key.vessel,
-            vessel: &vessel,
-            seed: key.seed,
-            pressure_pa: drawn.fill.pressure_pa,
-            mass_kg: density * vessel.volume.volume_m3(QUOTED_K, drawn.fill.pressure_pa),
-            lead_s: drawn.fill.lead_s,
-        };
-        scenario.flows = filled.flows(&overlay)?;
-        let settings = SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
-        let trajectory = simulate(&vessel, &scenario, &settings, &mut |_| ())?;
+        let scenario = scenario(&key, &span, &drawn.fill, around.surroundings, sample_s);
+        let trajectory = simulate_with(&key, &vessel, &drawn, scenario, &overlay)?;
         let ledger = trajectory.ledger;
         Ok(Self {
             key,
@@ -151,7 +182,8 @@ impl Simulated {
             drawn,
             nominal,
             vessel,
-            surroundings: scenario.surroundings,
+            surroundings: trajectory.scenario.surroundings.clone(),
+            closed_s: closed_s(&trajectory, drawn.fill.lead_s),
             jumps_s: around.jumps_s,
             heated_s: around.heated_s,
             calm_flow: around.calm_flow,
@@ -181,14 +213,24 @@ impl Simulated {
         &self.drawn
     }
 
+    /// When the overlay's own flow of a name closed, s from the start of the log; infinity: it did not.
+    pub(super) fn closed_s(&self, flow: &str) -> f64 {
+        self.closed_s.iter().find(|(name, _)| name == flow).map_or(f64::INFINITY, |(_, at_s)| *at_s)
+    }
+
+    /// Mass that a simulated leak loses until a time while it runs at its rate, kg.
+    pub(super) fn lost_by_kg(&self, leak: &Leak, t_s: f64) -> f64 {
+        let end_s = self.closed_s(LEAK).min(t_s);
+        leak.part_per_h * self.samples.mass_kg[0] * (end_s - leak.onset_s).max(0.0) / 3600.0
+    }
+
     /// Times at which the air begins to jump, s from the start of the log.
     pub fn jumps_s(&self) -> impl Iterator<Item = f64> + '_ {
         self.jumps_s.iter().map(|t| t - self.drawn.fill.lead_s)
     }
 
     fn check(&self, request: &Request) -> Result<(), WorldError> {
-        let needs = request.overlay.is_simulated(request.length_s);
-        let same_overlay = if needs { request.overlay == self.overlay } else { self.overlay == Overlay::Nothing };
+        let same_overlay = request.overlay.simulated_part(request.length_s) == self.overlay;
         let is_same = SimulationKey::of(request) == self.key
             && same_overlay
             && request.length_s <= self.length_s

@@ -5,7 +5,7 @@
 //! its expansion, `r p/rho` over the conductance of the film, and the smaller heat capacity of less gas.
 use super::simulation::Simulated;
 use super::truth::Truth;
-use super::{Overlay, Request};
+use super::Request;
 
 const HOUR_S: f64 = 3600.0;
 
@@ -19,12 +19,12 @@ pub(super) struct SlowLeak {
 impl SlowLeak {
     /// That of a request, if it is to be laid over.
     pub fn of(simulated: &Simulated, request: &Request) -> Option<Self> {
-        let Overlay::Leak { part_per_h, onset_s } = request.overlay else { return None };
+        let leak = request.overlay.leak()?;
         if request.overlay.is_simulated(request.length_s) {
             return None;
         }
         let mass_kg = simulated.samples.mass_kg[0];
-        Some(Self { rate_kg_s: part_per_h * mass_kg / HOUR_S, onset_s })
+        Some(Self { rate_kg_s: leak.part_per_h * mass_kg / HOUR_S, onset_s: leak.onset_s })
     }
 
     /// Mass that has left until a time, kg.

@@ -32,7 +32,7 @@ pub(super) fn draw(span: &Span) -> Weather {
         lit_s: (10.0 * MINUTE_S, 60.0 * MINUTE_S),
         shade_s: (10.0 * MINUTE_S, 60.0 * MINUTE_S),
     };
-    let random = &mut Random::new(span.seed, Purpose::WorldHeater);
+    let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (rest, sky_k) = (random.uniform((3.0, 8.0)), random.uniform((4.0, 10.0)));
     Weather {
         outside: outside.draw(span),

@@ -25,7 +25,7 @@ pub(super) fn draw(span: &Span) -> Weather {
         lit_s: (60.0 * MINUTE_S, 300.0 * MINUTE_S),
         shade_s: (3.0 * MINUTE_S, 10.0 * MINUTE_S),
     };
-    let random = &mut Random::new(span.seed, Purpose::WorldStays);
+    let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (lit_from, rest, sky_k) =
         (random.uniform((0.0, 0.4)), random.uniform((1.0, 3.0)), random.uniform((5.0, 12.0)));
     Weather {

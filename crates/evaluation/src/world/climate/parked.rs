@@ -18,7 +18,7 @@ pub(super) fn draw(span: &Span) -> Weather {
         lit_s: (10.0 * MINUTE_S, 120.0 * MINUTE_S),
         shade_s: (5.0 * MINUTE_S, 120.0 * MINUTE_S),
     };
-    let random = &mut Random::new(span.seed, Purpose::WorldStays);
+    let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (lit_from, rest, sky_k) =
         (random.uniform((0.2, 0.8)), random.uniform((1.0, 3.0)), random.uniform((2.0, 8.0)));
     Weather {

@@ -34,7 +34,7 @@ pub(super) fn draw(span: &Span) -> Weather {
         lit_s: (10.0 * MINUTE_S, 120.0 * MINUTE_S),
         shade_s: (5.0 * MINUTE_S, 90.0 * MINUTE_S),
     };
-    let random = &mut Random::new(span.seed, Purpose::WorldHeater);
+    let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (rest, sky_k, lit_from) =
         (random.uniform((4.0, 10.0)), random.uniform((2.0, 8.0)), random.uniform((0.0, 0.7)));
     Weather {
