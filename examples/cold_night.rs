@@ -111,8 +111,8 @@ pub fn run() -> anyhow::Result<Night> {
                 _ => None,
             });
             night.warning = night.warning.or(warned);
-            night.verdict = output.verdict;
-            night.leak |= output.verdict == Verdict::Leak;
+            night.verdict = output.decision.verdict;
+            night.leak |= output.decision.verdict == Verdict::Leak;
         }
     }
     Ok(night)

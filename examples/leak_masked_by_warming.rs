@@ -111,7 +111,7 @@ pub fn run() -> anyhow::Result<Masked> {
             masked.time_s.push(time_s);
             masked.pressures_bar[0].push(row[2] / 1e5);
             masked.pressures_bar[1].push(output.estimate.p15_pa / 1e5);
-            masked.false_alarm |= output.verdict == Verdict::Leak && time_s < LEAK_S;
+            masked.false_alarm |= output.decision.verdict == Verdict::Leak && time_s < LEAK_S;
             let found = output.events.iter().any(|event| matches!(event.kind, EventKind::LeakFound(_)));
             masked.found_s = masked.found_s.or(found.then_some(time_s));
             masked.finding = output.leak;

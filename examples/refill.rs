@@ -110,10 +110,10 @@ pub fn run() -> anyhow::Result<Refill> {
                 _ => None,
             });
             refill.recognised = refill.recognised.or(gained);
-            if time_s >= REFILL_S && last != output.verdict {
-                refill.verdicts.push((time_s, output.verdict));
+            if time_s >= REFILL_S && last != output.decision.verdict {
+                refill.verdicts.push((time_s, output.decision.verdict));
             }
-            last = output.verdict;
+            last = output.decision.verdict;
         }
     }
     Ok(refill)

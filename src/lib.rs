@@ -48,7 +48,7 @@
 //! let mut monitor = Monitor::new(&vessel, &sensors, &filled, &MonitorSettings::default())?;
 //! let mut verdicts = Vec::new();
 //! for (time_s, readings) in log.rows() {
-//!     verdicts.extend(monitor.step(time_s, readings)?.into_iter().map(|output| output.verdict));
+//!     verdicts.extend(monitor.step(time_s, readings)?.into_iter().map(|output| output.decision.verdict));
 //! }
 //! assert_eq!(verdicts.last(), Some(&Verdict::Leak));
 //! # Ok(())

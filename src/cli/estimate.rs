@@ -122,7 +122,8 @@ fn estimate(
     let (first, fill) = start::first_rows(&mut log.reader, &selection, options.source)?;
     let first_k = selection.mean_temperature_k(first.first());
     let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
-    let commissioning = options.fill.commissioning(fill, vessel, first_k).with_context(begin)?;
+    let commissioning = options.fill.commissioning(fill, vessel, first_k, selection.pressure_offset_sd_pa());
+    let commissioning = commissioning.with_context(begin)?;
     let settings = ObserverSettings { engine: options.engine, ..ObserverSettings::default() };
     let settings = fill::settings(settings, options.fill.is_settled());
     let mut observer = Observer::new(vessel, &selection.sensors, &commissioning, &settings)?;

@@ -36,6 +36,10 @@ const UNSETTLED_SD_K: f64 = 5.0;
 /// Standard deviation of the air about the cylinder where it need not be at rest, K: a train may leave a tunnel.
 const UNSETTLED_AIR_SD_K: f64 = 20.0;
 
+/// A fill that is the transmitter's own first reading is off by what the transmitter is. The observer takes that reading once more: the prior
+/// is so much wider that it does not count twice.
+const READ_AGAIN: f64 = 3.0;
+
 /// Fill as given.
 #[derive(Clone, Debug, Args)]
 pub struct GivenFill {
@@ -91,14 +95,20 @@ impl GivenFill {
     }
 
     /// What is known at the first row. `first_k` is the temperature that stands for one that is not given, K.
-    pub fn commissioning(&self, fill: Fill, vessel: &Vessel, first_k: f64) -> anyhow::Result<Commissioning> {
+    /// `read_sd_pa` is the standard deviation of what a transmitter is off by all the time, Pa, where the fill is what it read first.
+    pub fn commissioning(
+        &self,
+        fill: Fill,
+        vessel: &Vessel,
+        first_k: f64,
+        read_sd_pa: f64,
+    ) -> anyhow::Result<Commissioning> {
         let percent = self.mass_sd_percent.unwrap_or(MASS_SD_PERCENT);
         if !(percent > 0.0 && percent <= 100.0) {
             bail!("--fill-sd-percent = {percent} must be above 0 and at most 100");
         }
-        let one = Commissioning { fill, mass_sd_kg: 1.0, settled: self.settled };
+        let one = Commissioning { fill, mass_sd: percent / 100.0, settled: self.settled };
         let mass_kg = one.mass_kg(vessel, first_k)?;
-        let stated_kg = percent / 100.0 * mass_kg;
         let of_temperature_kg = match (fill, self.mass_sd_percent) {
             (Fill::Pressure { .. }, None) => {
                 let sd_k = if self.settled { SETTLED_SD_K } else { UNSETTLED_SD_K };
@@ -106,7 +116,15 @@ impl GivenFill {
             }
             _ => 0.0,
         };
-        Ok(Commissioning { mass_sd_kg: stated_kg.hypot(of_temperature_kg), ..one })
+        let of_reading_kg = match (fill, self.mass_sd_percent) {
+            (Fill::Pressure { pressure_pa }, None) if read_sd_pa > 0.0 => {
+                let more = Commissioning { fill: Fill::Pressure { pressure_pa: pressure_pa + read_sd_pa }, ..one };
+                READ_AGAIN * (more.mass_kg(vessel, first_k)? - mass_kg)
+            }
+            _ => 0.0,
+        };
+        let of_first_row_kg = of_temperature_kg.hypot(of_reading_kg);
+        Ok(Commissioning { mass_sd: one.mass_sd.hypot(of_first_row_kg / mass_kg), ..one })
     }
 
     /// Whether all is said to be at rest at the first row.

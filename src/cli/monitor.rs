@@ -9,6 +9,7 @@ use super::selection::{self, Selection};
 use super::start;
 use super::views::{Made, Views, Wanted};
 use anyhow::{Context, bail};
+use cylwatch::detector::monitor::Outcome;
 use cylwatch::log::{LogOptions, Row};
 use cylwatch::report::monitor::Summary;
 use std::path::Path;
@@ -19,6 +20,7 @@ mod engine;
 mod events;
 mod going_on;
 mod options;
+mod order;
 mod rows;
 mod session;
 mod state;
@@ -28,12 +30,8 @@ pub use arguments::MonitorArguments;
 use engine::Engine;
 use going_on::Beginning;
 use options::Options;
+use order::Order;
 use session::{Kit, Session};
-
-/// Exit code where a leak was found.
-const LEAK: u8 = 1;
-/// Exit code where nothing can be told.
-const INCONCLUSIVE: u8 = 3;
 
 /// Monitors row by row and writes.
 pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
@@ -53,16 +51,10 @@ pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<E
     }
     let Some(summary) = outcome? else {
         messages.say("nothing can be said yet: all rows wait in the state for late ones");
-        return Ok(ExitCode::from(INCONCLUSIVE));
+        return Ok(ExitCode::from(Outcome::Unknown.exit_code()));
     };
     messages.say(&cylwatch::report::monitor::story(&summary).to_text());
-    Ok(if summary.has_leak() {
-        ExitCode::from(LEAK)
-    } else if summary.is_inconclusive() {
-        ExitCode::from(INCONCLUSIVE)
-    } else {
-        ExitCode::SUCCESS
-    })
+    Ok(ExitCode::from(summary.outcome().exit_code()))
 }
 
 /// Runs the monitor over the log. Without a state nothing is left behind if it fails; with one, what was done before a
@@ -108,13 +100,16 @@ fn read(
     log: &mut LogInput,
     progress: &Progress,
 ) -> anyhow::Result<()> {
+    let mut order = Order::new(options.lateness_s);
     for row in first {
+        order.check(row.time_s, log.reader.place(row))?;
         session.push(row, log, progress)?;
     }
     loop {
         progress.show(&options.log, log.fraction());
         let Some(row) = log.reader.next_row()? else { return Ok(()) };
         let row = row.clone();
+        order.check(row.time_s, log.reader.place(&row))?;
         session.push(&row, log, progress)?;
     }
 }

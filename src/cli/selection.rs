@@ -3,7 +3,7 @@ use super::input::Inputs;
 use super::message::Messages;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::{Channel, Quantity};
-use cylwatch::estimator::sensor::{Sensor, SensorsSpec, read_sensors};
+use cylwatch::estimator::sensor::{ParameterKind, Sensor, SensorsSpec, read_sensors};
 use cylwatch::log::{LogReader, Row};
 use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
@@ -46,7 +46,7 @@ impl Selection {
     fn say_unused(&self, channels: &[Channel], vessel: &Vessel, known: &[&str], messages: &Messages) {
         let is_unused = |(index, channel): &(usize, &Channel)| {
             let name = channel.name.as_str();
-            !self.channels.contains(index) && !known.contains(&name) && typical(channel, vessel).is_ok()
+            !self.channels.contains(index) && !known.contains(&name) && typical(channel, vessel, true).is_ok()
         };
         let unused: Vec<&str> =
             channels.iter().enumerate().filter(is_unused).map(|(_, channel)| channel.name.as_str()).collect();
@@ -86,8 +86,13 @@ impl Selection {
         let mut selection = Self { sensors: Vec::new(), channels: Vec::new() };
         let mut left_out = Vec::new();
         let others = |channel: &Channel| !known.contains(&channel.name.as_str());
+        // A thermometer in the gas stands in where there is none outside; beside others it is what a simulation knows.
+        let outside = channels.iter().any(|channel| {
+            let name = channel.name.as_str();
+            channel.quantity == Quantity::Temperature && !name.starts_with("gas_") && typical(channel, vessel, true).is_ok()
+        });
         for (index, channel) in channels.iter().enumerate().filter(|(_, channel)| others(channel)) {
-            match typical(channel, vessel) {
+            match typical(channel, vessel, outside) {
                 Ok(sensor) => {
                     selection.sensors.push(sensor);
                     selection.channels.push(index);
@@ -123,6 +128,13 @@ impl Selection {
         Some(self.channels[index])
     }
 
+    /// Standard deviation of what the first transmitter is off by all the time, Pa; 0 without one.
+    pub fn pressure_offset_sd_pa(&self) -> f64 {
+        let transmitter = self.sensors.iter().find(|sensor| sensor.quantity() == Quantity::Pressure);
+        let offsets = transmitter.into_iter().flat_map(Sensor::parameters);
+        offsets.filter(|of| of.kind == ParameterKind::Offset).map(|of| of.sd).sum()
+    }
+
     /// Mean of a row's temperatures, K; 15 °C where it has none.
     pub fn mean_temperature_k(&self, row: Option<&Row>) -> f64 {
         let Some(row) = row else { return 288.15 };
@@ -135,13 +147,14 @@ impl Selection {
     }
 }
 
-/// The typical sensor of a column, or why it is not used without a file of sensors.
-fn typical(channel: &Channel, vessel: &Vessel) -> Result<Sensor, String> {
+/// The typical sensor of a column, or why it is not used without a file of sensors; `outside`: there are thermometers on the outside.
+fn typical(channel: &Channel, vessel: &Vessel, outside: bool) -> Result<Sensor, String> {
     let name = channel.name.as_str();
     if name == "ambient" {
         return Err("the air at a sensor is not the air at the cylinder; --sensors takes it".to_owned());
     }
-    if name.starts_with("gas_") {
+    // `gas_mean` is no place where a thermometer could be.
+    if name.starts_with("gas_") && (outside || name == "gas_mean") {
         return Err("inside the gas; --sensors takes it".to_owned());
     }
     let sensor = Sensor::typical(name).map_err(|_| "its place is unknown; --sensors says it".to_owned())?;

@@ -22,7 +22,7 @@
 //! let mut monitor = Monitor::new(&vessel, &sensors, &filled, &MonitorSettings::default())?;
 //! for minute in 0..10 {
 //!     for output in monitor.step(60.0 * f64::from(minute), &[288.15, 200e5])? {
-//!         println!("{:?}", output.verdict);
+//!         println!("{:?}", output.decision.verdict);
 //!     }
 //! }
 //! # Ok(())

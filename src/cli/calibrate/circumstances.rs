@@ -60,7 +60,7 @@ impl Exposure<'_> {
                 recording.name
             ),
         };
-        let commissioning = self.fill.commissioning(given, vessel, first_k)?;
+        let commissioning = self.fill.commissioning(given, vessel, first_k, 0.0)?;
         let mass_kg = commissioning.mass_kg(vessel, first_k)?;
         let of_air = recording.air_sensor.parameters().iter();
         let air_offset = of_air.copied().find(|of| of.kind == ParameterKind::Offset);
@@ -109,7 +109,7 @@ impl Exposure<'_> {
         Ok(Circumstances {
             scenario,
             temperature_sd_k: if commissioning.settled { SETTLED_SD_K } else { UNSETTLED_SD_K },
-            mass_sd: commissioning.mass_sd_kg / mass_kg,
+            mass_sd: commissioning.mass_sd,
             air_offset: air_offset.filter(|offset| offset.sd > 0.0),
             words,
             doubts,
@@ -131,7 +131,7 @@ impl Exposure<'_> {
         let first_k = scenario.initial.wall_temperature_k;
         let mut of_fill = "its fill".to_owned();
         let mass_of = |fill: Fill| -> anyhow::Result<f64> {
-            Ok(self.fill.commissioning(fill, vessel, first_k)?.mass_kg(vessel, first_k)?)
+            Ok(self.fill.commissioning(fill, vessel, first_k, 0.0)?.mass_kg(vessel, first_k)?)
         };
         let mass_kg = match self.source {
             FillSource::Given(fill) => {
@@ -143,7 +143,7 @@ impl Exposure<'_> {
             FillSource::FirstPressure => mass_of(scenario.initial.fill)?,
         };
         // A pressure that a scenario states is not read off a first row: it is as sure as a stated mass.
-        let commissioning = self.fill.commissioning(Fill::Mass { mass_kg }, vessel, first_k)?;
+        let commissioning = self.fill.commissioning(Fill::Mass { mass_kg }, vessel, first_k, 0.0)?;
         let mut doubts = misfit(recording, vessel, mass_kg)?;
         if !recording.air.is_empty() {
             doubts.push(format!(
@@ -152,7 +152,7 @@ impl Exposure<'_> {
             ));
         }
         let words = format!("{}: scenario `{}` with {of_fill}", recording.name, scenario.name);
-        let mass_sd = commissioning.mass_sd_kg / mass_kg;
+        let mass_sd = commissioning.mass_sd;
         Ok(Circumstances {
             scenario,
             temperature_sd_k: SETTLED_SD_K,

@@ -5,7 +5,7 @@ use super::rows::Rows;
 use super::state::{Identity, Refusal, State};
 use super::*;
 use cylwatch::detector::monitor::intake::Counts;
-use cylwatch::detector::monitor::{EventKind, Monitor, Output};
+use cylwatch::detector::monitor::{Monitor, Outcome, Output};
 use cylwatch::log::Truth;
 use cylwatch::report::figure::Picture;
 use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowFates, Summary};
@@ -46,7 +46,7 @@ pub struct Session<'a> {
     known_rows: u64,
     /// What had become of rows before this run.
     counts_before: Counts,
-    leak_found: bool,
+    loss_found: bool,
     continued: bool,
     /// Whether something failed that leaves the monitor or the rows with part of a row.
     broken: bool,
@@ -94,7 +94,7 @@ impl<'a> Session<'a> {
             known_until_s: None,
             known_rows: 0,
             counts_before,
-            leak_found: false,
+            loss_found: false,
             continued: state.is_some(),
             broken: false,
             saved: Instant::now(),
@@ -174,9 +174,9 @@ impl<'a> Session<'a> {
         self.naming.clock = clock;
         let say = Say { messages: self.kit.messages, progress };
         for event in &output.events {
-            self.leak_found |= matches!(event.kind, EventKind::LeakFound(_));
             self.sink.event(event, &self.naming, &say)?;
         }
+        self.loss_found |= output.decision.outcome == Outcome::Loss;
         for alarm in &output.alarms {
             self.sink.alarm(alarm, &self.naming, &say)?;
         }
@@ -244,7 +244,7 @@ impl<'a> Session<'a> {
             known_rows: self.known_rows,
             held_rows: self.monitor.intake().held() as u64,
             fates: fates(self.monitor.intake().counts(), &self.counts_before),
-            leak_found: self.leak_found,
+            loss_found: self.loss_found,
             continued: self.continued,
         });
         self.last = summary.as_ref().map(|summary| summary.last.clone());

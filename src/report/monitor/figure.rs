@@ -51,7 +51,7 @@ impl FigureData {
         });
         let others = [truth.outflow_kg_s, e.leak_kg_s].map(|rate| rate * GRAM_PER_HOUR);
         self.course.push(e.time_s, pressures.into_iter().chain(mass).chain(found).chain(others));
-        self.strip.push(e.time_s, output.verdict);
+        self.strip.push(e.time_s, output.decision.verdict);
         output.events.iter().for_each(|event| self.marks.event(event));
         output.alarms.iter().for_each(|alarm| self.marks.alarm(alarm));
     }

@@ -8,6 +8,7 @@ pub fn passage_words(passage: Passage, horizon_s: f64) -> String {
     match passage {
         Passage::Reached => "reached".to_owned(),
         Passage::In(time_s) => long(time_s),
+        Passage::Unknown => "not known yet".to_owned(),
         Passage::BeyondHorizon => format!("beyond {}", long(horizon_s)),
     }
 }

@@ -40,12 +40,13 @@ Columns (those of `estimate`, then):
   mass_kg, mass_sd_g     while a leak is found, by the observer's freest member, which does not
                          lag; so p15_bar and cold_pressure_bar
   verdict                tight, leak, discharge, refill, sensor fault or unknown
-  leak_probability       that gas is being lost faster than the rate that matters
-  leak_low_g_h, _high_   95 % interval of the leak that is found
+  leak_probability       that gas is being lost, by the evidence; empty while there is none
+  leak_low_g_h, _high_   95 % interval of the leak that is found; else from 0 to the largest that
+                         the masses leave room for
   onset_s                when it began
   lost_g                 gas lost since
   cold_pressure_bar      what the transmitter would show at the coldest temperature expected
-  reaction               none, next-interval, as-soon-as-possible or shutdown
+  reaction               none, next-interval, as-soon-as-possible or shutdown; empty: not known yet
   reason                 why the verdict is unknown";
 
 /// An output with what a file says beside it.
@@ -62,6 +63,9 @@ impl MonitorRow<'_> {
     fn estimate(&self) -> EstimateRow {
         let mut row = EstimateRow { estimate: self.output.estimate, leak_pa_s: self.leak_pa_s };
         row.estimate.time_s = self.output.stamp_s;
+        // Until a leak is found its rate is as uncertain as the masses leave it, not as one member of the bank supposes.
+        let uncertain_kg_s = self.output.leak_rate_kg_s.high / (0.5 * INTERVAL_SD);
+        row.estimate.leak_sd_kg_s = row.estimate.leak_sd_kg_s.max(uncertain_kg_s);
         if let Some(leak) = &self.output.leak {
             row.estimate.leak_kg_s = leak.rate_kg_s.value;
             row.estimate.leak_sd_kg_s = (leak.rate_kg_s.high - leak.rate_kg_s.low) / INTERVAL_SD;
@@ -72,24 +76,24 @@ impl MonitorRow<'_> {
 
     /// Numbers after the estimate in the order of [`COLUMNS`], with the decimals that are worth writing.
     fn numbers(&self) -> [(f64, usize); 6] {
-        let found = self.output.leak.map_or([f64::NAN; 4], |leak| {
-            let rate = leak.rate_kg_s.scaled(GRAM_PER_HOUR);
+        let rate = self.output.leak_rate_kg_s.scaled(GRAM_PER_HOUR);
+        let found = self.output.leak.map_or([f64::NAN; 2], |leak| {
             let onset_s = leak.onset_s.value + self.output.stamp_s - self.output.estimate.time_s;
-            [rate.low, rate.high, onset_s, leak.lost_kg.value * GRAM]
+            [onset_s, leak.lost_kg.value * GRAM]
         });
         [
-            (self.output.leak_probability, 6),
-            (found[0], 6),
-            (found[1], 6),
-            (found[2], 1),
-            (found[3], 3),
+            (self.output.decision.leak_probability.unwrap_or(f64::NAN), 6),
+            (rate.low, 6),
+            (rate.high, 6),
+            (found[0], 1),
+            (found[1], 3),
             (self.output.cold_pressure_pa / PASCAL_PER_BAR, 4),
         ]
     }
 
     fn words(&self) -> [Option<&'static str>; 2] {
-        let reaction = self.output.outlook.map(|outlook| outlook.advice.reaction);
-        [reaction.map(reaction_word), self.output.verdict.reason().map(|reason| reason.as_str())]
+        let reaction = self.output.decision.reaction;
+        [reaction.map(reaction_word), self.output.decision.verdict.reason().map(|reason| reason.as_str())]
     }
 }
 
@@ -100,7 +104,7 @@ pub fn csv_header() -> String {
 
 /// Appends a row with its line feed.
 pub fn csv_row(row: &MonitorRow, text: &mut String) {
-    estimate::csv_cells(&row.estimate(), row.output.verdict.as_str(), text);
+    estimate::csv_cells(&row.estimate(), row.output.decision.verdict.as_str(), text);
     for number in row.numbers() {
         text.push(',');
         push_number(number, "", text);
@@ -115,7 +119,7 @@ pub fn csv_row(row: &MonitorRow, text: &mut String) {
 /// Appends a row as a JSON array.
 pub fn json_row(row: &MonitorRow, text: &mut String) {
     text.push('[');
-    estimate::json_cells(&row.estimate(), Some(row.output.verdict.as_str()), text);
+    estimate::json_cells(&row.estimate(), Some(row.output.decision.verdict.as_str()), text);
     for number in row.numbers() {
         text.push(',');
         push_number(number, "null", text);
@@ -132,7 +136,9 @@ pub fn json_row(row: &MonitorRow, text: &mut String) {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::detector::monitor::{Health, Interval, LeakFinding, Outlook, Reason, Verdict};
+    use crate::detector::monitor::{
+        Decision, Health, Interval, LeakFinding, Outcome, Outlook, Reason, Verdict,
+    };
     use crate::detector::prognosis::{Advice, Passage, Quantiles, Reaction};
     use crate::estimator::observer::{Estimate, Quality};
 
@@ -153,14 +159,19 @@ pub(super) mod tests {
                 p15_pa: 196e5,
                 quality: Quality::Degraded,
             },
-            verdict: Verdict::Leak,
+            decision: Decision {
+                verdict: Verdict::Leak,
+                outcome: Outcome::Loss,
+                leak_probability: Some(0.999),
+                reaction: Some(Reaction::AsSoonAsPossible),
+            },
+            leak_rate_kg_s: interval(1e-6, 0.8e-6, 1.3e-6),
             leak: Some(LeakFinding {
                 rate_kg_s: interval(1e-6, 0.8e-6, 1.3e-6),
                 rate_pa_s: interval(4.5, 3.6, 5.85),
                 onset_s: interval(3600.0, 0.0, 5400.0),
                 lost_kg: interval(0.0036, 0.003, 0.0045),
             }),
-            leak_probability: 0.999,
             cold_pressure_pa: 158e5,
             health: vec![Health::Good, Health::Missing],
             outlook: Some(outlook(Reaction::AsSoonAsPossible)),
@@ -181,12 +192,19 @@ pub(super) mod tests {
             before_next_service: 0.97,
             before_following_service: 1.0,
         };
-        Outlook { operational: left, cold: left, maintenance: left, advice }
+        Outlook { operational: left, cold: left, maintenance: left, advice, known: true }
     }
 
     /// The same where nothing can be told.
     pub fn unknown() -> Output {
-        Output { verdict: Verdict::Unknown(Reason::NoPressure), leak: None, outlook: None, ..leaking() }
+        let decision = Decision {
+            verdict: Verdict::Unknown(Reason::NoPressure),
+            outcome: Outcome::Unknown,
+            leak_probability: None,
+            reaction: None,
+        };
+        let leak_rate_kg_s = Interval { value: 0.0, low: 0.0, high: 1e-6 };
+        Output { decision, leak_rate_kg_s, leak: None, outlook: None, ..leaking() }
     }
 
     #[test]
@@ -210,10 +228,22 @@ pub(super) mod tests {
         let mut text = String::new();
         csv_row(&row, &mut text);
         let cells: Vec<&str> = text.trim_end().split(',').collect();
-        assert_eq!(cells[5..8], ["1.800000", "0.360000", "0.07200000"]);
+        // Nothing is found: up to 3.6 g/h, which is 1.96 standard deviations.
+        assert_eq!(cells[5..8], ["1.800000", "1.836768", "0.07200000"]);
         assert_eq!(
             cells[11..],
-            ["unknown", "degraded", "0.999000", "", "", "", "", "158.0000", "", "no usable pressure"]
+            [
+                "unknown",
+                "degraded",
+                "",
+                "0.000000",
+                "3.600000",
+                "",
+                "",
+                "158.0000",
+                "",
+                "no usable pressure"
+            ]
         );
     }
 

@@ -3,10 +3,10 @@ use super::event::{finding, health_word, range, verdict};
 use super::prognosis::percent;
 use super::{
     BAR_PER_HOUR, GRAM, GRAM_PER_HOUR, Naming, health_words, passage_words, reaction_reason, reaction_word,
-    reaction_words,
+    reaction_words, short,
 };
 use crate::detector::monitor::alarm::AlarmPanel;
-use crate::detector::monitor::{Health, LeakFinding, Outlook, Output, Verdict};
+use crate::detector::monitor::{Decision, Health, LeakFinding, Outcome, Outlook, Output, Verdict};
 use crate::detector::prognosis::Quantiles;
 use crate::log::{Caution, Sampling};
 use crate::report::Story;
@@ -63,30 +63,50 @@ pub struct Summary {
     pub held_rows: u64,
     /// What became of rows that were not simply used.
     pub fates: RowFates,
-    /// Whether a leak was found among these rows.
-    pub leak_found: bool,
+    /// Whether gas was lost in any of these rows.
+    pub loss_found: bool,
     /// Whether the state goes on from an earlier run.
     pub continued: bool,
 }
 
 /// The run in a few lines.
 pub fn story(summary: &Summary) -> Story {
-    let mut facts = vec![("verdict", summary.last.verdict.to_string())];
+    let decision = &summary.last.decision;
+    let mut facts = vec![("verdict", decision_words(decision))];
     facts.extend(summary.last.leak.iter().flat_map(|leak| leak_rows(leak, &summary.naming)));
     if summary.last.leak.is_none() {
-        facts.push((
-            "leak",
-            format!("none found; one that matters is there with {}", percent(summary.last.leak_probability)),
-        ));
+        facts.push(("leak", no_leak_words(&summary.last)));
     }
     facts.extend(pressure_rows(summary));
     if let Some(outlook) = &summary.last.outlook {
-        facts.extend(outlook_rows(outlook, summary.circumstances.next_service_s));
+        facts.extend(outlook_rows(outlook, decision, summary.circumstances.next_service_s));
     }
     facts.extend(alarm_rows(summary));
     facts.push(("sensors", sensors(&summary.last.health, &summary.naming)));
     facts.push(("log", log(summary)));
     Story::new(&summary.title).facts(facts)
+}
+
+/// The verdict, with what it means where the word alone does not say it.
+fn decision_words(decision: &Decision) -> String {
+    let announced = match (decision.verdict, decision.outcome) {
+        (Verdict::Discharge, Outcome::Loss) => ", not announced: gas is lost",
+        (Verdict::Discharge, _) => ", announced",
+        _ => "",
+    };
+    format!("{}{announced}", decision.verdict)
+}
+
+/// What is known of a leak where none is found.
+fn no_leak_words(last: &Output) -> String {
+    let largest = format!("{} g/h", short(last.leak_rate_kg_s.high * GRAM_PER_HOUR));
+    match (last.decision.outcome, last.decision.leak_probability) {
+        (Outcome::Loss, _) => "gas went out fast: see the events".to_owned(),
+        (_, None) => format!("not known yet; the readings leave room for up to {largest}"),
+        (_, Some(probability)) => {
+            format!("none found; probability of a leak: {}, at most {largest}", percent(probability))
+        }
+    }
 }
 
 fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3] {
@@ -128,7 +148,11 @@ fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
     ]
 }
 
-fn outlook_rows(outlook: &Outlook, next_service_s: f64) -> Vec<(&'static str, String)> {
+fn outlook_rows(
+    outlook: &Outlook,
+    decision: &Decision,
+    next_service_s: f64,
+) -> Vec<(&'static str, String)> {
     let left = |quantiles: &Quantiles| {
         let [p5, p50, p95] = [quantiles.p5, quantiles.p50, quantiles.p95]
             .map(|passage| passage_words(passage, quantiles.horizon_s));
@@ -141,7 +165,13 @@ fn outlook_rows(outlook: &Outlook, next_service_s: f64) -> Vec<(&'static str, St
         ("to maintenance", left(&outlook.maintenance)),
         (
             "reaction",
-            format!("{}: {}", reaction_words(advice.reaction), reaction_reason(advice, next_service_s)),
+            match decision.reaction {
+                None => "not known yet".to_owned(),
+                Some(reaction) if reaction == advice.reaction => {
+                    format!("{}: {}", reaction_words(reaction), reaction_reason(advice, next_service_s))
+                }
+                Some(reaction) => format!("{}: gas is being lost", reaction_words(reaction)),
+            },
         ),
     ]
 }
@@ -221,10 +251,13 @@ pub fn document(summary: &Summary) -> Value {
         "continued": summary.continued,
         "time_s": summary.last.estimate.time_s,
         "time": clock.date(summary.last.estimate.time_s),
-        "verdict": verdict(summary.last.verdict),
+        "verdict": verdict(summary.last.decision.verdict),
+        "outcome": summary.last.decision.outcome,
         "leak": summary.last.leak.as_ref().map(finding),
-        "leak_found": summary.leak_found,
-        "leak_probability": summary.last.leak_probability,
+        "loss_found": summary.loss_found,
+        "leak_probability": summary.last.decision.leak_probability,
+        "leak_rate_high_g_h": summary.last.leak_rate_kg_s.high * GRAM_PER_HOUR,
+        "reaction": summary.last.decision.reaction.map(reaction_word),
         "p15_bar": summary.last.estimate.p15_pa / PASCAL_PER_BAR,
         "cold_pressure_bar": summary.last.cold_pressure_pa / PASCAL_PER_BAR,
         "limit_bar": summary.circumstances.limit_pa / PASCAL_PER_BAR,
@@ -242,14 +275,14 @@ fn outlook(outlook: &Outlook) -> Value {
     let days = |passage: Passage| match passage {
         Passage::Reached => Some(0.0),
         Passage::In(time_s) => Some(time_s / 86_400.0),
-        Passage::BeyondHorizon => None,
+        Passage::BeyondHorizon | Passage::Unknown => None,
     };
     let left = |q: &Quantiles| json!({ "p5_d": days(q.p5), "p50_d": days(q.p50), "p95_d": days(q.p95), "horizon_d": q.horizon_s / 86_400.0 });
     json!({
         "operational": left(&outlook.operational),
         "cold": left(&outlook.cold),
         "maintenance": left(&outlook.maintenance),
-        "reaction": reaction_word(outlook.advice.reaction),
+        "known": outlook.known,
         "before_safe_state": outlook.advice.before_safe_state,
         "before_next_service": outlook.advice.before_next_service,
         "before_following_service": outlook.advice.before_following_service,
@@ -257,13 +290,8 @@ fn outlook(outlook: &Outlook) -> Value {
 }
 
 impl Summary {
-    /// Whether a leak was found among these rows or is there at their end.
-    pub fn has_leak(&self) -> bool {
-        self.leak_found || self.last.leak.is_some() || self.last.verdict == Verdict::Leak
-    }
-
-    /// Whether nothing can be told at the end.
-    pub fn is_inconclusive(&self) -> bool {
-        self.last.verdict.reason().is_some()
+    /// What the run comes to: a loss if gas was lost in any of its rows, else what its last row says.
+    pub fn outcome(&self) -> Outcome {
+        if self.loss_found { Outcome::Loss } else { self.last.decision.outcome }
     }
 }

@@ -14,6 +14,7 @@
 //! | [`crate::evidence`] | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |
 //! | [`gas::onset`] | since when, how fast, how much, with intervals |
 //! | outlook | the time left and the reaction that is due ([`crate::prognosis`]) |
+//! | [`decide`] | verdict, probability of a leak, alarm, reaction and exit code from what is known: one function |
 //! | [`alarm`] | what must be dealt with, in the words of OPC UA Part 9 |
 //!
 //! Where it cannot be told the verdict is [`Verdict::Unknown`] with its reason, never [`Verdict::Tight`].
@@ -22,6 +23,7 @@
 //! A transmitter that drifts downwards looks like a leak: 0.1 % of 400 bar in a year are 5e-5 bar/h. Two cylinders exchanged for
 //! each other look like cylinders.
 pub mod alarm;
+mod decision;
 mod event;
 pub mod gas;
 pub mod intake;
@@ -34,6 +36,7 @@ pub mod settings;
 pub mod state;
 mod verdict;
 
+pub use decision::{Decision, Known, KnownExchange, LIKELY, Outcome, decide};
 pub use event::{Event, EventKind};
 pub use machine::Monitor;
 pub use output::{Health, Interval, LeakFinding, Outlook, Output};

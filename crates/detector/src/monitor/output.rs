@@ -3,7 +3,7 @@ use cylwatch_estimator::observer::Estimate;
 use serde::{Deserialize, Serialize};
 
 use super::alarm::AlarmEvent;
-use super::{Event, Verdict};
+use super::{Decision, Event};
 use crate::prognosis::{Advice, Quantiles};
 
 /// A value with its 95 % interval.
@@ -73,12 +73,12 @@ pub struct Output {
     /// The observer's estimate; in a leak with the mass of its freest member, since its own mass walks little and lags behind a
     /// slow leak by days.
     pub estimate: Estimate,
-    /// What is happening.
-    pub verdict: Verdict,
+    /// What is decided: verdict, outcome, probability of a leak, reaction.
+    pub decision: Decision,
     /// The leak, while there is one.
     pub leak: Option<LeakFinding>,
-    /// Probability that gas is being lost faster than the rate that matters.
-    pub leak_probability: f64,
+    /// Leak rate, kg/s: that of the leak that is found, else from 0 to what a leak is below with 97.5 %.
+    pub leak_rate_kg_s: Interval,
     /// Raw pressure that the transmitter would show at the coldest temperature expected, Pa.
     pub cold_pressure_pa: f64,
     /// Health of each sensor, in the order of the readings.
@@ -102,4 +102,6 @@ pub struct Outlook {
     pub maintenance: Quantiles,
     /// What is due.
     pub advice: Advice,
+    /// Whether anything is known of a leak; else what is due rests on limits that are reached alone.
+    pub known: bool,
 }

@@ -11,7 +11,7 @@ pub enum Verdict {
     Tight,
     /// Gas is being lost steadily.
     Leak,
-    /// Gas was let out at once, or is being.
+    /// Gas was let out fast, or is being: a loss unless it was announced.
     Discharge,
     /// Gas was put in, or is being.
     Refill,
@@ -47,6 +47,8 @@ pub enum Reason {
     Clock,
     /// The estimate had to begin again.
     Restarted,
+    /// A leak is more likely than not, but not found at the stated rate of false alarms.
+    Suspected,
 }
 
 impl Verdict {
@@ -86,6 +88,7 @@ impl Reason {
             Self::Stuck => "a reading stands still",
             Self::Clock => "the clock jumped",
             Self::Restarted => "the estimate had to begin again",
+            Self::Suspected => "a leak is likely, but not certain yet",
         }
     }
 }

@@ -37,6 +37,8 @@ pub enum Passage {
     In(f64),
     /// Not within the horizon, perhaps never.
     BeyondHorizon,
+    /// Not reached yet; nothing is known of the leak rate.
+    Unknown,
 }
 
 /// The time left in quantiles: the limit is reached before `p5` with a probability of 5 %.

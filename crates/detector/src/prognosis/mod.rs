@@ -21,7 +21,7 @@
 //! let left = Prognosis::try_new(state, operational_kg, LossLaw::Choked)?.quantiles(365.0 * 86400.0);
 //! let days = |passage| match passage {
 //!     Passage::In(time_s) => time_s / 86400.0,
-//!     Passage::Reached | Passage::BeyondHorizon => f64::NAN,
+//!     Passage::Reached | Passage::BeyondHorizon | Passage::Unknown => f64::NAN,
 //! };
 //! assert!(days(left.p5) > 2.8 && days(left.p50) < 3.8 && days(left.p95) < 4.6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -28,7 +28,7 @@ fn seconds(passage: Passage) -> f64 {
     match passage {
         Passage::In(time_s) => time_s,
         Passage::Reached => 0.0,
-        Passage::BeyondHorizon => f64::INFINITY,
+        Passage::BeyondHorizon | Passage::Unknown => f64::INFINITY,
     }
 }
 

@@ -25,9 +25,6 @@ pub(super) use together::Memory;
 /// Interval at which slow walks are added to the constants, s.
 const SLOW_WALK_S: f64 = 3600.0;
 
-/// What a leak rate may be once a slow member was wrong, kg/s: 20 g/h.
-const ANY_LEAK_SD_KG_S: f64 = 20e-3 / 3600.0;
-
 /// The members in the order of the settings.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Bank {
@@ -198,7 +195,9 @@ impl Bank {
 
     /// Let a member begin anew with all that another one knows. Where that is less mass than supposed, a leak rate that may walk
     /// may be anything then; more mass is no leak, but tells that one was supposed in vain.
-    pub fn begin_anew(&mut self, index: usize, from: usize, (mass, leak): (usize, usize)) {
+    pub fn begin_anew(&mut self, index: usize, from: usize, cylinder: &Cylinder) {
+        let (mass, leak) = (cylinder.state_map().mass, cylinder.state_map().leak);
+        let any_leak_sd_kg_s = cylinder.settings().any_leak_sd_kg_s;
         let Ok([member, other]) = self.members.get_disjoint_mut([index, from]) else { return };
         let lost = other.x[mass] < member.x[mass];
         member.x.clone_from(&other.x);
@@ -206,7 +205,7 @@ impl Bank {
         if let Some(pass) = &mut member.pass {
             pass.begin_anew();
         }
-        let sd_kg_s = if lost && !member.hypothesis.rate.is_known() { ANY_LEAK_SD_KG_S } else { 0.0 };
+        let sd_kg_s = if lost && !member.hypothesis.rate.is_known() { any_leak_sd_kg_s } else { 0.0 };
         self.copy_covariance(from, index);
         self.decorrelate_and_set(index, leak, sd_kg_s * sd_kg_s);
     }
@@ -256,7 +255,7 @@ impl Bank {
             self.members[index].x[leak] = 0.0;
             let prior_sd_kg_s = self.members[index].hypothesis.rate.prior_sd;
             self.decorrelate_and_set(index, leak, prior_sd_kg_s * prior_sd_kg_s);
-            for (state, variance) in freed(cylinder.state_map()) {
+            for (state, variance) in freed(cylinder) {
                 self.decorrelate_and_set(index, state, variance);
             }
             if let Some(pass) = &mut self.members[index].pass {

@@ -12,8 +12,8 @@ use crate::thermal::vessel::Vessel;
 /// Temperature that is assumed where nobody measures one, K.
 const ASSUMED_K: f64 = 288.15;
 const ASSUMED_SD_K: f64 = 20.0;
-/// Rate and coefficient that a fill of 200 bar and 15 °C knows: 1 K and 1 bar are 19 g each.
-const DEFAULT_MASS_SD_KG: f64 = 0.045;
+/// How well a stated fill is known, as a part of its mass: at 200 bar and 15 °C, 1 K and 1 bar are 0.43 % each.
+const DEFAULT_MASS_SD: f64 = 0.01;
 /// How far what the first sample reads may be from the temperature of a cylinder, K,
 const BODY_SD_K: f64 = 1.0;
 /// and wall, valve and gas of a settled one from each other: the turbulence of the air and a shoulder in the wind.
@@ -27,8 +27,8 @@ const UNSETTLED_GAS_SD_K: f64 = 10.0;
 pub struct Commissioning {
     /// What fixes the gas mass.
     pub fill: Fill,
-    /// Standard deviation of that mass, kg: 45 g stands for 1.7 K and 1.7 bar together.
-    pub mass_sd_kg: f64,
+    /// Standard deviation of that mass as a part of it: 1 % stands for 1.7 K and 1.7 bar together at 200 bar.
+    pub mass_sd: f64,
     /// Whether wall and gas have one temperature at the first sample.
     pub settled: bool,
 }
@@ -37,7 +37,7 @@ impl Commissioning {
     /// A settled cylinder that was filled to a pressure at a temperature.
     pub fn filled(pressure_pa: f64, temperature_k: f64) -> Self {
         let fill = Fill::Settled { pressure_pa, temperature_k };
-        Self { fill, mass_sd_kg: DEFAULT_MASS_SD_KG, settled: true }
+        Self { fill, mass_sd: DEFAULT_MASS_SD, settled: true }
     }
 
     /// Gas mass that the fill stands for, kg.
@@ -60,7 +60,7 @@ impl Commissioning {
             Err(EstimatorError::ObserverSetting { setting, value, bound: "positive and finite" })
         };
         require("commissioning.mass_kg", mass_kg)?;
-        require("commissioning.mass_sd_kg", self.mass_sd_kg)?;
+        require("commissioning.mass_sd", self.mass_sd)?;
         Ok(mass_kg)
     }
 }
@@ -136,7 +136,7 @@ pub(super) fn prior(
         let (of_mean, of_sd) = match *kind {
             StateKind::Wall(_) | StateKind::Valve => (body_k, spread.wall_k),
             StateKind::Gas => (gas.unwrap_or(body_k), spread.gas_k),
-            StateKind::Mass => (mass_kg, commissioning.mass_sd_kg),
+            StateKind::Mass => (mass_kg, commissioning.mass_sd * mass_kg),
             StateKind::Leak => (0.0, 0.0),
             StateKind::Air => {
                 (air.unwrap_or(body_k), settings.air.prior_sd.max(spread.together_k.max(spread.wall_k)))

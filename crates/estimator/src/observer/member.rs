@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::cylinder::Cylinder;
 use super::pass::Pass;
 use super::settings::LeakHypothesis;
-use super::states::States;
 
 /// What became of a reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -102,10 +101,10 @@ impl Member {
 
 /// States that an exchange of gas frees of everything known about them, with their variances; what has been learnt of the constants
 /// stays.
-pub(super) fn freed(states: &States) -> [(usize, f64); 2] {
-    [(states.mass, FREE_MASS_SD_KG * FREE_MASS_SD_KG), (states.gas, FREE_GAS_SD_K * FREE_GAS_SD_K)]
+pub(super) fn freed(cylinder: &Cylinder) -> [(usize, f64); 2] {
+    let (states, mass_sd_kg) = (cylinder.state_map(), cylinder.settings().free_mass_sd_kg);
+    [(states.mass, mass_sd_kg * mass_sd_kg), (states.gas, FREE_GAS_SD_K * FREE_GAS_SD_K)]
 }
 
-/// What mass and gas temperature may be while gas is exchanged.
-const FREE_MASS_SD_KG: f64 = 1.0;
+/// What the gas temperature may be while gas is exchanged.
 const FREE_GAS_SD_K: f64 = 20.0;

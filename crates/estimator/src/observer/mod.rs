@@ -28,6 +28,7 @@ mod member;
 mod observability;
 mod pass;
 mod roles;
+mod scale;
 mod screen;
 pub mod settings;
 mod smoother;
@@ -58,6 +59,7 @@ pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 pub(crate) use roles::middle_slow;
 use roles::{freest, thermometer};
+pub use scale::Scale;
 pub use screen::{Fault, FaultCount};
 pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
 pub use smoother::Smoother;
@@ -124,8 +126,8 @@ impl Observer {
         if sensors.is_empty() {
             return Err(EstimatorError::NoSensors);
         }
+        let settings = &Scale::of(vessel, commissioning)?.applied(settings);
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
-        commissioning.mass_kg(vessel, QUOTED_K)?;
         let gate = settings.gate_sd * settings.gate_sd;
         Ok(Self {
             vessel: vessel.clone(),
@@ -237,14 +239,14 @@ impl Observer {
 
     /// Members that are out of the question begin anew from the freest one.
     fn replace_the_wrong(&mut self) {
-        let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
+        let mass = self.cylinder.state_map().mass;
         let freest = self.freest;
         self.bank.write_moments(mass, &mut self.masses);
         self.anew.fill(false);
         for index in (0..self.masses.len()).filter(|&index| index != freest) {
             if Belief::of(self.masses[index], self.masses[freest]).is_out_of_the_question() {
                 self.anew[index] = true;
-                self.bank.begin_anew(index, freest, (mass, leak));
+                self.bank.begin_anew(index, freest, &self.cylinder);
                 self.masses[index] = self.masses[freest];
             }
         }

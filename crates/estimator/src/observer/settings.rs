@@ -110,6 +110,12 @@ impl LeakHypothesis {
         }
     }
 
+    /// The same with a leak that may be there from the first sample on: standard deviation of its rate, g/h.
+    pub fn from_the_start(mut self, sd_g_h: f64) -> Self {
+        self.rate.prior_sd = sd_g_h * 1e-3 * PER_HOUR;
+        self
+    }
+
     /// The same with so much error of the pressure per kelvin between wall and gas, Pa/K.
     pub fn cautious(self, caution_pa_k: f64) -> Self {
         Self { caution_pa_k, ..self }
@@ -151,7 +157,8 @@ impl ModelError {
     };
 }
 
-/// Settings of the cylinder's observer. SI.
+/// Settings of the cylinder's observer. SI. Masses, leak rates and pressures are stated for the full 20 L nitrogen cylinder; an
+/// observer takes them as parts of its own fill ([`super::Scale`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObserverSettings {
     /// Filter that every member of the bank runs.
@@ -195,6 +202,10 @@ pub struct ObserverSettings {
     /// The bank: the first member gives the mass, the middle one of those with a leak rate the gas temperature, as long as the
     /// freest member agrees.
     pub bank: Vec<LeakHypothesis>,
+    /// Standard deviation of the mass while gas is being exchanged, kg.
+    pub free_mass_sd_kg: f64,
+    /// Standard deviation of the leak rate of a member that has lost more mass than it allows, kg/s.
+    pub any_leak_sd_kg_s: f64,
     /// Innovation beyond which a reading is rejected, in its standard deviations: wide, because a step of the air is no
     /// fault of a sensor.
     pub gate_sd: f64,
@@ -234,10 +245,12 @@ impl Default for ObserverSettings {
             band: BandSettings::default(),
             bank: vec![
                 LeakHypothesis::walking_mass(1.5),
-                LeakHypothesis::walking_rate(0.02),
-                LeakHypothesis::walking_rate(0.005),
+                LeakHypothesis::walking_rate(0.02).from_the_start(20.0),
+                LeakHypothesis::walking_rate(0.005).from_the_start(20.0),
                 LeakHypothesis::walking_mass(30.0),
             ],
+            free_mass_sd_kg: 1.0,
+            any_leak_sd_kg_s: 20e-3 * PER_HOUR,
             gate_sd: 20.0,
             rejections_in_a_row: 5,
         }
@@ -297,6 +310,8 @@ impl ObserverSettings {
         positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
         positive("constants_memory_s", self.constants_memory_s.unwrap_or(1.0))?;
         positive("gate_sd", self.gate_sd)?;
+        positive("free_mass_sd_kg", self.free_mass_sd_kg)?;
+        positive("any_leak_sd_kg_s", self.any_leak_sd_kg_s)?;
         for (setting, value) in [
             ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
             ("gas_walk_k_per_sqrt_s", self.gas_walk_k_per_sqrt_s),

@@ -170,8 +170,8 @@ impl History {
     fn note(&mut self, now_s: f64, output: &Output) {
         self.outputs += 1;
         self.not_numbers += u64::from(!is_finite(output));
-        if self.verdicts.last().is_none_or(|(_, last)| *last != output.verdict) {
-            self.verdicts.push((now_s, output.verdict));
+        if self.verdicts.last().is_none_or(|(_, last)| *last != output.decision.verdict) {
+            self.verdicts.push((now_s, output.decision.verdict));
         }
         let leaking = output.leak.is_some();
         if self.leaking.last().is_none_or(|(_, last)| *last != leaking) {
@@ -255,7 +255,7 @@ fn is_finite(output: &Output) -> bool {
         estimate.leak_sd_kg_s,
         estimate.pressure_expected_pa,
         estimate.p15_pa,
-        output.leak_probability,
+        output.decision.leak_probability.unwrap_or(0.0),
         output.cold_pressure_pa,
     ];
     let leak = output.leak.iter().flat_map(|leak| {
@@ -269,6 +269,6 @@ fn digest(before: u64, output: &Output) -> u64 {
     const PRIME: u64 = 0x0000_0100_0000_01b3;
     let leak = output.leak.map_or(0.0, |leak| leak.rate_kg_s.value);
     let numbers = [output.estimate.time_s, output.estimate.mass_kg, output.estimate.gas_mean_k, leak];
-    let verdict = output.verdict.as_str().len() as f64;
+    let verdict = output.decision.verdict.as_str().len() as f64;
     numbers.iter().chain([&verdict]).fold(before, |hash, value| (hash ^ value.to_bits()).wrapping_mul(PRIME))
 }

@@ -101,8 +101,9 @@ impl Motion {
         let mut linear = Linearisation::zeros(n, leading, cylinder.noises());
         cylinder.propagate(&mut point.clone(), interval_s, Some(&mut linear))?;
         let sd = linear.q.map(f64::sqrt) * settings.noise_factor;
-        let mut drawn =
-            vec![(cylinder.state_map().mass, Commissioning::filled(pressure_pa, temperature_k).mass_sd_kg)];
+        let filled = Commissioning::filled(pressure_pa, temperature_k);
+        let mass_sd_kg = filled.mass_sd * filled.mass_kg(claim.vessel, temperature_k)?;
+        let mut drawn = vec![(cylinder.state_map().mass, mass_sd_kg)];
         let mut slow = Vec::new();
         for state in leading..n {
             let process = cylinder.slow_process(state);

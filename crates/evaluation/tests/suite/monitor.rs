@@ -84,12 +84,12 @@ fn a_tight_cylinder_in_winter_is_tight_once_it_is_learnt() {
     for output in &outputs {
         let expected =
             if output.estimate.time_s < DAY_S { Verdict::Unknown(Reason::Learning) } else { Verdict::Tight };
-        let passing = [Reason::Jump, Reason::Disturbed].map(Verdict::Unknown).contains(&output.verdict);
-        assert!(output.verdict == expected || passing, "{} s: {}", output.estimate.time_s, output.verdict);
+        let passing = [Reason::Jump, Reason::Disturbed].map(Verdict::Unknown).contains(&output.decision.verdict);
+        assert!(output.decision.verdict == expected || passing, "{} s: {}", output.estimate.time_s, output.decision.verdict);
     }
     // A jump under examination; sun on the shoulder for a few hours.
     for (reason, most) in [(Reason::Jump, 0.02), (Reason::Disturbed, 0.1)] {
-        let said = outputs.iter().filter(|output| output.verdict == Verdict::Unknown(reason)).count();
+        let said = outputs.iter().filter(|output| output.decision.verdict == Verdict::Unknown(reason)).count();
         println!("{reason:?}: {said} of {} samples", outputs.len());
         assert!((said as f64) < most * outputs.len() as f64);
     }
@@ -101,7 +101,7 @@ fn a_leak_is_found_with_its_rate_and_onset() {
     let rate_kg_s = 3e-3 / HOUR_S;
     let onset_s = 2.0 * DAY_S;
     let outputs = run(&week(4.0, Some(TruthLeak { rate_kg_s, start_s: onset_s })));
-    let alarm = outputs.iter().find(|output| output.verdict == Verdict::Leak).expect("a leak is found");
+    let alarm = outputs.iter().find(|output| output.decision.verdict == Verdict::Leak).expect("a leak is found");
     assert!(alarm.estimate.time_s > onset_s && alarm.estimate.time_s < onset_s + DAY_S);
     let leak = outputs.last().unwrap().leak.unwrap();
     assert!(leak.rate_kg_s.holds(rate_kg_s) && leak.onset_s.holds(onset_s), "{leak:?}");
@@ -120,9 +120,9 @@ fn in_a_slow_leak_the_mass_does_not_lag() {
         let error_kg = |output: &Output| output.estimate.mass_kg - truth.mass_kg[at(output.estimate.time_s)];
         let before = outputs.iter().rfind(|output| output.estimate.time_s < leak.start_s).unwrap();
         let last = outputs.last().unwrap();
-        assert_eq!(last.verdict, Verdict::Leak, "seed {seed}");
+        assert_eq!(last.decision.verdict, Verdict::Leak, "seed {seed}");
         lags_g.push((error_kg(last) - error_kg(before)) * 1e3);
-        for output in outputs.iter().filter(|output| output.verdict == Verdict::Leak) {
+        for output in outputs.iter().filter(|output| output.decision.verdict == Verdict::Leak) {
             all += 1;
             within += usize::from(error_kg(output).abs() < 2.0 * output.estimate.mass_sd_kg);
         }
@@ -177,7 +177,7 @@ fn thermometers_in_each_others_place_are_told_after_a_day_and_put_right() {
     assert_eq!(told, [DAY_S]);
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
     let last = outputs.last().unwrap();
-    assert_eq!(last.verdict, Verdict::Tight);
+    assert_eq!(last.decision.verdict, Verdict::Tight);
     // From then on as if they had never been.
     let right = run(&tight()[1440..]);
     let apart_k = (last.estimate.gas_mean_k - right.last().unwrap().estimate.gas_mean_k).abs();
@@ -195,7 +195,7 @@ fn a_late_thermometer_is_told_after_a_day_and_put_right() {
         .collect();
     assert!(matches!(told[..], [(SHOULDER, by_s)] if (by_s - 120.0).abs() < 15.0), "{told:?}");
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
-    assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
+    assert_eq!(outputs.last().unwrap().decision.verdict, Verdict::Tight);
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn a_heater_beside_one_end_is_no_leak_neither_then_nor_later() {
     };
     let outputs = happening(6.0, 56, &Happenings { disturbances: vec![heater], ..Happenings::default() });
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
-    assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
+    assert_eq!(outputs.last().unwrap().decision.verdict, Verdict::Tight);
 }
 
 #[test]
@@ -272,8 +272,8 @@ fn degrees_fahrenheit_read_as_celsius_are_no_leak_but_doubt() {
     let outputs = run(&rows);
     assert_eq!(events(&outputs).filter(|kind| matches!(kind, EventKind::FillingDoubted { .. })).count(), 1);
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
-    assert!(outputs.iter().all(|output| output.verdict != Verdict::Tight));
-    assert_eq!(outputs.last().unwrap().verdict, Verdict::Unknown(Reason::Filling));
+    assert!(outputs.iter().all(|output| output.decision.verdict != Verdict::Tight));
+    assert_eq!(outputs.last().unwrap().decision.verdict, Verdict::Unknown(Reason::Filling));
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn a_jump_of_the_transmitter_is_its_fault_and_no_leak() {
     }
     let outputs = run(&rows);
     let last = outputs.last().unwrap();
-    assert_eq!(last.verdict, Verdict::SensorFault, "{:?}", last.health);
+    assert_eq!(last.decision.verdict, Verdict::SensorFault, "{:?}", last.health);
     let Health::Shifted(by_pa) = last.health[PRESSURE] else { panic!("{:?}", last.health) };
     assert!((by_pa + 2e5).abs() < 0.15e5, "{by_pa} Pa");
     assert!(!events(&outputs).any(|k| matches!(k, EventKind::LeakFound(_) | EventKind::Discharge(_))));
@@ -325,11 +325,11 @@ fn a_wire_that_breaks_makes_it_unknown_and_never_tight() {
     for output in &outputs {
         let blind = output.estimate.time_s > blind_s && output.estimate.time_s < rows[3600].0;
         if blind {
-            assert_eq!(output.verdict, Verdict::Unknown(Reason::NoPressure));
+            assert_eq!(output.decision.verdict, Verdict::Unknown(Reason::NoPressure));
             assert_eq!(output.health[PRESSURE], Health::Implausible);
         }
     }
-    assert_eq!(outputs.last().unwrap().verdict, Verdict::Tight);
+    assert_eq!(outputs.last().unwrap().decision.verdict, Verdict::Tight);
 }
 
 #[test]
@@ -342,6 +342,6 @@ fn an_empty_cylinder_is_no_refill_and_never_tight() {
     let empty = outputs.iter().filter(|output| output.estimate.time_s > 2.25 * DAY_S);
     assert!(empty.clone().count() > 300);
     for output in empty {
-        assert_ne!(output.verdict, Verdict::Tight, "{} d", output.estimate.time_s / DAY_S);
+        assert_ne!(output.decision.verdict, Verdict::Tight, "{} d", output.estimate.time_s / DAY_S);
     }
 }

@@ -84,20 +84,15 @@ impl AlarmName {
 impl AlarmInputs {
     /// What a monitor's output says; `full_pa` is the pressure at 15 °C of the full cylinder, Pa.
     pub fn of(output: &Output, full_pa: f64) -> Self {
-        let verdict = output.verdict;
+        let verdict = output.decision.verdict;
         let p15_pa = output.estimate.p15_pa;
-        let leak = match verdict {
-            _ if output.leak.is_some() => Some(true),
-            Verdict::Unknown(_) => None,
-            _ => Some(verdict == Verdict::Leak),
-        };
         let at_fault =
             |health: &Health| !matches!(health, Health::Good | Health::Spikes | Health::Deviates(_));
         // The first days and the hours after a refill are no loss of sight.
         let expected =
             matches!(verdict.reason(), Some(Reason::Learning | Reason::Settling | Reason::Disturbed));
         Self {
-            leak,
+            leak: output.decision.leak_alarm(),
             p15_pa,
             filling: p15_pa / full_pa,
             sensor_fault: Some(verdict == Verdict::SensorFault || output.health.iter().any(at_fault)),

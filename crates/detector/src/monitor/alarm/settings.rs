@@ -9,6 +9,9 @@ const MINUTE_S: f64 = 60.0;
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 24.0 * HOUR_S;
 const BAR_PA: f64 = 1e5;
+/// Warning above the operational limit, and deadbands, as parts of it: 5 bar and 1 bar at 160 bar.
+const WARNING: f64 = 5.0 / 160.0;
+const DEADBAND: f64 = 1.0 / 160.0;
 
 /// Rules of the alarms of a cylinder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +41,7 @@ impl Default for AlarmSettings {
 impl AlarmSettings {
     /// The defaults for an operational limit, Pa.
     ///
-    /// A warning 5 bar above it; deadbands of 1 bar and 0.5 %, several times the noise of the estimate. Delays are short where the monitor
+    /// A warning 3 % above it, 5 bar at 160 bar; deadbands of 1 bar there and 0.5 %, several times the noise of the estimate. Delays are short where the monitor
     /// has waited already, and an hour where weather could pass. Severities: 900 out of operation, 800 gas is being lost, 600 and
     /// 500 somebody must come, 400 and 300 at the next occasion.
     pub fn with_limit(limit_pa: f64) -> Self {
@@ -55,8 +58,8 @@ impl AlarmSettings {
             leak: Alarm { trigger: OffNormal { severity: 800 }, timing: latching },
             operational_limit: Alarm {
                 trigger: ExclusiveLimit {
-                    low: low(limit_pa + 5.0 * BAR_PA, BAR_PA, 600),
-                    low_low: Some(low(limit_pa, BAR_PA, 900)),
+                    low: low((1.0 + WARNING) * limit_pa, DEADBAND * limit_pa, 600),
+                    low_low: Some(low(limit_pa, DEADBAND * limit_pa, 900)),
                 },
                 timing: Timing { confirming: true, ..timing(10.0 * MINUTE_S, 10.0 * MINUTE_S, DAY_S) },
             },
@@ -73,7 +76,7 @@ impl AlarmSettings {
                 timing: timing(HOUR_S, 10.0 * MINUTE_S, DAY_S),
             },
             cold_night: Alarm {
-                trigger: below(low(limit_pa - BAR_PA, BAR_PA, 300)),
+                trigger: below(low((1.0 - DEADBAND) * limit_pa, DEADBAND * limit_pa, 300)),
                 timing: timing(HOUR_S, HOUR_S, 7.0 * DAY_S),
             },
         }

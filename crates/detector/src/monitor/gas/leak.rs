@@ -8,30 +8,41 @@ use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
-/// Completed bins of the trace between two looks: an hour.
+/// Completed bins of the trace between two looks: an hour; but a look at each while the trace is short.
 const BINS_PER_LOOK: u32 = 6;
+const SHORT: u32 = 36;
 
 /// What is known about a leak.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct LeakState {
     trace: MassTrace,
+    /// Bins since the last look, and all.
     bins: u32,
+    seen_bins: u32,
     found: Option<LeakFinding>,
     /// Time at which a leak was found, and at which something spoke for it last, s.
     found_s: f64,
     seen_s: f64,
-    probability: f64,
+    /// Probability of a leak by the masses; `None`: they have not said anything yet.
+    probability: Option<f64>,
+    /// What the rate of a leak is below with 97.5 %, as a part of the fill per second.
+    largest_per_s: f64,
 }
+
+/// What the rate of a leak is below before anything is known, as a part of the fill per second: the whole fill in twenty hours.
+const LARGEST_PER_S: f64 = 0.05 / 3600.0;
 
 impl Default for LeakState {
     fn default() -> Self {
         Self {
             trace: MassTrace::default(),
             bins: 0,
+            seen_bins: 0,
             found: None,
             found_s: f64::NAN,
             seen_s: f64::NAN,
-            probability: probability(PRIOR_ODDS),
+            probability: None,
+            largest_per_s: LARGEST_PER_S,
         }
     }
 }
@@ -53,6 +64,8 @@ pub(in crate::monitor) struct Look<'a> {
     pub slow: &'a Leak,
     pub pa_per_kg: f64,
     pub error: &'a MassError,
+    /// Mass of the fill, kg.
+    pub filled_kg: f64,
     /// Whether a statistic is above its threshold, and whether all are far below.
     pub alarm: bool,
     pub calm: bool,
@@ -65,9 +78,11 @@ impl LeakState {
         let time_s = look.estimate.time_s;
         let completed = self.trace.push(time_s, look.free.mass_kg);
         self.bins += u32::from(completed);
+        self.seen_bins += u32::from(completed);
         let leaking = self.found.is_some();
         let newly = look.alarm && !leaking;
-        if newly || (completed && self.bins >= BINS_PER_LOOK) {
+        let due = self.bins >= if self.seen_bins < SHORT { 1 } else { BINS_PER_LOOK };
+        if newly || (completed && due) {
             self.bins = 0;
             self.look(look, newly || leaking);
         }
@@ -86,15 +101,15 @@ impl LeakState {
     }
 
     fn look(&mut self, look: &Look<'_>, leaking: bool) {
-        let log_bayes_factor = if leaking {
+        if leaking {
             let fitted = onset::fit(&self.trace, look.error);
             let finding = fitted.map(|fitted| fitted.finding(look.pa_per_kg));
             self.found = finding.or(self.found).or_else(|| Some(self.by_rate(look)));
-            fitted.map_or(0.0, |fitted| fitted.log_bayes_factor)
-        } else {
-            onset::log_bayes_factor(&self.trace, look.error)
-        };
-        self.probability = probability(PRIOR_ODDS * log_bayes_factor.exp().min(1e12));
+        }
+        if let Some((log_bayes_factor, largest_kg_s)) = onset::outlook(&self.trace, look.error) {
+            self.probability = Some(probability(PRIOR_ODDS * log_bayes_factor.exp().min(1e12)));
+            self.largest_per_s = largest_kg_s / look.filled_kg;
+        }
     }
 
     /// What a member of the bank says, where the trace says nothing yet.
@@ -124,9 +139,14 @@ impl LeakState {
         self.found.as_ref()
     }
 
-    /// Probability that gas is being lost.
-    pub fn probability(&self) -> f64 {
-        if self.found.is_some() { self.probability.max(0.5) } else { self.probability }
+    /// Probability that gas is being lost, by the masses; `None`: they have not said anything yet.
+    pub fn probability(&self) -> Option<f64> {
+        self.probability
+    }
+
+    /// What the rate of a leak is below with 97.5 %, as a part of the fill per second.
+    pub fn largest_per_s(&self) -> f64 {
+        self.largest_per_s
     }
 }
 

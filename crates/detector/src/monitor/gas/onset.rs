@@ -41,7 +41,7 @@ const MODEL: f64 = 0.005;
 /// Fewest bins that tell a rate.
 const FEWEST: usize = 4;
 
-/// Errors of the observer's mass.
+/// Errors of the observer's mass, for the full 20 L nitrogen cylinder; for another fill they are parts of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MassError {
@@ -67,6 +67,11 @@ impl MassError {
         positive("mass_error.sd_kg", self.sd_kg)?;
         positive("mass_error.time_s", self.time_s)?;
         positive("mass_error.drift_kg_s", self.drift_kg_s).map(drop)
+    }
+
+    /// The same of a cylinder that holds so many times as much gas.
+    pub fn scaled(self, mass: f64) -> Self {
+        Self { sd_kg: mass * self.sd_kg, drift_kg_s: mass * self.drift_kg_s, ..self }
     }
 }
 
@@ -98,9 +103,10 @@ struct Candidate {
 
 /// Rate and onset of the leak that the trace shows best; `None` where it is too short, or nothing in it speaks for a loss.
 pub fn fit(trace: &MassTrace, error: &MassError) -> Option<Fitted> {
-    let Posterior { candidates, log_bayes_factor, end_s } = posterior(trace, error)?;
+    let posterior = posterior(trace, error).filter(|posterior| posterior.speaks_for_a_loss)?;
+    let Posterior { candidates, log_bayes_factor, end_s, .. } = posterior;
     let sd = |one: &Candidate| one.sd.hypot(MODEL * one.rate);
-    let rates = Mixture::new(&candidates, |one| (one.rate, sd(one).hypot(error.drift_kg_s)));
+    let rates = rates(&candidates, error);
     let losses = Mixture::new(&candidates, |one| {
         let age_s = end_s - one.onset_s;
         (one.rate * age_s, sd(one) * age_s)
@@ -115,15 +121,26 @@ pub fn fit(trace: &MassTrace, error: &MassError) -> Option<Fitted> {
     Some(Fitted { rate_kg_s, onset_s, lost_kg, log_bayes_factor })
 }
 
-/// Logarithm of the Bayes factor of a leak alone; 0 where the trace says nothing.
-pub fn log_bayes_factor(trace: &MassTrace, error: &MassError) -> f64 {
-    posterior(trace, error).map_or(0.0, |posterior| posterior.log_bayes_factor)
+/// Logarithm of the Bayes factor of a leak, and the rate, kg/s, that one is below with 97.5 % if there is one; `None` where the trace is
+/// too short to say anything.
+pub fn outlook(trace: &MassTrace, error: &MassError) -> Option<(f64, f64)> {
+    let posterior = posterior(trace, error)?;
+    let largest_kg_s = rates(&posterior.candidates, error).quantile(1.0 - TAIL);
+    Some((posterior.log_bayes_factor, largest_kg_s))
+}
+
+/// Rates of a leak, with errors that no mass shows.
+fn rates(candidates: &[Candidate], error: &MassError) -> Mixture {
+    let sd = |one: &Candidate| one.sd.hypot(MODEL * one.rate).hypot(error.drift_kg_s);
+    Mixture::new(candidates, |one| (one.rate, sd(one)))
 }
 
 /// All onsets with their weights.
 struct Posterior {
     candidates: Vec<Candidate>,
     log_bayes_factor: f64,
+    /// Whether any onset makes a loss likelier than none.
+    speaks_for_a_loss: bool,
     end_s: f64,
 }
 
@@ -134,9 +151,6 @@ fn posterior(trace: &MassTrace, error: &MassError) -> Option<Posterior> {
     }
     let mut candidates = candidates(&bins, error);
     let largest = candidates.iter().map(|c| c.log_likelihood_ratio).fold(0.0, f64::max);
-    if largest <= 0.0 {
-        return None;
-    }
     let (mut total, mut factor, mut span_s) = (0.0, 0.0, 0.0);
     for one in &mut candidates {
         let width = one.to_s - one.from_s;
@@ -151,7 +165,9 @@ fn posterior(trace: &MassTrace, error: &MassError) -> Option<Posterior> {
     }
     candidates.iter_mut().for_each(|one| one.weight /= total);
     let end_s = bins[bins.len() - 1].time_s;
-    Some(Posterior { candidates, log_bayes_factor: largest + (factor / span_s).ln(), end_s })
+    let log_bayes_factor = largest + (factor / span_s).ln();
+    let sound = total > 0.0 && log_bayes_factor.is_finite();
+    sound.then_some(Posterior { candidates, log_bayes_factor, speaks_for_a_loss: largest > 0.0, end_s })
 }
 
 impl Fitted {

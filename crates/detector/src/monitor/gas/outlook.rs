@@ -1,17 +1,17 @@
 //! When the time that is left is computed, and from what.
 use crate::DetectorError;
-use crate::estimator::observer::Leak;
 use crate::monitor::settings::MonitorSettings;
 use crate::monitor::{LeakFinding, Outlook};
-use crate::prognosis::{Contents, MassAndLeak, Prognosis, QUOTED_K};
+use crate::prognosis::{Contents, MassAndLeak, Passage, Prognosis, QUOTED_K, Quantiles};
 
 /// Interval at which the time left is computed anew while gas is being lost, and while none is, s.
 const LEAKING_S: f64 = 3600.0;
 const TIGHT_S: f64 = 86_400.0;
 /// How far ahead, s: ten years.
 const HORIZON_S: f64 = 10.0 * crate::monitor::settings::YEAR_S;
-/// Standard deviations between the ends of a 95 % interval.
+/// Standard deviations between the ends of a 95 % interval, and between zero and its upper end.
 const WIDTH_SD: f64 = 3.92;
+const HALF_WIDTH_SD: f64 = 1.96;
 
 /// Masses at which limits are reached, kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,19 @@ pub(in crate::monitor) struct LimitMasses {
     operational_kg: f64,
     cold_kg: f64,
     maintenance_kg: f64,
+}
+
+/// What the time left is computed from.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::monitor) struct Basis<'a> {
+    /// Mass and its standard deviation, kg; in a leak those of the freest member.
+    pub mass_kg: (f64, f64),
+    /// The leak that is found.
+    pub finding: Option<&'a LeakFinding>,
+    /// What the rate of a leak is below with 97.5 %, kg/s.
+    pub largest_kg_s: f64,
+    /// Probability of a leak; `None`: nothing is known of one, and the time left is not known unless a limit is reached.
+    pub leak_probability: Option<f64>,
 }
 
 impl LimitMasses {
@@ -32,41 +45,40 @@ impl LimitMasses {
         })
     }
 
-    /// What is left for the mass and the leak, that found or, without one, that of a slow member of the bank. In a leak the mass is
-    /// that of the freest member, as in [`crate::monitor::Output`].
-    pub fn outlook(
-        &self,
-        settings: &MonitorSettings,
-        free: &Leak,
-        finding: Option<&LeakFinding>,
-        slow: &Leak,
-        leak_probability: f64,
-    ) -> Result<Outlook, DetectorError> {
-        let state = match finding {
-            None => MassAndLeak::of_leak(slow)?,
-            Some(leak) => {
-                let rate = leak.rate_kg_s;
-                let sd_kg_s = (rate.high - rate.low) / WIDTH_SD;
-                // Rate and mass come from the same masses, but from their slope and their level: as good as independent.
-                let covariance = [[free.mass_sd_kg.powi(2), 0.0], [0.0, sd_kg_s * sd_kg_s]];
-                MassAndLeak::try_new(free.mass_kg, rate.value, covariance)?
-            }
+    /// What is left for the mass and the leak.
+    pub fn outlook(&self, settings: &MonitorSettings, basis: &Basis<'_>) -> Result<Outlook, DetectorError> {
+        let (mass_kg, mass_sd_kg) = basis.mass_kg;
+        let (rate_kg_s, rate_sd_kg_s) = match basis.finding {
+            None => (0.0, basis.largest_kg_s / HALF_WIDTH_SD),
+            Some(leak) => (leak.rate_kg_s.value, (leak.rate_kg_s.high - leak.rate_kg_s.low) / WIDTH_SD),
         };
-        let until = |limit_kg| {
-            Prognosis::try_new(state, limit_kg, settings.loss)?.with_leak_probability(leak_probability)
-        };
+        // Rate and mass come from the same masses, but from their slope and their level: as good as independent.
+        let covariance = [[mass_sd_kg * mass_sd_kg, 0.0], [0.0, rate_sd_kg_s * rate_sd_kg_s]];
+        let state = MassAndLeak::try_new(mass_kg, rate_kg_s, covariance)?;
+        let probability = basis.leak_probability.unwrap_or(0.0);
+        let until =
+            |limit_kg| Prognosis::try_new(state, limit_kg, settings.loss)?.with_leak_probability(probability);
         let (operational, cold) = (until(self.operational_kg)?, until(self.cold_kg)?);
         let maintenance = until(self.maintenance_kg)?;
-        let (at_15_degc, in_the_cold) = (operational.quantiles(HORIZON_S), cold.quantiles(HORIZON_S));
         let limits = [operational, cold];
         let counting = if settings.limits.cold_is_operational { &limits[..] } else { &limits[..1] };
+        let known = basis.leak_probability.is_some();
+        let left = |prognosis: &Prognosis| said(prognosis.quantiles(HORIZON_S), known);
         Ok(Outlook {
-            operational: at_15_degc,
-            cold: in_the_cold,
-            maintenance: maintenance.quantiles(HORIZON_S),
+            operational: left(&operational),
+            cold: left(&cold),
+            maintenance: left(&maintenance),
             advice: settings.reaction.decide(counting, &maintenance)?,
+            known,
         })
     }
+}
+
+/// The time left where nothing may be known of a leak: a limit that is reached, and no more.
+fn said(quantiles: Quantiles, known: bool) -> Quantiles {
+    let passage = |passage| if known || passage == Passage::Reached { passage } else { Passage::Unknown };
+    let Quantiles { p5, p50, p95, horizon_s } = quantiles;
+    Quantiles { p5: passage(p5), p50: passage(p50), p95: passage(p95), horizon_s }
 }
 
 /// Interval until the next one, s.
@@ -79,12 +91,11 @@ mod tests {
     use super::*;
     use crate::estimator::thermal::vessel::presets;
     use crate::monitor::Interval;
-    use crate::prognosis::Passage;
 
     const HOUR_S: f64 = 3600.0;
 
     #[test]
-    fn in_a_leak_the_time_left_counts_from_the_mass_of_the_freest_member() {
+    fn in_a_leak_the_time_left_counts_from_the_mass_that_is_there() {
         let contents = Contents::of(&presets::load("nitrogen-20l").unwrap());
         let settings = MonitorSettings::default();
         let masses = LimitMasses::new(&contents, &settings, 4.46).unwrap();
@@ -96,18 +107,29 @@ mod tests {
             onset_s: exact(0.0),
             lost_kg: exact(0.1),
         };
-        let member = |mass_kg: f64| Leak {
-            rate_kg_s,
-            sd_kg_s: 1e-9,
-            mass_kg,
-            mass_sd_kg: 1e-6,
-            covariance_kg2_s: 0.0,
-            begun_anew: false,
+        let basis = Basis {
+            mass_kg: (4.3, 1e-6),
+            finding: Some(&finding),
+            largest_kg_s: rate_kg_s,
+            leak_probability: Some(1.0),
         };
-        // The slow member still has the 100 g that are lost.
-        let outlook = masses.outlook(&settings, &member(4.3), Some(&finding), &member(4.4), 1.0).unwrap();
+        let outlook = masses.outlook(&settings, &basis).unwrap();
         let expected_s = settings.loss.time_s(4.3, rate_kg_s, masses.operational_kg);
         let Passage::In(found_s) = outlook.operational.p50 else { panic!("{:?}", outlook.operational) };
         assert!((found_s / expected_s - 1.0).abs() < 1e-3, "{found_s} s, {expected_s} s");
+    }
+
+    #[test]
+    fn without_evidence_about_a_leak_only_a_limit_that_is_reached_is_said() {
+        let contents = Contents::of(&presets::load("nitrogen-20l").unwrap());
+        let settings = MonitorSettings::default();
+        let masses = LimitMasses::new(&contents, &settings, 4.46).unwrap();
+        let left = |mass_kg: f64, leak_probability| {
+            let basis = Basis { mass_kg: (mass_kg, 1e-3), finding: None, largest_kg_s: 1e-9, leak_probability };
+            masses.outlook(&settings, &basis).unwrap().operational.p50
+        };
+        assert_eq!(left(4.4, None), Passage::Unknown);
+        assert_eq!(left(3.0, None), Passage::Reached);
+        assert_eq!(left(4.4, Some(0.01)), Passage::BeyondHorizon);
     }
 }

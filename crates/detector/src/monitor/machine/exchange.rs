@@ -12,11 +12,13 @@ use crate::monitor::gas::jump::{Cause, Examination, Innovated};
 use crate::monitor::gas::leak::Change;
 use crate::monitor::{Event, EventKind, Reason};
 
-/// Change of the pressure across a gap that is no error of the observer, Pa, and the gap, s.
+/// Change of the pressure across a gap that is no error of the observer, Pa of a fill of 200 bar, and the gap, s.
 const ACROSS_PA: f64 = 2e5;
 const ACROSS_S: f64 = 900.0;
 /// Time for which a jump that remained unclear leaves doubt, s.
 const DOUBT_S: f64 = 86_400.0;
+/// Time by which an announced exchange may begin earlier or later than was said, s.
+const ANNOUNCED_WITHIN_S: f64 = 600.0;
 
 /// A jump under examination.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -32,6 +34,7 @@ pub(super) struct Examined {
 pub(super) struct Exchanged {
     pub at_s: f64,
     pub out: bool,
+    pub announced: bool,
 }
 
 impl Monitor {
@@ -49,9 +52,17 @@ impl Monitor {
         let before_kg = self.masses_kg();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
-        let innovation_pa = self.observer.innovations()[pressure].nu;
-        let now = Innovated { time_s, reading_pa: self.usable[pressure], innovation_pa };
-        let step_pa = self.state.watches[pressure].step();
+        if self.blindness(time_s).is_some() {
+            // Without a temperature every change of the air is a change of the pressure.
+            self.state.jumps.forget();
+            self.state.rewind.taken(&self.observer, time_s, &self.usable);
+            return Ok(estimate);
+        }
+        // The rules of jumps are stated for a fill of 200 bar.
+        let of_fill = self.scale.pressure.recip();
+        let innovation_pa = of_fill * self.observer.innovations()[pressure].nu;
+        let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa };
+        let step_pa = of_fill * self.state.watches[pressure].step();
         let jump = self.state.jumps.notice(now, step_pa, self.state.pair.moved());
         if let (Some(before_pa), Some(before_kg)) = (jump, before_kg)
             && estimate.quality != Quality::Restarted
@@ -66,6 +77,20 @@ impl Monitor {
         }
         self.state.rewind.taken(&self.observer, time_s, &self.usable);
         Ok(estimate)
+    }
+
+    /// An exchange of gas is announced for a time, s, as rows are stamped: what goes out then is no loss.
+    pub fn announce(&mut self, from_s: f64, until_s: f64) {
+        self.state.announced.push((from_s, until_s));
+    }
+
+    /// Whether an exchange that began then was announced.
+    pub(super) fn is_announced(&self, onset_s: f64) -> bool {
+        let stamp_s = onset_s + self.state.intake.offset_s();
+        let near = |&(from_s, until_s): &(f64, f64)| {
+            (from_s - ANNOUNCED_WITHIN_S..=until_s + ANNOUNCED_WITHIN_S).contains(&stamp_s)
+        };
+        self.state.announced.iter().any(near)
     }
 
     /// Mass by the freest member, kg.
@@ -104,12 +129,13 @@ impl Monitor {
         let reading_pa = std::mem::replace(&mut self.usable[pressure], f64::NAN);
         let blind = self.shadow.step(time_s, &self.usable)?;
         self.usable[pressure] = reading_pa;
-        let expected_pa = self.shadow.expected_reading(pressure)?;
+        let of_fill = self.scale.pressure.recip();
+        let expected_pa = of_fill * self.shadow.expected_reading(pressure)?;
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
         let cause = examined.examination.push(
             time_s,
-            (expected_pa, reading_pa),
+            (expected_pa, of_fill * reading_pa),
             blind.gas_mean_k,
             self.state.pair.moved(),
         );
@@ -121,7 +147,7 @@ impl Monitor {
                 self.observer.restore(&self.shadow.snapshot());
                 match cause {
                     Cause::Spike => self.state.watches[pressure].refused(time_s),
-                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa),
+                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa / of_fill),
                     _ => {}
                 }
             }
@@ -138,7 +164,8 @@ impl Monitor {
         let Some(examined) = &self.state.examined else { return };
         let onset_s = examined.examination.onset_s();
         // Which way it went the pressure says; in a tunnel the mass may not have come to it yet.
-        let by_pressure_kg = -examined.examination.error_pa() / self.state.p15.slope_pa_kg();
+        let error_pa = self.scale.pressure * examined.examination.error_pa();
+        let by_pressure_kg = -error_pa / self.state.p15.slope_pa_kg();
         let by_mass_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
         let change_kg = if by_mass_kg * by_pressure_kg < 0.0 { by_pressure_kg } else { by_mass_kg };
         self.observer.end_exchange();
@@ -152,7 +179,8 @@ impl Monitor {
         let out = change_kg < 0.0;
         let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
         events.push(Event::new(time_s, onset_s, kind));
-        self.state.exchanged = Some(Exchanged { at_s: time_s, out });
+        let announced = self.is_announced(onset_s);
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced });
         self.state.filling.settle();
         self.state.undisturbed = Undisturbed::default();
         if self.state.leak.begin_anew() == Change::Ended {

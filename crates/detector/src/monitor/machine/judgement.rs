@@ -1,7 +1,6 @@
 //! The verdict: what is said of the cylinder, and why it cannot be told.
-use super::exchange::Exchanged;
 use super::{Monitor, SETTLED_S};
-use crate::monitor::{Health, Reason, Verdict};
+use crate::monitor::{Health, Known, KnownExchange, Reason};
 
 /// Time after an exchange of gas for which it is the verdict, s.
 const EXCHANGED_S: f64 = 1800.0;
@@ -25,25 +24,38 @@ impl Monitor {
         blind.then_some(Reason::NoTemperature)
     }
 
-    pub(super) fn verdict(&self, time_s: f64) -> Verdict {
+    /// What is known of the present row, for the decision.
+    pub(super) fn known(&self, time_s: f64) -> Known {
         let state = &self.state;
-        let direction = |out: bool| if out { Verdict::Discharge } else { Verdict::Refill };
-        if let Some(examined) = state.examined.as_ref().filter(|examined| examined.flowing) {
-            return direction(examined.examination.error_pa() > 0.0);
-        }
-        if let Some(Exchanged { out, .. }) = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S) {
-            return direction(out);
-        }
-        if state.leak.found().is_some() {
-            return Verdict::Leak;
-        }
-        if let Some(reason) = self.doubt(time_s) {
-            return Verdict::Unknown(reason);
-        }
+        let doubt = self.doubt(time_s);
         let at_fault = |health: &Health| {
             matches!(health, Health::Stuck | Health::Shifted(_) | Health::Detached | Health::Implausible)
         };
-        if state.health.iter().any(at_fault) { Verdict::SensorFault } else { Verdict::Tight }
+        Known {
+            exchange: self.known_exchange(time_s),
+            leak_found: state.leak.found().is_some(),
+            doubt,
+            sensor_fault: state.health.iter().any(at_fault),
+            leak_probability: self.evident_probability(doubt),
+            reaction: None,
+        }
+    }
+
+    /// Probability of a leak by masses that can be relied on; `None` while they cannot.
+    fn evident_probability(&self, doubt: Option<Reason>) -> Option<f64> {
+        let found = self.state.leak.found().is_some();
+        self.state.leak.probability().filter(|_| found || doubt.is_none())
+    }
+
+    /// Gas that flows fast, or did a while ago.
+    fn known_exchange(&self, time_s: f64) -> Option<KnownExchange> {
+        let state = &self.state;
+        if let Some(examined) = state.examined.as_ref().filter(|examined| examined.flowing) {
+            let announced = self.is_announced(examined.examination.onset_s());
+            return Some(KnownExchange { out: examined.examination.error_pa() > 0.0, announced });
+        }
+        let of = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S)?;
+        Some(KnownExchange { out: of.out, announced: of.announced })
     }
 
     /// Why it cannot be told, if so.

@@ -17,7 +17,8 @@ use super::gas::filling::FillingCheck;
 use super::gas::gain::GainWatch;
 use super::gas::jump::JumpWatch;
 use super::gas::leak::{Change, LeakState, Look};
-use super::gas::outlook::{self, LimitMasses};
+use super::gas::onset::MassError;
+use super::gas::outlook::{self, Basis, LimitMasses};
 use super::intake::{Intake, Row, Taken};
 use super::readings::health::SensorWatch;
 use super::readings::lateness::DelayLine;
@@ -27,13 +28,15 @@ use super::readings::wiring::WiringCheck;
 use super::roles::Roles;
 use super::settings::MonitorSettings;
 use super::state::{self, Fingerprint, StateError};
-use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
+use super::{Event, EventKind, Health, Interval, Known, Outlook, Output, Reason, Verdict, decide};
 use crate::DetectorError;
-use crate::estimator::observer::{Commissioning, Estimate, Leak, Learned, Observer, Quality, Snapshot};
+use crate::estimator::observer::{
+    Commissioning, Estimate, Leak, Learned, Observer, Quality, Scale, Snapshot,
+};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Thresholds};
-use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
+use crate::prognosis::{Contents, QUOTED_K, Reaction, ReactionSettings};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;
@@ -41,8 +44,8 @@ const LOOK_S: f64 = 3600.0;
 const SETTLED_S: f64 = 3.0 * 3600.0;
 /// What the evidence is divided by while a thermometer is missing: the thresholds are those of all of them.
 const DEGRADED: f64 = 1.3;
-/// Distance from the limit at which a warning of the cold may come again, Pa.
-const COLD_DEADBAND_PA: f64 = 1e5;
+/// Distance from the limit at which a warning of the cold may come again, as a part of it: 1 bar at 160 bar.
+const COLD_DEADBAND: f64 = 1.0 / 160.0;
 
 /// Monitor of one cylinder: a pure function of its state and the row, so that batch, stream and a stream that was killed and
 /// restored at any row give the same, bit for bit.
@@ -54,6 +57,10 @@ pub struct Monitor {
     limits: LimitMasses,
     thresholds: Thresholds,
     full_pa: f64,
+    /// How the fill compares with the one that constants in pascals and kilograms are stated for.
+    scale: Scale,
+    /// Errors of the observer's mass for this fill.
+    mass_error: MassError,
     /// Mass that was stated and its standard deviation, kg.
     filled_kg: (f64, f64),
     roles: Roles,
@@ -106,6 +113,8 @@ struct State {
     /// Until then nothing can be told, and why.
     look: (f64, Reason),
     exchanged: Option<Exchanged>,
+    /// When exchanges of gas were announced: from, until, s, as rows are stamped.
+    announced: Vec<(f64, f64)>,
     outlook: Option<Outlook>,
     outlook_due_s: f64,
     p15: Tangent,
@@ -190,6 +199,7 @@ impl Monitor {
             last_s: f64::NEG_INFINITY,
             look: (f64::NEG_INFINITY, Reason::Gap),
             exchanged: None,
+            announced: Vec::new(),
             outlook: None,
             outlook_due_s: f64::NEG_INFINITY,
             p15: Tangent::at(QUOTED_K),
@@ -197,13 +207,16 @@ impl Monitor {
             warned: false,
         };
         let roles = Roles::of(sensors);
+        let scale = Scale::of(vessel, begun_with)?;
         let compared = wiring::compared(&roles, sensors);
         let twin = compared.map(|_| wiring::twin(vessel, sensors, begun_with, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
+            scale,
+            mass_error: settings.mass_error.scaled(scale.mass),
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
-            filled_kg: (full_kg, commissioning.mass_sd_kg),
+            filled_kg: (full_kg, commissioning.mass_sd * full_kg),
             roles,
             compared,
             sensors: sensors.to_vec(),
@@ -371,12 +384,7 @@ impl Monitor {
         self.leaks.extend(self.observer.leaks());
         self.judge_leak(&estimate, &mut events)?;
         self.tell_health(time_s, &mut events);
-        let verdict = self.verdict(time_s);
-        let was = std::mem::replace(&mut self.state.verdict, verdict);
-        if was != verdict {
-            events.push(Event::new(time_s, time_s, EventKind::Verdict { from: was, to: verdict }));
-        }
-        self.output(row, estimate, was != verdict, events)
+        self.output(row, estimate, events)
     }
 
     fn judge_leak(&mut self, estimate: &Estimate, events: &mut Vec<Event>) -> Result<(), DetectorError> {
@@ -406,7 +414,8 @@ impl Monitor {
             free,
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
-            error: &self.settings.mass_error,
+            error: &self.mass_error,
+            filled_kg: self.filled_kg.0,
             alarm: alarm || lost_across,
             calm: calm && !lost_across,
             over_after_s: self.settings.leak_over_after_s,
@@ -430,12 +439,12 @@ impl Monitor {
         &mut self,
         row: &Row,
         mut estimate: Estimate,
-        changed: bool,
         mut events: Vec<Event>,
     ) -> Result<Output, DetectorError> {
         let time_s = row.time_s;
         let leak = self.state.leak.found().copied();
         let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
+        let largest_kg_s = self.state.leak.largest_per_s() * self.filled_kg.0;
         let free = self.leaks.last().copied().unwrap_or(slow);
         if leak.is_some() {
             (estimate.mass_kg, estimate.mass_sd_kg) = (free.mass_kg, free.mass_sd_kg);
@@ -443,18 +452,39 @@ impl Monitor {
         estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
         self.warn_of_the_cold(time_s, cold_pressure_pa, &mut events);
-        if changed || time_s >= self.state.outlook_due_s {
-            self.state.outlook_due_s = time_s + outlook::interval_s(leak.is_some());
-            let probability = self.state.leak.probability();
-            let outlook = self.limits.outlook(&self.settings, &free, leak.as_ref(), &slow, probability)?;
-            self.state.outlook = Some(outlook);
+        let known = self.known(time_s);
+        let verdict = decide(&known).verdict;
+        let was = std::mem::replace(&mut self.state.verdict, verdict);
+        if was != verdict {
+            events.push(Event::new(time_s, time_s, EventKind::Verdict { from: was, to: verdict }));
         }
+        let due = was != verdict
+            || time_s >= self.state.outlook_due_s
+            || self.state.outlook.is_none_or(|outlook| outlook.known != known.leak_probability.is_some());
+        if due {
+            self.state.outlook_due_s = time_s + outlook::interval_s(leak.is_some());
+            let basis = Basis {
+                mass_kg: (estimate.mass_kg, estimate.mass_sd_kg),
+                finding: leak.as_ref(),
+                largest_kg_s,
+                leak_probability: known.leak_probability,
+            };
+            self.state.outlook = Some(self.limits.outlook(&self.settings, &basis)?);
+        }
+        let decision = decide(&Known { reaction: self.due_reaction(), ..known });
         let mut output = Output {
             stamp_s: row.stamp_s,
             estimate,
-            verdict: self.state.verdict,
+            decision,
             leak,
-            leak_probability: self.state.leak.probability(),
+            leak_rate_kg_s: leak.map_or_else(
+                || Interval {
+                    value: slow.rate_kg_s.clamp(0.0, largest_kg_s),
+                    low: 0.0,
+                    high: largest_kg_s,
+                },
+                |leak| leak.rate_kg_s,
+            ),
             cold_pressure_pa,
             health: self.state.health.clone(),
             outlook: self.state.outlook,
@@ -468,6 +498,13 @@ impl Monitor {
         Ok(output)
     }
 
+    /// What is due by the time left; `None`: nothing is known of a leak, and no limit is reached.
+    fn due_reaction(&self) -> Option<Reaction> {
+        let outlook = self.state.outlook?;
+        let reaction = outlook.advice.reaction;
+        (outlook.known || reaction > Reaction::None).then_some(reaction)
+    }
+
     /// Once, when the pressure of a tight cylinder will be below the limit on the coldest night.
     fn warn_of_the_cold(&mut self, time_s: f64, cold_pressure_pa: f64, events: &mut Vec<Event>) {
         if self.state.examined.is_some() {
@@ -478,7 +515,8 @@ impl Monitor {
         if below && !self.state.warned {
             events.push(Event::new(time_s, time_s, EventKind::ColdNight(cold_pressure_pa)));
         }
-        // A bar of hysteresis: the estimate wanders.
-        self.state.warned = below || (self.state.warned && cold_pressure_pa < limit_pa + COLD_DEADBAND_PA);
+        // Hysteresis: the estimate wanders.
+        let cleared_pa = (1.0 + COLD_DEADBAND) * limit_pa;
+        self.state.warned = below || (self.state.warned && cold_pressure_pa < cleared_pa);
     }
 }

@@ -66,7 +66,7 @@ impl Separate {
             Outcome::Reacquired => {
                 mechanism.interrupt(p);
                 if cylinder.reads_pressure(sensor) {
-                    for (state, variance) in freed(cylinder.state_map()) {
+                    for (state, variance) in freed(cylinder) {
                         mechanism.decorrelate_and_set(p, state, variance);
                     }
                     if let Some(pass) = &mut member.pass {

@@ -192,7 +192,7 @@ impl Together {
                 continue;
             }
             if cylinder.reads_pressure(sensor) {
-                for (state, variance) in freed(cylinder.state_map()) {
+                for (state, variance) in freed(cylinder) {
                     self.bank.decorrelate_and_set(lane, state, variance);
                 }
                 if let Some(pass) = &mut member.pass {

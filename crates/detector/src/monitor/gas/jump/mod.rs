@@ -40,6 +40,8 @@
 //! what has jumped and not jumped back is gas or an offset. What lies within it of the division remains unclear when gas may be gone.
 //! Of a gain so small that no filling stops there the transmitter is the safe assumption: it leaves the mass as low as it was.
 //!
+//! All pressures are stated for a fill of 200 bar; for another one they are the same parts of it.
+//!
 //! Assumes that a jump of gas is over within two hours; a longer one is a flow.
 mod examination;
 mod notice;
