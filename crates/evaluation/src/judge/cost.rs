@@ -1,6 +1,6 @@
 //! What a cylinder-year costs, split into truth, candidates and bookkeeping.
 //!
-//! Times are wall clock of one thread. They stand in `times.jsonl`, one line for each world and run, apart from the results: they
+//! Times are those of one core ([`super::clock`]). They stand in `times.jsonl`, one line for each world and run, apart from the results: they
 //! differ from run to run.
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -12,6 +12,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::JudgeError;
+use super::clock::Clock;
 use super::cost::{Costs, Times};
 use super::journal::{Binding, Journal};
 use super::plan::{Plan, Unit};
@@ -187,10 +188,10 @@ impl<S: Source> Running<'_, S> {
     }
 
     fn judge_unit(&self, unit: &Unit) -> Result<(), JudgeError> {
-        let begin = Instant::now();
+        let clock = Clock::begin();
         let simulated = self.simulate(&unit.simulated);
         // The time of the simulation stands with its first world.
-        let mut simulate_s = begin.elapsed().as_secs_f64();
+        let mut simulate_s = clock.elapsed_s();
         for &task in &unit.tasks {
             if self.stop.load(Ordering::Relaxed) || !self.may_begin() {
                 return Ok(());
@@ -224,15 +225,15 @@ impl<S: Source> Running<'_, S> {
         request: &Request,
         times: &mut Times,
     ) -> Result<World, String> {
-        let begin = Instant::now();
+        let clock = Clock::begin();
         let simulated = simulated.as_ref().map_err(Clone::clone)?;
         let laid_over = catch_unwind(AssertUnwindSafe(|| self.source.world(simulated, request)));
-        times.lay_over_s = begin.elapsed().as_secs_f64();
+        times.lay_over_s = clock.elapsed_s();
         match laid_over {
             Ok(Err(WorldError::OtherSimulation { .. })) => {
-                let begin = Instant::now();
+                let clock = Clock::begin();
                 let own = self.simulate(request)?;
-                times.simulate_s += begin.elapsed().as_secs_f64();
+                times.simulate_s += clock.elapsed_s();
                 guarded(|| self.source.world(&own, request))
             }
             Ok(world) => world.map_err(|error| error.to_string()),
@@ -262,7 +263,7 @@ impl<S: Source> Running<'_, S> {
 
     /// Write a finished world down; a partial table if one is due.
     fn enter(&self, task: usize, entry: &Entry, mut times: Times) -> Result<(), JudgeError> {
-        let begin = Instant::now();
+        let clock = Clock::begin();
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         shared.journal.append(task, entry)?;
         shared.failed += usize::from(entry.facts.is_err());
@@ -274,7 +275,7 @@ impl<S: Source> Running<'_, S> {
             table::write(self.plan, &mut shared.journal.results()?, &self.settings.folder)?;
             shared.partial = Some((Instant::now(), begin.elapsed().as_secs_f64()));
         }
-        times.journal_s = begin.elapsed().as_secs_f64();
+        times.journal_s = clock.elapsed_s();
         shared.costs.enter(times)?;
         drop(shared);
         (self.progress)(Progress { done, all, failed });

@@ -30,6 +30,8 @@ pub struct Decision {
     pub class: Class,
     /// Whether a leak is stated.
     pub leak: bool,
+    /// Whether it is said that gas is being lost, whatever it is called: what raises the leak alarm.
+    pub loss: bool,
     /// Probability of a leak; `None`: not known.
     pub leak_probability: Option<f64>,
     /// Whether the alarm for a leak is active; `None`: it has no alarms.
@@ -43,7 +45,7 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// Whether a leak is said in any way.
+    /// Whether a leak is said, by verdict or by finding.
     pub fn says_leak(&self) -> bool {
         self.leak || self.class == Class::Leak
     }

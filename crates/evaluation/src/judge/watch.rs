@@ -1,9 +1,9 @@
 //! One candidate watches one world: rows in, statements to the scorer, the time of each apart.
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::time::Instant;
 
 use super::JudgeError;
+use super::clock::Clock;
 use super::candidate::{Candidate, Contender, Row};
 use super::said::Said;
 use super::score::{Score, Scorer};
@@ -41,9 +41,9 @@ pub fn watch(world: &World, candidate: &dyn Candidate) -> Watched {
     let Watching { scorer, candidate_s, mut scoring_s, .. } = watching;
     let score = match outcome {
         Ok(Ok(())) => {
-            let begin = Instant::now();
+            let clock = Clock::begin();
             let score = scorer.finish();
-            scoring_s += begin.elapsed().as_secs_f64();
+            scoring_s += clock.elapsed_s();
             Ok(score)
         }
         Ok(Err(error)) => Err(error.to_string()),
@@ -70,16 +70,14 @@ struct Watching<'a> {
 
 impl Watching<'_> {
     fn run(&mut self, candidate: &dyn Candidate) -> Result<(), JudgeError> {
-        let begin = Instant::now();
+        let mut clock = Clock::begin();
         let mut contender = candidate.start(&self.world.told)?;
-        self.candidate_s += begin.elapsed().as_secs_f64();
         let rows = self.world.log.time_s.len();
         let historical: BTreeSet<usize> = self.world.historical.iter().copied().collect();
         let keeps = self.world.power_cycles.iter().any(|(_, snapshot)| *snapshot == Snapshot::Old);
         let mut kept_s = f64::NEG_INFINITY;
         let mut cycles = self.world.power_cycles.iter().peekable();
         for begin_row in (0..rows).step_by(CHUNK) {
-            let begin = Instant::now();
             let end_row = rows.min(begin_row + CHUNK);
             for row in begin_row..end_row {
                 if keeps && self.now_s >= kept_s + KEPT_S {
@@ -96,8 +94,9 @@ impl Watching<'_> {
                 contender.finish(&mut said)?;
                 self.said.extend(said.into_iter().map(|said| (rows - 1, self.now_s, said)));
             }
-            self.candidate_s += begin.elapsed().as_secs_f64();
+            self.candidate_s += clock.lap_s();
             self.score();
+            self.scoring_s += clock.lap_s();
         }
         Ok(())
     }
@@ -119,7 +118,6 @@ impl Watching<'_> {
 
     /// Score the statements of a chunk.
     fn score(&mut self) {
-        let begin = Instant::now();
         let stamps = &self.world.log.time_s;
         for (arrived, now_s, said) in self.said.drain(..) {
             let oldest = arrived.saturating_sub(HELD_BACK);
@@ -127,6 +125,5 @@ impl Watching<'_> {
             // A statement about no row of the log is about the last one.
             self.scorer.take(now_s, row.unwrap_or(arrived), &said);
         }
-        self.scoring_s += begin.elapsed().as_secs_f64();
     }
 }

@@ -59,7 +59,7 @@ impl FillDraw {
     /// What is told of it for the nominal vessel.
     pub(super) fn commissioning(&self, nominal: &Vessel) -> Result<Commissioning, WorldError> {
         let mut told = Commissioning::filled(self.stated_pa, QUOTED_K);
-        told.mass_sd_kg = TOLD_SD * told.mass_kg(nominal, QUOTED_K)?;
+        told.mass_sd = TOLD_SD;
         told.settled = self.lead_s == 0.0;
         Ok(told)
     }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::{Candidate, Contender, Row, overlaid};
 use crate::detector::monitor::alarm::{AlarmName, AlarmSettings};
-use crate::detector::monitor::{Health, Monitor, MonitorSettings, Output, Verdict};
+use crate::detector::monitor::{Health, LIKELY, Monitor, MonitorSettings, Outcome as Loss, Output};
 use crate::estimator::observer::Outcome;
 use crate::judge::JudgeError;
 use crate::judge::measures::Class;
@@ -34,10 +34,21 @@ impl Candidate for Monitors {
         settings.limits.operational_pa = LIMIT * super::statistic::stated_filling(told)?.pressure_pa;
         settings.alarms = AlarmSettings::with_limit(settings.limits.operational_pa);
         let settings = overlaid(&settings, &self.settings)?;
-        let monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, &settings)?;
+        let monitor = begun(told, &settings)?;
         let pressure = told.sensors.iter().position(|sensor| sensor.name == "pressure");
         Ok(Box::new(Monitored { told: told.clone(), settings, monitor, pressure, was_lost: false, old: None }))
     }
+
+    fn decision_level(&self) -> f64 {
+        LIKELY
+    }
+}
+
+/// A monitor before its first row, told of the discharges that are ordered.
+fn begun(told: &Told, settings: &MonitorSettings) -> Result<Monitor, JudgeError> {
+    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
+    told.announced.iter().for_each(|(from_s, until_s)| monitor.announce(*from_s, *until_s));
+    Ok(monitor)
 }
 
 struct Monitored {
@@ -46,7 +57,7 @@ struct Monitored {
     monitor: Monitor,
     /// Index of the pressure.
     pressure: Option<usize>,
-    /// Whether a leak has been found in this log.
+    /// Whether a loss has been said in this log.
     was_lost: bool,
     /// State of up to an hour ago.
     old: Option<Vec<u8>>,
@@ -95,11 +106,11 @@ impl Contender for Monitored {
             }
             Snapshot::Current | Snapshot::Old => {}
         }
-        let Told { vessel, sensors, commissioning, .. } = &self.told;
+        let Told { vessel, sensors, .. } = &self.told;
         self.monitor = match Monitor::restore(vessel, sensors, &self.settings, &bytes) {
             Ok(monitor) => monitor,
             Err(error) if matches!(snapshot, Snapshot::Current | Snapshot::Old) => return Err(error.into()),
-            Err(_) => Monitor::new(vessel, sensors, commissioning, &self.settings)?,
+            Err(_) => begun(&self.told, &self.settings)?,
         };
         Ok(())
     }
@@ -129,22 +140,19 @@ impl Monitored {
 
     /// As the program would report and exit if the log ended here.
     fn decision(&mut self, output: &Output, is_last: bool) -> Decision {
-        let class = Class::from(output.verdict);
-        let leak = output.leak.is_some();
-        self.was_lost |= leak || output.verdict == Verdict::Leak;
-        let exit_code = match output.verdict {
-            _ if self.was_lost => 1,
-            Verdict::Unknown(_) => 3,
-            _ => 0,
-        };
+        let decided = &output.decision;
+        let class = Class::from(decided.verdict);
+        let loss = decided.outcome == Loss::Loss;
+        self.was_lost |= loss;
         let is_named = |health: &Health| !matches!(health, Health::Good | Health::Spikes);
         Decision {
             class,
-            leak,
-            leak_probability: Some(output.leak_probability),
+            leak: output.leak.is_some(),
+            loss,
+            leak_probability: decided.leak_probability,
             alarm: is_last.then(|| self.monitor.alarms().condition(AlarmName::Leak).active),
-            reaction: output.outlook.map(|outlook| outlook.advice.reaction),
-            exit_code,
+            reaction: decided.reaction,
+            exit_code: if self.was_lost { 1 } else { decided.outcome.exit_code() },
             sensor_named: class == Class::SensorFault || output.health.iter().any(is_named),
         }
     }
@@ -152,12 +160,10 @@ impl Monitored {
 
 fn estimates(output: &Output) -> Estimates {
     let estimate = &output.estimate;
-    let unbound = normal(estimate.leak_kg_s, estimate.leak_sd_kg_s);
     Estimates {
         mass_kg: Some(normal(estimate.mass_kg, estimate.mass_sd_kg)),
         gas_mean_k: Some(normal(estimate.gas_mean_k, estimate.gas_mean_sd_k)),
-        leak_kg_s: Some(output.leak.map_or(unbound, |leak| leak.rate_kg_s.into()))
-            .filter(|leak| leak.value.is_finite()),
+        leak_kg_s: Some(output.leak_rate_kg_s.into()),
         onset_s: output.leak.map(|leak| leak.onset_s.into()),
     }
 }

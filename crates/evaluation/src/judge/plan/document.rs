@@ -136,5 +136,11 @@ pub enum OverlayDocument {
         rows: Vec<String>,
         /// Earliest and latest onset, h.
         onset_h: (f64, f64),
+        /// Leak beside it, part of the fill per hour; 0: none.
+        #[serde(default)]
+        leak_part_per_h: f64,
+        /// Onset of that leak after that of the fault, h.
+        #[serde(default)]
+        leak_after_h: f64,
     },
 }

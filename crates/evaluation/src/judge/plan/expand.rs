@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{Check, GroupDocument, OverlayDocument, Pattern, Plan, Role};
 use crate::judge::JudgeError;
-use crate::world::{FaultRow, Overlay, Request, SimulationKey};
+use crate::world::{FaultRow, Leak, Overlay, Request, SimulationKey};
 
 const MINUTE_S: f64 = 60.0;
 const HOUR_S: f64 = 3600.0;
@@ -15,8 +15,6 @@ const DAY_S: f64 = 86_400.0;
 const LONGEST_S: f64 = 2.0 * 366.0 * DAY_S;
 /// Most rows of one log: 2 years of 2 min are 0.5 million, and a row takes about 150 bytes.
 const MOST_ROWS: f64 = 5e6;
-/// Largest leak that is laid over a finished simulation, part per hour; larger ones are simulated.
-const LAID_OVER: f64 = 0.01;
 
 /// A world of a plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,8 +120,13 @@ impl Laid {
             Overlay::Leak { onset_s, .. }
             | Overlay::FastLoss { onset_s, .. }
             | Overlay::Discharge { onset_s, .. }
-            | Overlay::Refill { onset_s, .. }
-            | Overlay::Fault { onset_s, .. } => *onset_s = at_s,
+            | Overlay::Refill { onset_s, .. } => *onset_s = at_s,
+            Overlay::Fault { onset_s, leak, .. } => {
+                *onset_s = at_s;
+                if let Some(leak) = leak {
+                    leak.onset_s += at_s;
+                }
+            }
         }
         overlay
     }
@@ -185,7 +188,13 @@ fn bare(
             let refill = |part: &f64| Overlay::Refill { part: *part, within_s, onset_s: at };
             (part.iter().map(refill).collect(), onset_h)
         }
-        OverlayDocument::Fault { rows, onset_h } => {
+        OverlayDocument::Fault { rows, onset_h, leak_part_per_h, leak_after_h } => {
+            let remedy = "must be between 0 and 10, 0 for none";
+            check.that((0.0..=10.0).contains(leak_part_per_h), &key("leak_part_per_h"), leak_part_per_h, remedy)?;
+            let within = (0.0..=1e4).contains(leak_after_h);
+            check.that(within, &key("leak_after_h"), leak_after_h, "must be between 0 and 10 000")?;
+            let leak = Leak { part_per_h: *leak_part_per_h, onset_s: leak_after_h * HOUR_S };
+            let leak = Some(leak).filter(|leak| leak.part_per_h > 0.0);
             let named = |name: &String| {
                 let remedy = "is no row of the fault table: P1 to P7, T1 to T7, E1 to E7, G1 to G5, D1 to D5";
                 let found = FaultRow::ALL.into_iter().find(|row| row.name() == *name);
@@ -195,19 +204,9 @@ fn bare(
                 [] => FaultRow::ALL.to_vec(),
                 rows => rows.iter().map(named).collect::<Result<_, _>>()?,
             };
-            (rows.into_iter().map(|row| Overlay::Fault { row, onset_s: at }).collect(), *onset_h)
+            (rows.into_iter().map(|row| Overlay::Fault { row, onset_s: at, leak }).collect(), *onset_h)
         }
     })
-}
-
-/// Whether an overlay changes the simulation, instead of being laid over it.
-fn is_simulated(overlay: &Overlay) -> bool {
-    match overlay {
-        Overlay::Nothing => false,
-        Overlay::Leak { part_per_h, .. } => *part_per_h > LAID_OVER,
-        Overlay::FastLoss { .. } | Overlay::Discharge { .. } | Overlay::Refill { .. } => true,
-        Overlay::Fault { row, .. } => !row.is_of_data(),
-    }
 }
 
 /// Worlds by the simulation that they share, in the order of their first one.
@@ -216,10 +215,11 @@ pub(super) fn units(tasks: &[Task]) -> Vec<Unit> {
     let mut units: Vec<Unit> = Vec::new();
     for (index, task) in tasks.iter().enumerate() {
         let request = task.request;
-        let flow = if is_simulated(&request.overlay) { format!("{:?}", request.overlay) } else { String::new() };
+        let simulated = request.overlay.is_simulated(request.length_s);
+        let flow = if simulated { format!("{:?}", request.overlay) } else { String::new() };
         let key = (SimulationKey::of(&request), request.length_s.to_bits(), flow);
         let place = *by_key.entry(key).or_insert_with(|| {
-            let overlay = if is_simulated(&request.overlay) { request.overlay } else { Overlay::Nothing };
+            let overlay = if simulated { request.overlay } else { Overlay::Nothing };
             units.push(Unit { simulated: Request { overlay, ..request }, tasks: Vec::new() });
             units.len() - 1
         });

@@ -17,7 +17,7 @@ families = ["nitrogen-20l/railway|hall/mixed/class-a|class-b/120s"]
 seeds = [1, 3]
 sensor_sets = 2
 length_d = 7.0
-overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [1e-4, 1e-3, 0.1], onset_h = [30.0, 54.0] }]
+overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [1e-5, 1e-4, 0.1], onset_h = [30.0, 54.0] }]
 "#;
 
 fn parse(text: &str, left_out: &[&str]) -> Result<Plan, JudgeError> {

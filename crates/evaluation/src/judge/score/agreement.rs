@@ -17,22 +17,22 @@ pub enum Rule {
     NoProbability,
     /// The verdict is tight, and the probability of a leak is at or above the decision's level.
     TightButProbable,
-    /// The probability is at or above the level, and neither a leak nor an exchange of gas is said.
-    ProbableButSilent,
-    /// A leak is said, and its probability is below the level.
-    LeakButImprobable,
+    /// The probability is at or above the level, and the verdict is that of a sensor at fault. That it cannot be told is no contradiction.
+    SensorFaultButProbable,
+    /// A loss is said, and its probability is below the level.
+    LossButImprobable,
     /// The verdict is tight, and a leak is stated.
     TightButLeak,
     /// The verdict is a leak, and none is stated.
     LeakNotStated,
-    /// A leak is said, and the alarm is not active.
-    LeakWithoutAlarm,
-    /// A leak is said, and no reaction is due.
-    LeakWithoutReaction,
-    /// A leak is said, and the exit code is not 1.
-    LeakButExitCode,
-    /// Gas goes out at once, unannounced, and the exit code is not 1.
-    DischargeButExitCode,
+    /// A loss is said, and the alarm is not active.
+    LossWithoutAlarm,
+    /// A loss is said, and no reaction is due.
+    LossWithoutReaction,
+    /// A loss is said, and the exit code is not 1.
+    LossButExitCode,
+    /// Gas goes out at once, unannounced, and no loss is said.
+    DischargeButNoLoss,
     /// The exit code is 1, and no loss has been said so far.
     ExitCodeWithoutLoss,
     /// It cannot be told, and the exit code says that it is tight.
@@ -46,14 +46,14 @@ impl Rule {
     pub const ALL: [Self; 13] = [
         Self::NoProbability,
         Self::TightButProbable,
-        Self::ProbableButSilent,
-        Self::LeakButImprobable,
+        Self::SensorFaultButProbable,
+        Self::LossButImprobable,
         Self::TightButLeak,
         Self::LeakNotStated,
-        Self::LeakWithoutAlarm,
-        Self::LeakWithoutReaction,
-        Self::LeakButExitCode,
-        Self::DischargeButExitCode,
+        Self::LossWithoutAlarm,
+        Self::LossWithoutReaction,
+        Self::LossButExitCode,
+        Self::DischargeButNoLoss,
         Self::ExitCodeWithoutLoss,
         Self::UnknownButExitCode,
         Self::TightButInconclusive,
@@ -64,14 +64,14 @@ impl Rule {
         match self {
             Self::NoProbability => "probability is none",
             Self::TightButProbable => "tight, but a leak is probable",
-            Self::ProbableButSilent => "a leak is probable, and none is said",
-            Self::LeakButImprobable => "leak, but improbable",
+            Self::SensorFaultButProbable => "sensor fault, but a leak is probable",
+            Self::LossButImprobable => "loss, but improbable",
             Self::TightButLeak => "tight, but a leak is stated",
             Self::LeakNotStated => "verdict leak, none stated",
-            Self::LeakWithoutAlarm => "leak without alarm",
-            Self::LeakWithoutReaction => "leak without reaction",
-            Self::LeakButExitCode => "leak, exit code not 1",
-            Self::DischargeButExitCode => "unannounced discharge, exit code not 1",
+            Self::LossWithoutAlarm => "loss without alarm",
+            Self::LossWithoutReaction => "loss without reaction",
+            Self::LossButExitCode => "loss, exit code not 1",
+            Self::DischargeButNoLoss => "unannounced discharge, no loss said",
             Self::ExitCodeWithoutLoss => "exit code 1, no loss said",
             Self::UnknownButExitCode => "unknown, exit code 0",
             Self::TightButInconclusive => "tight, exit code 3",
@@ -121,7 +121,7 @@ impl Agreement {
         // An announced discharge may be seen a while after its end.
         let announced =
             self.announced.iter().any(|(from_s, to_s)| (from_s - 600.0..=to_s + 3.0 * 3600.0).contains(&stamp_s));
-        self.loss_said |= decision.says_leak() || (decision.class == Class::Discharge && !announced);
+        self.loss_said |= decision.loss || decision.says_leak();
         let mut any = false;
         for (count, rule) in self.counts.by_rule.iter_mut().zip(Rule::ALL) {
             let broken = is_broken(rule, decision, self.level, announced, self.loss_said);
@@ -140,20 +140,19 @@ impl Agreement {
 
 fn is_broken(rule: Rule, decision: &Decision, level: f64, announced: bool, loss_said: bool) -> bool {
     let Decision { class, leak, leak_probability, alarm, reaction, exit_code, .. } = *decision;
-    let said = decision.says_leak();
+    let lost = decision.loss || decision.says_leak();
     let probable = leak_probability.is_some_and(|probability| probability >= level);
-    let exchanging = matches!(class, Class::Discharge | Class::Refill);
     match rule {
         Rule::NoProbability => leak_probability.is_some_and(|p| !(0.0..=1.0).contains(&p)),
         Rule::TightButProbable => class == Class::Tight && probable,
-        Rule::ProbableButSilent => probable && !said && !exchanging && class != Class::Tight,
-        Rule::LeakButImprobable => said && leak_probability.is_some_and(|probability| probability < level),
-        Rule::TightButLeak => class == Class::Tight && leak,
+        Rule::SensorFaultButProbable => class == Class::SensorFault && probable && !lost,
+        Rule::LossButImprobable => lost && leak_probability.is_some_and(|probability| probability < level),
+        Rule::TightButLeak => class == Class::Tight && (leak || decision.loss),
         Rule::LeakNotStated => class == Class::Leak && !leak,
-        Rule::LeakWithoutAlarm => said && alarm == Some(false),
-        Rule::LeakWithoutReaction => said && reaction == Some(Reaction::None),
-        Rule::LeakButExitCode => said && exit_code != 1,
-        Rule::DischargeButExitCode => class == Class::Discharge && !announced && exit_code != 1,
+        Rule::LossWithoutAlarm => lost && alarm == Some(false),
+        Rule::LossWithoutReaction => lost && reaction == Some(Reaction::None),
+        Rule::LossButExitCode => lost && exit_code != 1,
+        Rule::DischargeButNoLoss => class == Class::Discharge && !announced && !lost,
         Rule::ExitCodeWithoutLoss => exit_code == 1 && !loss_said,
         Rule::UnknownButExitCode => class == Class::Unknown && exit_code == 0,
         Rule::TightButInconclusive => class == Class::Tight && exit_code == 3,

@@ -1,6 +1,7 @@
 //! Leaks and fast losses that were laid over: whether and when they were told.
 //!
-//! A leak that is said at the onset was said before it: that run says nothing about the leak. A fast loss is told in time if the exit
+//! A leak is told by a loss that is said, whatever it is called. One that is said at the onset was said before it: that run says nothing
+//! about the leak. A fast loss is told in time if the exit
 //! code is 1 within 5 min of 3 % of the gas being lost, or with the first statement after that where rows are farther apart. An announced discharge must not be told.
 use serde::{Deserialize, Serialize};
 
@@ -39,7 +40,7 @@ pub struct Detected {
 pub struct Detecting {
     onset_s: f64,
     detected: Detected,
-    /// Since when a leak is being said, s.
+    /// Since when a loss is being said, s.
     since_s: Option<f64>,
 }
 
@@ -60,7 +61,7 @@ impl Detecting {
 
     /// Take a decision.
     pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
-        if !decision.says_leak() {
+        if !(decision.loss || decision.says_leak()) {
             self.since_s = None;
             return;
         }

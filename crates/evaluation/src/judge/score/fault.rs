@@ -9,7 +9,8 @@
 //! | recognised | an exchange of gas is said within 3 h, and no leak where none is |
 //! | found | a leak is said, or a discharge |
 //!
-//! Where the row takes gas away, the leak and the exchange that it is do not count as false. The stricter judgement of single rows and delays is that of
+//! With a leak beside the fault it must be told, too, before the end; where the requirement is flagged, degraded, undecidable or warned,
+//! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false. The stricter judgement of single rows and delays is that of
 //! [`judge`](crate::fault::judge()).
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +37,8 @@ pub struct FaultOutcome {
     pub false_exchange: bool,
     /// Whether a sensor was named.
     pub named: bool,
+    /// Whether the leak beside it was told; `None`: there was none.
+    pub leak_found: Option<bool>,
 }
 
 /// A fault while it is watched.
@@ -43,6 +46,9 @@ pub struct FaultOutcome {
 pub struct FaultWatch {
     row: FaultRow,
     onset_s: f64,
+    leak_onset_s: Option<f64>,
+    leak_found: bool,
+    last_unknown: bool,
     loses: bool,
     exchanges: bool,
     leak: bool,
@@ -58,14 +64,17 @@ pub struct FaultWatch {
 impl FaultWatch {
     /// The fault of a world; `None`: it has none.
     pub fn of(world: &World) -> Option<Self> {
-        let Overlay::Fault { row, onset_s } = world.request.overlay else { return None };
+        let Overlay::Fault { row, onset_s, leak } = world.request.overlay else { return None };
         let any = |is: fn(&HappeningKind) -> bool| world.happenings.iter().any(|happening| is(&happening.kind));
         let requirement = row.requirement();
-        let loses = any(|kind| matches!(kind, HappeningKind::Leak | HappeningKind::FastLoss));
+        let loses = leak.is_none() && any(|kind| matches!(kind, HappeningKind::Leak | HappeningKind::FastLoss));
         let exchanges = any(|kind| matches!(kind, HappeningKind::Discharge | HappeningKind::Refill));
         Some(Self {
             row,
             onset_s,
+            leak_onset_s: leak.map(|leak| leak.onset_s),
+            leak_found: false,
+            last_unknown: false,
             loses: loses || requirement == Requirement::Found,
             exchanges: exchanges || requirement == Requirement::Recognised,
             leak: false,
@@ -85,8 +94,12 @@ impl FaultWatch {
             return;
         }
         let exchange = matches!(decision.class, Class::Discharge | Class::Refill);
-        self.leak |= decision.says_leak();
-        self.exchange |= exchange;
+        let leaks = self.leak_onset_s.is_some_and(|onset_s| moment.now_s >= onset_s);
+        self.leak_found |= leaks && (decision.loss || decision.says_leak());
+        self.last_unknown = decision.class == Class::Unknown;
+        self.leak |= decision.says_leak() && !leaks;
+        // A leak that is fast enough may be called a discharge.
+        self.exchange |= exchange && !(leaks && decision.class == Class::Discharge);
         self.soon |= exchange && since_s <= RECOGNISED_S;
         self.named |= decision.sensor_named;
         self.named_soon |= decision.sensor_named && since_s <= DAY_S;
@@ -107,6 +120,19 @@ impl FaultWatch {
             Requirement::Recognised => !false_leak && self.soon,
             Requirement::Found => self.leak || self.exchange,
         };
-        FaultOutcome { row: self.row, recognised, false_leak, false_exchange, named: self.named }
+        let may_be_unknown = matches!(
+            self.row.requirement(),
+            Requirement::Flagged | Requirement::Degraded | Requirement::Undecidable | Requirement::Warned
+        );
+        let leak_found = self.leak_onset_s.map(|_| self.leak_found);
+        let told = leak_found.is_none_or(|found| found || may_be_unknown && self.last_unknown);
+        FaultOutcome {
+            row: self.row,
+            recognised: recognised && told,
+            false_leak,
+            false_exchange,
+            named: self.named,
+            leak_found,
+        }
     }
 }

@@ -33,6 +33,8 @@ pub struct Episode {
 /// All false statements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Episodes {
+    /// A loss, whatever it is called.
+    pub loss: Episode,
     /// A leak.
     pub leak: Episode,
     /// A discharge or a refill.
@@ -65,6 +67,7 @@ impl Counting {
 pub struct Verdicts {
     shares: Shares,
     last: Option<Class>,
+    loss: Counting,
     leak: Counting,
     exchange: Counting,
     sensor_fault: Counting,
@@ -81,6 +84,7 @@ impl Verdicts {
             seconds[moment.period][class as usize] += moment.step_s;
         }
         self.last = Some(decision.class);
+        self.loss.take(moment, decision.loss || decision.says_leak());
         self.leak.take(moment, decision.says_leak());
         self.exchange.take(moment, matches!(decision.class, Class::Discharge | Class::Refill));
         self.sensor_fault.take(moment, decision.class == Class::SensorFault);
@@ -94,6 +98,7 @@ impl Verdicts {
     /// After the last decision.
     pub fn finish(self) -> (Shares, Episodes) {
         let episodes = Episodes {
+            loss: self.loss.episode,
             leak: self.leak.episode,
             exchange: self.exchange.episode,
             sensor_fault: self.sensor_fault.episode,

@@ -157,7 +157,9 @@ fn wilson(share: f64, trials: f64) -> (f64, f64) {
     let middle = p + z * z / (2.0 * n);
     let half = z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
     let all = 1.0 + z * z / n;
-    (((middle - half) / all).max(0.0), ((middle + half) / all).min(1.0))
+    let (low, high) = ((middle - half) / all, (middle + half) / all);
+    // What is left of 0 and of 1 by rounding.
+    (if low < 1e-12 { 0.0 } else { low }, if high > 1.0 - 1e-12 { 1.0 } else { high })
 }
 
 #[cfg(test)]

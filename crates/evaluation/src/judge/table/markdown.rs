@@ -113,7 +113,7 @@ fn write_table(text: &mut String, title: &str, groups: &[&GroupReport], columns:
         return;
     }
     let headings: Vec<&str> = said.iter().map(|column| columns[*column].0.as_str()).collect();
-    let _ = writeln!(text, "\n### {title}\n\n| worlds | {} |", headings.join(" | "));
+    let _ = writeln!(text, "\n### {title}\n\n| group | {} |", headings.join(" | "));
     let _ = writeln!(text, "|---|{}", "---:|".repeat(said.len()));
     for (name, cells) in &cells {
         let row: Vec<&str> = said.iter().map(|column| cells[*column].as_deref().unwrap_or(NONE)).collect();
@@ -127,10 +127,11 @@ fn column<'a>(name: impl Into<String>, say: impl Fn(&GroupReport) -> Option<Stri
 
 fn false_statements() -> Vec<Column<'static>> {
     vec![
-        column("n", |of| of.tight.leaks.map(|_| of.worlds.to_string())),
+        column("tight worlds", |of| of.tight.leaks.map(|_| of.tight.worlds.to_string())),
         column("failed", |of| (of.failed > 0).then(|| of.failed.to_string())),
         column("simulations", |of| of.tight.leaks.map(|rate| rate.simulations.to_string())),
         column("tight years", |of| of.tight.leaks.map(|rate| short(rate.cylinder_years))),
+        column("losses", |of| of.tight.losses.map(rate)),
         column("leaks", |of| of.tight.leaks.map(rate)),
         column("simulations with", |of| of.tight.leaks.map(|rate| rate.simulations_with.to_string())),
         column("exchanges", |of| of.tight.exchanges.map(rate)),

@@ -82,6 +82,10 @@ pub struct Tight {
     pub shares: [Option<BTreeMap<String, f64>>; 2],
     /// Share of the time with the verdict unknown, after the first day.
     pub unknown_later: Option<Share>,
+    /// Worlds.
+    pub worlds: u64,
+    /// False losses, whatever they are called.
+    pub losses: Option<Rate>,
     /// False leaks.
     pub leaks: Option<Rate>,
     /// Of those, in the first day.
@@ -217,10 +221,12 @@ impl GroupReport {
             tight: Tight {
                 shares: [0, 1].map(|period| shares(&tally.shares.tight_s[period])),
                 unknown_later: tally.unknown.share(),
-                leaks: tally.episodes[0].rate(),
+                worlds: tally.quiet,
+                losses: tally.episodes[0].rate(),
+                leaks: tally.episodes[1].rate(),
                 leaks_in_first_day: tally.first_day_leaks,
-                exchanges: tally.episodes[1].rate(),
-                sensor_faults: tally.episodes[2].rate(),
+                exchanges: tally.episodes[2].rate(),
+                sensor_faults: tally.episodes[3].rate(),
             },
             lost_shares: [0, 1].map(|period| shares(&tally.shares.lost_s[period])),
             leaks: leaks(tally, noise, between_alarms_s),

@@ -62,8 +62,10 @@ pub struct Tally {
     pub shares: Shares,
     /// Time with the verdict unknown after the first day.
     pub unknown: Clustered,
-    /// False leaks, exchanges of gas, sensors at fault.
-    pub episodes: [Clustered; 3],
+    /// Worlds with nothing laid over.
+    pub quiet: u64,
+    /// False losses, leaks, exchanges of gas, sensors at fault.
+    pub episodes: [Clustered; 4],
     /// False leaks of the first day.
     pub first_day_leaks: u64,
     /// Runs with a leak; their rate is a part of the gas per hour.
@@ -140,7 +142,8 @@ impl Tally {
             self.unknown.add(simulation, later[crate::judge::measures::Class::Unknown as usize], later.iter().sum());
         }
         if let Some(episodes) = &score.episodes {
-            let all = [&episodes.leak, &episodes.exchange, &episodes.sensor_fault];
+            self.quiet += 1;
+            let all = [&episodes.loss, &episodes.leak, &episodes.exchange, &episodes.sensor_fault];
             for (sum, Episode { count, at_risk_s }) in self.episodes.iter_mut().zip(all) {
                 sum.add(simulation, count.iter().sum::<u64>() as f64, at_risk_s.iter().sum());
             }

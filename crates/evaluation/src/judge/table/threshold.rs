@@ -77,7 +77,7 @@ fn statements(told_s: f64, alarm_s: Option<f64>, end_s: f64) -> (Shares, Episode
     }
     // It cannot say anything else.
     let never = Episode { count: [0, 0], at_risk_s: shares.tight_s.map(|of| of.iter().sum()) };
-    (shares, Episodes { leak, exchange: never, sensor_fault: never })
+    (shares, Episodes { loss: leak, leak, exchange: never, sensor_fault: never })
 }
 
 #[cfg(test)]
