@@ -26,3 +26,8 @@ pub mod table;
 pub mod watch;
 
 pub use error::JudgeError;
+
+#[cfg(test)]
+mod fixture;
+#[cfg(test)]
+mod tests;

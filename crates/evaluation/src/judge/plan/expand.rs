@@ -11,9 +11,9 @@ use crate::world::{FaultRow, Leak, Overlay, Request, SimulationKey};
 const MINUTE_S: f64 = 60.0;
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
-/// Longest log, s.
-const LONGEST_S: f64 = 2.0 * 366.0 * DAY_S;
-/// Most rows of one log: 2 years of 2 min are 0.5 million, and a row takes about 150 bytes.
+/// Shortest and longest log, s.
+const LENGTHS_S: std::ops::RangeInclusive<f64> = 900.0..=400.0 * DAY_S;
+/// Most rows of one log: a year of 2 min is 0.26 million, and a row takes about 150 bytes.
 const MOST_ROWS: f64 = 5e6;
 
 /// A world of a plan.
@@ -85,8 +85,8 @@ fn length_s(group: &GroupDocument, check: &Check<'_>) -> Result<f64, JudgeError>
         let remedy = "give one of length_min, length_h, length_d";
         return Err(check.refuse(&key, format!("{} lengths", lengths.len()), remedy));
     };
-    let remedy = "must be between 1 min and 2 years";
-    check.that((MINUTE_S..=LONGEST_S).contains(&length_s), &key, length_s / DAY_S, remedy)?;
+    let remedy = "must be between 15 min and 400 d";
+    check.that(LENGTHS_S.contains(&length_s), &key, length_s / DAY_S, remedy)?;
     Ok(length_s)
 }
 

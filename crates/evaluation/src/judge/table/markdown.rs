@@ -322,7 +322,8 @@ fn percent(share: Share) -> String {
 /// Three digits.
 fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0".to_owned() } else { NONE.to_owned() };
+        let words = if value == 0.0 { "0" } else if value == f64::INFINITY { "∞" } else { NONE };
+        return words.to_owned();
     }
     let digits = 2 - value.abs().log10().floor() as i32;
     if (-3..=6).contains(&digits) {

@@ -63,6 +63,8 @@ pub struct GroupReport {
     pub lost_shares: [Option<BTreeMap<String, f64>>; 2],
     /// Leaks.
     pub leaks: Option<Leaks>,
+    /// Noise of its own freest mass without a leak: part of the gas, and correlation time, s.
+    pub free_mass_noise: Option<(f64, f64)>,
     /// Coverage of 95 % intervals.
     pub coverage: Vec<CoverageRow>,
     /// Innovations of the pressure by regime.
@@ -230,6 +232,7 @@ impl GroupReport {
             },
             lost_shares: [0, 1].map(|period| shares(&tally.shares.lost_s[period])),
             leaks: leaks(tally, noise, between_alarms_s),
+            free_mass_noise: noise_of(tally).map(|noise| (noise.sd, noise.correlation_time_s)),
             coverage: coverage(tally),
             innovations: Regime::ALL.into_iter().zip(&tally.innovations).filter_map(innovation).collect(),
             fast: fast(tally),
