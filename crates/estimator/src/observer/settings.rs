@@ -249,7 +249,7 @@ impl Default for ObserverSettings {
                 LeakHypothesis::walking_rate(0.005).from_the_start(20.0),
                 LeakHypothesis::walking_mass(30.0),
             ],
-            free_mass_sd_kg: 1.0,
+            free_mass_sd_kg: 20.0,
             any_leak_sd_kg_s: 20e-3 * PER_HOUR,
             gate_sd: 20.0,
             rejections_in_a_row: 5,

@@ -1,4 +1,5 @@
 //! What pressure and mass say of the gas: whether it was put in or let out, is being lost, since when, how fast and for how long.
+pub(super) mod bounds;
 pub(super) mod contents;
 pub(super) mod filling;
 pub(super) mod gain;

@@ -8,6 +8,9 @@ use super::Monitor;
 use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Quality};
+use crate::estimator::sensor::ParameterKind;
+use crate::estimator::thermal::scenario::sensor::SensorKind;
+use crate::monitor::gas::bounds::{Certain, Contact, Seen};
 use crate::monitor::gas::jump::{Cause, Examination, Innovated};
 use crate::monitor::gas::leak::Change;
 use crate::monitor::{Event, EventKind, Reason};
@@ -28,6 +31,9 @@ pub(super) struct Examined {
     pub samples: usize,
     pub flowing: bool,
 }
+
+/// Part of the gas that no jump of a transmitter's offset stands for.
+const NO_OFFSET: f64 = 0.1;
 
 /// Gas that was exchanged.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -77,6 +83,70 @@ impl Monitor {
         }
         self.state.rewind.taken(&self.observer, time_s, &self.usable);
         Ok(estimate)
+    }
+
+    /// Loss and gain of gas that no temperature explains, whatever the observer says.
+    pub(super) fn watch_bounds(
+        &mut self,
+        estimate: Estimate,
+        events: &mut Vec<Event>,
+    ) -> Result<Estimate, DetectorError> {
+        let time_s = estimate.time_s;
+        let Some(seen) = self.seen(time_s) else { return Ok(estimate) };
+        let contents = &self.contents;
+        let mass_kg = |pressure_pa, temperature_k| {
+            contents.mass_kg(pressure_pa, temperature_k).unwrap_or(f64::NAN)
+        };
+        let before_kg = self.masses_kg();
+        let Some(certain) = self.state.bounds.push(&seen, mass_kg) else { return Ok(estimate) };
+        // A jump that may be the transmitter's is being examined; so much is none.
+        let examined = self.state.examined.as_ref();
+        let open = examined.is_some_and(|examined| !examined.flowing);
+        if open && self.state.bounds.beyond() < NO_OFFSET {
+            return Ok(estimate);
+        }
+        let out = certain == Certain::Out;
+        let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
+        self.state.bounds.begin_anew();
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced: self.is_announced(onset_s) });
+        if self.state.examined.is_some() {
+            return Ok(estimate);
+        }
+        self.go_back()?;
+        self.observer.begin_exchange();
+        let estimate = self.observer.step(time_s, &self.usable)?;
+        self.observer.end_exchange();
+        self.state.rewind.begin(&self.observer);
+        let change_kg = self.masses_kg().zip(before_kg).map_or(f64::NAN, |(now, before)| now - before);
+        let change_kg = if out { change_kg.min(0.0) } else { change_kg.max(0.0) };
+        self.exchanged(time_s, onset_s, change_kg, out, events);
+        Ok(estimate)
+    }
+
+    /// What thermometers and pressure of the present row bound the mass by; `None` where one of them is missing.
+    fn seen(&self, time_s: f64) -> Option<Seen> {
+        let pressure = self.roles.pressure?;
+        let pressure_pa = Some(self.usable[pressure]).filter(|pressure_pa| pressure_pa.is_finite())?;
+        let usable = || {
+            let readings = self.roles.thermometers.iter().map(|&sensor| (sensor, self.usable[sensor]));
+            readings.filter(|(_, reading)| reading.is_finite())
+        };
+        let in_gas = |sensor: usize| matches!(self.sensors[sensor].kind, SensorKind::Gas { .. });
+        let any_in_gas = usable().any(|(sensor, _)| in_gas(sensor));
+        let counted = usable().filter(|&(sensor, _)| !any_in_gas || in_gas(sensor));
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let extremes_k = counted.fold(ends, |(low, high), (_, k)| (low.min(k), high.max(k)));
+        let transmitter = &self.sensors[pressure];
+        let mut coefficients =
+            transmitter.parameters().iter().filter(|of| of.kind == ParameterKind::TemperatureCoefficient);
+        extremes_k.0.is_finite().then(|| Seen {
+            time_s,
+            extremes_k,
+            contact: if any_in_gas { Contact::Gas } else { Contact::Wall },
+            pressure_pa,
+            coefficient_pa_k: coefficients.next().map_or(0.0, |of| of.sd),
+            noise_pa: transmitter.noise_variance().sqrt(),
+        })
     }
 
     /// An exchange of gas is announced for a time, s, as rows are stamped: what goes out then is no loss.
@@ -172,11 +242,23 @@ impl Monitor {
         if unclear {
             self.state.look = (time_s + DOUBT_S, Reason::Jump);
         }
-        self.exchanged(time_s, onset_s, change_kg, events);
+        if !self.state.bounds.allow(examined.before_kg + change_kg) {
+            // What the shadow expects cannot be: it has been led astray, and the jump says nothing.
+            self.state.look = (time_s + DOUBT_S, Reason::Jump);
+            return;
+        }
+        self.exchanged(time_s, onset_s, change_kg, change_kg < 0.0, events);
     }
 
-    fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, events: &mut Vec<Event>) {
-        let out = change_kg < 0.0;
+    fn exchanged(
+        &mut self,
+        time_s: f64,
+        onset_s: f64,
+        change_kg: f64,
+        out: bool,
+        events: &mut Vec<Event>,
+    ) {
+        self.state.bounds.begin_anew();
         let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
         events.push(Event::new(time_s, onset_s, kind));
         let announced = self.is_announced(onset_s);
@@ -203,7 +285,7 @@ impl Monitor {
             self.observer.begin_exchange();
             self.observer.end_exchange();
             self.state.rewind.begin(&self.observer);
-            self.exchanged(time_s, onset_s, gain_kg, events);
+            self.exchanged(time_s, onset_s, gain_kg, false, events);
         }
     }
 
@@ -235,7 +317,7 @@ impl Monitor {
         self.state.rewind.begin(&self.observer);
         if gained {
             let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
-            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), events);
+            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), false, events);
         } else {
             self.state.lost_across = true;
         }

@@ -50,12 +50,16 @@ impl Monitor {
     /// Gas that flows fast, or did a while ago.
     fn known_exchange(&self, time_s: f64) -> Option<KnownExchange> {
         let state = &self.state;
-        if let Some(examined) = state.examined.as_ref().filter(|examined| examined.flowing) {
-            let announced = self.is_announced(examined.examination.onset_s());
-            return Some(KnownExchange { out: examined.examination.error_pa() > 0.0, announced });
+        let flowing = state.examined.as_ref().filter(|examined| examined.flowing);
+        let recent = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S);
+        // What has become certain since the flow began tells its direction better than all of it together.
+        let since_s = flowing.map_or(f64::NEG_INFINITY, |examined| examined.examination.onset_s());
+        if let Some(of) = recent.filter(|of| of.at_s >= since_s) {
+            return Some(KnownExchange { out: of.out, announced: of.announced });
         }
-        let of = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S)?;
-        Some(KnownExchange { out: of.out, announced: of.announced })
+        let examination = &flowing?.examination;
+        let announced = self.is_announced(examination.onset_s());
+        Some(KnownExchange { out: examination.error_pa() > 0.0, announced })
     }
 
     /// Why it cannot be told, if so.

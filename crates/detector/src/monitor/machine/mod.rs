@@ -12,6 +12,7 @@ use self::disturbance::Undisturbed;
 use self::exchange::{Examined, Exchanged};
 use self::rewind::Rewind;
 use super::alarm::{AlarmEvent, AlarmInputs, AlarmPanel};
+use super::gas::bounds::GasBounds;
 use super::gas::contents::Tangent;
 use super::gas::filling::FillingCheck;
 use super::gas::gain::GainWatch;
@@ -97,6 +98,7 @@ struct State {
     begun_with: Commissioning,
     filling: FillingCheck,
     jumps: JumpWatch,
+    bounds: GasBounds,
     gains: GainWatch,
     examined: Option<Examined>,
     rewind: Rewind,
@@ -186,6 +188,7 @@ impl Monitor {
             begun_with: *begun_with,
             filling: FillingCheck::default(),
             jumps: JumpWatch::default(),
+            bounds: GasBounds::default(),
             gains: GainWatch::default(),
             examined: None,
             rewind: Rewind::default(),
@@ -368,6 +371,7 @@ impl Monitor {
         }
         self.check_filling(time_s, &mut events)?;
         let estimate = self.observe(time_s, silent_s, &mut events)?;
+        let estimate = self.watch_bounds(estimate, &mut events)?;
         self.mark_outcomes(time_s);
         self.keep_undisturbed(time_s);
         self.notice_gain(time_s, &mut events);

@@ -1,0 +1,233 @@
+//! Loss and gain of gas that no temperature explains, without an observer.
+//!
+//! Gas is no colder than the coldest wall that it has lately lain against, and no warmer than the warmest. So a pressure `p` at
+//! thermometers that lately read from `T_low` to `T_high` bounds the mass,
+//!
+//! `m(p - e, T_high + d) <= m <= m(p + e, T_low - d)`, `m(p, T) = rho(p, T) V(T, p)`,
+//!
+//! `d` for what no thermometer sees: another part of the wall, in the sun or in the wind; `e` for what the transmitter does with
+//! its own temperature and its noise. A tight cylinder has one mass that lies within all of these intervals. Where the highest of the lower bounds
+//! is above the present upper one, gas has gone out; where the lowest upper bound is below the present lower one, it has come in.
+//! That is certain in the sense of the bounds: nothing is tuned, and no model of wall or gas can mislead it. It is coarse: a tenth of the
+//! gas after a tunnel, a twentieth at rest. What is smaller is left to the observer.
+//!
+//! Single readings far off must not count: bounds are believed that two rows in a row agree on, and enter the highest and the lowest one when
+//! three do.
+//!
+//! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
+//! all pressures alike.
+//!
+//! Assumes that no part of the wall is farther than `d` from all thermometers for longer than the gas takes to follow it.
+use serde::{Deserialize, Serialize};
+
+/// Time constant with which extremes fade, s.
+const FADING_S: f64 = 2700.0;
+/// What the gas may be beyond thermometers on the wall, K; beyond one in the gas, K; beyond the first readings, at which nothing is known of
+/// what was before, K.
+const UNSEEN_WALL_K: f64 = 12.0;
+const UNSEEN_GAS_K: f64 = 5.0;
+const BEFORE_K: f64 = 10.0;
+/// Standard deviations of the transmitter's coefficient and noise that count.
+const DEVIATIONS: f64 = 3.0;
+
+/// What a thermometer tells of the gas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::monitor) enum Contact {
+    /// It sits on the wall or the valve.
+    Wall,
+    /// It sits in the gas.
+    Gas,
+}
+
+/// What a row says.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::monitor) struct Seen {
+    /// Time, s.
+    pub time_s: f64,
+    /// Coldest and warmest thermometer, K.
+    pub extremes_k: (f64, f64),
+    /// Where these thermometers sit.
+    pub contact: Contact,
+    /// Pressure, Pa.
+    pub pressure_pa: f64,
+    /// Standard deviations of the transmitter's temperature coefficient, Pa/K, and of its noise, Pa.
+    pub coefficient_pa_k: f64,
+    pub noise_pa: f64,
+}
+
+/// Which way gas has certainly gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::monitor) enum Certain {
+    Out,
+    In,
+}
+
+/// Bounds of the mass since gas was last exchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(in crate::monitor) struct GasBounds {
+    last_s: Option<f64>,
+    /// Extremes of the thermometers lately, K.
+    low_k: f64,
+    high_k: f64,
+    /// Bounds of the mass in the last rows, the latest one first, kg.
+    recent_kg: [Option<(f64, f64)>; 3],
+    /// Highest lower and lowest upper bound, kg.
+    floor_kg: Option<f64>,
+    ceiling_kg: Option<f64>,
+}
+
+impl GasBounds {
+    /// Take in a row, with the mass of a pressure, Pa, and a temperature, K, kg; not a number outside the gas's domain.
+    pub fn push(&mut self, seen: &Seen, mass_kg: impl Fn(f64, f64) -> f64) -> Option<Certain> {
+        self.follow(seen);
+        let unseen_k = match seen.contact {
+            Contact::Wall => UNSEEN_WALL_K,
+            Contact::Gas => UNSEEN_GAS_K,
+        };
+        let drift_pa = seen.coefficient_pa_k * (self.high_k - self.low_k);
+        let error_pa = DEVIATIONS * drift_pa.hypot(seen.noise_pa);
+        let least_kg = mass_kg(seen.pressure_pa - error_pa, self.high_k + unseen_k);
+        let most_kg = mass_kg(seen.pressure_pa + error_pa, self.low_k - unseen_k);
+        if !(least_kg.is_finite() && most_kg.is_finite()) {
+            return None;
+        }
+        self.recent_kg = [Some((least_kg, most_kg)), self.recent_kg[0], self.recent_kg[1]];
+        let certain = self.certain();
+        if let (None, [Some(a), Some(b), Some(c)]) = (certain, self.recent_kg) {
+            let (least_kg, most_kg) = (a.0.min(b.0).min(c.0), a.1.max(b.1).max(c.1));
+            self.floor_kg = Some(self.floor_kg.map_or(least_kg, |floor_kg| floor_kg.max(least_kg)));
+            self.ceiling_kg = Some(self.ceiling_kg.map_or(most_kg, |ceiling_kg| ceiling_kg.min(most_kg)));
+        }
+        certain
+    }
+
+    /// What the last two rows agree on.
+    fn certain(&self) -> Option<Certain> {
+        let [Some(now), Some(before), _] = self.recent_kg else { return None };
+        if now.1.max(before.1) < self.floor_kg? {
+            Some(Certain::Out)
+        } else if now.0.min(before.0) > self.ceiling_kg? {
+            Some(Certain::In)
+        } else {
+            None
+        }
+    }
+
+    /// Part of the gas that is certainly gone or has certainly come, against the bound that it is beyond; 0 if none.
+    pub fn beyond(&self) -> f64 {
+        let (Some(now), Some(floor_kg), Some(ceiling_kg)) =
+            (self.recent_kg[0], self.floor_kg, self.ceiling_kg)
+        else {
+            return 0.0;
+        };
+        ((floor_kg - now.1) / floor_kg).max((now.0 - ceiling_kg) / ceiling_kg).max(0.0)
+    }
+
+    /// Whether a mass, kg, can be that of the present row.
+    pub fn allow(&self, mass_kg: f64) -> bool {
+        self.recent_kg[0].is_none_or(|(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
+    }
+
+    /// Gas has been exchanged: the mass is another one from the present row on.
+    pub fn begin_anew(&mut self) {
+        (self.floor_kg, self.ceiling_kg) = (None, None);
+        self.recent_kg = [self.recent_kg[0], None, None];
+    }
+
+    /// Extremes follow the thermometers at once outwards, and slowly inwards.
+    fn follow(&mut self, seen: &Seen) {
+        let (coldest_k, warmest_k) = seen.extremes_k;
+        let Some(last_s) = self.last_s.replace(seen.time_s) else {
+            let before_k = if seen.contact == Contact::Wall { BEFORE_K } else { 0.0 };
+            (self.low_k, self.high_k) = (coldest_k - before_k, warmest_k + before_k);
+            return;
+        };
+        let kept = (-(seen.time_s - last_s) / FADING_S).exp();
+        self.low_k = coldest_k.min(coldest_k + kept * (self.low_k - coldest_k));
+        self.high_k = warmest_k.max(warmest_k + kept * (self.high_k - warmest_k));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An ideal gas: 1 kg at 100 bar and 300 K.
+    fn mass_kg(pressure_pa: f64, temperature_k: f64) -> f64 {
+        pressure_pa / 100e5 * 300.0 / temperature_k
+    }
+
+    fn seen(minute: f64, pressure_pa: f64, extremes_k: (f64, f64)) -> Seen {
+        let time_s = 60.0 * minute;
+        let (contact, coefficient_pa_k, noise_pa) = (Contact::Wall, 0.0, 1e3);
+        Seen { time_s, extremes_k, contact, pressure_pa, coefficient_pa_k, noise_pa }
+    }
+
+    /// The first certainty of pressures and extremes of every minute of two days.
+    fn certain(course: impl Fn(f64) -> (f64, (f64, f64))) -> Option<(f64, Certain)> {
+        let mut bounds = GasBounds::default();
+        (0..2880).map(f64::from).find_map(|minute| {
+            let (pressure_pa, extremes_k) = course(minute);
+            Some((minute, bounds.push(&seen(minute, pressure_pa, extremes_k), mass_kg)?))
+        })
+    }
+
+    #[test]
+    fn a_tight_cylinder_whose_gas_is_between_its_walls_is_never_certain_to_have_lost_gas() {
+        // Gas that lags by half an hour behind a wall that swings by 40 K within an hour, a part of it 10 K warmer by day.
+        let wall_k = |minute: f64| 290.0 + 20.0 * (minute / 60.0).sin();
+        let gas_k = |minute: f64| 290.0 + 20.0 * 0.9 * (minute / 60.0 - 0.46).sin();
+        let sun_k = |minute: f64| (10.0 * (minute / 230.0).sin()).max(0.0);
+        assert_eq!(
+            certain(|minute| {
+                let warmed_k = wall_k(minute) + sun_k(minute);
+                (100e5 * gas_k(minute) / 300.0, (warmed_k, warmed_k))
+            }),
+            None
+        );
+    }
+
+    #[test]
+    fn a_fifth_of_the_gas_is_certainly_gone_or_come_within_minutes() {
+        for (way, certainly) in [(-1.0, Certain::Out), (1.0, Certain::In)] {
+            let pressure = |minute: f64| 100e5 * (1.0 + 0.02 * way * (minute - 600.0).clamp(0.0, 20.0));
+            let (minute, which) = certain(|minute| (pressure(minute), (300.0, 300.0))).expect("40 %");
+            assert_eq!(which, certainly);
+            assert!((601.0..612.0).contains(&minute), "{minute} min");
+        }
+    }
+
+    #[test]
+    fn what_was_lost_is_lost_once() {
+        let mut bounds = GasBounds::default();
+        let pressure = |minute: f64| if minute < 600.0 { 100e5 } else { 70e5 };
+        let minutes = (0..2880).map(f64::from);
+        let lost = |bounds: &mut GasBounds, minute: f64| {
+            let certain = bounds.push(&seen(minute, pressure(minute), (300.0, 300.0)), mass_kg);
+            if certain.is_some() {
+                bounds.begin_anew();
+            }
+            certain.is_some()
+        };
+        let times = minutes.filter(|&minute| lost(&mut bounds, minute)).count();
+        assert_eq!(times, 1);
+        assert!(bounds.allow(0.7) && !bounds.allow(1.0));
+    }
+
+    #[test]
+    fn one_reading_far_off_is_no_gas() {
+        let spikes = |minute: f64| 100e5 * if minute % 7.0 == 3.0 { 0.5 } else { 1.0 };
+        assert_eq!(certain(|minute| (spikes(minute), (300.0, 300.0))), None);
+        let upwards = |minute: f64| 100e5 * if minute % 7.0 == 3.0 { 1.5 } else { 1.0 };
+        assert_eq!(certain(|minute| (upwards(minute), (300.0, 300.0))), None);
+    }
+
+    #[test]
+    fn a_row_outside_the_gas_says_nothing() {
+        let mut bounds = GasBounds::default();
+        bounds.push(&seen(0.0, 100e5, (300.0, 300.0)), mass_kg);
+        let before = bounds;
+        assert_eq!(bounds.push(&seen(1.0, 10e5, (300.0, 300.0)), |_, _| f64::NAN), None);
+        assert_eq!((before.floor_kg, before.ceiling_kg), (bounds.floor_kg, bounds.ceiling_kg));
+    }
+}
