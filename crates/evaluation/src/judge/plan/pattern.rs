@@ -1,5 +1,5 @@
-//! Patterns of families: `vessel/climate/gas/sensors/rows`, each part a key, several with `|` between them, `*` for all of the axis, or
-//! `?` for one of them in turn.
+//! Patterns of families: `vessel/climate/gas/sensors/rows`, each part a key, several with `|` between them, or `*` for all of the axis. With
+//! `?` before it a list is gone through in turn: `?` alone takes one of all kinds, `?60s|120s` one of two.
 //!
 //! A pattern with `?` stands for one family for each combination of the other axes and each turn. Turn `n` takes kind `n mod N` of the first
 //! such axis, `n + n div N` of the next one, and so on, so that the axes do not go round together.
@@ -28,11 +28,13 @@ pub struct Pattern {
 
 impl<T: Copy + FromStr<Err = WorldError>> Part<T> {
     fn parse(text: &str, all: &[T]) -> Result<Self, WorldError> {
-        let kinds = match text {
-            "*" | "?" => all.to_vec(),
-            _ => text.split('|').map(str::parse).collect::<Result<_, _>>()?,
+        let list = text.strip_prefix('?');
+        let kinds = match list.unwrap_or(text) {
+            "*" => all.to_vec(),
+            "" if list.is_some() => all.to_vec(),
+            kinds => kinds.split('|').map(str::parse).collect::<Result<_, _>>()?,
         };
-        Ok(Self { kinds, in_turn: text == "?" })
+        Ok(Self { kinds, in_turn: list.is_some() })
     }
 
     /// The kinds of a turn; `round` counts the axes that go round and moves on.
@@ -198,6 +200,10 @@ mod tests {
         assert_eq!(turns.len(), 25);
         assert_eq!(turns.iter().collect::<BTreeSet<_>>().len(), 25);
         assert_eq!(self::pattern("*/*/?/?/?").families(|number| number).len(), 70);
+        let some = self::pattern("nitrogen-20l/?hall|desert/mixed/class-b/?60s|120s");
+        let turns: BTreeSet<Family> = (0..4).flat_map(|turn| some.families(|_| turn)).collect();
+        assert_eq!(turns.len(), 4);
+        assert!("?/?/mixed/class-b/".parse::<Pattern>().is_err());
     }
 
     #[test]

@@ -14,6 +14,8 @@ use crate::world::{Overlay, World};
 const MATTERS: f64 = 0.03;
 /// Time within which it must be told, s.
 const WITHIN_S: f64 = 300.0;
+/// Time within which an exchange of gas must be recognised, s.
+const RECOGNISED_S: f64 = 3.0 * 3600.0;
 
 /// The truth of a leak that was laid over.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -104,6 +106,46 @@ pub struct FastLoss {
     pub in_time: bool,
     /// What was said when the exit code became 1.
     pub told_as: Option<Class>,
+}
+
+/// Whether an exchange of gas was recognised as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Exchanged {
+    /// Whether gas went out.
+    pub out: bool,
+    /// Whether a discharge was said of gas that went out, and a refill of gas that came in, within 3 h.
+    pub recognised: bool,
+}
+
+/// An exchange of gas while it is watched.
+#[derive(Clone, Copy, Debug)]
+pub struct ExchangeWatch {
+    outcome: Exchanged,
+    onset_s: f64,
+}
+
+impl ExchangeWatch {
+    /// The exchange of a world; `None`: it has none.
+    pub fn of(world: &World) -> Option<Self> {
+        let (out, onset_s) = match world.request.overlay {
+            Overlay::Discharge { onset_s, .. } => (true, onset_s),
+            Overlay::Refill { onset_s, .. } => (false, onset_s),
+            _ => return None,
+        };
+        Some(Self { outcome: Exchanged { out, recognised: false }, onset_s })
+    }
+
+    /// Take a decision.
+    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+        let wanted = if self.outcome.out { Class::Discharge } else { Class::Refill };
+        let since_s = moment.now_s - self.onset_s;
+        self.outcome.recognised |= decision.class == wanted && (0.0..=RECOGNISED_S).contains(&since_s);
+    }
+
+    /// After the last decision.
+    pub fn finish(self) -> Exchanged {
+        self.outcome
+    }
 }
 
 /// A fast loss while it is watched.

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use self::agreement::{Agreement, Disagreements};
 use self::coverage::Coverage;
-use self::detection::{Detected, Detecting, FastLoss, FastLossWatch};
+use self::detection::{Detected, Detecting, ExchangeWatch, Exchanged, FastLoss, FastLossWatch};
 use self::fault::{FaultOutcome, FaultWatch};
 use self::innovation::{Innovations, Whiteness};
 use self::noise::{FreeMass, NoiseSums};
@@ -48,6 +48,8 @@ pub struct Score {
     pub detected: Option<Detected>,
     /// A fast loss or a discharge.
     pub fast_loss: Option<FastLoss>,
+    /// A discharge or a refill.
+    pub exchanged: Option<Exchanged>,
     /// A fault.
     pub fault: Option<FaultOutcome>,
     /// Intervals.
@@ -98,6 +100,7 @@ pub struct Scorer<'a> {
     verdicts: Verdicts,
     detecting: Option<Detecting>,
     fast_loss: Option<FastLossWatch>,
+    exchange: Option<ExchangeWatch>,
     fault: Option<FaultWatch>,
     agreement: Agreement,
     free_mass: FreeMass,
@@ -116,6 +119,7 @@ impl<'a> Scorer<'a> {
             verdicts: Verdicts::default(),
             detecting: Detecting::of(world),
             fast_loss: FastLossWatch::of(world),
+            exchange: ExchangeWatch::of(world),
             fault: FaultWatch::of(world),
             agreement: Agreement::new(world, level),
             free_mass: FreeMass::default(),
@@ -149,6 +153,9 @@ impl<'a> Scorer<'a> {
             if let Some(fast_loss) = &mut self.fast_loss {
                 fast_loss.take(&moment, decision);
             }
+            if let Some(exchange) = &mut self.exchange {
+                exchange.take(&moment, decision);
+            }
             if let Some(fault) = &mut self.fault {
                 fault.take(&moment, decision);
             }
@@ -176,6 +183,7 @@ impl<'a> Scorer<'a> {
             score.disagreements = Some(self.agreement.finish());
             score.detected = self.detecting.map(|detecting| detecting.finish());
             score.fast_loss = self.fast_loss.map(FastLossWatch::finish);
+            score.exchanged = self.exchange.map(ExchangeWatch::finish);
             score.fault = self.fault.map(FaultWatch::finish);
         }
         if self.trace.most() > f64::NEG_INFINITY || self.first_told_s.is_some() {

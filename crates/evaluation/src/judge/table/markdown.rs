@@ -92,6 +92,7 @@ fn write_role(text: &mut String, title: &str, groups: &[&GroupReport]) {
     write_table(text, &format!("Coverage of 95 % intervals{title}, %"), &axes, &coverage());
     write_table(text, &format!("Innovations of the pressure{title}"), &axes, &innovations());
     write_table(text, &format!("Fast losses{title}"), &axes, &fast_losses());
+    write_table(text, &format!("Exchanges of gas called what they are{title}, %"), &axes, &exchanges());
     write_faults(text, title, &axes);
     write_table(text, &format!("Contradictions{title}"), &axes, &contradictions());
     if let Some(of) = axes.first().and_then(|all| all.disagreements.as_ref()).filter(|of| of.disagreeing > 0) {
@@ -255,9 +256,20 @@ fn innovations() -> Vec<Column<'static>> {
     columns
 }
 
+fn exchanges() -> Vec<Column<'static>> {
+    let of = |name: &'static str, direction: usize| {
+        column(name, move |of: &GroupReport| of.recognised_exchanges[direction].map(percent))
+    };
+    vec![of("discharge", 0), of("refill", 1)]
+}
+
 fn fast_losses() -> Vec<Column<'static>> {
     let mut columns = Vec::new();
-    for kind in ["fast loss", "discharge, not announced", "discharge, announced"] {
+    // An announced discharge is none, and must not be told.
+    columns.push(column("announced discharge: told as a loss, %", |of: &GroupReport| {
+        of.fast.iter().find(|row| row.kind == "discharge, announced")?.told.map(percent)
+    }));
+    for kind in ["fast loss", "discharge, not announced"] {
         let of_kind = move |of: &GroupReport| of.fast.iter().find(|row| row.kind == kind).cloned();
         columns.push(column(format!("{kind}: n"), move |of| {
             of_kind(of)?.told.map(|share| format!("{} in {}", share.trials, share.simulations))

@@ -71,6 +71,8 @@ pub struct GroupReport {
     pub innovations: Vec<InnovationRow>,
     /// Fast losses.
     pub fast: Vec<FastRow>,
+    /// Discharges that were called discharge, refills that were called refill, within 3 h.
+    pub recognised_exchanges: [Option<Share>; 2],
     /// Fault table.
     pub faults: Vec<FaultRowReport>,
     /// Contradictions; `None`: it decides nothing.
@@ -236,6 +238,7 @@ impl GroupReport {
             coverage: coverage(tally),
             innovations: Regime::ALL.into_iter().zip(&tally.innovations).filter_map(innovation).collect(),
             fast: fast(tally),
+            recognised_exchanges: [0, 1].map(|direction| tally.exchanges[direction].share()),
             faults: faults(tally),
             disagreements: decides.then(|| disagreements(tally)),
         }

@@ -82,6 +82,8 @@ pub struct Tally {
     pub noise: Vec<NoiseSums>,
     /// Fast losses: unannounced fast losses, unannounced discharges, announced discharges.
     pub fast: [FastTally; 3],
+    /// Exchanges of gas that were recognised: out, in.
+    pub exchanges: [Clustered; 2],
     /// Faults.
     pub faults: BTreeMap<FaultRow, FaultTally>,
     /// Contradictions.
@@ -122,6 +124,10 @@ impl Tally {
                 _ => 1 + usize::from(fast.announced),
             };
             self.fast[kind].add(simulation, fast);
+        }
+        if let Some(exchanged) = &score.exchanged {
+            let recognised = f64::from(u8::from(exchanged.recognised));
+            self.exchanges[usize::from(!exchanged.out)].add(simulation, recognised, 1.0);
         }
         if let Some(fault) = &score.fault {
             let of = self.faults.entry(fault.row).or_default();
