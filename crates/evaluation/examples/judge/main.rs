@@ -52,9 +52,8 @@ impl Arguments {
         };
         while let Some(argument) = arguments.next() {
             let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value; {USAGE}"));
-            let number = |text: String| {
-                text.parse().map_err(|_| format!("{argument} {text}: must be a whole number"))
-            };
+            let number =
+                |text: String| text.parse().map_err(|_| format!("{argument} {text}: must be a whole number"));
             match argument.as_str() {
                 "--out" => found.out = Some(value()?.into()),
                 "--threads" => found.threads = number(value()?)?,
@@ -89,7 +88,8 @@ fn describe(plan: &Plan) {
     let years: f64 = plan.tasks.iter().map(|task| task.request.length_s).sum::<f64>() / 31_557_600.0;
     let units = plan.units();
     let simulated: f64 = units.iter().map(|unit| unit.simulated.length_s).sum::<f64>() / 31_557_600.0;
-    let rows: f64 = plan.tasks.iter().map(|task| task.request.length_s / task.request.family.rows.interval_s()).sum();
+    let rows: f64 =
+        plan.tasks.iter().map(|task| task.request.length_s / task.request.family.rows.interval_s()).sum();
     say(&format!(
         "{}: {} worlds, {years:.1} cylinder-years, {:.1} million rows; {} simulations of {simulated:.1} years",
         plan.document.title,

@@ -140,7 +140,8 @@ impl CostOfYear {
         for (name, taken_s) in &self.candidates_s {
             let _ = writeln!(text, "| {name} | {taken_s:.3} |");
         }
-        let _ = writeln!(text, "| bookkeeping: scoring, journal, partial tables | {:.3} |", self.bookkeeping_s);
+        let _ =
+            writeln!(text, "| bookkeeping: scoring, journal, partial tables | {:.3} |", self.bookkeeping_s);
         let _ = writeln!(text, "| all | {:.3} |", self.all_s);
         text
     }

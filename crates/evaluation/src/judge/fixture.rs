@@ -19,8 +19,8 @@ use super::said::{Decision, Estimates, Innovation, Said, normal};
 use super::table::{GroupReport, Table};
 use crate::detector::prognosis::Reaction;
 use crate::world::{
-    Family, Happening, HappeningKind, Overlay, Regime, Request, SimulationKey, Told, Truth, World, WorldError,
-    generate,
+    Family, Happening, HappeningKind, Overlay, Regime, Request, SimulationKey, Told, Truth, World,
+    WorldError, generate,
 };
 
 /// Gas of every toy world, kg.
@@ -48,7 +48,8 @@ impl Source for Toys {
 /// The toy world of a request.
 pub fn world(request: &Request) -> World {
     static REAL: OnceLock<World> = OnceLock::new();
-    let mut world = REAL.get_or_init(|| generate(&Request::tight(Family::usual(), 1, 900.0)).unwrap()).clone();
+    let mut world =
+        REAL.get_or_init(|| generate(&Request::tight(Family::usual(), 1, 900.0)).unwrap()).clone();
     let interval_s = request.family.rows.interval_s();
     let rows = (request.length_s / interval_s) as usize + 1;
     let time_s: Vec<f64> = (0..rows).map(|row| interval_s * row as f64).collect();
@@ -56,7 +57,8 @@ pub fn world(request: &Request) -> World {
     let all = |value: f64| vec![value; rows];
     let mass_kg: Vec<f64> = time_s.iter().map(|t| WHOLE_KG * (1.0 - lost(*t))).collect();
     // Every world has readings of its own.
-    let phase: f64 = format!("{request:?}").bytes().enumerate().map(|(n, byte)| f64::from(byte) * (n as f64).sqrt()).sum();
+    let phase: f64 =
+        format!("{request:?}").bytes().enumerate().map(|(n, byte)| f64::from(byte) * (n as f64).sqrt()).sum();
     let flow = |t: &f64| WHOLE_KG * (lost(*t + 1e-3) - lost(*t)) / 1e-3;
     world.truth = Truth {
         gas_mean_k: time_s.iter().map(|t| GAS_K + 5.0 * (t / 7000.0 + phase).sin()).collect(),
@@ -96,7 +98,8 @@ fn happening(start_s: f64) -> Happening {
 fn lost_part(overlay: &Overlay, t: f64) -> f64 {
     let of_leak = overlay.leak().map_or(0.0, |leak| leak.part_per_h / 3600.0 * (t - leak.onset_s).max(0.0));
     match *overlay {
-        Overlay::FastLoss { part, within_s, onset_s, .. } | Overlay::Discharge { part, within_s, onset_s, .. } => {
+        Overlay::FastLoss { part, within_s, onset_s, .. }
+        | Overlay::Discharge { part, within_s, onset_s, .. } => {
             part * ((t - onset_s) / within_s).clamp(0.0, 1.0)
         }
         _ => of_leak,
@@ -207,7 +210,7 @@ fn lawful(_: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
 /// Tight, and probably leaking, in every tenth row.
 fn contradictory(_: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
     let mut said = always(Class::Tight);
-    if (row.stamp_s / 120.0) as u64 % 10 == 0 {
+    if ((row.stamp_s / 120.0) as u64).is_multiple_of(10) {
         said.decision = Some(Decision { leak_probability: Some(0.99), ..decided(Class::Tight) });
     }
     said

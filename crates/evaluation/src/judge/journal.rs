@@ -307,7 +307,8 @@ mod tests {
     fn results_of_another_plan_or_program_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         filled(folder.path());
-        for other in [Binding { plan: "q".into(), ..binding() }, Binding { program: "2".into(), ..binding() }] {
+        for other in [Binding { plan: "q".into(), ..binding() }, Binding { program: "2".into(), ..binding() }]
+        {
             let error = Journal::open(folder.path(), &other).unwrap_err();
             assert!(matches!(error, JudgeError::OtherJournal { .. }), "{error}");
         }

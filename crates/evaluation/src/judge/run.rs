@@ -196,7 +196,8 @@ impl<S: Source> Running<'_, S> {
             if self.stop.load(Ordering::Relaxed) || !self.may_begin() {
                 return Ok(());
             }
-            let mut times = Times { world: task, simulate_s: std::mem::take(&mut simulate_s), ..Times::default() };
+            let mut times =
+                Times { world: task, simulate_s: std::mem::take(&mut simulate_s), ..Times::default() };
             let world = self.world(&simulated, &self.plan.tasks[task].request, &mut times);
             let entry = match world {
                 Ok(world) => self.judge(&world, task, &mut times),

@@ -78,7 +78,8 @@ fn intervals_of_known_normal_errors_hold_the_truth_in_95_percent_and_innovations
     let quantities = [Quantity::Mass, Quantity::Gas, Quantity::Leak];
     for quantity in quantities {
         for (gas, period) in [("tight", "first day"), ("tight", "later"), ("lost", "later")] {
-            let row = of.coverage.iter().find(|row| (row.quantity, row.gas, row.period) == (quantity, gas, period));
+            let row =
+                of.coverage.iter().find(|row| (row.quantity, row.gas, row.period) == (quantity, gas, period));
             let held = row.unwrap().held.unwrap();
             // Rows of these candidates are independent: four standard deviations of the binomial.
             let bound = 4.0 * (0.95 * 0.05 / held.trials).sqrt();
@@ -148,7 +149,11 @@ fn groups_hold_the_worlds_of_their_axis() {
     assert_eq!((all(&table, 0).worlds, all(&table, 0).simulations), (16, 8));
     for name in ["vessel argon-50l", "climate desert", "sensors class-a"] {
         let of = group_of(&table, 0, name);
-        assert_eq!((of.worlds, of.simulations), (8, if name.starts_with("sensors") { 8 } else { 4 }), "{name}");
+        assert_eq!(
+            (of.worlds, of.simulations),
+            (8, if name.starts_with("sensors") { 8 } else { 4 }),
+            "{name}"
+        );
     }
     assert_eq!(group_of(&table, 0, "argon-50l/desert").worlds, 4);
     assert_eq!(group_of(&table, 0, "logs of 2 to 30 d").worlds, 16);

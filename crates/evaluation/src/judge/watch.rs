@@ -3,8 +3,8 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::JudgeError;
-use super::clock::Clock;
 use super::candidate::{Candidate, Contender, Row};
+use super::clock::Clock;
 use super::said::Said;
 use super::score::{Score, Scorer};
 use crate::world::{Snapshot, World};

@@ -36,7 +36,14 @@ impl Candidate for Monitors {
         let settings = overlaid(&settings, &self.settings)?;
         let monitor = begun(told, &settings)?;
         let pressure = told.sensors.iter().position(|sensor| sensor.name == "pressure");
-        Ok(Box::new(Monitored { told: told.clone(), settings, monitor, pressure, was_lost: false, old: None }))
+        Ok(Box::new(Monitored {
+            told: told.clone(),
+            settings,
+            monitor,
+            pressure,
+            was_lost: false,
+            old: None,
+        }))
     }
 
     fn decision_level(&self) -> f64 {

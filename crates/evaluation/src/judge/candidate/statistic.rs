@@ -4,7 +4,6 @@
 //! threshold fits a tank of 5 bar and a cylinder of 300.
 use std::sync::Arc;
 
-
 use super::{Candidate, Contender, Kind, Row};
 use crate::detector::baseline::{
     ErrorCusum, Expectation, Filling, GasModel, Law, PressureError, Reading, Threshold, ThresholdSettings,

@@ -54,7 +54,8 @@ pub(super) fn tasks(plan: &Plan, check: &Check<'_>) -> Result<Vec<Task>, JudgeEr
                 let turn = |number: usize| (seed - first) as usize * count + number;
                 for family in pattern.families(turn) {
                     let remedy = "must match `tune` or `judge`, and not both";
-                    let role = plan.role(&family).ok_or_else(|| check.refuse(&key("families"), family, remedy))?;
+                    let role =
+                        plan.role(&family).ok_or_else(|| check.refuse(&key("families"), family, remedy))?;
                     let rows = length_s / family.rows.interval_s();
                     let remedy = "has more rows than 5 million: ask for a shorter log or rows farther apart";
                     check.that(rows <= MOST_ROWS, &key("families"), family, remedy)?;
@@ -69,7 +70,12 @@ pub(super) fn tasks(plan: &Plan, check: &Check<'_>) -> Result<Vec<Task>, JudgeEr
             }
         }
     }
-    check.that(!tasks.is_empty(), "group", "none", "give at least one [[group]] with families and overlays")?;
+    check.that(
+        !tasks.is_empty(),
+        "group",
+        "none",
+        "give at least one [[group]] with families and overlays",
+    )?;
     Ok(tasks)
 }
 
@@ -157,7 +163,9 @@ fn bare(
 ) -> Result<Bare, JudgeError> {
     let positive = |name: &str, values: &[f64], most: f64| {
         let remedy = format!("must be above 0 and at most {most}");
-        values.iter().try_for_each(|value| check.that(*value > 0.0 && *value <= most, &key(name), value, &remedy))
+        values
+            .iter()
+            .try_for_each(|value| check.that(*value > 0.0 && *value <= most, &key(name), value, &remedy))
     };
     let at = 0.0;
     Ok(match document {
@@ -190,7 +198,12 @@ fn bare(
         }
         OverlayDocument::Fault { rows, onset_h, leak_part_per_h, leak_after_h } => {
             let remedy = "must be between 0 and 10, 0 for none";
-            check.that((0.0..=10.0).contains(leak_part_per_h), &key("leak_part_per_h"), leak_part_per_h, remedy)?;
+            check.that(
+                (0.0..=10.0).contains(leak_part_per_h),
+                &key("leak_part_per_h"),
+                leak_part_per_h,
+                remedy,
+            )?;
             let within = (0.0..=1e4).contains(leak_after_h);
             check.that(within, &key("leak_after_h"), leak_after_h, "must be between 0 and 10 000")?;
             let leak = Leak { part_per_h: *leak_part_per_h, onset_s: leak_after_h * HOUR_S };

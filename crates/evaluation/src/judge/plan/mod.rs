@@ -88,15 +88,18 @@ impl Plan {
             all.iter().map(|text| check.parsed(key, text)).collect()
         };
         let (tune, judge) = (patterns("tune", &document.tune)?, patterns("judge", &document.judge)?);
-        let left_out =
-            left_out.iter().map(|text| check.parsed("--leave-out", text)).collect::<Result<Vec<Axis>, _>>()?;
+        let left_out = left_out
+            .iter()
+            .map(|text| check.parsed("--leave-out", text))
+            .collect::<Result<Vec<Axis>, _>>()?;
         let candidates = candidates(&check, &document, registry)?;
         let mut plan = Self { document, left_out, candidates, tasks: Vec::new(), tune, judge };
         plan.tasks = expand::tasks(&plan, &check)?;
         let needing = plan.candidates.iter().find(|named| named.candidate.needs_threshold());
         if let Some(named) = needing {
             let tuned = plan.tasks.iter().any(|task| task.role == Role::Tune);
-            let remedy = "needs a threshold: give families to tune on, and groups that run them without an overlay";
+            let remedy =
+                "needs a threshold: give families to tune on, and groups that run them without an overlay";
             check.that(tuned, "candidate.name", &named.name, remedy)?;
         }
         Ok(plan)
@@ -148,13 +151,19 @@ fn candidates(
     let mut all: Vec<Named> = Vec::new();
     for CandidateDocument { name, kind, settings } in &document.candidate {
         let unique = all.iter().all(|known| known.name != *name);
-        check.that(unique, "candidate.name", name, "is there twice; give each candidate a name of its own")?;
+        check.that(
+            unique,
+            "candidate.name",
+            name,
+            "is there twice; give each candidate a name of its own",
+        )?;
         let kind_of = registry.kind(kind);
         let known = format!("is no kind; known are {}", registry.names().join(", "));
         let Some(make) = kind_of else { return Err(check.refuse("candidate.kind", kind, &known)) };
         let settings = settings.as_ref().map_or(Ok(Value::Null), serde_json::to_value)?;
-        let candidate = make(&settings)
-            .map_err(|error| check.refuse(&format!("candidate.{name}.settings"), &settings, &error.to_string()))?;
+        let candidate = make(&settings).map_err(|error| {
+            check.refuse(&format!("candidate.{name}.settings"), &settings, &error.to_string())
+        })?;
         all.push(Named { name: name.clone(), candidate });
     }
     Ok(all)

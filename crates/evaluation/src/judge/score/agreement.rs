@@ -119,8 +119,10 @@ impl Agreement {
     pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         let stamp_s = moment.said.stamp_s;
         // An announced discharge may be seen a while after its end.
-        let announced =
-            self.announced.iter().any(|(from_s, to_s)| (from_s - 600.0..=to_s + 3.0 * 3600.0).contains(&stamp_s));
+        let announced = self
+            .announced
+            .iter()
+            .any(|(from_s, to_s)| (from_s - 600.0..=to_s + 3.0 * 3600.0).contains(&stamp_s));
         self.loss_said |= decision.loss || decision.says_leak();
         let mut any = false;
         for (count, rule) in self.counts.by_rule.iter_mut().zip(Rule::ALL) {
@@ -138,7 +140,13 @@ impl Agreement {
     }
 }
 
-fn is_broken(rule: Rule, decision: &Decision, level: f64, announced: bool, loss_said: bool) -> bool {
+pub(super) fn is_broken(
+    rule: Rule,
+    decision: &Decision,
+    level: f64,
+    announced: bool,
+    loss_said: bool,
+) -> bool {
     let Decision { class, leak, leak_probability, alarm, reaction, exit_code, .. } = *decision;
     let lost = decision.loss || decision.says_leak();
     let probable = leak_probability.is_some_and(|probability| probability >= level);

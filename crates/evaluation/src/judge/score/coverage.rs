@@ -79,7 +79,8 @@ impl Coverage {
         let whole_kg = truth.mass_kg[0];
         let mut judge = |quantity: Quantity, estimated: &Option<Estimated>, truth: f64, unit: f64| {
             if let Some(estimated) = estimated {
-                self.cells[quantity as usize][moment.period][moment.gas as usize].take(estimated, truth, unit);
+                self.cells[quantity as usize][moment.period][moment.gas as usize]
+                    .take(estimated, truth, unit);
             }
         };
         judge(Quantity::Mass, &estimates.mass_kg, truth.mass_kg[row], whole_kg);

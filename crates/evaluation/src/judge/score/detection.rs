@@ -2,7 +2,8 @@
 //!
 //! A leak is told by a loss that is said, whatever it is called. One that is said at the onset was said before it: that run says nothing
 //! about the leak. A fast loss is told in time if the exit
-//! code is 1 within 5 min of 3 % of the gas being lost, or with the first statement after that where rows are farther apart. An announced discharge must not be told.
+//! code is 1 within 5 min of 3 % of the gas being lost, or with the first statement after that where rows are farther apart. An announced
+//! discharge must not be told.
 use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
@@ -170,13 +171,15 @@ impl FastLossWatch {
         let truth = &world.truth;
         let first = truth.time_s.partition_point(|time_s| *time_s <= onset_s).saturating_sub(1);
         let whole_kg = *truth.mass_kg.get(first)?;
-        let matters = (first..truth.mass_kg.len()).find(|row| truth.mass_kg[*row] <= (1.0 - MATTERS) * whole_kg);
+        let matters =
+            (first..truth.mass_kg.len()).find(|row| truth.mass_kg[*row] <= (1.0 - MATTERS) * whole_kg);
         // Between two rows the loss is taken as even.
         let matters_s = matters.map(|row| {
             let before = row.saturating_sub(1).max(first);
             let (from_s, to_s) = (truth.time_s[before].max(onset_s), truth.time_s[row]);
             let fallen_kg = truth.mass_kg[before] - truth.mass_kg[row];
-            let share = (truth.mass_kg[before] - (1.0 - MATTERS) * whole_kg) / fallen_kg.max(f64::MIN_POSITIVE);
+            let share =
+                (truth.mass_kg[before] - (1.0 - MATTERS) * whole_kg) / fallen_kg.max(f64::MIN_POSITIVE);
             from_s + share.clamp(0.0, 1.0) * (to_s - from_s)
         });
         let outcome = FastLoss {

@@ -10,8 +10,8 @@
 //! | found | a leak is said, or a discharge |
 //!
 //! With a leak beside the fault it must be told, too, before the end; where the requirement is flagged, degraded, undecidable or warned,
-//! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false. The stricter judgement of single rows and delays is that of
-//! [`judge`](crate::fault::judge()).
+//! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false. The
+//! stricter judgement of single rows and delays is that of [`judge`](crate::fault::judge()).
 use serde::{Deserialize, Serialize};
 
 use super::Moment;
@@ -65,9 +65,11 @@ impl FaultWatch {
     /// The fault of a world; `None`: it has none.
     pub fn of(world: &World) -> Option<Self> {
         let Overlay::Fault { row, onset_s, leak } = world.request.overlay else { return None };
-        let any = |is: fn(&HappeningKind) -> bool| world.happenings.iter().any(|happening| is(&happening.kind));
+        let any =
+            |is: fn(&HappeningKind) -> bool| world.happenings.iter().any(|happening| is(&happening.kind));
         let requirement = row.requirement();
-        let loses = leak.is_none() && any(|kind| matches!(kind, HappeningKind::Leak | HappeningKind::FastLoss));
+        let loses =
+            leak.is_none() && any(|kind| matches!(kind, HappeningKind::Leak | HappeningKind::FastLoss));
         let exchanges = any(|kind| matches!(kind, HappeningKind::Discharge | HappeningKind::Refill));
         Some(Self {
             row,
@@ -113,7 +115,10 @@ impl FaultWatch {
         let false_exchange = self.exchange && !self.exchanges && !self.loses;
         let quiet = !false_leak && !false_exchange;
         let recognised = match self.row.requirement() {
-            Requirement::Survived | Requirement::NotALeak | Requirement::Degraded | Requirement::Continued => quiet,
+            Requirement::Survived
+            | Requirement::NotALeak
+            | Requirement::Degraded
+            | Requirement::Continued => quiet,
             Requirement::Flagged => quiet && (self.named_soon || self.unknown_soon),
             Requirement::Warned => quiet && (self.named || !self.tight),
             Requirement::Undecidable => !false_exchange,

@@ -204,3 +204,6 @@ pub fn gas_at(overlay: &Overlay, time_s: f64) -> Gas {
         _ => Gas::Tight,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -105,7 +105,12 @@ impl Clustered {
             Some(variance) if variance > 1e-15 => share * (1.0 - share) / variance,
             _ => all.simulations as f64,
         };
-        Some(Share { share, by_simulation: wilson(share, trials), simulations: all.simulations, trials: all.t })
+        Some(Share {
+            share,
+            by_simulation: wilson(share, trials),
+            simulations: all.simulations,
+            trials: all.t,
+        })
     }
 }
 

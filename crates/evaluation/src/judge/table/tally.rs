@@ -145,7 +145,11 @@ impl Tally {
         if let Some(shares) = &score.shares {
             self.shares.tight_s.iter_mut().zip(&shares.tight_s).for_each(add_times);
             let later = &shares.tight_s[1];
-            self.unknown.add(simulation, later[crate::judge::measures::Class::Unknown as usize], later.iter().sum());
+            self.unknown.add(
+                simulation,
+                later[crate::judge::measures::Class::Unknown as usize],
+                later.iter().sum(),
+            );
         }
         if let Some(episodes) = &score.episodes {
             self.quiet += 1;
