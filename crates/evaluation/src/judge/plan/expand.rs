@@ -13,6 +13,8 @@ const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
 /// Shortest and longest log, s.
 const LENGTHS_S: std::ops::RangeInclusive<f64> = 900.0..=400.0 * DAY_S;
+/// Turns between the beginnings of two groups: prime to the numbers of kinds of all axes.
+const APART: usize = 13;
 /// Most rows of one log: a year of 2 min is 0.26 million, and a row takes about 150 bytes.
 const MOST_ROWS: f64 = 5e6;
 
@@ -39,7 +41,7 @@ pub struct Unit {
 /// All worlds of a plan, in its order.
 pub(super) fn tasks(plan: &Plan, check: &Check<'_>) -> Result<Vec<Task>, JudgeError> {
     let mut tasks = Vec::new();
-    for group in &plan.document.group {
+    for (group_index, group) in plan.document.group.iter().enumerate() {
         let length_s = length_s(group, check)?;
         let candidates = watching(plan, group, check)?;
         let (first, last) = group.seeds;
@@ -51,7 +53,8 @@ pub(super) fn tasks(plan: &Plan, check: &Check<'_>) -> Result<Vec<Task>, JudgeEr
             let pattern: Pattern = check.parsed(&key("families"), text)?;
             for seed in first..=last {
                 let count = pattern.combinations();
-                let turn = |number: usize| (seed - first) as usize * count + number;
+                // Groups begin their turns apart, so that not all of them pair the same kinds.
+                let turn = |number: usize| (seed - first) as usize * count + number + APART * group_index;
                 for family in pattern.families(turn) {
                     let remedy = "must match `tune` or `judge`, and not both";
                     let role =

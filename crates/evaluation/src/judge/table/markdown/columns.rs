@@ -3,6 +3,7 @@ use super::super::clustered::{Rate, Share};
 use super::super::report::{CoverageRow, GroupReport};
 use super::short;
 use crate::judge::measures::{Class, Reached, SmallestLeak};
+use crate::judge::score::coverage::Quantity;
 use crate::world::Regime;
 
 /// A column: its heading and what it says of a group; `None`: nothing.
@@ -73,31 +74,36 @@ fn smallest_words(leak: &SmallestLeak, bar: f64) -> String {
     format!("{} [{}, {}] ({})", value(leak.rate), value(low), value(high), short(rate))
 }
 
-pub(super) fn coverage() -> Vec<Column<'static>> {
+/// Coverage of one quantity, and its error on tight cylinders after the first day: in the unit of its name.
+pub(super) fn coverage(quantity: Quantity) -> Vec<Column<'static>> {
     let mut columns = Vec::new();
-    for (quantity, name) in ["mass", "gas", "leak", "onset"].into_iter().enumerate() {
-        for gas in ["tight", "lost", "exchanged"] {
-            for period in ["first day", "later"] {
-                columns.push(column(format!("{name}, {gas}, {period}"), move |of: &GroupReport| {
-                    let row = of.coverage.iter().find(|row| {
-                        row.quantity as usize == quantity && row.gas == gas && row.period == period
-                    })?;
-                    row.held.map(percent)
-                }));
-            }
+    for gas in ["tight", "lost", "exchanged"] {
+        for period in ["first day", "later"] {
+            columns.push(column(format!("{gas}, {period}"), move |of: &GroupReport| {
+                coverage_row(of, quantity, gas, period)?.held.map(percent)
+            }));
         }
     }
-    let rms = |name: &'static str, quantity: usize, unit: f64| {
-        column(name, move |of: &GroupReport| {
-            let later = |row: &&CoverageRow| {
-                row.quantity as usize == quantity && row.gas == "tight" && row.period == "later"
-            };
-            of.coverage.iter().find(later)?.rms.map(|rms| short(unit * rms))
-        })
+    let error = match quantity {
+        Quantity::Mass => Some(("rms, tight, later, % of the gas", 100.0)),
+        Quantity::Gas => Some(("rms, tight, later, K", 1.0)),
+        Quantity::Leak | Quantity::Onset => None,
     };
-    columns.push(rms("mass rms, tight, later, % of the gas", 0, 100.0));
-    columns.push(rms("gas rms, tight, later, K", 1, 1.0));
+    columns.extend(error.map(|(name, unit)| {
+        column(name, move |of: &GroupReport| {
+            coverage_row(of, quantity, "tight", "later")?.rms.map(|rms| short(unit * rms))
+        })
+    }));
     columns
+}
+
+fn coverage_row<'a>(
+    of: &'a GroupReport,
+    quantity: Quantity,
+    gas: &str,
+    period: &str,
+) -> Option<&'a CoverageRow> {
+    of.coverage.iter().find(|row| row.quantity == quantity && row.gas == gas && row.period == period)
 }
 
 pub(super) fn innovations() -> Vec<Column<'static>> {

@@ -10,6 +10,7 @@ use self::columns::{
 use super::report::{CandidateReport, GroupReport, Leaks};
 use super::{Provenance, Table};
 use crate::judge::plan::Role;
+use crate::judge::score::coverage::Quantity;
 
 const NONE: &str = "–";
 
@@ -95,7 +96,10 @@ fn write_role(text: &mut String, title: &str, groups: &[&GroupReport]) {
     if let Some(leaks) = axes.first().and_then(|all| all.leaks.as_ref()) {
         write_delays(text, title, leaks);
     }
-    write_table(text, &format!("Coverage of 95 % intervals{title}, %"), &axes, &coverage());
+    for (quantity, name) in Quantity::ALL.into_iter().zip(["mass", "gas temperature", "leak rate", "onset"]) {
+        let title = format!("Coverage of 95 % intervals of the {name}{title}, %");
+        write_table(text, &title, &axes, &coverage(quantity));
+    }
     write_table(text, &format!("Innovations of the pressure{title}"), &axes, &innovations());
     write_table(text, &format!("Fast losses{title}"), &axes, &fast_losses());
     write_table(text, &format!("Exchanges of gas called what they are{title}, %"), &axes, &exchanges());
