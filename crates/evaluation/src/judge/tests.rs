@@ -121,6 +121,10 @@ fn contradictions_that_were_planted_are_counted_and_no_others() {
     assert_eq!((found.rows, found.disagreeing), (2 * 721, 2 * 73));
     assert_eq!(found.by_rule.values().copied().collect::<Vec<_>>(), [2 * 73]);
     assert_eq!(all(&table, 1).disagreements.as_ref().unwrap().disagreeing, 0);
+    // Both worlds are named with what makes them again.
+    let named = &table.candidates[0].contradictions;
+    assert!(named.len() == 2 && named[0].contains(&format!("{RAILWAY} seed 1 set 0")), "{named:?}");
+    assert!(table.candidates[1].contradictions.is_empty());
 }
 
 #[test]

@@ -90,6 +90,15 @@ pub struct Disagreements {
     pub by_rule: [u64; 13],
 }
 
+impl Disagreements {
+    /// Which rules are broken, and in how many rows.
+    pub fn words(&self) -> String {
+        let broken = Rule::ALL.into_iter().zip(self.by_rule).filter(|(_, count)| *count > 0);
+        let words: Vec<String> = broken.map(|(rule, count)| format!("{} ({count})", rule.words())).collect();
+        words.join("; ")
+    }
+}
+
 impl AddAssign<&Self> for Disagreements {
     fn add_assign(&mut self, other: &Self) {
         self.rows += other.rows;

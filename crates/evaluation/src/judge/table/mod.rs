@@ -28,7 +28,7 @@ use super::journal::Results;
 use super::plan::{Plan, Role};
 use super::run::Entry;
 use crate::detector::statistic::Noise;
-use crate::world::{Overlay, SimulationKey};
+use crate::world::{Overlay, Request, SimulationKey};
 
 /// Names of the files of the table.
 pub const TABLE: [&str; 2] = ["table.md", "table.json"];
@@ -108,6 +108,7 @@ impl Table {
                 name: named.name.clone(),
                 threshold: *threshold,
                 failures: Vec::new(),
+                contradictions: Vec::new(),
                 groups: Vec::new(),
             })
             .collect();
@@ -151,6 +152,9 @@ fn add(
                 groups.iter().for_each(|group| of.entry(*group).or_default().add_failed(task));
             }
             Ok(mut score) => {
+                if let Some(found) = score.disagreements.filter(|found| found.disagreeing > 0) {
+                    note(&mut reports[candidate].contradictions, plan, index, &found.words());
+                }
                 if let Some(tuned) = thresholds[candidate] {
                     at_threshold(&mut score, tuned.level.threshold, &facts, &task.request.overlay);
                 }
@@ -160,11 +164,12 @@ fn add(
     }
 }
 
-/// Keep the first failures.
+/// Keep the first failures, with the request that makes the world again.
 fn note(failures: &mut Vec<String>, plan: &Plan, task: usize, reason: &str) {
     if failures.len() < TOLD_FAILURES {
         let request = &plan.tasks[task].request;
-        failures.push(format!("{} seed {} set {}: {reason}", request.family, request.seed, request.set));
+        let Request { family, seed, set, length_s, overlay } = request;
+        failures.push(format!("{family} seed {seed} set {set}, {length_s} s, {overlay:?}: {reason}"));
     }
 }
 

@@ -21,7 +21,8 @@ impl Table {
         for candidate in &self.candidates {
             let _ = write!(text, "\n## {}\n", candidate.name);
             write_threshold(&mut text, candidate);
-            write_failures(&mut text, &candidate.failures);
+            write_failures(&mut text, "failed", &candidate.failures);
+            write_failures(&mut text, "contradicts itself", &candidate.contradictions);
             for (role, title) in [(Role::Judge, ""), (Role::Tune, ", families that tune")] {
                 let of: Vec<&GroupReport> = candidate.groups.iter().filter(|of| of.role == role).collect();
                 if !of.is_empty() {
@@ -47,7 +48,7 @@ fn heading(provenance: &Provenance) -> String {
     }
     if provenance.failed_worlds > 0 {
         let _ = writeln!(text, "\n{} worlds could not be made:", provenance.failed_worlds);
-        write_failures(&mut text, &provenance.failures);
+        write_failures(&mut text, "failed", &provenance.failures);
     }
     let _ = writeln!(
         text,
@@ -71,12 +72,12 @@ fn write_threshold(text: &mut String, candidate: &CandidateReport) {
     }
 }
 
-fn write_failures(text: &mut String, failures: &[String]) {
+fn write_failures(text: &mut String, what: &str, failures: &[String]) {
     if !failures.is_empty() {
         let _ = writeln!(text);
     }
     failures.iter().for_each(|failure| {
-        let _ = writeln!(text, "* failed: {failure}");
+        let _ = writeln!(text, "* {what}: {failure}");
     });
 }
 

@@ -22,6 +22,8 @@ pub struct CandidateReport {
     pub threshold: Option<Tuned>,
     /// Worlds in which it failed, and why: the first ones.
     pub failures: Vec<String>,
+    /// Worlds in which it contradicts itself, and how: the first ones.
+    pub contradictions: Vec<String>,
     /// By group.
     pub groups: Vec<GroupReport>,
 }
