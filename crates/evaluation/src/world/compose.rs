@@ -37,7 +37,7 @@ pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, W
         vessel_toml: family.vessel.text(),
         sensors: suite.sensors().to_vec(),
         sensors_spec: spec,
-        commissioning: simulated.drawn.fill.commissioning(&simulated.nominal)?,
+        commissioning: simulated.drawn.fill.commissioning(),
         announced: announced(&happenings, &rows),
     };
     let world = World {

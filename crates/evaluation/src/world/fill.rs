@@ -5,10 +5,9 @@
 //! worlds the log begins in the middle of operation: the cylinder is not settled, and the candidate is told so.
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_thermal::scenario::Fill;
-use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
 
-use super::{VesselKind, WorldError};
+use super::VesselKind;
 use crate::random::{Purpose, Random};
 
 /// Temperature that fills are stated at, K.
@@ -56,11 +55,9 @@ impl FillDraw {
         Fill::Settled { pressure_pa: self.pressure_pa, temperature_k: QUOTED_K }
     }
 
-    /// What is told of it for the nominal vessel.
-    pub(super) fn commissioning(&self, nominal: &Vessel) -> Result<Commissioning, WorldError> {
-        let mut told = Commissioning::filled(self.stated_pa, QUOTED_K);
-        told.mass_sd_kg = TOLD_SD * told.mass_kg(nominal, QUOTED_K)?;
-        told.settled = self.lead_s == 0.0;
-        Ok(told)
+    /// What is told of it.
+    pub(super) fn commissioning(&self) -> Commissioning {
+        let settled = self.lead_s == 0.0;
+        Commissioning { mass_sd: TOLD_SD, settled, ..Commissioning::filled(self.stated_pa, QUOTED_K) }
     }
 }

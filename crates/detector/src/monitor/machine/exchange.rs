@@ -113,7 +113,7 @@ impl Monitor {
             return Ok(estimate);
         }
         self.go_back()?;
-        self.observer.begin_exchange();
+        self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
         self.state.rewind.begin(&self.observer);
@@ -177,11 +177,19 @@ impl Monitor {
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back()?;
-        self.observer.begin_exchange();
+        self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let examination = Examination::new(time_s, before_pa);
         self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
         self.examine(estimate, events)
+    }
+
+    /// Let the observer take the mass from the present readings: nothing of what it knew of the gas holds.
+    fn free_the_mass(&mut self) {
+        self.observer.begin_exchange();
+        if let Some(pressure) = self.roles.pressure {
+            self.observer.forget_offset(self.place_of(pressure));
+        }
     }
 
     /// Both observers as they were before the present row.
