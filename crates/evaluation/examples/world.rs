@@ -75,7 +75,11 @@ fn log(world: &World) -> Result<String, std::fmt::Error> {
 fn say(world: &World, took_s: f64) {
     let Fill::Settled { pressure_pa, temperature_k } = world.told.commissioning.fill else { return };
     eprintln!("{} rows in {took_s:.2} s", world.log.time_s.len());
-    eprintln!("--fill-pressure-bar {:.3} --fill-temperature-degc {}", pressure_pa / 1e5, temperature_k - 273.15);
+    eprintln!(
+        "--fill-pressure-bar {:.3} --fill-temperature-degc {}",
+        pressure_pa / 1e5,
+        temperature_k - 273.15
+    );
     eprintln!("settled at the start: {}", world.told.commissioning.settled);
     for happening in &world.happenings {
         eprintln!("{happening:?}");

@@ -9,9 +9,11 @@
 //! | [`truth`] | drawn cylinders in railway weather, read by drawn sensors; how good an observer was |
 //! | [`fault`] | faults put into good rows, and what a monitor must make of them |
 //! | [`performance`] | what detectors are worth, side by side on the same cylinders |
+//! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
 pub mod error;
 pub mod fault;
+pub mod judge;
 pub mod performance;
 pub mod placement;
 mod random;

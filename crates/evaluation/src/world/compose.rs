@@ -12,7 +12,8 @@ use super::simulation::Simulated;
 use super::slow::SlowLeak;
 use super::truth::Truth;
 use super::{
-    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, Told, World, WorldError, disturbed, faulty,
+    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, Told, World, WorldError,
+    disturbed, faulty,
 };
 use crate::random::Purpose;
 
@@ -53,7 +54,9 @@ pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, W
         drawn: Drawn { cylinder: simulated.drawn, sensors },
     };
     match request.overlay {
-        Overlay::Fault { row, onset_s, .. } => with_fault(world, simulated, &rows, leak.as_ref(), (row, onset_s), seed),
+        Overlay::Fault { row, onset_s, .. } => {
+            with_fault(world, simulated, &rows, leak.as_ref(), (row, onset_s), seed)
+        }
         _ => Ok(world),
     }
 }
@@ -79,7 +82,9 @@ fn with_fault(
     (row, onset_s): (FaultRow, f64),
     seed: u64,
 ) -> Result<World, WorldError> {
-    let Some(fault) = faulty::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else { return Ok(world) };
+    let Some(fault) = faulty::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else {
+        return Ok(world);
+    };
     let faulty = faulty::inject(&fault, &world.log, rows, &world.truth, onset_s, seed)?;
     world.truth = truth(simulated, &faulty.time_s, leak)?;
     (world.log, world.historical, world.power_cycles) = (faulty.log, faulty.historical, faulty.power_cycles);
@@ -88,7 +93,11 @@ fn with_fault(
 }
 
 /// What really happened at times of the log, s.
-pub(super) fn truth(simulated: &Simulated, time_s: &[f64], leak: Option<&SlowLeak>) -> Result<Truth, WorldError> {
+pub(super) fn truth(
+    simulated: &Simulated,
+    time_s: &[f64],
+    leak: Option<&SlowLeak>,
+) -> Result<Truth, WorldError> {
     let lead_s = simulated.drawn.fill.lead_s;
     let samples = &simulated.samples;
     let column = |values: &[f64]| time_s.iter().map(|t| samples.at(values, t + lead_s)).collect::<Vec<f64>>();
@@ -139,7 +148,8 @@ fn readings(simulated: &Simulated, sensors: &SensorDraw, rows: &Rows, truth: &Tr
     let samples = &simulated.samples;
     let geometry = &simulated.vessel.geometry;
     let diameter_m = geometry.inner_diameter_m + 2.0 * geometry.thickness_m();
-    let cylinder = Body { orientation: geometry.orientation, diameter_m, height_m: geometry.outer_height_m() };
+    let cylinder =
+        Body { orientation: geometry.orientation, diameter_m, height_m: geometry.outer_height_m() };
     let valve_m = simulated.vessel.valve.as_ref().map_or(diameter_m, |valve| valve.diameter_m);
     let valve = Body { diameter_m: valve_m, height_m: valve_m, ..cylinder };
     let times_s: Vec<f64> = rows.time_s.iter().map(|t| t + simulated.drawn.fill.lead_s).collect();
@@ -170,8 +180,14 @@ fn readings(simulated: &Simulated, sensors: &SensorDraw, rows: &Rows, truth: &Tr
     }
 }
 
-fn happenings(simulated: &Simulated, request: &Request, rows: &Rows, leak: Option<&SlowLeak>) -> Vec<Happening> {
-    let mut all: Vec<Happening> = rows.gaps_s.iter().map(|&gap| Happening::of_rows(HappeningKind::Gap, gap)).collect();
+fn happenings(
+    simulated: &Simulated,
+    request: &Request,
+    rows: &Rows,
+    leak: Option<&SlowLeak>,
+) -> Vec<Happening> {
+    let mut all: Vec<Happening> =
+        rows.gaps_s.iter().map(|&gap| Happening::of_rows(HappeningKind::Gap, gap)).collect();
     all.extend(rows.clock.map(|(at_s, _)| Happening::of_rows(HappeningKind::ClockStep, (at_s, at_s))));
     all.extend(of_overlay(simulated, request, leak));
     all.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));

@@ -52,7 +52,11 @@ pub(super) fn away_s(row: FaultRow, seed: u64) -> Option<f64> {
 
 impl Disturbed<'_> {
     /// Simulate a scenario with what this row does to it.
-    pub fn simulate(&self, mut scenario: Scenario, settings: &SimulationSettings) -> Result<Trajectory, WorldError> {
+    pub fn simulate(
+        &self,
+        mut scenario: Scenario,
+        settings: &SimulationSettings,
+    ) -> Result<Trajectory, WorldError> {
         let random = &mut Random::new(self.seed, Purpose::WorldFault);
         let mut happenings = Happenings::default();
         if let Some((lasting_s, kind)) = self.surrounding(random, &scenario.surroundings) {
@@ -112,7 +116,8 @@ impl Disturbed<'_> {
             }
             FaultRow::E6 => {
                 let period_s = random.uniform((1.0, 3.0)) * HOUR_S;
-                let (standing_w_m2_k, fast_w_m2_k) = (flow(5.0, WIND_STANDING_M_S), flow(50.0, WIND_FAST_M_S));
+                let (standing_w_m2_k, fast_w_m2_k) =
+                    (flow(5.0, WIND_STANDING_M_S), flow(50.0, WIND_FAST_M_S));
                 (24.0 * HOUR_S, Surrounding::Speed { standing_w_m2_k, fast_w_m2_k, period_s })
             }
             _ => return None,

@@ -19,7 +19,9 @@ pub enum WorldError {
         known: String,
     },
     /// A text that is no key of a family.
-    #[error("{text:?} is no family: write vessel/climate/gas/sensors/rows, e.g. nitrogen-20l/railway/mixed/class-b/120s")]
+    #[error(
+        "{text:?} is no family: write vessel/climate/gas/sensors/rows, e.g. nitrogen-20l/railway/mixed/class-b/120s"
+    )]
     FamilyKey {
         /// What was given.
         text: String,

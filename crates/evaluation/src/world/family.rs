@@ -46,7 +46,7 @@ macro_rules! axis {
 }
 
 axis! {
-    /// Vessels; the nominal one of each is a file beside [`super::vessel`].
+    /// Vessels; the nominal one of each is a file of `world/vessel`.
     VesselKind ("vessel") {
         /// 20 L nitrogen, 200 bar, steel.
         Nitrogen20 = "nitrogen-20l",
@@ -66,7 +66,7 @@ axis! {
 }
 
 axis! {
-    /// Climates; the law of each is in the file of its name in [`super::climate`].
+    /// Climates; the law of each is in the file of its name in `world/climate`.
     Climate ("climate") {
         /// Winter under a rail vehicle; seasons in logs of more than 60 d.
         Railway = "railway",

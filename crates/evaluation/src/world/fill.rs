@@ -57,7 +57,7 @@ impl FillDraw {
 
     /// What is told of it.
     pub(super) fn commissioning(&self) -> Commissioning {
-        let settled = self.lead_s == 0.0;
-        Commissioning { mass_sd: TOLD_SD, settled, ..Commissioning::filled(self.stated_pa, QUOTED_K) }
+        let told = Commissioning::filled(self.stated_pa, QUOTED_K);
+        Commissioning { mass_sd: TOLD_SD, settled: self.lead_s == 0.0, ..told }
     }
 }

@@ -78,7 +78,14 @@ impl Filled<'_> {
         (LEFT * self.pressure_pa).max(1.5 * BACK_PRESSURE_PA)
     }
 
-    fn loss(&self, name: &str, part: f64, within_s: f64, onset_s: f64, goes_on: bool) -> Result<Flow, WorldError> {
+    fn loss(
+        &self,
+        name: &str,
+        part: f64,
+        within_s: f64,
+        onset_s: f64,
+        goes_on: bool,
+    ) -> Result<Flow, WorldError> {
         let through_orifice = Random::new(self.seed, Purpose::WorldFlow).happens(0.5);
         let kind = if through_orifice {
             FlowKind::Orifice {

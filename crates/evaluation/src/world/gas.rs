@@ -75,5 +75,6 @@ impl GasKind {
 /// Time in which heat passes a layer, `s^2 rho c / k`, s.
 fn passing_s(layer: &Layer) -> f64 {
     let material = &layer.material;
-    layer.thickness_m.powi(2) * material.density_kg_m3 * material.heat_capacity_j_kg_k / material.conductivity_w_m_k
+    layer.thickness_m.powi(2) * material.density_kg_m3 * material.heat_capacity_j_kg_k
+        / material.conductivity_w_m_k
 }

@@ -16,17 +16,24 @@ mod overlay;
 mod reading;
 mod regime;
 mod rows;
+mod samples;
 mod sensors;
 mod simulation;
 mod slow;
+#[cfg(test)]
+mod statistics;
 mod told;
 mod truth;
 mod vessel;
+
+#[cfg(test)]
+mod tests;
 
 use cylwatch_estimator::log::Log;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
+pub use crate::fault::Snapshot;
 
 pub use error::WorldError;
 pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
@@ -99,9 +106,6 @@ pub struct Drawn {
     /// Sensors.
     pub sensors: SensorDraw,
 }
-
-/// State that a monitor finds when the power comes back.
-pub type Snapshot = crate::fault::Snapshot;
 
 /// The world of a request.
 ///

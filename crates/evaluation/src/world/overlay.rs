@@ -3,8 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::WorldError;
 
-/// A row of the fault table.
-pub type FaultRow = crate::fault::TableRow;
+pub use crate::fault::TableRow as FaultRow;
 
 /// What is laid over a world. Parts are of the gas that the cylinder begins with; onsets are true times from the start of the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -80,10 +79,10 @@ impl Leak {
     }
 }
 
-/// Largest leak that is laid over a finished simulation, part of the gas per hour, and largest part that it may lose in all: what
-/// the gas then misses of its own cooling by expansion stays below a transmitter's noise.
-const SLOW_PART_PER_H: f64 = 1e-3;
-const SLOW_PART: f64 = 0.2;
+/// Largest leak that is laid over a finished simulation, part of the gas per hour, and largest part that it may lose in all: that the
+/// gas is not cooled by its own expansion, and that less gas follows the wall sooner, then stays below a transmitter's noise.
+const SLOW_PART_PER_H: f64 = 1e-4;
+const SLOW_PART: f64 = 0.005;
 const HOUR_S: f64 = 3600.0;
 
 impl Overlay {

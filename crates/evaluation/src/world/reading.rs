@@ -2,11 +2,11 @@
 //!
 //! Between samples of the simulation surfaces and pressure are linear in time; the air is the signal itself. A lag is then exact: for an
 //! input `u` that is linear over `dt`, `y' = u' - s + (y - u + s) exp(-dt/tau)` with `s = tau (u' - u)/dt`.
-use cylwatch_thermal::transfer::outside::{Body, convection_w_m2_k};
 use cylwatch_thermal::scenario::{OutsideFilm, Surroundings};
+use cylwatch_thermal::transfer::outside::{Body, convection_w_m2_k};
 
+use super::samples::Samples;
 use super::sensors::{Thermometer, Transmitter};
-use super::simulation::Samples;
 use crate::random::{Purpose, Random};
 
 /// Film by convection at which a mounting has its stated coupling, W/(m² K).
@@ -90,7 +90,12 @@ impl Place<'_> {
 }
 
 /// Readings of a transmitter, from pressures, Pa, and the temperatures of its electronics, K.
-pub(super) fn read_pressure(sensor: &Transmitter, pressure_pa: &[f64], electronics_k: &[f64], seed: u64) -> Vec<f64> {
+pub(super) fn read_pressure(
+    sensor: &Transmitter,
+    pressure_pa: &[f64],
+    electronics_k: &[f64],
+    seed: u64,
+) -> Vec<f64> {
     let mut noise = Random::new(seed, Purpose::WorldPressureNoise);
     let zero_pa = if sensor.is_gauge { ATMOSPHERE_PA } else { 0.0 };
     let (low_pa, high_pa) = (LOOP.0 * sensor.full_scale_pa, LOOP.1 * sensor.full_scale_pa);

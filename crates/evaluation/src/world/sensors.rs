@@ -95,7 +95,8 @@ impl SensorDraw {
     pub(super) fn draw(class: SensorClass, vessel: VesselKind, seed: u64) -> Self {
         let random = &mut Random::new(seed, Purpose::WorldSensors);
         let (shoulder, valve) = (thermometer(class, random), thermometer(class, random));
-        let mut drawn = Self { shoulder, valve, pressure: transmitter(class, vessel.full_scale_pa(), random) };
+        let mut drawn =
+            Self { shoulder, valve, pressure: transmitter(class, vessel.full_scale_pa(), random) };
         if class == SensorClass::Coarse {
             // Both thermometers pass the same logger.
             drawn.valve.resolution_k = drawn.shoulder.resolution_k;
@@ -128,7 +129,9 @@ impl SensorDraw {
             resolution_pa: Some(self.pressure.resolution_pa),
             ..SensorSpec::default()
         };
-        SensorsSpec { sensor: vec![surface("shoulder", &self.shoulder), surface("valve", &self.valve), pressure] }
+        SensorsSpec {
+            sensor: vec![surface("shoulder", &self.shoulder), surface("valve", &self.valve), pressure],
+        }
     }
 }
 
@@ -136,7 +139,9 @@ impl SensorDraw {
 const fn data_sheet(class: SensorClass) -> (f64, f64) {
     match class {
         SensorClass::ClassA => (1e-3, 5e-4),
-        SensorClass::ClassB | SensorClass::Coarse | SensorClass::Transmitter | SensorClass::Lagging => (2.5e-3, 1e-3),
+        SensorClass::ClassB | SensorClass::Coarse | SensorClass::Transmitter | SensorClass::Lagging => {
+            (2.5e-3, 1e-3)
+        }
     }
 }
 

@@ -10,14 +10,19 @@ use super::disturbed::{self, Disturbed};
 use super::fill::{FillDraw, QUOTED_K};
 use super::flows::{Filled, LEAK};
 use super::gas::GasDraw;
+use super::samples::Samples;
 use super::vessel::VesselDraw;
-use super::{Climate, Family, GasKind, Leak, Overlay, Request, RowPattern, VesselKind, World, WorldError, compose};
+use super::{
+    Climate, Family, GasKind, Leak, Overlay, Request, RowPattern, VesselKind, World, WorldError, compose,
+};
 
 /// Shortest and longest log, s.
 const LENGTH_S: (f64, f64) = (900.0, 400.0 * 86_400.0);
 /// Spacing of the knots of turbulence and gusts, s, for rows of up to 10 s and for slower ones.
 const FINE_SPACING_S: f64 = 60.0;
 const COARSE_SPACING_S: f64 = 300.0;
+/// Most samples of a simulation: some 2 GB while it runs.
+const SAMPLES_MOST: f64 = 3e6;
 /// Longest interval of the samples, s.
 const SAMPLE_S: f64 = 60.0;
 
@@ -78,7 +83,8 @@ fn simulate_with(
     let mass_kg = density * vessel.volume.volume_m3(QUOTED_K, pressure_pa);
     let filled = Filled { kind: key.vessel, vessel, seed: key.seed, pressure_pa, mass_kg, lead_s };
     scenario.flows = filled.flows(overlay)?;
-    let settings = SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
+    let settings =
+        SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
     match *overlay {
         Overlay::Fault { row, onset_s, .. } => {
             let (kind, seed, onset_s) = (key.vessel, key.seed, onset_s + lead_s);
@@ -95,41 +101,6 @@ fn closed_s(trajectory: &Trajectory, lead_s: f64) -> Vec<(String, f64)> {
         _ => None,
     };
     trajectory.events.iter().filter_map(closing).collect()
-}
-
-/// Samples of a simulation at even times from 0 on.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Samples {
-    pub interval_s: f64,
-    pub gas_mean_k: Vec<f64>,
-    pub mass_kg: Vec<f64>,
-    pub pressure_pa: Vec<f64>,
-    pub outflow_kg_s: Vec<f64>,
-    pub wall_mean_k: Vec<f64>,
-    pub shoulder_k: Vec<f64>,
-    pub valve_k: Vec<f64>,
-}
-
-impl Samples {
-    /// A column at a time of the simulation, s, linear between samples.
-    pub fn at(&self, column: &[f64], t_s: f64) -> f64 {
-        let place = (t_s / self.interval_s).max(0.0);
-        let knot = (place.floor() as usize).min(column.len() - 2);
-        let weight = (place - knot as f64).min(1.0);
-        column[knot] + weight * (column[knot + 1] - column[knot])
-    }
-
-    /// Times of the samples, s.
-    pub fn times_s(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.mass_kg.len()).map(|sample| sample as f64 * self.interval_s)
-    }
-
-    fn of(trajectory: Trajectory, interval_s: f64) -> Self {
-        let shoulder_k = trajectory.surface_k("shoulder").unwrap_or_default();
-        let Trajectory { gas_mean_k, mass_kg, pressure_pa, outflow_kg_s, wall_mean_k, valve_k, .. } = trajectory;
-        let valve_k = valve_k.unwrap_or_else(|| shoulder_k.clone());
-        Self { interval_s, gas_mean_k, mass_kg, pressure_pa, outflow_kg_s, wall_mean_k, shoulder_k, valve_k }
-    }
 }
 
 /// A simulated cylinder without sensors.
@@ -170,7 +141,8 @@ impl Simulated {
         key.gas.resolve(&mut vessel, &drawn.gas);
         let (spacing_s, sample_s) = (spacing_s(request.family.rows), sample_s(request.family.rows));
         let span = Span::draw(key.seed, drawn.fill.lead_s, request.length_s, spacing_s);
-        let around = climate::surroundings(key.climate, &span, drawn.vessel.outside_film, drawn.vessel.film_slope)?;
+        let around =
+            climate::surroundings(key.climate, &span, drawn.vessel.outside_film, drawn.vessel.film_slope)?;
         let scenario = scenario(&key, &span, &drawn.fill, around.surroundings, sample_s);
         let trajectory = simulate_with(&key, &vessel, &drawn, scenario, &overlay)?;
         let ledger = trajectory.ledger;
@@ -241,7 +213,9 @@ impl Simulated {
         }
         let text = |key: &SimulationKey, overlay: &Overlay, length_s: f64, spacing_s: f64| {
             let SimulationKey { vessel, climate, gas, seed } = key;
-            format!("{vessel}/{climate}/{gas}, seed {seed}, {length_s} s, knots every {spacing_s} s, {overlay:?}")
+            format!(
+                "{vessel}/{climate}/{gas}, seed {seed}, {length_s} s, knots every {spacing_s} s, {overlay:?}"
+            )
         };
         let spacing = spacing_s(request.family.rows);
         Err(WorldError::OtherSimulation {
@@ -261,6 +235,15 @@ impl Request {
         if !(low..=high).contains(&self.length_s) {
             return Err(WorldError::Number { what: "length_s", value: self.length_s, low, high });
         }
+        let samples = self.length_s / sample_s(self.family.rows);
+        if samples > SAMPLES_MOST {
+            return Err(WorldError::Number {
+                what: "number of samples",
+                value: samples,
+                low: 1.0,
+                high: SAMPLES_MOST,
+            });
+        }
         self.overlay.validate()
     }
 }
@@ -278,7 +261,13 @@ const fn sample_s(rows: RowPattern) -> f64 {
     rows.interval_s().min(SAMPLE_S)
 }
 
-fn scenario(key: &SimulationKey, span: &Span, fill: &FillDraw, surroundings: Surroundings, sample_s: f64) -> Scenario {
+fn scenario(
+    key: &SimulationKey,
+    span: &Span,
+    fill: &FillDraw,
+    surroundings: Surroundings,
+    sample_s: f64,
+) -> Scenario {
     let settled_k = surroundings.air_k.at(0.0);
     Scenario {
         name: format!("{}, seed {}", key.climate, key.seed),

@@ -3,17 +3,17 @@
 //! With `m(t)` of the simulation and a leak of `r` from `t_0` on, the mass is `m - r (t - t_0)` and the pressure
 //! `p + p_eos(m - r (t - t_0), T) - p_eos(m, T)` at the simulated temperature of the gas. What is left out is the cooling of the gas by
 //! its expansion, `r p/rho` over the conductance of the film, and the smaller heat capacity of less gas.
+use super::Request;
 use super::simulation::Simulated;
 use super::truth::Truth;
-use super::Request;
 
 const HOUR_S: f64 = 3600.0;
 
 /// A leak of constant mass flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SlowLeak {
-    rate_kg_s: f64,
-    onset_s: f64,
+    pub rate_kg_s: f64,
+    pub onset_s: f64,
 }
 
 impl SlowLeak {
@@ -45,7 +45,9 @@ impl SlowLeak {
             let pressure_of = |mass_kg: f64| {
                 let mut pressure_pa = before_pa;
                 for _ in 0..3 {
-                    pressure_pa = vessel.fluid.pressure_pa(mass_kg / vessel.volume.volume_m3(wall_k, pressure_pa), gas_k);
+                    pressure_pa = vessel
+                        .fluid
+                        .pressure_pa(mass_kg / vessel.volume.volume_m3(wall_k, pressure_pa), gas_k);
                 }
                 pressure_pa
             };

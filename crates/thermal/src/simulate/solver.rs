@@ -255,13 +255,17 @@ impl OdeEquations for Equations<'_> {
     fn get_params(&self, _p: &mut V) {}
 }
 
+/// Next step over last step below which the history is not interpolated: at order 5 a rounding then grows to 1e-8 of a step's change.
+const SHRUNK: f64 = 1e-2;
+
 struct Wrapper<'a, 'm, S> {
     solver: S,
     equations: &'a Equations<'m>,
     buffer: V,
     rate: V,
-    /// Start of the last step, s.
+    /// Start of the last step, s, and the state there.
     begin_s: f64,
+    begin: V,
     /// Stop time, s.
     stop_s: f64,
     /// The last step ended at the stop time, give or take a rounding.
@@ -272,7 +276,33 @@ struct Wrapper<'a, 'm, S> {
 
 impl<'a, 'm, S> Wrapper<'a, 'm, S> {
     fn new(solver: S, equations: &'a Equations<'m>, buffer: V, rate: V, one_step: bool) -> Self {
-        Self { solver, equations, buffer, rate, begin_s: 0.0, stop_s: 0.0, at_stop: false, one_step }
+        let begin = buffer.clone();
+        Self { solver, equations, buffer, rate, begin_s: 0.0, begin, stop_s: 0.0, at_stop: false, one_step }
+    }
+}
+
+impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Wrapper<'a, 'm, S> {
+    /// Whether the history of the last step has been rescaled to a far shorter next step, at whose end an edge lies. Its polynomial is
+    /// still the same, but a rounding in its differences of order `k` grows by `(step/next)^(k-1)` over the last step.
+    fn has_shrunk(&self) -> bool {
+        let state = self.solver.state();
+        !self.one_step && state.h.abs() < SHRUNK * (state.t - self.begin_s)
+    }
+
+    /// Cubic through the states and rates at both ends of the last step.
+    fn interpolate_cubic(&mut self, t_s: f64, out: &mut [f64]) {
+        let end_s = self.solver.state().t;
+        let (length_s, x) = (end_s - self.begin_s, (t_s - self.begin_s) / (end_s - self.begin_s));
+        (&self.equations.rhs).call_inplace(&self.begin, self.begin_s, &mut self.buffer);
+        (&self.equations.rhs).call_inplace(self.solver.state().y, end_s, &mut self.rate);
+        let end = self.solver.state().y;
+        for (i, value) in out.iter_mut().enumerate() {
+            let (from, to) = (self.begin.get_index(i), end.get_index(i));
+            let (leaving, arriving) =
+                (self.buffer.get_index(i) * length_s, self.rate.get_index(i) * length_s);
+            let bend = (1.0 - x) * (leaving - (to - from)) + x * ((to - from) - arriving);
+            *value = from + x * (to - from) + x * (1.0 - x) * bend;
+        }
     }
 }
 
@@ -290,6 +320,7 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
 
     fn step(&mut self) -> Result<Step, String> {
         self.begin_s = self.solver.state().t;
+        self.begin.copy_from(self.solver.state().y);
         match self.solver.step().map_err(|error| error.to_string())? {
             OdeSolverStopReason::TstopReached => {
                 self.at_stop = true;
@@ -311,6 +342,10 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
     fn interpolate(&mut self, t_s: f64, out: &mut [f64]) -> Result<(), String> {
         // A step that stopped at an edge may end one rounding beside it, and the next one begin there.
         let t = t_s.max(self.begin_s).min(self.solver.state().t);
+        if self.has_shrunk() {
+            self.interpolate_cubic(t, out);
+            return Ok(());
+        }
         self.solver.interpolate_inplace(t, &mut self.buffer).map_err(|error| error.to_string())?;
         for (i, value) in out.iter_mut().enumerate() {
             *value = self.buffer.get_index(i);
@@ -395,3 +430,6 @@ pub fn with_stepper<R>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -34,7 +34,9 @@ fn programme(span: &Span) -> (Polyline, Vec<f64>) {
         let is_fast = change_s == 0.0;
         let change_s = if is_fast { random.uniform(FAST_S) } else { change_s };
         let change_at_s = t + TRANSFER_S + random.uniform(REST_S);
-        for (at_s, degc) in [(t + TRANSFER_S, from_degc), (change_at_s, from_degc), (change_at_s + change_s, to_degc)] {
+        for (at_s, degc) in
+            [(t + TRANSFER_S, from_degc), (change_at_s, from_degc), (change_at_s + change_s, to_degc)]
+        {
             air.time_s.push(at_s);
             air.value.push(degc);
         }

@@ -59,7 +59,8 @@ impl TunnelLaw {
                 let enter_s = begin_s + random.uniform((0.0, part_s - stay_s - TUNNEL_GAP_S));
                 let air = (self.air)(&mut random);
                 let ramp_s = random.uniform(self.ramp_s);
-                let flow = self.flow.map(|(flow, switch_s)| (random.uniform(flow), random.by_logarithm(switch_s)));
+                let flow =
+                    self.flow.map(|(flow, switch_s)| (random.uniform(flow), random.by_logarithm(switch_s)));
                 stays.push(Stay { enter_s, leave_s: enter_s + stay_s, air, ramp_s, flow, is_dark: true });
             }
         }

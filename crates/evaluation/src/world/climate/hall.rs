@@ -26,7 +26,8 @@ fn heated(span: &Span) -> (Polyline, Vec<(f64, f64)>) {
     let setback_k = random.uniform(SETBACK_K);
     let (mut air, mut on_s) = (Polyline { time_s: Vec::new(), value: Vec::new() }, Vec::new());
     let mut t = 0.0;
-    while t <= span.clock_end_s() {
+    // One more than needed: the last fall ends where the next rise begins.
+    while t <= span.clock_end_s() + OFF_S.1 + ON_S.1 {
         let (begin_s, end_s) = (t, t + random.uniform(ON_S));
         for (at_s, side) in [(begin_s, -1.0), (end_s, 1.0)] {
             air.time_s.push(at_s);

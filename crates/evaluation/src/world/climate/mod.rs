@@ -13,6 +13,8 @@ mod part;
 mod railway;
 mod showers;
 mod switching;
+#[cfg(test)]
+mod tests;
 mod weather;
 mod workshop;
 

@@ -112,8 +112,9 @@ impl Stay {
     pub fn knots_s(&self) -> impl Iterator<Item = f64> + '_ {
         let ramps = [Some(self.ramp_s), self.flow.map(|(_, ramp_s)| ramp_s)];
         let ends = [self.enter_s, self.leave_s];
-        ends.into_iter()
-            .flat_map(move |end| std::iter::once(end).chain(ramps.into_iter().flatten().map(move |ramp| end + ramp)))
+        ends.into_iter().flat_map(move |end| {
+            std::iter::once(end).chain(ramps.into_iter().flatten().map(move |ramp| end + ramp))
+        })
     }
 }
 

@@ -149,19 +149,34 @@ impl Weather {
     }
 
     /// The surroundings of a simulation, with a cylinder's own factor on the film and its change along the axis.
-    pub fn surroundings(&self, span: &Span, film: f64, film_slope: f64) -> Result<Surroundings, ThermalError> {
+    pub fn surroundings(
+        &self,
+        span: &Span,
+        film: f64,
+        film_slope: f64,
+    ) -> Result<Surroundings, ThermalError> {
         let skies = self.skies(span);
         let time_s: Vec<f64> = skies.iter().map(|sky| sky.t_s).collect();
-        let series = |value: &dyn Fn(&Sky) -> f64| Series::try_new(time_s.clone(), skies.iter().map(value).collect());
+        let series =
+            |value: &dyn Fn(&Sky) -> f64| Series::try_new(time_s.clone(), skies.iter().map(value).collect());
         let (from_fraction, to_fraction, valve) = self.lit;
         Ok(Surroundings {
             air_k: series(&|sky| sky.air_k)?,
             film: match self.film {
-                Film::Coefficient => OutsideFilm::Coefficient { film_w_m2_k: series(&|sky| film * sky.flow)? },
-                Film::Wind => OutsideFilm::Convection { wind_m_s: series(&|sky| sky.flow)?, multiplier: film },
+                Film::Coefficient => {
+                    OutsideFilm::Coefficient { film_w_m2_k: series(&|sky| film * sky.flow)? }
+                }
+                Film::Wind => {
+                    OutsideFilm::Convection { wind_m_s: series(&|sky| sky.flow)?, multiplier: film }
+                }
             },
             radiation_k: Some(series(&|sky| sky.radiation_k)?),
-            sun: Some(Sun { irradiance_w_m2: series(&|sky| sky.irradiance_w_m2)?, from_fraction, to_fraction, valve }),
+            sun: Some(Sun {
+                irradiance_w_m2: series(&|sky| sky.irradiance_w_m2)?,
+                from_fraction,
+                to_fraction,
+                valve,
+            }),
             axial: AxialVariation { film_slope, air_difference_k: Some(series(&|sky| sky.difference_k)?) },
         })
     }

@@ -33,7 +33,8 @@ struct Nominal {
 
 impl VesselKind {
     fn nominal_entry(self) -> Nominal {
-        let entry = |text, fill_bar, full_scale_bar, inlet_m| Nominal { text, fill_bar, full_scale_bar, inlet_m };
+        let entry =
+            |text, fill_bar, full_scale_bar, inlet_m| Nominal { text, fill_bar, full_scale_bar, inlet_m };
         match self {
             Self::Nitrogen20 => {
                 let text = presets::text("nitrogen-20l").unwrap_or_default();

@@ -1,0 +1,176 @@
+//! This project's monitor as a candidate: the one place that reads its output.
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::{Candidate, Contender, Row, overlaid};
+use crate::detector::monitor::alarm::{AlarmName, AlarmSettings};
+use crate::detector::monitor::{Health, LIKELY, Monitor, MonitorSettings, Outcome as Loss, Output};
+use crate::estimator::observer::Outcome;
+use crate::judge::JudgeError;
+use crate::judge::measures::Class;
+use crate::judge::said::{Decision, Estimates, Innovation, Said, normal};
+use crate::world::{Snapshot, Told};
+
+/// Operational limit as a part of the stated filling: 160 bar of 200.
+const LIMIT: f64 = 0.8;
+
+/// The monitor, with the settings of a plan laid over its own.
+///
+/// # Errors
+/// A setting that it does not have.
+pub fn monitor(settings: &Value) -> Result<Arc<dyn Candidate>, JudgeError> {
+    overlaid(&MonitorSettings::default(), settings)?.validate()?;
+    Ok(Arc::new(Monitors { settings: settings.clone() }))
+}
+
+struct Monitors {
+    settings: Value,
+}
+
+impl Candidate for Monitors {
+    fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError> {
+        let mut settings = MonitorSettings::default();
+        settings.limits.operational_pa = LIMIT * super::statistic::stated_filling(told)?.pressure_pa;
+        settings.alarms = AlarmSettings::with_limit(settings.limits.operational_pa);
+        let settings = overlaid(&settings, &self.settings)?;
+        let monitor = begun(told, &settings)?;
+        let pressure = told.sensors.iter().position(|sensor| sensor.name == "pressure");
+        Ok(Box::new(Monitored {
+            told: told.clone(),
+            settings,
+            monitor,
+            pressure,
+            was_lost: false,
+            old: None,
+        }))
+    }
+
+    fn decision_level(&self) -> f64 {
+        LIKELY
+    }
+}
+
+/// A monitor before its first row, told of the discharges that are ordered.
+fn begun(told: &Told, settings: &MonitorSettings) -> Result<Monitor, JudgeError> {
+    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
+    told.announced.iter().for_each(|(from_s, until_s)| monitor.announce(*from_s, *until_s));
+    Ok(monitor)
+}
+
+struct Monitored {
+    told: Told,
+    settings: MonitorSettings,
+    monitor: Monitor,
+    /// Index of the pressure.
+    pressure: Option<usize>,
+    /// Whether a loss has been said in this log.
+    was_lost: bool,
+    /// State of up to an hour ago.
+    old: Option<Vec<u8>>,
+}
+
+impl Contender for Monitored {
+    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+        let outputs = if row.historical {
+            self.monitor.step_historical(row.stamp_s, row.readings)?
+        } else {
+            self.monitor.step(row.stamp_s, row.readings)?
+        };
+        self.say(&outputs, said);
+        Ok(())
+    }
+
+    fn finish(&mut self, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+        let outputs = self.monitor.finish()?;
+        self.say(&outputs, said);
+        Ok(())
+    }
+
+    fn keep(&mut self) -> Result<(), JudgeError> {
+        self.old = Some(self.monitor.save().map_err(crate::detector::DetectorError::from)?);
+        Ok(())
+    }
+
+    fn power_cycle(&mut self, snapshot: Snapshot) -> Result<(), JudgeError> {
+        let mut bytes = match (snapshot, &self.old) {
+            (Snapshot::Old, Some(old)) => old.clone(),
+            _ => self.monitor.save().map_err(crate::detector::DetectorError::from)?,
+        };
+        let mut sensors = self.told.sensors.clone();
+        match snapshot {
+            Snapshot::Truncated => bytes.truncate(bytes.len() / 2),
+            Snapshot::Corrupted => {
+                let middle = bytes.len() / 2;
+                bytes[middle] ^= 1;
+            }
+            // A state of the same vessel with other sensors.
+            Snapshot::Foreign => {
+                sensors.remove(0);
+                let other =
+                    Monitor::new(&self.told.vessel, &sensors, &self.told.commissioning, &self.settings)?;
+                bytes = other.save().map_err(crate::detector::DetectorError::from)?;
+            }
+            Snapshot::Current | Snapshot::Old => {}
+        }
+        let Told { vessel, sensors, .. } = &self.told;
+        self.monitor = match Monitor::restore(vessel, sensors, &self.settings, &bytes) {
+            Ok(monitor) => monitor,
+            Err(error) if matches!(snapshot, Snapshot::Current | Snapshot::Old) => return Err(error.into()),
+            Err(_) => begun(&self.told, &self.settings)?,
+        };
+        Ok(())
+    }
+}
+
+impl Monitored {
+    fn say(&mut self, outputs: &[Output], said: &mut Vec<Said>) {
+        for (index, output) in outputs.iter().enumerate() {
+            let decision = self.decision(output, index + 1 == outputs.len());
+            said.push(Said {
+                stamp_s: output.stamp_s,
+                decision: Some(decision),
+                estimates: estimates(output),
+                ..Said::default()
+            });
+        }
+        // The observer inside stands at the last row.
+        let Some(last) = said.last_mut().filter(|_| !outputs.is_empty()) else { return };
+        let innovations = self.monitor.observer().innovations();
+        last.innovation = self
+            .pressure
+            .and_then(|pressure| innovations.get(pressure))
+            .filter(|innovation| innovation.outcome != Outcome::Missing)
+            .map(|innovation| Innovation { nu: innovation.nu, s: innovation.s });
+        last.free_mass_kg = self.monitor.observer().leaks().last().map(|leak| leak.mass_kg);
+    }
+
+    /// As the program would report and exit if the log ended here.
+    fn decision(&mut self, output: &Output, is_last: bool) -> Decision {
+        let decided = &output.decision;
+        let class = Class::from(decided.verdict);
+        let loss = decided.outcome == Loss::Loss;
+        self.was_lost |= loss;
+        let is_named = |health: &Health| !matches!(health, Health::Good | Health::Spikes);
+        Decision {
+            class,
+            leak: output.leak.is_some(),
+            loss,
+            leak_probability: decided.leak_probability,
+            alarm: is_last.then(|| self.monitor.alarms().condition(AlarmName::Leak).active),
+            reaction: decided.reaction,
+            exit_code: if self.was_lost { 1 } else { decided.outcome.exit_code() },
+            sensor_named: class == Class::SensorFault || output.health.iter().any(is_named),
+        }
+    }
+}
+
+fn estimates(output: &Output) -> Estimates {
+    let estimate = &output.estimate;
+    Estimates {
+        mass_kg: Some(normal(estimate.mass_kg, estimate.mass_sd_kg)),
+        gas_mean_k: Some(normal(estimate.gas_mean_k, estimate.gas_mean_sd_k)),
+        leak_kg_s: Some(output.leak_rate_kg_s.into()),
+        onset_s: output.leak.map(|leak| leak.onset_s.into()),
+    }
+}

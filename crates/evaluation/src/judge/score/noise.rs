@@ -1,0 +1,47 @@
+//! What the freest mass does without a leak: the noise behind the shortest possible delay.
+//!
+//! From the second day on the mass is kept every 20 min, as a part of the true one, and an Ornstein-Uhlenbeck process is fitted
+//! ([`fit_noise`]). A log of two years keeps 53 000 numbers.
+use serde::{Deserialize, Serialize};
+
+use super::Moment;
+use crate::detector::calibrate::fit_noise;
+use crate::detector::statistic::Residual;
+use crate::world::World;
+
+/// Interval of the masses that are kept, s.
+pub const SETTLED_S: f64 = 1200.0;
+
+/// Noise of one world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NoiseSums {
+    /// Standard deviation, part of the gas.
+    pub sd: f64,
+    /// Correlation time, s.
+    pub correlation_time_s: f64,
+}
+
+/// The masses that are kept.
+#[derive(Clone, Debug, Default)]
+pub struct FreeMass {
+    kept: Vec<Residual>,
+}
+
+impl FreeMass {
+    /// Take a statement.
+    pub fn take(&mut self, moment: &Moment<'_>, world: &World) {
+        let Some(mass_kg) = moment.said.free_mass_kg.filter(|mass_kg| mass_kg.is_finite()) else { return };
+        let due = self.kept.last().is_none_or(|last| moment.now_s >= last.time_s + SETTLED_S);
+        if moment.period == 1 && due {
+            let value = mass_kg / world.truth.mass_kg[moment.row];
+            self.kept.push(Residual { time_s: moment.now_s, value });
+        }
+    }
+
+    /// After the last statement; `None`: too few to tell.
+    pub fn finish(self) -> Option<NoiseSums> {
+        let noise = fit_noise(&self.kept).ok()?.noise;
+        let found = NoiseSums { sd: noise.sd, correlation_time_s: noise.correlation_time_s };
+        (found.sd.is_finite() && found.correlation_time_s.is_finite()).then_some(found)
+    }
+}

@@ -1,0 +1,20 @@
+//! Tests of worlds: laws of what is drawn, simulations, readings, overlays.
+mod disturbances;
+mod laws;
+mod overlays;
+mod readings;
+mod rows;
+mod worlds;
+
+use super::{Family, Request};
+
+const DAY_S: f64 = 86_400.0;
+
+fn family(key: &str) -> Family {
+    key.parse().unwrap()
+}
+
+/// A tight world of a family.
+fn request(key: &str, seed: u64, days: f64) -> Request {
+    Request::tight(family(key), seed, days * DAY_S)
+}
