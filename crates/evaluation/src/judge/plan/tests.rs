@@ -17,7 +17,7 @@ families = ["nitrogen-20l/railway|hall/mixed/class-a|class-b/120s"]
 seeds = [1, 3]
 sensor_sets = 2
 length_d = 7.0
-overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [1e-5, 1e-4, 0.1], onset_h = [30.0, 54.0] }]
+overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [1e-6, 1e-5, 0.1], onset_h = [30.0, 54.0] }]
 "#;
 
 fn parse(text: &str, left_out: &[&str]) -> Result<Plan, JudgeError> {
@@ -81,7 +81,7 @@ fn every_mistake_is_refused_by_file_key_value_and_remedy() {
         ("length_d = 7.0", "length_d = -7.0", "length_d", "-7", "between"),
         ("length_d = 7.0", "length_d = 7.0\nlength_h = 1.0", "length_d", "2 lengths", "one of"),
         ("length_d = 7.0", "", "length_d", "0 lengths", "one of"),
-        ("1e-4,", "-1e-4,", "part_per_h", "-0.0001", "above 0"),
+        ("1e-6,", "-1e-6,", "part_per_h", "-0.000001", "above 0"),
         ("[30.0, 54.0]", "[30.0, 540.0]", "onset_h", "540", "before the end"),
         ("kind = \"monitor\"", "kind = \"oracle\"", "kind", "oracle", "known are"),
         ("= 10.0", "= -1.0", "between_false_alarms_y", "-1", "positive"),

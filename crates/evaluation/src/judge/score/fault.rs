@@ -2,12 +2,14 @@
 //!
 //! | requirement | recognised if, from the onset on |
 //! |---|---|
-//! | survived, not a leak, degraded, continued | no leak and no exchange of gas is said |
+//! | survived, not a leak, degraded, continued | no loss is said |
 //! | flagged | the same, and a sensor is named, or it is said that it cannot be told, within a day or by the end |
 //! | warned | the same, or the verdict is never tight |
-//! | undecidable | no exchange of gas is said |
+//! | undecidable | always: a loss may be said |
 //! | recognised | an exchange of gas is said within 3 h, and no leak where none is |
 //! | found | a leak is said, or a discharge |
+//!
+//! A discharge that is not announced is a loss; a refill is not, and is counted apart, as every false exchange is.
 //!
 //! With a leak beside the fault it must be told, too, before the end; where the requirement is flagged, degraded, undecidable or warned,
 //! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false. The
@@ -31,8 +33,8 @@ pub struct FaultOutcome {
     pub row: FaultRow,
     /// Whether what was said is what is required.
     pub recognised: bool,
-    /// Whether a leak was said although there was none.
-    pub false_leak: bool,
+    /// Whether a leak, or a loss whatever it is called, was said although there was none.
+    pub false_loss: bool,
     /// Whether an exchange of gas was said although there was none.
     pub false_exchange: bool,
     /// Whether a sensor was named.
@@ -52,6 +54,7 @@ pub struct FaultWatch {
     loses: bool,
     exchanges: bool,
     leak: bool,
+    loss: bool,
     exchange: bool,
     /// An exchange of gas was said soon after the onset.
     soon: bool,
@@ -80,6 +83,7 @@ impl FaultWatch {
             loses: loses || requirement == Requirement::Found,
             exchanges: exchanges || requirement == Requirement::Recognised,
             leak: false,
+            loss: false,
             exchange: false,
             soon: false,
             named: false,
@@ -100,6 +104,7 @@ impl FaultWatch {
         self.leak_found |= leaks && (decision.loss || decision.says_leak());
         self.last_unknown = decision.class == Class::Unknown;
         self.leak |= decision.says_leak() && !leaks;
+        self.loss |= decision.loss && !leaks;
         // A leak that is fast enough may be called a discharge.
         self.exchange |= exchange && !(leaks && decision.class == Class::Discharge);
         self.soon |= exchange && since_s <= RECOGNISED_S;
@@ -112,8 +117,10 @@ impl FaultWatch {
     /// After the last decision.
     pub fn finish(self) -> FaultOutcome {
         let false_leak = self.leak && !self.loses;
+        // An exchange that the row makes is a loss if gas goes out.
+        let false_loss = false_leak || self.loss && !self.loses && !self.exchanges;
         let false_exchange = self.exchange && !self.exchanges && !self.loses;
-        let quiet = !false_leak && !false_exchange;
+        let quiet = !false_loss;
         let recognised = match self.row.requirement() {
             Requirement::Survived
             | Requirement::NotALeak
@@ -121,7 +128,7 @@ impl FaultWatch {
             | Requirement::Continued => quiet,
             Requirement::Flagged => quiet && (self.named_soon || self.unknown_soon),
             Requirement::Warned => quiet && (self.named || !self.tight),
-            Requirement::Undecidable => !false_exchange,
+            Requirement::Undecidable => true,
             Requirement::Recognised => !false_leak && self.soon,
             Requirement::Found => self.leak || self.exchange,
         };
@@ -134,7 +141,7 @@ impl FaultWatch {
         FaultOutcome {
             row: self.row,
             recognised: recognised && told,
-            false_leak,
+            false_loss,
             false_exchange,
             named: self.named,
             leak_found,

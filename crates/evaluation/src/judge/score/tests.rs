@@ -68,6 +68,13 @@ fn an_exchange_is_recognised_by_its_own_name_alone() {
     assert!(!recognised(from_loss!(0.1, Class::Refill).as_ref()));
 }
 
+fn says_always(class: Class) -> std::sync::Arc<dyn crate::judge::candidate::Candidate> {
+    match class {
+        Class::Discharge => toy(|_, _| Said { decision: Some(decided(Class::Discharge)), ..Said::default() }),
+        _ => toy(|_, _| Said { decision: Some(decided(Class::Refill)), ..Said::default() }),
+    }
+}
+
 #[test]
 fn a_fault_is_recognised_by_what_its_row_requires() {
     let outcome = |row: FaultRow, candidate: &dyn crate::judge::candidate::Candidate| {
@@ -83,12 +90,17 @@ fn a_fault_is_recognised_by_what_its_row_requires() {
         Said { decision: Some(decided(class)), ..Said::default() }
     });
     let tight = toy(|_, _| Said { decision: Some(decided(Class::Tight)), ..Said::default() });
-    // P1 must be named, P5 survived; P3 may be taken for a leak, and nothing else may.
+    // P1 must be named, P5 survived; P3 may be taken for a leak, and nothing else may. A discharge is a loss, a refill is none.
     let recognised = |row| [&names, &leaks, &tight].map(|who| outcome(row, who.as_ref()).recognised);
     assert_eq!(recognised(FaultRow::P1), [true, false, false]);
     assert_eq!(recognised(FaultRow::P5), [true, false, true]);
     assert_eq!(recognised(FaultRow::P3), [true, true, true]);
-    assert!(outcome(FaultRow::P1, leaks.as_ref()).false_leak && outcome(FaultRow::P1, names.as_ref()).named);
+    let exchanges = [Class::Discharge, Class::Refill].map(|class| {
+        let from = outcome(FaultRow::P5, says_always(class).as_ref());
+        (from.recognised, from.false_loss, from.false_exchange)
+    });
+    assert_eq!(exchanges, [(false, true, true), (true, false, true)]);
+    assert!(outcome(FaultRow::P1, leaks.as_ref()).false_loss && outcome(FaultRow::P1, names.as_ref()).named);
 }
 
 #[test]

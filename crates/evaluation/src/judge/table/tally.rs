@@ -28,8 +28,10 @@ pub struct CoverageTally {
 pub struct FaultTally {
     /// Recognised, of worlds.
     pub recognised: Clustered,
-    /// Worlds with a false leak.
-    pub false_leaks: u64,
+    /// Worlds with a false loss.
+    pub false_losses: u64,
+    /// Worlds with a false exchange of gas.
+    pub false_exchanges: u64,
     /// Worlds in which a sensor was named.
     pub named: u64,
 }
@@ -132,7 +134,8 @@ impl Tally {
         if let Some(fault) = &score.fault {
             let of = self.faults.entry(fault.row).or_default();
             of.recognised.add(simulation, f64::from(u8::from(fault.recognised)), 1.0);
-            of.false_leaks += u64::from(fault.false_leak);
+            of.false_losses += u64::from(fault.false_loss);
+            of.false_exchanges += u64::from(fault.false_exchange);
             of.named += u64::from(fault.named);
         }
         if let Some(disagreements) = &score.disagreements {

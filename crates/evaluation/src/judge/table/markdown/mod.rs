@@ -176,7 +176,7 @@ fn write_faults(text: &mut String, title: &str, axes: &[&GroupReport]) {
     let names: Vec<&str> = columns.iter().map(|of| of.group.trim_start_matches("vessel ")).collect();
     let _ = writeln!(
         text,
-        "\n### Fault table{title}: recognised of worlds (false leaks)\n\n| row | {} |\n|---|{}",
+        "\n### Fault table{title}: recognised of worlds (worlds with a false loss, with a false exchange)\n\n| row | {} |\n|---|{}",
         names.join(" | "),
         "---:|".repeat(names.len())
     );
@@ -184,9 +184,11 @@ fn write_faults(text: &mut String, title: &str, axes: &[&GroupReport]) {
         let cell = |of: &&&GroupReport| {
             let found = of.faults.iter().find(|row| row.row == fault.row)?;
             let share = found.recognised?;
-            let leaks =
-                if found.false_leaks > 0 { format!(" ({})", found.false_leaks) } else { String::new() };
-            Some(format!("{:.0}/{}{leaks}", share.share * share.trials, share.trials))
+            let wrong = match (found.false_losses, found.false_exchanges) {
+                (0, 0) => String::new(),
+                (losses, exchanges) => format!(" ({losses}, {exchanges})"),
+            };
+            Some(format!("{:.0}/{}{wrong}", share.share * share.trials, share.trials))
         };
         let cells: Vec<String> =
             columns.iter().map(|of| cell(of).unwrap_or_else(|| NONE.to_owned())).collect();

@@ -166,7 +166,8 @@ fn faults(tally: &Tally) -> Vec<FaultRowReport> {
     let row = |(row, of): (&FaultRow, &FaultTally)| FaultRowReport {
         row: row.name(),
         recognised: of.recognised.share(),
-        false_leaks: of.false_leaks,
+        false_losses: of.false_losses,
+        false_exchanges: of.false_exchanges,
         named: of.named,
     };
     tally.faults.iter().map(row).collect()

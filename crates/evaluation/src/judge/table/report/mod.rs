@@ -172,8 +172,10 @@ pub struct FaultRowReport {
     pub row: String,
     /// Recognised.
     pub recognised: Option<Share>,
-    /// Worlds with a false leak.
-    pub false_leaks: u64,
+    /// Worlds with a false loss.
+    pub false_losses: u64,
+    /// Worlds with a false exchange of gas.
+    pub false_exchanges: u64,
     /// Worlds in which a sensor was named.
     pub named: u64,
 }
