@@ -238,6 +238,14 @@ impl Bank {
         }
     }
 
+    /// Let a constant of every member be as it was before the first sample.
+    pub fn forget(&mut self, state: usize, mean: f64, variance: f64) {
+        for index in 0..self.members.len() {
+            self.members[index].x[state] = mean;
+            self.decorrelate_and_set(index, state, variance);
+        }
+    }
+
     fn decorrelate_and_set(&mut self, index: usize, state: usize, variance: f64) {
         match &mut self.covariances {
             Covariances::Together(packs) => {

@@ -20,7 +20,7 @@ const BODY_SD_K: f64 = 1.0;
 const SETTLED_SD_K: f64 = 0.2;
 /// The same of wall and valve, and of the gas, of a cylinder that is not settled.
 const UNSETTLED_SD_K: f64 = 5.0;
-const UNSETTLED_GAS_SD_K: f64 = 10.0;
+const UNSETTLED_GAS_SD_K: f64 = 5.0;
 
 /// What is known of the cylinder at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_cylinder_that_is_not_settled_may_have_any_temperatures() {
         let (Prior { covariance: p, .. }, states) = prior_of(false, &[280.0, 281.0, 2e7]);
-        assert_eq!((p[(0, 0)], p[(states.gas, states.gas)], p[(0, states.gas)]), (25.0, 100.0, 0.0));
+        assert_eq!((p[(0, 0)], p[(states.gas, states.gas)], p[(0, states.gas)]), (25.0, 25.0, 0.0));
         // Without a thermometer not even the level is known.
         let (Prior { covariance: p, .. }, _) = prior_of(false, &[f64::NAN, f64::NAN, 2e7]);
         assert_eq!((p[(0, 0)], p[(0, states.gas)]), (425.0, 400.0));

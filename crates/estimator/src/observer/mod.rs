@@ -317,6 +317,7 @@ impl Observer {
             self.band.stated_k2(gas_variance_k2, |state| bank.moments(thermometer, state).1);
         let (leak_kg_s, leak_variance) =
             self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
+        let leak_variance = leak_variance + self.unknown_leak_variance(time_s, free_mass.1);
         let mut estimate = Estimate {
             time_s,
             gas_mean_k,
@@ -336,6 +337,15 @@ impl Observer {
         self.reference_x.copy_from_slice(&self.bank.members[0].x);
         self.add_pressures(&mut estimate, self.clock.reference_mass_kg)?;
         Ok(estimate)
+    }
+
+    /// Variance of a leak rate that a slow member excludes and the readings do not, (kg/s)²: `min(r^2, 2 P_free/t^2)`, with what a leak
+    /// can be, `r`, and the mass of the freest member, variance `P_free`, at both ends of the time `t` since the beginning or the last exchange of gas.
+    fn unknown_leak_variance(&self, time_s: f64, free_variance_kg2: f64) -> f64 {
+        let largest = self.cylinder.settings().any_leak_sd_kg_s.powi(2);
+        let elapsed_s = (time_s - self.clock.reference_due_s + REFERENCE_AFTER_S).max(0.0);
+        // Not a number at the beginning without a mass, and infinite at once: then it is the largest.
+        largest.min(2.0 * free_variance_kg2 / (elapsed_s * elapsed_s))
     }
 
     /// Pressures of an estimate whose state is `reference_x`, with a reference mass, kg, if there is one.

@@ -110,12 +110,6 @@ impl LeakHypothesis {
         }
     }
 
-    /// The same with a leak that may be there from the first sample on: standard deviation of its rate, g/h.
-    pub fn from_the_start(mut self, sd_g_h: f64) -> Self {
-        self.rate.prior_sd = sd_g_h * 1e-3 * PER_HOUR;
-        self
-    }
-
     /// The same with so much error of the pressure per kelvin between wall and gas, Pa/K.
     pub fn cautious(self, caution_pa_k: f64) -> Self {
         Self { caution_pa_k, ..self }
@@ -245,11 +239,11 @@ impl Default for ObserverSettings {
             band: BandSettings::default(),
             bank: vec![
                 LeakHypothesis::walking_mass(1.5),
-                LeakHypothesis::walking_rate(0.02).from_the_start(20.0),
-                LeakHypothesis::walking_rate(0.005).from_the_start(20.0),
+                LeakHypothesis::walking_rate(0.02),
+                LeakHypothesis::walking_rate(0.005),
                 LeakHypothesis::walking_mass(30.0),
             ],
-            free_mass_sd_kg: 20.0,
+            free_mass_sd_kg: 4.5,
             any_leak_sd_kg_s: 20e-3 * PER_HOUR,
             gate_sd: 20.0,
             rejections_in_a_row: 5,

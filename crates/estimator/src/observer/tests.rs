@@ -216,6 +216,19 @@ fn a_cautious_member_is_no_thermometer_and_doubts_the_pressure_where_wall_and_ga
 }
 
 #[test]
+fn a_leak_rate_is_never_certain_at_first_and_gets_known_with_time() {
+    let mut observer = observer(Engine::Extended);
+    let sd_g_h = |observer: &mut Observer, k: u32| {
+        3.6e6 * observer.step(60.0 * f64::from(k), &REST).unwrap().leak_sd_kg_s
+    };
+    let first = sd_g_h(&mut observer, 0);
+    assert!((first - 20.0).abs() < 0.1, "{first} g/h: anything that a leak can be");
+    let hour = (1..=60).map(|k| sd_g_h(&mut observer, k)).last().unwrap();
+    let day = (61..=1440).map(|k| sd_g_h(&mut observer, k)).last().unwrap();
+    assert!(hour > 3.0 && hour <= first && day < 2.0 && day > 0.1, "{hour} g/h, {day} g/h");
+}
+
+#[test]
 fn an_exchange_takes_every_leak_rate_back_to_its_prior() {
     let mut observer = observer(Engine::Extended);
     for k in 0..600_u32 {

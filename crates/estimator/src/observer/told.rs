@@ -1,7 +1,7 @@
 //! What the observer is told: gas that is exchanged, sensors that are not what they were.
 use super::clock::Exchange;
 use super::{Observer, REFERENCE_AFTER_S, SETTLE_S};
-use crate::sensor::Sensor;
+use crate::sensor::{ParameterKind, Sensor};
 
 impl Observer {
     /// Gas begins to flow in or out on purpose: mass and gas temperature are free until the exchange ends, and what was known of a
@@ -24,6 +24,17 @@ impl Observer {
     pub fn loosen(&mut self, sensor: usize, sd: f64) {
         if let Some(state) = self.cylinder.state_map().offset_of(sensor, self.cylinder.sensors()) {
             self.bank.inflate(state, sd * sd);
+        }
+    }
+
+    /// What was learnt of a sensor's offset is forgotten: gas that went out or came in before it was noticed may have been taken for it.
+    pub fn forget_offset(&mut self, sensor: usize) {
+        let sensors = self.cylinder.sensors();
+        let offset = sensors[sensor].parameters().iter().find(|of| of.kind == ParameterKind::Offset);
+        let state = self.cylinder.state_map().offset_of(sensor, sensors);
+        if let (Some(state), Some(offset)) = (state, offset) {
+            let (mean, variance) = (offset.mean, offset.sd * offset.sd);
+            self.bank.forget(state, mean, variance);
         }
     }
 

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 /// Time over which the mass is averaged, s, and fewest rows.
 const LOOK_S: f64 = 6.0 * 3600.0;
 const FEWEST: u32 = 30;
+/// Rows that count as the first ones.
+const FIRST: u32 = 3;
 /// Difference that is believed, in standard deviations of the filling.
 const DEVIATIONS: f64 = 5.0;
 
@@ -15,6 +17,8 @@ const DEVIATIONS: f64 = 5.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct FillingCheck {
     begun_s: Option<f64>,
+    /// Mean of the first rows and of all, kg.
+    first_kg: f64,
     mean_kg: f64,
     rows: u32,
     done: bool,
@@ -41,7 +45,9 @@ impl FillingCheck {
     }
 
     fn is_off(&self, filled_kg: f64, sd_kg: f64) -> bool {
-        self.rows > 0 && (self.mean_kg - filled_kg).abs() > DEVIATIONS * sd_kg
+        // Readings of another unit or bottle are off from the first row on; gas that is lost afterwards is no matter of the filling.
+        let off = |kg: f64| (kg - filled_kg).abs() > DEVIATIONS * sd_kg;
+        self.rows > 0 && off(self.mean_kg) && off(self.first_kg)
     }
 
     /// It has been explained otherwise: an exchange of gas, somebody who knows.
@@ -58,6 +64,9 @@ impl FillingCheck {
         let begun_s = *self.begun_s.get_or_insert(time_s);
         self.rows += 1;
         self.mean_kg += (mass_kg - self.mean_kg) / f64::from(self.rows);
+        if self.rows <= FIRST {
+            self.first_kg = self.mean_kg;
+        }
         if time_s - begun_s < LOOK_S || self.rows < FEWEST {
             return None;
         }
@@ -90,6 +99,12 @@ mod tests {
         assert_eq!(early.explains_leak((4.48, 0.045)), Some(0.9 * 4.48));
         assert!(early.is_wrong());
         assert_eq!(after(|_| 4.48).explains_leak((4.48, 0.045)), None);
+        // A loss from the first minute on.
+        let mut lost = FillingCheck::default();
+        (0..60).for_each(|minute| {
+            lost.take(60.0 * f64::from(minute), 4.48 - 0.03 * f64::from(minute), (4.48, 0.045));
+        });
+        assert_eq!(lost.explains_leak((4.48, 0.045)), None);
         let mut settled = after(|_| 4.0);
         settled.settle();
         assert!(!settled.is_wrong() && !settled.is_open());

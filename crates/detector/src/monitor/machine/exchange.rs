@@ -32,6 +32,8 @@ pub(super) struct Examined {
     pub flowing: bool,
 }
 
+/// Part of the gas that is gone or has come at least where bounds are certain of it.
+const CERTAIN: f64 = 0.02;
 /// Part of the gas that no jump of a transmitter's offset stands for.
 const NO_OFFSET: f64 = 0.1;
 
@@ -41,6 +43,8 @@ pub(super) struct Exchanged {
     pub at_s: f64,
     pub out: bool,
     pub announced: bool,
+    /// How much, as a part of the fill.
+    pub part: f64,
 }
 
 impl Monitor {
@@ -107,13 +111,14 @@ impl Monitor {
         }
         let out = certain == Certain::Out;
         let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
+        let (announced, part) = (self.is_announced(onset_s), self.state.bounds.beyond());
         self.state.bounds.begin_anew();
-        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced: self.is_announced(onset_s) });
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced, part: part.max(CERTAIN) });
         if self.state.examined.is_some() {
             return Ok(estimate);
         }
         self.go_back()?;
-        self.observer.begin_exchange();
+        self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
         self.state.rewind.begin(&self.observer);
@@ -177,11 +182,19 @@ impl Monitor {
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back()?;
-        self.observer.begin_exchange();
+        self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let examination = Examination::new(time_s, before_pa);
         self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
         self.examine(estimate, events)
+    }
+
+    /// Let the observer take the mass from the present readings: nothing of what it knew of the gas holds.
+    fn free_the_mass(&mut self) {
+        self.observer.begin_exchange();
+        if let Some(pressure) = self.roles.pressure {
+            self.observer.forget_offset(self.place_of(pressure));
+        }
     }
 
     /// Both observers as they were before the present row.
@@ -262,7 +275,9 @@ impl Monitor {
         let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
         events.push(Event::new(time_s, onset_s, kind));
         let announced = self.is_announced(onset_s);
-        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced });
+        let part = change_kg.abs() / self.filled_kg.0;
+        let certain = self.state.exchanged.filter(|of| of.at_s == time_s).map_or(0.0, |of| of.part);
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced, part: part.max(certain) });
         self.state.filling.settle();
         self.state.undisturbed = Undisturbed::default();
         if self.state.leak.begin_anew() == Change::Ended {

@@ -4,6 +4,10 @@ use crate::monitor::{Health, Known, KnownExchange, Reason};
 
 /// Time after an exchange of gas for which it is the verdict, s.
 const EXCHANGED_S: f64 = 1800.0;
+/// Part of the fill from which an exchange is the verdict, and pressure from which a flow is, Pa of a fill of 200 bar: what is smaller is an
+/// event, and leaves the verdict open until gas and wall have settled.
+const MATTERS: f64 = 0.01;
+const FLOWS_PA: f64 = 5e5;
 /// Samples of an examination after which the jump is no spike.
 const NO_SPIKE: usize = 3;
 
@@ -51,13 +55,14 @@ impl Monitor {
     fn known_exchange(&self, time_s: f64) -> Option<KnownExchange> {
         let state = &self.state;
         let flowing = state.examined.as_ref().filter(|examined| examined.flowing);
-        let recent = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S);
+        let recent = state.exchanged.filter(|of| time_s - of.at_s < EXCHANGED_S && of.part >= MATTERS);
         // What has become certain since the flow began tells its direction better than all of it together.
         let since_s = flowing.map_or(f64::NEG_INFINITY, |examined| examined.examination.onset_s());
         if let Some(of) = recent.filter(|of| of.at_s >= since_s) {
             return Some(KnownExchange { out: of.out, announced: of.announced });
         }
-        let examination = &flowing?.examination;
+        // What the model may be off by at the mouth of a tunnel is no flow yet.
+        let examination = &flowing.filter(|of| of.examination.error_pa().abs() > FLOWS_PA)?.examination;
         let announced = self.is_announced(examination.onset_s());
         Some(KnownExchange { out: examination.error_pa() > 0.0, announced })
     }

@@ -22,6 +22,11 @@ const BESIDE_SPIKES_PA: f64 = 0.1e5;
 /// Jump that no offset makes, and gain that no filling stops at, Pa.
 const NO_OFFSET_PA: f64 = 20e5;
 const NO_FILLING_PA: f64 = 10e5;
+/// Loss that counts as gas at once, Pa: a transmitter whose offset falls so far is less likely, and gas that is lost must be told within
+/// minutes. It must have lasted for so many samples, or for two and so long, s.
+const LOSS_PA: f64 = 8e5;
+const LOSS_SAMPLES: usize = 3;
+const LOSS_S: f64 = 120.0;
 /// Samples over which a flow grows, where a transmitter's jump takes one.
 const FLOW_SAMPLES: usize = 3;
 /// Time after the largest error until the examination ends, s, and the part at its end that counts.
@@ -183,7 +188,10 @@ impl Examination {
         }
         if time_s - self.peak_s < REST_S && time_s - self.onset_s < LONGEST_S {
             let large = self.samples > SPIKE_SAMPLES && self.error_pa().abs() > NO_OFFSET_PA;
-            return if large || self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
+            let lasted =
+                self.samples >= LOSS_SAMPLES || (self.samples >= 2 && time_s - self.onset_s >= LOSS_S);
+            let lost = lasted && self.error_pa() > LOSS_PA;
+            return if large || lost || self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
         }
         self.conclude()
     }
