@@ -167,7 +167,9 @@ impl<'a> Scorer<'a> {
             self.trace.push(now_s, statistic.min(f64::MAX), || None);
         }
         self.score.coverage.take(&moment, self.world);
-        let innovation = said.innovation;
+        // Spikes and exchanges of gas are no question of the noise.
+        let steady = matches!(self.world.request.overlay, Overlay::Nothing | Overlay::Leak { .. });
+        let innovation = said.innovation.filter(|_| steady);
         self.whiteness.take(&mut self.score.innovations, time_s, truth.regime[row], innovation);
         self.free_mass.take(&moment, self.world);
     }
