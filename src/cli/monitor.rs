@@ -15,6 +15,7 @@ use cylwatch::report::monitor::Summary;
 use std::path::Path;
 use std::process::ExitCode;
 
+mod announced;
 mod arguments;
 mod engine;
 mod events;
@@ -25,6 +26,7 @@ mod rows;
 mod session;
 mod state;
 
+use announced::Announced;
 pub use arguments::MonitorArguments;
 
 use engine::Engine;

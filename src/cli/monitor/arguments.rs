@@ -91,6 +91,10 @@ pub struct MonitorArguments {
     /// Acknowledge and confirm all alarms of the state, and reset those that are back to normal, with a comment.
     #[arg(long, value_name = "COMMENT", requires = "state", conflicts_with = "cold_start")]
     pub acknowledge: Option<String>,
+    /// Exchange of gas that was ordered, such as a test of the system, so that it is no loss: times in seconds of the log or dates.
+    /// May be given more than once.
+    #[arg(long, value_name = "FROM..UNTIL")]
+    pub announced: Vec<String>,
     /// JSON file with what `estimate --learned-out` has learnt of cylinder and sensors.
     #[arg(long, value_name = "FILE")]
     pub learned_in: Option<PathBuf>,
@@ -104,8 +108,8 @@ Logs are read as by `estimate`, but rows may come late or twice, and the clock m
 
 {}
 
-Exit codes: 0 no leak, 1 a leak was found in these rows or is there at their end, 2 error,
-3 inconclusive: the verdict is unknown at the end.
+Exit codes: 0 no loss, 1 gas was lost in these rows, by a leak or by a discharge that was not
+announced, 2 error, 3 inconclusive: the verdict is unknown at the end.
 
 Examples:
   cylwatch simulate nitrogen-20l tunnel-winter -o run.csv

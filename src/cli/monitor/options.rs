@@ -34,6 +34,7 @@ pub struct Options {
     pub cold_start: bool,
     pub save_every: Duration,
     pub acknowledge: Option<String>,
+    pub announced: Vec<Announced>,
 }
 
 impl Options {
@@ -71,6 +72,11 @@ impl Options {
             false_alarm_years: years,
             cold_start: arguments.cold_start,
             acknowledge: arguments.acknowledge,
+            announced: arguments
+                .announced
+                .iter()
+                .map(|text| Announced::parse(text))
+                .collect::<anyhow::Result<_>>()?,
             vessel,
             log,
             data,

@@ -75,8 +75,13 @@ impl<'a> Session<'a> {
             sink.cold_start(reason)?;
         }
         let counts_before = *engine.monitor.intake().counts();
+        let mut monitor = engine.monitor;
+        for announced in &options.announced {
+            let (from_s, until_s) = announced.seconds(log.reader.origin_instant())?;
+            monitor.announce(from_s, until_s);
+        }
         Ok(Self {
-            monitor: engine.monitor,
+            monitor,
             full_pa: engine.full_pa,
             settled: engine.settled,
             naming,

@@ -50,8 +50,9 @@ fn happening(event: &Event, naming: &Naming) -> String {
             pressure_pa / PASCAL_PER_BAR
         ),
         EventKind::FillingDoubted { mass_kg, filled_kg } => format!(
-            "the readings stand for {:.2} kg of gas, the filling that was stated for {:.2} kg: look at the units of the log, and state the filling as it is",
-            mass_kg, filled_kg
+            "the readings stand for {} of gas, the filling that was stated for {}: look at the units of the log, and state the filling as it is",
+            mass_words(*mass_kg),
+            mass_words(*filled_kg)
         ),
         EventKind::Swapped([first, second]) => format!(
             "{} and {} are in each other's place, which is taken into account from now on: learning again",
@@ -78,6 +79,11 @@ fn happening(event: &Event, naming: &Naming) -> String {
         EventKind::TooLate => format!("a row of {} came too late and was left out", since()),
         EventKind::Restarted => "the estimate began again from its prior".to_owned(),
     }
+}
+
+/// A mass in kilograms or, a small one, in grams.
+fn mass_words(mass_kg: f64) -> String {
+    if mass_kg < 1.0 { format!("{} g", short(mass_kg * GRAM)) } else { format!("{} kg", short(mass_kg)) }
 }
 
 /// How a sensor is doing, in words.

@@ -87,7 +87,7 @@ impl FigureData {
             self.line("as read", RAW, style::noisy(style::PRESSURE)),
             self.line("expected if tight", EXPECTED, style::MODEL),
             self.line("at 15 °C", P15, style::GAS_MEAN),
-            limit(format!("limit {limit_bar:.0} bar"), self.limit_pa),
+            limit(format!("limit {} bar", super::short(limit_bar)), self.limit_pa),
             limit(
                 "maintenance".to_owned(),
                 (1.0 - crate::detector::prognosis::ISO_14520_LOSS) * self.full_pa,

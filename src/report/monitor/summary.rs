@@ -130,11 +130,11 @@ fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3]
 fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
     let Circumstances { limit_pa, coldest_k, .. } = summary.circumstances;
     let held = |pressure_pa: f64| {
-        let limit_bar = limit_pa / PASCAL_PER_BAR;
+        let limit = short(limit_pa / PASCAL_PER_BAR);
         match pressure_pa {
-            p if p.is_nan() => format!("limit {limit_bar:.0} bar"),
-            p if p > limit_pa => format!("above the limit of {limit_bar:.0} bar"),
-            _ => format!("at or below the limit of {limit_bar:.0} bar"),
+            p if p.is_nan() => format!("limit {limit} bar"),
+            p if p > limit_pa => format!("above the limit of {limit} bar"),
+            _ => format!("at or below the limit of {limit} bar"),
         }
     };
     let [p15_pa, cold_pa] = [summary.last.estimate.p15_pa, summary.last.cold_pressure_pa];

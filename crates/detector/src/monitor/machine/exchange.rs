@@ -156,7 +156,9 @@ impl Monitor {
 
     /// An exchange of gas is announced for a time, s, as rows are stamped: what goes out then is no loss.
     pub fn announce(&mut self, from_s: f64, until_s: f64) {
-        self.state.announced.push((from_s, until_s));
+        if !self.state.announced.contains(&(from_s, until_s)) {
+            self.state.announced.push((from_s, until_s));
+        }
     }
 
     /// Whether an exchange that began then was announced.
