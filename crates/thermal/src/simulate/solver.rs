@@ -255,17 +255,13 @@ impl OdeEquations for Equations<'_> {
     fn get_params(&self, _p: &mut V) {}
 }
 
-/// Next step over last step below which the history is not interpolated: at order 5 a rounding then grows to 1e-8 of a step's change.
-const SHRUNK: f64 = 1e-2;
-
 struct Wrapper<'a, 'm, S> {
     solver: S,
     equations: &'a Equations<'m>,
     buffer: V,
     rate: V,
-    /// Start of the last step, s, and the state there.
+    /// Start of the last step, s.
     begin_s: f64,
-    begin: V,
     /// Stop time, s.
     stop_s: f64,
     /// The last step ended at the stop time, give or take a rounding.
@@ -276,33 +272,29 @@ struct Wrapper<'a, 'm, S> {
 
 impl<'a, 'm, S> Wrapper<'a, 'm, S> {
     fn new(solver: S, equations: &'a Equations<'m>, buffer: V, rate: V, one_step: bool) -> Self {
-        let begin = buffer.clone();
-        Self { solver, equations, buffer, rate, begin_s: 0.0, begin, stop_s: 0.0, at_stop: false, one_step }
+        Self { solver, equations, buffer, rate, begin_s: 0.0, stop_s: 0.0, at_stop: false, one_step }
     }
 }
 
 impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Wrapper<'a, 'm, S> {
-    /// Whether the history of the last step has been rescaled to a far shorter next step, at whose end an edge lies. Its polynomial is
-    /// still the same, but a rounding in its differences of order `k` grows by `(step/next)^(k-1)` over the last step.
-    fn has_shrunk(&self) -> bool {
+    /// Tell a method with a history of the stop time only when its next step would pass it.
+    ///
+    /// A solver that knows it rescales its history at the end of a step to what is left before the stop. The polynomial is the same,
+    /// but where little is left a rounding in its difference of order `k` grows by `(step/left)^(k-1)` over the step that has been made,
+    /// which samples have yet to be taken of.
+    fn tell_stop(&mut self) -> Result<(), String> {
+        if self.one_step {
+            return Ok(());
+        }
         let state = self.solver.state();
-        !self.one_step && state.h.abs() < SHRUNK * (state.t - self.begin_s)
+        let stop_s = if state.t + state.h > self.stop_s - self.rounding_s() { self.stop_s } else { f64::MAX };
+        self.solver.set_stop_time(stop_s).map_err(|error| error.to_string())
     }
 
-    /// Cubic through the states and rates at both ends of the last step.
-    fn interpolate_cubic(&mut self, t_s: f64, out: &mut [f64]) {
-        let end_s = self.solver.state().t;
-        let (length_s, x) = (end_s - self.begin_s, (t_s - self.begin_s) / (end_s - self.begin_s));
-        (&self.equations.rhs).call_inplace(&self.begin, self.begin_s, &mut self.buffer);
-        (&self.equations.rhs).call_inplace(self.solver.state().y, end_s, &mut self.rate);
-        let end = self.solver.state().y;
-        for (i, value) in out.iter_mut().enumerate() {
-            let (from, to) = (self.begin.get_index(i), end.get_index(i));
-            let (leaving, arriving) =
-                (self.buffer.get_index(i) * length_s, self.rate.get_index(i) * length_s);
-            let bend = (1.0 - x) * (leaving - (to - from)) + x * ((to - from) - arriving);
-            *value = from + x * (to - from) + x * (1.0 - x) * bend;
-        }
+    /// Distance of two times that are one for the solver, s: its own measure.
+    fn rounding_s(&self) -> f64 {
+        let state = self.solver.state();
+        100.0 * f64::EPSILON * (state.t.abs() + state.h.abs())
     }
 }
 
@@ -319,15 +311,12 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
     }
 
     fn step(&mut self) -> Result<Step, String> {
+        self.tell_stop()?;
         self.begin_s = self.solver.state().t;
-        self.begin.copy_from(self.solver.state().y);
-        match self.solver.step().map_err(|error| error.to_string())? {
-            OdeSolverStopReason::TstopReached => {
-                self.at_stop = true;
-                Ok(Step::Stop)
-            }
-            _ => Ok(Step::Internal),
-        }
+        let reason = self.solver.step().map_err(|error| error.to_string())?;
+        let is_reached = matches!(reason, OdeSolverStopReason::TstopReached);
+        self.at_stop = is_reached || (self.solver.state().t - self.stop_s).abs() <= self.rounding_s();
+        Ok(if self.at_stop { Step::Stop } else { Step::Internal })
     }
 
     fn set_stop(&mut self, t_s: f64) -> Result<(), String> {
@@ -336,16 +325,15 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
             *self.solver.state_mut().t = self.stop_s;
         }
         (self.stop_s, self.at_stop) = (t_s, false);
-        self.solver.set_stop_time(t_s).map_err(|error| error.to_string())
+        if self.one_step {
+            return self.solver.set_stop_time(t_s).map_err(|error| error.to_string());
+        }
+        Ok(())
     }
 
     fn interpolate(&mut self, t_s: f64, out: &mut [f64]) -> Result<(), String> {
         // A step that stopped at an edge may end one rounding beside it, and the next one begin there.
         let t = t_s.max(self.begin_s).min(self.solver.state().t);
-        if self.has_shrunk() {
-            self.interpolate_cubic(t, out);
-            return Ok(());
-        }
         self.solver.interpolate_inplace(t, &mut self.buffer).map_err(|error| error.to_string())?;
         for (i, value) in out.iter_mut().enumerate() {
             *value = self.buffer.get_index(i);

@@ -35,7 +35,7 @@ fn within_last_step(edge: Option<f64>) -> (f64, Vec<Vec<f64>>) {
     .unwrap()
 }
 
-/// The solver rescales its history to the short step that is left before an edge; the step before it is still interpolated.
+/// What is left before an edge rescales the history only when samples of the step before it have been taken.
 #[test]
 fn a_step_that_ends_right_before_an_edge_is_interpolated_like_one_that_does_not() {
     let (end_s, free) = within_last_step(None);
