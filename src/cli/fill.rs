@@ -118,7 +118,8 @@ impl GivenFill {
         };
         let of_reading_kg = match (fill, self.mass_sd_percent) {
             (Fill::Pressure { pressure_pa }, None) if read_sd_pa > 0.0 => {
-                let more = Commissioning { fill: Fill::Pressure { pressure_pa: pressure_pa + read_sd_pa }, ..one };
+                let more =
+                    Commissioning { fill: Fill::Pressure { pressure_pa: pressure_pa + read_sd_pa }, ..one };
                 READ_AGAIN * (more.mass_kg(vessel, first_k)? - mass_kg)
             }
             _ => 0.0,

@@ -89,7 +89,9 @@ impl Selection {
         // A thermometer in the gas stands in where there is none outside; beside others it is what a simulation knows.
         let outside = channels.iter().any(|channel| {
             let name = channel.name.as_str();
-            channel.quantity == Quantity::Temperature && !name.starts_with("gas_") && typical(channel, vessel, true).is_ok()
+            channel.quantity == Quantity::Temperature
+                && !name.starts_with("gas_")
+                && typical(channel, vessel, true).is_ok()
         });
         for (index, channel) in channels.iter().enumerate().filter(|(_, channel)| others(channel)) {
             match typical(channel, vessel, outside) {

@@ -20,7 +20,8 @@ enum Moment {
 impl Announced {
     /// Reads `FROM..UNTIL`.
     pub fn parse(text: &str) -> anyhow::Result<Self> {
-        const FORM: &str = "write FROM..UNTIL, each in seconds of the log or as a date like 2026-01-31T14:00:00Z";
+        const FORM: &str =
+            "write FROM..UNTIL, each in seconds of the log or as a date like 2026-01-31T14:00:00Z";
         let Some((from, until)) = text.split_once("..") else {
             bail!("--announced {text}: {FORM}");
         };

@@ -75,7 +75,8 @@ impl Engine {
         let (first, fill) = start::first_rows(&mut log.reader, selection, options.source)?;
         let first_k = selection.mean_temperature_k(first.first());
         let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
-        let commissioning = options.fill.commissioning(fill, vessel, first_k, selection.pressure_offset_sd_pa());
+        let commissioning =
+            options.fill.commissioning(fill, vessel, first_k, selection.pressure_offset_sd_pa());
         let mut commissioning = commissioning.with_context(begin)?;
         let mass_kg = commissioning.mass_kg(vessel, first_k)?;
         // What the cylinder was filled with is the mass, not a pressure at whatever temperature the first row has.

@@ -60,6 +60,9 @@ mod tests {
 
     #[test]
     fn a_clock_that_is_set_back_is_in_order() {
-        assert!(accepted((0..200u32).map(|row| 60.0 * f64::from(row) - if row > 100 { 3600.0 } else { 0.0 }), 0.0));
+        assert!(accepted(
+            (0..200u32).map(|row| 60.0 * f64::from(row) - if row > 100 { 3600.0 } else { 0.0 }),
+            0.0
+        ));
     }
 }

@@ -232,18 +232,7 @@ pub(super) mod tests {
         assert_eq!(cells[5..8], ["1.800000", "1.836768", "0.07200000"]);
         assert_eq!(
             cells[11..],
-            [
-                "unknown",
-                "degraded",
-                "",
-                "0.000000",
-                "3.600000",
-                "",
-                "",
-                "158.0000",
-                "",
-                "no usable pressure"
-            ]
+            ["unknown", "degraded", "", "0.000000", "3.600000", "", "", "158.0000", "", "no usable pressure"]
         );
     }
 

@@ -148,11 +148,7 @@ fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
     ]
 }
 
-fn outlook_rows(
-    outlook: &Outlook,
-    decision: &Decision,
-    next_service_s: f64,
-) -> Vec<(&'static str, String)> {
+fn outlook_rows(outlook: &Outlook, decision: &Decision, next_service_s: f64) -> Vec<(&'static str, String)> {
     let left = |quantiles: &Quantiles| {
         let [p5, p50, p95] = [quantiles.p5, quantiles.p50, quantiles.p95]
             .map(|passage| passage_words(passage, quantiles.horizon_s));

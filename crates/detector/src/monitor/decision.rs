@@ -4,10 +4,10 @@
 //!
 //! | what is known, the first that holds | verdict | outcome |
 //! |---|---|---|
-//! | gas goes out fast, or did a while ago, and that was announced | discharge | no loss |
+//! | gas goes out fast, or did a while ago, and that was announced | discharge | no loss, unless a leak is found |
 //! | gas goes out fast, or did a while ago | discharge | loss |
-//! | gas comes in, or did a while ago | refill | no loss |
 //! | a leak is found | leak | loss |
+//! | gas comes in, or did a while ago | refill | no loss |
 //! | something stands in the way of an answer | unknown | unknown |
 //! | a leak is more likely than not, but not found at the stated rate of false alarms | unknown | unknown |
 //! | a sensor is at fault, the others tell the gas | sensor fault | no loss |
@@ -115,8 +115,8 @@ pub fn decide(known: &Known) -> Decision {
     let likely = known.leak_probability.is_some_and(|probability| probability >= LIKELY);
     let verdict = match known.exchange {
         Some(KnownExchange { out: true, .. }) => Verdict::Discharge,
+        _ if known.leak_found => Verdict::Leak,
         Some(_) => Verdict::Refill,
-        None if known.leak_found => Verdict::Leak,
         None => match known.doubt {
             Some(reason) => Verdict::Unknown(reason),
             None if likely => Verdict::Unknown(Reason::Suspected),
@@ -127,7 +127,7 @@ pub fn decide(known: &Known) -> Decision {
     let announced = known.exchange.is_some_and(|exchange| exchange.announced);
     let outcome = match verdict {
         Verdict::Leak => Outcome::Loss,
-        Verdict::Discharge if !announced => Outcome::Loss,
+        Verdict::Discharge if !announced || known.leak_found => Outcome::Loss,
         Verdict::Unknown(_) => Outcome::Unknown,
         _ => Outcome::NoLoss,
     };
@@ -244,6 +244,11 @@ mod tests {
         assert_eq!((lost.verdict, lost.outcome.exit_code()), (Verdict::Discharge, 1));
         assert_eq!(lost.reaction, Some(Reaction::AsSoonAsPossible));
         assert_eq!(decide(&out(true)).outcome.exit_code(), 0);
+        assert_eq!(decide(&Known { leak_found: true, ..out(true) }).outcome, Outcome::Loss);
+        let refilled = Some(KnownExchange { out: false, announced: false });
+        let leaking = decide(&Known { exchange: refilled, leak_found: true, ..nothing });
+        assert_eq!((leaking.verdict, leaking.outcome), (Verdict::Leak, Outcome::Loss));
+        assert_eq!(decide(&Known { exchange: refilled, ..nothing }).verdict, Verdict::Refill);
         assert_eq!(decide(&nothing).outcome.exit_code(), 3);
     }
 

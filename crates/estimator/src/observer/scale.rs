@@ -13,8 +13,8 @@ use crate::thermal::vessel::Vessel;
 
 /// Mass, kg, that settings are stated for, that of the built-in `nitrogen-20l`, full, and its pressure at 15 °C in the volume of the
 /// empty vessel, Pa.
-const REFERENCE_KG: f64 = 4.477_064;
-const REFERENCE_PA: f64 = 200.695_06e5;
+const REFERENCE_KG: f64 = 4.477_064_224_284;
+const REFERENCE_PA: f64 = 200.695_061_065_238e5;
 
 /// Ratios of a fill to the reference: 1 for `nitrogen-20l` at 200 bar and 15 °C.
 #[derive(Clone, Copy, Debug, PartialEq)]

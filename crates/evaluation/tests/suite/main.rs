@@ -3,6 +3,7 @@
 mod campaign;
 mod evidence;
 mod fault;
+mod honest;
 mod matched;
 mod monitor;
 mod observer;

@@ -84,12 +84,19 @@ fn a_tight_cylinder_in_winter_is_tight_once_it_is_learnt() {
     for output in &outputs {
         let expected =
             if output.estimate.time_s < DAY_S { Verdict::Unknown(Reason::Learning) } else { Verdict::Tight };
-        let passing = [Reason::Jump, Reason::Disturbed].map(Verdict::Unknown).contains(&output.decision.verdict);
-        assert!(output.decision.verdict == expected || passing, "{} s: {}", output.estimate.time_s, output.decision.verdict);
+        let passing =
+            [Reason::Jump, Reason::Disturbed].map(Verdict::Unknown).contains(&output.decision.verdict);
+        assert!(
+            output.decision.verdict == expected || passing,
+            "{} s: {}",
+            output.estimate.time_s,
+            output.decision.verdict
+        );
     }
     // A jump under examination; sun on the shoulder for a few hours.
     for (reason, most) in [(Reason::Jump, 0.02), (Reason::Disturbed, 0.1)] {
-        let said = outputs.iter().filter(|output| output.decision.verdict == Verdict::Unknown(reason)).count();
+        let said =
+            outputs.iter().filter(|output| output.decision.verdict == Verdict::Unknown(reason)).count();
         println!("{reason:?}: {said} of {} samples", outputs.len());
         assert!((said as f64) < most * outputs.len() as f64);
     }
@@ -101,7 +108,8 @@ fn a_leak_is_found_with_its_rate_and_onset() {
     let rate_kg_s = 3e-3 / HOUR_S;
     let onset_s = 2.0 * DAY_S;
     let outputs = run(&week(4.0, Some(TruthLeak { rate_kg_s, start_s: onset_s })));
-    let alarm = outputs.iter().find(|output| output.decision.verdict == Verdict::Leak).expect("a leak is found");
+    let alarm =
+        outputs.iter().find(|output| output.decision.verdict == Verdict::Leak).expect("a leak is found");
     assert!(alarm.estimate.time_s > onset_s && alarm.estimate.time_s < onset_s + DAY_S);
     let leak = outputs.last().unwrap().leak.unwrap();
     assert!(leak.rate_kg_s.holds(rate_kg_s) && leak.onset_s.holds(onset_s), "{leak:?}");

@@ -128,10 +128,12 @@ impl GasBounds {
         self.recent_kg[0].is_none_or(|(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
     }
 
-    /// Gas has been exchanged: the mass is another one from the present row on.
-    pub fn begin_anew(&mut self) {
-        (self.floor_kg, self.ceiling_kg) = (None, None);
-        self.recent_kg = [self.recent_kg[0], None, None];
+    /// Gas has gone that way: what bounded the mass from that side does so no more. After a refill it is still no less than before.
+    pub fn gone(&mut self, way: Certain) {
+        match way {
+            Certain::Out => self.floor_kg = None,
+            Certain::In => self.ceiling_kg = None,
+        }
     }
 
     /// Extremes follow the thermometers at once outwards, and slowly inwards.
@@ -204,14 +206,29 @@ mod tests {
         let minutes = (0..2880).map(f64::from);
         let lost = |bounds: &mut GasBounds, minute: f64| {
             let certain = bounds.push(&seen(minute, pressure(minute), (300.0, 300.0)), mass_kg);
-            if certain.is_some() {
-                bounds.begin_anew();
-            }
+            certain.into_iter().for_each(|way| bounds.gone(way));
             certain.is_some()
         };
         let times = minutes.filter(|&minute| lost(&mut bounds, minute)).count();
         assert_eq!(times, 1);
         assert!(bounds.allow(0.7) && !bounds.allow(1.0));
+    }
+
+    #[test]
+    fn what_is_lost_again_after_a_refill_is_lost() {
+        let mut bounds = GasBounds::default();
+        let pressure = |minute: f64| match minute {
+            m if m < 60.0 => 100e5,
+            m if m < 120.0 => 300e5,
+            _ => 200e5,
+        };
+        let mut ways = Vec::new();
+        for minute in (0..240).map(f64::from) {
+            let certain = bounds.push(&seen(minute, pressure(minute), (300.0, 300.0)), mass_kg);
+            certain.into_iter().for_each(|way| bounds.gone(way));
+            ways.extend(certain);
+        }
+        assert_eq!(ways, [Certain::In, Certain::Out]);
     }
 
     #[test]

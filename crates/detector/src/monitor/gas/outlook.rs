@@ -125,7 +125,8 @@ mod tests {
         let settings = MonitorSettings::default();
         let masses = LimitMasses::new(&contents, &settings, 4.46).unwrap();
         let left = |mass_kg: f64, leak_probability| {
-            let basis = Basis { mass_kg: (mass_kg, 1e-3), finding: None, largest_kg_s: 1e-9, leak_probability };
+            let basis =
+                Basis { mass_kg: (mass_kg, 1e-3), finding: None, largest_kg_s: 1e-9, leak_probability };
             masses.outlook(&settings, &basis).unwrap().operational.p50
         };
         assert_eq!(left(4.4, None), Passage::Unknown);

@@ -98,9 +98,8 @@ impl Monitor {
         let time_s = estimate.time_s;
         let Some(seen) = self.seen(time_s) else { return Ok(estimate) };
         let contents = &self.contents;
-        let mass_kg = |pressure_pa, temperature_k| {
-            contents.mass_kg(pressure_pa, temperature_k).unwrap_or(f64::NAN)
-        };
+        let mass_kg =
+            |pressure_pa, temperature_k| contents.mass_kg(pressure_pa, temperature_k).unwrap_or(f64::NAN);
         let before_kg = self.masses_kg();
         let Some(certain) = self.state.bounds.push(&seen, mass_kg) else { return Ok(estimate) };
         // A jump that may be the transmitter's is being examined; so much is none.
@@ -110,9 +109,14 @@ impl Monitor {
             return Ok(estimate);
         }
         let out = certain == Certain::Out;
+        if out && self.state.leak.found().is_some() {
+            // It is told already, and goes on.
+            self.state.bounds.gone(certain);
+            return Ok(estimate);
+        }
         let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
         let (announced, part) = (self.is_announced(onset_s), self.state.bounds.beyond());
-        self.state.bounds.begin_anew();
+        self.state.bounds.gone(certain);
         self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced, part: part.max(CERTAIN) });
         if self.state.examined.is_some() {
             return Ok(estimate);
@@ -265,15 +269,8 @@ impl Monitor {
         self.exchanged(time_s, onset_s, change_kg, change_kg < 0.0, events);
     }
 
-    fn exchanged(
-        &mut self,
-        time_s: f64,
-        onset_s: f64,
-        change_kg: f64,
-        out: bool,
-        events: &mut Vec<Event>,
-    ) {
-        self.state.bounds.begin_anew();
+    fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, out: bool, events: &mut Vec<Event>) {
+        self.state.bounds.gone(if out { Certain::Out } else { Certain::In });
         let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
         events.push(Event::new(time_s, onset_s, kind));
         let announced = self.is_announced(onset_s);

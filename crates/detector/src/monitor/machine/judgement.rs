@@ -7,7 +7,7 @@ const EXCHANGED_S: f64 = 1800.0;
 /// Part of the fill from which an exchange is the verdict, and pressure from which a flow is, Pa of a fill of 200 bar: what is smaller is an
 /// event, and leaves the verdict open until gas and wall have settled.
 const MATTERS: f64 = 0.01;
-const FLOWS_PA: f64 = 5e5;
+const FLOWS_PA: f64 = 8e5;
 /// Samples of an examination after which the jump is no spike.
 const NO_SPIKE: usize = 3;
 

@@ -482,11 +482,7 @@ impl Monitor {
             decision,
             leak,
             leak_rate_kg_s: leak.map_or_else(
-                || Interval {
-                    value: slow.rate_kg_s.clamp(0.0, largest_kg_s),
-                    low: 0.0,
-                    high: largest_kg_s,
-                },
+                || Interval { value: slow.rate_kg_s.clamp(0.0, largest_kg_s), low: 0.0, high: largest_kg_s },
                 |leak| leak.rate_kg_s,
             ),
             cold_pressure_pa,
