@@ -244,7 +244,7 @@ mod tests {
             "pressure is shifted by -0.4 bar",
             "shoulder is off by 1.2 K, as the other thermometer and the pressure say",
             "158.2 bar without any leak",
-            "4.10 kg of gas, the filling that was stated for 4.48 kg",
+            "4.1 kg of gas, the filling that was stated for 4.48 kg",
             "shoulder and pressure are in each other's place",
             "shoulder is late by 87 s",
             "off its usual difference by -1.2 K",

@@ -29,11 +29,10 @@ impl Scale {
     /// Of what is known of a vessel at the first sample.
     ///
     /// # Errors
-    /// The fill is no state of the fluid.
+    /// The fill is no mass.
     pub fn of(vessel: &Vessel, commissioning: &Commissioning) -> Result<Self, EstimatorError> {
         let mass_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
         let density_kg_m3 = mass_kg / vessel.volume.volume_m3;
-        vessel.fluid.check(density_kg_m3, QUOTED_K)?;
         let pressure_pa = vessel.fluid.pressure_pa(density_kg_m3, QUOTED_K);
         Ok(Self { mass: mass_kg / REFERENCE_KG, pressure: pressure_pa / REFERENCE_PA })
     }
