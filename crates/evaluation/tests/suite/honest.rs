@@ -129,7 +129,7 @@ fn measured(name: &str) -> Option<Vec<(f64, [f64; 2])>> {
         println!("skipped: {name} is not at hand");
         return None;
     };
-    const PSI_PA: f64 = 6894.757_293;
+    const PSI_PA: f64 = 6_894.757_293;
     const AIR_PA: f64 = 101_325.0;
     let row = |line: &str| -> Option<(f64, [f64; 2])> {
         let cells: Vec<f64> = line.split('\t').map_while(|cell| cell.trim().parse().ok()).collect();
