@@ -110,9 +110,10 @@ impl Monitor {
         }
         let out = certain == Certain::Out;
         if out && self.state.leak.found().is_some() {
-            // It is told already, and goes on.
+            // It is told already, and goes on: the mass follows, the leak stays.
             self.state.bounds.gone(certain);
-            return Ok(estimate);
+            let examined = self.state.examined.is_some();
+            return if examined { Ok(estimate) } else { self.step_anew(time_s) };
         }
         let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
         let (announced, part) = (self.is_announced(onset_s), self.state.bounds.beyond());
@@ -121,14 +122,20 @@ impl Monitor {
         if self.state.examined.is_some() {
             return Ok(estimate);
         }
+        let estimate = self.step_anew(time_s)?;
+        let change_kg = self.masses_kg().zip(before_kg).map_or(f64::NAN, |(now, before)| now - before);
+        let change_kg = if out { change_kg.min(0.0) } else { change_kg.max(0.0) };
+        self.exchanged(time_s, onset_s, change_kg, out, events);
+        Ok(estimate)
+    }
+
+    /// The present row once more, with nothing known of the gas.
+    fn step_anew(&mut self, time_s: f64) -> Result<Estimate, DetectorError> {
         self.go_back()?;
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
         self.state.rewind.begin(&self.observer);
-        let change_kg = self.masses_kg().zip(before_kg).map_or(f64::NAN, |(now, before)| now - before);
-        let change_kg = if out { change_kg.min(0.0) } else { change_kg.max(0.0) };
-        self.exchanged(time_s, onset_s, change_kg, out, events);
         Ok(estimate)
     }
 
