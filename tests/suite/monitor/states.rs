@@ -220,7 +220,7 @@ fn a_state_is_saved_during_the_run_and_a_killed_run_goes_on_from_it() {
     use std::process::Stdio;
     let folder = tempdir().unwrap();
     let arguments =
-        ["monitor", "nitrogen-20l", "-", "--settled", "--state", "c.state", "--save-every-s", "0.001", "-q"];
+        ["monitor", "nitrogen-20l", "-", "--settled", "--state", "c.state", "--save-every-s", "1e-9", "-q"];
     let mut command = crate::support::program(folder.path(), &arguments);
     command.stdin(Stdio::piped()).stdout(Stdio::piped());
     let mut child = command.spawn().unwrap();
