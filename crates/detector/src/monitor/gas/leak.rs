@@ -101,12 +101,16 @@ impl LeakState {
     }
 
     fn look(&mut self, look: &Look<'_>, leaking: bool) {
+        let fitted = if leaking { onset::fit(&self.trace, look.error) } else { None };
         if leaking {
-            let fitted = onset::fit(&self.trace, look.error);
             let finding = fitted.map(|fitted| fitted.finding(look.pa_per_kg));
             self.found = finding.or(self.found).or_else(|| Some(self.by_rate(look)));
         }
-        if let Some((log_bayes_factor, largest_kg_s)) = onset::outlook(&self.trace, look.error) {
+        // A fit has both already: the upper end of its rate is what a leak is below with 97.5 %.
+        let known = fitted.map(|fitted| (fitted.log_bayes_factor, fitted.rate_kg_s.high));
+        if let Some((log_bayes_factor, largest_kg_s)) =
+            known.or_else(|| onset::outlook(&self.trace, look.error))
+        {
             self.probability = Some(probability(PRIOR_ODDS * log_bayes_factor.exp().min(1e12)));
             self.largest_per_s = largest_kg_s / look.filled_kg;
         }
