@@ -113,7 +113,9 @@ pub fn observer_settings() -> ObserverSettings {
         LeakHypothesis::walking_rate(0.005).cautious(CAUTION_PA_K),
         LeakHypothesis::walking_mass(30.0).cautious(CAUTION_PA_K),
     ];
-    ObserverSettings { bank, ..ObserverSettings::default() }
+    let usual = ObserverSettings::default();
+    let flowing = usual.bank.iter().filter(|member| member.is_flowing()).copied();
+    ObserverSettings { bank: bank.into_iter().chain(flowing).collect(), ..usual }
 }
 
 /// The members that matter, by their place in the bank.
@@ -127,7 +129,8 @@ struct Members {
 impl Members {
     fn of(settings: &ObserverSettings) -> Option<Self> {
         let bank = &settings.bank;
-        let rated = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
+        let is_rated = |index: &usize| !bank[*index].rate.is_known() && !bank[*index].is_flowing();
+        let rated = || (0..bank.len()).filter(is_rated);
         let speed = |a: &usize, b: &usize| bank[*a].rate.per_sqrt_s.total_cmp(&bank[*b].rate.per_sqrt_s);
         let freedom = |a: &usize, b: &usize| {
             bank[*a].mass_walk_kg_per_sqrt_s.total_cmp(&bank[*b].mass_walk_kg_per_sqrt_s)

@@ -84,6 +84,12 @@ impl UdBank {
         self.d.iter_mut().zip(factors.diagonal()).for_each(|(to, &from)| to.0[lane] = from);
     }
 
+    /// Become as another bank of as many states is, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.u.copy_from_slice(&other.u);
+        self.d.copy_from_slice(&other.d);
+    }
+
     /// Let a lane have the covariance of another one.
     pub fn copy_lane(&mut self, from: usize, to: usize) {
         for value in self.u.iter_mut().chain(&mut self.d) {

@@ -42,6 +42,15 @@ enum Covariances {
     Separate(Vec<Separate>),
 }
 
+/// Innovations beyond which a reading is refused, in variances.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gates {
+    /// Of every reading.
+    pub all: f64,
+    /// Of a pressure where gas may flow: beyond it gas has.
+    pub flow: f64,
+}
+
 impl Default for Covariances {
     fn default() -> Self {
         Self::Together(Vec::new())
@@ -83,6 +92,19 @@ impl Bank {
         let sensors = cylinder.outputs();
         let members = bank.into_iter().map(|hypothesis| Member::new(hypothesis, mean, sensors)).collect();
         Ok(Self { members, covariances, slow_s: 0.0 })
+    }
+
+    /// Become as another bank is, without allocating where that has the same members.
+    pub fn copy_from(&mut self, other: &Self) {
+        let alike = self.members.len() == other.members.len();
+        match (&mut self.covariances, &other.covariances) {
+            (Covariances::Together(packs), Covariances::Together(others)) if alike => {
+                self.members.iter_mut().zip(&other.members).for_each(|(to, from)| to.copy_from(from));
+                packs.iter_mut().zip(others).for_each(|(to, from)| to.copy_from(from));
+                self.slow_s = other.slow_s;
+            }
+            _ => self.clone_from(other),
+        }
     }
 
     /// Time update over an interval, in steps no longer than the settings allow.
@@ -154,12 +176,12 @@ impl Bank {
         cylinder: &mut Cylinder,
         shared: &mut Shared,
         readings: &[f64],
-        gate: f64,
+        gates: Gates,
     ) -> Result<(), EstimatorError> {
         self.members.iter_mut().for_each(|member| member.pulled.fill(0.0));
         for (sensor, &reading) in readings.iter().enumerate() {
             if reading.is_finite() {
-                self.take(cylinder, shared, (sensor, reading), gate)?;
+                self.take(cylinder, shared, (sensor, reading), gates)?;
                 continue;
             }
             self.members.iter_mut().for_each(|member| member.innovations[sensor] = Innovation::MISSING);
@@ -174,22 +196,38 @@ impl Bank {
         Ok(())
     }
 
+    /// Innovation that a reading would be for the first member, and its variance; of members that move together.
+    ///
+    /// # Errors
+    /// As [`update`](Self::update).
+    pub fn foresee(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        reading: (usize, f64),
+    ) -> Result<(f64, f64), EstimatorError> {
+        match (&mut self.covariances, self.members.first()) {
+            (Covariances::Together(packs), Some(first)) => packs[0].foresee(cylinder, shared, first, reading),
+            _ => Ok((0.0, 1.0)),
+        }
+    }
+
     fn take(
         &mut self,
         cylinder: &mut Cylinder,
         shared: &mut Shared,
         reading: (usize, f64),
-        gate: f64,
+        gates: Gates,
     ) -> Result<(), EstimatorError> {
         match &mut self.covariances {
             Covariances::Together(packs) => packs
                 .iter_mut()
                 .zip(self.members.chunks_mut(Together::SIZE))
-                .try_for_each(|(pack, members)| pack.update(cylinder, shared, members, reading, gate)),
+                .try_for_each(|(pack, members)| pack.update(cylinder, shared, members, reading, gates)),
             Covariances::Separate(all) => all
                 .iter_mut()
                 .zip(&mut self.members)
-                .try_for_each(|(one, member)| one.update(cylinder, shared, member, reading, gate)),
+                .try_for_each(|(one, member)| one.update(cylinder, shared, member, reading, gates.all)),
         }
     }
 
@@ -256,10 +294,18 @@ impl Bank {
         }
     }
 
-    /// Free mass and gas temperature of everything known about them, and forget the leak rate.
+    /// Free the rate of a member of everything known about it, to a standard deviation, kg/s.
+    pub fn free_the_rate(&mut self, index: usize, cylinder: &Cylinder, sd_kg_s: f64) {
+        self.decorrelate_and_set(index, cylinder.state_map().leak, sd_kg_s * sd_kg_s);
+    }
+
+    /// Free mass and gas temperature of everything known about them, and forget the leak rate. A member whose gas may flow knows better.
     pub fn open(&mut self, cylinder: &Cylinder) {
         let leak = cylinder.state_map().leak;
         for index in 0..self.members.len() {
+            if self.members[index].hypothesis.is_flowing() {
+                continue;
+            }
             self.members[index].x[leak] = 0.0;
             let prior_sd_kg_s = self.members[index].hypothesis.rate.prior_sd;
             self.decorrelate_and_set(index, leak, prior_sd_kg_s * prior_sd_kg_s);
@@ -272,15 +318,14 @@ impl Bank {
         }
     }
 
-    /// Whether every mean and covariance is made of numbers, and the mean a state of the cylinder.
-    pub fn is_possible(&self, cylinder: &Cylinder) -> bool {
+    /// Whether mean and covariance of a member are made of numbers, and the mean a state of the cylinder.
+    pub fn is_possible(&self, index: usize, cylinder: &Cylinder) -> bool {
         let finite = match &self.covariances {
-            Covariances::Together(packs) => packs.iter().all(|pack| pack.bank.is_finite()),
-            Covariances::Separate(all) => all.iter().all(Separate::is_finite),
+            Covariances::Together(packs) => packs[place(index).0].bank.is_finite(),
+            Covariances::Separate(all) => all[index].is_finite(),
         };
-        let possible =
-            |member: &Member| member.x.iter().sum::<f64>().is_finite() && cylinder.is_possible(&member.x);
-        finite && self.members.iter().all(possible)
+        let x = &self.members[index].x;
+        finite && x.iter().sum::<f64>().is_finite() && cylinder.is_possible(x)
     }
 
     /// Variance of a state.

@@ -9,6 +9,9 @@ use crate::sensor::Sensor;
 pub(super) struct Clock {
     pub time_s: Option<f64>,
     pub last_reading_s: Vec<f64>,
+    /// Last reading of each sensor that was no fault, and how far a thermometer on the surface lately moved between two, K.
+    pub last_reading: Vec<f64>,
+    pub moved_k: f64,
     pub reference_due_s: f64,
     pub reference_mass_kg: Option<f64>,
     pub exchange: Exchange,
@@ -32,6 +35,8 @@ impl Clock {
         Self {
             time_s: None,
             last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
+            last_reading: vec![f64::NAN; sensors.len()],
+            moved_k: 0.0,
             reference_due_s: f64::INFINITY,
             reference_mass_kg: None,
             exchange: Exchange::None,

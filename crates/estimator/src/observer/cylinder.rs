@@ -60,6 +60,8 @@ pub struct Cylinder {
     near: Vec<(usize, f64)>,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
     interval_s: Vec<f64>,
+    /// How often in a row each sensor has read the same before.
+    repeats: Vec<u32>,
     work: Work,
 }
 
@@ -97,7 +99,10 @@ impl Cylinder {
             }
         };
         let again = (error.correlation_s / self.interval_s[j]).max(1.0);
-        self.sensors[j].noise_variance() + model * again
+        let sensor = &self.sensors[j];
+        // A reading within the same step has the same rounding: a run of them tells hardly more than its first one.
+        let rounding = square(sensor.resolution) / 12.0 * f64::from(self.repeats[j]);
+        sensor.noise_variance() + rounding + model * again
     }
 
     /// A vessel seen by sensors.
@@ -130,6 +135,7 @@ impl Cylinder {
         };
         let mut cylinder = Self {
             interval_s: vec![f64::INFINITY; sensors.len()],
+            repeats: vec![0; sensors.len()],
             caution_pa_k: 0.0,
             walking: vec![Walking::default(); states.leading],
             bounds: Vec::new(),
@@ -199,6 +205,16 @@ impl Cylinder {
         (0..self.states.wall).chain(self.states.valve).chain([self.states.gas]).all(warm)
             && mass_kg > 0.0
             && mass_kg <= self.model.highest_mass_kg()
+    }
+
+    /// Hold no member whose gas may flow.
+    pub(super) fn suppose_no_flow(&mut self) {
+        self.settings.bank.retain(|member| !member.is_flowing());
+    }
+
+    /// How often in a row a sensor has read the same before its next reading.
+    pub(super) fn set_repeats(&mut self, sensor: usize, repeats: u32) {
+        self.repeats[sensor] = repeats;
     }
 
     /// Interval since the last sample of a sensor, s.

@@ -66,6 +66,17 @@ impl Member {
         }
     }
 
+    /// Become as another one is, without allocating unless it keeps its steps for a smoother.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.hypothesis = other.hypothesis;
+        self.x.clone_from(&other.x);
+        self.rejected.clone_from(&other.rejected);
+        self.innovations.clone_from(&other.innovations);
+        self.pulled.clone_from(&other.pulled);
+        self.at_bound = other.at_bound;
+        self.pass.clone_from(&other.pass);
+    }
+
     /// Whether it has seen so many sensors.
     pub fn has_sensors(&self, sensors: usize) -> bool {
         [self.rejected.len(), self.innovations.len(), self.pulled.len()] == [sensors; 3]

@@ -4,7 +4,11 @@
 //! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
 //! leave ([`settings::LeakHypothesis`]): in the first the mass itself walks a little; it gives the mass. Slow ones hold the mass
 //! but for a leak rate that walks, each with its own bandwidth; the middle one gives leak rate and gas temperature. The freest,
-//! whose mass walks far, judges the others and takes the place of those that cannot be right (`belief`).
+//! whose mass walks far, judges the others and takes the place of those that cannot be right (`belief`). The last one follows gas that
+//! flows within minutes, either way ([`Flow`]).
+//!
+//! Where all thermometers are surprised to one side, air and wind have changed since the row before: the interval is taken again with
+//! more uncertain surroundings at its beginning ([`AirStep`]).
 //!
 //! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
 //! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
@@ -22,6 +26,7 @@ pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
 mod estimate;
+mod flow;
 mod late;
 mod learned;
 mod member;
@@ -40,12 +45,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
 use crate::filter::StateSpace;
-use crate::sensor::Sensor;
+use crate::sensor::{Sensor, SensorKind};
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use band::Band;
 pub use band::BandSettings;
-use bank::Bank;
+use bank::{Bank, Gates};
 use belief::{Belief, Moments};
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
@@ -53,15 +58,16 @@ use cylinder::Cylinder;
 use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
 pub use estimate::{Estimate, Leak, Quality};
+pub use flow::Flow;
 pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 pub(crate) use roles::middle_slow;
-use roles::{freest, thermometer};
+use roles::{flowing, freest, thermometer};
 pub use scale::Scale;
 pub use screen::{Fault, FaultCount};
-pub use settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
+pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSettings, Walk};
 pub use smoother::Smoother;
 
 /// Temperature at which the settled pressure is quoted, K: 15 °C.
@@ -70,7 +76,12 @@ const QUOTED_K: f64 = 288.15;
 const REFERENCE_AFTER_S: f64 = 86_400.0;
 /// Time after an exchange of gas during which mass and gas stay free, s.
 const SETTLE_S: f64 = 1200.0;
-
+/// Part of the gas that may flow between two rows while gas is exchanged: for more the linearised equations do not hold.
+const MUCH: f64 = 0.15;
+/// Innovation of a pressure beyond which gas has flowed by more than the linearised equations bear, in variances: as a part of the usual
+/// gate, and while gas is exchanged.
+const FLOW_GATE: f64 = 0.25;
+const FLOW_GATE_OPEN: f64 = 9.0;
 /// Interval as which that between two rows of one time counts, s.
 const SHORTEST_S: f64 = 1e-3;
 
@@ -103,6 +114,10 @@ pub struct Observer {
     thermometer: usize,
     /// The member whose mass walks most freely: it judges the others.
     freest: usize,
+    /// The member whose gas may flow.
+    flowing: Option<usize>,
+    /// The bank before the present sample.
+    before: Bank,
     reference_x: Vec<f64>,
     /// Mass of each member at the present sample.
     masses: Vec<Moments>,
@@ -126,7 +141,11 @@ impl Observer {
         if sensors.is_empty() {
             return Err(EstimatorError::NoSensors);
         }
-        let settings = &Scale::of(vessel, commissioning)?.applied(settings);
+        let mut settings = Scale::of(vessel, commissioning)?.applied(settings);
+        if settings.engine != Engine::Extended {
+            settings.bank.retain(|member| !member.is_flowing());
+        }
+        let settings = &settings;
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
         let gate = settings.gate_sd * settings.gate_sd;
         Ok(Self {
@@ -143,6 +162,8 @@ impl Observer {
             slow: middle_slow(&settings.bank),
             thermometer: thermometer(&settings.bank),
             freest: freest(&settings.bank),
+            flowing: flowing(&settings.bank),
+            before: Bank::default(),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
             anew: vec![false; settings.bank.len()],
@@ -177,17 +198,14 @@ impl Observer {
         }
         let mut usable = std::mem::take(&mut self.usable);
         usable.copy_from_slice(readings);
-        for (reading, screen) in usable.iter_mut().zip(&mut self.clock.screens) {
+        for (sensor, (reading, screen)) in usable.iter_mut().zip(&mut self.clock.screens).enumerate() {
             if screen.judge(*reading).is_some() {
                 *reading = f64::NAN;
             }
+            self.cylinder.set_repeats(sensor, screen.repeats());
         }
         let restarted = self.take(time_s, &usable);
-        for (last, reading) in self.clock.last_reading_s.iter_mut().zip(&usable) {
-            if reading.is_finite() {
-                *last = time_s;
-            }
-        }
+        self.remember(time_s, &usable);
         self.mark_faulty(time_s, readings, &usable);
         self.usable = usable;
         let restarted = restarted?;
@@ -222,7 +240,8 @@ impl Observer {
         if let Some(first) = self.bank.members.first()
             && time_s > self.clock.pulled_until_s
         {
-            self.clock.screens.iter_mut().zip(&first.pulled).for_each(|(screen, &by)| screen.pull(by));
+            let pulls = first.pulled.iter().zip(&first.innovations);
+            self.clock.screens.iter_mut().zip(pulls).for_each(|(screen, (&by, of))| screen.pull(by, of.nu));
         }
     }
 
@@ -243,7 +262,7 @@ impl Observer {
         let freest = self.freest;
         self.bank.write_moments(mass, &mut self.masses);
         self.anew.fill(false);
-        for index in (0..self.masses.len()).filter(|&index| index != freest) {
+        for index in (0..self.masses.len()).filter(|&index| index != freest && Some(index) != self.flowing) {
             if Belief::of(self.masses[index], self.masses[freest]).is_out_of_the_question() {
                 self.anew[index] = true;
                 self.bank.begin_anew(index, freest, &self.cylinder);
@@ -279,26 +298,89 @@ impl Observer {
         Ok(())
     }
 
+    /// Move on and take readings; where all thermometers are surprised, after a step of the surroundings.
     fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
-        if dt_s > 0.0 {
-            self.bank.predict(&mut self.cylinder, &mut self.shared, dt_s)?;
+        for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
+            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
         }
+        let ObserverSettings { engine, air_step, .. } = *self.cylinder.settings();
+        let Some(step) = air_step.filter(|_| engine == Engine::Extended && dt_s > 0.0) else {
+            self.move_on(dt_s)?;
+            return self.take_in(time_s, readings);
+        };
+        self.before.copy_from(&self.bank);
+        self.move_on(dt_s)?;
+        if !self.is_surprised(step.surprise_sd, readings)? {
+            return self.take_in(time_s, readings);
+        }
+        self.bank.copy_from(&self.before);
+        let states = self.cylinder.state_map();
+        self.bank.inflate(states.air, step.air_k * step.air_k);
+        if let Some(film) = states.outside {
+            self.bank.inflate(film, step.ln_outside_film * step.ln_outside_film);
+        }
+        self.move_on(dt_s)?;
+        if self.take_in(time_s, readings).is_ok() && self.is_possible() {
+            return Ok(());
+        }
+        self.bank.copy_from(&self.before);
+        self.move_on(dt_s)?;
+        self.take_in(time_s, readings)
+    }
+
+    /// Whether thermometers on the surface read what the first member does not expect, one by so many standard deviations and each by half
+    /// as many, all to the same side: air and wind reach all of them, and what one does alone is its own.
+    fn is_surprised(&mut self, by_sd: f64, readings: &[f64]) -> Result<bool, EstimatorError> {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
+            if matches!(self.cylinder.sensors()[sensor].kind, SensorKind::Surface { .. }) {
+                let (nu, s) = self.bank.foresee(&mut self.cylinder, &mut self.shared, (sensor, reading))?;
+                let in_sd = nu / s.sqrt();
+                (least, most) = (least.min(in_sd), most.max(in_sd));
+            }
+        }
+        Ok((most > by_sd && least > 0.5 * by_sd) || (least < -by_sd && most < -0.5 * by_sd))
+    }
+
+    fn move_on(&mut self, dt_s: f64) -> Result<(), EstimatorError> {
+        if dt_s <= 0.0 {
+            return Ok(());
+        }
+        if let Some(flowing) = self.flowing.filter(|_| self.clock.exchange == Exchange::Open) {
+            // Much of the gas may go out within the interval, or as much come in, and cools or warms what is there.
+            let much_kg = MUCH * self.cylinder.settings().free_mass_sd_kg;
+            self.bank.free_the_rate(flowing, &self.cylinder, much_kg / dt_s);
+        }
+        self.bank.predict(&mut self.cylinder, &mut self.shared, dt_s)
+    }
+
+    fn take_in(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         if self.clock.exchanging(time_s) {
             self.clock.pulled_until_s = time_s + SETTLE_S;
             self.bank.open(&self.cylinder);
-        }
-        for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
-            self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
         }
         self.update(readings)
     }
 
     fn update(&mut self, readings: &[f64]) -> Result<(), EstimatorError> {
-        self.bank.update(&mut self.cylinder, &mut self.shared, readings, self.gate)
+        // While gas is exchanged, less is gas that flows.
+        let flow = if self.clock.exchange == Exchange::Open { FLOW_GATE_OPEN } else { FLOW_GATE * self.gate };
+        let gates = Gates { all: self.gate, flow };
+        self.bank.update(&mut self.cylinder, &mut self.shared, readings, gates)
     }
 
+    /// Whether every member but the flowing one is possible; that begins anew from the freest one where it is not.
     fn is_possible(&mut self) -> bool {
-        self.bank.is_possible(&self.cylinder)
+        let mut held = (0..self.bank.members.len()).filter(|&index| Some(index) != self.flowing);
+        if !held.all(|index| self.bank.is_possible(index, &self.cylinder)) {
+            return false;
+        }
+        if let Some(flowing) = self.flowing.filter(|&index| !self.bank.is_possible(index, &self.cylinder)) {
+            self.bank.begin_anew(flowing, self.freest, &self.cylinder);
+            let prior_sd_kg_s = self.bank.members[flowing].hypothesis.rate.prior_sd;
+            self.bank.free_the_rate(flowing, &self.cylinder, prior_sd_kg_s);
+        }
+        true
     }
 
     fn estimate(
@@ -310,22 +392,29 @@ impl Observer {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
         let (thermometer, freest) = (self.thermometer, self.freest);
         let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
-        let (mass_kg, mass_variance_kg2) = Belief::of(first_mass, free_mass).blend(first_mass, free_mass);
-        let (gas_mean_k, gas_variance_k2) = Belief::of(slow_mass, free_mass)
+        let mut mass = Belief::of(first_mass, free_mass).blend(first_mass, free_mass);
+        let mut gas = Belief::of(slow_mass, free_mass)
             .blend(bank.moments(thermometer, states.gas), bank.moments(freest, states.gas));
-        let gas_variance_k2 =
-            self.band.stated_k2(gas_variance_k2, |state| bank.moments(thermometer, state).1);
-        let (leak_kg_s, leak_variance) =
-            self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
-        let leak_variance = leak_variance + self.unknown_leak_variance(time_s, free_mass.1);
+        gas.1 = self.band.stated_k2(gas.1, |state| bank.moments(thermometer, state).1);
+        let mut leak = self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
+        leak.1 += self.unknown_leak_variance(time_s, free_mass.1);
+        if let Some(flow) = self.flow() {
+            let belief = Belief::of(slow_mass, flow.mass());
+            gas = belief.blend(gas, flow.gas());
+            mass = Belief::of(mass, flow.mass()).blend(mass, flow.mass());
+            // Of a rate of days and one of minutes a mixture would tell neither.
+            if belief.weight() < 0.5 {
+                leak = flow.rate();
+            }
+        }
         let mut estimate = Estimate {
             time_s,
-            gas_mean_k,
-            gas_mean_sd_k: gas_variance_k2.sqrt(),
-            mass_kg,
-            mass_sd_kg: mass_variance_kg2.sqrt(),
-            leak_kg_s,
-            leak_sd_kg_s: leak_variance.sqrt(),
+            gas_mean_k: gas.0,
+            gas_mean_sd_k: gas.1.sqrt(),
+            mass_kg: mass.0,
+            mass_sd_kg: mass.1.sqrt(),
+            leak_kg_s: leak.0,
+            leak_sd_kg_s: leak.1.sqrt(),
             pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
             pressure_expected_pa: f64::NAN,
             p15_pa: f64::NAN,
@@ -400,7 +489,7 @@ impl Observer {
         self.cylinder.output(sensor, &first.x, None)
     }
 
-    /// Leak rate and mass of every member, in the order of the bank; none before the first sample.
+    /// Leak rate and mass of every member but the [flowing](Observer::flow) one, in the order of the bank; none before the first sample.
     pub fn leaks(&self) -> impl ExactSizeIterator<Item = Leak> {
         let states = self.cylinder.state_map();
         let of = |index: usize| {
@@ -415,7 +504,19 @@ impl Observer {
                 begun_anew: self.anew[index],
             }
         };
-        (0..self.bank.members.len()).map(of)
+        (0..self.flowing.unwrap_or(self.bank.members.len()).min(self.bank.members.len())).map(of)
+    }
+
+    /// Mass and its standard deviation, kg, by the freest member or, where gas flows faster than that allows, by the
+    /// [flowing](Observer::flow) one; `None` before the first sample.
+    pub fn freest_mass_kg(&self) -> Option<(f64, f64)> {
+        self.bank.members.first()?;
+        let free = self.bank.moments(self.freest, self.cylinder.state_map().mass);
+        let (mass_kg, variance_kg2) = match self.flow() {
+            Some(flow) => Belief::of(free, flow.mass()).blend(free, flow.mass()),
+            None => free,
+        };
+        Some((mass_kg, variance_kg2.sqrt()))
     }
 
     /// Mean and covariance of a member's state, in the order of [`states::States`]; `None` before the first sample or
@@ -456,7 +557,7 @@ impl Observer {
 
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
-        self.bank.clone_from(&snapshot.bank);
+        self.bank.copy_from(&snapshot.bank);
         self.clock.clone_from(&snapshot.clock);
         self.cylinder.model().set_warm_start(&snapshot.warm_start);
     }

@@ -3,7 +3,8 @@ use super::settings::LeakHypothesis;
 
 /// The middle one of the members that have a leak rate.
 pub(crate) fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
-    let slow = || (0..bank.len()).filter(|&index| !bank[index].rate.is_known());
+    let is_slow = |index: &usize| !bank[*index].rate.is_known() && !bank[*index].is_flowing();
+    let slow = || (0..bank.len()).filter(is_slow);
     slow().nth(slow().count() / 2)
 }
 
@@ -16,4 +17,9 @@ pub(super) fn thermometer(bank: &[LeakHypothesis]) -> usize {
 pub(super) fn freest(bank: &[LeakHypothesis]) -> usize {
     let walk = |index: &usize| bank[*index].mass_walk_kg_per_sqrt_s;
     (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
+}
+
+/// The one whose gas may flow: the last, if it does.
+pub(super) fn flowing(bank: &[LeakHypothesis]) -> Option<usize> {
+    bank.last().filter(|last| last.is_flowing()).map(|_| bank.len() - 1)
 }

@@ -3,7 +3,7 @@
 //! A gate judges one reading by its innovation. A sensor that stops moving passes every gate, since the estimate is pulled
 //! along a little at each sample. So identical readings in a row are watched: how far has the estimate been pulled back to them
 //! in sum, `sum h^T K nu`? At rest that is next to nothing. Beyond [`PULLED`] standard deviations of the sensor's own noise the
-//! readings count as stuck, and are not used until they change.
+//! readings count as stuck, and are not used until they change. What a reading in steps may be off by, half a step, pulls by right.
 use serde::{Deserialize, Serialize};
 
 use crate::sensor::Sensor;
@@ -41,6 +41,8 @@ pub(super) struct Screen {
     latest: f64,
     in_a_row: u32,
     pulled: f64,
+    /// Half a step of the readings.
+    half_step: f64,
     pub count: FaultCount,
 }
 
@@ -48,7 +50,16 @@ impl Screen {
     pub fn new(sensor: &Sensor) -> Self {
         let (low, high) = sensor.usable_range();
         let limit = PULLED * sensor.noise_variance().sqrt();
-        Self { low, high, limit, latest: f64::NAN, in_a_row: 0, pulled: 0.0, count: FaultCount::default() }
+        Self {
+            low,
+            high,
+            limit,
+            latest: f64::NAN,
+            in_a_row: 0,
+            pulled: 0.0,
+            half_step: 0.5 * sensor.resolution,
+            count: FaultCount::default(),
+        }
     }
 
     /// Judge and count a reading; NaN is none.
@@ -73,9 +84,16 @@ impl Screen {
         None
     }
 
-    /// A reading has been used, and has changed its own expectation by so much.
-    pub fn pull(&mut self, by: f64) {
-        self.pulled += by;
+    /// How often in a row the last reading has been read before.
+    pub fn repeats(&self) -> u32 {
+        self.in_a_row.saturating_sub(1)
+    }
+
+    /// A reading that was so far from its expectation has been used, and has changed it by so much.
+    pub fn pull(&mut self, by: f64, innovation: f64) {
+        if innovation.abs() > self.half_step {
+            self.pulled += by;
+        }
     }
 }
 
@@ -108,10 +126,24 @@ mod tests {
         // 30 standard deviations of 10 mbar in sum.
         for _ in 0..30 {
             screen.judge(2e7);
-            screen.pull(1e3);
+            screen.pull(1e3, 1e4);
         }
         assert_eq!(screen.judge(2e7), Some(Fault::Stuck));
         assert_eq!(screen.judge(2e7 + 1.0), None);
         assert_eq!(screen.judge(2e7 + 1.0), None);
+    }
+
+    #[test]
+    fn a_coarse_reading_is_stuck_only_beyond_half_a_step() {
+        let stuck = |innovation: f64| {
+            let mut sensor = Sensor::typical("pressure").unwrap();
+            sensor.resolution = 5e4;
+            let mut screen = Screen::new(&sensor);
+            (0..1000).any(|_| {
+                screen.pull(2e3, innovation);
+                screen.judge(2e7).is_some()
+            })
+        };
+        assert!(stuck(3e4) && !stuck(2e4));
     }
 }

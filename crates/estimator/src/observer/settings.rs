@@ -110,6 +110,20 @@ impl LeakHypothesis {
         }
     }
 
+    /// A leak rate of so many g/h, either way, that is another one after a memory, s: gas that flows.
+    pub fn flowing(grams_per_h: f64, memory_s: f64) -> Self {
+        Self {
+            mass_walk_kg_per_sqrt_s: 0.0,
+            rate: Walk::forgetting(grams_per_h * 1e-3 * PER_HOUR, memory_s),
+            caution_pa_k: 0.0,
+        }
+    }
+
+    /// Whether gas may flow: a rate that is soon another one.
+    pub fn is_flowing(&self) -> bool {
+        self.rate.memory_s.is_some()
+    }
+
     /// The same with so much error of the pressure per kelvin between wall and gas, Pa/K.
     pub fn cautious(self, caution_pa_k: f64) -> Self {
         Self { caution_pa_k, ..self }
@@ -149,6 +163,28 @@ impl ModelError {
         air_k: 0.0,
         correlation_s: 0.0,
     };
+}
+
+/// A sudden change of the surroundings, as at the mouth of a tunnel: air and wind are others within a row or two, which no walk allows
+/// that is right in between. Where a thermometer on the surface reads what the walks do not expect, the interval before the row is
+/// taken again with more uncertain surroundings at its beginning.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AirStep {
+    /// Innovation of a thermometer from which one is supposed, in its standard deviations.
+    pub surprise_sd: f64,
+    /// Standard deviation of the change of the air's temperature, K.
+    pub air_k: f64,
+    /// Standard deviation of the change of the logarithm of the outside film.
+    pub ln_outside_film: f64,
+}
+
+/// What is considered, but not estimated, where gas may flow; see [`super::Flow`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FlowDoubt {
+    /// Error of the gas temperature as a part of what thermometers differ from it by, and have lately moved by.
+    pub part: f64,
+    /// Memory of how far thermometers have moved from one row to the next, s.
+    pub memory_s: f64,
 }
 
 /// Settings of the cylinder's observer. SI. Masses, leak rates and pressures are stated for the full 20 L nitrogen cylinder; an
@@ -194,8 +230,13 @@ pub struct ObserverSettings {
     #[serde(default)]
     pub band: BandSettings,
     /// The bank: the first member gives the mass, the middle one of those with a leak rate the gas temperature, as long as the
-    /// freest member agrees.
+    /// freest member agrees. The last one may be [flowing](LeakHypothesis::flowing): with [`Engine::Extended`] it takes over in fast losses.
     pub bank: Vec<LeakHypothesis>,
+    /// Steps of the surroundings, with [`Engine::Extended`]; `None`: they only walk.
+    #[serde(default)]
+    pub air_step: Option<AirStep>,
+    /// What the flowing member is doubted for.
+    pub flow_doubt: FlowDoubt,
     /// Standard deviation of the mass while gas is being exchanged, kg.
     pub free_mass_sd_kg: f64,
     /// Standard deviation of the leak rate of a member that has lost more mass than it allows, kg/s.
@@ -242,7 +283,10 @@ impl Default for ObserverSettings {
                 LeakHypothesis::walking_rate(0.02),
                 LeakHypothesis::walking_rate(0.005),
                 LeakHypothesis::walking_mass(30.0),
+                LeakHypothesis::flowing(450.0, 900.0),
             ],
+            air_step: Some(AirStep { surprise_sd: 2.0, air_k: 20.0, ln_outside_film: 1.0 }),
+            flow_doubt: FlowDoubt { part: 0.2, memory_s: 1200.0 },
             free_mass_sd_kg: 4.5,
             any_leak_sd_kg_s: 20e-3 * PER_HOUR,
             gate_sd: 20.0,
@@ -304,9 +348,16 @@ impl ObserverSettings {
         positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
         positive("constants_memory_s", self.constants_memory_s.unwrap_or(1.0))?;
         positive("gate_sd", self.gate_sd)?;
+        positive("flow_doubt.memory_s", self.flow_doubt.memory_s)?;
+        if let Some(step) = self.air_step {
+            positive("air_step.surprise_sd", step.surprise_sd)?;
+            not_negative("air_step.air_k", step.air_k)?;
+            not_negative("air_step.ln_outside_film", step.ln_outside_film)?;
+        }
         positive("free_mass_sd_kg", self.free_mass_sd_kg)?;
         positive("any_leak_sd_kg_s", self.any_leak_sd_kg_s)?;
         for (setting, value) in [
+            ("flow_doubt.part", self.flow_doubt.part),
             ("temperature_walk_k_per_sqrt_s", self.temperature_walk_k_per_sqrt_s),
             ("gas_walk_k_per_sqrt_s", self.gas_walk_k_per_sqrt_s),
             ("model_error.surface_k", self.model_error.surface_k),

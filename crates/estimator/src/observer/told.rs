@@ -19,6 +19,21 @@ impl Observer {
         }
     }
 
+    /// Gas has flowed for certain: every member begins anew with what the [flowing](Self::flow) one says.
+    pub fn follow_the_flow(&mut self) {
+        let Some(flowing) = self.flowing.filter(|&index| index < self.bank.members.len()) else { return };
+        for index in (0..flowing).rev() {
+            self.bank.begin_anew(index, flowing, &self.cylinder);
+            self.anew[index] = true;
+        }
+        let mass = self.cylinder.state_map().mass;
+        self.bank.write_moments(mass, &mut self.masses);
+        self.clock.reference_mass_kg = None;
+        if let Some(time_s) = self.clock.time_s {
+            self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
+        }
+    }
+
     /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there. Of a sensor without
     /// an uncertain offset nothing is said.
     pub fn loosen(&mut self, sensor: usize, sd: f64) {

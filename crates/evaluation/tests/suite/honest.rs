@@ -3,6 +3,7 @@ use std::path::Path;
 
 use cylwatch_detector::monitor::alarm::AlarmName;
 use cylwatch_detector::monitor::{EventKind, LIKELY, Monitor, MonitorSettings, Outcome, Output, Verdict};
+use cylwatch_detector::prognosis::Contents;
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::{Sensor, SensorSuite, sample};
 use cylwatch_estimator::thermal::scenario::Fill;
@@ -160,6 +161,24 @@ fn measured_fillings_and_losses_of_a_small_tank_are_told() {
         let lost = outputs.iter().any(|output| output.decision.outcome == Outcome::Loss);
         assert_eq!(lost, loses, "{name}");
         let refilled = outputs.iter().any(|output| output.decision.verdict == Verdict::Refill);
-        assert!(refilled || !loses, "{name}: the filling before is told");
+        assert!(refilled, "{name}: the filling is told");
+        let share = share_of_masses_inside(&outputs, &rows, &Contents::of(&vessel));
+        println!("{name}: mass inside 2 sd in {:.0} % of {} rows", 100.0 * share, outputs.len());
+        assert!(share >= 0.9, "{name}: {share}");
     }
+}
+
+/// Share of the rows whose mass is within two standard deviations of what measured pressure and gas temperature make of the vessel's volume;
+/// a row of the monitor stands for all measured ones since the one before.
+fn share_of_masses_inside(outputs: &[Output], rows: &[(f64, [f64; 2])], contents: &Contents) -> f64 {
+    let mut measured = rows.iter().peekable();
+    let inside = outputs.iter().filter(|output| {
+        let of_row = std::iter::from_fn(|| measured.next_if(|(time_s, _)| *time_s <= output.estimate.time_s));
+        let masses: Vec<f64> = of_row
+            .filter_map(|(_, [gas_k, pressure_pa])| contents.mass_kg(*pressure_pa, *gas_k).ok())
+            .collect();
+        let mass_kg = masses.iter().sum::<f64>() / masses.len() as f64;
+        (output.estimate.mass_kg - mass_kg).abs() <= 2.0 * output.estimate.mass_sd_kg
+    });
+    inside.count() as f64 / outputs.len() as f64
 }

@@ -1,4 +1,4 @@
-//! Loss and gain of gas that no temperature explains, without an observer.
+//! Loss and gain of gas that no temperature explains, without an observer, and finer ones by the observer.
 //!
 //! Gas is no colder than the coldest wall that it has lately lain against, and no warmer than the warmest. So a pressure `p` at
 //! thermometers that lately read from `T_low` to `T_high` bounds the mass,
@@ -9,7 +9,11 @@
 //! its own temperature and its noise. A tight cylinder has one mass that lies within all of these intervals. Where the highest of the lower bounds
 //! is above the present upper one, gas has gone out; where the lowest upper bound is below the present lower one, it has come in.
 //! That is certain in the sense of the bounds: nothing is tuned, and no model of wall or gas can mislead it. It is coarse: a tenth of the
-//! gas after a tunnel, a twentieth at rest. What is smaller is left to the observer.
+//! gas after a tunnel, a twentieth at rest.
+//!
+//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.5 s + 0.003 m)` in place of those of the
+//! walls; `s` is the part of its standard deviation that comes and goes. These bounds fade within hours, since what the observer has
+//! learnt of films and sensors changes from day to day.
 //!
 //! Single readings far off must not count: bounds are believed that two rows in a row agree on, and enter the highest and the lowest one when
 //! three do.
@@ -20,6 +24,8 @@
 //! Assumes that no part of the wall is farther than `d` from all thermometers for longer than the gas takes to follow it.
 use serde::{Deserialize, Serialize};
 
+use crate::estimator::observer::Flow;
+
 /// Time constant with which extremes fade, s.
 const FADING_S: f64 = 2700.0;
 /// What the gas may be beyond thermometers on the wall, K; beyond one in the gas, K; beyond the first readings, at which nothing is known of
@@ -29,6 +35,14 @@ const UNSEEN_GAS_K: f64 = 5.0;
 const BEFORE_K: f64 = 10.0;
 /// Standard deviations of the transmitter's coefficient and noise that count.
 const DEVIATIONS: f64 = 3.0;
+/// Rows in a row that have to agree on a bound.
+const ROWS: usize = 3;
+/// The same for what the observer says: rows, standard deviations, part of the mass beside them, and time constant with which its bounds
+/// fade, s: what it has wrongly learnt changes from day to day.
+const FLOW_ROWS: usize = 1;
+const FLOW_DEVIATIONS: f64 = 2.5;
+const FLOW_PART: f64 = 0.003;
+const FLOW_FADING_S: f64 = 6.0 * 3600.0;
 
 /// What a thermometer tells of the gas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +76,69 @@ pub(in crate::monitor) enum Certain {
     In,
 }
 
+/// Bounds of the mass in the last rows, and the tightest ones so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Ratchet {
+    /// Lower and upper bound, the latest ones first, kg.
+    recent_kg: [Option<(f64, f64)>; 3],
+    /// Highest lower and lowest upper bound, kg.
+    floor_kg: Option<f64>,
+    ceiling_kg: Option<f64>,
+}
+
+impl Ratchet {
+    /// Take in the bounds of a row; those that so many rows in a row agree on may become the tightest ones, of which a part has been
+    /// kept since the last row.
+    fn push(&mut self, bounds_kg: (f64, f64), agreeing: usize, kept: f64) -> Option<Certain> {
+        self.recent_kg = [Some(bounds_kg), self.recent_kg[0], self.recent_kg[1]];
+        let certain = self.certain(agreeing.min(2));
+        if let (None, Some((least_kg, most_kg))) = (certain, self.agreed(agreeing)) {
+            let faded = |bound_kg: f64, now_kg: f64| now_kg + kept * (bound_kg - now_kg);
+            self.floor_kg =
+                Some(self.floor_kg.map_or(least_kg, |floor| least_kg.max(faded(floor, least_kg))));
+            self.ceiling_kg = Some(self.ceiling_kg.map_or(most_kg, |top| most_kg.min(faded(top, most_kg))));
+        }
+        certain
+    }
+
+    /// What the last rows agree on.
+    fn certain(&self, rows: usize) -> Option<Certain> {
+        let (least_kg, most_kg) = self.agreed(rows)?;
+        if most_kg < self.floor_kg? {
+            Some(Certain::Out)
+        } else if least_kg > self.ceiling_kg? {
+            Some(Certain::In)
+        } else {
+            None
+        }
+    }
+
+    /// Bounds that so many last rows agree on, kg.
+    fn agreed(&self, rows: usize) -> Option<(f64, f64)> {
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        self.recent_kg[..rows].iter().try_fold(none, |(least, most), bounds| {
+            bounds.map(|(low, high)| (low.min(least), high.max(most)))
+        })
+    }
+
+    /// Part of the gas that is certainly gone or has certainly come, against the bound that it is beyond; 0 if none.
+    fn beyond(&self) -> f64 {
+        let (Some(now), Some(floor_kg), Some(ceiling_kg)) =
+            (self.recent_kg[0], self.floor_kg, self.ceiling_kg)
+        else {
+            return 0.0;
+        };
+        ((floor_kg - now.1) / floor_kg).max((now.0 - ceiling_kg) / ceiling_kg).max(0.0)
+    }
+
+    fn gone(&mut self, way: Certain) {
+        match way {
+            Certain::Out => self.floor_kg = None,
+            Certain::In => self.ceiling_kg = None,
+        }
+    }
+}
+
 /// Bounds of the mass since gas was last exchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct GasBounds {
@@ -69,11 +146,10 @@ pub(in crate::monitor) struct GasBounds {
     /// Extremes of the thermometers lately, K.
     low_k: f64,
     high_k: f64,
-    /// Bounds of the mass in the last rows, the latest one first, kg.
-    recent_kg: [Option<(f64, f64)>; 3],
-    /// Highest lower and lowest upper bound, kg.
-    floor_kg: Option<f64>,
-    ceiling_kg: Option<f64>,
+    walls: Ratchet,
+    /// The same by the observer's flowing member, and when it last said something, s.
+    flow: Ratchet,
+    flow_s: Option<f64>,
 }
 
 impl GasBounds {
@@ -91,49 +167,36 @@ impl GasBounds {
         if !(least_kg.is_finite() && most_kg.is_finite()) {
             return None;
         }
-        self.recent_kg = [Some((least_kg, most_kg)), self.recent_kg[0], self.recent_kg[1]];
-        let certain = self.certain();
-        if let (None, [Some(a), Some(b), Some(c)]) = (certain, self.recent_kg) {
-            let (least_kg, most_kg) = (a.0.min(b.0).min(c.0), a.1.max(b.1).max(c.1));
-            self.floor_kg = Some(self.floor_kg.map_or(least_kg, |floor_kg| floor_kg.max(least_kg)));
-            self.ceiling_kg = Some(self.ceiling_kg.map_or(most_kg, |ceiling_kg| ceiling_kg.min(most_kg)));
-        }
-        certain
+        self.walls.push((least_kg, most_kg), ROWS, 1.0)
     }
 
-    /// What the last two rows agree on.
-    fn certain(&self) -> Option<Certain> {
-        let [Some(now), Some(before), _] = self.recent_kg else { return None };
-        if now.1.max(before.1) < self.floor_kg? {
-            Some(Certain::Out)
-        } else if now.0.min(before.0) > self.ceiling_kg? {
-            Some(Certain::In)
-        } else {
-            None
-        }
+    /// Take in what the observer says of gas that may flow.
+    pub fn push_flow(&mut self, time_s: f64, flow: &Flow) -> Option<Certain> {
+        let kept =
+            self.flow_s.replace(time_s).map_or(1.0, |last_s| (-(time_s - last_s) / FLOW_FADING_S).exp());
+        let by_kg = FLOW_DEVIATIONS * flow.passing_sd_kg + FLOW_PART * flow.mass_kg;
+        self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), FLOW_ROWS, kept)
     }
 
-    /// Part of the gas that is certainly gone or has certainly come, against the bound that it is beyond; 0 if none.
+    /// Part of the gas that is certainly gone or has certainly come by the thermometers, against the bound that it is beyond; 0 if none.
     pub fn beyond(&self) -> f64 {
-        let (Some(now), Some(floor_kg), Some(ceiling_kg)) =
-            (self.recent_kg[0], self.floor_kg, self.ceiling_kg)
-        else {
-            return 0.0;
-        };
-        ((floor_kg - now.1) / floor_kg).max((now.0 - ceiling_kg) / ceiling_kg).max(0.0)
+        self.walls.beyond()
     }
 
     /// Whether a mass, kg, can be that of the present row.
     pub fn allow(&self, mass_kg: f64) -> bool {
-        self.recent_kg[0].is_none_or(|(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
+        self.walls.recent_kg[0].is_none_or(|(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
     }
 
     /// Gas has gone that way: what bounded the mass from that side does so no more. After a refill it is still no less than before.
     pub fn gone(&mut self, way: Certain) {
-        match way {
-            Certain::Out => self.floor_kg = None,
-            Certain::In => self.ceiling_kg = None,
-        }
+        self.walls.gone(way);
+        self.flow = Ratchet::default();
+    }
+
+    /// The observer has begun anew: what it said before counts no more.
+    pub fn forget_flow(&mut self) {
+        self.flow = Ratchet::default();
     }
 
     /// Extremes follow the thermometers at once outwards, and slowly inwards.
@@ -239,12 +302,51 @@ mod tests {
         assert_eq!(certain(|minute| (upwards(minute), (300.0, 300.0))), None);
     }
 
+    /// A mass of so many parts that the observer says, known to a part.
+    fn flow(mass_kg: f64, sd_kg: f64) -> Flow {
+        Flow {
+            mass_kg,
+            mass_sd_kg: 0.01,
+            passing_sd_kg: sd_kg,
+            gas_mean_k: 300.0,
+            gas_mean_sd_k: 1.0,
+            rate_kg_s: 0.0,
+            rate_sd_kg_s: 1e-3,
+        }
+    }
+
+    #[test]
+    fn what_the_observer_says_counts_beyond_what_comes_and_goes() {
+        let mut bounds = GasBounds::default();
+        let minutes = |from: u32| (from..from + 60).map(|minute| 60.0 * f64::from(minute));
+        // Errors of its size, and constant ones however large, are none.
+        let errors =
+            minutes(0).find_map(|t| bounds.push_flow(t, &flow(1.0 + 2e-3 * (t / 500.0).sin(), 2e-3)));
+        assert_eq!(errors, None);
+        // 2.5 sd and 0.3 % on either side are 1.6 %.
+        assert_eq!(bounds.push_flow(3600.0, &flow(0.987, 2e-3)), None);
+        let lost = minutes(61).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3)));
+        assert_eq!(lost, Some(Certain::Out));
+        bounds.gone(Certain::Out);
+        assert_eq!(minutes(121).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3))), None, "once");
+        assert_eq!(minutes(181).find_map(|t| bounds.push_flow(t, &flow(1.0, 2e-3))), Some(Certain::In));
+    }
+
+    #[test]
+    fn what_the_observer_learns_slowly_is_no_gas() {
+        // 3 % within a week, as a bound that fades within hours allows and one that stays would not.
+        let mut bounds = GasBounds::default();
+        let hours = (0..168).map(|hour| 3600.0 * f64::from(hour));
+        let wanders = |t: f64| flow(1.0 - 0.03 * t / 604_800.0, 1e-3);
+        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &wanders(t))), None);
+    }
+
     #[test]
     fn a_row_outside_the_gas_says_nothing() {
         let mut bounds = GasBounds::default();
         bounds.push(&seen(0.0, 100e5, (300.0, 300.0)), mass_kg);
         let before = bounds;
         assert_eq!(bounds.push(&seen(1.0, 10e5, (300.0, 300.0)), |_, _| f64::NAN), None);
-        assert_eq!((before.floor_kg, before.ceiling_kg), (bounds.floor_kg, bounds.ceiling_kg));
+        assert_eq!(before.walls, bounds.walls);
     }
 }

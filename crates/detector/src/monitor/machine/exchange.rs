@@ -4,8 +4,8 @@
 //! expects shows what the jump was. Until that is told, what is said of the gas is the shadow's.
 use serde::{Deserialize, Serialize};
 
-use super::Monitor;
 use super::disturbance::Undisturbed;
+use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Quality};
 use crate::estimator::sensor::ParameterKind;
@@ -13,6 +13,7 @@ use crate::estimator::thermal::scenario::sensor::SensorKind;
 use crate::monitor::gas::bounds::{Certain, Contact, Seen};
 use crate::monitor::gas::jump::{Cause, Examination, Innovated};
 use crate::monitor::gas::leak::Change;
+use crate::monitor::machine::judgement::MATTERS;
 use crate::monitor::{Event, EventKind, Reason};
 
 /// Change of the pressure across a gap that is no error of the observer, Pa of a fill of 200 bar, and the gap, s.
@@ -47,6 +48,18 @@ pub(super) struct Exchanged {
     pub part: f64,
 }
 
+/// An estimate of which nobody knows whether it is this or that: between the two, and no more certain than they are apart.
+fn either(one: Estimate, other: Estimate) -> Estimate {
+    let between = |(a, sd_a): (f64, f64), (b, sd_b): (f64, f64)| {
+        let half = 0.5 * (a - b);
+        (b + half, (0.5 * (sd_a * sd_a + sd_b * sd_b) + half * half).sqrt())
+    };
+    let (mass_kg, mass_sd_kg) = between((one.mass_kg, one.mass_sd_kg), (other.mass_kg, other.mass_sd_kg));
+    let (gas_mean_k, gas_mean_sd_k) =
+        between((one.gas_mean_k, one.gas_mean_sd_k), (other.gas_mean_k, other.gas_mean_sd_k));
+    Estimate { mass_kg, mass_sd_kg, gas_mean_k, gas_mean_sd_k, ..one }
+}
+
 impl Monitor {
     /// The observer's step, with what a jump of the pressure makes of it.
     pub(super) fn observe(
@@ -68,15 +81,19 @@ impl Monitor {
             self.state.rewind.taken(&self.observer, time_s, &self.usable);
             return Ok(estimate);
         }
+        if estimate.quality == Quality::Restarted
+            && let Some(before_kg) = before_kg
+        {
+            // A row that cannot be with the gas as it was: perhaps it can with other gas.
+            return self.begin_examination(time_s, 0.0, before_kg, events);
+        }
         // The rules of jumps are stated for a fill of 200 bar.
         let of_fill = self.scale.pressure.recip();
         let innovation_pa = of_fill * self.observer.innovations()[pressure].nu;
         let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa };
         let step_pa = of_fill * self.state.watches[pressure].step();
         let jump = self.state.jumps.notice(now, step_pa, self.state.pair.moved());
-        if let (Some(before_pa), Some(before_kg)) = (jump, before_kg)
-            && estimate.quality != Quality::Restarted
-        {
+        if let (Some(before_pa), Some(before_kg)) = (jump, before_kg) {
             return self.begin_examination(time_s, before_pa, before_kg, events);
         }
         if silent_s > ACROSS_S
@@ -96,12 +113,18 @@ impl Monitor {
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         let time_s = estimate.time_s;
+        if estimate.quality == Quality::Restarted {
+            self.state.bounds.forget_flow();
+        }
         let Some(seen) = self.seen(time_s) else { return Ok(estimate) };
         let contents = &self.contents;
         let mass_kg =
             |pressure_pa, temperature_k| contents.mass_kg(pressure_pa, temperature_k).unwrap_or(f64::NAN);
         let before_kg = self.masses_kg();
-        let Some(certain) = self.state.bounds.push(&seen, mass_kg) else { return Ok(estimate) };
+        let Some(certain) = self.state.bounds.push(&seen, mass_kg) else {
+            self.watch_flow(time_s, events);
+            return Ok(estimate);
+        };
         // A jump that may be the transmitter's is being examined; so much is none.
         let examined = self.state.examined.as_ref();
         let open = examined.is_some_and(|examined| !examined.flowing);
@@ -127,6 +150,39 @@ impl Monitor {
         let change_kg = if out { change_kg.min(0.0) } else { change_kg.max(0.0) };
         self.exchanged(time_s, onset_s, change_kg, out, events);
         Ok(estimate)
+    }
+
+    /// Loss and gain of gas by the observer's flowing member.
+    fn watch_flow(&mut self, time_s: f64, events: &mut Vec<Event>) {
+        if self.state.examined.is_some() || self.blindness(time_s).is_some() || !self.is_pressure_used() {
+            return;
+        }
+        let Some(flow) = self.observer.flow() else { return };
+        let Some(certain) = self.state.bounds.push_flow(time_s, &flow) else { return };
+        let out = certain == Certain::Out;
+        let held_kg = self.observer.leaks().map(|member| member.mass_kg);
+        let least_kg = MATTERS * self.filled_kg.0;
+        let change_kg = if out {
+            (flow.mass_kg - held_kg.fold(flow.mass_kg, f64::max)).min(-least_kg)
+        } else {
+            (flow.mass_kg - held_kg.fold(flow.mass_kg, f64::min)).max(least_kg)
+        };
+        self.observer.follow_the_flow();
+        self.state.rewind.begin(&self.observer);
+        self.state.jumps.forget();
+        self.state.bounds.gone(certain);
+        self.state.flowed_s = time_s;
+        if out && self.state.leak.found().is_some() {
+            return;
+        }
+        let lasting = |of: &&mut Exchanged| time_s - of.at_s < SETTLED_S && of.out == out;
+        if let Some(exchanged) = self.state.exchanged.as_mut().filter(lasting) {
+            // It goes on: one exchange, and masses that tell a leak from it.
+            exchanged.at_s = time_s;
+            exchanged.part += change_kg.abs() / self.filled_kg.0;
+            return;
+        }
+        self.exchanged(time_s, time_s, change_kg, out, events);
     }
 
     /// The present row once more, with nothing known of the gas.
@@ -183,7 +239,7 @@ impl Monitor {
 
     /// Mass by the freest member, kg.
     fn masses_kg(&self) -> Option<f64> {
-        self.observer.leaks().last().map(|free| free.mass_kg)
+        self.observer.freest_mass_kg().map(|(mass_kg, _)| mass_kg)
     }
 
     /// Go back before the present row, and take it with the mass free and, in the shadow, without the pressure.
@@ -237,7 +293,7 @@ impl Monitor {
         );
         examined.flowing = cause == Cause::Flowing;
         match cause {
-            Cause::Open => return Ok(blind),
+            Cause::Open => return Ok(either(blind, estimate)),
             Cause::Flowing => return Ok(estimate),
             Cause::Spike | Cause::Passed | Cause::Offset(_) => {
                 self.observer.restore(&self.shadow.snapshot());
@@ -278,13 +334,16 @@ impl Monitor {
 
     fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, out: bool, events: &mut Vec<Event>) {
         self.state.bounds.gone(if out { Certain::Out } else { Certain::In });
+        self.state.flowed_s = time_s;
         let kind = if out { EventKind::Discharge(-change_kg) } else { EventKind::Refill(change_kg) };
         events.push(Event::new(time_s, onset_s, kind));
         let announced = self.is_announced(onset_s);
         let part = change_kg.abs() / self.filled_kg.0;
         let certain = self.state.exchanged.filter(|of| of.at_s == time_s).map_or(0.0, |of| of.part);
         self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced, part: part.max(certain) });
-        self.state.filling.settle();
+        if part >= NO_OFFSET {
+            self.state.filling.settle();
+        }
         self.state.undisturbed = Undisturbed::default();
         if self.state.leak.begin_anew() == Change::Ended {
             events.push(Event::new(time_s, onset_s, EventKind::LeakEnded));

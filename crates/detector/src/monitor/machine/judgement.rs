@@ -1,12 +1,10 @@
 //! The verdict: what is said of the cylinder, and why it cannot be told.
-use super::{Monitor, SETTLED_S};
+use super::{EXCHANGED_S, Monitor, SETTLED_S};
 use crate::monitor::{Health, Known, KnownExchange, Reason};
 
-/// Time after an exchange of gas for which it is the verdict, s.
-const EXCHANGED_S: f64 = 1800.0;
 /// Part of the fill from which an exchange is the verdict, and pressure from which a flow is, Pa of a fill of 200 bar: what is smaller is an
 /// event, and leaves the verdict open until gas and wall have settled.
-const MATTERS: f64 = 0.01;
+pub(super) const MATTERS: f64 = 0.01;
 const FLOWS_PA: f64 = 8e5;
 /// Samples of an examination after which the jump is no spike.
 const NO_SPIKE: usize = 3;

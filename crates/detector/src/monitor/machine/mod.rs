@@ -29,7 +29,9 @@ use super::readings::wiring::WiringCheck;
 use super::roles::Roles;
 use super::settings::MonitorSettings;
 use super::state::{self, Fingerprint, StateError};
-use super::{Event, EventKind, Health, Interval, Known, Outlook, Output, Reason, Verdict, decide};
+use super::{
+    Event, EventKind, Health, Interval, Known, LeakFinding, Outlook, Output, Reason, Verdict, decide,
+};
 use crate::DetectorError;
 use crate::estimator::observer::{
     Commissioning, Estimate, Leak, Learned, Observer, Quality, Scale, Snapshot,
@@ -41,6 +43,8 @@ use crate::prognosis::{Contents, QUOTED_K, Reaction, ReactionSettings};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;
+/// Time after an exchange of gas for which it is the verdict, s.
+const EXCHANGED_S: f64 = 1800.0;
 /// Time after an exchange of gas until it has settled, s.
 const SETTLED_S: f64 = 3.0 * 3600.0;
 /// What the evidence is divided by while a thermometer is missing: the thresholds are those of all of them.
@@ -115,6 +119,8 @@ struct State {
     /// Until then nothing can be told, and why.
     look: (f64, Reason),
     exchanged: Option<Exchanged>,
+    /// When gas flowed for certain last, s.
+    flowed_s: f64,
     /// When exchanges of gas were announced: from, until, s, as rows are stamped.
     announced: Vec<(f64, f64)>,
     outlook: Option<Outlook>,
@@ -125,6 +131,11 @@ struct State {
 }
 
 impl State {
+    /// Whether gas flows, or did a while ago.
+    fn is_flowing(&self, time_s: f64) -> bool {
+        time_s - self.flowed_s < EXCHANGED_S
+    }
+
     /// Whether gas may be being exchanged, or has been and has not settled.
     fn is_exchanging(&self, time_s: f64) -> bool {
         self.examined.is_some() || self.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S)
@@ -173,13 +184,14 @@ impl Monitor {
     ) -> Result<Self, DetectorError> {
         let observer = || Observer::new(vessel, sensors, begun_with, &settings.observer);
         let contents = Contents::of(vessel);
+        let roles = Roles::of(sensors);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
         let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
         let state = State {
             intake: Intake::new(settings.intake, sensors.len())?,
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
-            pair: Pair::default(),
+            pair: wiring::pair(sensors, &roles),
             parity: Parity::default(),
             undisturbed: Undisturbed::default(),
             wiring: WiringCheck::of_all(),
@@ -202,6 +214,7 @@ impl Monitor {
             last_s: f64::NEG_INFINITY,
             look: (f64::NEG_INFINITY, Reason::Gap),
             exchanged: None,
+            flowed_s: f64::NEG_INFINITY,
             announced: Vec::new(),
             outlook: None,
             outlook_due_s: f64::NEG_INFINITY,
@@ -209,7 +222,6 @@ impl Monitor {
             cold: Tangent::at(settings.limits.coldest_k),
             warned: false,
         };
-        let roles = Roles::of(sensors);
         let scale = Scale::of(vessel, begun_with)?;
         let compared = wiring::compared(&roles, sensors);
         let twin = compared.map(|_| wiring::twin(vessel, sensors, begun_with, &settings.observer));
@@ -449,9 +461,17 @@ impl Monitor {
         let leak = self.state.leak.found().copied();
         let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
         let largest_kg_s = self.state.leak.largest_per_s() * self.filled_kg.0;
-        let free = self.leaks.last().copied().unwrap_or(slow);
-        if leak.is_some() {
-            (estimate.mass_kg, estimate.mass_sd_kg) = (free.mass_kg, free.mass_sd_kg);
+        if let (Some(_), Some(free)) = (leak, self.observer.freest_mass_kg()) {
+            (estimate.mass_kg, estimate.mass_sd_kg) = free;
+        }
+        if let Some(flow) = self.observer.flow() {
+            if self.state.is_flowing(time_s) {
+                (estimate.mass_kg, estimate.mass_sd_kg) = (flow.mass_kg, flow.mass_sd_kg);
+            }
+            // The gas of members that hold the mass is too cold as long as they hold too much.
+            if leak.is_some() || time_s - self.state.flowed_s < SETTLED_S {
+                (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (flow.gas_mean_k, flow.gas_mean_sd_k);
+            }
         }
         estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
@@ -481,10 +501,7 @@ impl Monitor {
             estimate,
             decision,
             leak,
-            leak_rate_kg_s: leak.map_or_else(
-                || Interval { value: slow.rate_kg_s.clamp(0.0, largest_kg_s), low: 0.0, high: largest_kg_s },
-                |leak| leak.rate_kg_s,
-            ),
+            leak_rate_kg_s: self.leak_rate(time_s, leak.as_ref(), &slow),
             cold_pressure_pa,
             health: self.state.health.clone(),
             outlook: self.state.outlook,
@@ -496,6 +513,23 @@ impl Monitor {
         let (panel, alarms) = panel.step(&self.settings.alarms, time_s, &inputs);
         (self.state.panel, output.alarms) = (panel, alarms);
         Ok(output)
+    }
+
+    /// Leak rate, kg/s: what masses over hours say, and where they say nothing yet, gas was just exchanged or the flow is certainly
+    /// another one, what the flow says, too.
+    fn leak_rate(&self, time_s: f64, found: Option<&LeakFinding>, slow: &Leak) -> Interval {
+        let high = self.state.leak.largest_per_s() * self.filled_kg.0;
+        let unfound = Interval { value: slow.rate_kg_s.clamp(0.0, high), low: 0.0, high };
+        let evident = found.map_or(unfound, |leak| leak.rate_kg_s);
+        let Some(flow) = self.observer.flow() else { return evident };
+        let (value, by) = (flow.rate_kg_s.max(0.0), 1.96 * flow.rate_sd_kg_s);
+        let (low, high) = ((value - by).max(0.0), value + by);
+        let known = found.is_some() || self.state.leak.probability().is_some();
+        let agrees = low <= evident.high && evident.low <= high;
+        if known && agrees && !self.state.is_flowing(time_s) {
+            return evident;
+        }
+        Interval { value, low: low.min(evident.low), high: high.max(evident.high) }
     }
 
     /// What is due by the time left; `None`: nothing is known of a leak, and no limit is reached.

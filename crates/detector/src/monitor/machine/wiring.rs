@@ -134,10 +134,12 @@ impl Monitor {
         }
         let state = &mut self.state;
         state.watches = self.sensors.iter().map(SensorWatch::new).collect();
-        (state.jumps, state.rewind, state.pair) = (JumpWatch::default(), Rewind::default(), Pair::default());
+        (state.jumps, state.rewind, state.pair) =
+            (JumpWatch::default(), Rewind::default(), pair(&self.sensors, &self.roles));
         (state.parity, state.undisturbed) = (Parity::default(), Undisturbed::default());
         state.evidence = Evidence::try_new(&self.settings.observer)?;
         state.start_s = Some(time_s);
+        state.bounds.forget_flow();
         if state.leak.begin_anew() == Change::Ended {
             events.push(Event::new(time_s, time_s, EventKind::LeakEnded));
         }
@@ -150,13 +152,16 @@ impl Monitor {
 
     /// What is known of the filling now: after an exchange of gas, the mass that the observer sees.
     fn now(&self) -> Commissioning {
-        match self.state.exchanged.and_then(|_| self.observer.leaks().last()) {
-            Some(free) => {
-                Commissioning { fill: Fill::Mass { mass_kg: free.mass_kg }, ..self.state.begun_with }
-            }
+        match self.state.exchanged.and_then(|_| self.observer.freest_mass_kg()) {
+            Some((mass_kg, _)) => Commissioning { fill: Fill::Mass { mass_kg }, ..self.state.begun_with },
             None => self.state.begun_with,
         }
     }
+}
+
+/// The two thermometers, with the coarser one's steps.
+pub(super) fn pair(sensors: &[Sensor], roles: &Roles) -> Pair {
+    Pair::new(roles.pair.into_iter().flatten().map(|of| sensors[of].resolution).fold(0.0, f64::max))
 }
 
 fn innovation(observer: &Observer, sensor: usize) -> Innovation {

@@ -3,7 +3,9 @@
 //! * *Missing*: no number in three rows in a row. A cell that is empty now and then is how loggers are, and no fault of the sensor.
 //! * *Implausible*: a number outside what the sensor can read or at the end of its range.
 //! * *Stuck*: identical readings in a row. How many are too many depends on how often a reading of this logger repeats itself:
-//!   with the share `f` of repeated readings so far, `n` in a row have the probability `f^n`; below 2e-9 it is no chance.
+//!   with the share `f` of repeated readings so far, `n` in a row have the probability `f^n`; below 2e-9 it is no chance. The share is no less
+//!   than that of a cylinder at rest in the middle of a step `q` of the sensor with the noise `sigma`, `erf(q / (2 sqrt(2) sigma))`: a
+//!   coarse sensor that stands still says nothing.
 //! * *Spikes*: readings refused by the observer's gate within the last hour.
 //! * *Shifted*: a thermometer that jumps while the other one does not, and stays there, has changed its offset; a
 //!   disturbance from outside moves both, since air and sun reach both. The jump is taken off the readings from then on.
@@ -12,6 +14,7 @@
 //!
 //! What a transmitter's jump is, [`crate::monitor::gas::jump`] tells.
 use serde::{Deserialize, Serialize};
+use statrs::function::erf::erf;
 
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
@@ -43,6 +46,8 @@ pub struct SensorWatch {
     missing: u32,
     /// Smallest change lately, K or Pa.
     step: f64,
+    /// Share of repeated readings in a cylinder at rest, by the sensor's step and noise.
+    at_rest: f64,
     /// Number of readings, at most the memory, and how many of them were repeated.
     seen: f64,
     repeated: f64,
@@ -68,6 +73,11 @@ impl SensorWatch {
             in_a_row: 0,
             missing: 0,
             step: f64::INFINITY,
+            at_rest: if sensor.resolution > 0.0 {
+                erf(sensor.resolution / (8.0_f64.sqrt() * sensor.noise_sd))
+            } else {
+                0.0
+            },
             seen: 0.0,
             repeated: 0.0,
             spiked_s: f64::NEG_INFINITY,
@@ -128,7 +138,8 @@ impl SensorWatch {
     }
 
     fn too_many(&self, in_a_row: u32) -> bool {
-        let share = ((self.repeated + 5.0) / (self.seen + 10.0)).clamp(0.05, 1.0 - 1e-6);
+        let learnt = (self.repeated + 5.0) / (self.seen + 10.0);
+        let share = learnt.max(self.at_rest).clamp(0.05, 1.0 - 1e-6);
         in_a_row >= FEWEST_IN_A_ROW && f64::from(in_a_row) * -share.ln() > NO_CHANCE
     }
 
@@ -244,6 +255,19 @@ mod tests {
             assert!(coarse.judge(f64::from(n), 185e5).is_finite(), "sample {n}");
         }
         assert!((3060..4000).any(|n| coarse.judge(f64::from(n), 185e5).is_nan()));
+    }
+
+    #[test]
+    fn a_coarse_sensor_that_has_always_moved_may_come_to_rest() {
+        let mut sensor = Sensor::typical("pressure").unwrap();
+        (sensor.resolution, sensor.noise_sd) = (0.5e5, 0.1e5);
+        let mut watch = SensorWatch::new(&sensor);
+        for n in 0..2000 {
+            assert!(watch.judge(f64::from(n), 180e5 + 0.5e5 * f64::from(n % 7)).is_finite());
+        }
+        // Noise of a fifth of a step stays within it 98.8 % of the time.
+        let stuck = (0..5000).find(|n| watch.judge(2000.0 + f64::from(*n), 180e5).is_nan());
+        assert!(stuck.is_some_and(|after| (1500..1800).contains(&after)), "{stuck:?}");
     }
 
     #[test]

@@ -13,6 +13,8 @@
 //! have been calm for five samples, within two hours. One that jumps alone by 8 K again and again, or once by more than an offset can be, reads the air; so does one
 //! that is restless while the other one is not. For an hour after its jump a thermometer is not used: if it reads the air, it shows by then.
 //!
+//! Readings in steps of `q` make up to `3 q` of the difference of two `s_2`: so much is added to what a jump is, and to what the other one may do.
+//!
 //! Noise of 0.05 K makes 0.09 K of `s_2` and 0.12 K of `s_1`; what is beside the parts is some three times that. How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
 //! and `fault_campaign` (row T2); see `book/src/measured.md`.
 use std::collections::VecDeque;
@@ -59,6 +61,8 @@ const RESTLESS_K: f64 = 0.2;
 const RESTLESS_SAMPLES: f64 = 60.0;
 const RESTLESS_PART: f64 = 0.4;
 const RESTLESS_LARGEST_K: f64 = 1.0;
+/// Steps of a reading in the difference of two second differences at most.
+const STEPS: f64 = 3.0;
 /// Interval beyond which two samples are not compared, s.
 const LONGEST_INTERVAL_S: f64 = 900.0;
 /// Samples before a jump over which a surprise of both is remembered; what both did is told over the last four.
@@ -97,6 +101,8 @@ pub struct Moved {
 /// Two thermometers on one cylinder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
+    /// What their steps may make of a second difference, K.
+    steps_k: f64,
     by_k: f64,
     together_k: f64,
     surprises_k: VecDeque<f64>,
@@ -129,6 +135,11 @@ struct Suspect {
 }
 
 impl Pair {
+    /// Of thermometers that read in steps of so much at most, K.
+    pub fn new(resolution_k: f64) -> Self {
+        Self { steps_k: STEPS * resolution_k, ..Self::default() }
+    }
+
     /// Compare nothing with the last readings.
     fn forget(&mut self) {
         self.recent.clear();
@@ -223,11 +234,12 @@ impl Pair {
         let (own_k, other_k) = (two_k[which], two_k[1 - which]);
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);
         let beside_k = |part: f64, noise_k: f64| part * own_k.abs() + noise_k;
-        let jumps = own_k.abs().min((own_k - other_k).abs()) > JUMP_K * minutes
-            && one_k[which].abs() > JUMP_AT_LEAST_K * minutes;
+        let steps_k = self.steps_k;
+        let jumps = own_k.abs().min((own_k - other_k).abs()) > JUMP_K * minutes + steps_k
+            && one_k[which].abs() > JUMP_AT_LEAST_K * minutes + steps_k;
         // Not so where one of them is no number.
-        let still =
-            other_k.abs() < beside_k(ALONE, STILL_K) && one_k[1 - which].abs() < beside_k(ALONE, STILL_ONE_K);
+        let still = other_k.abs() < beside_k(ALONE, STILL_K + steps_k)
+            && one_k[1 - which].abs() < beside_k(ALONE, STILL_ONE_K + steps_k);
         let surprised =
             largest(&self.surprises_k, 1..SURPRISE_SAMPLES + 1) > beside_k(SURPRISED, SURPRISED_K) * minutes;
         if !jumps || !still || surprised {
@@ -283,7 +295,8 @@ impl Pair {
         }
         let which = usize::from(self.restless_k[1] > self.restless_k[0]);
         let (own_k, other_k) = (self.restless_k[which], self.restless_k[1 - which]);
-        (own_k > RESTLESS_K && other_k < RESTLESS_PART * own_k).then_some(Lonely::Detached(which))
+        (own_k > RESTLESS_K + self.steps_k && other_k < RESTLESS_PART * own_k)
+            .then_some(Lonely::Detached(which))
     }
 }
 
@@ -355,7 +368,10 @@ mod tests {
     use super::*;
 
     fn course(shoulder: impl Fn(f64) -> f64, valve: impl Fn(f64) -> f64) -> Vec<Lonely> {
-        let mut pair = Pair::default();
+        told(Pair::default(), shoulder, valve)
+    }
+
+    fn told(mut pair: Pair, shoulder: impl Fn(f64) -> f64, valve: impl Fn(f64) -> f64) -> Vec<Lonely> {
         (0..600)
             .filter_map(|minute| {
                 let t = f64::from(minute);
@@ -370,6 +386,15 @@ mod tests {
         let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
         assert_eq!(course(step, |_| 280.5), [Lonely::Shifted(0, 1.0)]);
         assert_eq!(course(|_| 280.5, step), [Lonely::Shifted(1, 1.0)]);
+    }
+
+    #[test]
+    fn a_reading_in_steps_jumps_by_more_than_its_steps() {
+        // It drifts, and changes by a whole step of 0.5 K at a time.
+        let coarse = |t: f64| 0.5 * (560.0 + 0.02 * t).floor();
+        assert_eq!(told(Pair::new(0.5), coarse, |_| 280.0), []);
+        let jumps = |t: f64| coarse(t) + if t >= 120.0 { 4.0 } else { 0.0 };
+        assert_eq!(told(Pair::new(0.5), jumps, |_| 280.0), [Lonely::Shifted(0, 4.0)]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! derivatives, `x_k' = f(x) + Phi (x_k - x)` and likewise for a reading; where they are not so near that the curvature of the
 //! equations would not show ([`HARDLY`]), by their own rates and readings. A member that is far away, after a leak that it does not
 //! allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
+use super::Gates;
 use nalgebra::Dyn;
 use serde::{Deserialize, Serialize};
 
@@ -81,6 +82,12 @@ impl Together {
         Self { bank, groups: Vec::with_capacity(LANES) }
     }
 
+    /// Become as others of the same members are, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.bank.copy_from(&other.bank);
+        self.groups.clone_from(&other.groups);
+    }
+
     /// Time update over an interval, in steps no longer than the settings allow.
     pub fn predict(
         &mut self,
@@ -126,6 +133,21 @@ impl Together {
         Ok(())
     }
 
+    /// Innovation that a reading would be for the first member, and its variance.
+    pub fn foresee(
+        &mut self,
+        cylinder: &mut Cylinder,
+        shared: &mut Shared,
+        first: &Member,
+        (sensor, reading): (usize, f64),
+    ) -> Result<(f64, f64), EstimatorError> {
+        let expected = cylinder.output(sensor, &first.x, Some(&mut shared.h))?;
+        let h = &mut shared.memory.h;
+        h.iter_mut().zip(&shared.h).for_each(|(to, &h)| *to = Lanes::splat(h));
+        let r = cylinder.noise_at_caution(sensor, &first.x, first.hypothesis.caution_pa_k);
+        Ok((reading - expected, self.bank.project(h).0[0] + r))
+    }
+
     /// Take a reading of a sensor.
     pub fn update(
         &mut self,
@@ -133,7 +155,7 @@ impl Together {
         shared: &mut Shared,
         members: &mut [Member],
         (sensor, reading): (usize, f64),
-        gate: f64,
+        gates: Gates,
     ) -> Result<(), EstimatorError> {
         let h = &mut shared.h;
         let memory = &mut shared.memory;
@@ -156,7 +178,7 @@ impl Together {
             }
         }
         let s = self.bank.project(&memory.h) + r;
-        let used = self.judge(cylinder, memory, members, sensor, (nu, s, &mut r), gate);
+        let used = self.judge(cylinder, memory, members, sensor, (nu, s, &mut r), gates);
         let used_s = self.bank.update(r, used, &mut memory.gain);
         for (lane, member) in lanes_of(used, members) {
             if let Some(pass) = &mut member.pass {
@@ -180,13 +202,16 @@ impl Together {
         members: &mut [Member],
         sensor: usize,
         (nu, s, r): (Lanes, Lanes, &mut Lanes),
-        gate: f64,
+        gates: Gates,
     ) -> Some4 {
         let mut used = [false; LANES];
         let mut opened = false;
+        let most_in_a_row = cylinder.settings().rejections_in_a_row;
         for (lane, member) in members.iter_mut().enumerate() {
             let (nu, s) = (nu.0[lane], s.0[lane]);
-            let outcome = member.judge(sensor, (nu, s), gate, cylinder.settings().rejections_in_a_row);
+            let flows = member.hypothesis.is_flowing() && cylinder.reads_pressure(sensor);
+            let (gate, most_in_a_row) = if flows { (gates.flow, 0) } else { (gates.all, most_in_a_row) };
+            let outcome = member.judge(sensor, (nu, s), gate, most_in_a_row);
             used[lane] = outcome != Outcome::Rejected;
             if outcome != Outcome::Reacquired {
                 continue;

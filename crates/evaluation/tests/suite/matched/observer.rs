@@ -17,6 +17,7 @@ fn observed(member: LeakHypothesis) -> ObserverSettings {
     ObserverSettings {
         longest_step_s: 20.0,
         gate_sd: 1e6,
+        air_step: None,
         model_error: ModelError {
             correlation_s: 60.0,
             surface_k: 0.15,

@@ -187,11 +187,10 @@ impl Examination {
             return Cause::Spike;
         }
         if time_s - self.peak_s < REST_S && time_s - self.onset_s < LONGEST_S {
-            let large = self.samples > SPIKE_SAMPLES && self.error_pa().abs() > NO_OFFSET_PA;
             let lasted =
                 self.samples >= LOSS_SAMPLES || (self.samples >= 2 && time_s - self.onset_s >= LOSS_S);
-            let lost = lasted && self.error_pa() > LOSS_PA;
-            return if large || lost || self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
+            let large = self.error_pa() > LOSS_PA || self.error_pa() < -NO_OFFSET_PA;
+            return if (lasted && large) || self.grew >= FLOW_SAMPLES { Cause::Flowing } else { Cause::Open };
         }
         self.conclude()
     }
