@@ -294,6 +294,11 @@ impl Bank {
         }
     }
 
+    /// Shift a state of every member.
+    pub fn shift(&mut self, state: usize, by: f64) {
+        self.members.iter_mut().for_each(|member| member.x[state] += by);
+    }
+
     /// Free the rate of a member of everything known about it, to a standard deviation, kg/s.
     pub fn free_the_rate(&mut self, index: usize, cylinder: &Cylinder, sd_kg_s: f64) {
         self.decorrelate_and_set(index, cylinder.state_map().leak, sd_kg_s * sd_kg_s);

@@ -118,6 +118,8 @@ pub struct Observer {
     flowing: Option<usize>,
     /// The bank before the present sample.
     before: Bank,
+    /// The likeliest bank after a step of the surroundings.
+    likeliest: Bank,
     reference_x: Vec<f64>,
     /// Mass of each member at the present sample.
     masses: Vec<Moments>,
@@ -164,11 +166,18 @@ impl Observer {
             freest: freest(&settings.bank),
             flowing: flowing(&settings.bank),
             before: Bank::default(),
+            likeliest: Bank::default(),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
             anew: vec![false; settings.bank.len()],
             cylinder,
         })
+    }
+
+    /// Where the estimate begins, or has to begin again, this is known of the filling; what is stated as a part of the fill stays a part
+    /// of that which it was made with.
+    pub fn begin_with(&mut self, commissioning: &Commissioning) {
+        self.commissioning = *commissioning;
     }
 
     /// Start with what an observer of the same cylinder has learnt; before the first sample.
@@ -310,17 +319,10 @@ impl Observer {
         };
         self.before.copy_from(&self.bank);
         self.move_on(dt_s)?;
-        if !self.is_surprised(step.surprise_sd, readings)? {
+        let Some(way) = self.surprise(step.surprise_sd, readings)? else {
             return self.take_in(time_s, readings);
-        }
-        self.bank.copy_from(&self.before);
-        let states = self.cylinder.state_map();
-        self.bank.inflate(states.air, step.air_k * step.air_k);
-        if let Some(film) = states.outside {
-            self.bank.inflate(film, step.ln_outside_film * step.ln_outside_film);
-        }
-        self.move_on(dt_s)?;
-        if self.take_in(time_s, readings).is_ok() && self.is_possible() {
+        };
+        if self.after_a_step(step, way, dt_s, time_s, readings) {
             return Ok(());
         }
         self.bank.copy_from(&self.before);
@@ -328,9 +330,47 @@ impl Observer {
         self.take_in(time_s, readings)
     }
 
-    /// Whether thermometers on the surface read what the first member does not expect, one by so many standard deviations and each by half
-    /// as many, all to the same side: air and wind reach all of them, and what one does alone is its own.
-    fn is_surprised(&mut self, by_sd: f64, readings: &[f64]) -> Result<bool, EstimatorError> {
+    /// Move on and take readings after a step of the air to one side and each of the changes of the wind; the likeliest one stays. Whether
+    /// any is possible.
+    fn after_a_step(&mut self, step: AirStep, way: f64, dt_s: f64, time_s: f64, readings: &[f64]) -> bool {
+        let states = self.cylinder.state_map();
+        let (air, film) = (states.air, states.outside);
+        let mut least = f64::INFINITY;
+        for change in [0.0, 1.0, -1.0].into_iter().take(if film.is_some() { 3 } else { 1 }) {
+            self.bank.copy_from(&self.before);
+            // The air has gone that way, too: mean and variance of one half of a normal distribution.
+            self.bank.shift(air, way * std::f64::consts::FRAC_2_PI.sqrt() * step.air_k);
+            self.bank.inflate(air, (1.0 - std::f64::consts::FRAC_2_PI) * step.air_k * step.air_k);
+            if let Some(film) = film {
+                self.bank.shift(film, change * step.ln_outside_film);
+                self.bank.inflate(film, 0.25 * step.ln_outside_film * step.ln_outside_film);
+            }
+            let taken = self.move_on(dt_s).and_then(|()| self.take_in(time_s, readings));
+            if taken.is_err() || !self.is_possible() {
+                continue;
+            }
+            let unlikeliness = self.unlikeliness(readings);
+            if unlikeliness < least {
+                least = unlikeliness;
+                self.likeliest.copy_from(&self.bank);
+            }
+        }
+        if least < f64::INFINITY {
+            self.bank.copy_from(&self.likeliest);
+        }
+        least < f64::INFINITY
+    }
+
+    /// Minus twice the logarithm of the likelihood of readings for the first member, but for a constant.
+    fn unlikeliness(&self, readings: &[f64]) -> f64 {
+        let of =
+            self.bank.members[0].innovations.iter().zip(readings).filter(|(_, reading)| reading.is_finite());
+        of.map(|(innovation, _)| innovation.nu * innovation.nu / innovation.s + innovation.s.ln()).sum()
+    }
+
+    /// To which side, 1 or -1, thermometers on the surface read what the first member does not expect, one by so many standard deviations and
+    /// each by half as many: air and wind reach all of them, and what one does alone is its own.
+    fn surprise(&mut self, by_sd: f64, readings: &[f64]) -> Result<Option<f64>, EstimatorError> {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
             if matches!(self.cylinder.sensors()[sensor].kind, SensorKind::Surface { .. }) {
@@ -339,7 +379,9 @@ impl Observer {
                 (least, most) = (least.min(in_sd), most.max(in_sd));
             }
         }
-        Ok((most > by_sd && least > 0.5 * by_sd) || (least < -by_sd && most < -0.5 * by_sd))
+        let up = most > by_sd && least > 0.5 * by_sd;
+        let down = least < -by_sd && most < -0.5 * by_sd;
+        Ok(if up { Some(1.0) } else { down.then_some(-1.0) })
     }
 
     fn move_on(&mut self, dt_s: f64) -> Result<(), EstimatorError> {

@@ -285,7 +285,7 @@ impl Default for ObserverSettings {
                 LeakHypothesis::walking_mass(30.0),
                 LeakHypothesis::flowing(450.0, 900.0),
             ],
-            air_step: Some(AirStep { surprise_sd: 2.0, air_k: 20.0, ln_outside_film: 1.0 }),
+            air_step: Some(AirStep { surprise_sd: 2.0, air_k: 30.0, ln_outside_film: 1.5 }),
             flow_doubt: FlowDoubt { part: 0.2, memory_s: 1200.0 },
             free_mass_sd_kg: 4.5,
             any_leak_sd_kg_s: 20e-3 * PER_HOUR,

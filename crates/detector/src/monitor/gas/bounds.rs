@@ -11,7 +11,7 @@
 //! That is certain in the sense of the bounds: nothing is tuned, and no model of wall or gas can mislead it. It is coarse: a tenth of the
 //! gas after a tunnel, a twentieth at rest.
 //!
-//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.5 s + 0.003 m)` in place of those of the
+//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.5 s + 0.003 m_full)` in place of those of the
 //! walls; `s` is the part of its standard deviation that comes and goes. These bounds fade within hours, since what the observer has
 //! learnt of films and sensors changes from day to day.
 //!
@@ -37,7 +37,7 @@ const BEFORE_K: f64 = 10.0;
 const DEVIATIONS: f64 = 3.0;
 /// Rows in a row that have to agree on a bound.
 const ROWS: usize = 3;
-/// The same for what the observer says: rows, standard deviations, part of the mass beside them, and time constant with which its bounds
+/// The same for what the observer says: rows, standard deviations, part of the fill beside them, and time constant with which its bounds
 /// fade, s: what it has wrongly learnt changes from day to day.
 const FLOW_ROWS: usize = 1;
 const FLOW_DEVIATIONS: f64 = 2.5;
@@ -170,11 +170,11 @@ impl GasBounds {
         self.walls.push((least_kg, most_kg), ROWS, 1.0)
     }
 
-    /// Take in what the observer says of gas that may flow.
-    pub fn push_flow(&mut self, time_s: f64, flow: &Flow) -> Option<Certain> {
+    /// Take in what the observer says of gas that may flow, in a cylinder that is filled with so much, kg.
+    pub fn push_flow(&mut self, time_s: f64, flow: &Flow, full_kg: f64) -> Option<Certain> {
         let kept =
             self.flow_s.replace(time_s).map_or(1.0, |last_s| (-(time_s - last_s) / FLOW_FADING_S).exp());
-        let by_kg = FLOW_DEVIATIONS * flow.passing_sd_kg + FLOW_PART * flow.mass_kg;
+        let by_kg = FLOW_DEVIATIONS * flow.passing_sd_kg + FLOW_PART * full_kg;
         self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), FLOW_ROWS, kept)
     }
 
@@ -321,15 +321,24 @@ mod tests {
         let minutes = |from: u32| (from..from + 60).map(|minute| 60.0 * f64::from(minute));
         // Errors of its size, and constant ones however large, are none.
         let errors =
-            minutes(0).find_map(|t| bounds.push_flow(t, &flow(1.0 + 2e-3 * (t / 500.0).sin(), 2e-3)));
+            minutes(0).find_map(|t| bounds.push_flow(t, &flow(1.0 + 2e-3 * (t / 500.0).sin(), 2e-3), 1.0));
         assert_eq!(errors, None);
         // 2.5 sd and 0.3 % on either side are 1.6 %.
-        assert_eq!(bounds.push_flow(3600.0, &flow(0.987, 2e-3)), None);
-        let lost = minutes(61).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3)));
+        assert_eq!(bounds.push_flow(3600.0, &flow(0.987, 2e-3), 1.0), None);
+        let lost = minutes(61).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0));
         assert_eq!(lost, Some(Certain::Out));
         bounds.gone(Certain::Out);
-        assert_eq!(minutes(121).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3))), None, "once");
-        assert_eq!(minutes(181).find_map(|t| bounds.push_flow(t, &flow(1.0, 2e-3))), Some(Certain::In));
+        assert_eq!(minutes(121).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0)), None, "once");
+        assert_eq!(minutes(181).find_map(|t| bounds.push_flow(t, &flow(1.0, 2e-3), 1.0)), Some(Certain::In));
+    }
+
+    #[test]
+    fn what_a_transmitter_does_to_an_empty_cylinder_is_no_gas() {
+        let mut bounds = GasBounds::default();
+        let hours = (0..48).map(|hour| 3600.0 * f64::from(hour));
+        // A fifth of what is left, by day and by night: 0.2 % of the fill.
+        let empty = |t: f64| flow(0.01 + 1e-3 * (t / 13_751.0).sin(), 1e-5);
+        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &empty(t), 1.0)), None);
     }
 
     #[test]
@@ -338,7 +347,7 @@ mod tests {
         let mut bounds = GasBounds::default();
         let hours = (0..168).map(|hour| 3600.0 * f64::from(hour));
         let wanders = |t: f64| flow(1.0 - 0.03 * t / 604_800.0, 1e-3);
-        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &wanders(t))), None);
+        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &wanders(t), 1.0)), None);
     }
 
     #[test]

@@ -158,7 +158,7 @@ impl Monitor {
             return;
         }
         let Some(flow) = self.observer.flow() else { return };
-        let Some(certain) = self.state.bounds.push_flow(time_s, &flow) else { return };
+        let Some(certain) = self.state.bounds.push_flow(time_s, &flow, self.filled_kg.0) else { return };
         let out = certain == Certain::Out;
         let held_kg = self.observer.leaks().map(|member| member.mass_kg);
         let least_kg = MATTERS * self.filled_kg.0;

@@ -171,18 +171,7 @@ impl Monitor {
         settings: &MonitorSettings,
     ) -> Result<Self, DetectorError> {
         settings.validate()?;
-        Self::begun(vessel, sensors, commissioning, settings, commissioning)
-    }
-
-    /// A monitor whose observer knows something else of the filling than was stated at first.
-    fn begun(
-        vessel: &Vessel,
-        sensors: &[Sensor],
-        commissioning: &Commissioning,
-        settings: &MonitorSettings,
-        begun_with: &Commissioning,
-    ) -> Result<Self, DetectorError> {
-        let observer = || Observer::new(vessel, sensors, begun_with, &settings.observer);
+        let observer = || Observer::new(vessel, sensors, commissioning, &settings.observer);
         let contents = Contents::of(vessel);
         let roles = Roles::of(sensors);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
@@ -197,7 +186,7 @@ impl Monitor {
             wiring: WiringCheck::of_all(),
             delays: DelayLine::default(),
             swapped: false,
-            begun_with: *begun_with,
+            begun_with: *commissioning,
             filling: FillingCheck::default(),
             jumps: JumpWatch::default(),
             bounds: GasBounds::default(),
@@ -222,9 +211,9 @@ impl Monitor {
             cold: Tangent::at(settings.limits.coldest_k),
             warned: false,
         };
-        let scale = Scale::of(vessel, begun_with)?;
+        let scale = Scale::of(vessel, commissioning)?;
         let compared = wiring::compared(&roles, sensors);
-        let twin = compared.map(|_| wiring::twin(vessel, sensors, begun_with, &settings.observer));
+        let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
@@ -267,8 +256,7 @@ impl Monitor {
         bytes: &[u8],
     ) -> Result<Self, DetectorError> {
         let saved: Saved = state::decode(bytes, &fingerprint(vessel, sensors, settings))?;
-        let begun_with = saved.state.begun_with;
-        let mut monitor = Self::begun(vessel, sensors, &saved.commissioning, settings, &begun_with)?;
+        let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
         monitor.observer.try_restore(&saved.observer)?;
         match (&mut monitor.twin, &saved.twin) {
             (Some(twin), Some(saved)) => twin.try_restore(saved)?,
@@ -277,6 +265,7 @@ impl Monitor {
         if let Some(shadow) = &saved.shadow {
             monitor.shadow.try_restore(shadow)?;
         }
+        monitor.know_the_filling(saved.state.begun_with);
         monitor.state = saved.state;
         if saved.reaction != settings.reaction {
             monitor.state.outlook_due_s = f64::NEG_INFINITY;

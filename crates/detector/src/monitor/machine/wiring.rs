@@ -74,7 +74,7 @@ impl Monitor {
             return Ok(());
         };
         if self.state.exchanged.is_some_and(|of| of.at_s == time_s) {
-            self.state.begun_with = self.now();
+            self.know_the_filling(self.now());
             self.twin = Some(self.new_twin()?);
             self.state.wiring.forget_twin();
             return Ok(());
@@ -126,9 +126,10 @@ impl Monitor {
 
     /// What was learnt was learnt of wrong rows: learn again.
     fn begin_again(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
-        self.state.begun_with = self.now();
+        let now = self.now();
         self.observer =
-            Observer::new(&self.vessel, &self.sensors, &self.state.begun_with, &self.settings.observer)?;
+            Observer::new(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
+        self.know_the_filling(now);
         if self.twin.is_some() {
             self.twin = Some(self.new_twin()?);
         }
@@ -147,7 +148,16 @@ impl Monitor {
     }
 
     fn new_twin(&self) -> Result<Observer, DetectorError> {
-        twin(&self.vessel, &self.sensors, &self.state.begun_with, &self.settings.observer)
+        let mut twin = twin(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
+        twin.begin_with(&self.state.begun_with);
+        Ok(twin)
+    }
+
+    /// Wherever an estimate begins again, it begins with this.
+    pub(super) fn know_the_filling(&mut self, begun_with: Commissioning) {
+        self.state.begun_with = begun_with;
+        let observers = [&mut self.observer, &mut self.shadow].into_iter().chain(&mut self.twin);
+        observers.for_each(|observer| observer.begin_with(&begun_with));
     }
 
     /// What is known of the filling now: after an exchange of gas, the mass that the observer sees.
