@@ -7,8 +7,8 @@
 //! whose mass walks far, judges the others and takes the place of those that cannot be right (`belief`). The last one follows gas that
 //! flows within minutes, either way ([`Flow`]).
 //!
-//! Where all thermometers are surprised to one side, air and wind have changed since the row before: the interval is taken again with
-//! more uncertain surroundings at its beginning ([`AirStep`]).
+//! Where all thermometers are surprised to one side, air and wind may have changed since the row before: steps of both are tried, and the
+//! likeliest explanation of the row stays ([`AirStep`]).
 //!
 //! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
 //! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
@@ -307,7 +307,7 @@ impl Observer {
         Ok(())
     }
 
-    /// Move on and take readings; where all thermometers are surprised, after a step of the surroundings.
+    /// Move on and take readings. Where all thermometers are surprised, the surroundings may have made a step: what is likeliest stays.
     fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
             self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
@@ -322,34 +322,23 @@ impl Observer {
         let Some(way) = self.surprise(step.surprise_sd, readings)? else {
             return self.take_in(time_s, readings);
         };
-        if self.after_a_step(step, way, dt_s, time_s, readings) {
-            return Ok(());
-        }
-        self.bank.copy_from(&self.before);
-        self.move_on(dt_s)?;
-        self.take_in(time_s, readings)
-    }
-
-    /// Move on and take readings after a step of the air to one side and each of the changes of the wind; the likeliest one stays. Whether
-    /// any is possible.
-    fn after_a_step(&mut self, step: AirStep, way: f64, dt_s: f64, time_s: f64, readings: &[f64]) -> bool {
-        let states = self.cylinder.state_map();
-        let (air, film) = (states.air, states.outside);
         let mut least = f64::INFINITY;
-        for change in [0.0, 1.0, -1.0].into_iter().take(if film.is_some() { 3 } else { 1 }) {
+        let stays = self.take_in(time_s, readings);
+        if stays.is_ok() && self.is_possible() {
+            least = self.unlikeliness(readings) - 2.0 * (1.0 - step.probability).ln();
+            self.likeliest.copy_from(&self.bank);
+        }
+        let wind: &[f64] =
+            if self.cylinder.state_map().outside.is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
+        let prior = -2.0 * (step.probability / wind.len() as f64).ln();
+        for &change in wind {
             self.bank.copy_from(&self.before);
-            // The air has gone that way, too: mean and variance of one half of a normal distribution.
-            self.bank.shift(air, way * std::f64::consts::FRAC_2_PI.sqrt() * step.air_k);
-            self.bank.inflate(air, (1.0 - std::f64::consts::FRAC_2_PI) * step.air_k * step.air_k);
-            if let Some(film) = film {
-                self.bank.shift(film, change * step.ln_outside_film);
-                self.bank.inflate(film, 0.25 * step.ln_outside_film * step.ln_outside_film);
-            }
-            let taken = self.move_on(dt_s).and_then(|()| self.take_in(time_s, readings));
-            if taken.is_err() || !self.is_possible() {
+            self.step_the_surroundings(step, way, change);
+            let stepped = self.move_on(dt_s).and_then(|()| self.take_in(time_s, readings));
+            if stepped.is_err() || !self.is_possible() {
                 continue;
             }
-            let unlikeliness = self.unlikeliness(readings);
+            let unlikeliness = self.unlikeliness(readings) + prior;
             if unlikeliness < least {
                 least = unlikeliness;
                 self.likeliest.copy_from(&self.bank);
@@ -357,8 +346,21 @@ impl Observer {
         }
         if least < f64::INFINITY {
             self.bank.copy_from(&self.likeliest);
+            return Ok(());
         }
-        least < f64::INFINITY
+        stays
+    }
+
+    /// A step of the air to one side, 1 or -1, and of the wind.
+    fn step_the_surroundings(&mut self, step: AirStep, way: f64, wind: f64) {
+        let states = self.cylinder.state_map();
+        // Mean and variance of one half of a normal distribution.
+        self.bank.shift(states.air, way * std::f64::consts::FRAC_2_PI.sqrt() * step.air_k);
+        self.bank.inflate(states.air, (1.0 - std::f64::consts::FRAC_2_PI) * step.air_k * step.air_k);
+        if let Some(film) = states.outside {
+            self.bank.shift(film, wind * step.ln_outside_film);
+            self.bank.inflate(film, 0.25 * step.ln_outside_film * step.ln_outside_film);
+        }
     }
 
     /// Minus twice the logarithm of the likelihood of readings for the first member, but for a constant.

@@ -166,15 +166,18 @@ impl ModelError {
 }
 
 /// A sudden change of the surroundings, as at the mouth of a tunnel: air and wind are others within a row or two, which no walk allows
-/// that is right in between. Where a thermometer on the surface reads what the walks do not expect, the interval before the row is
-/// taken again with more uncertain surroundings at its beginning.
+/// that is right in between. Where all thermometers on the surface read to one side of what the walks expect, the interval before the row is
+/// taken again from other surroundings at its beginning: air that has gone to that side, by one half of a normal distribution, and a film that is the same, stronger
+/// or weaker. What is likeliest stays, the walks alone included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AirStep {
-    /// Innovation of a thermometer from which one is supposed, in its standard deviations.
+    /// Innovation of a thermometer from which steps are tried, in its standard deviations.
     pub surprise_sd: f64,
+    /// Prior probability of a step where they are tried, above 0 and below 1.
+    pub probability: f64,
     /// Standard deviation of the change of the air's temperature, K.
     pub air_k: f64,
-    /// Standard deviation of the change of the logarithm of the outside film.
+    /// By how much the logarithm of the outside film is larger or smaller; known to half of it.
     pub ln_outside_film: f64,
 }
 
@@ -285,7 +288,12 @@ impl Default for ObserverSettings {
                 LeakHypothesis::walking_mass(30.0),
                 LeakHypothesis::flowing(450.0, 900.0),
             ],
-            air_step: Some(AirStep { surprise_sd: 2.0, air_k: 30.0, ln_outside_film: 1.5 }),
+            air_step: Some(AirStep {
+                surprise_sd: 2.0,
+                probability: 0.0001,
+                air_k: 30.0,
+                ln_outside_film: 1.5,
+            }),
             flow_doubt: FlowDoubt { part: 0.2, memory_s: 1200.0 },
             free_mass_sd_kg: 4.5,
             any_leak_sd_kg_s: 20e-3 * PER_HOUR,
@@ -351,6 +359,8 @@ impl ObserverSettings {
         positive("flow_doubt.memory_s", self.flow_doubt.memory_s)?;
         if let Some(step) = self.air_step {
             positive("air_step.surprise_sd", step.surprise_sd)?;
+            positive("air_step.probability", step.probability)?;
+            positive("1 - air_step.probability", 1.0 - step.probability)?;
             not_negative("air_step.air_k", step.air_k)?;
             not_negative("air_step.ln_outside_film", step.ln_outside_film)?;
         }

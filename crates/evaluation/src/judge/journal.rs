@@ -57,6 +57,14 @@ pub struct Journal {
     end: u64,
 }
 
+impl Drop for Journal {
+    /// A process that is being started holds a copy of the file for a moment, and with it the lock that closing would leave.
+    fn drop(&mut self) {
+        // What cannot be unlocked is unlocked when it is closed.
+        let _ = self.file.unlock();
+    }
+}
+
 impl Journal {
     /// Open or begin the journal of a folder; what a kill left of its last line is dropped.
     ///

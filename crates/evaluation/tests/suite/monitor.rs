@@ -346,10 +346,6 @@ fn an_empty_cylinder_is_no_refill_and_never_tight() {
     let leak = TruthLeak { start_s: 1.2 * DAY_S, rate_kg_s: 5.33e-5 };
     let outputs = run(&week(2.7, Some(leak)));
     assert!(events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
-    for o in &outputs {
-        for e in &o.events {
-        }
-    }
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::Refill(_))));
     let empty = outputs.iter().filter(|output| output.estimate.time_s > 2.25 * DAY_S);
     assert!(empty.clone().count() > 300);

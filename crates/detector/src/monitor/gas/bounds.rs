@@ -11,7 +11,7 @@
 //! That is certain in the sense of the bounds: nothing is tuned, and no model of wall or gas can mislead it. It is coarse: a tenth of the
 //! gas after a tunnel, a twentieth at rest.
 //!
-//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.5 s + 0.003 m_full)` in place of those of the
+//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.2 s + 0.003 m_full)` in place of those of the
 //! walls; `s` is the part of its standard deviation that comes and goes. These bounds fade within hours, since what the observer has
 //! learnt of films and sensors changes from day to day.
 //!
@@ -40,7 +40,7 @@ const ROWS: usize = 3;
 /// The same for what the observer says: rows, standard deviations, part of the fill beside them, and time constant with which its bounds
 /// fade, s: what it has wrongly learnt changes from day to day.
 const FLOW_ROWS: usize = 1;
-const FLOW_DEVIATIONS: f64 = 2.5;
+const FLOW_DEVIATIONS: f64 = 2.2;
 const FLOW_PART: f64 = 0.003;
 const FLOW_FADING_S: f64 = 6.0 * 3600.0;
 
@@ -323,8 +323,8 @@ mod tests {
         let errors =
             minutes(0).find_map(|t| bounds.push_flow(t, &flow(1.0 + 2e-3 * (t / 500.0).sin(), 2e-3), 1.0));
         assert_eq!(errors, None);
-        // 2.5 sd and 0.3 % on either side are 1.6 %.
-        assert_eq!(bounds.push_flow(3600.0, &flow(0.987, 2e-3), 1.0), None);
+        // 2.2 sd and 0.3 % on either side are 1.5 %.
+        assert_eq!(bounds.push_flow(3600.0, &flow(0.988, 2e-3), 1.0), None);
         let lost = minutes(61).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0));
         assert_eq!(lost, Some(Certain::Out));
         bounds.gone(Certain::Out);
