@@ -325,12 +325,12 @@ impl Observer {
         let mut least = f64::INFINITY;
         let stays = self.take_in(time_s, readings);
         if stays.is_ok() && self.is_possible() {
-            least = self.unlikeliness(readings) - 2.0 * (1.0 - step.probability).ln();
+            least = self.unlikeliness(readings) + 2.0 * step.per_s * dt_s;
             self.likeliest.copy_from(&self.bank);
         }
         let wind: &[f64] =
             if self.cylinder.state_map().outside.is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
-        let prior = -2.0 * (step.probability / wind.len() as f64).ln();
+        let prior = -2.0 * (-(-step.per_s * dt_s).exp_m1() / wind.len() as f64).ln();
         for &change in wind {
             self.bank.copy_from(&self.before);
             self.step_the_surroundings(step, way, change);

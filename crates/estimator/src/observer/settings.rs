@@ -173,8 +173,8 @@ impl ModelError {
 pub struct AirStep {
     /// Innovation of a thermometer from which steps are tried, in its standard deviations.
     pub surprise_sd: f64,
-    /// Prior probability of a step where they are tried, above 0 and below 1.
-    pub probability: f64,
+    /// Mean number of steps in a second, before the readings are seen, 1/s.
+    pub per_s: f64,
     /// Standard deviation of the change of the air's temperature, K.
     pub air_k: f64,
     /// By how much the logarithm of the outside film is larger or smaller; known to half of it.
@@ -290,7 +290,7 @@ impl Default for ObserverSettings {
             ],
             air_step: Some(AirStep {
                 surprise_sd: 2.0,
-                probability: 0.0001,
+                per_s: 0.06 * PER_HOUR,
                 air_k: 30.0,
                 ln_outside_film: 1.5,
             }),
@@ -359,8 +359,7 @@ impl ObserverSettings {
         positive("flow_doubt.memory_s", self.flow_doubt.memory_s)?;
         if let Some(step) = self.air_step {
             positive("air_step.surprise_sd", step.surprise_sd)?;
-            positive("air_step.probability", step.probability)?;
-            positive("1 - air_step.probability", 1.0 - step.probability)?;
+            positive("air_step.per_s", step.per_s)?;
             not_negative("air_step.air_k", step.air_k)?;
             not_negative("air_step.ln_outside_film", step.ln_outside_film)?;
         }
