@@ -40,7 +40,7 @@ const ROWS: usize = 3;
 /// The same for what the observer says: rows, standard deviations, part of the fill beside them, and time constant with which its bounds
 /// fade, s: what it has wrongly learnt changes from day to day.
 const FLOW_ROWS: usize = 1;
-const FLOW_DEVIATIONS: f64 = 2.2;
+pub(in crate::monitor) const FLOW_DEVIATIONS: f64 = 2.2;
 const FLOW_PART: f64 = 0.003;
 const FLOW_FADING_S: f64 = 6.0 * 3600.0;
 

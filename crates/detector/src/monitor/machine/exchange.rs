@@ -1,7 +1,10 @@
 //! Jumps of the pressure: noticed, examined, and what follows from them.
 //!
 //! The observer goes back before the jump and takes it with the mass free; a shadow of it goes on without the pressure, and what it
-//! expects shows what the jump was. Until that is told, what is said of the gas is the shadow's.
+//! expects shows what the jump was. Until that is told, what is said of the gas is between both, and no more certain than they are apart.
+//! Where the observer's flowing member has the mass of before, within what the surroundings may have done to it, no gas was exchanged.
+//!
+//! Beside the jumps, bounds of the mass tell gas that flows steadily ([`crate::monitor::gas::bounds`]), by the walls and by that member.
 use serde::{Deserialize, Serialize};
 
 use super::disturbance::Undisturbed;
@@ -10,7 +13,7 @@ use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Quality};
 use crate::estimator::sensor::ParameterKind;
 use crate::estimator::thermal::scenario::sensor::SensorKind;
-use crate::monitor::gas::bounds::{Certain, Contact, Seen};
+use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
 use crate::monitor::gas::jump::{Cause, Examination, Innovated};
 use crate::monitor::gas::leak::Change;
 use crate::monitor::machine::judgement::MATTERS;
@@ -283,6 +286,8 @@ impl Monitor {
         self.usable[pressure] = reading_pa;
         let of_fill = self.scale.pressure.recip();
         let expected_pa = of_fill * self.shadow.expected_reading(pressure)?;
+        // What the surroundings may have done.
+        let flow = self.observer.flow().map(|flow| (flow.mass_kg, FLOW_DEVIATIONS * flow.passing_sd_kg));
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
         let cause = examined.examination.push(
@@ -292,6 +297,9 @@ impl Monitor {
             self.state.pair.moved(),
         );
         examined.flowing = cause == Cause::Flowing;
+        let unmoved = flow.is_some_and(|(mass_kg, by_kg)| (mass_kg - examined.before_kg).abs() < by_kg);
+        let cause =
+            if matches!(cause, Cause::Gas | Cause::Unclear) && unmoved { Cause::Passed } else { cause };
         match cause {
             Cause::Open => return Ok(either(blind, estimate)),
             Cause::Flowing => return Ok(estimate),
