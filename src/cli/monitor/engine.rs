@@ -7,6 +7,7 @@ use cylwatch::detector::monitor::{Limits, Monitor, MonitorSettings};
 use cylwatch::detector::prognosis::{Contents, QUOTED_K, ReactionSettings};
 use cylwatch::estimator::log::Quantity;
 use cylwatch::thermal::scenario::Fill;
+use cylwatch::thermal::units::PASCAL_PER_BAR;
 use cylwatch::thermal::vessel::Vessel;
 
 const YEAR_S: f64 = 365.25 * 86_400.0;
@@ -102,6 +103,14 @@ impl Engine {
             monitor = monitor.with_learned(learned);
         }
         let full_pa = contents.pressure_pa(mass_kg, QUOTED_K)?;
+        let limit_pa = options.circumstances.limit_pa;
+        if full_pa < limit_pa && !options.states_limit {
+            let [full, limit] = [full_pa, limit_pa].map(|pressure_pa| pressure_pa / PASCAL_PER_BAR);
+            messages.caution(&format!(
+                "the fill makes {full:.1} bar at 15 °C, below the usual limit of {limit:.0} bar: if this vessel has \
+                 another one, state it with --limit-bar"
+            ));
+        }
         Ok(Self { monitor, full_pa, settled: options.fill.is_settled(), first })
     }
 }

@@ -115,3 +115,15 @@ fn the_help_says_columns_and_exit_codes() {
         assert!(help.contains(words), "{words}");
     }
 }
+
+#[test]
+fn a_fill_below_the_usual_limit_asks_for_the_limit_of_the_vessel() {
+    let text = log(0..3, TIGHT);
+    let fill = ["--fill-pressure-bar", "155", "--fill-temperature-degc", "15"];
+    for (limit, asks) in [(&[][..], true), (&["--limit-bar", "120"], false)] {
+        let folder = tempdir().unwrap();
+        let outcome = monitor(folder.path(), &text, &[&fill, limit].concat());
+        let asked = outcome.stderr.contains("below the usual limit of 160 bar");
+        assert_eq!(asked, asks, "{}", outcome.stderr);
+    }
+}

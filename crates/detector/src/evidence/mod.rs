@@ -129,8 +129,7 @@ struct Members {
 impl Members {
     fn of(settings: &ObserverSettings) -> Option<Self> {
         let bank = &settings.bank;
-        let is_rated = |index: &usize| !bank[*index].rate.is_known() && !bank[*index].is_flowing();
-        let rated = || (0..bank.len()).filter(is_rated);
+        let rated = || (0..bank.len()).filter(|&index| bank[index].is_slow());
         let speed = |a: &usize, b: &usize| bank[*a].rate.per_sqrt_s.total_cmp(&bank[*b].rate.per_sqrt_s);
         let freedom = |a: &usize, b: &usize| {
             bank[*a].mass_walk_kg_per_sqrt_s.total_cmp(&bank[*b].mass_walk_kg_per_sqrt_s)

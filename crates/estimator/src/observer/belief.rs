@@ -25,6 +25,12 @@ const LEAST_PART: f64 = 0.25;
 /// Mean and variance.
 pub(super) type Moments = (f64, f64);
 
+/// Mean and variance of a mixture, weight `w` of the first part.
+pub(super) fn mixture(w: f64, one: Moments, other: Moments) -> Moments {
+    let apart = one.0 - other.0;
+    (other.0 + w * apart, w * one.1 + (1.0 - w) * other.1 + w * (1.0 - w) * apart * apart)
+}
+
 /// What the masses, kg, of a member and of the freest one say about the member.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Belief {
@@ -49,9 +55,12 @@ impl Belief {
 
     /// Mixture of what both say of one quantity.
     pub fn blend(self, member: Moments, free: Moments) -> Moments {
-        let w = self.weight();
-        let apart = member.0 - free.0;
-        (free.0 + w * apart, w * member.1 + (1.0 - w) * free.1 + w * (1.0 - w) * apart * apart)
+        mixture(self.weight(), member, free)
+    }
+
+    /// Mass as far as each of them is believed.
+    pub fn mass(member: Moments, free: Moments) -> Moments {
+        Self::of(member, free).blend(member, free)
     }
 }
 

@@ -46,6 +46,12 @@ impl Clock {
         }
     }
 
+    /// The mass of a later time, s, is the reference, and until then there is none.
+    pub fn await_reference(&mut self, due_s: f64) {
+        self.reference_mass_kg = None;
+        self.reference_due_s = due_s;
+    }
+
     /// Whether gas is exchanged at a time; ends the settling that is over.
     pub fn exchanging(&mut self, time_s: f64) -> bool {
         match self.exchange {

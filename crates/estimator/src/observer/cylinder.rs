@@ -209,7 +209,7 @@ impl Cylinder {
 
     /// Hold no member whose gas may flow.
     pub(super) fn suppose_no_flow(&mut self) {
-        self.settings.bank.retain(|member| !member.is_flowing());
+        self.settings.suppose_no_flow();
     }
 
     /// How often in a row a sensor has read the same before its next reading.

@@ -1,6 +1,8 @@
 //! What the observer says after a sample.
 use serde::{Deserialize, Serialize};
 
+use super::belief::mixture;
+
 /// How far an estimate can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quality {
@@ -55,6 +57,21 @@ pub struct Estimate {
     pub p15_pa: f64,
     /// How far to rely on it.
     pub quality: Quality,
+}
+
+impl Estimate {
+    /// Mass and gas temperature where nobody knows whether it is this or the other: between the two, and no more certain than they are apart.
+    pub fn or(self, other: Self) -> Self {
+        let between = |one: (f64, f64), other: (f64, f64)| {
+            let (mean, variance) = mixture(0.5, (one.0, one.1 * one.1), (other.0, other.1 * other.1));
+            (mean, variance.sqrt())
+        };
+        let (mass_kg, mass_sd_kg) =
+            between((self.mass_kg, self.mass_sd_kg), (other.mass_kg, other.mass_sd_kg));
+        let (gas_mean_k, gas_mean_sd_k) =
+            between((self.gas_mean_k, self.gas_mean_sd_k), (other.gas_mean_k, other.gas_mean_sd_k));
+        Self { mass_kg, mass_sd_kg, gas_mean_k, gas_mean_sd_k, ..self }
+    }
 }
 
 /// Leak rate in the eyes of one member.

@@ -38,6 +38,7 @@ mod screen;
 pub mod settings;
 mod smoother;
 pub mod states;
+mod surroundings;
 mod told;
 
 use nalgebra::DMatrix;
@@ -45,7 +46,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
 use crate::filter::StateSpace;
-use crate::sensor::{Sensor, SensorKind};
+use crate::sensor::Sensor;
 use crate::thermal::model::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use band::Band;
@@ -145,7 +146,7 @@ impl Observer {
         }
         let mut settings = Scale::of(vessel, commissioning)?.applied(settings);
         if settings.engine != Engine::Extended {
-            settings.bank.retain(|member| !member.is_flowing());
+            settings.suppose_no_flow();
         }
         let settings = &settings;
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
@@ -172,6 +173,13 @@ impl Observer {
             anew: vec![false; settings.bank.len()],
             cylinder,
         })
+    }
+
+    /// Without the member whose gas may flow; before the first sample.
+    fn without_flow(mut self) -> Self {
+        self.flowing = None;
+        self.cylinder.suppose_no_flow();
+        self
     }
 
     /// Where the estimate begins, or has to begin again, this is known of the filling; what is stated as a part of the fill stays a part
@@ -298,8 +306,7 @@ impl Observer {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
         self.bank = Bank::new(&mut self.cylinder, &mean, &covariance)?;
-        self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
-        self.clock.reference_mass_kg = None;
+        self.clock.await_reference(time_s + REFERENCE_AFTER_S);
         self.clock.pulled_until_s = time_s + SETTLE_S;
         for sensor in 0..readings.len() {
             self.cylinder.set_interval_s(sensor, f64::INFINITY);
@@ -307,83 +314,19 @@ impl Observer {
         Ok(())
     }
 
-    /// Move on and take readings. Where all thermometers are surprised, the surroundings may have made a step: what is likeliest stays.
+    /// Move on and take readings; where the surroundings may have made a step, as the likeliest [explanation](surroundings) has it.
     fn advance(&mut self, dt_s: f64, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         for (sensor, last_s) in self.clock.last_reading_s.iter().enumerate() {
             self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
         }
         let ObserverSettings { engine, air_step, .. } = *self.cylinder.settings();
-        let Some(step) = air_step.filter(|_| engine == Engine::Extended && dt_s > 0.0) else {
-            self.move_on(dt_s)?;
-            return self.take_in(time_s, readings);
-        };
-        self.before.copy_from(&self.bank);
-        self.move_on(dt_s)?;
-        let Some(way) = self.surprise(step.surprise_sd, readings)? else {
-            return self.take_in(time_s, readings);
-        };
-        let mut least = f64::INFINITY;
-        let stays = self.take_in(time_s, readings);
-        if stays.is_ok() && self.is_possible() {
-            least = self.unlikeliness(readings) + 2.0 * step.per_s * dt_s;
-            self.likeliest.copy_from(&self.bank);
-        }
-        let wind: &[f64] =
-            if self.cylinder.state_map().outside.is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
-        let prior = -2.0 * (-(-step.per_s * dt_s).exp_m1() / wind.len() as f64).ln();
-        for &change in wind {
-            self.bank.copy_from(&self.before);
-            self.step_the_surroundings(step, way, change);
-            let stepped = self.move_on(dt_s).and_then(|()| self.take_in(time_s, readings));
-            if stepped.is_err() || !self.is_possible() {
-                continue;
-            }
-            let unlikeliness = self.unlikeliness(readings) + prior;
-            if unlikeliness < least {
-                least = unlikeliness;
-                self.likeliest.copy_from(&self.bank);
+        match air_step.filter(|_| engine == Engine::Extended && dt_s > 0.0) {
+            Some(step) => self.explain(step, dt_s, time_s, readings),
+            None => {
+                self.move_on(dt_s)?;
+                self.take_in(time_s, readings)
             }
         }
-        if least < f64::INFINITY {
-            self.bank.copy_from(&self.likeliest);
-            return Ok(());
-        }
-        stays
-    }
-
-    /// A step of the air to one side, 1 or -1, and of the wind.
-    fn step_the_surroundings(&mut self, step: AirStep, way: f64, wind: f64) {
-        let states = self.cylinder.state_map();
-        // Mean and variance of one half of a normal distribution.
-        self.bank.shift(states.air, way * std::f64::consts::FRAC_2_PI.sqrt() * step.air_k);
-        self.bank.inflate(states.air, (1.0 - std::f64::consts::FRAC_2_PI) * step.air_k * step.air_k);
-        if let Some(film) = states.outside {
-            self.bank.shift(film, wind * step.ln_outside_film);
-            self.bank.inflate(film, 0.25 * step.ln_outside_film * step.ln_outside_film);
-        }
-    }
-
-    /// Minus twice the logarithm of the likelihood of readings for the first member, but for a constant.
-    fn unlikeliness(&self, readings: &[f64]) -> f64 {
-        let of =
-            self.bank.members[0].innovations.iter().zip(readings).filter(|(_, reading)| reading.is_finite());
-        of.map(|(innovation, _)| innovation.nu * innovation.nu / innovation.s + innovation.s.ln()).sum()
-    }
-
-    /// To which side, 1 or -1, thermometers on the surface read what the first member does not expect, one by so many standard deviations and
-    /// each by half as many: air and wind reach all of them, and what one does alone is its own.
-    fn surprise(&mut self, by_sd: f64, readings: &[f64]) -> Result<Option<f64>, EstimatorError> {
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
-            if matches!(self.cylinder.sensors()[sensor].kind, SensorKind::Surface { .. }) {
-                let (nu, s) = self.bank.foresee(&mut self.cylinder, &mut self.shared, (sensor, reading))?;
-                let in_sd = nu / s.sqrt();
-                (least, most) = (least.min(in_sd), most.max(in_sd));
-            }
-        }
-        let up = most > by_sd && least > 0.5 * by_sd;
-        let down = least < -by_sd && most < -0.5 * by_sd;
-        Ok(if up { Some(1.0) } else { down.then_some(-1.0) })
     }
 
     fn move_on(&mut self, dt_s: f64) -> Result<(), EstimatorError> {
@@ -436,7 +379,7 @@ impl Observer {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
         let (thermometer, freest) = (self.thermometer, self.freest);
         let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
-        let mut mass = Belief::of(first_mass, free_mass).blend(first_mass, free_mass);
+        let mut mass = Belief::mass(first_mass, free_mass);
         let mut gas = Belief::of(slow_mass, free_mass)
             .blend(bank.moments(thermometer, states.gas), bank.moments(freest, states.gas));
         gas.1 = self.band.stated_k2(gas.1, |state| bank.moments(thermometer, state).1);
@@ -445,7 +388,7 @@ impl Observer {
         if let Some(flow) = self.flow() {
             let belief = Belief::of(slow_mass, flow.mass());
             gas = belief.blend(gas, flow.gas());
-            mass = Belief::of(mass, flow.mass()).blend(mass, flow.mass());
+            mass = Belief::mass(mass, flow.mass());
             // Of a rate of days and one of minutes a mixture would tell neither.
             if belief.weight() < 0.5 {
                 leak = flow.rate();
@@ -557,7 +500,7 @@ impl Observer {
         self.bank.members.first()?;
         let free = self.bank.moments(self.freest, self.cylinder.state_map().mass);
         let (mass_kg, variance_kg2) = match self.flow() {
-            Some(flow) => Belief::of(free, flow.mass()).blend(free, flow.mass()),
+            Some(flow) => Belief::mass(free, flow.mass()),
             None => free,
         };
         Some((mass_kg, variance_kg2.sqrt()))

@@ -3,8 +3,7 @@ use super::settings::LeakHypothesis;
 
 /// The middle one of the members that have a leak rate.
 pub(crate) fn middle_slow(bank: &[LeakHypothesis]) -> Option<usize> {
-    let is_slow = |index: &usize| !bank[*index].rate.is_known() && !bank[*index].is_flowing();
-    let slow = || (0..bank.len()).filter(is_slow);
+    let slow = || (0..bank.len()).filter(|&index| bank[index].is_slow());
     slow().nth(slow().count() / 2)
 }
 

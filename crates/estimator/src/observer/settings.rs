@@ -119,6 +119,11 @@ impl LeakHypothesis {
         }
     }
 
+    /// Whether it has a leak rate that lasts.
+    pub fn is_slow(&self) -> bool {
+        !self.rate.is_known() && !self.is_flowing()
+    }
+
     /// Whether gas may flow: a rate that is soon another one.
     pub fn is_flowing(&self) -> bool {
         self.rate.memory_s.is_some()
@@ -309,6 +314,11 @@ impl ObserverSettings {
         let mut settings = Self::default();
         settings.bank.truncate(1);
         settings
+    }
+
+    /// Hold no member whose gas may flow.
+    pub fn suppose_no_flow(&mut self) {
+        self.bank.retain(|member| !member.is_flowing());
     }
 
     /// Slow motion of a sensor's parameter about its prior, in the unit of its kind.

@@ -74,8 +74,7 @@ impl Smoother {
             return Err(EstimatorError::ObserverBegun);
         }
         // Later rows tell what a rate of minutes tells, and better.
-        let mut observer = Observer { flowing: None, ..observer };
-        observer.cylinder.suppose_no_flow();
+        let observer = observer.without_flow();
         let n = observer.cylinder.states();
         let mut members = vec![0];
         for index in observer.slow.into_iter().chain([observer.freest]) {

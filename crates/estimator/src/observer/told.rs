@@ -8,14 +8,14 @@ impl Observer {
     /// leak is forgotten, since the cylinder may be another one.
     pub fn begin_exchange(&mut self) {
         self.clock.exchange = Exchange::Open;
-        self.clock.reference_mass_kg = None;
+        self.clock.await_reference(f64::INFINITY);
     }
 
     /// The exchange is over; mass and gas stay free for twenty minutes more, in which the gas comes to rest.
     pub fn end_exchange(&mut self) {
         if let Some(time_s) = self.clock.time_s {
             self.clock.exchange = Exchange::Settling { until_s: time_s + SETTLE_S };
-            self.clock.reference_due_s = time_s + SETTLE_S + REFERENCE_AFTER_S;
+            self.clock.await_reference(time_s + SETTLE_S + REFERENCE_AFTER_S);
         }
     }
 
@@ -28,9 +28,8 @@ impl Observer {
         }
         let mass = self.cylinder.state_map().mass;
         self.bank.write_moments(mass, &mut self.masses);
-        self.clock.reference_mass_kg = None;
         if let Some(time_s) = self.clock.time_s {
-            self.clock.reference_due_s = time_s + REFERENCE_AFTER_S;
+            self.clock.await_reference(time_s + REFERENCE_AFTER_S);
         }
     }
 

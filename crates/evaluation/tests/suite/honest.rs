@@ -105,10 +105,10 @@ fn without_a_thermometer_nothing_is_told_and_no_gas_is_exchanged() {
     }
 }
 
-/// The built-in winter week, whose wind switches at the mouths of tunnels. The rules call a good transmitter shifted there, and see exchanges
-/// of gas where none are: `book/src/worlds.md` has the numbers. What is said must agree all the same.
+/// The built-in winter week, whose wind switches at the mouths of tunnels: a good transmitter was called shifted for most of it, and gas exchanged
+/// four to seven times. What the monitor still lacks there stands in `book/src/worlds.md`.
 #[test]
-fn in_the_preset_week_what_is_said_agrees_and_the_rate_holds_the_truth() {
+fn in_the_preset_week_a_good_cylinder_is_mostly_tight_and_its_sensors_are_good() {
     let vessel = vessel::presets::load("nitrogen-20l").unwrap();
     let week = scenario::presets::load("railway-week").unwrap();
     let run = simulate(&vessel, &week, &SimulationSettings::default(), &mut |_| ()).unwrap();
@@ -120,6 +120,14 @@ fn in_the_preset_week_what_is_said_agrees_and_the_rate_holds_the_truth() {
     let outputs = watched_by(&mut monitor, log.rows());
     let holds = outputs.iter().filter(|output| output.leak_rate_kg_s.low == 0.0).count();
     assert!(holds * 10 >= outputs.len() * 9, "{holds} of {} intervals of the rate hold 0", outputs.len());
+    let after_a_day: Vec<&Output> = outputs.iter().filter(|of| of.estimate.time_s > DAY_S).collect();
+    let of = |verdict: Verdict| after_a_day.iter().filter(|of| of.decision.verdict == verdict).count();
+    let (tight, rows) = (of(Verdict::Tight), after_a_day.len());
+    assert!(tight * 100 >= rows * 88, "tight in {tight} of {rows} rows");
+    assert_eq!(of(Verdict::SensorFault), 0);
+    let exchange = |kind: &EventKind| matches!(kind, EventKind::Refill(_) | EventKind::Discharge(_));
+    let exchanges = outputs.iter().flat_map(|of| &of.events).filter(|event| exchange(&event.kind)).count();
+    assert!(exchanges <= 1, "{exchanges} exchanges of gas");
 }
 
 /// Time, s, gas temperature, °C, and gauge pressure, psi, of the first tank of a measured run of the course CHE260; `None` where the data are

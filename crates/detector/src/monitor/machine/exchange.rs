@@ -51,18 +51,6 @@ pub(super) struct Exchanged {
     pub part: f64,
 }
 
-/// An estimate of which nobody knows whether it is this or that: between the two, and no more certain than they are apart.
-fn either(one: Estimate, other: Estimate) -> Estimate {
-    let between = |(a, sd_a): (f64, f64), (b, sd_b): (f64, f64)| {
-        let half = 0.5 * (a - b);
-        (b + half, (0.5 * (sd_a * sd_a + sd_b * sd_b) + half * half).sqrt())
-    };
-    let (mass_kg, mass_sd_kg) = between((one.mass_kg, one.mass_sd_kg), (other.mass_kg, other.mass_sd_kg));
-    let (gas_mean_k, gas_mean_sd_k) =
-        between((one.gas_mean_k, one.gas_mean_sd_k), (other.gas_mean_k, other.gas_mean_sd_k));
-    Estimate { mass_kg, mass_sd_kg, gas_mean_k, gas_mean_sd_k, ..one }
-}
-
 impl Monitor {
     /// The observer's step, with what a jump of the pressure makes of it.
     pub(super) fn observe(
@@ -301,7 +289,7 @@ impl Monitor {
         let cause =
             if matches!(cause, Cause::Gas | Cause::Unclear) && unmoved { Cause::Passed } else { cause };
         match cause {
-            Cause::Open => return Ok(either(blind, estimate)),
+            Cause::Open => return Ok(blind.or(estimate)),
             Cause::Flowing => return Ok(estimate),
             Cause::Spike | Cause::Passed | Cause::Offset(_) => {
                 self.observer.restore(&self.shadow.snapshot());

@@ -51,6 +51,9 @@ fn after_a_told_discharge_or_refill_the_mass_is_known_again_and_the_constants_ar
             mass_kg(end_pa)
         );
         assert!(last.mass_sd_kg < 0.03, "sd {}", last.mass_sd_kg);
+        // The reference is the gas that is there now, not that of the exchange's first row.
+        let expected_pa = last.pressure_expected_pa;
+        assert!((expected_pa - end_pa).abs() < 5e4, "{expected_pa} Pa for {end_pa} Pa");
         assert_eq!(last.quality, Quality::Good);
         let after = observer.learned().unwrap();
         let k = after.names.len();

@@ -16,7 +16,7 @@ fn smoothing_is_more_certain_than_the_filter_and_ends_at_it() {
     for (engine, case) in [(Engine::Extended, Case::shock()), (Engine::Unscented, &Case::ramp().until(2.0))] {
         // The smoother has no flowing member: in a shock that takes a part in what the filter says.
         let mut settings = ObserverSettings { engine, ..ObserverSettings::default() };
-        settings.bank.retain(|member| !member.is_flowing());
+        settings.suppose_no_flow();
         let filtered = case.run(&mut observer_with(&SENSORS, &settings));
         let smoothed = smooth(case, Smoother::new(observer(engine)).unwrap());
         assert_eq!(smoothed.len(), filtered.len());

@@ -1,0 +1,120 @@
+//! What is said after a row: the gas by the member of the observer that knows it best, the decision, the outlook, the alarms.
+//!
+//! While nothing flows, the members that hold the mass are the most precise. While a leak is found, the freest one has the mass; while gas flows, and
+//! until it has come to rest, the flowing one has mass, gas temperature and rate.
+use super::{Monitor, SETTLED_S};
+use crate::DetectorError;
+use crate::estimator::observer::{Estimate, Leak};
+use crate::monitor::alarm::AlarmInputs;
+use crate::monitor::gas::outlook::{self, Basis};
+use crate::monitor::intake::Row;
+use crate::monitor::{Event, EventKind, Interval, Known, LeakFinding, Output, decide};
+use crate::prognosis::Reaction;
+
+/// Distance from the limit at which a warning of the cold may come again, as a part of it: 1 bar at 160 bar.
+const COLD_DEADBAND: f64 = 1.0 / 160.0;
+
+impl Monitor {
+    pub(super) fn output(
+        &mut self,
+        row: &Row,
+        mut estimate: Estimate,
+        mut events: Vec<Event>,
+    ) -> Result<Output, DetectorError> {
+        let time_s = row.time_s;
+        let leak = self.state.leak.found().copied();
+        let slow = self.leaks.get(1).copied().unwrap_or(self.leaks[0]);
+        let largest_kg_s = self.state.leak.largest_per_s() * self.filled_kg.0;
+        if let (Some(_), Some(free)) = (leak, self.observer.freest_mass_kg()) {
+            (estimate.mass_kg, estimate.mass_sd_kg) = free;
+        }
+        if let Some(flow) = self.observer.flow() {
+            if self.state.is_flowing(time_s) {
+                (estimate.mass_kg, estimate.mass_sd_kg) = (flow.mass_kg, flow.mass_sd_kg);
+            }
+            // The gas of members that hold the mass is too cold as long as they hold too much.
+            if leak.is_some() || time_s - self.state.flowed_s < SETTLED_S {
+                (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (flow.gas_mean_k, flow.gas_mean_sd_k);
+            }
+        }
+        estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
+        let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
+        self.warn_of_the_cold(time_s, cold_pressure_pa, &mut events);
+        let known = self.known(time_s);
+        let verdict = decide(&known).verdict;
+        let was = std::mem::replace(&mut self.state.verdict, verdict);
+        if was != verdict {
+            events.push(Event::new(time_s, time_s, EventKind::Verdict { from: was, to: verdict }));
+        }
+        let due = was != verdict
+            || time_s >= self.state.outlook_due_s
+            || self.state.outlook.is_none_or(|outlook| outlook.known != known.leak_probability.is_some());
+        if due {
+            self.state.outlook_due_s = time_s + outlook::interval_s(leak.is_some());
+            let basis = Basis {
+                mass_kg: (estimate.mass_kg, estimate.mass_sd_kg),
+                finding: leak.as_ref(),
+                largest_kg_s,
+                leak_probability: known.leak_probability,
+            };
+            self.state.outlook = Some(self.limits.outlook(&self.settings, &basis)?);
+        }
+        let decision = decide(&Known { reaction: self.due_reaction(), ..known });
+        let mut output = Output {
+            stamp_s: row.stamp_s,
+            estimate,
+            decision,
+            leak,
+            leak_rate_kg_s: self.leak_rate(time_s, leak.as_ref(), &slow),
+            cold_pressure_pa,
+            health: self.state.health.clone(),
+            outlook: self.state.outlook,
+            events,
+            alarms: Vec::new(),
+        };
+        let inputs = AlarmInputs::of(&output, self.full_pa);
+        let panel = std::mem::take(&mut self.state.panel);
+        let (panel, alarms) = panel.step(&self.settings.alarms, time_s, &inputs);
+        (self.state.panel, output.alarms) = (panel, alarms);
+        Ok(output)
+    }
+
+    /// Leak rate, kg/s: what masses over hours say, and where they say nothing yet, gas was just exchanged or the flow is certainly
+    /// another one, what the flow says, too.
+    fn leak_rate(&self, time_s: f64, found: Option<&LeakFinding>, slow: &Leak) -> Interval {
+        let high = self.state.leak.largest_per_s() * self.filled_kg.0;
+        let unfound = Interval { value: slow.rate_kg_s.clamp(0.0, high), low: 0.0, high };
+        let evident = found.map_or(unfound, |leak| leak.rate_kg_s);
+        let Some(flow) = self.observer.flow() else { return evident };
+        let (value, by) = (flow.rate_kg_s.max(0.0), 1.96 * flow.rate_sd_kg_s);
+        let (low, high) = ((value - by).max(0.0), value + by);
+        let known = found.is_some() || self.state.leak.probability().is_some();
+        let agrees = low <= evident.high && evident.low <= high;
+        if known && agrees && !self.state.is_flowing(time_s) {
+            return evident;
+        }
+        Interval { value, low: low.min(evident.low), high: high.max(evident.high) }
+    }
+
+    /// What is due by the time left; `None`: nothing is known of a leak, and no limit is reached.
+    fn due_reaction(&self) -> Option<Reaction> {
+        let outlook = self.state.outlook?;
+        let reaction = outlook.advice.reaction;
+        (outlook.known || reaction > Reaction::None).then_some(reaction)
+    }
+
+    /// Once, when the pressure of a tight cylinder will be below the limit on the coldest night.
+    fn warn_of_the_cold(&mut self, time_s: f64, cold_pressure_pa: f64, events: &mut Vec<Event>) {
+        if self.state.examined.is_some() {
+            return;
+        }
+        let limit_pa = self.settings.limits.operational_pa;
+        let below = cold_pressure_pa < limit_pa;
+        if below && !self.state.warned {
+            events.push(Event::new(time_s, time_s, EventKind::ColdNight(cold_pressure_pa)));
+        }
+        // Hysteresis: the estimate wanders.
+        let cleared_pa = (1.0 + COLD_DEADBAND) * limit_pa;
+        self.state.warned = below || (self.state.warned && cold_pressure_pa < cleared_pa);
+    }
+}
