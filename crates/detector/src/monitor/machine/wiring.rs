@@ -177,3 +177,25 @@ pub(super) fn pair(sensors: &[Sensor], roles: &Roles) -> Pair {
 fn innovation(observer: &Observer, sensor: usize) -> Innovation {
     observer.innovations().get(sensor).copied().unwrap_or(Innovation::MISSING)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimator::thermal::vessel::presets;
+    use crate::monitor::MonitorSettings;
+
+    #[test]
+    fn what_is_known_of_the_filling_outlives_the_program() {
+        let vessel = presets::load("nitrogen-20l").unwrap();
+        let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+        let (filled, settings) = (Commissioning::filled(200e5, 288.15), MonitorSettings::default());
+        let mut monitor = Monitor::new(&vessel, &sensors, &filled, &settings).unwrap();
+        monitor.know_the_filling(Commissioning { fill: Fill::Mass { mass_kg: 2.0 }, ..filled });
+        let saved = monitor.save().unwrap();
+        let mut restored = Monitor::restore(&vessel, &sensors, &settings, &saved).unwrap();
+        let mut outputs = restored.step(0.0, &[288.15, 288.15, f64::NAN]).unwrap();
+        outputs.extend(restored.finish().unwrap());
+        let mass_kg = outputs[0].estimate.mass_kg;
+        assert!((mass_kg - 2.0).abs() < 1e-6, "{mass_kg} kg");
+    }
+}
