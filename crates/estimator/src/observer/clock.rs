@@ -12,6 +12,9 @@ pub(super) struct Clock {
     /// Last reading of each sensor that was no fault, and how far a thermometer on the surface lately moved between two, K.
     pub last_reading: Vec<f64>,
     pub moved_k: f64,
+    /// How far one moved from the row before to this one, and to that, K, and the interval, s.
+    pub moves_k: [f64; 2],
+    pub interval_s: f64,
     pub reference_due_s: f64,
     pub reference_mass_kg: Option<f64>,
     pub exchange: Exchange,
@@ -37,6 +40,8 @@ impl Clock {
             last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
             last_reading: vec![f64::NAN; sensors.len()],
             moved_k: 0.0,
+            moves_k: [0.0; 2],
+            interval_s: 0.0,
             reference_due_s: f64::INFINITY,
             reference_mass_kg: None,
             exchange: Exchange::None,

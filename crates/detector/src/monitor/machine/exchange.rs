@@ -76,16 +76,17 @@ impl Monitor {
             && let Some(before_kg) = before_kg
         {
             // A row that cannot be with the gas as it was: perhaps it can with other gas.
-            return self.begin_examination(time_s, 0.0, before_kg, events);
+            return self.begin_examination(time_s, (0.0, 0.0), before_kg, events);
         }
         // The rules of jumps are stated for a fill of 200 bar.
         let of_fill = self.scale.pressure.recip();
         let innovation_pa = of_fill * self.observer.innovations()[pressure].nu;
         let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa };
         let step_pa = of_fill * self.state.watches[pressure].step();
-        let jump = self.state.jumps.notice(now, step_pa, self.state.pair.moved());
+        let doubt_pa = FLOW_DEVIATIONS * self.observer.fresh_doubt() * now.reading_pa;
+        let jump = self.state.jumps.notice(now, step_pa, doubt_pa);
         if let (Some(before_pa), Some(before_kg)) = (jump, before_kg) {
-            return self.begin_examination(time_s, before_pa, before_kg, events);
+            return self.begin_examination(time_s, (before_pa, doubt_pa), before_kg, events);
         }
         if silent_s > ACROSS_S
             && innovation_pa.abs() > ACROSS_PA
@@ -237,14 +238,14 @@ impl Monitor {
     fn begin_examination(
         &mut self,
         time_s: f64,
-        before_pa: f64,
+        (before_pa, doubt_pa): (f64, f64),
         before_kg: f64,
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back()?;
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
-        let examination = Examination::new(time_s, before_pa);
+        let examination = Examination::new(time_s, before_pa, doubt_pa);
         self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
         self.examine(estimate, events)
     }
@@ -282,7 +283,7 @@ impl Monitor {
             time_s,
             (expected_pa, of_fill * reading_pa),
             blind.gas_mean_k,
-            self.state.pair.moved(),
+            self.state.pair.moved_k(),
         );
         examined.flowing = cause == Cause::Flowing;
         let unmoved = flow.is_some_and(|(mass_kg, by_kg)| (mass_kg - examined.before_kg).abs() < by_kg);

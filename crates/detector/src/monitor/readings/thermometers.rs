@@ -65,9 +65,8 @@ const RESTLESS_LARGEST_K: f64 = 1.0;
 const STEPS: f64 = 3.0;
 /// Interval beyond which two samples are not compared, s.
 const LONGEST_INTERVAL_S: f64 = 900.0;
-/// Samples before a jump over which a surprise of both is remembered; what both did is told over the last four.
+/// Samples before a jump over which a surprise of both is remembered.
 const SURPRISE_SAMPLES: usize = 3;
-const MOVED_SAMPLES: usize = 4;
 /// What both may have done while neither can be read, K.
 const UNSEEN_K: f64 = 5.0;
 
@@ -82,31 +81,13 @@ pub enum Lonely {
     Detached(usize),
 }
 
-/// What both thermometers did at the last samples: the smaller of the two, as air, sun and rain reach both; what the one did if
-/// there is only one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Moved {
-    /// Change from the last sample to this one, K.
-    pub by_k: f64,
-    /// The same with its sign, where both went the same way, else 0, K.
-    pub together_k: f64,
-    /// Largest second difference of the last three samples, K.
-    pub surprise_k: f64,
-    /// Largest with which both got faster, of this sample and the last one, K.
-    pub quickened_k: f64,
-    /// The same of the two samples before.
-    pub quickened_before_k: f64,
-}
-
 /// Two thermometers on one cylinder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// What their steps may make of a second difference, K.
     steps_k: f64,
-    by_k: f64,
-    together_k: f64,
+    moved_k: f64,
     surprises_k: VecDeque<f64>,
-    quickened_k: VecDeque<f64>,
     /// The last samples: time, s, and readings, K.
     recent: VecDeque<(f64, [f64; 2])>,
     suspect: Option<Suspect>,
@@ -144,22 +125,12 @@ impl Pair {
     fn forget(&mut self) {
         self.recent.clear();
         self.surprises_k.clear();
-        self.quickened_k.clear();
-        (self.suspect, self.by_k, self.together_k) = (None, 0.0, 0.0);
+        (self.suspect, self.moved_k) = (None, 0.0);
     }
 
-    /// What both did at the last samples.
-    pub fn moved(&self) -> Moved {
-        let (by_k, together_k) = (self.by_k, self.together_k);
-        let surprise_k = largest(&self.surprises_k, 0..SURPRISE_SAMPLES);
-        let quickened = |samples| largest(&self.quickened_k, samples);
-        Moved {
-            by_k,
-            together_k,
-            surprise_k,
-            quickened_k: quickened(0..2),
-            quickened_before_k: quickened(2..MOVED_SAMPLES),
-        }
+    /// How far both went from the last sample to this one, K: the less far of them, as air, sun and rain reach both.
+    pub fn moved_k(&self) -> f64 {
+        self.moved_k
     }
 
     /// Take in both readings, K, NaN where there is none; not judged while other gas warms or cools the one before the other.
@@ -202,8 +173,7 @@ impl Pair {
         let mut latest = self.recent.iter().rev();
         let &(last_s, last) = latest.next()?;
         let first = [0, 1].map(|i| readings[i] - last[i]);
-        self.by_k = smaller(first);
-        self.together_k = if first[0] * first[1] > 0.0 { self.by_k.copysign(first[0]) } else { 0.0 };
+        self.moved_k = smaller(first);
         let against = |before: &(f64, [f64; 2]), samples: f64| {
             // After a short interval a slope is mostly noise.
             let along = ((time_s - last_s) / (last_s - before.0).max(f64::MIN_POSITIVE)).min(samples.recip());
@@ -211,18 +181,9 @@ impl Pair {
         };
         let one = against(latest.next()?, 1.0);
         let two = latest.next().map_or([f64::NAN; 2], |before| against(before, 2.0));
-        // What only goes on more slowly has been seen before.
-        let quickened = [0, 1].map(|i| {
-            if first[i] * (first[i] - one[i]) > 0.0 && first[i] * one[i] < 0.0 { 0.0 } else { one[i] }
-        });
-        for (kept, new, most) in [
-            (&mut self.surprises_k, smaller(one), SURPRISE_SAMPLES + 1),
-            (&mut self.quickened_k, smaller(quickened), MOVED_SAMPLES),
-        ] {
-            kept.push_back(new);
-            if kept.len() > most {
-                kept.pop_front();
-            }
+        self.surprises_k.push_back(smaller(one));
+        if self.surprises_k.len() > SURPRISE_SAMPLES + 1 {
+            self.surprises_k.pop_front();
         }
         Some([one, two])
     }

@@ -4,7 +4,6 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use crate::monitor::median::median;
-use crate::monitor::readings::thermometers::Moved;
 
 /// Samples within which a spike comes back.
 const SPIKE_SAMPLES: usize = 5;
@@ -42,8 +41,6 @@ const LEFT_OF_GAS: f64 = 0.4;
 /// How the model wanders meanwhile, Pa and Pa/K.
 const WANDER_PA: f64 = 0.04e5;
 const WANDER_PA_K: f64 = 0.05e5;
-/// The same for what the mouth of a tunnel did to the thermometers just before, Pa/K.
-const WANDER_MOUTH_PA_K: f64 = 0.1e5;
 /// Change of the thermometers from one sample to the next, K and as a multiple of that at the jump, from which the surroundings move, and
 /// fewest samples that can be judged then.
 const CALM_K: f64 = 0.15;
@@ -91,15 +88,16 @@ pub struct Examination {
     back: usize,
     /// Change of the thermometers beyond which the surroundings move, K; `None`: they have.
     calm_k: Option<f64>,
-    /// What the mouth of a tunnel did to the thermometers just before, K.
-    mouth_k: f64,
+    /// What the surroundings may have done to it just before, Pa.
+    doubt_pa: f64,
     warmest_k: f64,
     coldest_k: f64,
 }
 
 impl Examination {
-    /// Of a jump at `onset_s`, s, before which the pressure read `innovation_pa`, Pa, more than expected.
-    pub fn new(onset_s: f64, innovation_pa: f64) -> Self {
+    /// Of a jump at `onset_s`, s, before which the pressure read `innovation_pa`, Pa, more than expected, and to which the surroundings
+    /// may have done `doubt_pa`, Pa.
+    pub fn new(onset_s: f64, innovation_pa: f64, doubt_pa: f64) -> Self {
         Self {
             onset_s,
             before_pa: -innovation_pa,
@@ -111,7 +109,7 @@ impl Examination {
             grew: 0,
             back: 0,
             calm_k: Some(f64::INFINITY),
-            mouth_k: 0.0,
+            doubt_pa,
             warmest_k: f64::NEG_INFINITY,
             coldest_k: f64::INFINITY,
         }
@@ -127,18 +125,19 @@ impl Examination {
         self.recent.back().map_or(0.0, |(_, error)| *error)
     }
 
-    /// Take in what is expected without the pressure, Pa, and read, Pa, at a gas temperature, K, with what two thermometers did.
+    /// Take in what is expected without the pressure, Pa, and read, Pa, at a gas temperature, K, with how far both thermometers
+    /// moved since the sample before, K.
     pub fn push(
         &mut self,
         time_s: f64,
         (expected_pa, reading_pa): (f64, f64),
         gas_k: f64,
-        moved: Moved,
+        moved_k: f64,
     ) -> Cause {
         if !(expected_pa.is_finite() && reading_pa.is_finite()) {
             return if time_s - self.onset_s > LONGEST_S { Cause::Unclear } else { Cause::Open };
         }
-        if let Some(decided) = self.decide_before_it_moves(moved) {
+        if let Some(decided) = self.decide_before_it_moves(moved_k) {
             return decided;
         }
         let error_pa = expected_pa - reading_pa - self.before_pa;
@@ -160,12 +159,11 @@ impl Examination {
     }
 
     /// The surroundings begin to move: what is known until then, if it tells gas from transmitter.
-    fn decide_before_it_moves(&mut self, moved: Moved) -> Option<Cause> {
+    fn decide_before_it_moves(&mut self, moved_k: f64) -> Option<Cause> {
         if self.samples == 0 {
-            self.calm_k = Some(CALM_K + CALM_PER_FIRST * moved.by_k);
-            self.mouth_k = moved.quickened_k.max(moved.quickened_before_k);
+            self.calm_k = Some(CALM_K + CALM_PER_FIRST * moved_k);
         }
-        if moved.by_k <= self.calm_k? {
+        if moved_k <= self.calm_k? {
             return None;
         }
         self.calm_k = None;
@@ -199,8 +197,7 @@ impl Examination {
     fn conclude(&self) -> Cause {
         let peak_pa = self.peak_pa.abs();
         let end_pa = self.recent_median_pa(self.recent.len());
-        let wander_pa =
-            WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k) + WANDER_MOUTH_PA_K * self.mouth_k;
+        let wander_pa = WANDER_PA + WANDER_PA_K * (self.warmest_k - self.coldest_k) + self.doubt_pa;
         // Where the shadow wanders as far as that, it says nothing.
         let tellable = 2.0 * wander_pa < peak_pa;
         let left_pa = end_pa * self.peak_pa.signum();
@@ -232,12 +229,12 @@ mod tests {
 
     /// Causes of the courses `e(minutes)` until there is one.
     fn cause(error_bar: impl Fn(f64) -> f64) -> Cause {
-        let mut examination = Examination::new(0.0, 0.02e5);
+        let mut examination = Examination::new(0.0, 0.02e5, 0.0);
         for minute in 0..200 {
             let minutes = f64::from(minute);
             let expected_pa = 180e5;
             let reading_pa = expected_pa + 0.02e5 - 1e5 * error_bar(minutes);
-            match examination.push(MINUTE_S * minutes, (expected_pa, reading_pa), 280.0, Moved::default()) {
+            match examination.push(MINUTE_S * minutes, (expected_pa, reading_pa), 280.0, 0.0) {
                 Cause::Open | Cause::Flowing => {}
                 cause => return cause,
             }
@@ -289,11 +286,11 @@ mod tests {
 
     #[test]
     fn a_flow_is_told_after_three_samples() {
-        let mut examination = Examination::new(0.0, 0.0);
+        let mut examination = Examination::new(0.0, 0.0, 0.0);
         let causes: Vec<Cause> = (0..4)
             .map(|n| {
                 let read = (180e5, 180e5 - 1e5 * f64::from(n + 1));
-                examination.push(MINUTE_S * f64::from(n), read, 280.0, Moved::default())
+                examination.push(MINUTE_S * f64::from(n), read, 280.0, 0.0)
             })
             .collect();
         assert_eq!(causes, [Cause::Open, Cause::Open, Cause::Flowing, Cause::Flowing]);
@@ -306,13 +303,13 @@ mod tests {
             if minute < 9.0 { 0.76 + 0.3 * (-minute / 4.0).exp() } else { 0.3 }
         };
         let until = |tunnel_at: f64| {
-            let mut examination = Examination::new(0.0, 0.0);
+            let mut examination = Examination::new(0.0, 0.0, 0.0);
             (0..120).find_map(|minute| {
                 let minute = f64::from(minute);
-                let moved = Moved { by_k: if minute < tunnel_at { 0.05 } else { 2.0 }, ..Moved::default() };
+                let moved_k = if minute < tunnel_at { 0.05 } else { 2.0 };
                 let read = (180e5, 180e5 - 1e5 * course(minute));
                 let gas_k = 280.0 + (minute - tunnel_at).clamp(0.0, 8.0);
-                let cause = examination.push(MINUTE_S * minute, read, gas_k, moved);
+                let cause = examination.push(MINUTE_S * minute, read, gas_k, moved_k);
                 (cause != Cause::Open).then_some((minute, cause))
             })
         };

@@ -7,18 +7,10 @@
 //! `L = 0.12 bar + 4 c + 1.2 q + W`
 //!
 //! and the reading itself made most of it by its second difference: what the expectation alone did is the model's. `c` is the mean
-//! size of such changes lately, as it grows with the root of the interval, `q` the step in which the transmitter reads, and `W` what a
-//! tunnel does, by the change `E` of the expectation and by what both thermometers did, as it reaches both. In samples a minute apart:
-//!
-//! * the mouth, `M = 0.4 bar/K Q`, at most 0.9 bar, `Q` the second difference with which both got faster, of this sample and the last;
-//! * what goes on after it, `G = 0.4 |E| + max(0.2 bar/K D, 0.3 bar/K Q')`, `D` their change and `Q'` the `Q` of the two samples
-//!   before, with at most 0.5 bar;
-//! * `W = M + G` while the gas is warmed, `max(M, min(G, 0.45 bar))` while it is not.
-//!
-//! In 16 years of simulated winters no mouth of a tunnel goes beyond it. What thermometers pull the expectation to, the reading does
-//! not follow at once, but it does not go the other way either: where its second difference has the other sign than their change,
-//! `W = 0.4 |E| + 0.1 bar/K (D / 2 + max(Q, Q'))`. In longer intervals the gas has answered, and the observer's model has errors of its
-//! own: `W = 0.4 |E| + 0.4 bar/K (D / 2 + S)`, `S` the largest second difference of three samples.
+//! size of such changes lately, as it grows with the root of the interval, `q` the step in which the transmitter reads, and `W` what the
+//! surroundings may have done: what the observer does not know of the gas temperature and cannot have known in the row before
+//! ([`Observer::fresh_doubt`](crate::estimator::observer::Observer::fresh_doubt)), `W = 2.2 p c_T (s + (1 - exp(-dt / tau)) e) / T`. In a tunnel it
+//! takes more to be a jump; gas that flows there is told by the observer's flowing member.
 //!
 //! # Examined
 //! A second observer goes on from before the jump without the pressure, and `e(t)`, what it expects less what is read, less the same
@@ -36,7 +28,7 @@
 //!
 //! No transmitter's offset jumps by more than a tenth of the largest filling: beyond that it is gas. The part that comes back is known
 //! no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of the gas temperature and
-//! `0.1 bar/K` of what the mouth of a tunnel did to the thermometers just before. Where that is half of the jump, nothing has passed:
+//! the `W` of the jump. Where that is half of the jump, nothing has passed:
 //! what has jumped and not jumped back is gas or an offset. What lies within it of the division remains unclear when gas may be gone.
 //! Of a gain so small that no filling stops there the transmitter is the safe assumption: it leaves the mass as low as it was.
 //!
