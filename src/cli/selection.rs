@@ -83,7 +83,7 @@ impl Selection {
         known: &[&str],
         messages: &Messages,
     ) -> anyhow::Result<Self> {
-        let mut selection = Self { sensors: Vec::new(), channels: Vec::new() };
+        let mut found = Vec::new();
         let mut left_out = Vec::new();
         let others = |channel: &Channel| !known.contains(&channel.name.as_str());
         // A thermometer in the gas stands in where there is none outside; beside others it is what a simulation knows.
@@ -95,14 +95,11 @@ impl Selection {
         });
         for (index, channel) in channels.iter().enumerate().filter(|(_, channel)| others(channel)) {
             match typical(channel, vessel, outside) {
-                Ok(sensor) => {
-                    selection.sensors.push(sensor);
-                    selection.channels.push(index);
-                }
+                Ok(sensor) => found.push((sensor, index)),
                 Err(reason) => left_out.push(format!("{} ({reason})", channel.name)),
             }
         }
-        if selection.sensors.is_empty() {
+        if found.is_empty() {
             let reasons = if left_out.is_empty() { known.join(", ") } else { left_out.join(", ") };
             bail!(
                 "no column can be used as a reading of the cylinder: {reasons}; name sensors with --sensors"
@@ -111,7 +108,10 @@ impl Selection {
         if !left_out.is_empty() {
             messages.caution(&format!("not used: {}", left_out.join(", ")));
         }
-        Ok(selection)
+        // The order of the columns means nothing: a log that has another one goes on from the same state.
+        found.sort_by_key(|(sensor, _)| (sensor.quantity() == Quantity::Pressure, sensor.name.clone()));
+        let (sensors, channels) = found.into_iter().unzip();
+        Ok(Self { sensors, channels })
     }
 
     /// Names of the sensors.

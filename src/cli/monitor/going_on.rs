@@ -4,8 +4,6 @@ use super::*;
 use anyhow::anyhow;
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::report::Input;
-use cylwatch::report::monitor::Circumstances;
-use cylwatch::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use cylwatch::thermal::vessel::{Vessel, VesselSpec};
 use jiff::Timestamp;
 
@@ -57,17 +55,13 @@ impl Beginning {
         origin.map(str::parse).transpose().context("the state has no date of RFC 3339")
     }
 
-    /// What a state of this run belongs to.
+    /// What a state of this run belongs to. Limits, the coldest night and how rare a false alarm is to be are taken over as they are now.
     pub fn identity(&self, options: &Options, sensors: &[Sensor]) -> Identity {
         let names: Vec<&str> = sensors.iter().map(|sensor| sensor.name.as_str()).collect();
-        let Circumstances { limit_pa, coldest_k, .. } = options.circumstances;
         let value = |value: f64| cylwatch::report::number(value, 9);
         let mut entries = vec![
             ("vessel", format!("{} ({})", self.vessel.name, self.fingerprint)),
             ("sensors", format!("{} ({})", names.join(", "), short_hash(&format!("{sensors:?}")))),
-            ("a limit of", format!("{} bar", value(limit_pa / PASCAL_PER_BAR))),
-            ("a coldest temperature of", format!("{} degC", value(coldest_k - ZERO_CELSIUS_K))),
-            ("a time between false alarms of", format!("{} years", value(options.false_alarm_years))),
             ("a lateness of", format!("{} s", value(options.lateness_s))),
             ("a step of", format!("{} s", value(options.step_s))),
         ];

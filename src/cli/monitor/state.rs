@@ -170,7 +170,7 @@ mod tests {
 
     fn state() -> State {
         State {
-            identity: Identity(vec![("vessel".into(), "a".into()), ("a limit of".into(), "160 bar".into())]),
+            identity: Identity(vec![("vessel".into(), "a".into()), ("a lateness of".into(), "0 s".into())]),
             origin: None,
             last_stamp_s: f64::NAN,
             log_starts_s: vec![0.0],
@@ -227,9 +227,9 @@ mod tests {
     fn the_first_thing_that_differs_is_named_with_both_values() {
         let mut now = state().identity;
         assert!(state().check(&now).is_ok());
-        now.0[1].1 = "150 bar".into();
+        now.0[1].1 = "60 s".into();
         let reason = state().check(&now).unwrap_err().to_string();
-        assert_eq!(reason, "it was made with a limit of 160 bar, and this run has 150 bar");
+        assert_eq!(reason, "it was made with a lateness of 0 s, and this run has 60 s");
         now.0[1].0 = "another".into();
         assert!(state().check(&now).unwrap_err().to_string().contains("another none"));
     }

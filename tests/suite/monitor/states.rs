@@ -174,9 +174,6 @@ fn a_state_of_another_vessel_other_sensors_or_settings_is_refused_by_what_differ
     let refused = |options: &[&str], words: &[&str]| {
         refusal(monitor(folder.path(), &next, &[STATE, options].concat()), words);
     };
-    refused(&["--limit-bar", "150"], &["made with a limit of 160 bar, and this run has 150 bar"]);
-    refused(&["--coldest-degc", "-40"], &["-25 degC", "-40 degC"]);
-    refused(&["--false-alarm-years", "100"], &["10 years", "100 years"]);
     refused(&["--lateness-s", "60"], &["a lateness of 0 s", "60 s"]);
     refused(&["--fill-mass-kg", "4"], &["the fill --settled", "--fill-mass-kg 4"]);
     let vessel = ["monitor", "nitrogen-20l-paper", "-", "--settled", "--state", "c.state"];
@@ -191,6 +188,20 @@ fn a_state_of_another_vessel_other_sensors_or_settings_is_refused_by_what_differ
     let next = log(130..140, TIGHT);
     let outcome = monitor(folder.path(), &next, &[STATE, &["--next-service-d", "3"]].concat());
     assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
+}
+
+#[test]
+fn a_state_outlives_other_limits_and_another_order_of_the_columns() {
+    let (folder, _) = with_state();
+    let others = ["--limit-bar", "150", "--coldest-degc", "-40", "--false-alarm-years", "100"];
+    let turned = |line: &str| line.trim().split(',').rev().collect::<Vec<_>>().join(",") + "\n";
+    let next: String = log(120..130, TIGHT).lines().map(turned).collect();
+    let on = monitor(folder.path(), &next, &[STATE, &others].concat());
+    assert_eq!(on.code, Some(3), "{}", on.stderr);
+    // As if it had been so from the beginning.
+    let whole = monitor(tempdir().unwrap().path(), &log(0..130, TIGHT), &others);
+    let whole = data(&whole.stdout);
+    assert_eq!(data(&on.stdout), whole[whole.len() - 10..]);
 }
 
 #[test]

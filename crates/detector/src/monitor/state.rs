@@ -4,7 +4,7 @@
 //! magic 8 | version u32 | fingerprint 32 | length u64 | payload | SHA-256 of all before 32        little endian
 //! ```
 //!
-//! The fingerprint is the SHA-256 of vessel, sensors and settings: a state goes on only with the same. The payload is
+//! The fingerprint is the SHA-256 of vessel, sensors and what the settings say of the rows: a state goes on only with the same. The payload is
 //! the state in postcard's format, which keeps every bit of every number.
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 const MAGIC: &[u8; 8] = b"cylwatch";
 /// Version of the payload: one more with every change of what it holds.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 const HEAD: usize = 8 + 4 + 32 + 8;
 const SUM: usize = 32;
 

@@ -23,6 +23,13 @@ impl Tangent {
         Self { temperature_k, mass_kg: f64::NAN, pressure_pa: f64::NAN, slope_pa_kg: f64::NAN }
     }
 
+    /// From now on at that temperature, K.
+    pub fn move_to(&mut self, temperature_k: f64) {
+        if temperature_k != self.temperature_k {
+            *self = Self::at(temperature_k);
+        }
+    }
+
     /// Pressure of a mass, Pa; the error of the tangent is below 1e-6 of it.
     ///
     /// # Errors

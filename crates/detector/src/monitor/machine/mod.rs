@@ -38,7 +38,7 @@ use crate::estimator::observer::{
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Thresholds};
-use crate::prognosis::{Contents, QUOTED_K, ReactionSettings};
+use crate::prognosis::{Contents, QUOTED_K};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;
@@ -143,17 +143,31 @@ impl State {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     commissioning: Commissioning,
-    reaction: ReactionSettings,
+    held_against: Fingerprint,
     state: State,
     observer: Snapshot,
     twin: Option<Snapshot>,
     shadow: Option<Snapshot>,
 }
 
-/// What a state belongs to. When a reaction is due does not belong to it: the next service comes nearer every day.
+/// What a state belongs to: vessel, sensors, and settings that decide what is kept of the rows. What the gas is held against does not belong
+/// to it: limits, alarms, how rare a false one is to be, when a reaction is due.
 fn fingerprint(vessel: &Vessel, sensors: &[Sensor], settings: &MonitorSettings) -> Fingerprint {
-    let settings = MonitorSettings { reaction: ReactionSettings::default(), ..settings.clone() };
+    let any = MonitorSettings::default();
+    let settings = MonitorSettings {
+        false_alarm_interval_s: any.false_alarm_interval_s,
+        limits: any.limits,
+        loss: any.loss,
+        reaction: any.reaction,
+        alarms: any.alarms,
+        ..settings.clone()
+    };
     state::fingerprint(&(vessel, sensors, settings))
+}
+
+/// What an outlook rests on beside the state.
+fn held_against(settings: &MonitorSettings) -> Fingerprint {
+    state::fingerprint(&(settings.limits, settings.loss, settings.reaction))
 }
 
 impl Monitor {
@@ -241,7 +255,8 @@ impl Monitor {
         self
     }
 
-    /// A monitor that goes on from saved bytes, with the commissioning of then. Other settings of the reaction are taken over.
+    /// A monitor that goes on from saved bytes, with the commissioning of then. Other limits, alarms, reactions and another rarity of false
+    /// alarms are taken over from this row on.
     ///
     /// # Errors
     /// The bytes are no state of this vessel, these sensors and settings, of this version, whole and unchanged; or as
@@ -264,7 +279,8 @@ impl Monitor {
         }
         monitor.know_the_filling(saved.state.begun_with);
         monitor.state = saved.state;
-        if saved.reaction != settings.reaction {
+        monitor.state.cold.move_to(settings.limits.coldest_k);
+        if saved.held_against != held_against(settings) {
             monitor.state.outlook_due_s = f64::NEG_INFINITY;
         }
         Ok(monitor)
@@ -278,7 +294,7 @@ impl Monitor {
         let examined = self.state.examined.is_some();
         let saved = Saved {
             commissioning: self.commissioning,
-            reaction: self.settings.reaction,
+            held_against: held_against(&self.settings),
             state: self.state.clone(),
             observer: self.observer.snapshot(),
             twin: self.twin.as_ref().map(Observer::snapshot),
