@@ -109,12 +109,22 @@ impl<C: Choices> Given<C> {
 
     /// SI value of an option; given twice, in two units, it is refused.
     pub fn si(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
+        self.once(option, dimension)?.map(Quantity::si).transpose()
+    }
+
+    /// The same of a quantity that may be 0.
+    pub fn si_from_zero(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
+        let given = self.once(option, dimension)?;
+        given.map(|given| if given.value == 0.0 { Ok(0.0) } else { given.si() }).transpose()
+    }
+
+    fn once(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<&Quantity>> {
         let mut given = self.of(option, dimension);
         match (given.next(), given.next()) {
             (Some(first), Some(second)) => {
                 bail!("{} says again what {} says: keep one", second.name, first.name)
             }
-            (first, _) => first.map(Quantity::si).transpose(),
+            (first, _) => Ok(first),
         }
     }
 }

@@ -62,14 +62,15 @@ impl Options {
             bail!("--false-alarm-years = {years} must be above 0 and at most {LONGEST_YEARS}");
         }
         let time = |option: &str| given.si(option, Dimension::Time);
+        let from_zero = |option: &str| given.si_from_zero(option, Dimension::Time);
         let save_every_s = time("save-every")?.unwrap_or(600.0).min(365.0 * DAY_S);
         Ok(Self {
             source: fill.source()?,
             format: arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref())),
             circumstances: circumstances(&given)?,
             states_limit: given.si("limit", Dimension::Pressure)?.is_some(),
-            lateness_s: time("lateness")?.unwrap_or(0.0),
-            step_s: time("step")?.unwrap_or_else(|| IntakeSettings::default().step_s),
+            lateness_s: from_zero("lateness")?.unwrap_or(0.0),
+            step_s: from_zero("step")?.unwrap_or_else(|| IntakeSettings::default().step_s),
             save_every: Duration::from_secs_f64(save_every_s),
             false_alarm_years: years,
             cold_start: arguments.cold_start,

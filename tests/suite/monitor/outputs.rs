@@ -127,3 +127,12 @@ fn a_fill_below_the_usual_limit_asks_for_the_limit_of_the_vessel() {
         assert_eq!(asked, asks, "{}", outcome.stderr);
     }
 }
+
+#[test]
+fn a_step_of_none_tells_each_row_by_itself() {
+    let rows: String = (0..7).map(|k| format!("{},15.0{k},15.0{k},200.0{k}\n", 10 * k)).collect();
+    let text = format!("{HEADER}{rows}");
+    let told = |options: &[&str]| data(&monitor(tempdir().unwrap().path(), &text, options).stdout).len();
+    assert_eq!(told(&["--step-s", "0", "--lateness-s", "0"]), 7);
+    assert_eq!(told(&[]), 2);
+}
