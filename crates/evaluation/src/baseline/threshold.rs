@@ -4,7 +4,7 @@
 //! that the threshold has been exceeded for so long. Loss rate is the slope of `e` ([`Trend`]), time to the
 //! limit `(p - p_limit)/slope`.
 //!
-//! The paper says neither threshold nor times: the holding time is 10 min, and who judges finds the threshold.
+//! The paper says neither threshold nor times: the holding time is 10 min here, and the threshold is found on cylinders without a leak.
 use super::{Expectation, Filling, GasTemperature, PressureError, Reading, Sustained, Trend};
 
 /// How long the threshold must be exceeded where nothing else is said, s.
