@@ -8,9 +8,9 @@
 
 use std::collections::VecDeque;
 
-use cylwatch::detector::baseline::{Reading, Threshold};
-use cylwatch::detector::statistic::Statistic;
-use cylwatch::evaluation::performance::bench::{Plan, bench, of_statistic};
+use cylwatch::evaluation::EvaluationError;
+use cylwatch::evaluation::baseline::Threshold;
+use cylwatch::evaluation::performance::bench::{Candidate, Contender, Plan, Readings, bench};
 use cylwatch::report::aligned;
 
 const DAY_S: f64 = 86_400.0;
@@ -21,36 +21,26 @@ const BAR_H: f64 = 1e5 / 3600.0;
 #[derive(Clone, Debug, Default)]
 pub struct DayBefore {
     /// Readings of the last day, oldest first.
-    past: VecDeque<Reading>,
+    past: VecDeque<Readings>,
     missing_pa: f64,
 }
 
 /// Slope of a tight cylinder of 200 bar at 15 °C, Pa/K.
 const SLOPE_PA_K: f64 = 0.992e5;
 
-impl Statistic for DayBefore {
-    type Sample = Reading;
-
-    fn update(&mut self, now: Reading) -> f64 {
-        // A sample that is none leaves the state as it is.
+impl Contender for DayBefore {
+    fn step(&mut self, now: &Readings) -> Result<f64, EvaluationError> {
+        // A missing reading leaves the state as it is.
         if !(now.pressure_pa.is_finite() && now.shoulder_k.is_finite()) {
-            return self.missing_pa;
+            return Ok(self.missing_pa);
         }
-        self.past.push_back(now);
+        self.past.push_back(*now);
         while let Some(&before) = self.past.front().filter(|before| now.time_s - before.time_s >= DAY_S) {
             let expected_pa = before.pressure_pa + SLOPE_PA_K * (now.shoulder_k - before.shoulder_k);
             self.missing_pa = expected_pa - now.pressure_pa;
             self.past.pop_front();
         }
-        self.missing_pa
-    }
-
-    fn value(&self) -> f64 {
-        self.missing_pa
-    }
-
-    fn reset(&mut self) {
-        *self = Self::default();
+        Ok(self.missing_pa)
     }
 }
 // ANCHOR_END: detector
@@ -80,8 +70,8 @@ pub fn run() -> anyhow::Result<Vec<Judged>> {
         ..Plan::default()
     };
     let candidates = [
-        of_statistic("day before", "Pa", DayBefore::default()),
-        of_statistic("paper", "Pa", Threshold::published(Plan::FILLING)?),
+        Candidate::new("day before", "Pa", || Ok(DayBefore::default())),
+        Candidate::new("paper", "Pa", || Ok(Threshold::published(Plan::FILLING))),
     ];
     let outcome = bench(&plan, &candidates, &|_progress| ())?;
     let judged = outcome.judged.iter().map(|judged| Judged {

@@ -204,7 +204,7 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
         .collect::<Result<Vec<_>, _>>()?;
     Ok(Reproduction {
         section_2: Section2::evaluated()?,
-        scheme: scheme::run(seed)?,
+        scheme: scheme::run(seed),
         cylinders: settings.cylinders,
         scenarios,
         closed,

@@ -59,7 +59,7 @@ impl Reproduction {
     /// The schemes of figures 4, 5 and 7, as they run.
     fn schemes(&self) -> Picture {
         let schemes = [Scheme::figure_4(), Scheme::figure_5(), Scheme::figure_7(self.seed)];
-        let parts = schemes.into_iter().flatten().map(|scheme| Part::Diagram(scheme.diagram())).collect();
+        let parts = schemes.iter().map(|scheme| Part::Diagram(scheme.diagram())).collect();
         Picture::Sheet(Sheet { title: "Figures 4, 5 and 7: the data's way".into(), parts })
     }
 

@@ -9,16 +9,14 @@
 //! What seems to be *missing* is the expected pressure less the one that was read; of the observer the pressure at 15 °C at the end of
 //! the rest less the present one.
 use super::ReproduceError;
-use crate::detector::baseline::{
-    Expectation, Filling, GasModel, GasTemperature, Law, Loss, PressureError, Reading, Threshold,
-    ThresholdSettings,
-};
 use crate::detector::monitor::intake::IntakeSettings;
 use crate::detector::monitor::{LeakFinding, Monitor, MonitorSettings};
-use crate::detector::statistic::Statistic;
 use crate::estimator::log::Log;
 use crate::estimator::observer::Commissioning;
 use crate::estimator::sensor::Sensor;
+use crate::evaluation::baseline::{
+    Expectation, Filling, GasTemperature, Loss, PressureError, Reading, Threshold,
+};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Vessel;
 
@@ -98,21 +96,18 @@ impl Watch {
             let found = plan.sensors.iter().position(|sensor| sensor.name == name);
             found.ok_or(ReproduceError::Sensor { name })
         };
-        let model = GasModel::FirstOrder { gain: 1.0, pole_per_s: plan.pole_per_s, initial_degc: None };
-        let refitted = || -> Result<PressureError, ReproduceError> {
-            let real_gas = Expectation::try_new(Law::RealGas { gas: "nitrogen".into() }, FULL)?;
-            Ok(PressureError::try_new(real_gas, model)?)
-        };
-        let zeroed = ThresholdSettings { zero_s: plan.rest_s, ..ThresholdSettings::default() };
+        let gas = GasTemperature::with_pole(plan.pole_per_s);
+        let refitted = PressureError::new(Expectation::real_gas("nitrogen", FULL)?, gas);
+        let zeroed = Threshold::new(refitted.clone()).zeroed_over(plan.rest_s);
         let each = IntakeSettings { step_s: 0.0, ..IntakeSettings::default() };
         let settings = MonitorSettings { intake: each, ..MonitorSettings::default() };
         let filled = Commissioning::filled(FULL.pressure_pa, FULL.temperature_k);
         Ok(Self {
             shoulder: of("shoulder")?,
             pressure: of("pressure")?,
-            gas: [GasTemperature::try_new(GasModel::PUBLISHED)?, GasTemperature::try_new(model)?],
-            errors: [PressureError::published(FULL)?, refitted()?],
-            thresholds: [Threshold::published(FULL)?, Threshold::try_new(refitted()?, zeroed)?],
+            gas: [GasTemperature::PUBLISHED, gas],
+            errors: [PressureError::published(FULL), refitted],
+            thresholds: [Threshold::published(FULL), zeroed],
             monitor: Monitor::new(plan.nominal, plan.sensors, &filled, &settings)?,
             settled_bar: Vec::new(),
         })

@@ -172,20 +172,21 @@ fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or
 
 #[test]
 fn a_detector_of_ones_own_is_judged_beside_the_papers_and_finds_a_large_leak() {
-    use cylwatch::detector::baseline::Reading;
-    use cylwatch::detector::statistic::Statistic;
+    use cylwatch::evaluation::performance::bench::{Contender, Readings};
     // A tight cylinder that warms by 10 K from one day to the next misses nothing; one that has lost a bar misses it.
-    let mut statistic = own_detector::DayBefore::default();
-    let reading = |time_s, shoulder_k, pressure_bar: f64| Reading {
-        time_s,
-        shoulder_k,
-        pressure_pa: 1e5 * pressure_bar,
+    let missing_pa = |shoulder_k, pressure_bar: f64| {
+        let mut detector = own_detector::DayBefore::default();
+        let readings = |time_s, shoulder_k, pressure_bar: f64| Readings {
+            time_s,
+            shoulder_k,
+            valve_k: f64::NAN,
+            pressure_pa: 1e5 * pressure_bar,
+        };
+        detector.step(&readings(0.0, 288.15, 200.0)).unwrap();
+        detector.step(&readings(86_400.0, shoulder_k, pressure_bar)).unwrap()
     };
-    statistic.update(reading(0.0, 288.15, 200.0));
-    assert_abs_diff_eq!(statistic.update(reading(86_400.0, 298.15, 209.92)), 0.0, epsilon = 1.0);
-    statistic.reset();
-    statistic.update(reading(0.0, 288.15, 200.0));
-    assert_abs_diff_eq!(statistic.update(reading(86_400.0, 288.15, 199.0)), 1e5, epsilon = 1.0);
+    assert_abs_diff_eq!(missing_pa(298.15, 209.92), 0.0, epsilon = 1.0);
+    assert_abs_diff_eq!(missing_pa(288.15, 199.0), 1e5, epsilon = 1.0);
     let judged = own_detector::run().unwrap();
     let [own, paper] = &judged[..] else { panic!("two detectors") };
     assert_eq!([&own.detector[..], &paper.detector[..]], ["day before", "paper"]);

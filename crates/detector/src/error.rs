@@ -14,64 +14,17 @@ pub enum DetectorError {
         /// What it must be.
         bound: &'static str,
     },
-    /// The matrices of a filter step do not fit each other or the failure.
-    #[error("`{matrix}` is {rows} x {columns} but must be {expected_rows} x {expected_columns}")]
-    Shape {
-        /// Name of the matrix.
-        matrix: &'static str,
-        /// Rows as given.
-        rows: usize,
-        /// Columns as given.
-        columns: usize,
-        /// Rows that fit.
-        expected_rows: usize,
-        /// Columns that fit.
-        expected_columns: usize,
-    },
-    /// The covariance of an innovation is not positive definite.
-    #[error("the covariance of the innovation must be positive definite")]
-    InnovationCovariance,
-    /// An innovation is NaN or infinite.
-    #[error("innovation {output} is not a finite number: leave outputs without a reading out of the step")]
-    InnovationNotFinite {
-        /// Which one, from 0.
-        output: usize,
-    },
-    /// No threshold gives the wished mean time between false alarms.
-    #[error(
-        "a mean time of {wished} samples is out of reach: between thresholds {low} and {high} it can be {shortest} to {longest}"
-    )]
-    OutOfReach {
-        /// Wished mean number of samples between false alarms.
-        wished: f64,
-        /// Smallest threshold that was tried.
-        low: f64,
-        /// Largest threshold that was tried.
-        high: f64,
-        /// Mean number of samples at the smallest.
-        shortest: f64,
-        /// Mean number of samples at the largest.
-        longest: f64,
-    },
-    /// Too few residuals to learn from.
-    #[error("{found} residuals are too few: give at least {needed}")]
-    TooFewResiduals {
+    /// Too few stretches of operation to learn a threshold from.
+    #[error("{found} stretches of operation are too few: give at least {needed}")]
+    TooFewStretches {
         /// Number as given, NaN left out.
         found: usize,
         /// Number needed.
         needed: usize,
     },
-    /// Residuals that do not vary.
-    #[error("the residuals do not vary: a threshold needs their noise")]
-    ResidualsConstant,
-    /// Times and residuals differ in number, or times do not increase.
-    #[error("time {time_s} s of residual {index} must be a number above that of the one before")]
-    TimeBackwards {
-        /// Index of the residual, from 0.
-        index: usize,
-        /// Its time, s.
-        time_s: f64,
-    },
+    /// Statistics that do not vary.
+    #[error("the largest values do not vary: a threshold needs their tail")]
+    StatisticsConstant,
     /// The gas has no such state.
     #[error(transparent)]
     Gas(#[from] cylwatch_estimator::thermal::ThermalError),

@@ -12,11 +12,11 @@ mod seeds;
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use cylwatch_detector::calibrate::FalseAlarms;
 use cylwatch_detector::monitor::{EventKind, Health, Monitor, MonitorSettings};
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
+use cylwatch_evaluation::performance::{AlarmRate, YEAR_S};
 use cylwatch_evaluation::truth::{Course, Truth, TruthSettings, generate_sets};
 use rayon::prelude::*;
 
@@ -30,7 +30,6 @@ const FIRST_SEED: u64 = 70_001;
 const SETS: u64 = 4;
 const INTERVAL_S: f64 = 60.0;
 const DAY_S: f64 = 86_400.0;
-const YEAR_S: f64 = 365.25 * DAY_S;
 
 /// How often each kind was said, and by how many cylinders.
 type Said = BTreeMap<&'static str, u64>;
@@ -61,15 +60,14 @@ fn main() -> Result<(), Failure> {
     ] {
         let times: u64 = cylinders.iter().filter_map(|said| said.get(kind)).sum();
         let with_one = cylinders.iter().filter(|said| said.contains_key(kind)).count() as u64;
-        let first = FalseAlarms { alarms: with_one, samples: years };
-        let (low, high) = first.interval(0.95);
-        let rate = |mean: f64| 10.0 / mean;
+        let first = AlarmRate { alarms: with_one, at_risk_s: years * YEAR_S };
+        let (low, high) = first.per_year_interval(0.95);
         println!(
             "| {kind} | {times} | {with_one} of {} | {:.2} ({:.2} to {:.2}) |",
             cylinders.len(),
-            rate(first.mean()),
-            rate(high),
-            rate(low)
+            10.0 * first.per_year(),
+            10.0 * low,
+            10.0 * high
         );
     }
     Ok(())

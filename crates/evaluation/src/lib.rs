@@ -8,12 +8,16 @@
 //! | [`world`] | worlds that judge: vessel, climate, gas, sensors and rows, drawn by seed, with what really happened |
 //! | [`truth`] | drawn cylinders in railway weather, read by drawn sensors; how good an observer was |
 //! | [`fault`] | faults put into good rows, and what a monitor must make of them |
+//! | [`baseline`] | the paper's detector and others without an observer, to compare with |
+//! | [`noise`] | noise of a series without a leak, and the shortest delay in it |
 //! | [`performance`] | what detectors are worth, side by side on the same cylinders |
 //! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
+pub mod baseline;
 pub mod error;
 pub mod fault;
 pub mod judge;
+pub mod noise;
 pub mod performance;
 pub mod placement;
 mod random;

@@ -1,8 +1,9 @@
 //! Options that fit each other.
 use super::*;
-use cylwatch::detector::calibrate::signature_threshold_sd;
 use cylwatch::estimator::placement::search::Method;
-use cylwatch::estimator::placement::{Criterion, DetectionSettings, PublishedSettings, SiteSettings};
+use cylwatch::estimator::placement::{
+    Criterion, DetectionSettings, PublishedSettings, SiteSettings, signature_threshold_sd,
+};
 use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::report::number;
 use std::path::Path;

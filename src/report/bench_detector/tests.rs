@@ -1,6 +1,6 @@
 //! A bench that was never run.
 use super::{csv, figure, story};
-use crate::detector::statistic::Noise;
+use crate::evaluation::noise::Noise;
 use crate::evaluation::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
 use crate::evaluation::performance::{Performance, Run, TrueLeak};
 use crate::report::Provenance;
@@ -28,7 +28,7 @@ fn outcome() -> Outcome {
     Outcome {
         plan: Plan { rates_pa_s: vec![SMALL, 10.0 * SMALL], training: 10, tests: 10, ..Plan::default() },
         judged: vec![judged("ours", 10, 7200.0), judged("theirs, refitted", 3, 36_000.0)],
-        noise: Some(Noise::ornstein_uhlenbeck(0.2e5, 5400.0)),
+        noise: Some(Noise { sd: 0.2e5, correlation_time_s: 5400.0 }),
     }
 }
 

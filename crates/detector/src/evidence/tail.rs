@@ -59,7 +59,7 @@ impl Tail {
         let mut sorted: Vec<f64> = largest.iter().copied().filter(|value| value.is_finite()).collect();
         let needed = (FEWEST as f64 / PART) as usize;
         if sorted.len() < needed {
-            return Err(DetectorError::TooFewResiduals { found: sorted.len(), needed });
+            return Err(DetectorError::TooFewStretches { found: sorted.len(), needed });
         }
         sorted.sort_by(f64::total_cmp);
         let above = (sorted.len() as f64 * PART) as usize;
@@ -67,7 +67,7 @@ impl Tail {
         let excess: Vec<f64> = sorted[sorted.len() - above..].iter().map(|value| value - level).collect();
         let mean = excess.iter().sum::<f64>() / excess.len() as f64;
         if mean <= 0.0 {
-            return Err(DetectorError::ResidualsConstant);
+            return Err(DetectorError::StatisticsConstant);
         }
         let (scale, shape) = pareto(&excess, mean);
         Ok(Self { level, interval_s: stretch_s * sorted.len() as f64 / above as f64, scale, shape })

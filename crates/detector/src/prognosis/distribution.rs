@@ -14,7 +14,6 @@ use serde::{Deserialize, Serialize};
 
 use super::quadrature::integrate;
 use super::{LossLaw, MassAndLeak};
-use crate::calibrate::normal_probability;
 use crate::{DetectorError, error::positive};
 
 /// Absolute accuracy of a probability.
@@ -227,6 +226,11 @@ fn crossing(
         if (value > level) == start { from = middle } else { to = middle }
     }
     Some(0.5 * (from + to))
+}
+
+/// Distribution function of the standard normal distribution.
+pub(crate) fn normal_probability(x: f64) -> f64 {
+    0.5 * statrs::function::erf::erfc(-x / std::f64::consts::SQRT_2)
 }
 
 /// `P(x <= bound)` of a normal `x`, whose standard deviation may be zero.

@@ -39,6 +39,7 @@ mod state;
 mod tests;
 
 pub use contents::{Contents, ISO_14520_LOSS, QUOTED_K};
+pub(crate) use distribution::normal_probability;
 pub use distribution::{Passage, Prognosis, Quantiles};
 pub use lambert::lambert_w;
 pub use reaction::{Advice, Reaction, ReactionSettings};

@@ -5,7 +5,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 use super::*;
-use crate::calibrate::normal_probability;
 
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;

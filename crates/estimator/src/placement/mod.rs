@@ -15,6 +15,7 @@
 //! | [`certificate`] | what no layout can fall below |
 //! | [`Candidates`] | places on a vessel with sensors, costs and rules |
 //! | [`Site`], [`Response`] | a layout at rest: certainty, smallest leak, delay, biases, faults |
+//! | [`signature_threshold_sd`] | when a leak counts as found, from the rate of false alarms |
 //! | [`Course`] | a layout along a scenario, with model error as consider parameters |
 //! | [`study`] | the study that puts all of it together |
 //! | [`published_scores`] | each position by itself, by the paper's own measure |
@@ -37,6 +38,7 @@ mod response;
 pub mod search;
 mod site;
 pub mod study;
+mod threshold;
 
 pub use candidate::{
     Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
@@ -54,3 +56,4 @@ pub use published::{
 };
 pub use response::{DetectionSettings, Disturbance, Response};
 pub use site::{Certainty, Site, SiteSettings, SmallestLeak};
+pub use threshold::signature_threshold_sd;

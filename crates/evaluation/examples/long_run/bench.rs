@@ -1,12 +1,9 @@
 //! All detectors side by side on the readings of one cylinder, and what they said.
-use cylwatch_detector::baseline::{
-    ErrorCusum, Expectation, Filling, GasModel, Law, PressureError, Reading, Threshold, ThresholdSettings,
-};
 use cylwatch_detector::evidence::{Evidence, Peaks, Scale, observer_settings};
-use cylwatch_detector::statistic::Statistic;
 use cylwatch_estimator::observer::{Commissioning, Observer};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
+use cylwatch_evaluation::baseline::{ErrorCusum, Filling, PressureError, Reading, Threshold};
 
 use crate::Fault;
 use crate::campaign::rate_bar_h;
@@ -17,13 +14,10 @@ const MINUTE_S: f64 = 60.0;
 const FILLING: Filling = Filling { pressure_pa: 200e5, temperature_k: 288.15 };
 /// Limit of the pressure switch, Pa.
 const LIMIT_PA: f64 = 160e5;
-/// First-order function of the shoulder, refitted to this truth: gain 1, pole, 1/s.
-const REFITTED_POLE_PER_S: f64 = 0.002_988;
 /// Time over which the refitted detector learns its zero, s.
 const ZERO_S: f64 = 4.0 * 86_400.0;
-/// Mean and standard deviation of its error over the fleet, Pa, and the change that the cumulative sum looks for.
+/// Mean and standard deviation of its error over the fleet, Pa.
 const ERROR_PA: (f64, f64) = (0.0, 0.7e5);
-const REFERENCE: f64 = 0.5;
 /// Holding times of the refitted detector.
 pub const REFITTED: [(&str, f64); 4] = [
     ("refitted, 0 min", 0.0),
@@ -34,23 +28,25 @@ pub const REFITTED: [(&str, f64); 4] = [
 /// Name of the paper's detector.
 pub const PUBLISHED: &str = "published";
 
-type Detector = Box<dyn Statistic<Sample = Reading>>;
+type Detector = Box<dyn FnMut(Reading) -> f64>;
 
 fn baselines() -> Result<Vec<(&'static str, Detector)>, Fault> {
-    let real = Expectation::try_new(Law::RealGas { gas: "nitrogen".into() }, FILLING)?;
-    let model = GasModel::FirstOrder { gain: 1.0, pole_per_s: REFITTED_POLE_PER_S, initial_degc: None };
-    let error = PressureError::try_new(real, model)?;
-    let mut all: Vec<(&str, Detector)> = vec![
-        (PUBLISHED, Box::new(Threshold::published(FILLING)?)),
-        ("raw switch", Box::new(Threshold::raw_switch(LIMIT_PA)?)),
-        ("ideal gas", Box::new(Threshold::ideal_gas(FILLING)?)),
-        ("cumulative sum", Box::new(ErrorCusum::try_new(error.clone(), ERROR_PA, REFERENCE)?)),
+    let error = PressureError::refitted("nitrogen", FILLING)?;
+    let mut cusum = ErrorCusum::known(error.clone(), ERROR_PA.0, ERROR_PA.1);
+    let mut all = vec![
+        (PUBLISHED, of(Threshold::published(FILLING))),
+        ("raw switch", of(Threshold::raw_switch(LIMIT_PA))),
+        ("ideal gas", of(Threshold::ideal_gas(FILLING))),
+        ("cumulative sum", Box::new(move |reading| cusum.update(reading))),
     ];
     for (name, hold_s) in REFITTED {
-        let settings = ThresholdSettings { hold_s, zero_s: ZERO_S, ..ThresholdSettings::default() };
-        all.push((name, Box::new(Threshold::try_new(error.clone(), settings)?)));
+        all.push((name, of(Threshold::new(error.clone()).held_for(hold_s).zeroed_over(ZERO_S))));
     }
     Ok(all)
+}
+
+fn of(mut threshold: Threshold) -> Detector {
+    Box::new(move |reading| threshold.update(reading))
 }
 
 /// Run all detectors over a cylinder's readings.
@@ -74,7 +70,7 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
         let (own, others) = rises.split_at_mut(Scale::ALL.len());
         own.iter_mut().zip(statistics).for_each(|(rises, value)| rises.update(time_s, value));
         for (rises, (_, baseline)) in others.iter_mut().zip(&mut baselines) {
-            rises.update(time_s, baseline.update(Reading { time_s, shoulder_k, pressure_pa }));
+            rises.update(time_s, baseline(Reading { time_s, shoulder_k, pressure_pa }));
         }
         end_s = time_s;
     }

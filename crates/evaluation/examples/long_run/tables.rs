@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::Path;
 
-use cylwatch_detector::calibrate::FalseAlarms;
 use cylwatch_detector::evidence::{Peaks, Scale, Tails, Thresholds};
+use cylwatch_evaluation::performance::{AlarmRate, YEAR_S};
 
 use crate::Fault;
 use crate::bench::{PUBLISHED, REFITTED};
@@ -12,7 +12,6 @@ use crate::campaign::{Part, RATES_BAR_H};
 use crate::records::{Record, load};
 
 const HOUR_S: f64 = 3600.0;
-const YEAR_S: f64 = 365.25 * 86_400.0;
 /// Mean time between false alarms, years.
 const YEARS: f64 = 10.0;
 const COLUMNS: [(&str, f64); 4] = [("1 h", 1.0), ("24 h", 24.0), ("7 d", 168.0), ("30 d", 720.0)];
@@ -140,7 +139,7 @@ fn false_alarms(folder: &Path, levels: &Levels, names: &[&str]) -> Result<(), Fa
     for part in [Part::Train, Part::Test, Part::Stratified, Part::Seasons] {
         let runs = by_run(load(folder, part.name()));
         for name in names.iter().filter(|_| !runs.is_empty()) {
-            let mut found = FalseAlarms::default();
+            let mut found = AlarmRate::default();
             // Four sets of sensors read one simulated cylinder.
             let mut with_one = BTreeMap::new();
             for run in &runs {
@@ -149,19 +148,18 @@ fn false_alarms(folder: &Path, levels: &Levels, names: &[&str]) -> Result<(), Fa
                 found.alarms += u64::from(alarm_s.is_some());
                 let simulation = run.values().next().and_then(|record| record.run.rsplit_once('-'));
                 *with_one.entry(simulation.map(|(name, _)| name)).or_insert(false) |= alarm_s.is_some();
-                found.samples += alarm_s.unwrap_or(end_s) / YEAR_S;
+                found.at_risk_s += alarm_s.unwrap_or(end_s);
             }
-            let (low, high) = found.interval(0.95);
-            let rate = |years: f64| YEARS / years;
+            let (low, high) = found.per_year_interval(0.95);
             writeln!(
                 out,
                 "| {} | {name} | {} | {:.1} | {:.2} ({:.2} to {:.2}) | {} of {} | {} |",
                 part.name(),
                 found.alarms,
-                found.samples,
-                rate(found.mean()),
-                rate(high),
-                rate(low),
+                found.cylinder_years(),
+                YEARS * found.per_year(),
+                YEARS * low,
+                YEARS * high,
                 with_one.values().filter(|one| **one).count(),
                 with_one.len(),
                 if *name == OWN { by_scale(&runs, levels) } else { String::new() }

@@ -1,8 +1,14 @@
 //! Alarms per cylinder-year without a leak, with Garwood's interval.
+//!
+//! Alarms of a detector that starts anew after each are nearly a Poisson process (a rare event of a process with short
+//! memory). For `n` alarms in the time `T` the exact interval of the mean time is
+//! `2T/chi2(1 - a/2; 2n + 2)` to `2T/chi2(a/2; 2n)`, endless above if there was none.
+//!
+//! Source: F. Garwood, Biometrika 28 (1936) 437.
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::Run;
-use crate::detector::calibrate::FalseAlarms;
 
 /// Seconds of a year of 365.25 d.
 pub const YEAR_S: f64 = 31_557_600.0;
@@ -37,8 +43,14 @@ impl AlarmRate {
 
     /// Interval of the alarms per cylinder-year at a level such as 0.95.
     pub fn per_year_interval(&self, level: f64) -> (f64, f64) {
-        let years = FalseAlarms { alarms: self.alarms, samples: self.cylinder_years() };
-        let (shortest, longest) = years.interval(level);
+        let tail = 0.5 * (1.0 - level.clamp(0.0, 1.0 - 1e-12));
+        let mean_time = |freedom: u64, probability: f64| {
+            let chi_square =
+                ChiSquared::new(freedom as f64).expect("a positive number of degrees of freedom");
+            2.0 * self.cylinder_years() / chi_square.inverse_cdf(probability)
+        };
+        let shortest = mean_time(2 * self.alarms + 2, 1.0 - tail);
+        let longest = if self.alarms == 0 { f64::INFINITY } else { mean_time(2 * self.alarms, tail) };
         (1.0 / longest, 1.0 / shortest)
     }
 }

@@ -1,5 +1,6 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
+mod baseline;
 mod campaign;
 mod evidence;
 mod fault;

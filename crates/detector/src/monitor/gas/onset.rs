@@ -1,8 +1,8 @@
 //! Rate and onset of a leak from the masses of the last weeks, with intervals.
 //!
 //! `m(t) = a - r (t - nu)^+ + e(t)`: a level, from the onset `nu` on a loss at the rate `r`, and an error of the observer that is
-//! an Ornstein-Uhlenbeck process of known standard deviation and time constant. Whitened as in
-//! [`crate::statistic::Whitener`], level and rate are linear for each onset on a bin; the sums over the bins after an onset are
+//! an Ornstein-Uhlenbeck process of known standard deviation `s` and time constant `tau`. A bin less `phi = exp(-dt/tau)` times the one
+//! before it, over `s sqrt(1 - phi^2)`, has an independent error. So level and rate are linear for each onset on a bin; the sums over the bins after an onset are
 //! suffix sums, so all onsets together cost one pass. With flat priors on level and onset, and a rate that is uniform in its logarithm over four
 //! decades, the posterior is a mixture over the onsets `k` of normal distributions cut off at zero,
 //!
@@ -23,10 +23,10 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::trace::{Bin, FINE_S, MassTrace};
-use crate::calibrate::normal_probability;
+use crate::DetectorError;
 use crate::error::positive;
 use crate::monitor::{Interval, LeakFinding};
-use crate::{DetectorError, statistic::Noise};
+use crate::prognosis::normal_probability;
 
 /// Probability on either side of an interval.
 const TAIL: f64 = 0.025;
@@ -184,7 +184,6 @@ impl Fitted {
 
 /// Rate and likelihood for an onset at each bin but the last one.
 fn candidates(bins: &[Bin], error: &MassError) -> Vec<Candidate> {
-    let noise = Noise::ornstein_uhlenbeck(error.sd_kg, error.time_s);
     let origin_s = bins[0].time_s;
     // Rows of the whitened regression: level w, time u, mass less the first one y.
     let mut rows = Vec::with_capacity(bins.len());
@@ -194,12 +193,12 @@ fn candidates(bins: &[Bin], error: &MassError) -> Vec<Candidate> {
         let (phi, before_t, before_y) = match index.checked_sub(1).map(|before| &bins[before]) {
             None => (0.0, 0.0, 0.0),
             Some(before) => (
-                noise.correlation(bin.time_s - before.time_s),
+                (-(bin.time_s - before.time_s) / error.time_s).exp(),
                 before.time_s - origin_s,
                 before.mass_kg - bins[0].mass_kg,
             ),
         };
-        let scale = (noise.sd * (1.0 - phi * phi).sqrt()).recip();
+        let scale = (error.sd_kg * (1.0 - phi * phi).sqrt()).recip();
         let row = [(1.0 - phi) * scale, (t - phi * before_t) * scale, (y - phi * before_y) * scale];
         level_level += row[0] * row[0];
         level_mass += row[0] * row[2];

@@ -31,7 +31,7 @@ struct Monitors {
 impl Candidate for Monitors {
     fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError> {
         let mut settings = MonitorSettings::default();
-        settings.limits.operational_pa = LIMIT * super::statistic::stated_filling(told)?.pressure_pa;
+        settings.limits.operational_pa = LIMIT * super::statistic::stated_filling(told).pressure_pa;
         settings.alarms = AlarmSettings::with_limit(settings.limits.operational_pa);
         let settings = overlaid(&settings, &self.settings)?;
         let monitor = begun(told, &settings)?;

@@ -24,10 +24,11 @@ use self::coverage::Coverage;
 use self::detection::{Detected, Detecting, ExchangeWatch, Exchanged, FastLoss, FastLossWatch};
 use self::fault::{FaultOutcome, FaultWatch};
 use self::innovation::{Innovations, Whiteness};
-use self::noise::{FreeMass, NoiseSums};
+use self::noise::FreeMass;
 use self::verdict::{Episodes, Shares, Verdicts};
 use super::measures::Trace;
 use super::said::Said;
+use crate::noise::Noise;
 use crate::world::{Overlay, World};
 
 /// The first day, in which candidates learn, is reported apart.
@@ -59,7 +60,7 @@ pub struct Score {
     /// Contradictions.
     pub disagreements: Option<Disagreements>,
     /// Noise of the freest mass, as a part of the gas.
-    pub noise: Option<NoiseSums>,
+    pub noise: Option<Noise>,
     /// Rising record of a statistic that needs a threshold, and when it could tell first, s.
     pub trace: Option<(Trace, Option<f64>)>,
 }

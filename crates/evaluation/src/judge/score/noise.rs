@@ -1,25 +1,13 @@
 //! What the freest mass does without a leak: the noise behind the shortest possible delay.
 //!
 //! From the second day on the mass is kept every 20 min, as a part of the true one, and an Ornstein-Uhlenbeck process is fitted
-//! ([`fit_noise`]). A log of two years keeps 53 000 numbers.
-use serde::{Deserialize, Serialize};
-
+//! ([`Noise::fit`]). A log of two years keeps 53 000 numbers.
 use super::Moment;
-use crate::detector::calibrate::fit_noise;
-use crate::detector::statistic::Residual;
+use crate::noise::{Noise, Residual};
 use crate::world::World;
 
 /// Interval of the masses that are kept, s.
 pub const SETTLED_S: f64 = 1200.0;
-
-/// Noise of one world.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NoiseSums {
-    /// Standard deviation, part of the gas.
-    pub sd: f64,
-    /// Correlation time, s.
-    pub correlation_time_s: f64,
-}
 
 /// The masses that are kept.
 #[derive(Clone, Debug, Default)]
@@ -38,10 +26,9 @@ impl FreeMass {
         }
     }
 
-    /// After the last statement; `None`: too few to tell.
-    pub fn finish(self) -> Option<NoiseSums> {
-        let noise = fit_noise(&self.kept).ok()?.noise;
-        let found = NoiseSums { sd: noise.sd, correlation_time_s: noise.correlation_time_s };
-        (found.sd.is_finite() && found.correlation_time_s.is_finite()).then_some(found)
+    /// After the last statement, part of the gas; `None`: too few to tell.
+    pub fn finish(self) -> Option<Noise> {
+        let noise = Noise::fit(&self.kept)?;
+        (noise.sd.is_finite() && noise.correlation_time_s.is_finite()).then_some(noise)
     }
 }

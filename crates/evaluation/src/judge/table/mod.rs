@@ -27,7 +27,7 @@ use super::JudgeError;
 use super::journal::Results;
 use super::plan::{Plan, Role};
 use super::run::Entry;
-use crate::detector::statistic::Noise;
+use crate::noise::Noise;
 use crate::world::{Overlay, Request, SimulationKey};
 
 /// Names of the files of the table.

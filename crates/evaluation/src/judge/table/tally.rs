@@ -10,8 +10,8 @@ use crate::judge::score::agreement::Disagreements;
 use crate::judge::score::coverage::Cell;
 use crate::judge::score::detection::{Detected, FastLoss};
 use crate::judge::score::innovation::Innovations;
-use crate::judge::score::noise::NoiseSums;
 use crate::judge::score::verdict::{Episode, Shares};
+use crate::noise::Noise;
 use crate::world::{FaultRow, Overlay, SimulationKey};
 
 /// Shares whose intervals go by simulation, and sums of squares.
@@ -81,7 +81,7 @@ pub struct Tally {
     /// Innovations.
     pub innovations: Innovations,
     /// Noise of the freest mass.
-    pub noise: Vec<NoiseSums>,
+    pub noise: Vec<Noise>,
     /// Fast losses: unannounced fast losses, unannounced discharges, announced discharges.
     pub fast: [FastTally; 3],
     /// Exchanges of gas that were recognised: out, in.

@@ -1,7 +1,6 @@
 //! Detectors as a bench runs them: rows in, one number out.
 use crate::EvaluationError;
-use crate::detector::baseline::Reading;
-use crate::detector::statistic::Statistic;
+use crate::baseline::{ErrorCusum, Reading, Threshold};
 use crate::performance::Found;
 
 /// What the sensors of one cylinder read at one time; NaN: missing.
@@ -75,19 +74,15 @@ impl std::fmt::Debug for Candidate {
     }
 }
 
-/// A detector without an observer: a statistic of shoulder and pressure in a unit.
-pub fn of_statistic<S>(name: &str, unit: &'static str, statistic: S) -> Candidate
-where
-    S: Statistic<Sample = Reading> + Clone + Send + Sync + 'static,
-{
-    Candidate::new(name, unit, move || Ok(OfStatistic(statistic.clone())))
+impl Contender for Threshold {
+    fn step(&mut self, readings: &Readings) -> Result<f64, EvaluationError> {
+        Ok(self.update(readings.seen()))
+    }
 }
 
-struct OfStatistic<S>(S);
-
-impl<S: Statistic<Sample = Reading>> Contender for OfStatistic<S> {
+impl Contender for ErrorCusum {
     fn step(&mut self, readings: &Readings) -> Result<f64, EvaluationError> {
-        Ok(self.0.update(readings.seen()))
+        Ok(self.update(readings.seen()))
     }
 }
 

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::candidate::{Candidate, Contender, Readings};
 use super::{Plan, Trace};
 use crate::EvaluationError;
-use crate::detector::statistic::Residual;
+use crate::noise::Residual;
 use crate::performance::{Horizon, TrueLeak};
 
 const DAY_S: f64 = 86_400.0;

@@ -22,8 +22,8 @@ mod plan;
 mod result;
 mod trace;
 
-pub use baselines::{baselines, textbook_cusum};
-pub use candidate::{Candidate, Contender, Readings, of_statistic};
+pub use baselines::baselines;
+pub use candidate::{Candidate, Contender, Readings};
 pub use level::{AlarmLevel, alarm_level};
 pub use monitored::monitor;
 pub use plan::Plan;

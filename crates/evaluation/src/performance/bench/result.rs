@@ -6,12 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::case::{SETTLED_S, Watched};
 use super::{AlarmLevel, Candidate, Plan, alarm_level};
 use crate::EvaluationError;
-use crate::detector::calibrate::{Change, fit_noise};
-use crate::detector::statistic::Noise;
+use crate::noise::Noise;
 use crate::performance::{AlarmRate, Performance, Run};
-
-/// Fewest settled pressures of a cylinder that tell their noise.
-const FEWEST: usize = 50;
 
 /// How far a bench has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,9 +62,9 @@ pub fn bench(
             Ok(watched)
         })
         .collect::<Result<_, EvaluationError>>()?;
-    let noise = smallest_noise(&watched, candidates.len())?;
+    let noise = smallest_noise(&watched, candidates.len());
     let bound_s = |rate_pa_s: f64| {
-        noise.map(|noise| Change::Ramp(rate_pa_s).delay_bound(noise, SETTLED_S, plan.between_alarms_s))
+        noise.map(|noise| noise.shortest_delay_s(rate_pa_s, SETTLED_S, plan.between_alarms_s))
     };
     let judge = |(index, candidate): (usize, &Candidate)| {
         let level = trained(plan, &watched, index).map_err(|error| match error {
@@ -113,22 +109,21 @@ fn tested(watched: &[Watched], index: usize, threshold: f64) -> Vec<Run> {
 
 /// The noise of the settled pressure on tight cylinders, root mean square and median time over the cylinders, of the
 /// candidate with the smallest.
-fn smallest_noise(watched: &[Watched], candidates: usize) -> Result<Option<Noise>, EvaluationError> {
+fn smallest_noise(watched: &[Watched], candidates: usize) -> Option<Noise> {
     let mut best: Option<Noise> = None;
     for index in 0..candidates {
-        let series =
-            watched.iter().map(|watched| &watched.settled_pa[index]).filter(|all| all.len() >= FEWEST);
-        let fits = series.map(|series| fit_noise(series)).collect::<Result<Vec<_>, _>>()?;
+        let fits: Vec<Noise> =
+            watched.iter().filter_map(|watched| Noise::fit(&watched.settled_pa[index])).collect();
         if fits.is_empty() {
             continue;
         }
-        let variance = fits.iter().map(|fit| fit.noise.sd.powi(2)).sum::<f64>() / fits.len() as f64;
-        let mut times: Vec<f64> = fits.iter().map(|fit| fit.noise.correlation_time_s).collect();
+        let variance = fits.iter().map(|fit| fit.sd.powi(2)).sum::<f64>() / fits.len() as f64;
+        let mut times: Vec<f64> = fits.iter().map(|fit| fit.correlation_time_s).collect();
         times.sort_by(f64::total_cmp);
         let noise = Noise { sd: variance.sqrt(), correlation_time_s: times[times.len() / 2] };
         if best.is_none_or(|best| noise.sd < best.sd) {
             best = Some(noise);
         }
     }
-    Ok(best)
+    best
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::*;
 use crate::EvaluationError;
-use crate::detector::baseline::{Expectation, GasModel, Law, PressureError, Threshold, ThresholdSettings};
+use crate::baseline::{Expectation, GasTemperature, PressureError, Threshold};
 use crate::performance::{Estimated, Found, Horizon, YEAR_S};
 
 const DAY_S: f64 = 86_400.0;
@@ -31,18 +31,15 @@ struct Zeroed {
 
 impl Zeroed {
     fn start() -> Result<Self, EvaluationError> {
-        let law = Law::RealGas { gas: "nitrogen".into() };
-        let model = GasModel::FirstOrder { gain: 1.0, pole_per_s: 0.003, initial_degc: None };
-        let error = PressureError::try_new(Expectation::try_new(law, Plan::FILLING)?, model)?;
-        let settings = ThresholdSettings { zero_s: 0.15 * DAY_S, ..ThresholdSettings::default() };
-        let threshold = Threshold::try_new(error.clone(), settings)?;
+        let expectation = Expectation::real_gas("nitrogen", Plan::FILLING)?;
+        let error = PressureError::new(expectation, GasTemperature::with_pole(0.003));
+        let threshold = Threshold::new(error.clone()).zeroed_over(0.15 * DAY_S);
         Ok(Self { threshold, error, missing_pa: None })
     }
 }
 
 impl Contender for Zeroed {
     fn step(&mut self, readings: &Readings) -> Result<f64, EvaluationError> {
-        use crate::detector::statistic::Statistic;
         self.missing_pa = self.error.step(readings.seen());
         Ok(self.threshold.update(readings.seen()))
     }
@@ -59,7 +56,7 @@ impl Contender for Zeroed {
 
 fn candidates() -> Vec<Candidate> {
     vec![
-        of_statistic("paper", "Pa", Threshold::published(Plan::FILLING).unwrap()),
+        Candidate::new("paper", "Pa", || Ok(Threshold::published(Plan::FILLING))),
         Candidate::new("zeroed", "Pa", Zeroed::start),
     ]
 }

@@ -5,8 +5,6 @@ use super::{
     CoverageRow, DisagreementReport, FastRow, FaultRowReport, GroupReport, InnovationRow, LeakRow, Leaks,
     Tight,
 };
-use crate::detector::calibrate::Change;
-use crate::detector::statistic::Noise;
 use crate::judge::measures::{Class, Delay, Detection, Horizon, Reached, SmallestLeak, YEAR_S, by_rate};
 use crate::judge::score::agreement::Rule;
 use crate::judge::score::coverage::Quantity;
@@ -14,6 +12,7 @@ use crate::judge::score::innovation::RegimeSums;
 use crate::judge::score::noise::SETTLED_S;
 use crate::judge::table::group::{Group, Of};
 use crate::judge::table::tally::{FastTally, FaultTally, Tally};
+use crate::noise::Noise;
 use crate::world::{FaultRow, Regime};
 
 /// Part of the leaks that must be found for the smallest leak.
@@ -90,8 +89,8 @@ fn leaks(tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Option<L
     let smallest = |horizon: Horizon| SmallestLeak::of(&within(horizon), FOUND).map(percent);
     let row = |(index, (part_per_h, runs)): (usize, &(f64, Vec<_>))| {
         let delay = Delay::of(runs);
-        let ramp = Change::Ramp(part_per_h / HOUR_S);
-        let bound_s = noise.map(|noise| ramp.delay_bound(noise, SETTLED_S, between_alarms_s));
+        let bound_s =
+            noise.map(|noise| noise.shortest_delay_s(part_per_h / HOUR_S, SETTLED_S, between_alarms_s));
         let found = HORIZONS.map(|horizon| within(horizon)[index].found);
         LeakRow {
             percent_h: 100.0 * part_per_h,

@@ -3,14 +3,13 @@
 //! Weights `exp(-(t_n - t_i)/T)`; weighted means and centred moments are carried on, so that memory and time per sample
 //! are constant and nothing cancels however long the record. Of a ramp it is the slope exactly, of white noise the
 //! standard deviation is that of the weighted regression.
-use serde::{Deserialize, Serialize};
 
-use crate::{DetectorError, error::positive};
+/// Memory `T`, s: in white noise as precise as a straight line through 3.6 times as long, an hour.
+const MEMORY_S: f64 = 1000.0;
 
 /// Weighted regression of a value over time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Trend {
-    memory_s: f64,
     last_s: Option<f64>,
     weight: f64,
     /// Mean time relative to the last sample, s.
@@ -23,19 +22,10 @@ pub struct Trend {
 }
 
 impl Trend {
-    /// Samples count `exp(-age/memory_s)`.
-    ///
-    /// # Errors
-    /// `memory_s` is not positive.
-    pub fn try_new(memory_s: f64) -> Result<Self, DetectorError> {
-        positive("memory_s", memory_s)?;
-        Ok(Self { memory_s, last_s: None, weight: 0.0, mean_s: 0.0, mean: 0.0, spread: 0.0, product: 0.0 })
-    }
-
     /// Take a sample, later than the one before.
     pub fn update(&mut self, time_s: f64, value: f64) {
         let interval_s = self.last_s.map_or(0.0, |last_s| time_s - last_s);
-        let kept = (-interval_s / self.memory_s).exp();
+        let kept = (-interval_s / MEMORY_S).exp();
         self.last_s = Some(time_s);
         self.weight *= kept;
         self.spread *= kept;
@@ -53,12 +43,6 @@ impl Trend {
     /// Slope, unit of the value per second; `None` before the second sample, also that after a gap that all is forgotten in.
     pub fn slope(&self) -> Option<f64> {
         (self.spread > 0.0).then(|| self.product / self.spread)
-    }
-
-    /// Forget all samples.
-    pub fn reset(&mut self) {
-        *self =
-            Self { last_s: None, weight: 0.0, mean_s: 0.0, mean: 0.0, spread: 0.0, product: 0.0, ..*self };
     }
 }
 
@@ -78,13 +62,13 @@ mod tests {
                 )
             })
             .collect();
-        let mut trend = Trend::try_new(900.0).unwrap();
+        let mut trend = Trend::default();
         samples.iter().for_each(|(time_s, value)| trend.update(*time_s, *value));
         let now_s = samples[79].0;
         let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
         for (time_s, value) in samples {
             let row = Vector2::new(1.0, time_s - now_s);
-            let weight = ((time_s - now_s) / 900.0).exp();
+            let weight = ((time_s - now_s) / MEMORY_S).exp();
             normal += weight * row * row.transpose();
             right += weight * value * row;
         }
@@ -94,14 +78,12 @@ mod tests {
 
     #[test]
     fn a_ramp_has_its_slope_and_one_sample_none() {
-        let mut trend = Trend::try_new(60.0).unwrap();
+        let mut trend = Trend::default();
         trend.update(5.0, 3.0);
         assert_eq!(trend.slope(), None);
         for time_s in [8.0, 9.0, 40.0, 600.0, 601.0] {
             trend.update(time_s, 3.0 + 2e-3 * (time_s - 5.0));
             assert_relative_eq!(trend.slope().unwrap(), 2e-3, max_relative = 1e-9);
         }
-        trend.reset();
-        assert_eq!(trend, Trend::try_new(60.0).unwrap());
     }
 }

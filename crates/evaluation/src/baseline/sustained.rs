@@ -6,25 +6,22 @@
 //! `hold_s` are taken together by their smallest, which bounds the memory and can only delay an alarm, by as much.
 use std::collections::VecDeque;
 
-use serde::{Deserialize, Serialize};
-
-use crate::DetectorError;
-
 /// Parts of the holding time that are told apart.
 const PARTS: f64 = 1000.0;
+/// After a gap longer than this, s, the time counts anew: what was in it is not known.
+const LONGEST_GAP_S: f64 = 3600.0;
 
 /// The smallest value of the last `hold_s`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Sustained {
     hold_s: f64,
-    longest_gap_s: f64,
     /// First and last sample since the last gap, s.
     span_s: Option<(f64, f64)>,
     rising: VecDeque<Stretch>,
 }
 
 /// A value and when it held.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 struct Stretch {
     value: f64,
     from_s: f64,
@@ -32,24 +29,16 @@ struct Stretch {
 }
 
 impl Sustained {
-    /// Over `hold_s`, 0: the last sample alone. After a gap longer than `longest_gap_s` the time counts anew, since nobody
-    /// knows what was in it.
-    ///
-    /// # Errors
-    /// `hold_s` is negative or not finite, or `longest_gap_s` not positive.
-    pub fn try_new(hold_s: f64, longest_gap_s: f64) -> Result<Self, DetectorError> {
-        if !(hold_s >= 0.0 && hold_s.is_finite()) {
-            let bound = "finite and not negative";
-            return Err(DetectorError::Setting { setting: "hold_s", value: hold_s, bound });
-        }
-        crate::error::positive("longest_gap_s", longest_gap_s)?;
-        Ok(Self { hold_s, longest_gap_s, span_s: None, rising: VecDeque::new() })
+    /// Over `hold_s`, s; 0: the last sample alone.
+    pub fn new(hold_s: f64) -> Self {
+        Self { hold_s, span_s: None, rising: VecDeque::new() }
     }
 
     /// Take a sample, later than the one before; `None` as long as `hold_s` has not passed.
     pub fn update(&mut self, time_s: f64, value: f64) -> Option<f64> {
-        if self.span_s.is_some_and(|(_, last_s)| time_s - last_s > self.longest_gap_s) {
-            self.reset();
+        if self.span_s.is_some_and(|(_, last_s)| time_s - last_s > LONGEST_GAP_S) {
+            self.span_s = None;
+            self.rising.clear();
         }
         let start_s = self.span_s.map_or(time_s, |(start_s, _)| start_s);
         self.span_s = Some((start_s, time_s));
@@ -75,12 +64,6 @@ impl Sustained {
         }
         self.rising.push_back(stretch);
     }
-
-    /// Forget all samples.
-    pub fn reset(&mut self) {
-        self.span_s = None;
-        self.rising.clear();
-    }
 }
 
 #[cfg(test)]
@@ -101,7 +84,7 @@ mod tests {
         fn it_is_the_smallest_value_of_the_holding_time(
             steps in prop::collection::vec((1.0..20.0_f64, -3.0..3.0_f64), 1..80), hold_s in 0.0..100.0_f64
         ) {
-            let mut sustained = Sustained::try_new(hold_s, 50.0).unwrap();
+            let mut sustained = Sustained::new(hold_s);
             let (mut time_s, mut samples) = (0.0, Vec::new());
             for (step_s, value) in steps {
                 time_s += step_s;
@@ -113,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_violation_that_lasts_alarms_when_the_time_is_up_and_a_brief_one_never() {
-        let mut sustained = Sustained::try_new(600.0, 3600.0).unwrap();
+        let mut sustained = Sustained::new(600.0);
         let error = |n: u32| if (20..29).contains(&n) || n >= 40 { 2.0 } else { 0.0 };
         let first =
             (0..100).find(|n| sustained.update(60.0 * f64::from(*n), error(*n)).is_some_and(|e| e >= 1.0));
@@ -122,7 +105,7 @@ mod tests {
 
     #[test]
     fn memory_is_bounded_and_fast_samples_delay_by_a_thousandth_at_most() {
-        let mut sustained = Sustained::try_new(1000.0, 3600.0).unwrap();
+        let mut sustained = Sustained::new(1000.0);
         let mut first = None;
         for n in 0..200_000 {
             let time_s = 0.01 * f64::from(n);
@@ -137,10 +120,10 @@ mod tests {
 
     #[test]
     fn time_counts_anew_after_a_gap() {
-        let mut sustained = Sustained::try_new(100.0, 300.0).unwrap();
+        let mut sustained = Sustained::new(100.0);
         assert_eq!(sustained.update(0.0, 1.0), None);
         assert_eq!(sustained.update(100.0, 2.0), Some(1.0));
-        assert_eq!(sustained.update(401.0, 3.0), None);
-        assert_eq!(sustained.update(501.0, 4.0), Some(3.0));
+        assert_eq!(sustained.update(3701.0, 3.0), None);
+        assert_eq!(sustained.update(3801.0, 4.0), Some(3.0));
     }
 }
