@@ -308,7 +308,7 @@ impl Cylinder {
     }
 
     /// Reading of a sensor before its lag, with its gradient.
-    fn static_reading(
+    pub(super) fn static_reading(
         &mut self,
         sensor: usize,
         x: &[f64],

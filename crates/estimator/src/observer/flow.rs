@@ -17,7 +17,7 @@
 //! `var (m - m') per time = m^2 min(P_T/T^2, P_m/m^2) + (m c e / T)^2`.
 //!
 //! Of that, new since the row before is at most what moved in it or the row before it, and what the gas has taken on of the rest:
-//! `c (s' + (1 - exp(-dt / tau)) max_i |y_i - T_g|) / T` as a part of the absolute temperature, with the memory `tau` of `s`.
+//! `dp/dT c (s' + (1 - exp(-dt / tau)) max_i |y_i - T_g|)` of a pressure, with the memory `tau` of `s`.
 //!
 //! Assumptions: an ideal gas where kelvins become parts of the mass. `c` = 0.2 was set on 700 drawn days of 7 vessels in 10 climates, tight and with
 //! losses (`world` of `cylwatch-evaluation`, seeds 9000 to 9009); other seeds judge.
@@ -28,6 +28,7 @@ use serde::{Deserialize, Serialize};
 use super::Observer;
 use super::belief::Moments;
 use super::settings::FlowDoubt;
+use crate::EstimatorError;
 use crate::sensor::SensorKind;
 
 /// Mass, gas temperature and rate where gas may flow. SI; `sd` is a standard deviation.
@@ -85,14 +86,19 @@ impl Observer {
         })
     }
 
-    /// Error of the gas temperature that may have come since the row before, as a part of that temperature.
-    pub fn fresh_doubt(&self) -> f64 {
-        let Some(first) = self.bank.members.first() else { return f64::INFINITY };
-        let gas_k = first.x[self.cylinder.state_map().gas];
+    /// What the error of the gas temperature that may have come since the row before does to a pressure, Pa; infinite before the first sample.
+    ///
+    /// # Errors
+    /// The state has no such reading.
+    pub fn fresh_doubt_pa(&mut self, pressure: usize) -> Result<f64, EstimatorError> {
+        let Some(first) = self.bank.members.first() else { return Ok(f64::INFINITY) };
+        let gas = self.cylinder.state_map().gas;
         let FlowDoubt { part, memory_s } = self.cylinder.settings().flow_doubt;
         let moved_k = self.clock.moves_k.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let passed = -(-self.clock.interval_s / memory_s).exp_m1();
-        part * (moved_k + passed * self.farthest_k(gas_k)) / gas_k
+        let taken_on = -(-self.clock.interval_s / memory_s).exp_m1();
+        let doubt_k = part * (moved_k + taken_on * self.farthest_k(first.x[gas]));
+        self.cylinder.static_reading(pressure, &first.x, Some(&mut self.reference_x))?;
+        Ok(doubt_k * self.reference_x[gas].abs())
     }
 
     /// How far the last readings of thermometers on the surface are from a temperature at most, K; 0 without any.

@@ -81,10 +81,11 @@ impl Monitor {
         // The rules of jumps are stated for a fill of 200 bar.
         let of_fill = self.scale.pressure.recip();
         let innovation_pa = of_fill * self.observer.innovations()[pressure].nu;
-        let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa };
+        let doubt_pa = FLOW_DEVIATIONS * of_fill * self.observer.fresh_doubt_pa(pressure)?;
+        let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa, doubt_pa };
         let step_pa = of_fill * self.state.watches[pressure].step();
-        let doubt_pa = FLOW_DEVIATIONS * self.observer.fresh_doubt() * now.reading_pa;
-        let jump = self.state.jumps.notice(now, step_pa, doubt_pa);
+        let doubted = FLOW_DEVIATIONS * self.settings.observer.flow_doubt.part;
+        let jump = self.state.jumps.notice(now, step_pa, doubted);
         if let (Some(before_pa), Some(before_kg)) = (jump, before_kg) {
             return self.begin_examination(time_s, (before_pa, doubt_pa), before_kg, events);
         }

@@ -8,9 +8,10 @@
 //!
 //! and the reading itself made most of it by its second difference: what the expectation alone did is the model's. `c` is the mean
 //! size of such changes lately, as it grows with the root of the interval, `q` the step in which the transmitter reads, and `W` what the
-//! surroundings may have done: what the observer does not know of the gas temperature and cannot have known in the row before
-//! ([`Observer::fresh_doubt`](crate::estimator::observer::Observer::fresh_doubt)), `W = 2.2 p c_T (s + (1 - exp(-dt / tau)) e) / T`. In a tunnel it
-//! takes more to be a jump; gas that flows there is told by the observer's flowing member.
+//! surroundings may have done: 2.2 times what the observer cannot have known of the gas temperature in the row before
+//! ([`Observer::fresh_doubt_pa`](crate::estimator::observer::Observer::fresh_doubt_pa)) and the same part `c` of what its expectation moved by,
+//! `W = 2.2 c (dp/dT (s + (1 - exp(-dt / tau)) e) + |E|)`. In a tunnel it takes more to be a jump; gas that flows there is told by the observer's
+//! flowing member.
 //!
 //! # Examined
 //! A second observer goes on from before the jump without the pressure, and `e(t)`, what it expects less what is read, less the same

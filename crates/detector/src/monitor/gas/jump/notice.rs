@@ -37,6 +37,8 @@ pub struct Innovated {
     pub reading_pa: f64,
     /// Reading less what was expected, Pa.
     pub innovation_pa: f64,
+    /// What the surroundings may have done to that since the reading before, Pa.
+    pub doubt_pa: f64,
 }
 
 impl Default for JumpWatch {
@@ -47,9 +49,9 @@ impl Default for JumpWatch {
 }
 
 impl JumpWatch {
-    /// Take in a reading of a transmitter that reads in steps, Pa, with what the surroundings may have done to it since the one before, Pa;
-    /// the innovation before it if this one is a jump.
-    pub fn notice(&mut self, now: Innovated, step_pa: f64, doubt_pa: f64) -> Option<f64> {
+    /// Take in a reading of a transmitter that reads in steps, Pa, where a part of what the expectation moved by is doubted; the innovation
+    /// before it if this one is a jump.
+    pub fn notice(&mut self, now: Innovated, step_pa: f64, part: f64) -> Option<f64> {
         if !(now.reading_pa.is_finite() && now.innovation_pa.is_finite()) {
             return None;
         }
@@ -69,7 +71,11 @@ impl JumpWatch {
         // What goes back to where it was has taken in a jump that was not noticed: the other way it would be believed.
         let before_pa = std::mem::replace(&mut self.before_pa, last.innovation_pa);
         let returns = (now.innovation_pa - before_pa).abs() < RETURNED * change_pa.abs();
-        let limit_pa = JUMP_PA + JUMP_PER_USUAL * self.usual_pa * grown + JUMP_PER_STEP * step_pa + doubt_pa;
+        let limit_pa = JUMP_PA
+            + JUMP_PER_USUAL * self.usual_pa * grown
+            + JUMP_PER_STEP * step_pa
+            + now.doubt_pa
+            + part * (by_reading_pa - change_pa).abs();
         self.usual_pa += ((change_pa.abs() / grown).min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
         let read = second_pa * change_pa.signum() > BY_READING * change_pa.abs();
         (read && !returns && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
@@ -93,7 +99,7 @@ mod tests {
         innovation_pa: f64,
         doubt_pa: f64,
     ) -> Option<f64> {
-        watch.notice(Innovated { time_s: MINUTE_S * minute, reading_pa, innovation_pa }, 0.0, doubt_pa)
+        watch.notice(Innovated { time_s: MINUTE_S * minute, reading_pa, innovation_pa, doubt_pa }, 0.0, 0.4)
     }
 
     /// A watch that has seen a thousand quiet rows, so many minutes apart.
