@@ -40,6 +40,8 @@ pub struct Flow {
     pub mass_sd_kg: f64,
     /// The part of that sd that is not the same an hour later, kg.
     pub passing_sd_kg: f64,
+    /// The part of that which is considered for what the surroundings do, kg.
+    pub considered_sd_kg: f64,
     /// Mean gas temperature, K.
     pub gas_mean_k: f64,
     /// Its sd, K.
@@ -79,6 +81,7 @@ impl Observer {
             mass_kg,
             mass_sd_kg: (mass + kg2 * considered).sqrt(),
             passing_sd_kg: (kg2 * (passing + considered)).sqrt(),
+            considered_sd_kg: (kg2 * considered).sqrt(),
             gas_mean_k,
             gas_mean_sd_k: (gas + gas_mean_k * gas_mean_k * considered).sqrt(),
             rate_kg_s,

@@ -1,19 +1,24 @@
-//! Steps of the surroundings: what explains a row that surprises every thermometer.
+//! Steps of the surroundings: competing explanations of a row that surprises every thermometer.
 //!
-//! Air that walks and a film that walks are right for hours; at the mouth of a tunnel both are others from one row to the next, and a filter
-//! linearised at the air of before explains a quick film by air of 100 °C. Where the thermometers on the surface are surprised to one
-//! side, the row is taken once for each explanation `h` from the bank of before, and what is likeliest stays:
+//! A random walk of the air and of the outside film is right for hours. At the mouth of a tunnel both change from one row to the next, and a filter
+//! that is linearised at the air of the row before explains a fast film by air of 100 °C. If all thermometers on the surface deviate to one
+//! side, the observer therefore takes the row several times, each time from the state of the row before and with another explanation `h`. The
+//! likeliest one stays, by the innovations `nu` of the first member and their variances `S`:
 //!
-//! `-2 ln L_h = sum_i (nu_i^2 / S_i + ln S_i) - 2 ln p_h`,
+//! `-2 ln L_h = sum_i (nu_i^2 / S_i + ln S_i) - 2 ln p_h`.
 //!
-//! with the innovations `nu`, variances `S`, of the first member. Explanations and their prior probabilities `p` in the interval `dt`: none,
-//! `exp(-q dt)`, and a step of the air to the side of the surprise, of a normal distribution of its size, with the film outside as it was or by
-//! a factor `exp(±f)` another one, `(1 - exp(-q dt)) / 3` each ([`AirStep`]). Of one half of a normal distribution of standard deviation `a`
-//! the mean is `a sqrt(2 / pi)`, the variance `a^2 (1 - 2 / pi)`.
+//! | explanation | prior probability in an interval `dt` |
+//! |---|---|
+//! | no step | `exp(-q dt)` |
+//! | the air steps to the side of the deviation, the film stays | `(1 - exp(-q dt)) / 3` |
+//! | the same, and the film changes by a factor `exp(f)` or `exp(-f)` | the same for each |
 //!
-//! Assumptions: one step between two rows; the extended filter.
+//! The size of an air step is normally distributed with standard deviation `a` ([`AirStep`]). Given its sign, its mean is `a sqrt(2 / pi)` and its
+//! variance `a^2 (1 - 2 / pi)`.
 //!
-//! Source: the likeliest of several hypotheses on one filter as in Bar-Shalom, Li, Kirubarajan, Estimation with Applications to
+//! Assumptions: at most one step between two rows; the extended filter.
+//!
+//! Source: multiple-model estimation with pruning to one model, Bar-Shalom, Li, Kirubarajan, Estimation with Applications to
 //! Tracking and Navigation (2001), section 11.6.
 use std::f64::consts::FRAC_2_PI;
 
@@ -84,8 +89,8 @@ impl Observer {
         of.map(|(innovation, _)| innovation.nu * innovation.nu / innovation.s + innovation.s.ln()).sum()
     }
 
-    /// To which side, 1 or -1, thermometers on the surface read what the first member does not expect, one by so many standard deviations and
-    /// each by half as many: air and wind reach all of them, and what one does alone is its own.
+    /// Side, 1 or -1, to which all thermometers on the surface deviate from what the first member expects: one by at least `by_sd` standard
+    /// deviations, the others by half of that. Air and wind reach all of them; a deviation of a single one is its own.
     fn surprise(&mut self, by_sd: f64, readings: &[f64]) -> Result<Option<f64>, EstimatorError> {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {

@@ -308,6 +308,7 @@ mod tests {
             mass_kg,
             mass_sd_kg: 0.01,
             passing_sd_kg: sd_kg,
+            considered_sd_kg: 0.0,
             gas_mean_k: 300.0,
             gas_mean_sd_k: 1.0,
             rate_kg_s: 0.0,

@@ -8,7 +8,7 @@ use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
-/// Doubt about a mass beyond which it does not count, in standard deviations of the error of all masses.
+/// Considered error above which a mass is not used, in standard deviations of the usual error of the masses.
 const DOUBTFUL: f64 = 3.0;
 /// Completed bins of the trace between two looks: an hour; but a look at each while the trace is short.
 const BINS_PER_LOOK: u32 = 6;
@@ -66,7 +66,7 @@ pub(in crate::monitor) struct Look<'a> {
     pub slow: &'a Leak,
     pub pa_per_kg: f64,
     pub error: &'a MassError,
-    /// What the mass is doubted for now and will not be in an hour, standard deviation, kg.
+    /// Considered error of the mass by what the surroundings do, standard deviation, kg.
     pub doubt_kg: f64,
     /// Mass of the fill, kg.
     pub filled_kg: f64,
@@ -80,7 +80,7 @@ impl LeakState {
     /// Take in a sample.
     pub fn step(&mut self, look: &Look<'_>) -> Change {
         let time_s = look.estimate.time_s;
-        // What a tunnel or the sun may have done to a mass would count as gas that goes.
+        // A tunnel or the sun may have moved this mass: it would count as lost gas.
         let doubtful = look.doubt_kg > DOUBTFUL * look.error.sd_kg;
         let completed = !doubtful && self.trace.push(time_s, look.free.mass_kg);
         self.bins += u32::from(completed);

@@ -433,7 +433,7 @@ impl Monitor {
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
             error: &self.mass_error,
-            doubt_kg: self.observer.flow().map_or(0.0, |flow| flow.passing_sd_kg),
+            doubt_kg: self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
             filled_kg: self.filled_kg.0,
             alarm: alarm || lost_across,
             calm: calm && !lost_across,

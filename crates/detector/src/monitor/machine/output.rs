@@ -1,7 +1,8 @@
-//! What is said after a row: the gas by the member of the observer that knows it best, the decision, the outlook, the alarms.
+//! Output of a row: estimate, decision, outlook and alarms.
 //!
-//! While nothing flows, the members that hold the mass are the most precise. While a leak is found, the freest one has the mass; while gas flows, and
-//! until it has come to rest, the flowing one has mass, gas temperature and rate.
+//! The member of the observer's bank that gives mass and gas temperature depends on the state of the cylinder. At rest the members that hold the mass are
+//! the most precise. While a leak is known, the mass comes from the freest member. While gas flows, and until it has come to rest, mass, gas
+//! temperature and rate come from the flowing member.
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Leak};
@@ -32,7 +33,7 @@ impl Monitor {
             if self.state.is_flowing(time_s) {
                 (estimate.mass_kg, estimate.mass_sd_kg) = (flow.mass_kg, flow.mass_sd_kg);
             }
-            // The gas of members that hold the mass is too cold as long as they hold too much.
+            // Members that hold too much mass explain the pressure by gas that is too cold.
             if leak.is_some() || time_s - self.state.flowed_s < SETTLED_S {
                 (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (flow.gas_mean_k, flow.gas_mean_sd_k);
             }

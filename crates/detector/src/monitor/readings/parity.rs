@@ -36,6 +36,8 @@ const STALE_S: f64 = 3.0 * 3600.0;
 /// Difference that is usual, K, and difference beyond it that raises what is needed by 40 %, K.
 const HARMLESS_K: f64 = 0.3;
 const SCALE_K: f64 = 0.2;
+/// Usual deviations of the difference that are harmless, too.
+const USUAL_SPREADS: f64 = 2.0;
 /// Largest divisor: a leak of 1 bar/h is found beside whatever heater.
 const LARGEST: f64 = 4.0;
 /// Time within which three calm windows say whether the difference is usual, s, and the divisor where they do not, until it is stale: in a tunnel nobody sees a kelvin.
@@ -103,6 +105,8 @@ pub(in crate::monitor) struct Parity {
     window: Option<Window>,
     calm: VecDeque<Calm>,
     off_k: f64,
+    /// How far the difference usually is from its median, K: median absolute deviation beyond the harmless.
+    spread_k: f64,
     named: Option<Named>,
     /// Usual difference before it was off, K.
     usual_k: f64,
@@ -187,15 +191,15 @@ impl Parity {
         if self.calm.back().is_some_and(|calm| time_s - calm.begun_s > STALE_S) {
             (self.off_k, self.named) = (0.0, None);
         }
-        let beyond_k = (self.off_k.abs() - HARMLESS_K).max(0.0);
-        let now = (beyond_k / SCALE_K).hypot(1.0).min(LARGEST) - 1.0;
+        let beyond_k = (self.unusual_k() - HARMLESS_K).max(0.0);
+        let now = (beyond_k / (SCALE_K + self.spread_k)).hypot(1.0).min(LARGEST) - 1.0;
         self.excess = now.max(self.excess * (-elapsed_s / BACK_S).exp());
         self.tell(elapsed_s)
     }
 
     /// What has changed with a row so long after the last one, s.
     fn tell(&mut self, elapsed_s: f64) -> Option<Disturbance> {
-        if self.off_k.abs() > DISTURBED_K {
+        if self.unusual_k() > DISTURBED_K {
             self.disturbed_s += elapsed_s;
         }
         if let Some(named) =
@@ -203,11 +207,11 @@ impl Parity {
         {
             return Some(Disturbance::Shifted(named.which, named.of_its_own(named.mean_k)));
         }
-        if self.disturbed_s > TOLD_S && self.off_k.abs() > TOLD_K && !self.told {
+        if self.disturbed_s > TOLD_S && self.unusual_k() > TOLD_K && !self.told {
             self.told = true;
             return Some(Disturbance::Begun(self.off_k));
         }
-        if self.off_k.abs() >= OVER_K {
+        if self.unusual_k() >= OVER_K {
             return None;
         }
         let forgotten = std::mem::take(&mut self.disturbed_s) > DISTURBED_S;
@@ -225,6 +229,9 @@ impl Parity {
             return;
         }
         self.off_k = self.change_k(usize::MAX, |calm| calm.apart_k);
+        let usual_k = median(self.calm.iter().rev().skip(LATEST).map(|calm| calm.apart_k));
+        let spread_k = median(self.calm.iter().rev().skip(LATEST).map(|calm| (calm.apart_k - usual_k).abs()));
+        self.spread_k = (spread_k - HARMLESS_K / 2.0).max(0.0);
         if self.disturbed_s == 0.0 {
             self.usual_k = self.latest_k(|calm| calm.apart_k) - self.off_k;
         }
@@ -232,7 +239,7 @@ impl Parity {
     }
 
     fn name(&mut self, time_s: f64) {
-        if self.off_k.abs() < OVER_K {
+        if self.unusual_k() < OVER_K {
             self.named = None;
             return;
         }
@@ -243,7 +250,7 @@ impl Parity {
             Some(named) if is_off(named.which) || named.windows >= NAMED_WINDOWS => {
                 Some(named.goes_on(self.off_k))
             }
-            _ if self.off_k.abs() < NAMED_K => None,
+            _ if self.unusual_k() < NAMED_K => None,
             _ => off[0].or(off[1]).map(|which| Named::new(which, time_s, self.off_k)),
         };
     }
@@ -273,9 +280,14 @@ impl Parity {
         Some((named.which, named.of_its_own(self.off_k)))
     }
 
+    /// How far the present difference is from the usual one beyond the usual deviations, K.
+    fn unusual_k(&self) -> f64 {
+        (self.off_k.abs() - USUAL_SPREADS * self.spread_k).max(0.0)
+    }
+
     /// Whether the difference is the usual one, and has been for a while.
     pub fn is_usual(&self) -> bool {
-        self.off_k.abs() < OVER_K && self.excess < 1.0
+        self.unusual_k() < OVER_K && self.excess < 1.0
     }
 
     /// Whether nothing can be told of small leaks.

@@ -207,6 +207,8 @@ impl Examination {
             () if tellable && end_pa.abs() < WANDER_PA.max((LEFT_OF_GAS * peak_pa).min(2.0 * wander_pa)) => {
                 Cause::Passed
             }
+            // The surroundings may have done all of it. Gas that went shows in the masses.
+            () if end_pa.abs() < 2.0 * self.doubt_pa => Cause::Passed,
             () if self.grew >= FLOW_SAMPLES || end_pa.abs() > NO_OFFSET_PA => Cause::Gas,
             () if back_pa > DIVISION * peak_pa + 0.5 * wander_pa => Cause::Gas,
             () if back_pa < DIVISION * peak_pa - 0.5 * wander_pa => Cause::Offset(-end_pa),

@@ -37,7 +37,7 @@ pub struct Innovated {
     pub reading_pa: f64,
     /// Reading less what was expected, Pa.
     pub innovation_pa: f64,
-    /// What the surroundings may have done to that since the reading before, Pa.
+    /// Largest change of the innovation by the surroundings since the reading before, Pa.
     pub doubt_pa: f64,
 }
 
@@ -49,8 +49,8 @@ impl Default for JumpWatch {
 }
 
 impl JumpWatch {
-    /// Take in a reading of a transmitter that reads in steps, Pa, where a part of what the expectation moved by is doubted; the innovation
-    /// before it if this one is a jump.
+    /// Take in a reading. `step_pa` is the resolution of the transmitter, Pa; `part` the relative uncertainty of a change of the expected
+    /// pressure. Returns the innovation before the reading if the reading is a jump.
     pub fn notice(&mut self, now: Innovated, step_pa: f64, part: f64) -> Option<f64> {
         if !(now.reading_pa.is_finite() && now.innovation_pa.is_finite()) {
             return None;
