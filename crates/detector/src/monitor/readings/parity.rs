@@ -5,8 +5,9 @@
 //! two thermometers. In calm windows of ten minutes (neither moves by more than 0.6 K) it stays within 0.1 to 0.2 K for weeks, tunnels
 //! and all; with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
 //!
-//! `d` is the median of the last three calm windows less that of the two days before. The evidence for a leak is divided by
-//! `sqrt(1 + ((|d| - 0.3 K) / 0.2 K)^2)` from `|d|` = 0.3 K on, at most 4, and by 1.3 at least where no three calm windows of the last
+//! `d` is the median of the last three calm windows less that of the two days before. Where the difference usually varies, as with every day's sun in a
+//! desert, that much is usual: with the median `s` of its deviations in these days beyond 0.15 K, all limits below are those of `|d| - 2 s`. The evidence
+//! for a leak is divided by `sqrt(1 + ((|d| - 2 s - 0.3 K) / (0.2 K + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
 //! one and a half hours give `d`, for as long again; beyond 2.5 the verdict is unknown; for six hours after it by what is left of that,
 //! as the observer needs its time to come back. Where `d` was above 0.5 K for three hours, the evidence from then counts for nothing
 //! once it is over.
@@ -406,6 +407,17 @@ mod tests {
                 "{shifted_h} h"
             );
         }
+    }
+
+    #[test]
+    fn a_difference_that_swings_with_every_day_is_usual_and_a_heater_beside_it_is_not() {
+        let swing = |hour: f64| 1.2 * (std::f64::consts::TAU * hour / 24.0).sin();
+        let heater = |hour: f64| if hour > 130.0 { 5.0 } else { 0.0 };
+        let (divisors, _) = watched(140.0, |hour| 280.0 + swing(hour) + heater(hour), |_| 280.0);
+        let at = |hour: f64| divisors[(60.0 * hour) as usize];
+        let later: Vec<f64> = (60..130).map(|hour| at(f64::from(hour))).collect();
+        assert!(later.iter().all(|divisor| *divisor < BLIND), "{later:?}");
+        assert!(at(132.0) > BLIND, "{}", at(132.0));
     }
 
     #[test]

@@ -31,6 +31,7 @@
 //! no better than the model wanders while wall and gas move: `0.04 bar + 0.05 bar/K` of the change of the gas temperature and
 //! the `W` of the jump. Where that is half of the jump, nothing has passed:
 //! what has jumped and not jumped back is gas or an offset. What lies within it of the division remains unclear when gas may be gone.
+//! What is left within twice the `W` of the jump may be the surroundings' doing: it counts for nothing, and gas that went shows in the masses.
 //! Of a gain so small that no filling stops there the transmitter is the safe assumption: it leaves the mass as low as it was.
 //!
 //! All pressures are stated for a fill of 200 bar; for another one they are the same parts of it.
