@@ -8,8 +8,6 @@ use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
-/// Considered error above which a mass is not used, in standard deviations of the usual error of the masses.
-const DOUBTFUL: f64 = 3.0;
 /// Completed bins of the trace between two looks: an hour; but a look at each while the trace is short.
 const BINS_PER_LOOK: u32 = 6;
 const SHORT: u32 = 36;
@@ -81,7 +79,7 @@ impl LeakState {
     pub fn step(&mut self, look: &Look<'_>) -> Change {
         let time_s = look.estimate.time_s;
         // A tunnel or the sun may have moved this mass: it would count as lost gas.
-        let doubtful = look.doubt_kg > DOUBTFUL * look.error.sd_kg;
+        let doubtful = look.doubt_kg > look.error.sd_kg;
         let completed = !doubtful && self.trace.push(time_s, look.free.mass_kg);
         self.bins += u32::from(completed);
         self.seen_bins += u32::from(completed);

@@ -13,6 +13,8 @@
 //! drift of what the observer has learnt, widens the rate by a standard deviation of its own, as does what a kilogram is worth in the
 //! observer's model, 0.5 %; the onset by the length of a bin, since the mass follows a leak by some minutes.
 //!
+//! A mass whose considered error by the surroundings is above `s` is left out, and `s` grows with what the evidence is divided by.
+//!
 //! Assumes one leak of constant rate since its onset, and that the errors are as stated. They last from minutes to days: the defaults are one
 //! process that stands for all of them, such that intervals hold the truth as often as they say (`long_run -- FOLDER accuracy`).
 //!

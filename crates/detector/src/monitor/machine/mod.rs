@@ -427,12 +427,14 @@ impl Monitor {
         let calm = self.thresholds.is_calm(&statistics);
         let lost_across = std::mem::take(&mut self.state.lost_across);
         let (Some(free), Some(slow)) = (self.leaks.last(), self.leaks.get(1)) else { return Ok(()) };
+        // What the evidence is divided by, the errors of the masses are larger by.
+        let error = MassError { sd_kg: divisor * self.mass_error.sd_kg, ..self.mass_error };
         let look = Look {
             estimate,
             free,
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
-            error: &self.mass_error,
+            error: &error,
             doubt_kg: self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
             filled_kg: self.filled_kg.0,
             alarm: alarm || lost_across,
