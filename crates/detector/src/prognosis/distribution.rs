@@ -11,6 +11,7 @@
 //!
 //! Source: D. V. Hinkley, Biometrika 56 (1969) 635 (ratio); T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145 (root).
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::quadrature::integrate;
 use super::{LossLaw, MassAndLeak};
@@ -230,7 +231,7 @@ fn crossing(
 
 /// Distribution function of the standard normal distribution.
 pub(crate) fn normal_probability(x: f64) -> f64 {
-    0.5 * statrs::function::erf::erfc(-x / std::f64::consts::SQRT_2)
+    Normal::standard().cdf(x)
 }
 
 /// `P(x <= bound)` of a normal `x`, whose standard deviation may be zero.

@@ -1,7 +1,12 @@
 //! What the observer says after a sample.
 use serde::{Deserialize, Serialize};
 
-use super::belief::mixture;
+use super::belief::{Belief, mixture};
+use super::clock::Exchange;
+use super::member::Outcome;
+use super::{Observer, QUOTED_K, REFERENCE_AFTER_S};
+use crate::EstimatorError;
+use crate::filter::StateSpace;
 
 /// How far an estimate can be relied on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -89,4 +94,93 @@ pub struct Leak {
     pub covariance_kg2_s: f64,
     /// Whether it was out of the question at this sample and began anew from the freest member.
     pub begun_anew: bool,
+}
+
+impl Observer {
+    /// What the bank says after a sample.
+    pub(super) fn estimate(
+        &mut self,
+        time_s: f64,
+        readings: &[f64],
+        restarted: bool,
+    ) -> Result<Estimate, EstimatorError> {
+        let (bank, states) = (&self.bank, self.cylinder.state_map());
+        let (thermometer, freest) = (self.thermometer, self.freest);
+        let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
+        let mut mass = Belief::mass(first_mass, free_mass);
+        let mut gas = Belief::of(slow_mass, free_mass)
+            .blend(bank.moments(thermometer, states.gas), bank.moments(freest, states.gas));
+        gas.1 = self.band.stated_k2(gas.1, |state| bank.moments(thermometer, state).1);
+        let mut leak = self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
+        leak.1 += self.unknown_leak_variance(time_s, free_mass.1);
+        if let Some(flow) = self.flow() {
+            let belief = Belief::of(slow_mass, flow.mass());
+            gas = belief.blend(gas, flow.gas());
+            mass = Belief::mass(mass, flow.mass());
+            // Of a rate of days and one of minutes a mixture would tell neither.
+            if belief.weight() < 0.5 {
+                leak = flow.rate();
+            }
+        }
+        let mut estimate = Estimate {
+            time_s,
+            gas_mean_k: gas.0,
+            gas_mean_sd_k: gas.1.sqrt(),
+            mass_kg: mass.0,
+            mass_sd_kg: mass.1.sqrt(),
+            leak_kg_s: leak.0,
+            leak_sd_kg_s: leak.1.sqrt(),
+            pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
+            pressure_expected_pa: f64::NAN,
+            p15_pa: f64::NAN,
+            quality: self.quality(restarted),
+        };
+        if self.clock.reference_mass_kg.is_none() && time_s >= self.clock.reference_due_s {
+            self.clock.reference_mass_kg = Some(estimate.mass_kg);
+        }
+        self.reference_x.copy_from_slice(&self.bank.members[0].x);
+        self.add_pressures(&mut estimate, self.clock.reference_mass_kg)?;
+        Ok(estimate)
+    }
+
+    /// Variance of a leak rate that a slow member excludes and the readings do not, (kg/s)²: `min(r^2, 2 P_free/t^2)`, with what a leak
+    /// can be, `r`, and the mass of the freest member, variance `P_free`, at both ends of the time `t` since the beginning or the last exchange of gas.
+    fn unknown_leak_variance(&self, time_s: f64, free_variance_kg2: f64) -> f64 {
+        let largest = self.cylinder.settings().any_leak_sd_kg_s.powi(2);
+        let elapsed_s = (time_s - self.clock.reference_due_s + REFERENCE_AFTER_S).max(0.0);
+        // Not a number at the beginning without a mass, and infinite at once: then it is the largest.
+        largest.min(2.0 * free_variance_kg2 / (elapsed_s * elapsed_s))
+    }
+
+    /// Pressures of an estimate whose state is `reference_x`, with a reference mass, kg, if there is one.
+    pub(super) fn add_pressures(
+        &mut self,
+        estimate: &mut Estimate,
+        reference_kg: Option<f64>,
+    ) -> Result<(), EstimatorError> {
+        let mass = self.cylinder.state_map().mass;
+        self.reference_x[mass] = reference_kg.unwrap_or(estimate.mass_kg);
+        estimate.pressure_expected_pa = match self.pressure_sensor() {
+            Some(sensor) => self.cylinder.output(sensor, &self.reference_x, None)?,
+            None => self.cylinder.pressure_pa(&self.reference_x)?,
+        };
+        estimate.p15_pa = self.cylinder.model().settled_pressure_pa(estimate.mass_kg, QUOTED_K)?;
+        Ok(())
+    }
+
+    fn pressure_sensor(&self) -> Option<usize> {
+        (0..self.cylinder.outputs()).find(|&sensor| self.cylinder.reads_pressure(sensor))
+    }
+
+    fn quality(&self, restarted: bool) -> Quality {
+        let innovations = self.innovations();
+        let any = |outcome: Outcome| innovations.iter().any(|i| i.outcome == outcome);
+        match () {
+            () if restarted => Quality::Restarted,
+            () if self.clock.exchange != Exchange::None || any(Outcome::Reacquired) => Quality::Open,
+            () if !any(Outcome::Accepted) => Quality::Predicted,
+            () if any(Outcome::Missing) || any(Outcome::Rejected) => Quality::Degraded,
+            () => Quality::Good,
+        }
+    }
 }

@@ -199,6 +199,25 @@ fn what_thermometers_cannot_tell_widens_the_flow_and_is_forgotten_at_rest() {
 }
 
 #[test]
+fn a_pressure_is_freshly_in_doubt_by_what_a_thermometer_moved_and_not_for_long() {
+    let mut observer = observer(Engine::Extended);
+    assert_eq!(observer.fresh_doubt_pa(2).unwrap(), f64::INFINITY);
+    let mut time_s = 0.0;
+    let mut doubt_pa = |readings: [f64; 3]| {
+        time_s += 60.0;
+        observer.step(time_s, &readings).unwrap();
+        observer.fresh_doubt_pa(2).unwrap()
+    };
+    let still = (0..10).map(|_| doubt_pa(REST)).fold(0.0, f64::max);
+    // Nitrogen of 200 bar at 15 °C: 1 bar/K (CoolProp 8.0: 0.99). A fifth of 4 K in this row and the next.
+    let moved = [FILL_K + 4.0, FILL_K, 2e7];
+    let [now, next, later] = std::array::from_fn(|_| doubt_pa(moved));
+    assert!(still < 0.01e5, "{still} Pa");
+    assert!((0.75e5..1.0e5).contains(&now) && (0.75e5..1.0e5).contains(&next), "{now}, {next} Pa");
+    assert!(later < 0.1e5, "{later} Pa");
+}
+
+#[test]
 fn only_the_extended_filter_follows_gas_that_flows() {
     for (word, follows) in [("ekf", true), ("ukf", false), ("stationary", false), ("mhe", false)] {
         let mut observer = observer(word.parse().unwrap());

@@ -16,6 +16,8 @@
 //!
 //! Source: D. Siegmund and E. S. Venkatraman, Ann. Stat. 23 (1995) 255; D. Siegmund and B. Yakir, The Statistics of Gene Mapping, 2007;
 //! smooth fields: S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46; mean overshoot: D. Siegmund, Sequential Analysis, 1985.
+use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+
 use crate::EstimatorError;
 
 /// Mean overshoot of a standard normal random walk over a far barrier, `-zeta(1/2)/sqrt(2 pi)`.
@@ -60,6 +62,7 @@ fn mean_samples(threshold: f64, window: usize) -> f64 {
     // Sums over the samples after the first one of an onset.
     let (mut rest, mut cross, mut curvature) = (0.0, 0.0, 0.0);
     let mut summits = 0.0;
+    let normal = Normal::standard();
     for age in 0..window {
         let signature = 1.0 + age as f64;
         if age > 0 {
@@ -71,11 +74,11 @@ fn mean_samples(threshold: f64, window: usize) -> f64 {
         let newest = b * signature / information.sqrt();
         let oldest = b / information.sqrt();
         let bent: f64 = if rest > 0.0 { (curvature - cross * cross / rest).max(0.0) } else { 0.0 };
-        let smooth = 2.0 * normal_probability(0.5 * b * (bent / information).sqrt()) - 1.0;
+        let smooth = 2.0 * normal.cdf(0.5 * b * (bent / information).sqrt()) - 1.0;
         let rough = walk_summit(oldest);
         summits += walk_summit(newest) * (rough + smooth - rough * smooth);
     }
-    b / (normal_density(b) * summits)
+    b / (normal.pdf(b) * summits)
 }
 
 /// Probability that a point is the summit of a random walk with drift away from it to both sides.
@@ -90,15 +93,8 @@ fn discreteness(x: f64) -> f64 {
         return 1.0 - MEAN_OVERSHOOT * x;
     }
     let half = 0.5 * x;
-    (normal_probability(half) - 0.5) / half / (half * normal_probability(half) + normal_density(half))
-}
-
-fn normal_density(x: f64) -> f64 {
-    (-0.5 * x * x).exp() / std::f64::consts::TAU.sqrt()
-}
-
-fn normal_probability(x: f64) -> f64 {
-    0.5 * statrs::function::erf::erfc(-x / std::f64::consts::SQRT_2)
+    let normal = Normal::standard();
+    (normal.cdf(half) - 0.5) / half / (half * normal.cdf(half) + normal.pdf(half))
 }
 
 /// The threshold at which a mean time, which grows with it, is `wished`; `None` where there is none.

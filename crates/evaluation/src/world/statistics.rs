@@ -1,4 +1,5 @@
 //! Statistics that drawn laws are tested with: bounds that a right law exceeds once in some ten thousand tests.
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Kolmogorov's bound on `sqrt(n) D` at a probability of 1e-4.
 const KOLMOGOROV: f64 = 2.23;
@@ -18,9 +19,7 @@ impl Law {
         match self {
             Self::Uniform(low, high) => ((x - low) / (high - low)).clamp(0.0, 1.0),
             Self::Logarithmic(low, high) => ((x / low).ln() / (high / low).ln()).clamp(0.0, 1.0),
-            Self::Normal(mean, sd) => {
-                0.5 * statrs::function::erf::erfc(-(x - mean) / (sd * std::f64::consts::SQRT_2))
-            }
+            Self::Normal(mean, sd) => Normal::standard().cdf((x - mean) / sd),
         }
     }
 

@@ -229,12 +229,13 @@ impl Parity {
         if usual < FEWEST_USUAL {
             return;
         }
-        self.off_k = self.change_k(usize::MAX, |calm| calm.apart_k);
-        let usual_k = median(self.calm.iter().rev().skip(LATEST).map(|calm| calm.apart_k));
-        let spread_k = median(self.calm.iter().rev().skip(LATEST).map(|calm| (calm.apart_k - usual_k).abs()));
+        let before = self.calm.iter().rev().skip(LATEST);
+        let usual_k = median(before.clone().map(|calm| calm.apart_k));
+        let spread_k = median(before.map(|calm| (calm.apart_k - usual_k).abs()));
+        self.off_k = self.latest_k(|calm| calm.apart_k) - usual_k;
         self.spread_k = (spread_k - HARMLESS_K / 2.0).max(0.0);
         if self.disturbed_s == 0.0 {
-            self.usual_k = self.latest_k(|calm| calm.apart_k) - self.off_k;
+            self.usual_k = usual_k;
         }
         self.name(calm.begun_s);
     }

@@ -299,6 +299,21 @@ mod tests {
     }
 
     #[test]
+    fn a_step_that_the_surroundings_may_have_made_is_no_offset() {
+        let told = |doubt_pa: f64, step_pa: f64| {
+            let mut examination = Examination::new(0.0, 0.0, doubt_pa);
+            let mut causes = (0..200).map(|minute| {
+                examination.push(MINUTE_S * f64::from(minute), (200e5, 200e5 + step_pa), 280.0, 0.0)
+            });
+            causes.find(|cause| *cause != Cause::Open)
+        };
+        for step_pa in [2e5, -2e5] {
+            assert_eq!(told(0.0, step_pa), Some(Cause::Offset(step_pa)));
+            assert_eq!(told(1.5e5, step_pa), Some(Cause::Passed));
+        }
+    }
+
+    #[test]
     fn what_was_seen_before_the_surroundings_moved_decides() {
         // Gas let out nine minutes before a tunnel that throws the shadow off.
         let course = |minute: f64| {

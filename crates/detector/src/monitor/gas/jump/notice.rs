@@ -137,6 +137,15 @@ mod tests {
     }
 
     #[test]
+    fn a_part_of_what_the_expectation_moved_by_is_no_jump() {
+        // 1.9 bar too little, where the expectation rises by 5 bar and where it stays.
+        let jumps = |rise_pa: f64| {
+            noticed(&mut accustomed(184e5, 1.0), 0.0, 184e5 + rise_pa - 1.9e5, -1.9e5, 0.0).is_some()
+        };
+        assert!(!jumps(5e5) && jumps(0.0));
+    }
+
+    #[test]
     fn the_return_after_a_jump_that_was_not_noticed_is_none() {
         let mut watch = accustomed(200e5, 1.0);
         assert_eq!(noticed(&mut watch, 0.0, 199.2e5, -0.8e5, 0.9e5), None, "hidden by a tunnel");
