@@ -14,17 +14,6 @@ pub enum DetectorError {
         /// What it must be.
         bound: &'static str,
     },
-    /// Too few stretches of operation to learn a threshold from.
-    #[error("{found} stretches of operation are too few: give at least {needed}")]
-    TooFewStretches {
-        /// Number as given, NaN left out.
-        found: usize,
-        /// Number needed.
-        needed: usize,
-    },
-    /// Statistics that do not vary.
-    #[error("the largest values do not vary: a threshold needs their tail")]
-    StatisticsConstant,
     /// The gas has no such state.
     #[error(transparent)]
     Gas(#[from] cylwatch_estimator::thermal::ThermalError),

@@ -13,6 +13,17 @@ pub enum EvaluationError {
     /// A detector refused.
     #[error(transparent)]
     Detector(#[from] cylwatch_detector::DetectorError),
+    /// Too few largest values to tell their tail.
+    #[error("{found} stretches of operation are too few: give at least {needed}")]
+    TooFewStretches {
+        /// Number as given, NaN left out.
+        found: usize,
+        /// Number needed.
+        needed: usize,
+    },
+    /// Largest values without a tail.
+    #[error("the largest values do not vary: a threshold needs their tail")]
+    StatisticsConstant,
     /// A setting is out of its bounds.
     #[error("setting `{setting}` = {value} must be {bound}")]
     Setting {

@@ -21,6 +21,7 @@ pub mod noise;
 pub mod performance;
 pub mod placement;
 mod random;
+pub mod tails;
 pub mod truth;
 pub mod world;
 

@@ -1,5 +1,5 @@
 //! All detectors side by side on the readings of one cylinder, and what they said.
-use cylwatch_detector::evidence::{Evidence, Peaks, Scale, observer_settings};
+use cylwatch_detector::evidence::{Doubt, Evidence, Scale, observer_settings};
 use cylwatch_estimator::observer::{Commissioning, Observer};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -57,7 +57,7 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
     let commissioning = Commissioning::filled(FILLING.pressure_pa, FILLING.temperature_k);
     let vessel = presets::load(&run.settings.vessel)?;
     let mut observer = Observer::new(&vessel, &sensors, &commissioning, &settings)?;
-    let (mut evidence, mut peaks) = (Evidence::try_new(&settings)?, Peaks::default());
+    let mut evidence = Evidence::try_new(&settings)?;
     let mut baselines = baselines()?;
     let onset_s = run.settings.leak.map_or(0.0, |leak| leak.start_s);
     let mut rises = vec![Rises::since(onset_s); Scale::ALL.len() + baselines.len()];
@@ -65,8 +65,9 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
     for (time_s, row) in readings.rows() {
         let [shoulder_k, _, pressure_pa] = row;
         let estimate = observer.step(time_s, &row)?;
-        let statistics = evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>());
-        peaks.update(time_s, &statistics);
+        let considered_kg = observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
+        let doubt = Doubt { mass_kg: considered_kg, ..Doubt::NONE };
+        let statistics = evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>(), doubt);
         let (own, others) = rises.split_at_mut(Scale::ALL.len());
         own.iter_mut().zip(statistics).for_each(|(rises, value)| rises.update(time_s, value));
         for (rises, (_, baseline)) in others.iter_mut().zip(&mut baselines) {
@@ -75,14 +76,13 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
         end_s = time_s;
     }
     let names = Scale::ALL.iter().map(|scale| scale.as_str()).chain(baselines.iter().map(|(name, _)| *name));
-    let record = |(index, (name, rises)): (usize, (&str, Rises))| Record {
+    let record = |(name, rises): (&str, Rises)| Record {
         run: run.name.clone(),
         detector: name.to_owned(),
         rate_bar_h: rate_bar_h(run),
         onset_s,
         end_s,
         rises,
-        peaks: Scale::ALL.get(index).map_or(Vec::new(), |scale| peaks.of(*scale).to_vec()),
     };
-    Ok(names.zip(rises).enumerate().map(record).collect())
+    Ok(names.zip(rises).map(record).collect())
 }

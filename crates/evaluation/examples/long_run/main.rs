@@ -4,8 +4,7 @@
 //! `cargo run --release -p cylwatch-evaluation --example long_run -- FOLDER train test stratified seasons leaks`
 //!
 //! Each part can be named alone and interrupted at any time: simulated readings and what every detector said of them are kept in FOLDER
-//! (`readings/`, `<part>.csv`), and the next call goes on from there. `fit` prints the tails of the statistics as they stand in the
-//! library; `accuracy` runs the monitor on the leaks and prints how often its intervals hold rate and onset. Without a part, the tables are made from what is there. The truth is [`TruthSettings::fast`], in `stratified` and in half
+//! (`readings/`, `<part>.csv`), and the next call goes on from there. `accuracy` runs the monitor on the leaks and prints how often its intervals hold rate and onset. Without a part, the tables are made from what is there. The truth is [`TruthSettings::fast`], in `stratified` and in half
 //! of `train` with four layers of gas; winters of 122 days, years of 365.
 //!
 //! A false alarm is the first one of a run; time counts up to it. Detectors without an observer have the threshold that as many runs of
@@ -36,9 +35,6 @@ fn main() -> Result<(), Fault> {
     let (folder, parts) = arguments.split_first().ok_or("usage: long_run FOLDER [PART ...]")?;
     let folder = Path::new(folder);
     std::fs::create_dir_all(folder.join("readings"))?;
-    if parts == ["fit"] {
-        return tables::print_fit(folder);
-    }
     if parts == ["accuracy"] {
         return accuracy::print(folder);
     }

@@ -8,7 +8,7 @@ use crate::Fault;
 
 /// A value is kept when it is above the last one kept by so much, relative.
 const STEP: f64 = 0.01;
-const HEAD: &str = "run,detector,rate_bar_h,onset_s,end_s,before,rises,peaks";
+const HEAD: &str = "run,detector,rate_bar_h,onset_s,end_s,before,rises";
 
 /// New largest values of a statistic, with their times, from an onset on.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,16 +57,13 @@ pub struct Record {
     pub onset_s: f64,
     pub end_s: f64,
     pub rises: Rises,
-    /// Largest values of stretches, of the statistics with a tail.
-    pub peaks: Vec<f64>,
 }
 
 impl Record {
     fn line(&self) -> String {
         let rises: Vec<String> = self.rises.values.iter().map(|(t, v)| format!("{t:.0}:{v:.6}")).collect();
-        let peaks: Vec<String> = self.peaks.iter().map(|v| format!("{v:.6}")).collect();
         format!(
-            "{},{},{},{:.0},{:.0},{:.6},{},{}",
+            "{},{},{},{:.0},{:.0},{:.6},{}",
             self.run,
             // The name of a detector has a comma of its own.
             self.detector.replace(", ", ";"),
@@ -74,14 +71,13 @@ impl Record {
             self.onset_s,
             self.end_s,
             self.rises.before,
-            rises.join(" "),
-            peaks.join(" ")
+            rises.join(" ")
         )
     }
 
     fn parse(line: &str) -> Option<Self> {
         let cells: Vec<&str> = line.split(',').collect();
-        let [run, detector, rate, onset, end, before, rises, peaks] = cells[..] else { return None };
+        let [run, detector, rate, onset, end, before, rises] = cells[..] else { return None };
         let pair = |text: &str| {
             let (time, value) = text.split_once(':')?;
             Some((time.parse().ok()?, value.parse().ok()?))
@@ -98,7 +94,6 @@ impl Record {
                 before: before.parse().ok()?,
                 values: rises.split_whitespace().map(pair).collect::<Option<_>>()?,
             },
-            peaks: peaks.split_whitespace().map(|value| value.parse().ok()).collect::<Option<_>>()?,
         })
     }
 }

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::Path;
 
-use cylwatch_detector::evidence::{Peaks, Scale, Tails, Thresholds};
+use cylwatch_detector::evidence::{Scale, Thresholds};
 use cylwatch_evaluation::performance::{AlarmRate, YEAR_S};
 
 use crate::Fault;
@@ -68,36 +68,6 @@ fn level_of(train: &[RunRecords], detector: &str) -> f64 {
     let exceeding = (years / YEARS) as usize;
     // Just above the largest of the runs that must not exceed it: those that do stay.
     largest.len().checked_sub(exceeding + 1).map_or(f64::INFINITY, |index| largest[index] * (1.0 + 1e-9))
-}
-
-fn tails(folder: &Path) -> Result<(Tails, Vec<Peaks>), Fault> {
-    let train = by_run(load(folder, Part::Train.name()));
-    let peaks = |run: &RunRecords| {
-        Peaks::from_largest(
-            Scale::ALL.map(|scale| run.get(scale.as_str()).map_or(Vec::new(), |r| r.peaks.clone())),
-        )
-    };
-    let peaks: Vec<Peaks> = train.iter().map(peaks).collect();
-    Ok((Tails::fit(&peaks)?, peaks))
-}
-
-/// The tails of the training runs, as they stand in the library, and what they are worth.
-pub fn print_fit(folder: &Path) -> Result<(), Fault> {
-    let (tails, peaks) = tails(folder)?;
-    let mut out = std::io::stdout();
-    for tail in tails.0 {
-        let (level, interval_s, scale, shape) = (tail.level, tail.interval_s, tail.scale, tail.shape);
-        writeln!(
-            out,
-            "    Tail {{ level: {level:.4}, interval_s: {interval_s:.4e}, scale: {scale:.4}, shape: {shape:.3} }},"
-        )?;
-    }
-    let intervals = Tails::interval(&peaks, YEARS * YEAR_S, 1)?;
-    let fitted = tails.thresholds(YEARS * YEAR_S)?;
-    for (scale, (low, high)) in Scale::ALL.into_iter().zip(intervals) {
-        writeln!(out, "{}: {:.3} ({low:.3} to {high:.3})", scale.as_str(), fitted.of(scale))?;
-    }
-    Ok(())
 }
 
 /// All tables that the records allow.

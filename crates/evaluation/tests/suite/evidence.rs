@@ -1,7 +1,7 @@
 //! Evidence from an observer on a cylinder under a train: tight, leaking, with gaps, exchanged, and saved in between.
 use std::sync::OnceLock;
 
-use cylwatch_detector::evidence::{Evidence, Scale, Statistics, Thresholds, observer_settings};
+use cylwatch_detector::evidence::{Doubt, Evidence, Scale, Statistics, Thresholds, observer_settings};
 use cylwatch_estimator::observer::{Commissioning, Observer};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -48,13 +48,17 @@ fn evidence() -> Evidence {
     Evidence::try_new(&observer_settings()).unwrap()
 }
 
+fn doubt(observer: &Observer) -> Doubt {
+    Doubt { mass_kg: observer.flow().map_or(0.0, |flow| flow.considered_sd_kg), ..Doubt::NONE }
+}
+
 /// Statistics after each row; `before` may do something to the observer before a row.
 fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, Statistics)> {
-    let (mut observer, mut evidence) = (observer(), evidence());
+    let (observer, mut evidence) = (&mut observer(), evidence());
     let step = |(time_s, row): &Row| {
-        before(*time_s, &mut observer);
+        before(*time_s, observer);
         let estimate = observer.step(*time_s, row).unwrap();
-        (*time_s, evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>()))
+        (*time_s, evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>(), doubt(observer)))
     };
     rows.iter().map(step).collect()
 }
@@ -134,7 +138,11 @@ fn saved_and_restored_at_any_sample_it_goes_on_bit_for_bit() {
             restored = serde_json::from_str(&serde_json::to_string(&restored).unwrap()).unwrap();
         }
         let bits = |statistics: Statistics| statistics.map(f64::to_bits);
-        assert_eq!(bits(whole.update(&estimate, &leaks)), bits(restored.update(&estimate, &leaks)));
+        let doubt = doubt(&observer);
+        assert_eq!(
+            bits(whole.update(&estimate, &leaks, doubt)),
+            bits(restored.update(&estimate, &leaks, doubt))
+        );
     }
     assert_eq!(whole, restored);
 }

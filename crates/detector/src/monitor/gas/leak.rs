@@ -1,4 +1,8 @@
-//! From evidence to a leak: found, described, over.
+//! From evidence to a leak: found, described, over, and how likely it is.
+//!
+//! The masses have a Bayes factor of a leak (`onset`), by a law of their errors that is the same everywhere. What they do in this vessel and
+//! climate the evidence knows: as often as its statistics come up without a leak, once in `T`, a leak comes up once in [`LEAK_INTERVAL_S`], so what they show is
+//! one with odds of at most `T / LEAK_INTERVAL_S`. The odds are those of the masses, but beyond the prior no larger than that.
 use serde::{Deserialize, Serialize};
 
 use super::onset::{self, MassError};
@@ -8,6 +12,10 @@ use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
+/// Mean time between leaks of a cylinder, s: ten years.
+const LEAK_INTERVAL_S: f64 = 10.0 * 365.25 * 86_400.0;
+/// Odds that are as good as certain.
+const CERTAIN: f64 = 1e12;
 /// Completed bins of the trace between two looks: an hour; but a look at each while the trace is short.
 const BINS_PER_LOOK: u32 = 6;
 const SHORT: u32 = 36;
@@ -23,8 +31,10 @@ pub(in crate::monitor) struct LeakState {
     /// Time at which a leak was found, and at which something spoke for it last, s.
     found_s: f64,
     seen_s: f64,
-    /// Probability of a leak by the masses; `None`: they have not said anything yet.
-    probability: Option<f64>,
+    /// Odds of a leak by the masses; `None`: they have not said anything yet.
+    odds: Option<f64>,
+    /// Largest odds by the evidence.
+    largest_odds: f64,
     /// What the rate of a leak is below with 97.5 %, as a part of the fill per second.
     largest_per_s: f64,
 }
@@ -41,7 +51,8 @@ impl Default for LeakState {
             found: None,
             found_s: f64::NAN,
             seen_s: f64::NAN,
-            probability: None,
+            odds: None,
+            largest_odds: PRIOR_ODDS,
             largest_per_s: LARGEST_PER_S,
         }
     }
@@ -68,6 +79,8 @@ pub(in crate::monitor) struct Look<'a> {
     pub doubt_kg: f64,
     /// Mass of the fill, kg.
     pub filled_kg: f64,
+    /// Mean time between statistics like these without a leak, s.
+    pub false_alarm_s: f64,
     /// Whether a statistic is above its threshold, and whether all are far below.
     pub alarm: bool,
     pub calm: bool,
@@ -78,6 +91,7 @@ impl LeakState {
     /// Take in a sample.
     pub fn step(&mut self, look: &Look<'_>) -> Change {
         let time_s = look.estimate.time_s;
+        self.largest_odds = (look.false_alarm_s / LEAK_INTERVAL_S).clamp(PRIOR_ODDS, CERTAIN);
         // A tunnel or the sun may have moved this mass: it would count as lost gas.
         let doubtful = look.doubt_kg > look.error.sd_kg;
         let completed = !doubtful && self.trace.push(time_s, look.free.mass_kg);
@@ -115,7 +129,7 @@ impl LeakState {
         if let Some((log_bayes_factor, largest_kg_s)) =
             known.or_else(|| onset::outlook(&self.trace, look.error))
         {
-            self.probability = Some(probability(PRIOR_ODDS * log_bayes_factor.exp().min(1e12)));
+            self.odds = Some((PRIOR_ODDS * log_bayes_factor.exp()).min(CERTAIN));
             self.largest_per_s = largest_kg_s / look.filled_kg;
         }
     }
@@ -147,19 +161,15 @@ impl LeakState {
         self.found.as_ref()
     }
 
-    /// Probability that gas is being lost, by the masses; `None`: they have not said anything yet.
+    /// Probability that gas is being lost, by masses and evidence; `None`: the masses have not said anything yet.
     pub fn probability(&self) -> Option<f64> {
-        self.probability
+        self.odds.map(|odds| odds.min(self.largest_odds)).map(|odds| odds / (1.0 + odds))
     }
 
     /// What the rate of a leak is below with 97.5 %, as a part of the fill per second.
     pub fn largest_per_s(&self) -> f64 {
         self.largest_per_s
     }
-}
-
-fn probability(odds: f64) -> f64 {
-    odds / (1.0 + odds)
 }
 
 #[cfg(test)]
@@ -206,6 +216,7 @@ mod tests {
                 error: &error,
                 doubt_kg: if in_tunnel { doubt_kg } else { 0.0 },
                 filled_kg: 4.5,
+                false_alarm_s: 100.0 * LEAK_INTERVAL_S,
                 alarm: false,
                 calm: true,
                 over_after_s: 86_400.0,

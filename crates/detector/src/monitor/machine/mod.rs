@@ -37,7 +37,7 @@ use crate::estimator::observer::{
 };
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
-use crate::evidence::{Evidence, Statistics, Thresholds};
+use crate::evidence::{Doubt, Evidence, Statistics, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
@@ -420,9 +420,10 @@ impl Monitor {
         }
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let degraded = self.is_degraded(time_s);
-        let statistics = self.state.evidence.update(estimate, &self.leaks);
         let divisor = self.state.parity.divisor() * if degraded { DEGRADED } else { 1.0 };
-        let statistics = statistics.map(|value| value / divisor);
+        let considered_kg = self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
+        let doubt = Doubt { mass_kg: considered_kg, divisor };
+        let statistics = self.state.evidence.update(estimate, &self.leaks, doubt);
         let alarm = self.thresholds.alarm(&statistics).is_some();
         let calm = self.thresholds.is_calm(&statistics);
         let lost_across = std::mem::take(&mut self.state.lost_across);
@@ -435,8 +436,9 @@ impl Monitor {
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
             error: &error,
-            doubt_kg: self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
+            doubt_kg: considered_kg,
             filled_kg: self.filled_kg.0,
+            false_alarm_s: Thresholds::mean_time_of_s(&statistics),
             alarm: alarm || lost_across,
             calm: calm && !lost_across,
             over_after_s: self.settings.leak_over_after_s,
