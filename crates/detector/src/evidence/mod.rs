@@ -41,7 +41,7 @@ mod restless;
 mod tail;
 mod thresholds;
 
-use cylwatch_estimator::observer::{Estimate, Leak, LeakHypothesis, ObserverSettings, Quality};
+use cylwatch_estimator::observer::{Estimate, Leak, LeakHypothesis, Observer, ObserverSettings, Quality};
 use serde::{Deserialize, Serialize};
 
 use crate::DetectorError;
@@ -115,9 +115,7 @@ const CAUTION_PA_K: f64 = 2e5;
 /// What else is in doubt after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doubt {
-    /// Considered error of the mass by what the surroundings do, standard deviation, kg; see [`Flow`].
-    ///
-    /// [`Flow`]: cylwatch_estimator::observer::Flow
+    /// Error of the freest mass against the slow one by what the surroundings do and by what has been learnt of the sensors, standard deviation, kg.
     pub mass_kg: f64,
     /// What all statistics are divided by, at least 1: the thermometers stand for the gas less than usual.
     pub divisor: f64,
@@ -126,6 +124,14 @@ pub struct Doubt {
 impl Doubt {
     /// Nothing else.
     pub const NONE: Self = Self { mass_kg: 0.0, divisor: 1.0 };
+
+    /// Of what an observer says, with everything divided by so much.
+    pub fn of(observer: &Observer, evidence: &Evidence, divisor: f64) -> Self {
+        let considered_kg = observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
+        let Members { slowest, freest, .. } = evidence.members;
+        let learnt_kg = observer.learnt_apart_kg(freest, slowest);
+        Self { mass_kg: considered_kg.hypot(learnt_kg), divisor }
+    }
 }
 
 /// Settings of the observer whose members the evidence is taken from: the usual ones, but for a bank whose members trust the pressure far

@@ -1,9 +1,9 @@
 //! Mass that is missing now: what there should be less what there is, over what is in doubt of it.
 //!
 //! `h = (m + c - m_free) / sqrt((m/2000)^2 + s^2)`, with mass `m` of the member that allows a slow leak alone, that of the freest one, and the
-//! considered error `s` of the mass by what the surroundings do ([`Doubt`](super::Doubt)). Constant errors of the sensors are in both masses and cancel.
-//! At the mouth of a tunnel much is in doubt, in a calm hour next to nothing: there a leak shows first. The filter's own variances are left out, as
-//! they stand for errors that last, and those are in both masses.
+//! error `s` of their difference by what the surroundings do, considered, and by what has been learnt of the sensors ([`Doubt`](super::Doubt)). Constant errors are in both masses and
+//! cancel; an unknown temperature coefficient does not, in the first cold night. At the mouth of a tunnel much is in doubt, in a calm hour next to nothing: there a leak
+//! shows first.
 //!
 //! When the slow member has begun anew from the freest one, its mass is the other's, and a leak would be out of sight at the
 //! moment it is largest. So the mass `c` that it gave up is carried on and fades over two hours.

@@ -12,6 +12,8 @@ pub(super) struct Clock {
     /// Last reading of each sensor that was no fault, and how far a thermometer on the surface lately moved between two, K.
     pub last_reading: Vec<f64>,
     pub moved_k: f64,
+    /// What explanations of a surprising row lately disagreed on the gas temperature, K.
+    pub ambiguous_k: f64,
     /// How far one moved from the row before to this one, and to that, K, and the interval, s.
     pub moves_k: [f64; 2],
     pub interval_s: f64,
@@ -40,6 +42,7 @@ impl Clock {
             last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
             last_reading: vec![f64::NAN; sensors.len()],
             moved_k: 0.0,
+            ambiguous_k: 0.0,
             moves_k: [0.0; 2],
             interval_s: 0.0,
             reference_due_s: f64::INFINITY,

@@ -9,9 +9,10 @@
 //! inside, gas is in layers. What it cannot know is considered, not estimated (Schmidt): an error of the gas temperature of a
 //! part `c` of what the surroundings lately did to the cylinder,
 //!
-//! `e^2 = max_i (y_i - T_g)^2 + s^2`,   `var T = P_T + c^2 e^2`,   `var m = P_m + (m c e / T)^2`
+//! `e^2 = max_i (y_i - T_g)^2 + s^2 + (a/c)^2`,   `var T = P_T + c^2 e^2`,   `var m = P_m + (m c e / T)^2`
 //!
-//! with the readings `y_i` of the thermometers on the surface and `s` the largest change of one between two rows, fading. Errors that stay,
+//! with the readings `y_i` of the thermometers on the surface, `s` the largest change of one between two rows and `a` what competing explanations of a row
+//! disagreed on the gas temperature ([`super::surroundings`]), both fading. Errors that stay,
 //! a transmitter's offset above all, are in the masses of all times alike; those of the gas temperature come and go:
 //!
 //! `var (m - m') per time = m^2 min(P_T/T^2, P_m/m^2) + (m c e / T)^2`.
@@ -73,8 +74,9 @@ impl Observer {
         let states = self.cylinder.state_map();
         let [(gas_mean_k, gas), (mass_kg, mass), (rate_kg_s, rate)] =
             [states.gas, states.mass, states.leak].map(|state| self.bank.moments(index, state));
-        let considered = (self.cylinder.settings().flow_doubt.part / gas_mean_k).powi(2)
-            * (self.farthest_k(gas_mean_k).powi(2) + self.clock.moved_k.powi(2));
+        let part = self.cylinder.settings().flow_doubt.part;
+        let away_k = self.farthest_k(gas_mean_k).hypot(self.clock.moved_k);
+        let considered = ((part * away_k).hypot(self.clock.ambiguous_k) / gas_mean_k).powi(2);
         let kg2 = mass_kg * mass_kg;
         let passing = (gas / (gas_mean_k * gas_mean_k)).min(mass / kg2);
         Some(Flow {
@@ -87,6 +89,23 @@ impl Observer {
             rate_kg_s,
             rate_sd_kg_s: rate.sqrt(),
         })
+    }
+
+    /// Standard deviation of the difference of two members' masses by what has been learnt of films, capacity and sensors, kg: with covariances `P` of
+    /// mass `m` and constants `c`, the constants taken one by one, `sqrt(sum_c (P_mc - P'_mc)^2 / P_cc)`. An unknown temperature coefficient of the transmitter moves the
+    /// mass that follows the pressure, and not the one that is held. 0 without such members.
+    pub fn learnt_apart_kg(&self, free: usize, held: usize) -> f64 {
+        if free.max(held) >= self.bank.members.len() {
+            return 0.0;
+        }
+        let states = self.cylinder.state_map();
+        let apart = |constant: usize| {
+            let [free_kg, held_kg] =
+                [free, held].map(|member| self.bank.covariance_of(member, states.mass, constant));
+            let variance = self.bank.variance(free, constant);
+            if variance > 0.0 { (free_kg - held_kg).powi(2) / variance } else { 0.0 }
+        };
+        (states.leading..states.count()).map(apart).sum::<f64>().sqrt()
     }
 
     /// What the error of the gas temperature that may have come since the row before does to a pressure, Pa; infinite before the first sample.
@@ -117,7 +136,9 @@ impl Observer {
     pub(super) fn remember(&mut self, time_s: f64, readings: &[f64]) {
         let Self { clock, cylinder, .. } = self;
         let since_s = clock.time_s.map_or(0.0, |last_s| time_s - last_s);
-        clock.moved_k *= (-since_s / cylinder.settings().flow_doubt.memory_s).exp();
+        let fading = (-since_s / cylinder.settings().flow_doubt.memory_s).exp();
+        clock.moved_k *= fading;
+        clock.ambiguous_k *= fading;
         (clock.moves_k, clock.interval_s) = ([0.0, clock.moves_k[0]], since_s);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
             let last = std::mem::replace(&mut clock.last_reading[sensor], reading);

@@ -16,6 +16,9 @@
 //! The size of an air step is normally distributed with standard deviation `a` ([`AirStep`]). Given its sign, its mean is `a sqrt(2 / pi)` and its
 //! variance `a^2 (1 - 2 / pi)`.
 //!
+//! What the explanations disagree on stays in doubt: the spread of their mean gas temperatures about the likeliest one's,
+//! `sum_h L_h (T_h - T)^2 / sum_h L_h`, is considered where gas may flow ([`Flow`](super::Flow)) and fades with the memory of what thermometers did.
+//!
 //! Assumptions: at most one step between two rows; the extended filter.
 //!
 //! Source: multiple-model estimation with pruning to one model, Bar-Shalom, Li, Kirubarajan, Estimation with Applications to
@@ -42,15 +45,17 @@ impl Observer {
             return self.take_in(time_s, readings);
         };
         let mut least = f64::INFINITY;
+        let mut explanations = [(f64::INFINITY, 0.0); 4];
         let stays = self.take_in(time_s, readings);
         if stays.is_ok() && self.is_possible() {
             least = self.unlikeliness(readings) + 2.0 * step.per_s * dt_s;
+            explanations[0] = (least, self.gas_k());
             self.likeliest.copy_from(&self.bank);
         }
         let wind: &[f64] =
             if self.cylinder.state_map().outside.is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
         let prior = -2.0 * (-(-step.per_s * dt_s).exp_m1() / wind.len() as f64).ln();
-        for &change in wind {
+        for (&change, explanation) in wind.iter().zip(&mut explanations[1..]) {
             self.bank.copy_from(&self.before);
             self.step_the_surroundings(step, way, change);
             let stepped = self.move_on(dt_s).and_then(|()| self.take_in(time_s, readings));
@@ -58,6 +63,7 @@ impl Observer {
                 continue;
             }
             let unlikeliness = self.unlikeliness(readings) + prior;
+            *explanation = (unlikeliness, self.gas_k());
             if unlikeliness < least {
                 least = unlikeliness;
                 self.likeliest.copy_from(&self.bank);
@@ -65,9 +71,22 @@ impl Observer {
         }
         if least < f64::INFINITY {
             self.bank.copy_from(&self.likeliest);
+            let (mut sum, mut square) = (0.0, 0.0);
+            for (unlikeliness, gas_k) in explanations {
+                let likelihood = (0.5 * (least - unlikeliness)).exp();
+                sum += likelihood;
+                square += likelihood * (gas_k - self.gas_k()).powi(2);
+            }
+            self.clock.ambiguous_k = self.clock.ambiguous_k.max((square / sum).sqrt());
             return Ok(());
         }
         stays
+    }
+
+    /// Mean gas temperature where gas may flow, K: there the pressure does not tell it.
+    fn gas_k(&self) -> f64 {
+        let member = self.flowing.filter(|&index| index < self.bank.members.len()).unwrap_or_default();
+        self.bank.members[member].x[self.cylinder.state_map().gas]
     }
 
     /// A step of the air to one side, 1 or -1, and of the wind.

@@ -65,8 +65,7 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
     for (time_s, row) in readings.rows() {
         let [shoulder_k, _, pressure_pa] = row;
         let estimate = observer.step(time_s, &row)?;
-        let considered_kg = observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
-        let doubt = Doubt { mass_kg: considered_kg, ..Doubt::NONE };
+        let doubt = Doubt::of(&observer, &evidence, 1.0);
         let statistics = evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>(), doubt);
         let (own, others) = rises.split_at_mut(Scale::ALL.len());
         own.iter_mut().zip(statistics).for_each(|(rises, value)| rises.update(time_s, value));

@@ -48,17 +48,14 @@ fn evidence() -> Evidence {
     Evidence::try_new(&observer_settings()).unwrap()
 }
 
-fn doubt(observer: &Observer) -> Doubt {
-    Doubt { mass_kg: observer.flow().map_or(0.0, |flow| flow.considered_sd_kg), ..Doubt::NONE }
-}
-
 /// Statistics after each row; `before` may do something to the observer before a row.
 fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, Statistics)> {
     let (observer, mut evidence) = (&mut observer(), evidence());
     let step = |(time_s, row): &Row| {
         before(*time_s, observer);
         let estimate = observer.step(*time_s, row).unwrap();
-        (*time_s, evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>(), doubt(observer)))
+        let doubt = Doubt::of(observer, &evidence, 1.0);
+        (*time_s, evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>(), doubt))
     };
     rows.iter().map(step).collect()
 }
@@ -138,7 +135,7 @@ fn saved_and_restored_at_any_sample_it_goes_on_bit_for_bit() {
             restored = serde_json::from_str(&serde_json::to_string(&restored).unwrap()).unwrap();
         }
         let bits = |statistics: Statistics| statistics.map(f64::to_bits);
-        let doubt = doubt(&observer);
+        let doubt = Doubt::of(&observer, &whole, 1.0);
         assert_eq!(
             bits(whole.update(&estimate, &leaks, doubt)),
             bits(restored.update(&estimate, &leaks, doubt))

@@ -179,8 +179,9 @@ mod tests {
 
     const MINUTE_S: f64 = 60.0;
 
-    /// Probability of a leak after a day in which the mass was 0.4 % too small for the last twenty minutes, so far in doubt, kg.
-    fn after_a_tunnel(doubt_kg: f64) -> f64 {
+    /// Probability of a leak after a day in which the mass was 0.4 % too small for the last twenty minutes, so far in doubt, kg, with evidence that comes up
+    /// once in such a time without a leak, s.
+    fn after_a_tunnel(doubt_kg: f64, false_alarm_s: f64) -> f64 {
         let error = MassError::default();
         let mut state = LeakState::default();
         for minute in 0..1440 {
@@ -216,7 +217,7 @@ mod tests {
                 error: &error,
                 doubt_kg: if in_tunnel { doubt_kg } else { 0.0 },
                 filled_kg: 4.5,
-                false_alarm_s: 100.0 * LEAK_INTERVAL_S,
+                false_alarm_s,
                 alarm: false,
                 calm: true,
                 over_after_s: 86_400.0,
@@ -228,7 +229,15 @@ mod tests {
 
     #[test]
     fn a_mass_in_doubt_makes_no_leak_likely() {
-        assert!(after_a_tunnel(0.02) < 0.05, "{}", after_a_tunnel(0.02));
-        assert!(after_a_tunnel(0.0) > 0.5, "{}", after_a_tunnel(0.0));
+        let [doubted, certain] = [0.02, 0.0].map(|doubt_kg| after_a_tunnel(doubt_kg, f64::INFINITY));
+        assert!(doubted < 0.05 && certain > 0.5, "{doubted} {certain}");
+    }
+
+    #[test]
+    fn a_mass_is_no_leak_where_the_evidence_comes_up_every_week() {
+        let weekly = after_a_tunnel(0.0, 7.0 * 86_400.0);
+        assert!((weekly - 0.01 / 1.01).abs() < 1e-9, "the prior, no more: {weekly}");
+        // As often without a leak as leaks come.
+        assert!((after_a_tunnel(0.0, LEAK_INTERVAL_S) - 0.5).abs() < 1e-9);
     }
 }

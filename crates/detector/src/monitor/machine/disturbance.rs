@@ -2,7 +2,7 @@
 //! observer goes on with what it knew before, and with the mass free.
 use serde::{Deserialize, Serialize};
 
-use super::{Monitor, SETTLED_S};
+use super::{LOOK_S, Monitor};
 use crate::estimator::observer::Snapshot;
 use crate::monitor::Reason;
 
@@ -41,7 +41,7 @@ impl Monitor {
         if std::mem::take(&mut undisturbed.returning) {
             self.observer.end_exchange();
             self.state.rewind.begin(&self.observer);
-            self.state.look = (time_s + SETTLED_S, Reason::Settling);
+            self.state.look = (time_s + LOOK_S, Reason::Settling);
             undisturbed.due_s = time_s + BETWEEN_S;
         } else if time_s >= undisturbed.due_s && self.state.parity.is_usual() {
             undisturbed.due_s = time_s + BETWEEN_S;

@@ -422,7 +422,7 @@ impl Monitor {
         let degraded = self.is_degraded(time_s);
         let divisor = self.state.parity.divisor() * if degraded { DEGRADED } else { 1.0 };
         let considered_kg = self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
-        let doubt = Doubt { mass_kg: considered_kg, divisor };
+        let doubt = Doubt::of(&self.observer, &self.state.evidence, divisor);
         let statistics = self.state.evidence.update(estimate, &self.leaks, doubt);
         let alarm = self.thresholds.alarm(&statistics).is_some();
         let calm = self.thresholds.is_calm(&statistics);
