@@ -60,7 +60,7 @@ const MOST: f64 = 3.0;
 
 /// What the low-passes of the rate and the missing mass do in a typical cylinder, before its own is known.
 const USUAL_RATE: f64 = 0.1;
-const USUAL_MISSING: f64 = 0.3;
+const USUAL_MISSING: f64 = 0.1;
 
 /// Time scale of a statistic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

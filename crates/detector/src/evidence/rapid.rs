@@ -1,6 +1,6 @@
 //! Mass that is missing now: what there should be less what there is, over what is in doubt of it.
 //!
-//! `h = (m + c - m_free) / sqrt((m/2000)^2 + s^2)`, with mass `m` of the member that allows a slow leak alone, that of the freest one, and the
+//! `h = (m + c - m_free) / sqrt((m/500)^2 + s^2)`, with mass `m` of the member that allows a slow leak alone, that of the freest one, and the
 //! error `s` of their difference by what the surroundings do, considered, and by what has been learnt of the sensors ([`Doubt`](super::Doubt)). Constant errors are in both masses and
 //! cancel; an unknown temperature coefficient does not, in the first cold night. At the mouth of a tunnel much is in doubt, in a calm hour next to nothing: there a leak
 //! shows first.
@@ -18,7 +18,7 @@ const CARRY_S: f64 = 7200.0;
 const LOW_PASS_S: f64 = 450.0;
 const LEVEL_S: f64 = 6.0 * 3600.0;
 /// Part of the mass that is always in doubt.
-const LEAST_PART: f64 = 5e-4;
+const LEAST_PART: f64 = 2e-3;
 /// A difference counts so many doubts at most.
 const MOST: f64 = 30.0;
 

@@ -10,7 +10,7 @@ use crate::DetectorError;
 
 /// Tails of the statistics without a leak; see the module's head.
 const USUAL: Tails = Tails([
-    Tail { level: 5.4348, interval_s: 4.3200e5, scale: 2.3953, shape: -0.061 },
+    Tail { level: 5.5660, interval_s: 4.3200e5, scale: 1.8471, shape: -0.013 },
     Tail { level: 2.8741, interval_s: 1.7289e6, scale: 0.7009, shape: 0.175 },
     Tail { level: 1.6928, interval_s: 3.4560e6, scale: 0.4058, shape: 0.148 },
     Tail { level: 1.0547, interval_s: 1.2193e7, scale: 0.1536, shape: 0.236 },

@@ -247,7 +247,9 @@ fn an_unknown_coefficient_sets_the_free_mass_apart_from_the_held_one_where_the_t
 fn what_explanations_of_a_row_disagree_on_is_in_doubt_for_a_while() {
     let mut observer = observer(Engine::Extended);
     let mut ambiguous_k = |minutes: std::ops::Range<u32>, row: [f64; 3]| {
-        minutes.for_each(|minute| drop(observer.step(60.0 * f64::from(minute), &row).unwrap()));
+        for minute in minutes {
+            observer.step(60.0 * f64::from(minute), &row).unwrap();
+        }
         (observer.clock.ambiguous_k, observer.flow().unwrap().considered_sd_kg)
     };
     assert_eq!(ambiguous_k(0..600, REST).0, 0.0);
