@@ -8,7 +8,6 @@
 use cylwatch_detector::evidence::{Scale, Statistics, Tail, Tails, Thresholds};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
 
 use crate::EvaluationError;
 
@@ -23,7 +22,7 @@ const DRAWS: usize = 400;
 
 /// Largest value of each stretch of operation, scale by scale. A stretch is as long as the statistic remembers
 /// ([`Scale::memory_s`]), so that an excursion counts once, or twice where it crosses from one stretch to the next.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// Largest values of whole stretches.
     largest: [Vec<f64>; Scale::ALL.len()],

@@ -115,22 +115,31 @@ const CAUTION_PA_K: f64 = 2e5;
 /// What else is in doubt after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doubt {
-    /// Error of the freest mass against the slow one by what the surroundings do and by what has been learnt of the sensors, standard deviation, kg.
-    pub mass_kg: f64,
+    /// Considered error of the freest mass by what the surroundings do, standard deviation, kg.
+    pub considered_kg: f64,
+    /// Error of the freest mass against the slow one by what has been learnt of the sensors, standard deviation, kg.
+    pub learnt_kg: f64,
     /// What all statistics are divided by, at least 1: the thermometers stand for the gas less than usual.
     pub divisor: f64,
 }
 
 impl Doubt {
     /// Nothing else.
-    pub const NONE: Self = Self { mass_kg: 0.0, divisor: 1.0 };
+    pub const NONE: Self = Self { considered_kg: 0.0, learnt_kg: 0.0, divisor: 1.0 };
 
     /// Of what an observer says, with everything divided by so much.
     pub fn of(observer: &Observer, evidence: &Evidence, divisor: f64) -> Self {
-        let considered_kg = observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
         let Members { slowest, freest, .. } = evidence.members;
-        let learnt_kg = observer.learnt_apart_kg(freest, slowest);
-        Self { mass_kg: considered_kg.hypot(learnt_kg), divisor }
+        Self {
+            considered_kg: observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
+            learnt_kg: observer.learnt_apart_kg(freest, slowest),
+            divisor,
+        }
+    }
+
+    /// Error of the freest mass against the slow one, standard deviation, kg.
+    fn mass_kg(&self) -> f64 {
+        self.considered_kg.hypot(self.learnt_kg)
     }
 }
 
@@ -231,7 +240,7 @@ impl Evidence {
         if open {
             self.missing = MissingMass::default();
         } else {
-            self.missing.update(interval_s, slowest, freest, doubt.mass_kg);
+            self.missing.update(interval_s, slowest, freest, doubt.mass_kg());
         }
         let rate = standardised(fastest);
         for (output, time_constant_s) in self.low_passes.iter_mut().zip(LOW_PASS_S) {

@@ -32,7 +32,7 @@ impl Restless {
     pub fn update(&mut self, interval_s: f64, square: f64) {
         self.seen_s = (self.seen_s + interval_s).min(MEMORY_S);
         let gain = -(-interval_s / (self.seen_s + PRIOR_S).min(MEMORY_S)).exp_m1();
-        self.square += gain * (square.clamp(self.least, MOST * MOST * self.square) - self.square);
+        self.square += gain * (square.min(MOST * MOST * self.square).max(self.least) - self.square);
     }
 
     /// Standard deviation.

@@ -63,7 +63,7 @@ fn a_missing_mass_is_over_what_is_in_doubt_of_it() {
     };
     // 22 g over 8.8 g, a part in five hundred of the mass, and with as much again by the surroundings.
     assert!((missing(Doubt::NONE) - 2.5).abs() < 1e-9);
-    let tunnel = Doubt { mass_kg: 8.8e-3, ..Doubt::NONE };
+    let tunnel = Doubt { considered_kg: 8.8e-3, ..Doubt::NONE };
     assert!((missing(tunnel) - 2.5 / 2_f64.sqrt()).abs() < 1e-9);
     assert!((missing(Doubt { divisor: 4.0, ..Doubt::NONE }) - 0.625).abs() < 1e-9);
 }

@@ -421,7 +421,6 @@ impl Monitor {
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let degraded = self.is_degraded(time_s);
         let divisor = self.state.parity.divisor() * if degraded { DEGRADED } else { 1.0 };
-        let considered_kg = self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
         let doubt = Doubt::of(&self.observer, &self.state.evidence, divisor);
         let statistics = self.state.evidence.update(estimate, &self.leaks, doubt);
         let alarm = self.thresholds.alarm(&statistics).is_some();
@@ -436,7 +435,7 @@ impl Monitor {
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
             error: &error,
-            doubt_kg: considered_kg,
+            doubt_kg: doubt.considered_kg,
             filled_kg: self.filled_kg.0,
             false_alarm_s: Thresholds::mean_time_of_s(&statistics),
             alarm: alarm || lost_across,
