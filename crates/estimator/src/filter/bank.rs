@@ -104,6 +104,76 @@ impl UdBank {
         }
     }
 
+    /// Let lane `to` believe of the states from `first` on what lane `from` believes, of `other` or of this bank. Given those states, what it
+    /// believes of the others stays, `p(x, c) <- p(x | c) p'(c)`:
+    ///
+    /// `B = U_xc U_cc^-1`, `x <- x + B (c' - c)`, `U_xc <- B U'_cc`, `U_cc <- U'_cc`, `d_c <- d'_c`.
+    ///
+    /// # Shapes
+    /// `means`, `theirs`: (n).
+    ///
+    /// Source: R. Jeffrey, The Logic of Decision (1965), chapter 11; the factors of Bierman 1977.
+    pub fn adopt(
+        &mut self,
+        (to, means): (usize, &mut [f64]),
+        (other, from, theirs): (Option<&Self>, usize, &[f64]),
+        first: usize,
+    ) {
+        let (n, stride) = (self.n, stride(self.n));
+        for k in first..n {
+            for j in first..k {
+                let by = self.u[k * stride + j].0[to];
+                for i in 0..first {
+                    self.u[k * stride + i].0[to] -= by * self.u[j * stride + i].0[to];
+                }
+            }
+            let away = theirs[k] - means[k];
+            for (i, mean) in means[..first].iter_mut().enumerate() {
+                *mean += away * self.u[k * stride + i].0[to];
+            }
+            means[k] = theirs[k];
+        }
+        let their = |own: &Self, at: usize| other.unwrap_or(own).u[at].0[from];
+        for k in (first..n).rev() {
+            for j in first..k {
+                let by = their(self, k * stride + j);
+                self.u[k * stride + j].0[to] = by;
+                for i in 0..first {
+                    self.u[k * stride + i].0[to] += by * self.u[j * stride + i].0[to];
+                }
+            }
+            self.d[k].0[to] = other.unwrap_or(self).d[k].0[from];
+        }
+    }
+
+    /// Variance of the difference of state `i` between a lane and one of another bank by the states from `first` on, as this lane knows those:
+    /// `(b - b') P_cc (b - b')^T` with `b = U_ic U_cc^-1`.
+    pub fn apart_by(&self, lane: usize, (other, other_lane): (&Self, usize), i: usize, first: usize) -> f64 {
+        const USUALLY: usize = 32;
+        let stride = stride(self.n);
+        let (mut stack, mut heap) = ([[0.0; 2]; USUALLY], Vec::new());
+        let count = self.n - first;
+        let b: &mut [[f64; 2]] = if count <= USUALLY {
+            &mut stack[..count]
+        } else {
+            heap.resize(count, [0.0; 2]);
+            &mut heap
+        };
+        let mut sum = 0.0;
+        for k in 0..count {
+            let column = (first + k) * stride;
+            let (own, their) =
+                (|row: usize| self.u[column + row].0[lane], |row: usize| other.u[column + row].0[other_lane]);
+            b[k] = [own(i), their(i)];
+            for j in 0..k {
+                b[k] = [b[k][0] - b[j][0] * own(first + j), b[k][1] - b[j][1] * their(first + j)];
+            }
+            let apart: f64 = (0..=k).map(|j| (b[j][0] - b[j][1]) * own(first + j)).sum();
+            sum += self.d[first + k].0[lane] * apart * apart;
+        }
+        sum
+    }
+
     /// Covariance of a lane: (n, n).
     pub fn covariance(&self, lane: usize) -> DMatrix<f64> {
         let mut p = DMatrix::zeros(self.n, self.n);

@@ -227,6 +227,8 @@ impl Parity {
         }
         let usual = self.calm.len().saturating_sub(LATEST);
         if usual < FEWEST_USUAL {
+            // What was found against other days is no finding of these.
+            (self.off_k, self.named) = (0.0, None);
             return;
         }
         let before = self.calm.iter().rev().skip(LATEST);
@@ -408,6 +410,20 @@ mod tests {
                 "{shifted_h} h"
             );
         }
+    }
+
+    #[test]
+    fn one_that_was_named_is_no_more_when_too_few_calm_windows_are_left_to_tell_what_is_usual() {
+        // From hour 40 on the valve reads 1 K more; from hour 42 on both are shaken but for a calm half an hour in five.
+        let course = |hour: f64| {
+            let shaken = if hour > 42.0 && hour % 5.0 > 0.5 { 3.0 * (7.0 * hour).fract() } else { 0.0 };
+            let off = if (40.0..42.0).contains(&hour) { 1.0 } else { 0.0 };
+            [280.0 + shaken, 280.0 + shaken + off, 280.0]
+        };
+        let watched = compared(120.0, course);
+        assert!(!watched.deviating.is_empty(), "it is named at first");
+        let shifted = watched.changes.iter().find(|(_, change)| matches!(change, Disturbance::Shifted(..)));
+        assert!(shifted.is_none(), "{:?}", watched.changes);
     }
 
     #[test]

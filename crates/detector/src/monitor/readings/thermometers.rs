@@ -13,7 +13,8 @@
 //! have been calm for five samples, within two hours. One that jumps alone by 8 K again and again, or once by more than an offset can be, reads the air; so does one
 //! that is restless while the other one is not. For an hour after its jump a thermometer is not used: if it reads the air, it shows by then.
 //!
-//! Readings in steps of `q` make up to `3 q` of the difference of two `s_2`: so much is added to what a jump is, and to what the other one may do.
+//! Readings in steps of `q` make up to `3 q` of the difference of two `s_2`: so much is added to what a jump is, and to what the other one may do; and a jump
+//! is at least 2.5 times what the other one may do, as at the mouth of a tunnel one bends twice as far as the other.
 //!
 //! Noise of 0.05 K makes 0.09 K of `s_2` and 0.12 K of `s_1`; what is beside the parts is some three times that. How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
 //! and `fault_campaign` (row T2); see `book/src/measured.md`.
@@ -32,6 +33,8 @@ const STILL_ONE_K: f64 = 0.35;
 /// Part of it by which both may have been surprised shortly before, and beside it, K.
 const SURPRISED: f64 = 0.1;
 const SURPRISED_K: f64 = 0.4;
+/// Least jump in parts of what the other one may do beside it.
+const APART: f64 = 2.5;
 /// Samples that a jump must last, and how far their difference and the other one may move meanwhile, as parts of it.
 const LASTING: u32 = 3;
 const STEADY: f64 = 0.4;
@@ -196,7 +199,8 @@ impl Pair {
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);
         let beside_k = |part: f64, noise_k: f64| part * own_k.abs() + noise_k;
         let steps_k = self.steps_k;
-        let jumps = own_k.abs().min((own_k - other_k).abs()) > JUMP_K * minutes + steps_k
+        let least_k = (JUMP_K * minutes + steps_k).max(APART * (STILL_K + steps_k));
+        let jumps = own_k.abs().min((own_k - other_k).abs()) > least_k
             && one_k[which].abs() > JUMP_AT_LEAST_K * minutes + steps_k;
         // Not so where one of them is no number.
         let still = other_k.abs() < beside_k(ALONE, STILL_K + steps_k)
@@ -354,8 +358,11 @@ mod tests {
         // It drifts, and changes by a whole step of 0.5 K at a time.
         let coarse = |t: f64| 0.5 * (560.0 + 0.02 * t).floor();
         assert_eq!(told(Pair::new(0.5), coarse, |_| 280.0), []);
-        let jumps = |t: f64| coarse(t) + if t >= 120.0 { 4.0 } else { 0.0 };
-        assert_eq!(told(Pair::new(0.5), jumps, |_| 280.0), [Lonely::Shifted(0, 4.0)]);
+        let jumps = |t: f64| coarse(t) + if t >= 120.0 { 5.0 } else { 0.0 };
+        assert_eq!(told(Pair::new(0.5), jumps, |_| 280.0), [Lonely::Shifted(0, 5.0)]);
+        // The mouth of a tunnel, where one bends twice as far as the other.
+        let mouth = |t: f64, by: f64| 280.0 + if t >= 120.0 { by } else { 0.0 };
+        assert_eq!(told(Pair::new(0.5), |t| mouth(t, 3.0), |t| mouth(t, 1.5)), []);
     }
 
     #[test]

@@ -153,3 +153,50 @@ fn constants_alone_do_not_move() {
     case.bank.predict(&mut BankTransition::new(Pattern::new(&[])));
     case.assert_equal();
 }
+
+#[test]
+fn what_is_adopted_of_some_states_leaves_the_others_given_those_as_they_were() {
+    let first = 6;
+    let case = Case::new(11, (9, first, 3));
+    let other = Case::new(12, (9, first, 3));
+    for (from_own, from, to) in [(true, 1, 3), (false, 2, 0)] {
+        let (before, theirs) =
+            (case.bank.covariance(to), if from_own { &case.bank } else { &other.bank }.covariance(from));
+        let (mut means, their_means) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], [0.5; 9]);
+        let old = means;
+        let mut bank = case.bank.clone();
+        bank.adopt((to, &mut means), ((!from_own).then_some(&other.bank), from, &their_means), first);
+        let block = |p: &DMatrix<f64>, i: usize, j: usize| {
+            let size = |at: usize| if at == 0 { first } else { 9 - first };
+            p.view((i, j), (size(i), size(j))).into_owned()
+        };
+        let (cc, their_cc) = (block(&before, first, first), block(&theirs, first, first));
+        // By matrices: B = P_xc P_cc^-1, P_xc' = B P_cc', P_xx' = P_xx - B (P_cc - P_cc') B^T.
+        let b = block(&before, 0, first) * cc.clone().try_inverse().unwrap();
+        let xx = block(&before, 0, 0) - &b * (&cc - &their_cc) * b.transpose();
+        let xc = &b * &their_cc;
+        let found = bank.covariance(to);
+        for (i, j, expected) in [(0, 0, xx), (0, first, xc), (first, first, their_cc)] {
+            let worst = (block(&found, i, j) - &expected).abs().max() / expected.abs().max();
+            assert!(worst < 1e-9, "block {i}, {j}: {worst}");
+        }
+        let by = |bank: &UdBank, lane: usize| {
+            let p = bank.covariance(lane);
+            block(&p, 0, first).row(2) * block(&p, first, first).try_inverse().unwrap()
+        };
+        let theirs_of = if from_own { &case.bank } else { &other.bank };
+        let apart = by(&case.bank, to) - by(theirs_of, from);
+        let expected = (&apart * &cc * apart.transpose())[0];
+        let found = case.bank.apart_by(to, (theirs_of, from), 2, first);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        let moved = b * DVector::from_fn(9 - first, |k, _| 0.5 - old[first + k]);
+        for i in 0..9 {
+            let expected = if i < first { old[i] + moved[i] } else { 0.5 };
+            assert!((means[i] - expected).abs() < 1e-9 * expected.abs().max(1.0), "mean {i}");
+        }
+        // Nobody else's.
+        (0..4)
+            .filter(|lane| *lane != to)
+            .for_each(|lane| assert_eq!(bank.covariance(lane), case.bank.covariance(lane)));
+    }
+}
