@@ -1,7 +1,7 @@
 //! Thresholds of the statistics, and the tails that they follow from where a vessel has none of its own.
 //!
 //! The usual tails were fitted to leak-free worlds of the families that tune: seven vessels together in railway winters, parked and in a workshop.
-//! For most vessels alone their thresholds are too high: `cylwatch commission` finds those of one.
+//! What the statistics of one vessel reach, `cylwatch commission` finds.
 //!
 //! `cargo run --release -p cylwatch-evaluation --example tails`
 use serde::{Deserialize, Serialize};
