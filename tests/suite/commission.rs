@@ -132,6 +132,20 @@ fn a_monitor_takes_the_thresholds_of_its_vessel_and_no_others() {
 }
 
 #[test]
+fn a_state_that_was_made_with_the_usual_thresholds_goes_on_with_those_of_the_vessel() {
+    let (first, _) = commissioned();
+    let folder = tempdir().unwrap();
+    let log = first.path().join("log.csv");
+    let usual =
+        ["monitor", "nitrogen-20l", log.to_str().unwrap(), "--state", "cylinder.state", "-o", "rows.csv"];
+    assert_ne!(run(folder.path(), &usual).code, Some(2));
+    let thresholds = first.path().join("thresholds.json");
+    let own =
+        monitor(folder.path(), "nitrogen-20l", thresholds.to_str().unwrap(), &["--state", "cylinder.state"]);
+    assert!(own.code != Some(2) && own.stderr.contains("the state has seen all rows"), "{}", own.stderr);
+}
+
+#[test]
 fn another_fill_than_that_of_the_thresholds_is_a_caution() {
     let (first, _) = commissioned();
     let folder = tempdir().unwrap();
