@@ -1,6 +1,7 @@
 //! The raw arguments: they mirror the command line and decide nothing.
 use super::bench_detector::BenchDetectorArguments;
 use super::calibrate::CalibrateArguments;
+use super::commission::CommissionArguments;
 use super::estimate::EstimateArguments;
 use super::identify::IdentifyArguments;
 use super::inspect::InspectArguments;
@@ -30,6 +31,7 @@ Examples:
   cylwatch inspect logger.csv
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
+  cylwatch commission nitrogen-20l -o thresholds.json
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
   cylwatch place nitrogen-20l --sensors 3 --plot places.svg
@@ -52,6 +54,8 @@ pub enum Command {
     Estimate(Box<EstimateArguments>),
     /// Decide whether gas is being lost: verdict, leak rate, onset, time left, events and alarms from a log.
     Monitor(Box<MonitorArguments>),
+    /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; up to ten minutes.
+    Commission(Box<CommissionArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.
     Identify(Box<IdentifyArguments>),
     /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.

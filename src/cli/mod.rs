@@ -5,6 +5,7 @@
 mod arguments;
 mod bench_detector;
 mod calibrate;
+mod commission;
 mod completions;
 mod estimate;
 mod fill;
@@ -61,6 +62,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Inspect(arguments) => inspect::run(arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
+        Command::Commission(arguments) => commission::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
         Command::BenchDetector(arguments) => bench_detector::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),

@@ -70,18 +70,20 @@ fn monitor(
     messages: &Messages,
 ) -> anyhow::Result<Option<Summary>> {
     let mut identity = beginning.identity(options, &selection.sensors);
-    let vessel = &beginning.vessel;
     let engine = match &beginning.state {
-        None => Engine::cold(options, inputs, vessel, selection, log, messages)?,
+        None => Engine::cold(options, inputs, &beginning, selection, log, messages)?,
         Some(state) => {
             let path = options.state.as_deref().unwrap_or(Path::new("the state"));
             state.check(&identity).map_err(|reason| going_on::refused(path, &reason))?;
             session::check_clock(options, state, log)?;
             identity = identity.after(&state.identity);
-            Engine::restored(options, vessel, selection, state)?
+            Engine::restored(options, &beginning, selection, state)?
         }
     };
-    let title = format!("{} \u{2013} {}", vessel.name, selection.names().join(", "));
+    if let Some(commissioned) = &beginning.commissioned {
+        commissioned.cautions(engine.full_pa).iter().for_each(|caution| messages.caution(caution));
+    }
+    let title = format!("{} \u{2013} {}", beginning.vessel.name, selection.names().join(", "));
     let first = engine.first.clone();
     let kit = Kit { options, inputs, selection, messages, identity };
     let mut session = Session::begin(kit, &beginning, engine, log)?;

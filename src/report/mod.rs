@@ -4,6 +4,7 @@
 //! What a result says is a [`Story`]: a terminal and a page show the same one.
 pub mod bench_detector;
 pub mod calibrate;
+pub mod commission;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
@@ -21,7 +22,7 @@ mod table;
 mod terminal;
 
 pub use page::Page;
-pub use provenance::{Fingerprint, Input, Provenance, quoted};
+pub use provenance::{Fingerprint, Input, Provenance, digest, quoted};
 pub use readings::Readings;
 pub use story::{Block, Story};
 pub use table::{Column, Table, aligned, number, rounded};

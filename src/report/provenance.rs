@@ -89,6 +89,11 @@ impl Provenance {
     }
 }
 
+/// A short hash of a text.
+pub fn digest(text: &str) -> String {
+    Input::of("", text.as_bytes()).sha256[..12].to_owned()
+}
+
 /// A word of a command line, quoted so that a shell reads it as one.
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);

@@ -6,6 +6,7 @@ mod bench_detector;
 mod book;
 mod browser;
 mod calibrate;
+mod commission;
 mod estimate;
 mod examples;
 mod files;

@@ -3,18 +3,18 @@
 //! `cargo run --release -p cylwatch-evaluation --example tails [-- PLAN]`
 //!
 //! Runs the monitor over all worlds of PLAN (`plans/tails.toml`; what is not tuning in it is left out), takes the largest statistics of each stretch of
-//! operation and prints the tails as they stand in the library, and the thresholds of one false alarm in ten years with their 95 % intervals. Then the cylinders
-//! whose statistics come closest to them, or above.
+//! operation and prints the tails as they stand in the library, the thresholds of one false alarm in ten years with their 95 % intervals, and the rate of false
+//! alarms that such thresholds have in cylinders that they were not fitted to. Then the cylinders whose statistics come closest to them, or above.
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use cylwatch_detector::evidence::{Scale, Statistics};
-use cylwatch_detector::monitor::{Monitor, MonitorSettings};
+use cylwatch_detector::evidence::Scale;
+use cylwatch_detector::monitor::MonitorSettings;
 use cylwatch_evaluation::judge::candidate::Registry;
 use cylwatch_evaluation::judge::plan::{Plan, Role, Unit};
 use cylwatch_evaluation::performance::YEAR_S;
-use cylwatch_evaluation::tails::{Peaks, fit, interval};
-use cylwatch_evaluation::world::{Simulated, World};
+use cylwatch_evaluation::tails::{CommissionedScale, FitSettings, Watched, commission, watch};
+use cylwatch_evaluation::world::Simulated;
 use rayon::prelude::*;
 
 const YEARS: f64 = 10.0;
@@ -23,87 +23,63 @@ const SHOWN: usize = 12;
 
 type Fault = Box<dyn std::error::Error + Send + Sync>;
 
-/// What the statistics of a cylinder did.
-struct Run {
-    family: String,
-    seed: u64,
-    length_s: f64,
-    peaks: Peaks,
-    largest: Statistics,
-}
-
 fn main() -> Result<(), Fault> {
     let usual = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/plans/tails.toml"));
     let plan = Plan::read(&std::env::args().nth(1).map_or(usual, PathBuf::from), &Registry::default(), &[])?;
-    let runs: Vec<Vec<Run>> = plan
-        .units()
+    let units = plan.units();
+    let watched: Vec<Vec<Watched>> = units
         .par_iter()
         .with_max_len(1)
         .map(|unit| of_simulation(&plan, unit))
         .collect::<Result<_, Fault>>()?;
-    print(&runs.into_iter().flatten().collect::<Vec<_>>())
+    print(&watched.concat())
 }
 
-fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Run>, Fault> {
-    let simulated = Simulated::run(&unit.simulated)?;
+fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Watched>, Fault> {
+    let (simulated, settings) = (Simulated::run(&unit.simulated)?, MonitorSettings::default());
     let tasks = unit.tasks.iter().map(|&task| &plan.tasks[task]).filter(|task| task.role == Role::Tune);
-    tasks.map(|task| watch(&simulated.world(&task.request)?)).collect()
+    tasks.map(|task| Ok(watch(&simulated.world(&task.request)?, &settings)?)).collect()
 }
 
-fn watch(world: &World) -> Result<Run, Fault> {
-    let told = &world.told;
-    let mut monitor =
-        Monitor::new(&told.vessel, &told.sensors, &told.commissioning, &MonitorSettings::default())?;
-    let mut peaks = Peaks::default();
-    let mut largest: Statistics = [0.0; Scale::ALL.len()];
-    for (stamp_s, readings) in world.log.rows() {
-        for output in monitor.step(stamp_s, readings)? {
-            let statistics = monitor.evidence();
-            peaks.update(output.estimate.time_s, &statistics);
-            largest.iter_mut().zip(statistics).for_each(|(largest, value)| *largest = largest.max(value));
-        }
-    }
-    let request = &world.request;
-    Ok(Run {
-        family: request.family.to_string(),
-        seed: request.seed,
-        length_s: request.length_s,
-        peaks,
-        largest,
-    })
-}
-
-fn print(runs: &[Run]) -> Result<(), Fault> {
+fn print(watched: &[Watched]) -> Result<(), Fault> {
     let mut out = std::io::stdout();
-    let peaks: Vec<&Peaks> = runs.iter().map(|run| &run.peaks).collect();
-    let tails = fit(&peaks)?;
-    for tail in tails.0 {
+    let found = commission(watched, &FitSettings { mean_time_s: YEARS * YEAR_S, stretch: 1.0, seed: 1 })?;
+    for CommissionedScale { tail, .. } in found.scales {
         let (level, interval_s, scale, shape) = (tail.level, tail.interval_s, tail.scale, tail.shape);
         writeln!(
             out,
             "    Tail {{ level: {level:.4}, interval_s: {interval_s:.4e}, scale: {scale:.4}, shape: {shape:.3} }},"
         )?;
     }
-    let thresholds = tails.thresholds(YEARS * YEAR_S)?;
-    let years = runs.iter().map(|run| run.length_s).sum::<f64>() / YEAR_S;
+    let years = watched.iter().map(|watched| watched.request.length_s).sum::<f64>() / YEAR_S;
     writeln!(
         out,
         "\nThresholds of one false alarm in {YEARS} years, from {years:.1} years of {} cylinders\n",
-        runs.len()
+        watched.len()
     )?;
-    let intervals = interval(&peaks, YEARS * YEAR_S, 1)?;
-    for (scale, (low, high)) in Scale::ALL.into_iter().zip(intervals) {
-        writeln!(out, "{:9} {:6.2} ({low:.2} to {high:.2})", scale.as_str(), thresholds.of(scale))?;
+    for of in found.scales {
+        let (low, high) = of.threshold_interval;
+        writeln!(out, "{:9} {:6.2} ({low:.2} to {high:.2})", of.scale.as_str(), of.threshold)?;
     }
-    let part = |run: &Run| {
-        let parts = run.largest.iter().zip(thresholds.levels).map(|(value, level)| value / level);
-        parts.fold(0.0, f64::max)
+    let rate = found.false_alarms;
+    let (low, high) = rate.by_simulation;
+    writeln!(
+        out,
+        "\nFalse alarms in ten years, out of sample: {:.2} ({low:.2} to {high:.2}), {} in {:.1} years",
+        rate.per_ten_years, rate.count, rate.cylinder_years
+    )?;
+    let part = |watched: &Watched| {
+        let largest = watched.record.largest();
+        Scale::ALL
+            .map(|scale| largest[scale as usize] / found.scales[scale as usize].threshold)
+            .into_iter()
+            .fold(0.0, f64::max)
     };
-    let mut highest: Vec<(f64, &Run)> = runs.iter().map(|run| (part(run), run)).collect();
+    let mut highest: Vec<(f64, &Watched)> = watched.iter().map(|watched| (part(watched), watched)).collect();
     highest.sort_by(|a, b| b.0.total_cmp(&a.0));
     writeln!(out, "\nClosest to a threshold\n")?;
-    for (part, run) in highest.iter().take(SHOWN) {
-        writeln!(out, "{part:.2} {} {}: {:.2?}", run.family, run.seed, run.largest)?;
+    for (part, Watched { request, record }) in highest.iter().take(SHOWN) {
+        writeln!(out, "{part:.2} {} {}: {:.2?}", request.family, request.seed, record.largest())?;
     }
     Ok(())
 }

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(folder);
     std::fs::create_dir_all(folder)?;
     std::fs::write(folder.join("log.csv"), log(&world)?)?;
-    std::fs::write(folder.join("vessel.toml"), world.told.vessel_toml)?;
+    std::fs::write(folder.join("vessel.toml"), world.request.family.vessel.text())?;
     std::fs::write(folder.join("sensors.toml"), world.told.sensors_spec.to_toml()?)?;
     say(&world, took_s);
     Ok(())

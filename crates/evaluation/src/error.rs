@@ -24,6 +24,14 @@ pub enum EvaluationError {
     /// Largest values without a tail.
     #[error("the largest values do not vary: a threshold needs their tail")]
     StatisticsConstant,
+    /// Tails that are not those of all scales.
+    #[error(
+        "the scales must be hour, half-day, day, week and month, in this order: commission the vessel anew"
+    )]
+    Scales,
+    /// A world that cannot be made.
+    #[error(transparent)]
+    World(Box<crate::world::WorldError>),
     /// A setting is out of its bounds.
     #[error("setting `{setting}` = {value} must be {bound}")]
     Setting {
@@ -91,6 +99,12 @@ pub enum EvaluationError {
     /// Reading or writing failed.
     #[error(transparent)]
     Io(#[from] std::io::Error),
+}
+
+impl From<crate::world::WorldError> for EvaluationError {
+    fn from(error: crate::world::WorldError) -> Self {
+        Self::World(Box::new(error))
+    }
 }
 
 /// `value` if it is positive and finite.

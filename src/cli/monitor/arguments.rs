@@ -95,6 +95,9 @@ pub struct MonitorArguments {
     /// May be given more than once.
     #[arg(long, value_name = "FROM..UNTIL")]
     pub announced: Vec<String>,
+    /// JSON file of `commission` with thresholds for this vessel [default: the usual ones, common to seven vessels].
+    #[arg(long, value_name = "FILE")]
+    pub commissioned: Option<PathBuf>,
     /// JSON file with what `estimate --learned-out` has learnt of cylinder and sensors.
     #[arg(long, value_name = "FILE")]
     pub learned_in: Option<PathBuf>,
@@ -115,6 +118,7 @@ Examples:
   cylwatch simulate nitrogen-20l tunnel-winter -o run.csv
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch monitor nitrogen-20l day.csv -o rows.csv --events events.jsonl --state cylinder.state
+  cylwatch monitor nitrogen-20l run.csv --commissioned thresholds.json -o rows.csv
   tail -n +1 -f live.csv | cylwatch monitor nitrogen-20l - --state cylinder.state >> rows.csv",
         monitor::DOCUMENTATION
     )

@@ -8,7 +8,6 @@ use cylwatch::detector::prognosis::{Contents, QUOTED_K, ReactionSettings};
 use cylwatch::estimator::log::Quantity;
 use cylwatch::thermal::scenario::Fill;
 use cylwatch::thermal::units::PASCAL_PER_BAR;
-use cylwatch::thermal::vessel::Vessel;
 
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
@@ -25,10 +24,12 @@ pub struct Engine {
 }
 
 /// Settings of the monitor of a cylinder that was at rest at its first row, or was not.
-pub fn settings(options: &Options, settled: bool) -> MonitorSettings {
+fn settings(options: &Options, beginning: &Beginning, settled: bool) -> anyhow::Result<MonitorSettings> {
     let defaults = MonitorSettings::default();
     let circumstances = options.circumstances;
-    MonitorSettings {
+    let own = beginning.commissioned.as_ref().map(|commissioned| commissioned.found.tails()).transpose()?;
+    Ok(MonitorSettings {
+        tails: own.unwrap_or(defaults.tails),
         observer: fill::settings(defaults.observer, settled),
         false_alarm_interval_s: options.false_alarm_years * YEAR_S,
         limits: Limits {
@@ -44,19 +45,19 @@ pub fn settings(options: &Options, settled: bool) -> MonitorSettings {
         reaction: ReactionSettings { next_service_s: circumstances.next_service_s, ..defaults.reaction },
         alarms: AlarmSettings::with_limit(circumstances.limit_pa),
         ..defaults
-    }
+    })
 }
 
 impl Engine {
     /// A monitor that goes on.
     pub fn restored(
         options: &Options,
-        vessel: &Vessel,
+        beginning: &Beginning,
         selection: &Selection,
         state: &State,
     ) -> anyhow::Result<Self> {
-        let settings = settings(options, state.settled);
-        let restored = Monitor::restore(vessel, &selection.sensors, &settings, &state.monitor);
+        let settings = settings(options, beginning, state.settled)?;
+        let restored = Monitor::restore(&beginning.vessel, &selection.sensors, &settings, &state.monitor);
         let path = options.state.as_deref().unwrap_or(Path::new("the state"));
         let monitor = restored.map_err(|error| refused(path, &Refusal::Monitor(error)))?;
         Ok(Self { monitor, full_pa: state.full_pa, settled: state.settled, first: Vec::new() })
@@ -66,11 +67,12 @@ impl Engine {
     pub fn cold(
         options: &Options,
         inputs: &Inputs,
-        vessel: &Vessel,
+        beginning: &Beginning,
         selection: &Selection,
         log: &mut LogInput,
         messages: &Messages,
     ) -> anyhow::Result<Self> {
+        let vessel = &beginning.vessel;
         let learned = options.learned_in.as_deref();
         let learned = learned.map(|path| start::learned(inputs, path, vessel)).transpose()?;
         let (first, fill) = start::first_rows(&mut log.reader, selection, options.source)?;
@@ -97,7 +99,7 @@ impl Engine {
         {
             messages.caution(&format!("{}: {doubt}", begin()));
         }
-        let settings = settings(options, options.fill.is_settled());
+        let settings = settings(options, beginning, options.fill.is_settled())?;
         let mut monitor = Monitor::new(vessel, &selection.sensors, &commissioning, &settings)?;
         if let Some(learned) = learned {
             monitor = monitor.with_learned(learned);

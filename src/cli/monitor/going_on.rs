@@ -3,8 +3,9 @@ use super::state::{Identity, Refusal, State};
 use super::*;
 use anyhow::anyhow;
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::report::Input;
-use cylwatch::thermal::vessel::{Vessel, VesselSpec};
+use cylwatch::report::commission::{CommissionedVessel, VesselMark};
+use cylwatch::report::{Input, digest};
+use cylwatch::thermal::vessel::Vessel;
 use jiff::Timestamp;
 
 /// A vessel and what is known of its past.
@@ -12,7 +13,9 @@ pub struct Beginning {
     /// The vessel.
     pub vessel: Vessel,
     /// What tells this vessel from another.
-    fingerprint: String,
+    mark: VesselMark,
+    /// Thresholds of its own, if there are some.
+    pub commissioned: Option<CommissionedVessel>,
     /// The state to go on from.
     pub state: Option<State>,
     /// Why there is none although there could be.
@@ -23,8 +26,10 @@ impl Beginning {
     /// Reads the vessel and the state.
     pub fn find(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Self> {
         let (specification, vessel, _) = inputs.vessel_specification(&options.vessel, messages)?;
-        let fingerprint = fingerprint(&specification)?;
-        let mut beginning = Self { vessel, fingerprint, state: None, cold_start: None };
+        let mark = VesselMark::of(&specification, &vessel)?;
+        let commissioned = options.commissioned.as_deref();
+        let commissioned = commissioned.map(|path| commissioned_for(inputs, path, &mark)).transpose()?;
+        let mut beginning = Self { vessel, mark, commissioned, state: None, cold_start: None };
         let Some(path) = &options.state else { return Ok(beginning) };
         match (State::read(path), options.cold_start) {
             (Ok(None), _) => {
@@ -55,13 +60,13 @@ impl Beginning {
         origin.map(str::parse).transpose().context("the state has no date of RFC 3339")
     }
 
-    /// What a state of this run belongs to. Limits, the coldest night and how rare a false alarm is to be are taken over as they are now.
+    /// What a state of this run belongs to. Limits, the coldest night, how rare a false alarm is to be and thresholds of its own are taken over as they are now.
     pub fn identity(&self, options: &Options, sensors: &[Sensor]) -> Identity {
         let names: Vec<&str> = sensors.iter().map(|sensor| sensor.name.as_str()).collect();
         let value = |value: f64| cylwatch::report::number(value, 9);
         let mut entries = vec![
-            ("vessel", format!("{} ({})", self.vessel.name, self.fingerprint)),
-            ("sensors", format!("{} ({})", names.join(", "), short_hash(&format!("{sensors:?}")))),
+            ("vessel", format!("{} ({})", self.mark.name, self.mark.digest)),
+            ("sensors", format!("{} ({})", names.join(", "), digest(&format!("{sensors:?}")))),
             ("a lateness of", format!("{} s", value(options.lateness_s))),
             ("a step of", format!("{} s", value(options.step_s))),
         ];
@@ -77,11 +82,8 @@ pub fn refused(path: &Path, reason: &Refusal) -> anyhow::Error {
     anyhow!("{} cannot be gone on from: {reason}; --cold-start begins anew and replaces it", path.display())
 }
 
-/// What tells one vessel from another: comments and the order of keys do not.
-fn fingerprint(specification: &VesselSpec) -> anyhow::Result<String> {
-    Ok(short_hash(&serde_json::to_string(specification)?))
-}
-
-fn short_hash(text: &str) -> String {
-    Input::of("", text.as_bytes()).sha256[..12].to_owned()
+/// The thresholds of a file, which must be for this vessel.
+fn commissioned_for(inputs: &Inputs, path: &Path, mark: &VesselMark) -> anyhow::Result<CommissionedVessel> {
+    let text = inputs.read(&path.to_string_lossy())?;
+    CommissionedVessel::read(&text, mark).with_context(|| format!("--commissioned {}", path.display()))
 }

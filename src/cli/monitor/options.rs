@@ -25,6 +25,7 @@ pub struct Options {
     pub fill: GivenFill,
     pub source: FillSource,
     pub learned_in: Option<PathBuf>,
+    pub commissioned: Option<PathBuf>,
     pub circumstances: Circumstances,
     pub states_limit: bool,
     pub false_alarm_years: f64,
@@ -42,11 +43,13 @@ impl Options {
     /// Checks places and numbers.
     pub fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
         let MonitorArguments { vessel, log, fill, given, reading, sensors, learned_in, .. } = arguments;
+        let commissioned = arguments.commissioned;
         if vessel == "-" && log == "-" {
             bail!("stdin can be the vessel or the log, not both: give the other one as a file");
         }
         let mut inputs = vec![Path::new(&vessel), Path::new(&log)];
-        inputs.extend([sensors.as_deref(), learned_in.as_deref()].into_iter().flatten());
+        let others = [sensors.as_deref(), learned_in.as_deref(), commissioned.as_deref()];
+        inputs.extend(others.into_iter().flatten());
         let data = Target::checked(arguments.output.as_deref(), &inputs)?;
         let events = arguments.events.as_deref();
         let events = events.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
@@ -88,6 +91,7 @@ impl Options {
             sensors,
             fill,
             learned_in,
+            commissioned,
             events,
             state,
         })

@@ -13,7 +13,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Scale, Statistics, Thresholds};
-use crate::{DetectorError, error::positive};
+use crate::DetectorError;
+use crate::error::positive;
+
+/// Largest shape either way: from 1/2 on the excess has no variance, and no fit to records finds it.
+const LARGEST_SHAPE: f64 = 0.5;
 
 /// Tail of one statistic without a leak.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +33,21 @@ pub struct Tail {
 }
 
 impl Tail {
+    /// Check every number.
+    ///
+    /// # Errors
+    /// Names the number, its value and the bound.
+    pub fn validate(&self) -> Result<(), DetectorError> {
+        positive("tails.level", self.level)?;
+        positive("tails.interval_s", self.interval_s)?;
+        positive("tails.scale", self.scale)?;
+        if self.shape.abs() <= LARGEST_SHAPE {
+            return Ok(());
+        }
+        let bound = "between -0.5 and 0.5";
+        Err(DetectorError::Setting { setting: "tails.shape", value: self.shape, bound })
+    }
+
     /// The value that is exceeded once in a mean time, s; the level for times that are too short for the law.
     pub fn threshold(&self, mean_time_s: f64) -> f64 {
         let log = (mean_time_s / self.interval_s).ln().max(0.0);
@@ -55,6 +74,14 @@ impl Tail {
 pub struct Tails(pub [Tail; Scale::ALL.len()]);
 
 impl Tails {
+    /// Check every number.
+    ///
+    /// # Errors
+    /// As [`Tail::validate`].
+    pub fn validate(&self) -> Result<(), DetectorError> {
+        self.0.iter().try_for_each(Tail::validate)
+    }
+
     /// Thresholds of all statistics together for a mean time between false alarms, s.
     ///
     /// # Errors

@@ -151,23 +151,23 @@ fn a_bank_without_the_members_is_refused() {
 fn a_value_at_a_threshold_stands_for_its_mean_time() {
     for years in [1.0, 7.3, 250.0] {
         let mean_time_s = years * 365.25 * 86_400.0;
-        let levels = Thresholds::for_mean_time_s(mean_time_s).unwrap().levels;
-        assert!((Thresholds::mean_time_of_s(&levels) / mean_time_s - 1.0).abs() < 1e-9);
+        let levels = Tails::default().thresholds(mean_time_s).unwrap().levels;
+        assert!((Tails::default().mean_time_s(&levels) / mean_time_s - 1.0).abs() < 1e-9);
         // One of them is enough.
         for scale in Scale::ALL {
             let mut one = [0.0; Scale::ALL.len()];
             one[scale as usize] = levels[scale as usize];
-            assert!((Thresholds::mean_time_of_s(&one) / mean_time_s - 1.0).abs() < 1e-9);
+            assert!((Tails::default().mean_time_s(&one) / mean_time_s - 1.0).abs() < 1e-9);
         }
     }
-    let at = |value: f64| Thresholds::mean_time_of_s(&[value; Scale::ALL.len()]);
+    let at = |value: f64| Tails::default().mean_time_s(&[value; Scale::ALL.len()]);
     assert!(at(-1.0) < at(0.0) && at(0.0) < 86_400.0 && at(1000.0) > 1e15);
 }
 
 #[test]
 fn thresholds_rise_with_the_mean_time_and_name_the_scale() {
     let year_s = 365.25 * 86_400.0;
-    let [one, ten, hundred] = [1.0, 10.0, 100.0].map(|n| Thresholds::for_mean_time_s(n * year_s).unwrap());
+    let [one, ten, hundred] = [1.0, 10.0, 100.0].map(|n| Tails::default().thresholds(n * year_s).unwrap());
     for scale in Scale::ALL {
         assert!(one.of(scale) < ten.of(scale) && ten.of(scale) < hundred.of(scale), "{scale:?}");
     }
@@ -177,5 +177,5 @@ fn thresholds_rise_with_the_mean_time_and_name_the_scale() {
     statistics[3] = 1.2 * ten.levels[3];
     statistics[1] = 1.1 * ten.levels[1];
     assert_eq!(ten.alarm(&statistics), Some(Scale::Week));
-    assert!(Thresholds::for_mean_time_s(0.0).is_err());
+    assert!(Tails::default().thresholds(0.0).is_err());
 }

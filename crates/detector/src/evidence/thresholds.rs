@@ -1,14 +1,20 @@
-//! From a mean time between false alarms to thresholds.
+//! Thresholds of the statistics, and the tails that they follow from where a vessel has none of its own.
 //!
-//! The numbers were fitted to leak-free worlds of the families that tune: seven vessels in railway winters, parked and in a workshop.
+//! The usual tails were fitted to leak-free worlds of the families that tune: seven vessels together in railway winters, parked and in a workshop.
+//! What the statistics of one vessel reach, `cylwatch commission` finds.
 //!
 //! `cargo run --release -p cylwatch-evaluation --example tails`
 use serde::{Deserialize, Serialize};
 
 use super::{Scale, Statistics, Tail, Tails};
-use crate::DetectorError;
 
-/// Tails of the statistics without a leak; see the module's head.
+impl Default for Tails {
+    /// The usual ones; see the module's head.
+    fn default() -> Self {
+        USUAL
+    }
+}
+
 const USUAL: Tails = Tails([
     Tail { level: 5.5660, interval_s: 4.3200e5, scale: 1.8471, shape: -0.013 },
     Tail { level: 2.8741, interval_s: 1.7289e6, scale: 0.7009, shape: 0.175 },
@@ -27,19 +33,6 @@ pub struct Thresholds {
 }
 
 impl Thresholds {
-    /// For a mean time between false alarms, s.
-    ///
-    /// # Errors
-    /// The time is not positive.
-    pub fn for_mean_time_s(mean_time_s: f64) -> Result<Self, DetectorError> {
-        USUAL.thresholds(mean_time_s)
-    }
-
-    /// Mean time between samples without a leak whose statistics speak for one as much as these, s.
-    pub fn mean_time_of_s(statistics: &Statistics) -> f64 {
-        USUAL.mean_time_s(statistics)
-    }
-
     /// Threshold of a scale.
     pub fn of(&self, scale: Scale) -> f64 {
         self.levels[scale as usize]

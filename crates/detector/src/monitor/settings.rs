@@ -7,6 +7,7 @@ use super::intake::IntakeSettings;
 use crate::DetectorError;
 use crate::error::positive;
 use crate::estimator::observer::ObserverSettings;
+use crate::evidence::Tails;
 use crate::prognosis::{ISO_14520_LOSS, LossLaw, ReactionSettings};
 
 const HOUR_S: f64 = 3600.0;
@@ -50,6 +51,8 @@ pub struct MonitorSettings {
     pub intake: IntakeSettings,
     /// Mean time between false leak alarms, s.
     pub false_alarm_interval_s: f64,
+    /// What the statistics of the evidence reach without a leak: thresholds follow from them and from that time.
+    pub tails: Tails,
     /// Limits of the pressure.
     pub limits: Limits,
     /// How a leak goes on.
@@ -77,6 +80,7 @@ impl Default for MonitorSettings {
             observer: crate::evidence::observer_settings(),
             intake: IntakeSettings::default(),
             false_alarm_interval_s: 10.0 * YEAR_S,
+            tails: Tails::default(),
             limits: Limits::default(),
             loss: LossLaw::default(),
             reaction: ReactionSettings::default(),
@@ -99,6 +103,7 @@ impl MonitorSettings {
         self.intake.validate()?;
         self.reaction.validate()?;
         self.mass_error.validate()?;
+        self.tails.validate()?;
         for (setting, value) in [
             ("false_alarm_interval_s", self.false_alarm_interval_s),
             ("limits.operational_pa", self.limits.operational_pa),

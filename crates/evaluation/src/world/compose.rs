@@ -28,14 +28,13 @@ pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, W
     let rows = rows(request, seed);
     let leak = SlowLeak::of(simulated, request);
     let truth = truth(simulated, &rows.time_s, leak.as_ref())?;
-    let sensors = SensorDraw::draw(family.sensors, family.vessel, seed);
+    let sensors = SensorDraw::draw(family.sensors, simulated.nominal.full_scale_pa, seed);
     let log = readings(simulated, &sensors, &rows, &truth, seed);
     let spec = sensors.told(family.sensors);
     let suite: SensorSuite = spec.build()?;
     let happenings = happenings(simulated, request, &rows, leak.as_ref());
     let told = Told {
-        vessel: simulated.nominal.clone(),
-        vessel_toml: family.vessel.text(),
+        vessel: simulated.nominal.vessel.clone(),
         sensors: suite.sensors().to_vec(),
         sensors_spec: spec,
         commissioning: simulated.drawn.fill.commissioning(),

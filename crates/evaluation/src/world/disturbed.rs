@@ -8,8 +8,8 @@ use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::vessel::Vessel;
 
+use super::WorldError;
 use super::overlay::FaultRow;
-use super::{VesselKind, WorldError};
 use crate::random::{Purpose, Random};
 use crate::truth::disturbance::{Disturbance, Surrounding};
 use crate::truth::{Happenings, Process};
@@ -30,7 +30,8 @@ const WIND_MOST_M_S: f64 = 40.0;
 /// A row of the table, to be put into a simulation.
 pub(super) struct Disturbed<'a> {
     pub row: FaultRow,
-    pub kind: VesselKind,
+    /// Bore through which it is filled, m.
+    pub inlet_m: f64,
     pub vessel: &'a Vessel,
     pub seed: u64,
     /// Pressure of the fill at 15 °C, Pa.
@@ -144,7 +145,7 @@ impl Disturbed<'_> {
                 let is_full = random.happens(0.5);
                 let until = if is_full { 0.1 } else { random.uniform((0.75, 0.92)) };
                 let until_pa = (until * self.fill_pa).max(1.5 * BAR_PA);
-                let diameter_m = self.kind.inlet_m() * if is_full { 1.0 } else { 0.42 };
+                let diameter_m = self.inlet_m * if is_full { 1.0 } else { 0.42 };
                 Process::Discharge { start_s, lasting_s: 60.0, diameter_m, until_pa }
             }
             FaultRow::G3 => {

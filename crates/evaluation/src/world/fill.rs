@@ -7,7 +7,6 @@ use cylwatch_estimator::observer::Commissioning;
 use cylwatch_thermal::scenario::Fill;
 use serde::{Deserialize, Serialize};
 
-use super::VesselKind;
 use crate::random::{Purpose, Random};
 
 /// Temperature that fills are stated at, K.
@@ -34,10 +33,10 @@ pub struct FillDraw {
 }
 
 impl FillDraw {
-    /// The draw of a seed.
-    pub(super) fn draw(vessel: VesselKind, seed: u64) -> Self {
+    /// The draw of a seed from a range of pressures, Pa.
+    pub(super) fn draw(range_pa: (f64, f64), seed: u64) -> Self {
         let random = &mut Random::new(seed, Purpose::WorldFill);
-        let pressure_pa = random.uniform(vessel.fill_pa());
+        let pressure_pa = random.uniform(range_pa);
         let error = STATED_SD * random.normal();
         let is_wrong = random.happens(WRONG_SHARE);
         let stated_pa = pressure_pa * (1.0 + error) / if is_wrong { 1.0 - WRONG_BY } else { 1.0 };

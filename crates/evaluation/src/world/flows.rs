@@ -7,7 +7,7 @@ use cylwatch_thermal::flow::orifice::mass_flux;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::State;
 
-use super::{Leak, Overlay, VesselKind, WorldError};
+use super::{Leak, Overlay, WorldError};
 use crate::random::{Purpose, Random};
 use crate::thermal::vessel::Vessel;
 
@@ -30,7 +30,8 @@ pub(super) const REFILL: &str = "ordered refill";
 
 /// What flows are made for.
 pub(super) struct Filled<'a> {
-    pub kind: VesselKind,
+    /// Bore through which it is filled, m.
+    pub inlet_m: f64,
     pub vessel: &'a Vessel,
     pub seed: u64,
     /// Pressure of the fill at 15 °C, Pa.
@@ -59,7 +60,7 @@ impl Filled<'_> {
                     mass_flow_kg_s: part * self.mass_kg / within_s,
                     source_temperature_k: SOURCE_K,
                     source_pressure_pa: SOURCE * self.pressure_pa * (1.0 + part),
-                    inlet_diameter_m: Some(self.kind.inlet_m()),
+                    inlet_diameter_m: Some(self.inlet_m),
                 };
                 vec![self.flow(REFILL, (onset_s, onset_s + within_s), kind)]
             }

@@ -1,6 +1,6 @@
 //! Worlds that judge: a vessel, a climate, a gas, sensors and rows, drawn by seed, and what really happened in them.
 //!
-//! A [`Request`] decides a [`World`] on every machine: the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
+//! A [`Request`] decides a [`World`] on every machine, around the nominal vessel of its kind or around an own one ([`NominalVessel`]): the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
 //! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
 //! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
 mod climate;
@@ -44,7 +44,7 @@ pub use sensors::{SensorDraw, Thermometer, Transmitter};
 pub use simulation::{CylinderDraw, Simulated, SimulationKey};
 pub use told::Told;
 pub use truth::{Happening, HappeningKind, Regime, Truth};
-pub use vessel::VesselDraw;
+pub use vessel::{NominalVessel, VesselDraw};
 
 /// Everything that decides a world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -18,7 +18,7 @@
 use cylwatch_estimator::sensor::{KindChoice, Pt100Class, SensorSpec, SensorsSpec};
 use serde::{Deserialize, Serialize};
 
-use super::{SensorClass, VesselKind};
+use super::SensorClass;
 use crate::random::{Purpose, Random};
 
 const BAR_PA: f64 = 1e5;
@@ -91,12 +91,11 @@ pub(super) const fn seed_of_set(seed: u64, set: u64) -> u64 {
 }
 
 impl SensorDraw {
-    /// The draw of a seed of a set.
-    pub(super) fn draw(class: SensorClass, vessel: VesselKind, seed: u64) -> Self {
+    /// The draw of a seed of a set, with a transmitter of a range, Pa.
+    pub(super) fn draw(class: SensorClass, full_scale_pa: f64, seed: u64) -> Self {
         let random = &mut Random::new(seed, Purpose::WorldSensors);
         let (shoulder, valve) = (thermometer(class, random), thermometer(class, random));
-        let mut drawn =
-            Self { shoulder, valve, pressure: transmitter(class, vessel.full_scale_pa(), random) };
+        let mut drawn = Self { shoulder, valve, pressure: transmitter(class, full_scale_pa, random) };
         if class == SensorClass::Coarse {
             // Both thermometers pass the same logger.
             drawn.valve.resolution_k = drawn.shoulder.resolution_k;

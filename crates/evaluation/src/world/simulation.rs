@@ -13,7 +13,8 @@ use super::gas::GasDraw;
 use super::samples::Samples;
 use super::vessel::VesselDraw;
 use super::{
-    Climate, Family, GasKind, Leak, Overlay, Request, RowPattern, VesselKind, World, WorldError, compose,
+    Climate, Family, GasKind, Leak, NominalVessel, Overlay, Request, RowPattern, VesselKind, World,
+    WorldError, compose,
 };
 
 /// Shortest and longest log, s.
@@ -29,7 +30,7 @@ const SAMPLE_S: f64 = 60.0;
 /// What decides the cylinder and its surroundings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SimulationKey {
-    /// Vessel.
+    /// Vessel; around an own one only a name.
     pub vessel: VesselKind,
     /// Climate.
     pub climate: Climate,
@@ -59,8 +60,8 @@ pub struct CylinderDraw {
 }
 
 impl CylinderDraw {
-    fn draw(key: &SimulationKey, overlay: &Overlay) -> Self {
-        let fill = FillDraw::draw(key.vessel, key.seed);
+    fn draw(key: &SimulationKey, fill_pa: (f64, f64), overlay: &Overlay) -> Self {
+        let fill = FillDraw::draw(fill_pa, key.seed);
         let is_low = matches!(overlay, Overlay::Fault { row, .. } if disturbed::begins_low(*row));
         Self {
             vessel: VesselDraw::draw(key.seed),
@@ -73,7 +74,7 @@ impl CylinderDraw {
 /// Simulate a drawn cylinder with what of an overlay is simulated.
 fn simulate_with(
     key: &SimulationKey,
-    vessel: &Vessel,
+    (vessel, inlet_m): (&Vessel, f64),
     drawn: &CylinderDraw,
     mut scenario: Scenario,
     overlay: &Overlay,
@@ -81,14 +82,15 @@ fn simulate_with(
     let FillDraw { pressure_pa, lead_s, .. } = drawn.fill;
     let density = vessel.fluid.density_from_pressure_temperature(pressure_pa, QUOTED_K)?;
     let mass_kg = density * vessel.volume.volume_m3(QUOTED_K, pressure_pa);
-    let filled = Filled { kind: key.vessel, vessel, seed: key.seed, pressure_pa, mass_kg, lead_s };
+    let filled = Filled { inlet_m, vessel, seed: key.seed, pressure_pa, mass_kg, lead_s };
     scenario.flows = filled.flows(overlay)?;
     let settings =
         SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
     match *overlay {
         Overlay::Fault { row, onset_s, .. } => {
-            let (kind, seed, onset_s) = (key.vessel, key.seed, onset_s + lead_s);
-            Disturbed { row, kind, vessel, seed, fill_pa: pressure_pa, onset_s }.simulate(scenario, &settings)
+            let (seed, onset_s) = (key.seed, onset_s + lead_s);
+            Disturbed { row, inlet_m, vessel, seed, fill_pa: pressure_pa, onset_s }
+                .simulate(scenario, &settings)
         }
         _ => Ok(simulate(vessel, &scenario, &settings, &mut |_| ())?),
     }
@@ -114,7 +116,7 @@ pub struct Simulated {
     /// What was simulated on top of the climate.
     pub(super) overlay: Overlay,
     pub(super) drawn: CylinderDraw,
-    pub(super) nominal: Vessel,
+    pub(super) nominal: NominalVessel,
     pub(super) vessel: Vessel,
     pub(super) surroundings: Surroundings,
     pub(super) jumps_s: Vec<f64>,
@@ -132,19 +134,26 @@ impl Simulated {
     /// # Errors
     /// A request out of range, or a simulation that fails.
     pub fn run(request: &Request) -> Result<Self, WorldError> {
+        Self::around(request.family.vessel.nominal()?, request)
+    }
+
+    /// The same around an own vessel: the request's kind of vessel is only a name, as in its worlds.
+    ///
+    /// # Errors
+    /// As [`Simulated::run`].
+    pub fn around(nominal: NominalVessel, request: &Request) -> Result<Self, WorldError> {
         request.validate()?;
         let key = SimulationKey::of(request);
         let overlay = request.overlay.simulated_part(request.length_s);
-        let drawn = CylinderDraw::draw(&key, &overlay);
-        let nominal = key.vessel.nominal()?;
-        let mut vessel = drawn.vessel.apply(&nominal);
+        let drawn = CylinderDraw::draw(&key, nominal.fill_pa, &overlay);
+        let mut vessel = drawn.vessel.apply(&nominal.vessel);
         key.gas.resolve(&mut vessel, &drawn.gas);
         let (spacing_s, sample_s) = (spacing_s(request.family.rows), sample_s(request.family.rows));
         let span = Span::draw(key.seed, drawn.fill.lead_s, request.length_s, spacing_s);
         let around =
             climate::surroundings(key.climate, &span, drawn.vessel.outside_film, drawn.vessel.film_slope)?;
         let scenario = scenario(&key, &span, &drawn.fill, around.surroundings, sample_s);
-        let trajectory = simulate_with(&key, &vessel, &drawn, scenario, &overlay)?;
+        let trajectory = simulate_with(&key, (&vessel, nominal.inlet_m), &drawn, scenario, &overlay)?;
         let ledger = trajectory.ledger;
         Ok(Self {
             key,

@@ -8,8 +8,6 @@ use cylwatch_thermal::vessel::Vessel;
 pub struct Told {
     /// Nominal vessel.
     pub vessel: Vessel,
-    /// The nominal vessel as a file.
-    pub vessel_toml: &'static str,
     /// Sensors as their data sheets state them, in the order of the log's channels.
     pub sensors: Vec<Sensor>,
     /// The same as a file of sensors.

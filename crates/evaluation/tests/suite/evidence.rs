@@ -1,7 +1,7 @@
 //! Evidence from an observer on a cylinder under a train: tight, leaking, with gaps, exchanged, and saved in between.
 use std::sync::OnceLock;
 
-use cylwatch_detector::evidence::{Doubt, Evidence, Scale, Statistics, Thresholds, observer_settings};
+use cylwatch_detector::evidence::{Doubt, Evidence, Scale, Statistics, Tails, observer_settings};
 use cylwatch_estimator::observer::{Commissioning, Observer};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -62,7 +62,7 @@ fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, St
 
 /// Time of the first alarm at one false alarm in ten years, s, and its scale.
 fn alarm(statistics: &[(f64, Statistics)]) -> Option<(f64, Scale)> {
-    let thresholds = Thresholds::for_mean_time_s(10.0 * YEAR_S).unwrap();
+    let thresholds = Tails::default().thresholds(10.0 * YEAR_S).unwrap();
     statistics.iter().find_map(|(time_s, statistics)| Some((*time_s, thresholds.alarm(statistics)?)))
 }
 

@@ -2,6 +2,7 @@
 use std::sync::OnceLock;
 
 use cylwatch_detector::DetectorError;
+use cylwatch_detector::evidence::{Tail, Tails};
 use cylwatch_detector::monitor::{
     EventKind, Health, Monitor, MonitorSettings, Output, Reason, StateError, Verdict,
 };
@@ -114,6 +115,63 @@ fn a_leak_is_found_with_its_rate_and_onset() {
     let leak = outputs.last().unwrap().leak.unwrap();
     assert!(leak.rate_kg_s.holds(rate_kg_s) && leak.onset_s.holds(onset_s), "{leak:?}");
     assert!(leak.lost_kg.holds(rate_kg_s * 2.0 * DAY_S), "{leak:?}");
+}
+
+/// The usual tails, all excesses smaller by a factor.
+fn smaller_tails(by: f64) -> MonitorSettings {
+    let smaller = |tail: Tail| Tail { level: tail.level / by, scale: tail.scale / by, ..tail };
+    MonitorSettings { tails: Tails(Tails::default().0.map(smaller)), ..MonitorSettings::default() }
+}
+
+/// Time of the first leak that is found, s.
+fn found_s(outputs: &[Output]) -> f64 {
+    let is_found =
+        |output: &&Output| output.events.iter().any(|event| matches!(event.kind, EventKind::LeakFound(_)));
+    outputs.iter().find(is_found).expect("a leak is found").estimate.time_s
+}
+
+#[test]
+fn tails_of_a_vessel_of_its_own_find_a_leak_earlier_and_a_state_lives_through_their_change() {
+    let leak = TruthLeak { rate_kg_s: 1e-3 / HOUR_S, start_s: 2.0 * DAY_S };
+    let rows = week(4.0, Some(leak));
+    let usual_s = found_s(&run(&rows));
+    let settings = smaller_tails(1.5);
+    let commissioning = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
+    let own = Monitor::new(&vessel(), &sensors(), &commissioning, &settings).unwrap();
+    // The state of a monitor with the usual tails, an hour before the leak.
+    let mut before = monitor();
+    let (first, rest) = rows.split_at(rows.partition_point(|(t, _)| *t < leak.start_s - HOUR_S));
+    first.iter().for_each(|(t, readings)| drop(before.step(*t, readings).unwrap()));
+    let bytes = before.save().unwrap();
+    let changed = Monitor::restore(&vessel(), &sensors(), &settings, &bytes).unwrap();
+    let watch = |mut monitor: Monitor, rows: &[(f64, [f64; 3])]| -> Vec<Output> {
+        rows.iter().flat_map(|(t, readings)| monitor.step(*t, readings).unwrap()).collect()
+    };
+    let (own_s, changed_s) = (found_s(&watch(own, &rows)), found_s(&watch(changed, rest)));
+    println!(
+        "found after {:.1} h, {:.1} h with own tails",
+        (usual_s - leak.start_s) / HOUR_S,
+        (own_s - leak.start_s) / HOUR_S
+    );
+    assert!(own_s > leak.start_s && own_s < usual_s - HOUR_S, "{own_s} {usual_s}");
+    assert_eq!(changed_s, own_s);
+}
+
+#[test]
+fn tails_that_are_none_are_refused_by_name() {
+    let tail = Tails::default().0[0];
+    for (bad, named) in [
+        (Tail { level: f64::NAN, ..tail }, "tails.level"),
+        (Tail { interval_s: 0.0, ..tail }, "tails.interval_s"),
+        (Tail { scale: -1.0, ..tail }, "tails.scale"),
+        (Tail { shape: 0.6, ..tail }, "tails.shape"),
+        (Tail { shape: f64::NAN, ..tail }, "tails.shape"),
+    ] {
+        let mut settings = MonitorSettings::default();
+        settings.tails.0[4] = bad;
+        let error = settings.validate().unwrap_err().to_string();
+        assert!(error.contains(named), "{error}");
+    }
 }
 
 #[test]

@@ -151,11 +151,12 @@ struct Saved {
 }
 
 /// What a state belongs to: vessel, sensors, and settings that decide what is kept of the rows. What the gas is held against does not belong
-/// to it: limits, alarms, how rare a false one is to be, when a reaction is due.
+/// to it: limits, alarms, how rare a false one is to be and the tails that say so, when a reaction is due.
 fn fingerprint(vessel: &Vessel, sensors: &[Sensor], settings: &MonitorSettings) -> Fingerprint {
     let any = MonitorSettings::default();
     let settings = MonitorSettings {
         false_alarm_interval_s: any.false_alarm_interval_s,
+        tails: any.tails,
         limits: any.limits,
         loss: any.loss,
         reaction: any.reaction,
@@ -227,7 +228,7 @@ impl Monitor {
         let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
-            thresholds: Thresholds::for_mean_time_s(settings.false_alarm_interval_s)?,
+            thresholds: settings.tails.thresholds(settings.false_alarm_interval_s)?,
             scale,
             mass_error: settings.mass_error.scaled(scale.mass),
             full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
@@ -255,8 +256,8 @@ impl Monitor {
         self
     }
 
-    /// A monitor that goes on from saved bytes, with the commissioning of then. Other limits, alarms, reactions and another rarity of false
-    /// alarms are taken over from this row on.
+    /// A monitor that goes on from saved bytes, with the commissioning of then. Other limits, alarms, reactions, tails and another
+    /// rarity of false alarms are taken over from this row on.
     ///
     /// # Errors
     /// The bytes are no state of this vessel, these sensors and settings, of this version, whole and unchanged; or as
@@ -437,7 +438,7 @@ impl Monitor {
             error: &error,
             doubt_kg: doubt.considered_kg,
             filled_kg: self.filled_kg.0,
-            false_alarm_s: Thresholds::mean_time_of_s(&statistics),
+            false_alarm_s: self.settings.tails.mean_time_s(&statistics),
             alarm: alarm || lost_across,
             calm: calm && !lost_across,
             over_after_s: self.settings.leak_over_after_s,

@@ -5,7 +5,7 @@
 //!
 //! | kind | what it is |
 //! |---|---|
-//! | `monitor` | this project's monitor; `settings` are laid over [`MonitorSettings`](crate::detector::monitor::MonitorSettings) |
+//! | `monitor` | this project's monitor; `settings` are laid over [`MonitorSettings`](crate::detector::monitor::MonitorSettings); `settings.commissioned` names a file of [`Commissioned`](crate::tails::Commissioned) thresholds |
 //! | `observer` | the observer alone: estimates and innovations, no verdict; `settings` over those of the observer |
 //! | `paper` | the paper's detector as published: its transfer function and slope, a threshold held for 10 min |
 //! | `paper-refitted` | gain 1, refitted pole, equation of state, mean error of four days taken off, held for an hour |

@@ -4,24 +4,41 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::{Candidate, Contender, Row, overlaid};
+use crate::detector::evidence::Tails;
 use crate::detector::monitor::alarm::{AlarmName, AlarmSettings};
 use crate::detector::monitor::{Health, LIKELY, Monitor, MonitorSettings, Outcome as Loss, Output};
 use crate::estimator::observer::Outcome;
 use crate::judge::JudgeError;
 use crate::judge::measures::Class;
 use crate::judge::said::{Decision, Estimates, Innovation, Said, normal};
+use crate::tails::Commissioned;
 use crate::world::{Snapshot, Told};
 
 /// Operational limit as a part of the stated filling: 160 bar of 200.
 const LIMIT: f64 = 0.8;
 
+/// Setting of a plan that names a file of commissioned tails.
+const COMMISSIONED: &str = "commissioned";
+
 /// The monitor, with the settings of a plan laid over its own.
 ///
 /// # Errors
-/// A setting that it does not have.
+/// A setting that it does not have, or a file of commissioned tails that is none.
 pub fn monitor(settings: &Value) -> Result<Arc<dyn Candidate>, JudgeError> {
-    overlaid(&MonitorSettings::default(), settings)?.validate()?;
-    Ok(Arc::new(Monitors { settings: settings.clone() }))
+    let mut settings = settings.clone();
+    if let Some(named) = settings.as_object_mut().and_then(|settings| settings.remove(COMMISSIONED)) {
+        settings["tails"] = serde_json::to_value(commissioned(named.as_str().unwrap_or_default())?)?;
+    }
+    overlaid(&MonitorSettings::default(), &settings)?.validate()?;
+    Ok(Arc::new(Monitors { settings }))
+}
+
+/// The tails of a file.
+fn commissioned(path: &str) -> Result<Tails, JudgeError> {
+    let failed = |source| JudgeError::File { path: path.into(), source };
+    let text = std::fs::read_to_string(path).map_err(failed)?;
+    let commissioned: Commissioned = serde_json::from_str(&text)?;
+    commissioned.tails().map_err(|error| failed(std::io::Error::other(error)))
 }
 
 struct Monitors {
@@ -172,5 +189,40 @@ fn estimates(output: &Output) -> Estimates {
         gas_mean_k: Some(normal(estimate.gas_mean_k, estimate.gas_mean_sd_k)),
         leak_kg_s: Some(output.leak_rate_kg_s.into()),
         onset_s: output.leak.map(|leak| leak.onset_s.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::detector::evidence::{Scale, Tail};
+    use crate::judge::table::Rate;
+    use crate::tails::CommissionedScale;
+    use serde_json::json;
+
+    #[test]
+    fn a_plan_names_commissioned_thresholds_by_their_file() {
+        let tail = Tail { level: 1.0, interval_s: 1e6, scale: 0.5, shape: 0.1 };
+        let of = |scale| CommissionedScale { scale, tail, threshold: 3.0, threshold_interval: (2.0, 4.0) };
+        let rate = Rate {
+            count: 0,
+            cylinder_years: 1.0,
+            per_ten_years: 0.0,
+            poisson: (0.0, 36.9),
+            simulations: 1,
+            simulations_with: 0,
+            by_simulation: (0.0, 36.9),
+        };
+        let found = Commissioned { scales: Scale::ALL.map(of), false_alarms: rate };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("thresholds.json").to_str().unwrap().to_owned();
+        std::fs::write(&path, serde_json::to_string(&found).unwrap()).unwrap();
+        assert_eq!(commissioned(&path).unwrap(), Tails([tail; Scale::ALL.len()]));
+        assert!(monitor(&json!({ "commissioned": path, "learning_s": 10.0 })).is_ok());
+        let missing = format!("{path}.not");
+        let error = monitor(&json!({ "commissioned": missing })).err().unwrap().to_string();
+        assert!(error.contains(&missing), "{error}");
+        std::fs::write(&path, "{}").unwrap();
+        assert!(monitor(&json!({ "commissioned": path })).is_err());
     }
 }

@@ -11,7 +11,7 @@
 //!
 //! Source: F. Garwood, Biometrika 28 (1936) 437; P. McCullagh and J. A. Nelder, Generalized Linear Models, 1989, chapter 9; W. G. Cochran,
 //! Sampling Techniques, 1977, section 6.3.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::judge::measures::YEAR_S;
@@ -115,7 +115,7 @@ impl Clustered {
 }
 
 /// A rate of rare events.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rate {
     /// How many.
     pub count: u64,

@@ -13,6 +13,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+pub(crate) use self::clustered::Clustered;
 pub use self::clustered::{Rate, Share};
 pub use self::group::{Group, Length, Of};
 pub use self::report::{

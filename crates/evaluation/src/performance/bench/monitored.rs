@@ -8,7 +8,7 @@
 use super::Plan;
 use super::candidate::{Candidate, Contender, Readings};
 use crate::EvaluationError;
-use crate::detector::evidence::Thresholds;
+use crate::detector::evidence::Tails;
 use crate::detector::monitor::gas::onset::{self, MassError};
 use crate::detector::monitor::gas::trace::MassTrace;
 use crate::detector::monitor::{Monitor, MonitorSettings};
@@ -41,6 +41,7 @@ struct Monitored {
     monitor: Monitor,
     trace: MassTrace,
     error: MassError,
+    tails: Tails,
     pa_per_kg: f64,
     settled_pa: Option<f64>,
     /// The statistic, and whether the trace has got a bin since what was found was found.
@@ -63,6 +64,7 @@ impl Monitored {
             monitor: Monitor::new(vessel, sensors, &commissioning, settings)?,
             trace: MassTrace::default(),
             error: settings.mass_error,
+            tails: settings.tails,
             pa_per_kg,
             settled_pa: None,
             log_years: f64::NEG_INFINITY,
@@ -80,7 +82,7 @@ impl Contender for Monitored {
             self.renewed |= self.trace.push(readings.time_s, freest.mass_kg);
             self.settled_pa = Some(freest.mass_kg * self.pa_per_kg);
         }
-        self.log_years = (Thresholds::mean_time_of_s(&self.monitor.evidence()) / YEAR_S).log10();
+        self.log_years = (self.tails.mean_time_s(&self.monitor.evidence()) / YEAR_S).log10();
         Ok(self.log_years)
     }
 

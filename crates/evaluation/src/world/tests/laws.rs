@@ -1,10 +1,10 @@
 //! What is drawn for vessels, gas, fills and sensors keeps to its statement.
 use crate::world::fill::FillDraw;
 use crate::world::gas::GasDraw;
-use crate::world::sensors::{SensorDraw, Thermometer};
+use crate::world::sensors::{SensorDraw, Thermometer, Transmitter};
 use crate::world::statistics::{Law, assert_law, assert_share};
 use crate::world::vessel::VesselDraw;
-use crate::world::{GasKind, SensorClass, VesselKind};
+use crate::world::{GasKind, NominalVessel, SensorClass, VesselKind};
 use cylwatch_thermal::vessel::GasResolution;
 
 const SEEDS: u64 = 2000;
@@ -16,12 +16,11 @@ fn over<T>(draw: impl Fn(u64) -> T) -> Vec<T> {
 #[test]
 fn nominal_vessels_are_valid_files_whose_volume_is_that_of_their_contour() {
     for &kind in VesselKind::ALL {
-        let vessel = kind.nominal().unwrap();
+        let NominalVessel { vessel, fill_pa: (low_pa, high_pa), full_scale_pa, .. } = kind.nominal().unwrap();
         assert!(vessel.doubts().is_empty(), "{kind}: {:?}", vessel.doubts());
         let contour_m3 = vessel.geometry.contour_volume_m3();
         assert!((vessel.volume.volume_m3 / contour_m3 - 1.0).abs() < 0.02, "{kind}: contour {contour_m3} m3");
-        let (low_pa, high_pa) = kind.fill_pa();
-        assert!(low_pa < high_pa && 1.2 * high_pa <= kind.full_scale_pa(), "{kind}: range");
+        assert!(low_pa < high_pa && 1.2 * high_pa <= full_scale_pa, "{kind}: range");
     }
 }
 
@@ -38,7 +37,7 @@ fn nominal_vessels_have_the_masses_that_their_files_state() {
         (VesselKind::AirTank8, 2.9, 3.7),
     ];
     for (kind, low_kg, high_kg) in stated_kg {
-        let vessel = kind.nominal().unwrap();
+        let vessel = kind.nominal().unwrap().vessel;
         let geometry = &vessel.geometry;
         let (mut mass_kg, mut radius_m) = (0.0, 0.5 * geometry.inner_diameter_m);
         let end_m2 = |depth: Option<f64>| {
@@ -89,7 +88,7 @@ fn every_property_of_a_vessel_fills_its_stated_range_evenly() {
 fn what_was_drawn_is_what_the_vessel_has() {
     let draw = VesselDraw::draw(5);
     for &kind in VesselKind::ALL {
-        let nominal = kind.nominal().unwrap();
+        let nominal = kind.nominal().unwrap().vessel;
         let vessel = draw.apply(&nominal);
         let ratio = |a: f64, b: f64, expected: f64| assert!((a / b / expected - 1.0).abs() < 1e-12, "{kind}");
         ratio(vessel.volume.volume_m3, nominal.volume.volume_m3, draw.volume);
@@ -112,7 +111,7 @@ fn the_axial_exchange_is_off_by_up_to_a_factor_of_three_evenly_by_its_logarithm(
     assert_law("core mixing", &values(|d| d.core_mixing), Law::Uniform(0.02, 0.1));
     assert_law("off by", &values(|d| d.off_by), Law::Logarithmic(1.0 / 3.0, 3.0));
     let resolved = |kind: GasKind| {
-        let mut vessel = VesselKind::Nitrogen20.nominal().unwrap();
+        let mut vessel = VesselKind::Nitrogen20.nominal().unwrap().vessel;
         kind.resolve(&mut vessel, &drawn[0]);
         vessel
     };
@@ -120,7 +119,7 @@ fn the_axial_exchange_is_off_by_up_to_a_factor_of_three_evenly_by_its_logarithm(
     let GasResolution::Stratified(off) = resolved(GasKind::AxialExchange).gas else { panic!("stacked") };
     assert_eq!(off.exchange_length_diameters, right.exchange_length_diameters * drawn[0].off_by);
     assert_eq!(off.core_mixing, right.core_mixing * drawn[0].off_by);
-    let nominal = VesselKind::Nitrogen20.nominal().unwrap();
+    let nominal = VesselKind::Nitrogen20.nominal().unwrap().vessel;
     let full = resolved(GasKind::FullMesh);
     assert_eq!(full.geometry.cylinder_cells, nominal.geometry.cylinder_cells);
     assert_eq!(full.geometry.layers[0].cells, nominal.geometry.layers[0].cells);
@@ -131,7 +130,7 @@ fn the_axial_exchange_is_off_by_up_to_a_factor_of_three_evenly_by_its_logarithm(
 fn heat_passes_every_layer_of_one_cell_within_seconds() {
     let draw = GasDraw::draw(0);
     for &kind in VesselKind::ALL {
-        let mut vessel = kind.nominal().unwrap();
+        let mut vessel = kind.nominal().unwrap().vessel;
         GasKind::Mixed.resolve(&mut vessel, &draw);
         for layer in &vessel.geometry.layers {
             let m = &layer.material;
@@ -144,7 +143,8 @@ fn heat_passes_every_layer_of_one_cell_within_seconds() {
 
 #[test]
 fn fills_are_even_over_the_range_and_stated_to_half_a_percent_or_wrong() {
-    let drawn = over(|seed| FillDraw::draw(VesselKind::AirTank8, seed));
+    let range_pa = VesselKind::AirTank8.nominal().unwrap().fill_pa;
+    let drawn = over(|seed| FillDraw::draw(range_pa, seed));
     let pressures: Vec<f64> = drawn.iter().map(|d| d.pressure_pa).collect();
     assert_law("fill", &pressures, Law::Uniform(3e5, 8e5));
     let wrong = drawn.iter().filter(|d| d.is_wrong).count();
@@ -163,9 +163,9 @@ fn fills_are_even_over_the_range_and_stated_to_half_a_percent_or_wrong() {
 /// What is told of the mass is honest: its error over the told standard deviation has a mean square of one.
 #[test]
 fn the_told_standard_deviation_of_the_mass_is_its_root_mean_square_error() {
-    let nominal = VesselKind::Nitrogen20.nominal().unwrap();
+    let NominalVessel { vessel: nominal, fill_pa, .. } = VesselKind::Nitrogen20.nominal().unwrap();
     let squares = (0..600).map(|seed| {
-        let fill = FillDraw::draw(VesselKind::Nitrogen20, seed);
+        let fill = FillDraw::draw(fill_pa, seed);
         let mass_kg = |pressure_pa: f64| {
             let density = nominal.fluid.density_from_pressure_temperature(pressure_pa, 288.15).unwrap();
             density * nominal.volume.volume_m3(288.15, pressure_pa)
@@ -177,8 +177,17 @@ fn the_told_standard_deviation_of_the_mass_is_its_root_mean_square_error() {
     assert!((0.5..1.1).contains(&mean), "{mean}");
 }
 
+fn drawn_sensors(class: SensorClass, vessel: VesselKind) -> Vec<SensorDraw> {
+    let full_scale_pa = vessel.nominal().unwrap().full_scale_pa;
+    over(|seed| SensorDraw::draw(class, full_scale_pa, seed))
+}
+
+fn drawn_transmitters(class: SensorClass, vessel: VesselKind) -> Vec<Transmitter> {
+    drawn_sensors(class, vessel).iter().map(|drawn| drawn.pressure).collect()
+}
+
 fn thermometers(class: SensorClass) -> Vec<Thermometer> {
-    let drawn = over(|seed| SensorDraw::draw(class, VesselKind::Argon50, seed));
+    let drawn = drawn_sensors(class, VesselKind::Argon50);
     drawn.iter().flat_map(|d| [d.shoulder, d.valve]).collect()
 }
 
@@ -205,7 +214,7 @@ fn lags_are_five_to_sixty_seconds_and_stated_within_thirty_percent() {
 #[test]
 fn coarse_sensors_have_steps_of_a_tenth_or_a_half_and_parts_of_a_small_range() {
     let steps = |vessel| -> Vec<f64> {
-        over(|seed| SensorDraw::draw(SensorClass::Coarse, vessel, seed).pressure.resolution_pa)
+        drawn_transmitters(SensorClass::Coarse, vessel).iter().map(|d| d.resolution_pa).collect()
     };
     for (vessel, fine_pa, coarse_pa) in
         [(VesselKind::Argon50, 1e4, 5e4), (VesselKind::AirTank8, 400.0, 2000.0)]
@@ -216,7 +225,7 @@ fn coarse_sensors_have_steps_of_a_tenth_or_a_half_and_parts_of_a_small_range() {
         assert_eq!(fine + coarse, drawn.len(), "{vessel}");
         assert_share("fine steps", fine, drawn.len(), 0.5);
     }
-    let drawn = over(|seed| SensorDraw::draw(SensorClass::Coarse, VesselKind::Argon50, seed));
+    let drawn = drawn_sensors(SensorClass::Coarse, VesselKind::Argon50);
     assert!(drawn.iter().all(|d| d.shoulder.resolution_k == d.valve.resolution_k));
     let tenths = drawn.iter().filter(|d| d.shoulder.resolution_k == 0.1).count();
     assert_share("tenths of a kelvin", tenths, drawn.len(), 0.5);
@@ -224,21 +233,21 @@ fn coarse_sensors_have_steps_of_a_tenth_or_a_half_and_parts_of_a_small_range() {
 
 #[test]
 fn transmitters_are_off_by_their_class_and_a_quarter_of_one_class_counts_from_the_air() {
-    let drawn = over(|seed| SensorDraw::draw(SensorClass::ClassB, VesselKind::Nitrogen20, seed).pressure);
+    let drawn = drawn_transmitters(SensorClass::ClassB, VesselKind::Nitrogen20);
     let offsets: Vec<f64> = drawn.iter().map(|d| d.offset_pa).collect();
     assert_law("offset of class B", &offsets, Law::Uniform(-0.625e5, 0.625e5));
     let coefficients: Vec<f64> = drawn.iter().map(|d| d.coefficient_pa_k).collect();
     assert_law("coefficient of class B", &coefficients, Law::Normal(0.0, 2500.0));
     assert!(drawn.iter().all(|d| !d.is_gauge));
 
-    let far = over(|seed| SensorDraw::draw(SensorClass::Transmitter, VesselKind::Nitrogen20, seed).pressure);
+    let far = drawn_transmitters(SensorClass::Transmitter, VesselKind::Nitrogen20);
     let offsets: Vec<f64> = far.iter().map(|d| d.offset_pa.abs()).collect();
     assert_law("offset of the far class", &offsets, Law::Uniform(0.25e5, 0.625e5));
     let coefficients: Vec<f64> = far.iter().map(|d| d.coefficient_pa_k.abs()).collect();
     assert_law("coefficient of the far class", &coefficients, Law::Uniform(0.0, 0.0375e5));
     assert_share("positive", far.iter().filter(|d| d.offset_pa > 0.0).count(), far.len(), 0.5);
     assert_share("gauges", far.iter().filter(|d| d.is_gauge).count(), far.len(), 0.25);
-    let tank = over(|seed| SensorDraw::draw(SensorClass::Transmitter, VesselKind::AirTank8, seed).pressure);
+    let tank = drawn_transmitters(SensorClass::Transmitter, VesselKind::AirTank8);
     assert!(tank.iter().all(|d| !d.is_gauge && d.offset_pa.abs() <= 2.5e3));
 }
 
@@ -246,7 +255,7 @@ fn transmitters_are_off_by_their_class_and_a_quarter_of_one_class_counts_from_th
 #[test]
 fn told_standard_deviations_are_those_of_what_is_drawn() {
     for &class in SensorClass::ALL {
-        let drawn = over(|seed| SensorDraw::draw(class, VesselKind::Argon50, seed));
+        let drawn = drawn_sensors(class, VesselKind::Argon50);
         let told = drawn[0].told(class).build().unwrap();
         let ratio = |sensor: usize, parameter: usize, value: &dyn Fn(&SensorDraw) -> f64| {
             let parameter = &told.sensors()[sensor].parameters()[parameter];

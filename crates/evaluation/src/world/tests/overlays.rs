@@ -23,7 +23,7 @@ fn a_slow_leak_laid_over_is_that_of_a_full_simulation_within_the_noise_of_a_tran
         let rate_kg_s = 1.001e-4 * simulated.samples.mass_kg[0] / HOUR_S;
         let slow = SlowLeak { rate_kg_s, onset_s: 6.0 * HOUR_S };
         let over = compose::truth(&simulated, &full.time_s, Some(&slow)).unwrap();
-        let noise_pa = 4e-5 * vessel.full_scale_pa();
+        let noise_pa = 4e-5 * vessel.nominal().unwrap().full_scale_pa;
         for (over, full) in over.mass_kg.iter().zip(&full.mass_kg) {
             assert!((over / full - 1.0).abs() < 1e-6, "{vessel}: {over} kg, {full} kg");
         }

@@ -1,8 +1,8 @@
 //! Simulations and what becomes of them: balances, repeatability, what sets share.
 use super::{DAY_S, family, request};
 use crate::world::{
-    Climate, Family, GasKind, Overlay, Request, SensorClass, Simulated, VesselKind, World, WorldError,
-    generate,
+    Climate, Family, GasKind, NominalVessel, Overlay, Request, SensorClass, Simulated, VesselKind, World,
+    WorldError, generate,
 };
 
 fn bits(world: &World) -> Vec<u64> {
@@ -25,6 +25,33 @@ fn a_request_gives_one_world_and_another_seed_or_set_another() {
     assert_ne!(other.drawn.sensors, world.drawn.sensors);
     assert_eq!(other.drawn.cylinder, world.drawn.cylinder);
     assert_ne!(other.log.values[..30], world.log.values[..30]);
+}
+
+#[test]
+fn worlds_around_an_own_vessel_are_those_of_the_kind_that_it_was_taken_from() {
+    let loss = Overlay::FastLoss { part: 0.1, within_s: 60.0, onset_s: 3600.0, goes_on: false };
+    let request = request("helium-10l/switching/mixed/transmitter/60s", 4, 0.5).with(loss);
+    let nominal = VesselKind::Helium10.nominal().unwrap();
+    let own = NominalVessel { fill_pa: nominal.fill_pa, ..NominalVessel::own(nominal.vessel, 200e5) };
+    // The kind of the request is only a name.
+    let named = Request { family: Family { vessel: VesselKind::AirTank8, ..request.family }, ..request };
+    let around = Simulated::around(own, &named).unwrap().world(&named).unwrap();
+    assert_eq!(bits(&around), bits(&generate(&request).unwrap()));
+    assert_ne!(bits(&around), bits(&generate(&named).unwrap()));
+}
+
+#[test]
+fn an_own_vessel_is_filled_to_nine_tenths_and_more_of_what_is_stated() {
+    let vessel = VesselKind::AirTank8.nominal().unwrap().vessel;
+    let nominal = NominalVessel::own(vessel, 8e5);
+    assert_eq!(nominal.full_scale_pa, 10e5);
+    for seed in 0..20 {
+        let request = request("nitrogen-20l/workshop/mixed/class-b/300s", seed, 0.02);
+        let simulated = Simulated::around(nominal.clone(), &request).unwrap();
+        let pressure_pa = simulated.drawn().fill.pressure_pa;
+        assert!((7.2e5..=8e5).contains(&pressure_pa), "{pressure_pa}");
+        assert_eq!(simulated.world(&request).unwrap().drawn.sensors.pressure.full_scale_pa, 10e5);
+    }
 }
 
 /// All but the last samples, whose interval of the solver ends elsewhere.

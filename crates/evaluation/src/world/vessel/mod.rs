@@ -1,8 +1,8 @@
-//! Nominal vessels, and cylinders drawn around them.
+//! Nominal vessels, of a kind or an own one, and cylinders drawn around them.
 //!
 //! A candidate is told the nominal vessel. The real one has heat capacities, films and the contact of its valve within 30 % of it, a
 //! volume within 5 %, expansions within 10 %, an emissivity of 0.6 to 0.95 and an absorptivity of 0.4 to 0.8, all drawn evenly.
-//! To add a vessel: a file beside this one, an entry in [`NOMINAL`], and a kind in [`VesselKind`].
+//! To add a vessel: a file beside this one, an entry in `VesselKind::nominal_entry`, and a kind in [`VesselKind`].
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::vessel::{InsideFilm, Vessel, presets, read_vessel};
 use serde::{Deserialize, Serialize};
@@ -20,8 +20,40 @@ const EMISSIVITY: (f64, f64) = (0.6, 0.95);
 const ABSORPTIVITY: (f64, f64) = (0.4, 0.8);
 const FILM_SLOPE: (f64, f64) = (-0.3, 0.3);
 
-/// What is known of a nominal vessel.
-struct Nominal {
+/// An own vessel is filled from this part of its stated fill on: a cylinder in service has lost some, or was filled on a cold day.
+const OWN_FILL_FROM: f64 = 0.9;
+/// Range of the transmitter of an own vessel, of the stated fill.
+const OWN_FULL_SCALE: f64 = 1.25;
+/// Bore of the valve of an own vessel, m.
+const OWN_INLET_M: f64 = 0.006;
+
+/// A vessel that cylinders are drawn around, how it is filled and how its pressure is read.
+#[derive(Clone, Debug)]
+pub struct NominalVessel {
+    /// The vessel as its file states it.
+    pub vessel: Vessel,
+    /// Range of the pressure of its fill at 15 °C, Pa absolute.
+    pub fill_pa: (f64, f64),
+    /// Upper end of the range of its transmitter, Pa.
+    pub full_scale_pa: f64,
+    /// Bore through which it is filled, m.
+    pub inlet_m: f64,
+}
+
+impl NominalVessel {
+    /// An own vessel of a stated fill at 15 °C, Pa absolute: fills from 0.9 of it on, a transmitter of 1.25 times as much, a bore of 6 mm.
+    pub fn own(vessel: Vessel, fill_pa: f64) -> Self {
+        Self {
+            vessel,
+            fill_pa: (OWN_FILL_FROM * fill_pa, fill_pa),
+            full_scale_pa: OWN_FULL_SCALE * fill_pa,
+            inlet_m: OWN_INLET_M,
+        }
+    }
+}
+
+/// What stands in the table of kinds.
+struct Entry {
     text: &'static str,
     /// Range of the pressure of its fill at 15 °C, bar.
     fill_bar: (f64, f64),
@@ -32,9 +64,9 @@ struct Nominal {
 }
 
 impl VesselKind {
-    fn nominal_entry(self) -> Nominal {
+    fn nominal_entry(self) -> Entry {
         let entry =
-            |text, fill_bar, full_scale_bar, inlet_m| Nominal { text, fill_bar, full_scale_bar, inlet_m };
+            |text, fill_bar, full_scale_bar, inlet_m| Entry { text, fill_bar, full_scale_bar, inlet_m };
         match self {
             Self::Nitrogen20 => {
                 let text = presets::text("nitrogen-20l").unwrap_or_default();
@@ -58,24 +90,14 @@ impl VesselKind {
     ///
     /// # Errors
     /// None: the files are tested.
-    pub fn nominal(self) -> Result<Vessel, ThermalError> {
-        read_vessel(self.text(), &format!("{self}.toml"))
-    }
-
-    /// Range of the pressure of its fill at 15 °C, Pa absolute.
-    pub fn fill_pa(self) -> (f64, f64) {
-        let (low, high) = self.nominal_entry().fill_bar;
-        (low * BAR_PA, high * BAR_PA)
-    }
-
-    /// Upper end of the range of its transmitter, Pa.
-    pub fn full_scale_pa(self) -> f64 {
-        self.nominal_entry().full_scale_bar * BAR_PA
-    }
-
-    /// Bore through which it is filled, m.
-    pub fn inlet_m(self) -> f64 {
-        self.nominal_entry().inlet_m
+    pub fn nominal(self) -> Result<NominalVessel, ThermalError> {
+        let Entry { text, fill_bar: (low, high), full_scale_bar, inlet_m } = self.nominal_entry();
+        Ok(NominalVessel {
+            vessel: read_vessel(text, &format!("{self}.toml"))?,
+            fill_pa: (low * BAR_PA, high * BAR_PA),
+            full_scale_pa: full_scale_bar * BAR_PA,
+            inlet_m,
+        })
     }
 }
 

@@ -1,59 +1,28 @@
-//! How high the evidence rises without a leak: tails fitted to the largest values of stretches of operation.
+//! Tails fitted to the largest values of stretches of operation.
 //!
 //! The law is that of [`Tail`]. Its level is the value that one in ten stretches exceeds. Scale and shape are those of largest likelihood
 //! (Grimshaw's profile in `k/s`), the shape kept within -1/4 to 1/4: beyond, hundreds of peaks do not tell it. The interval of a threshold is that of
 //! records drawn again with replacement, whole cylinders at a time.
 //!
 //! Source: J. Pickands, Ann. Stat. 3 (1975) 119; S. D. Grimshaw, Technometrics 35 (1993) 185.
-use cylwatch_detector::evidence::{Scale, Statistics, Tail, Tails, Thresholds};
+use cylwatch_detector::evidence::{Scale, Tail, Tails, Thresholds};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 
+use super::record::{HOUR_S, Record};
 use crate::EvaluationError;
 
 /// Part of the stretches that the tail is fitted to.
 const PART: f64 = 0.1;
 /// Fewest peaks above the level.
 const FEWEST: usize = 20;
+/// Fewest stretches.
+pub(super) const STRETCHES: usize = (FEWEST as f64 / PART) as usize;
 /// Largest shape either way.
 const SHAPE: f64 = 0.25;
 /// Draws for an interval.
 const DRAWS: usize = 400;
-
-/// Largest value of each stretch of operation, scale by scale. A stretch is as long as the statistic remembers
-/// ([`Scale::memory_s`]), so that an excursion counts once, or twice where it crosses from one stretch to the next.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Peaks {
-    /// Largest values of whole stretches.
-    largest: [Vec<f64>; Scale::ALL.len()],
-    /// Number and largest value of the stretch that is not over.
-    running: [Option<(u64, f64)>; Scale::ALL.len()],
-    first_s: Option<f64>,
-}
-
-impl Peaks {
-    /// Take the statistics of a sample.
-    pub fn update(&mut self, time_s: f64, statistics: &Statistics) {
-        let since_s = time_s - *self.first_s.get_or_insert(time_s);
-        for (index, scale) in Scale::ALL.into_iter().enumerate() {
-            let stretch = (since_s / scale.memory_s()) as u64;
-            let value = statistics[index];
-            self.running[index] = Some(match self.running[index] {
-                Some((number, largest)) if number == stretch => (number, largest.max(value)),
-                Some((_, largest)) => {
-                    self.largest[index].push(largest);
-                    (stretch, value)
-                }
-                None => (stretch, value),
-            });
-        }
-    }
-
-    /// Largest values of the whole stretches of a scale.
-    pub fn of(&self, scale: Scale) -> &[f64] {
-        &self.largest[scale as usize]
-    }
-}
 
 /// Fit to the largest values of stretches of so many seconds.
 ///
@@ -61,7 +30,7 @@ impl Peaks {
 /// Too few stretches, or values that do not vary.
 pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError> {
     let mut sorted: Vec<f64> = largest.iter().copied().filter(|value| value.is_finite()).collect();
-    let needed = (FEWEST as f64 / PART) as usize;
+    let needed = STRETCHES;
     if sorted.len() < needed {
         return Err(EvaluationError::TooFewStretches { found: sorted.len(), needed });
     }
@@ -77,14 +46,26 @@ pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError>
     Ok(Tail { level, interval_s: stretch_s * sorted.len() as f64 / above as f64, scale, shape })
 }
 
-/// Fit to the records of leak-free cylinders.
+/// Fit to the records of leak-free cylinders; `stretch` as in [`Record::stretch_h`].
 ///
 /// # Errors
 /// As [`fit_one`].
-pub fn fit(records: &[&Peaks]) -> Result<Tails, EvaluationError> {
+pub fn fit(records: &[&Record], stretch: f64) -> Result<Tails, EvaluationError> {
+    let peaks: Vec<Peaks> = records.iter().map(|record| peaks(record, stretch)).collect();
+    fit_peaks(&peaks.iter().collect::<Vec<_>>(), stretch)
+}
+
+/// Largest values of the whole stretches of a cylinder, scale by scale.
+type Peaks = [Vec<f64>; Scale::ALL.len()];
+
+fn peaks(record: &Record, stretch: f64) -> Peaks {
+    Scale::ALL.map(|scale| record.peaks(scale, stretch).collect())
+}
+
+fn fit_peaks(peaks: &[&Peaks], stretch: f64) -> Result<Tails, EvaluationError> {
     let one = |scale: Scale| {
-        let largest: Vec<f64> = records.iter().flat_map(|record| record.of(scale)).copied().collect();
-        fit_one(&largest, scale.memory_s())
+        let largest: Vec<f64> = peaks.iter().flat_map(|peaks| &peaks[scale as usize]).copied().collect();
+        fit_one(&largest, HOUR_S * Record::stretch_h(scale, stretch) as f64)
     };
     let [a, b, c, d, e] = Scale::ALL.map(one);
     Ok(Tails([a?, b?, c?, d?, e?]))
@@ -95,17 +76,17 @@ pub fn fit(records: &[&Peaks]) -> Result<Tails, EvaluationError> {
 /// # Errors
 /// As [`fit`], or the time is not positive.
 pub fn interval(
-    records: &[&Peaks],
+    records: &[&Record],
+    stretch: f64,
     mean_time_s: f64,
     seed: u64,
 ) -> Result<[(f64, f64); Scale::ALL.len()], EvaluationError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut drawn: Vec<Thresholds> = Vec::with_capacity(DRAWS);
-    for _ in 0..DRAWS {
-        let again: Vec<&Peaks> =
-            records.iter().map(|_| records[random.random_range(0..records.len())]).collect();
-        drawn.push(fit(&again)?.thresholds(mean_time_s)?);
-    }
+    let peaks: Vec<Peaks> = records.iter().map(|record| peaks(record, stretch)).collect();
+    let mut draw = || peaks.iter().map(|_| &peaks[random.random_range(0..peaks.len())]).collect();
+    let draws: Vec<Vec<&Peaks>> = (0..DRAWS).map(|_| draw()).collect();
+    let thresholds = |again: &Vec<&Peaks>| Ok(fit_peaks(again, stretch)?.thresholds(mean_time_s)?);
+    let drawn: Vec<Thresholds> = draws.par_iter().map(thresholds).collect::<Result<_, EvaluationError>>()?;
     Ok(Scale::ALL.map(|scale| {
         let mut levels: Vec<f64> = drawn.iter().map(|thresholds| thresholds.of(scale)).collect();
         levels.sort_by(f64::total_cmp);
@@ -156,14 +137,5 @@ mod tests {
         let expected = 1.0 + 4.0 * (1e5_f64.powf(0.1) - 1.0);
         assert!((tail.threshold(1e8) / expected - 1.0).abs() < 0.12, "{} {expected}", tail.threshold(1e8));
         assert!((tail.interval_s / 1000.0 - 1.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn peaks_are_the_largest_values_of_whole_stretches() {
-        let mut peaks = Peaks::default();
-        let hours = (0..40).map(f64::from);
-        hours.for_each(|hour| peaks.update(3600.0 * hour, &[hour % 7.0; Scale::ALL.len()]));
-        assert_eq!(peaks.of(Scale::Hour), [6.0, 6.0, 6.0]);
-        assert!(peaks.of(Scale::HalfDay).is_empty(), "not over yet");
     }
 }

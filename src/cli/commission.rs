@@ -1,0 +1,71 @@
+//! `cylwatch commission`: thresholds of the leak statistics for one vessel, found by simulation.
+mod arguments;
+mod options;
+
+pub use arguments::CommissionArguments;
+
+use super::input::Inputs;
+use super::message::Messages;
+use super::output::Target;
+use super::progress::Progress;
+use anyhow::{Context, bail};
+use cylwatch::detector::monitor::MonitorSettings;
+use cylwatch::evaluation::performance::YEAR_S;
+use cylwatch::evaluation::tails::{Campaign, FitSettings, commission, watch_all};
+use cylwatch::evaluation::world::NominalVessel;
+use cylwatch::report::commission::{CommissionedVessel, VesselMark, Worlds, intention};
+use cylwatch::report::{Provenance, quoted};
+use cylwatch::thermal::units::PASCAL_PER_BAR;
+use options::Options;
+use std::path::Path;
+
+const DAY_S: f64 = 86_400.0;
+
+/// Simulates, fits, writes. A file appears at the end or not at all.
+pub fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow::Result<()> {
+    let output = arguments.output.clone();
+    let options = Options::checked(arguments)?;
+    let inputs = Inputs::default();
+    let (specification, vessel, _) = inputs.vessel_specification(&options.vessel, messages)?;
+    let mark = VesselMark::of(&specification, &vessel)?;
+    let nominal = options.nominal(vessel)?;
+    messages.say(&intention(&nominal, &options.campaign));
+    let found = simulate(&nominal, &options, messages)?;
+    let of_bar = |pressure_pa: f64| pressure_pa / PASCAL_PER_BAR;
+    let commissioned = CommissionedVessel {
+        vessel: mark,
+        fill_pressure_bar: of_bar(nominal.fill_pa.1),
+        full_scale_bar: of_bar(nominal.full_scale_pa),
+        false_alarm_years: options.fit.mean_time_s / YEAR_S,
+        rehearsal: options.fit.stretch < 1.0,
+        worlds: Worlds::of(&options.campaign),
+        found,
+    };
+    let provenance = Provenance { seed: Some(options.campaign.seed), ..inputs.provenance() };
+    let document = serde_json::to_string_pretty(&commissioned.document(&provenance)?)? + "\n";
+    let story = commissioned.story()?;
+    options.data.write(document.as_bytes())?;
+    messages.say(&story.to_text());
+    messages.say(&format!("to use them: {}", usage(&options.vessel, &output)));
+    Ok(())
+}
+
+fn simulate(
+    nominal: &NominalVessel,
+    options: &Options,
+    messages: &Messages,
+) -> anyhow::Result<cylwatch::evaluation::tails::Commissioned> {
+    let progress = Progress::new(messages);
+    let show = |part: f64| progress.show("simulating cylinders", part);
+    let requests = options.campaign.requests();
+    let watched = watch_all(nominal, &requests, &MonitorSettings::default(), &show)?;
+    progress.show("fitting", 1.0);
+    Ok(commission(&watched, &options.fit)?)
+}
+
+/// The command line of a monitor with these thresholds.
+fn usage(vessel: &str, output: &Path) -> String {
+    let named = |name: &str, other: &str| if name == "-" { other.to_owned() } else { quoted(name) };
+    let (vessel, output) = (named(vessel, "VESSEL"), named(&output.to_string_lossy(), "FILE"));
+    format!("cylwatch monitor {vessel} LOG --commissioned {output}")
+}
