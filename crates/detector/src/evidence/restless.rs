@@ -23,7 +23,7 @@ pub(super) struct Restless {
 }
 
 impl Restless {
-    /// As large as elsewhere, until its own is known.
+    /// So large, until its own is known.
     pub fn with_prior(sd: f64) -> Self {
         Self { square: sd * sd, least: LEAST * sd * sd, seen_s: 0.0 }
     }

@@ -112,7 +112,7 @@ impl UdBank {
     /// # Shapes
     /// `means`, `theirs`: (n).
     ///
-    /// Source: R. Jeffrey, The Logic of Decision (1965), chapter 11; the factors of Bierman 1977.
+    /// Source: R. Jeffrey, The Logic of Decision (1965), chapter 11; as a cut of feedback, M. Plummer, Stat. Comput. 25 (2015) 37.
     pub fn adopt(
         &mut self,
         (to, means): (usize, &mut [f64]),

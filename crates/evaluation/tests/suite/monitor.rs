@@ -105,6 +105,19 @@ fn a_tight_cylinder_in_winter_is_tight_once_it_is_learnt() {
 }
 
 #[test]
+fn mouths_of_tunnels_that_no_row_shows_are_no_exchange_of_gas() {
+    // Half an hour without rows in every three, and so shifted that all of the log is missing once.
+    for shift in 0..6 {
+        let is_shown = |t: f64| (t / (0.5 * HOUR_S)) as u32 % 6 != shift;
+        let rows: Rows = tight().iter().filter(|(t, _)| is_shown(*t)).copied().collect();
+        let told = |kind: &&EventKind| {
+            matches!(kind, EventKind::LeakFound(_) | EventKind::Discharge(_) | EventKind::Refill(_))
+        };
+        assert_eq!(events(&run(&rows)).find(told), None, "shift {shift}");
+    }
+}
+
+#[test]
 fn a_leak_is_found_with_its_rate_and_onset() {
     let rate_kg_s = 3e-3 / HOUR_S;
     let onset_s = 2.0 * DAY_S;

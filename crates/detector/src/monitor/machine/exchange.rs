@@ -19,7 +19,8 @@ use crate::monitor::gas::leak::Change;
 use crate::monitor::machine::judgement::MATTERS;
 use crate::monitor::{Event, EventKind, Reason};
 
-/// Change of the pressure across a gap that is no error of the observer, Pa of a fill of 200 bar, and the gap, s.
+/// Change of the pressure across a gap that is no error of the observer, beside what the surroundings may have done meanwhile, Pa of a fill of 200 bar, and the
+/// gap, s.
 const ACROSS_PA: f64 = 2e5;
 const ACROSS_S: f64 = 900.0;
 /// Time for which a jump that remained unclear leaves doubt, s.
@@ -90,7 +91,7 @@ impl Monitor {
             return self.begin_examination(time_s, (before_pa, doubt_pa), before_kg, events);
         }
         if silent_s > ACROSS_S
-            && innovation_pa.abs() > ACROSS_PA
+            && innovation_pa.abs() > ACROSS_PA + doubt_pa
             && let Some(before_kg) = before_kg
         {
             return self.take_across(time_s, innovation_pa, before_kg, events);
