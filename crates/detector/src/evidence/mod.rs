@@ -58,10 +58,9 @@ const BEHIND_S: f64 = 168.0 * HOUR_S;
 /// A rate in standard deviations counts so much at most: one that is far beyond any threshold must not be remembered for months.
 const MOST: f64 = 3.0;
 
-/// What the low-passes of the rate and the missing mass do in a restless cylinder: until its own is known, none is taken for a calm one. With what a typical
-/// one does, 0.1 each, the first week of restless cylinders made the tail, and the threshold of the hour was three times as high.
-const USUAL_RATE: f64 = 0.3;
-const USUAL_MISSING: f64 = 0.3;
+/// What the low-passes of the rate and the missing mass do in a typical cylinder, before its own is known.
+const USUAL_RATE: f64 = 0.1;
+const USUAL_MISSING: f64 = 0.1;
 
 /// Time scale of a statistic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

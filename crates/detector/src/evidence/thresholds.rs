@@ -15,12 +15,13 @@ impl Default for Tails {
     }
 }
 
+/// Of 126 cylinders.
 const USUAL: Tails = Tails([
-    Tail { level: 3.5421, interval_s: 4.3205e5, scale: 1.0163, shape: 0.052 },
-    Tail { level: 2.4787, interval_s: 1.7288e6, scale: 0.5433, shape: 0.107 },
-    Tail { level: 1.5102, interval_s: 3.4560e6, scale: 0.3053, shape: 0.181 },
-    Tail { level: 0.9461, interval_s: 1.2096e7, scale: 0.2446, shape: 0.070 },
-    Tail { level: 0.5052, interval_s: 2.5920e7, scale: 0.2393, shape: 0.052 },
+    Tail { level: 5.5660, interval_s: 4.3200e5, scale: 1.8471, shape: -0.013 },
+    Tail { level: 2.8741, interval_s: 1.7289e6, scale: 0.7009, shape: 0.175 },
+    Tail { level: 1.6928, interval_s: 3.4560e6, scale: 0.4058, shape: 0.148 },
+    Tail { level: 1.0547, interval_s: 1.2193e7, scale: 0.1536, shape: 0.236 },
+    Tail { level: 0.4648, interval_s: 2.6127e7, scale: 0.1042, shape: 0.195 },
 ]);
 
 /// A threshold for each statistic.

@@ -248,29 +248,6 @@ impl Bank {
         self.decorrelate_and_set(index, leak, sd_kg_s * sd_kg_s);
     }
 
-    /// Let a member believe of the constants what another one does. One that a smoother follows stays as it is.
-    pub fn learn_from(&mut self, index: usize, from: usize, cylinder: &Cylinder) {
-        let Covariances::Together(packs) = &mut self.covariances else { return };
-        let Ok([member, other]) = self.members.get_disjoint_mut([index, from]) else { return };
-        if member.pass.is_some() {
-            return;
-        }
-        let ((from, from_lane), (to, to_lane)) = (place(from), place(index));
-        let to_own = (to_lane, member.x.as_mut_slice());
-        if from == to {
-            packs[to].bank.adopt(to_own, (None, from_lane, &other.x), cylinder.leading());
-        } else if let Ok([from, to]) = packs.get_disjoint_mut([from, to]) {
-            to.bank.adopt(to_own, (Some(&from.bank), from_lane, &other.x), cylinder.leading());
-        }
-    }
-
-    /// Variance of the difference of a state between two members by the states from `first` on, as the first of them knows those.
-    pub fn apart_by_constants(&self, one: usize, other: usize, (state, first): (usize, usize)) -> f64 {
-        let Covariances::Together(packs) = &self.covariances else { return 0.0 };
-        let ((pack, lane), (other_pack, other_lane)) = (place(one), place(other));
-        packs[pack].bank.apart_by(lane, (&packs[other_pack].bank, other_lane), state, first)
-    }
-
     fn copy_covariance(&mut self, from: usize, to: usize) {
         match &mut self.covariances {
             Covariances::Together(packs) => {

@@ -19,8 +19,6 @@
 const PRIOR: f64 = 0.9999;
 /// `d^2` beyond which a member is out of the question: five and a half standard deviations.
 const OUT_OF_THE_QUESTION: f64 = 30.0;
-/// `d^2` up to which nothing speaks against a member: two standard deviations.
-const AGREES: f64 = 4.0;
 /// Least variance of the difference relative to that of the free mass.
 const LEAST_PART: f64 = 0.25;
 
@@ -49,11 +47,6 @@ impl Belief {
     pub fn weight(self) -> f64 {
         let odds = PRIOR / (1.0 - PRIOR) * (-0.5 * self.square).exp();
         odds / (1.0 + odds)
-    }
-
-    /// Whether nothing speaks against the member.
-    pub fn agrees(self) -> bool {
-        self.square < AGREES
     }
 
     pub fn is_out_of_the_question(self) -> bool {

@@ -227,7 +227,6 @@ impl Observer {
         self.usable = usable;
         let restarted = restarted?;
         self.replace_the_wrong();
-        self.share_constants();
         self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
     }
@@ -285,18 +284,6 @@ impl Observer {
                 self.anew[index] = true;
                 self.bank.begin_anew(index, freest, &self.cylinder);
                 self.masses[index] = self.masses[freest];
-            }
-        }
-    }
-
-    /// A member whose mass may be any cannot tell constants from mass, and coloured model error takes them to their bounds: the transmitter's temperature
-    /// coefficient above all. So the freest one takes them from the slow one that it is held against, and the flowing one from the first, as long as
-    /// their masses agree: a member that a loss makes wrong explains it by constants, too.
-    fn share_constants(&mut self) {
-        let pairs = [(Some(self.freest), self.slow), (self.flowing, Some(0))];
-        for (index, from) in pairs.into_iter().filter_map(|(index, from)| index.zip(from)) {
-            if index > from && Belief::of(self.masses[from], self.masses[index]).agrees() {
-                self.bank.learn_from(index, from, &self.cylinder);
             }
         }
     }
