@@ -4,10 +4,10 @@ use super::command_line;
 use super::message::Messages;
 use super::output::{Target, remarks};
 use super::progress::Progress;
+use super::unit_options::between_false_alarms_s;
 use super::views::{Views, Wanted};
 use anyhow::bail;
 use clap::Args;
-use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::evaluation::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
 use cylwatch::report::figure::Picture;
 use cylwatch::report::{Provenance, bench_detector as report};
@@ -158,7 +158,7 @@ fn plan(arguments: &BenchDetectorArguments) -> anyhow::Result<Plan> {
         seed: arguments.seed,
         learning_s: DAY_S * positive("learning-days", arguments.learning_days, 0.0)?,
         watched_s: DAY_S * positive("days", arguments.days, 1.0)?,
-        between_alarms_s: YEAR_S * positive("false-alarm-years", arguments.false_alarm_years, 0.0)?,
+        between_alarms_s: between_false_alarms_s(arguments.false_alarm_years)?,
         fast: !arguments.stratified,
         ..Plan::default()
     };

@@ -4,8 +4,20 @@
 use anyhow::bail;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::thermal::units::{self, Dimension, Unit};
 use std::marker::PhantomData;
+
+/// Longest time between false alarms that is taken, years: thresholds beyond it rest on no data.
+const LONGEST_YEARS: f64 = 1e5;
+
+/// The mean time between false alarms that `--false-alarm-years` states, s.
+pub fn between_false_alarms_s(years: f64) -> anyhow::Result<f64> {
+    if !(years > 0.0 && years <= LONGEST_YEARS) {
+        bail!("--false-alarm-years {years}: it must be above 0 and at most {LONGEST_YEARS}");
+    }
+    Ok(years * YEAR_S)
+}
 
 /// A quantity that can be given: name, what it measures, words of its help, with the unit if it is the only one.
 pub type Choice = (&'static str, Dimension, &'static str);

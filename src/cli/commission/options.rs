@@ -1,16 +1,14 @@
 //! Options of `commission` that fit each other.
 use super::*;
+use crate::cli::unit_options::between_false_alarms_s;
+use cylwatch::detector::prognosis::QUOTED_K;
 use cylwatch::thermal::units::Dimension;
 use cylwatch::thermal::vessel::Vessel;
 
 /// Usual fill, Pa.
 const FILL_PA: f64 = 200.0 * PASCAL_PER_BAR;
-/// Temperature that fills are stated at, K.
-const QUOTED_K: f64 = 288.15;
 /// Stretches of a rehearsal, of the usual ones: none is longer than an hour.
 const REHEARSED: f64 = 1e-3;
-/// Longest time between false alarms that is taken, years: thresholds beyond it rest on no data.
-const LONGEST_YEARS: f64 = 1e5;
 
 /// Options that passed all checks that need no vessel.
 pub struct Options {
@@ -28,9 +26,7 @@ impl Options {
         let CommissionArguments { vessel, output, pressures, climates, gases, sensors, rows, .. } = arguments;
         let data = Target::checked(Some(&output), &[Path::new(&vessel)])?;
         let CommissionArguments { cylinders, days, false_alarm_years: years, seed, .. } = arguments;
-        if !(years > 0.0 && years <= LONGEST_YEARS) {
-            bail!("--false-alarm-years {years}: it must be above 0 and at most {LONGEST_YEARS}");
-        }
+        let mean_time_s = between_false_alarms_s(years)?;
         let stretch = if arguments.rehearsal { REHEARSED } else { 1.0 };
         let length_s = days * DAY_S;
         let campaign = Campaign { climates, gases, sensors, rows, cylinders, length_s, seed };
@@ -39,7 +35,7 @@ impl Options {
         Ok(Self {
             fill_pa: pressure("fill-pressure")?.unwrap_or(FILL_PA),
             full_scale_pa: pressure("full-scale")?,
-            fit: FitSettings { mean_time_s: years * YEAR_S, stretch, seed },
+            fit: FitSettings { mean_time_s, stretch, seed },
             vessel,
             data,
             campaign,

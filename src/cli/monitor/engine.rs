@@ -9,8 +9,6 @@ use cylwatch::estimator::log::Quantity;
 use cylwatch::thermal::scenario::Fill;
 use cylwatch::thermal::units::PASCAL_PER_BAR;
 
-const YEAR_S: f64 = 365.25 * 86_400.0;
-
 /// A monitor and what a run must know beside it.
 pub struct Engine {
     /// The monitor.
@@ -31,7 +29,7 @@ fn settings(options: &Options, beginning: &Beginning, settled: bool) -> anyhow::
     Ok(MonitorSettings {
         tails: own.unwrap_or(defaults.tails),
         observer: fill::settings(defaults.observer, settled),
-        false_alarm_interval_s: options.false_alarm_years * YEAR_S,
+        false_alarm_interval_s: options.between_false_alarms_s,
         limits: Limits {
             operational_pa: circumstances.limit_pa,
             coldest_k: circumstances.coldest_k,

@@ -2,7 +2,7 @@
 use super::arguments::MonitorArguments;
 use super::*;
 use crate::cli::log_options::LogArguments;
-use crate::cli::unit_options::Given;
+use crate::cli::unit_options::{Given, between_false_alarms_s};
 use cylwatch::detector::monitor::intake::IntakeSettings;
 use cylwatch::report::monitor::Circumstances;
 use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K};
@@ -10,8 +10,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 const DAY_S: f64 = 86_400.0;
-/// Longest time between false alarms that is taken, years: thresholds beyond it rest on no data.
-const LONGEST_YEARS: f64 = 1e5;
 
 /// Options that passed all checks that need no file to be read.
 pub struct Options {
@@ -28,7 +26,7 @@ pub struct Options {
     pub commissioned: Option<PathBuf>,
     pub circumstances: Circumstances,
     pub states_limit: bool,
-    pub false_alarm_years: f64,
+    pub between_false_alarms_s: f64,
     pub lateness_s: f64,
     pub step_s: f64,
     pub events: Option<Target>,
@@ -60,10 +58,7 @@ impl Options {
         let others: Vec<&Target> = std::iter::once(&data).chain(&events).collect();
         let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
         let views = Views::checked(wanted, &inputs, &others)?;
-        let years = arguments.false_alarm_years;
-        if !(years > 0.0 && years <= LONGEST_YEARS) {
-            bail!("--false-alarm-years = {years} must be above 0 and at most {LONGEST_YEARS}");
-        }
+        let between_false_alarms_s = between_false_alarms_s(arguments.false_alarm_years)?;
         let time = |option: &str| given.si(option, Dimension::Time);
         let from_zero = |option: &str| given.si_from_zero(option, Dimension::Time);
         let save_every_s = time("save-every")?.unwrap_or(600.0).min(365.0 * DAY_S);
@@ -75,7 +70,7 @@ impl Options {
             lateness_s: from_zero("lateness")?.unwrap_or(0.0),
             step_s: from_zero("step")?.unwrap_or_else(|| IntakeSettings::default().step_s),
             save_every: Duration::from_secs_f64(save_every_s),
-            false_alarm_years: years,
+            between_false_alarms_s,
             cold_start: arguments.cold_start,
             acknowledge: arguments.acknowledge,
             announced: arguments

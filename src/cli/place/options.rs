@@ -1,10 +1,10 @@
 //! Options that fit each other.
 use super::*;
+use crate::cli::unit_options::between_false_alarms_s;
 use cylwatch::estimator::placement::search::Method;
 use cylwatch::estimator::placement::{
     Criterion, DetectionSettings, PublishedSettings, SiteSettings, signature_threshold_sd,
 };
-use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::report::number;
 use std::path::Path;
 
@@ -130,16 +130,13 @@ fn site(arguments: &PlaceArguments) -> anyhow::Result<SiteSettings> {
         let [within, interval] = [within_s, conditions.interval_s].map(|time_s| number(time_s / 60.0, 3));
         bail!("--within is {within} min, but readings come every {interval} min: allow at least as long");
     }
-    let years = arguments.false_alarm_years;
-    if !(years > 0.0 && years.is_finite()) {
-        bail!("--false-alarm-years {years}: it must be above 0 and finite");
-    }
+    let between_false_alarms_s = between_false_alarms_s(arguments.false_alarm_years)?;
     if arguments.wall_nodes == Some(0) {
         bail!("--wall-nodes 0: the wall has at least 1");
     }
     let mut observer = usual.observer;
     observer.wall_nodes = arguments.wall_nodes.unwrap_or(observer.wall_nodes);
-    let threshold_sd = signature_threshold_sd(within_s, conditions.interval_s, years * YEAR_S)?;
+    let threshold_sd = signature_threshold_sd(within_s, conditions.interval_s, between_false_alarms_s)?;
     let detection = DetectionSettings { within_s, threshold_sd, ..usual.detection };
     Ok(SiteSettings { observer, conditions, detection })
 }

@@ -12,8 +12,8 @@ fn refused(log: &str, options: &[&str], words: &[&str]) {
 #[test]
 fn numbers_out_of_their_bounds_are_refused_with_the_bound() {
     let text = log(0..3, TIGHT);
-    refused(&text, &["--false-alarm-years", "0"], &["--false-alarm-years = 0 must be above 0"]);
-    refused(&text, &["--false-alarm-years", "nan"], &["--false-alarm-years = NaN"]);
+    refused(&text, &["--false-alarm-years", "0"], &["--false-alarm-years 0: it must be above 0"]);
+    refused(&text, &["--false-alarm-years", "nan"], &["--false-alarm-years NaN"]);
     refused(&text, &["--limit-bar", "-1"], &["--limit-bar = -1 must be above 0"]);
     refused(&text, &["--coldest-degc", "-300"], &["--coldest-degc = -300 must be above -273.15"]);
     refused(&text, &["--lateness-s", "inf"], &["--lateness-s", "finite"]);

@@ -20,7 +20,7 @@
 //! The members' standard deviations make the deviations alike from cylinder to cylinder only in part: errors are coloured, and how large they are
 //! depends on vessel, climate and sensors. In a workshop `L_1` has a standard deviation of 0.02, in a metro of 0.3. So each statistic is its
 //! deviation over what it does there without a leak (self-normalisation), learnt by `restless` from the differences between neighbouring time scales,
-//! `(L_1 - L_2)^2 + (L_2 - L_3)^2` for those of the rate and `(L_0 - L_h)^2`, with a low-pass `L_h` of 6 h, for the missing mass. A leak shifts
+//! `(L_1 - L_2)^2 + (L_2 - L_3)^2` for those of the rate and `(L_0 - L_h)^2`, with a low-pass `L_h` of a day, for the missing mass. A leak shifts
 //! the level of `z` and, but for its first days, not these differences. What the statistics reach without a leak is measured ([`Tails`]).
 //!
 //! A low-pass of a rate over a time tells the mass lost in it and averages what comes and goes with the day; each begins at zero, so that nothing
@@ -46,7 +46,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::DetectorError;
 use rapid::MissingMass;
-use restless::Restless;
+pub(crate) use restless::Restless;
 pub use tail::{Tail, Tails};
 pub use thresholds::Thresholds;
 
@@ -59,7 +59,7 @@ const BEHIND_S: f64 = 168.0 * HOUR_S;
 const MOST: f64 = 3.0;
 
 /// What the low-passes of the rate and the missing mass do in a typical cylinder, before its own is known.
-const USUAL_RATE: f64 = 0.1;
+const USUAL_RATE: f64 = 0.2;
 const USUAL_MISSING: f64 = 0.1;
 
 /// Time scale of a statistic.

@@ -8,7 +8,7 @@
 //! When the slow member has begun anew from the freest one, its mass is the other's, and a leak would be out of sight at the
 //! moment it is largest. So the mass `c` that it gave up is carried on and fades over two hours.
 //!
-//! The value is the low-pass of `h` over 450 s; its deviation is from a low-pass over six hours.
+//! The value is the low-pass of `h` over 450 s; its deviation is from a low-pass over a day.
 use cylwatch_estimator::observer::Leak;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 const CARRY_S: f64 = 7200.0;
 /// Time constant of the value, and of what it deviates from, s.
 const LOW_PASS_S: f64 = 450.0;
-const LEVEL_S: f64 = 6.0 * 3600.0;
+const LEVEL_S: f64 = 24.0 * 3600.0;
 /// Part of the mass that is always in doubt.
 const LEAST_PART: f64 = 2e-3;
 /// A difference counts so many doubts at most.

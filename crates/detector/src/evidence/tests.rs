@@ -81,7 +81,7 @@ fn the_same_rate_counts_for_less_in_a_cylinder_that_is_restless() {
         }
         evidence.statistics()[1]
     };
-    assert!(half_day(0.1) > 5.0 * half_day(1.0), "{} {}", half_day(0.1), half_day(1.0));
+    assert!(half_day(0.1) > 5.0 * half_day(2.0), "{} {}", half_day(0.1), half_day(2.0));
 }
 
 #[test]
@@ -161,7 +161,8 @@ fn a_value_at_a_threshold_stands_for_its_mean_time() {
         }
     }
     let at = |value: f64| Tails::default().mean_time_s(&[value; Scale::ALL.len()]);
-    assert!(at(-1.0) < at(0.0) && at(0.0) < 86_400.0 && at(1000.0) > 1e15);
+    // No evidence at all comes up within days, whatever the slowest statistic.
+    assert!(at(-1.0) < at(0.0) && at(0.0) < 3.0 * 86_400.0 && at(1000.0) > 1e15);
 }
 
 #[test]

@@ -15,13 +15,13 @@ impl Default for Tails {
     }
 }
 
-/// Of 126 cylinders.
+/// Of 210 cylinders, 35.6 years together.
 const USUAL: Tails = Tails([
-    Tail { level: 5.5660, interval_s: 4.3200e5, scale: 1.8471, shape: -0.013 },
-    Tail { level: 2.8741, interval_s: 1.7289e6, scale: 0.7009, shape: 0.175 },
-    Tail { level: 1.6928, interval_s: 3.4560e6, scale: 0.4058, shape: 0.148 },
-    Tail { level: 1.0547, interval_s: 1.2193e7, scale: 0.1536, shape: 0.236 },
-    Tail { level: 0.4648, interval_s: 2.6127e7, scale: 0.1042, shape: 0.195 },
+    Tail { level: 5.1360, interval_s: 4.3205e5, scale: 1.5978, shape: -0.051 },
+    Tail { level: 2.0305, interval_s: 1.7288e6, scale: 0.5797, shape: -0.049 },
+    Tail { level: 1.2459, interval_s: 3.4560e6, scale: 0.3614, shape: -0.090 },
+    Tail { level: 0.7523, interval_s: 1.2096e7, scale: 0.2393, shape: -0.172 },
+    Tail { level: 0.3631, interval_s: 2.5920e7, scale: 0.0856, shape: 0.054 },
 ]);
 
 /// A threshold for each statistic.

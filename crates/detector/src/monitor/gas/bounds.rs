@@ -11,8 +11,8 @@
 //! That is certain in the sense of the bounds: nothing is tuned, and no model of wall or gas can mislead it. It is coarse: a tenth of the
 //! gas after a tunnel, a twentieth at rest.
 //!
-//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.2 s + 0.003 m_full)` in place of those of the
-//! walls; `s` is the part of its standard deviation that comes and goes. These bounds fade within hours, since what the observer has
+//! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.2 sqrt(s^2 + w^2) + 0.003 m_full)` in place of those of the
+//! walls; `s` is the part of its standard deviation that comes and goes, `w` how far its mass usually is from that of the day before ([`super::wander`]). These bounds fade within hours, since what the observer has
 //! learnt of films and sensors changes from day to day.
 //!
 //! Single readings far off must not count: bounds are believed that two rows in a row agree on, and enter the highest and the lowest one when
@@ -24,6 +24,7 @@
 //! Assumes that no part of the wall is farther than `d` from all thermometers for longer than the gas takes to follow it.
 use serde::{Deserialize, Serialize};
 
+use super::wander::Wander;
 use crate::estimator::observer::Flow;
 
 /// Time constant with which extremes fade, s.
@@ -150,6 +151,7 @@ pub(in crate::monitor) struct GasBounds {
     /// The same by the observer's flowing member, and when it last said something, s.
     flow: Ratchet,
     flow_s: Option<f64>,
+    wander: Wander,
 }
 
 impl GasBounds {
@@ -172,10 +174,16 @@ impl GasBounds {
 
     /// Take in what the observer says of gas that may flow, in a cylinder that is filled with so much, kg.
     pub fn push_flow(&mut self, time_s: f64, flow: &Flow, full_kg: f64) -> Option<Certain> {
-        let kept =
-            self.flow_s.replace(time_s).map_or(1.0, |last_s| (-(time_s - last_s) / FLOW_FADING_S).exp());
-        let by_kg = FLOW_DEVIATIONS * flow.passing_sd_kg + FLOW_PART * full_kg;
+        let since_s = self.flow_s.replace(time_s).map_or(0.0, |last_s| time_s - last_s);
+        let kept = (-since_s / FLOW_FADING_S).exp();
+        let by_kg = self.comes_and_goes_kg(flow, full_kg) + FLOW_PART * full_kg;
+        self.wander.push(since_s, flow.mass_kg / full_kg);
         self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), FLOW_ROWS, kept)
+    }
+
+    /// What of a mass that the observer says comes and goes without gas, kg.
+    pub fn comes_and_goes_kg(&self, flow: &Flow, full_kg: f64) -> f64 {
+        FLOW_DEVIATIONS * flow.passing_sd_kg.hypot(self.wander.sd() * full_kg)
     }
 
     /// Part of the gas that is certainly gone or has certainly come by the thermometers, against the bound that it is beyond; 0 if none.
@@ -191,12 +199,13 @@ impl GasBounds {
     /// Gas has gone that way: what bounded the mass from that side does so no more. After a refill it is still no less than before.
     pub fn gone(&mut self, way: Certain) {
         self.walls.gone(way);
-        self.flow = Ratchet::default();
+        self.forget_flow();
     }
 
     /// The observer has begun anew: what it said before counts no more.
     pub fn forget_flow(&mut self) {
         self.flow = Ratchet::default();
+        self.wander.begin_anew();
     }
 
     /// Extremes follow the thermometers at once outwards, and slowly inwards.
@@ -349,6 +358,26 @@ mod tests {
         let hours = (0..168).map(|hour| 3600.0 * f64::from(hour));
         let wanders = |t: f64| flow(1.0 - 0.03 * t / 604_800.0, 1e-3);
         assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &wanders(t), 1.0)), None);
+    }
+
+    #[test]
+    fn a_mass_that_swings_with_every_day_is_no_gas_once_that_is_known_and_a_loss_beside_it_is() {
+        // 1 % by day and by night.
+        let swings = |hour: f64| 1.0 + 0.01 * (std::f64::consts::TAU * hour / 24.0).sin();
+        let ways_of = |mass: &dyn Fn(f64) -> f64| {
+            let mut bounds = GasBounds::default();
+            let hours = (0..30 * 24).map(f64::from);
+            let certain = |hour: f64| {
+                let certain = bounds.push_flow(3600.0 * hour, &flow(mass(hour), 1e-3), 1.0);
+                certain.into_iter().for_each(|way| bounds.gone(way));
+                certain.map(|way| (hour, way))
+            };
+            hours.filter_map(certain).collect::<Vec<_>>()
+        };
+        let days = |ways: &[(f64, Certain)]| ways.iter().map(|(hour, _)| hour / 24.0).fold(0.0, f64::max);
+        assert!(days(&ways_of(&swings)) < 8.0, "{:?}", ways_of(&swings));
+        let lost = |hour: f64| swings(hour) - if hour > 700.0 { 0.08 } else { 0.0 };
+        assert_eq!(ways_of(&lost).last(), Some(&(701.0, Certain::Out)));
     }
 
     #[test]

@@ -8,3 +8,4 @@ pub(super) mod leak;
 pub mod onset;
 pub(super) mod outlook;
 pub mod trace;
+mod wander;

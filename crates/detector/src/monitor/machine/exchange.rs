@@ -2,7 +2,8 @@
 //!
 //! The observer goes back before the jump and takes it with the mass free; a shadow of it goes on without the pressure, and what it
 //! expects shows what the jump was. Until that is told, what is said of the gas is between both, and no more certain than they are apart.
-//! Where the observer's flowing member has the mass of before, within what the surroundings may have done to it, no gas was exchanged.
+//! Where the observer's flowing member, which has the pressure, has the mass of before, within what the surroundings may have done to it, no gas was exchanged; where its
+//! mass has moved by less than half of what the shadow makes of the pressure, the shadow has been led astray.
 //!
 //! Beside the jumps, bounds of the mass tell gas that flows steadily ([`crate::monitor::gas::bounds`]), by the walls and by that member.
 use serde::{Deserialize, Serialize};
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::disturbance::Undisturbed;
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
-use crate::estimator::observer::{Estimate, Quality};
+use crate::estimator::observer::{Estimate, Flow, Quality};
 use crate::estimator::sensor::ParameterKind;
 use crate::estimator::thermal::scenario::sensor::SensorKind;
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
@@ -33,12 +34,16 @@ const ANNOUNCED_WITHIN_S: f64 = 600.0;
 pub(super) struct Examined {
     pub examination: Examination,
     before_kg: f64,
+    /// What of it may come and go without gas, kg.
+    doubt_kg: f64,
     pub samples: usize,
     pub flowing: bool,
 }
 
 /// Part of the gas that is gone or has come at least where bounds are certain of it.
 const CERTAIN: f64 = 0.02;
+/// Part of what the shadow misses that the flowing member must miss, too: nearer to it than to nothing.
+const HALF: f64 = 0.5;
 /// Part of the gas that no jump of a transmitter's offset stands for.
 const NO_OFFSET: f64 = 0.1;
 
@@ -236,6 +241,11 @@ impl Monitor {
         self.observer.freest_mass_kg().map(|(mass_kg, _)| mass_kg)
     }
 
+    /// What of a mass that the flowing member says comes and goes without gas, kg.
+    fn comes_and_goes_kg(&self, flow: &Flow) -> f64 {
+        self.state.bounds.comes_and_goes_kg(flow, self.filled_kg.0)
+    }
+
     /// Go back before the present row, and take it with the mass free and, in the shadow, without the pressure.
     fn begin_examination(
         &mut self,
@@ -245,10 +255,11 @@ impl Monitor {
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back()?;
+        let doubt_kg = self.observer.flow().map_or(0.0, |flow| self.comes_and_goes_kg(&flow));
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let examination = Examination::new(time_s, before_pa, doubt_pa);
-        self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
+        self.state.examined = Some(Examined { examination, before_kg, doubt_kg, samples: 0, flowing: false });
         self.examine(estimate, events)
     }
 
@@ -278,7 +289,7 @@ impl Monitor {
         let of_fill = self.scale.pressure.recip();
         let expected_pa = of_fill * self.shadow.expected_reading(pressure)?;
         // What the surroundings may have done.
-        let flow = self.observer.flow().map(|flow| (flow.mass_kg, FLOW_DEVIATIONS * flow.passing_sd_kg));
+        let flow = self.observer.flow().map(|flow| (flow.mass_kg, self.comes_and_goes_kg(&flow)));
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
         let cause = examined.examination.push(
@@ -288,9 +299,17 @@ impl Monitor {
             self.state.pair.moved_k(),
         );
         examined.flowing = cause == Cause::Flowing;
-        let unmoved = flow.is_some_and(|(mass_kg, by_kg)| (mass_kg - examined.before_kg).abs() < by_kg);
-        let cause =
-            if matches!(cause, Cause::Gas | Cause::Unclear) && unmoved { Cause::Passed } else { cause };
+        let claimed_kg = (examined.examination.error_pa() / (of_fill * self.state.p15.slope_pa_kg())).abs();
+        let passed = flow.is_some_and(|(mass_kg, doubt_kg)| {
+            let moved_kg = (mass_kg - examined.before_kg).abs();
+            let doubt_kg = doubt_kg.hypot(examined.doubt_kg);
+            match cause {
+                Cause::Gas | Cause::Unclear => moved_kg < doubt_kg.max(HALF * claimed_kg),
+                Cause::Offset(_) => moved_kg < HALF * claimed_kg,
+                Cause::Open | Cause::Flowing | Cause::Spike | Cause::Passed => false,
+            }
+        });
+        let cause = if passed { Cause::Passed } else { cause };
         match cause {
             Cause::Open => return Ok(blind.or(estimate)),
             Cause::Flowing => return Ok(estimate),

@@ -4,6 +4,7 @@ use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Outcome};
 use crate::estimator::thermal::scenario::Fill;
+use crate::monitor::gas::bounds::FLOW_DEVIATIONS;
 use crate::monitor::intake::Row;
 use crate::monitor::readings::parity::Disturbance;
 use crate::monitor::readings::thermometers::Lonely;
@@ -35,8 +36,9 @@ impl Monitor {
         if self.roles.pair.is_some() {
             self.compare_thermometers(time_s, pair, events);
         }
+        let doubt_k = FLOW_DEVIATIONS * self.beside_the_gas_k(as_read);
         let watches = &mut self.state.watches;
-        match self.state.pair.update(time_s, as_read, judged) {
+        match self.state.pair.update(time_s, as_read, doubt_k, judged) {
             None => {}
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
@@ -49,6 +51,14 @@ impl Monitor {
                 self.usable[pair[which]] = f64::NAN;
             }
         }
+    }
+
+    /// Error of one thermometer alone by what the surroundings do to the cylinder, standard deviation, K: a part of how far the nearer one is from the gas.
+    fn beside_the_gas_k(&self, readings: [f64; 2]) -> f64 {
+        let Some(flow) = self.observer.flow() else { return 0.0 };
+        // Not a number counts for nothing.
+        let nearest_k = readings.iter().map(|of| (of - flow.gas_mean_k).abs()).fold(f64::INFINITY, f64::min);
+        if nearest_k.is_finite() { self.settings.observer.flow_doubt.part * nearest_k } else { 0.0 }
     }
 
     fn compare_thermometers(&mut self, time_s: f64, pair: [usize; 2], events: &mut Vec<Event>) {
