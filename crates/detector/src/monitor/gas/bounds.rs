@@ -16,7 +16,8 @@
 //! learnt of films and sensors changes from day to day.
 //!
 //! Single readings far off must not count: bounds are believed that two rows in a row agree on, and enter the highest and the lowest one when
-//! three do.
+//! three do. Those of the observer, which has judged the readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows
+//! may have done 0.003 of the mass, when two rows agree.
 //!
 //! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
 //! all pressures alike.
@@ -41,6 +42,8 @@ const ROWS: usize = 3;
 /// The same for what the observer says: rows, standard deviations, part of the fill beside them, and time constant with which its bounds
 /// fade, s: what it has wrongly learnt changes from day to day.
 const FLOW_ROWS: usize = 1;
+/// Rows where the surroundings may have done more than that part to it since the row before: a tunnel of minutes between two rows shows in neither.
+const FLOW_ROWS_SHAKEN: usize = 2;
 pub(in crate::monitor) const FLOW_DEVIATIONS: f64 = 2.2;
 const FLOW_PART: f64 = 0.003;
 const FLOW_FADING_S: f64 = 6.0 * 3600.0;
@@ -172,13 +175,15 @@ impl GasBounds {
         self.walls.push((least_kg, most_kg), ROWS, 1.0)
     }
 
-    /// Take in what the observer says of gas that may flow, in a cylinder that is filled with so much, kg.
-    pub fn push_flow(&mut self, time_s: f64, flow: &Flow, full_kg: f64) -> Option<Certain> {
+    /// Take in what the observer says of gas that may flow, in a cylinder that is filled with so much, kg, and what the surroundings may have done to it since the row
+    /// before, as a part of it.
+    pub fn push_flow(&mut self, time_s: f64, flow: &Flow, full_kg: f64, shaken: f64) -> Option<Certain> {
         let since_s = self.flow_s.replace(time_s).map_or(0.0, |last_s| time_s - last_s);
         let kept = (-since_s / FLOW_FADING_S).exp();
         let by_kg = self.comes_and_goes_kg(flow, full_kg) + FLOW_PART * full_kg;
         self.wander.push(since_s, flow.mass_kg / full_kg);
-        self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), FLOW_ROWS, kept)
+        let rows = if shaken > FLOW_PART { FLOW_ROWS_SHAKEN } else { FLOW_ROWS };
+        self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), rows, kept)
     }
 
     /// What of a mass that the observer says comes and goes without gas, kg.
@@ -330,16 +335,27 @@ mod tests {
         let mut bounds = GasBounds::default();
         let minutes = |from: u32| (from..from + 60).map(|minute| 60.0 * f64::from(minute));
         // Errors of its size, and constant ones however large, are none.
-        let errors =
-            minutes(0).find_map(|t| bounds.push_flow(t, &flow(1.0 + 2e-3 * (t / 500.0).sin(), 2e-3), 1.0));
+        let errors = minutes(0)
+            .find_map(|t| bounds.push_flow(t, &flow(1.0 + 2e-3 * (t / 500.0).sin(), 2e-3), 1.0, 0.0));
         assert_eq!(errors, None);
         // 2.2 sd and 0.3 % on either side are 1.5 %.
-        assert_eq!(bounds.push_flow(3600.0, &flow(0.988, 2e-3), 1.0), None);
-        let lost = minutes(61).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0));
+        assert_eq!(bounds.push_flow(3600.0, &flow(0.988, 2e-3), 1.0, 0.0), None);
+        let lost = minutes(61).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0, 0.0));
         assert_eq!(lost, Some(Certain::Out));
         bounds.gone(Certain::Out);
-        assert_eq!(minutes(121).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0)), None, "once");
-        assert_eq!(minutes(181).find_map(|t| bounds.push_flow(t, &flow(1.0, 2e-3), 1.0)), Some(Certain::In));
+        assert_eq!(minutes(121).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0, 0.0)), None, "once");
+        let mut shaken = bounds;
+        let come = flow(1.0, 2e-3);
+        assert_eq!(
+            shaken.push_flow(181.0 * 60.0, &come, 1.0, 0.01),
+            None,
+            "a row in which all moves is none"
+        );
+        assert_eq!(shaken.push_flow(182.0 * 60.0, &come, 1.0, 0.01), Some(Certain::In));
+        assert_eq!(
+            minutes(181).find_map(|t| bounds.push_flow(t, &flow(1.0, 2e-3), 1.0, 0.0)),
+            Some(Certain::In)
+        );
     }
 
     #[test]
@@ -348,7 +364,7 @@ mod tests {
         let hours = (0..48).map(|hour| 3600.0 * f64::from(hour));
         // A fifth of what is left, by day and by night: 0.2 % of the fill.
         let empty = |t: f64| flow(0.01 + 1e-3 * (t / 13_751.0).sin(), 1e-5);
-        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &empty(t), 1.0)), None);
+        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &empty(t), 1.0, 0.0)), None);
     }
 
     #[test]
@@ -357,7 +373,7 @@ mod tests {
         let mut bounds = GasBounds::default();
         let hours = (0..168).map(|hour| 3600.0 * f64::from(hour));
         let wanders = |t: f64| flow(1.0 - 0.03 * t / 604_800.0, 1e-3);
-        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &wanders(t), 1.0)), None);
+        assert_eq!(hours.into_iter().find_map(|t| bounds.push_flow(t, &wanders(t), 1.0, 0.0)), None);
     }
 
     #[test]
@@ -368,7 +384,7 @@ mod tests {
             let mut bounds = GasBounds::default();
             let hours = (0..30 * 24).map(f64::from);
             let certain = |hour: f64| {
-                let certain = bounds.push_flow(3600.0 * hour, &flow(mass(hour), 1e-3), 1.0);
+                let certain = bounds.push_flow(3600.0 * hour, &flow(mass(hour), 1e-3), 1.0, 0.0);
                 certain.into_iter().for_each(|way| bounds.gone(way));
                 certain.map(|way| (hour, way))
             };

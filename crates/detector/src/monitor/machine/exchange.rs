@@ -34,8 +34,8 @@ const ANNOUNCED_WITHIN_S: f64 = 600.0;
 pub(super) struct Examined {
     pub examination: Examination,
     before_kg: f64,
-    /// What of it may come and go without gas, kg.
-    doubt_kg: f64,
+    /// What the flowing member said before.
+    flow: Option<Flow>,
     pub samples: usize,
     pub flowing: bool,
 }
@@ -157,7 +157,9 @@ impl Monitor {
             return;
         }
         let Some(flow) = self.observer.flow() else { return };
-        let Some(certain) = self.state.bounds.push_flow(time_s, &flow, self.filled_kg.0) else { return };
+        let shaken = self.settings.observer.flow_doubt.part * self.state.pair.moved_k() / flow.gas_mean_k;
+        let certain = self.state.bounds.push_flow(time_s, &flow, self.filled_kg.0, shaken);
+        let Some(certain) = certain else { return };
         let out = certain == Certain::Out;
         let held_kg = self.observer.leaks().map(|member| member.mass_kg);
         let least_kg = MATTERS * self.filled_kg.0;
@@ -255,11 +257,11 @@ impl Monitor {
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back()?;
-        let doubt_kg = self.observer.flow().map_or(0.0, |flow| self.comes_and_goes_kg(&flow));
+        let flow = self.observer.flow();
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let examination = Examination::new(time_s, before_pa, doubt_pa);
-        self.state.examined = Some(Examined { examination, before_kg, doubt_kg, samples: 0, flowing: false });
+        self.state.examined = Some(Examined { examination, before_kg, flow, samples: 0, flowing: false });
         self.examine(estimate, events)
     }
 
@@ -288,8 +290,7 @@ impl Monitor {
         self.usable[pressure] = reading_pa;
         let of_fill = self.scale.pressure.recip();
         let expected_pa = of_fill * self.shadow.expected_reading(pressure)?;
-        // What the surroundings may have done.
-        let flow = self.observer.flow().map(|flow| (flow.mass_kg, self.comes_and_goes_kg(&flow)));
+        let now = self.observer.flow();
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
         let cause = examined.examination.push(
@@ -299,15 +300,17 @@ impl Monitor {
             self.state.pair.moved_k(),
         );
         examined.flowing = cause == Cause::Flowing;
+        let before = examined.flow;
         let claimed_kg = (examined.examination.error_pa() / (of_fill * self.state.p15.slope_pa_kg())).abs();
-        let passed = flow.is_some_and(|(mass_kg, doubt_kg)| {
-            let moved_kg = (mass_kg - examined.before_kg).abs();
-            let doubt_kg = doubt_kg.hypot(examined.doubt_kg);
-            match cause {
-                Cause::Gas | Cause::Unclear => moved_kg < doubt_kg.max(HALF * claimed_kg),
-                Cause::Offset(_) => moved_kg < HALF * claimed_kg,
-                Cause::Open | Cause::Flowing | Cause::Spike | Cause::Passed => false,
-            }
+        let passed = before.zip(now).is_some_and(|(before, now)| {
+            let of_both = |doubt_kg: &dyn Fn(&Flow) -> f64| doubt_kg(&before).hypot(doubt_kg(&now));
+            let doubt_kg = match cause {
+                Cause::Gas | Cause::Unclear => of_both(&|flow| self.comes_and_goes_kg(flow)),
+                // An offset that came within minutes: what else is unknown of the mass was so before.
+                Cause::Offset(_) => of_both(&|flow| FLOW_DEVIATIONS * flow.considered_sd_kg),
+                Cause::Open | Cause::Flowing | Cause::Spike | Cause::Passed => return false,
+            };
+            (now.mass_kg - before.mass_kg).abs() < doubt_kg.max(HALF * claimed_kg)
         });
         let cause = if passed { Cause::Passed } else { cause };
         match cause {
