@@ -27,7 +27,7 @@ fn settings(options: &Options, beginning: &Beginning, settled: bool) -> anyhow::
     let circumstances = options.circumstances;
     let own = beginning.commissioned.as_ref().map(|commissioned| commissioned.found.tails()).transpose()?;
     Ok(MonitorSettings {
-        tails: own.unwrap_or(defaults.tails),
+        tails: own,
         observer: fill::settings(defaults.observer, settled),
         false_alarm_interval_s: options.between_false_alarms_s,
         limits: Limits {

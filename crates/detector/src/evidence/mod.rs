@@ -115,8 +115,8 @@ const CAUTION_PA_K: f64 = 2e5;
 /// What else is in doubt after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doubt {
-    /// Considered error of the freest mass by what the surroundings do, standard deviation, kg.
-    pub considered_kg: f64,
+    /// What of a mass that follows the pressure comes and goes without gas, standard deviation, kg.
+    pub passing_kg: f64,
     /// Error of the freest mass against the slow one by what has been learnt of the sensors, standard deviation, kg.
     pub learnt_kg: f64,
     /// What all statistics are divided by, at least 1: the thermometers stand for the gas less than usual.
@@ -125,13 +125,13 @@ pub struct Doubt {
 
 impl Doubt {
     /// Nothing else.
-    pub const NONE: Self = Self { considered_kg: 0.0, learnt_kg: 0.0, divisor: 1.0 };
+    pub const NONE: Self = Self { passing_kg: 0.0, learnt_kg: 0.0, divisor: 1.0 };
 
     /// Of what an observer says, with everything divided by so much.
     pub fn of(observer: &Observer, evidence: &Evidence, divisor: f64) -> Self {
         let Members { slowest, freest, .. } = evidence.members;
         Self {
-            considered_kg: observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
+            passing_kg: observer.flow().map_or(0.0, |flow| flow.passing_sd_kg),
             learnt_kg: observer.learnt_apart_kg(freest, slowest),
             divisor,
         }
@@ -139,7 +139,7 @@ impl Doubt {
 
     /// Error of the freest mass against the slow one, standard deviation, kg.
     fn mass_kg(&self) -> f64 {
-        self.considered_kg.hypot(self.learnt_kg)
+        self.passing_kg.hypot(self.learnt_kg)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Mass that is missing now: what there should be less what there is, over what is in doubt of it.
 //!
 //! `h = (m + c - m_free) / sqrt((m/500)^2 + s^2)`, with mass `m` of the member that allows a slow leak alone, that of the freest one, and the
-//! error `s` of their difference by what the surroundings do, considered, and by what has been learnt of the sensors ([`Doubt`](super::Doubt)). Constant errors are in both masses and
+//! error `s` of their difference by what comes and goes of a mass that follows the pressure, and by what has been learnt of the sensors ([`Doubt`](super::Doubt)). Constant errors are in both masses and
 //! cancel; an unknown temperature coefficient does not, in the first cold night. At the mouth of a tunnel much is in doubt, in a calm hour next to nothing: there a leak
 //! shows first.
 //!

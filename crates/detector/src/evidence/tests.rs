@@ -1,3 +1,5 @@
+use cylwatch_estimator::thermal::vessel::{InnerVolume, Vessel, presets};
+
 use super::*;
 
 const SECOND: f64 = 1.0 / 3600.0;
@@ -63,7 +65,7 @@ fn a_missing_mass_is_over_what_is_in_doubt_of_it() {
     };
     // 22 g over 8.8 g, a part in five hundred of the mass, and with as much again by the surroundings.
     assert!((missing(Doubt::NONE) - 2.5).abs() < 1e-9);
-    let tunnel = Doubt { considered_kg: 8.8e-3, ..Doubt::NONE };
+    let tunnel = Doubt { passing_kg: 8.8e-3, ..Doubt::NONE };
     assert!((missing(tunnel) - 2.5 / 2_f64.sqrt()).abs() < 1e-9);
     assert!((missing(Doubt { divisor: 4.0, ..Doubt::NONE }) - 0.625).abs() < 1e-9);
 }
@@ -161,8 +163,9 @@ fn a_value_at_a_threshold_stands_for_its_mean_time() {
         }
     }
     let at = |value: f64| Tails::default().mean_time_s(&[value; Scale::ALL.len()]);
-    // No evidence at all comes up within days, whatever the slowest statistic.
-    assert!(at(-1.0) < at(0.0) && at(0.0) < 3.0 * 86_400.0 && at(1000.0) > 1e15);
+    // No evidence at all leaves the prior odds of 1:100 of a leak in ten years: it comes up far more often than that.
+    let by_prior_s = 0.01 * 10.0 * 365.25 * 86_400.0;
+    assert!(at(-1.0) < at(0.0) && at(0.0) < 0.2 * by_prior_s && at(1000.0) > 1e15);
 }
 
 #[test]
@@ -179,4 +182,14 @@ fn thresholds_rise_with_the_mean_time_and_name_the_scale() {
     statistics[1] = 1.1 * ten.levels[1];
     assert_eq!(ten.alarm(&statistics), Some(Scale::Week));
     assert!(Tails::default().thresholds(0.0).is_err());
+}
+
+#[test]
+fn a_built_in_vessel_has_tails_of_its_own_while_it_is_that_vessel_and_filled_as_it_was_commissioned() {
+    let vessel = presets::load("nitrogen-20l").unwrap();
+    let own = Tails::of(&vessel, 200e5);
+    assert!(own != Tails::default() && own == Tails::of(&vessel, 180e5));
+    assert_eq!(Tails::of(&vessel, 100e5), Tails::default());
+    let larger = Vessel { volume: InnerVolume { volume_m3: 0.05, ..vessel.volume }, ..vessel };
+    assert_eq!(Tails::of(&larger, 200e5), Tails::default());
 }

@@ -51,8 +51,9 @@ pub struct MonitorSettings {
     pub intake: IntakeSettings,
     /// Mean time between false leak alarms, s.
     pub false_alarm_interval_s: f64,
-    /// What the statistics of the evidence reach without a leak: thresholds follow from them and from that time.
-    pub tails: Tails,
+    /// What the statistics of the evidence reach without a leak: thresholds follow from them and from that time. `None`: what is known of the
+    /// vessel, [`Tails::of`].
+    pub tails: Option<Tails>,
     /// Limits of the pressure.
     pub limits: Limits,
     /// How a leak goes on.
@@ -80,7 +81,7 @@ impl Default for MonitorSettings {
             observer: crate::evidence::observer_settings(),
             intake: IntakeSettings::default(),
             false_alarm_interval_s: 10.0 * YEAR_S,
-            tails: Tails::default(),
+            tails: None,
             limits: Limits::default(),
             loss: LossLaw::default(),
             reaction: ReactionSettings::default(),
@@ -103,7 +104,7 @@ impl MonitorSettings {
         self.intake.validate()?;
         self.reaction.validate()?;
         self.mass_error.validate()?;
-        self.tails.validate()?;
+        self.tails.as_ref().map_or(Ok(()), Tails::validate)?;
         for (setting, value) in [
             ("false_alarm_interval_s", self.false_alarm_interval_s),
             ("limits.operational_pa", self.limits.operational_pa),

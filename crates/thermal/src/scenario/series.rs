@@ -63,12 +63,20 @@ impl Series {
         Ok(Self { time_s, value })
     }
 
+    /// Every value as `by` changes it.
+    ///
+    /// # Errors
+    /// A value that is not finite.
+    pub fn mapped(&self, by: impl Fn(f64) -> f64) -> Result<Self, ThermalError> {
+        Self::try_new(self.time_s.clone(), self.value.iter().map(|value| by(*value)).collect())
+    }
+
     /// The function times a factor.
     ///
     /// # Errors
     /// A value that is not finite.
     pub fn scaled(&self, factor: f64) -> Result<Self, ThermalError> {
-        Self::try_new(self.time_s.clone(), self.value.iter().map(|value| value * factor).collect())
+        self.mapped(|value| value * factor)
     }
 
     /// The function plus a constant.
@@ -76,7 +84,7 @@ impl Series {
     /// # Errors
     /// A value that is not finite.
     pub fn shifted(&self, by: f64) -> Result<Self, ThermalError> {
-        Self::try_new(self.time_s.clone(), self.value.iter().map(|value| value + by).collect())
+        self.mapped(|value| value + by)
     }
 
     /// Times at which the function jumps or changes its slope, s, increasing.

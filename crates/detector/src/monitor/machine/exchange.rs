@@ -320,7 +320,7 @@ impl Monitor {
                 self.observer.restore(&self.shadow.snapshot());
                 match cause {
                     Cause::Spike => self.state.watches[pressure].refused(time_s),
-                    Cause::Offset(by_pa) => self.state.watches[pressure].shift(by_pa / of_fill),
+                    Cause::Offset(by_pa) => self.shift_transmitter(pressure, by_pa / of_fill),
                     _ => {}
                 }
             }
@@ -330,6 +330,14 @@ impl Monitor {
         self.state.jumps.forget();
         self.state.rewind.begin(&self.observer);
         Ok(if matches!(cause, Cause::Gas | Cause::Unclear) { estimate } else { blind })
+    }
+
+    /// The transmitter's offset has changed by so much, Pa. That it did is no more certain than what was not seen without the pressure: as much is in doubt of it from
+    /// then on, and what was held against its readings begins anew.
+    fn shift_transmitter(&mut self, pressure: usize, by_pa: f64) {
+        self.state.watches[pressure].shift(by_pa);
+        self.observer.loosen(self.place_of(pressure), by_pa.abs());
+        self.state.bounds.forget_flow();
     }
 
     /// Gas was exchanged, and the flow is over.

@@ -37,7 +37,7 @@ use crate::estimator::observer::{
 };
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
-use crate::evidence::{Doubt, Evidence, Statistics, Thresholds};
+use crate::evidence::{Doubt, Evidence, Statistics, Tails, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
@@ -57,6 +57,7 @@ pub struct Monitor {
     vessel: Vessel,
     contents: Contents,
     limits: LimitMasses,
+    tails: Tails,
     thresholds: Thresholds,
     full_pa: f64,
     /// How the fill compares with the one that constants in pascals and kilograms are stated for.
@@ -187,6 +188,8 @@ impl Monitor {
         let contents = Contents::of(vessel);
         let roles = Roles::of(sensors);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
+        let full_pa = contents.pressure_pa(full_kg, QUOTED_K)?;
+        let tails = settings.tails.unwrap_or_else(|| Tails::of(vessel, full_pa));
         let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
         let state = State {
             intake: Intake::new(settings.intake, sensors.len())?,
@@ -228,10 +231,11 @@ impl Monitor {
         let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
-            thresholds: settings.tails.thresholds(settings.false_alarm_interval_s)?,
+            thresholds: tails.thresholds(settings.false_alarm_interval_s)?,
+            tails,
             scale,
             mass_error: settings.mass_error.scaled(scale.mass),
-            full_pa: contents.pressure_pa(full_kg, QUOTED_K)?,
+            full_pa,
             filled_kg: (full_kg, commissioning.mass_sd * full_kg),
             roles,
             compared,
@@ -356,6 +360,11 @@ impl Monitor {
         self.state.evidence.statistics()
     }
 
+    /// What the evidence is held against.
+    pub fn tails(&self) -> &Tails {
+        &self.tails
+    }
+
     /// What has become of the rows so far.
     pub fn intake(&self) -> &Intake {
         &self.state.intake
@@ -436,9 +445,9 @@ impl Monitor {
             slow,
             pa_per_kg: self.state.p15.slope_pa_kg(),
             error: &error,
-            doubt_kg: doubt.considered_kg,
+            doubt_kg: self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
             filled_kg: self.filled_kg.0,
-            false_alarm_s: self.settings.tails.mean_time_s(&statistics),
+            false_alarm_s: self.tails.mean_time_s(&statistics),
             alarm: alarm || lost_across,
             calm: calm && !lost_across,
             over_after_s: self.settings.leak_over_after_s,

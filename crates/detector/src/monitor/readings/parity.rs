@@ -5,9 +5,9 @@
 //! two thermometers. In calm windows of ten minutes (neither moves by more than 0.6 K) it stays within 0.1 to 0.2 K for weeks, tunnels
 //! and all; with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
 //!
-//! `d` is the median of the last three calm windows less that of the two days before. Where the difference usually varies, as with every day's sun in a
-//! desert, that much is usual: with the median `s` of its deviations in these days beyond 0.15 K, all limits below are those of `|d| - 2 s`. The evidence
-//! for a leak is divided by `sqrt(1 + ((|d| - 2 s - 0.3 K) / (0.2 K + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
+//! `d` is the median of the last three calm windows less that of the two days before. What comes with every day is usual, as a morning's sun on one end in a
+//! desert: with the deviation `s`, less 0.15 K, that was exceeded for half an hour a day in the two days until yesterday, all limits below are those of `|d| - s`. The evidence
+//! for a leak is divided by `sqrt(1 + ((|d| - s - 0.3 K) / (0.2 K + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
 //! one and a half hours give `d`, for as long again; beyond 2.5 the verdict is unknown; for six hours after it by what is left of that,
 //! as the observer needs its time to come back. Where `d` was above 0.5 K for three hours, the evidence from then counts for nothing
 //! once it is over.
@@ -22,7 +22,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::monitor::median::median;
+use crate::monitor::median::{median, quantile};
 
 /// Length of a window, s, the change within it that is calm, K, and its fewest rows.
 const WINDOW_S: f64 = 600.0;
@@ -37,8 +37,9 @@ const STALE_S: f64 = 3.0 * 3600.0;
 /// Difference that is usual, K, and difference beyond it that raises what is needed by 40 %, K.
 const HARMLESS_K: f64 = 0.3;
 const SCALE_K: f64 = 0.2;
-/// Usual deviations of the difference that are harmless, too.
-const USUAL_SPREADS: f64 = 2.0;
+/// Windows that are older than this, s, say how far the difference deviates on other days, and the part of them that deviates less.
+const YESTERDAY_S: f64 = 24.0 * 3600.0;
+const OTHER_DAYS: f64 = 0.98;
 /// Largest divisor: a leak of 1 bar/h is found beside whatever heater.
 const LARGEST: f64 = 4.0;
 /// Time within which three calm windows say whether the difference is usual, s, and the divisor where they do not, until it is stale: in a tunnel nobody sees a kelvin.
@@ -106,7 +107,7 @@ pub(in crate::monitor) struct Parity {
     window: Option<Window>,
     calm: VecDeque<Calm>,
     off_k: f64,
-    /// How far the difference usually is from its median, K: median absolute deviation beyond the harmless.
+    /// How far the difference deviated from its median on other days, K, beyond the harmless.
     spread_k: f64,
     named: Option<Named>,
     /// Usual difference before it was off, K.
@@ -222,20 +223,22 @@ impl Parity {
 
     fn compare(&mut self, calm: Calm) {
         self.calm.push_back(calm);
-        while self.calm.front().is_some_and(|first| first.begun_s < calm.begun_s - USUAL_S) {
+        let older = |than_s: f64| move |of: &Calm| of.begun_s < calm.begun_s - than_s;
+        while self.calm.front().is_some_and(older(USUAL_S + YESTERDAY_S)) {
             self.calm.pop_front();
         }
-        let usual = self.calm.len().saturating_sub(LATEST);
-        if usual < FEWEST_USUAL {
+        let usual = self.calm.len() - self.calm.partition_point(older(USUAL_S));
+        if usual < FEWEST_USUAL + LATEST {
             // What was found against other days is no finding of these.
             (self.off_k, self.named) = (0.0, None);
             return;
         }
-        let before = self.calm.iter().rev().skip(LATEST);
-        let usual_k = median(before.clone().map(|calm| calm.apart_k));
-        let spread_k = median(before.map(|calm| (calm.apart_k - usual_k).abs()));
+        let before = self.calm.iter().rev().take(usual).skip(LATEST);
+        let usual_k = median(before.map(|calm| calm.apart_k));
+        let yesterday = self.calm.partition_point(older(YESTERDAY_S));
+        let other_days = self.calm.range(..yesterday).map(|calm| (calm.apart_k - usual_k).abs());
         self.off_k = self.latest_k(|calm| calm.apart_k) - usual_k;
-        self.spread_k = (spread_k - HARMLESS_K / 2.0).max(0.0);
+        self.spread_k = (quantile(OTHER_DAYS, other_days) - HARMLESS_K / 2.0).max(0.0);
         if self.disturbed_s == 0.0 {
             self.usual_k = usual_k;
         }
@@ -286,7 +289,7 @@ impl Parity {
 
     /// How far the present difference is from the usual one beyond the usual deviations, K.
     fn unusual_k(&self) -> f64 {
-        (self.off_k.abs() - USUAL_SPREADS * self.spread_k).max(0.0)
+        (self.off_k.abs() - self.spread_k).max(0.0)
     }
 
     /// Whether the difference is the usual one, and has been for a while.

@@ -60,11 +60,12 @@ impl Monitored {
         let filled = Commissioning::filled(Plan::FILLING.pressure_pa, Plan::FILLING.temperature_k);
         // A cylinder in service has gas and wall apart.
         let commissioning = Commissioning { settled: false, ..filled };
+        let monitor = Monitor::new(vessel, sensors, &commissioning, settings)?;
         Ok(Self {
-            monitor: Monitor::new(vessel, sensors, &commissioning, settings)?,
+            tails: *monitor.tails(),
+            monitor,
             trace: MassTrace::default(),
             error: settings.mass_error,
-            tails: settings.tails,
             pa_per_kg,
             settled_pa: None,
             log_years: f64::NEG_INFINITY,

@@ -99,6 +99,21 @@ fn a_difference_that_swings_with_every_day_is_usual_and_a_heater_beside_it_is_no
 }
 
 #[test]
+fn what_the_sun_does_to_one_end_every_morning_is_usual_a_day_later_and_a_heater_beside_it_is_not() {
+    let morning = |hour: f64| {
+        let of_day = hour % 24.0;
+        if (8.0..10.5).contains(&of_day) { 1.4 * (1.0 - (of_day - 9.25).abs() / 1.25) } else { 0.0 }
+    };
+    let heater = |hour: f64| if hour > 156.0 { 5.0 } else { 0.0 };
+    let (divisors, changes) = watched(160.0, |hour| 280.0 + morning(hour) + heater(hour), |_| 280.0);
+    let day = |n: usize| divisors[1440 * n..1440 * (n + 1)].iter().copied().fold(0.0, f64::max);
+    assert!(day(0) > BLIND, "nobody knows it yet: {}", day(0));
+    assert!((1..6).all(|n| day(n) < 2.0), "{:?}", (1..6).map(day).collect::<Vec<_>>());
+    assert!(divisors[60 * 158] > BLIND);
+    assert!(changes.iter().all(|(hour, _)| *hour < 24.0 || *hour > 156.0), "{changes:?}");
+}
+
+#[test]
 fn sun_on_one_of_them_warms_the_gas_and_names_nobody() {
     let sun = |hour: f64| if (40.0..46.0).contains(&hour) { 1.0 } else { 0.0 };
     let watched = compared(60.0, |hour| [280.0 + 1.6 * sun(hour), 280.0 + 0.8 * sun(hour), 280.0]);
