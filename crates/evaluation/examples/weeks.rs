@@ -19,7 +19,6 @@ use rayon::prelude::*;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const DAY_S: f64 = 86_400.0;
 /// Air that is warmer than this is a tunnel's, K; what the warmest tunnel has, K.
 const TUNNEL_K: f64 = 293.15;
@@ -36,11 +35,11 @@ struct Week {
 }
 
 const USUAL: Week =
-    Week { name: "as it is", interval_s: 60.0, sun: 1.0, wind: 1.0, warm_tunnels: false, layers: false };
+    Week { name: "rows of 60 s", interval_s: 60.0, sun: 1.0, wind: 1.0, warm_tunnels: false, layers: false };
 
 const WEEKS: [Week; 11] = [
     Week { name: "rows of 10 s", interval_s: 10.0, ..USUAL },
-    Week { name: "rows of 60 s", ..USUAL },
+    USUAL,
     Week { name: "rows of 120 s", interval_s: 120.0, ..USUAL },
     Week { name: "sun doubled", sun: 2.0, ..USUAL },
     Week { name: "sun halved", sun: 0.5, ..USUAL },
@@ -52,7 +51,7 @@ const WEEKS: [Week; 11] = [
     Week { name: "gas in layers", layers: true, ..USUAL },
 ];
 
-/// What was said after the first day.
+/// What was said: rows after the first day, and whatever was told in all of the log.
 #[derive(Default)]
 struct Said {
     rows: usize,
@@ -118,18 +117,15 @@ fn changed(week: &Week) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
-/// What the monitor says of a log.
+/// What the monitor says of a log, with typical sensors of the names in it.
 fn said(vessel: &Vessel, log: &Log) -> Result<Said, Failure> {
-    let sensors = SENSORS.map(Sensor::typical).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let sensors: Vec<Sensor> =
+        log.channels.iter().map(|channel| Sensor::typical(&channel.name)).collect::<Result<_, _>>()?;
     let filled = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
     let mut monitor = Monitor::new(vessel, &sensors, &filled, &MonitorSettings::default())?;
-    let column = |name: &&str| log.channels.iter().position(|channel| channel.name == **name);
-    let columns =
-        SENSORS.iter().map(|name| column(name).ok_or("it is read")).collect::<Result<Vec<_>, _>>()?;
     let mut said = Said::default();
-    for (time_s, row) in log.rows() {
-        let readings: Vec<f64> = columns.iter().map(|&column| row[column]).collect();
-        for output in monitor.step(time_s, &readings)? {
+    for (time_s, readings) in log.rows() {
+        for output in monitor.step(time_s, readings)? {
             let count =
                 |is: fn(&EventKind) -> bool| output.events.iter().filter(|event| is(&event.kind)).count();
             said.exchanges += count(|kind| matches!(kind, EventKind::Discharge(_) | EventKind::Refill(_)));
