@@ -28,6 +28,7 @@ pub mod error;
 pub mod evidence;
 pub mod monitor;
 pub mod prognosis;
+mod units;
 
 pub use cylwatch_estimator as estimator;
 pub use error::DetectorError;

@@ -45,12 +45,11 @@ use cylwatch_estimator::observer::{Estimate, Leak, LeakHypothesis, Observer, Obs
 use serde::{Deserialize, Serialize};
 
 use crate::DetectorError;
+use crate::units::HOUR_S;
 use rapid::MissingMass;
 pub(crate) use restless::Restless;
 pub use tail::{Tail, Tails};
 pub use thresholds::Thresholds;
-
-const HOUR_S: f64 = 3600.0;
 /// Time constants of the low-passes of the rate, s.
 const LOW_PASS_S: [f64; 3] = [4.0 * HOUR_S, 24.0 * HOUR_S, 96.0 * HOUR_S];
 /// Time constant of the low-pass behind the slowest of them, s.

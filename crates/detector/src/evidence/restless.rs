@@ -4,9 +4,8 @@
 //! What is beyond two usual deviations counts as two, so that a leak of any size takes days to become usual (winsorised variance). A quarter of the prior stays for
 //! ever: in a workshop nothing moves for weeks, which says nothing of what moves slowly, as a transmitter's drift does. Constants were chosen on worlds of the families
 //! that tune (`tails` of `cylwatch-evaluation`).
+use crate::units::DAY_S;
 use serde::{Deserialize, Serialize};
-
-const DAY_S: f64 = 86_400.0;
 /// Time for which the prior counts, and memory, s.
 const PRIOR_S: f64 = 3.0 * DAY_S;
 const MEMORY_S: f64 = 5.0 * DAY_S;
@@ -45,8 +44,7 @@ impl Restless {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const HOUR_S: f64 = 3600.0;
+    use crate::units::HOUR_S;
 
     fn after(days: usize, of: impl Fn(usize) -> f64) -> f64 {
         let mut usual = Restless::with_prior(0.1);

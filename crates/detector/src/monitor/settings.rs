@@ -9,8 +9,7 @@ use crate::error::positive;
 use crate::estimator::observer::ObserverSettings;
 use crate::evidence::Tails;
 use crate::prognosis::{ISO_14520_LOSS, LossLaw, ReactionSettings};
-
-const HOUR_S: f64 = 3600.0;
+use crate::units::HOUR_S;
 /// Mean year, s.
 pub const YEAR_S: f64 = 365.25 * 86_400.0;
 

@@ -13,9 +13,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Prognosis;
+use crate::units::DAY_S;
 use crate::{DetectorError, error::positive};
-
-const DAY_S: f64 = 86_400.0;
 
 /// What to do, the least urgent first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -160,6 +160,7 @@ pub fn decided(class: Class) -> Decision {
             _ => u8::from(loss),
         },
         sensor_named: class == Class::SensorFault,
+        exchange: matches!(class, Class::Discharge | Class::Refill),
     }
 }
 

@@ -42,6 +42,8 @@ pub struct Decision {
     pub exit_code: u8,
     /// Whether a sensor is said to be at fault.
     pub sensor_named: bool,
+    /// Whether an exchange of gas is said, by the verdict or by an event.
+    pub exchange: bool,
 }
 
 impl Decision {

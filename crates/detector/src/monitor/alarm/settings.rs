@@ -4,11 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::{Alarm, ExclusiveLimit, Limit, OffNormal, Timing};
 use crate::DetectorError;
 use crate::prognosis::ISO_14520_LOSS;
-
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 24.0 * HOUR_S;
-const BAR_PA: f64 = 1e5;
+use crate::units::{BAR_PA, DAY_S, HOUR_S, MINUTE_S};
 /// Warning above the operational limit, and deadbands, as parts of it: 5 bar and 1 bar at 160 bar.
 const WARNING: f64 = 5.0 / 160.0;
 const DEADBAND: f64 = 1.0 / 160.0;

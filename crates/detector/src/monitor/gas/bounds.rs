@@ -15,9 +15,8 @@
 //! walls; `s` is the part of its standard deviation that comes and goes, `w` how far its mass usually is from that of the day before ([`super::wander`]). These bounds fade within hours, since what the observer has
 //! learnt of films and sensors changes from day to day.
 //!
-//! Single readings far off must not count: bounds are believed that two rows in a row agree on, and enter the highest and the lowest one when
-//! three do. Those of the observer, which has judged the readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows
-//! may have done 0.003 of the mass, when two rows agree.
+//! Readings far off must not count: bounds are believed that four rows in a row agree on, one more than a spike is long. Those of the observer, which has judged the
+//! readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree.
 //!
 //! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
 //! all pressures alike.
@@ -30,23 +29,18 @@ use crate::estimator::observer::Flow;
 
 /// Time constant with which extremes fade, s.
 const FADING_S: f64 = 2700.0;
-/// What the gas may be beyond thermometers on the wall, K; beyond one in the gas, K; beyond the first readings, at which nothing is known of
-/// what was before, K.
+/// What the gas may be beyond thermometers on the wall, and beyond one in the gas, K; those on the wall may have been so far from what they first read before.
 const UNSEEN_WALL_K: f64 = 12.0;
 const UNSEEN_GAS_K: f64 = 5.0;
-const BEFORE_K: f64 = 10.0;
 /// Standard deviations of the transmitter's coefficient and noise that count.
 const DEVIATIONS: f64 = 3.0;
-/// Rows in a row that have to agree on a bound.
-const ROWS: usize = 3;
-/// The same for what the observer says: rows, standard deviations, part of the fill beside them, and time constant with which its bounds
+/// Rows in a row that have to agree on a bound: one more than a spike is long.
+pub(in crate::monitor) const ROWS: usize = 4;
+/// The same for what the observer says: standard deviations, part of the fill beside them, and time constant with which its bounds
 /// fade, s: what it has wrongly learnt changes from day to day.
-const FLOW_ROWS: usize = 1;
 pub(in crate::monitor) const FLOW_DEVIATIONS: f64 = 2.2;
 const FLOW_PART: f64 = 0.003;
 const FLOW_FADING_S: f64 = 6.0 * 3600.0;
-/// Rows where the surroundings may have done more than that part to it since the row before: a tunnel of minutes between two rows shows in neither.
-const FLOW_ROWS_SHAKEN: usize = 2;
 
 /// What a thermometer tells of the gas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +78,7 @@ pub(in crate::monitor) enum Certain {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Ratchet {
     /// Lower and upper bound, the latest ones first, kg.
-    recent_kg: [Option<(f64, f64)>; 3],
+    recent_kg: [Option<(f64, f64)>; ROWS],
     /// Highest lower and lowest upper bound, kg.
     floor_kg: Option<f64>,
     ceiling_kg: Option<f64>,
@@ -94,8 +88,9 @@ impl Ratchet {
     /// Take in the bounds of a row; those that so many rows in a row agree on may become the tightest ones, of which a part has been
     /// kept since the last row.
     fn push(&mut self, bounds_kg: (f64, f64), agreeing: usize, kept: f64) -> Option<Certain> {
-        self.recent_kg = [Some(bounds_kg), self.recent_kg[0], self.recent_kg[1]];
-        let certain = self.certain(agreeing.min(2));
+        self.recent_kg.rotate_right(1);
+        self.recent_kg[0] = Some(bounds_kg);
+        let certain = self.certain(agreeing);
         if let (None, Some((least_kg, most_kg))) = (certain, self.agreed(agreeing)) {
             let faded = |bound_kg: f64, now_kg: f64| now_kg + kept * (bound_kg - now_kg);
             self.floor_kg =
@@ -182,7 +177,8 @@ impl GasBounds {
         let kept = (-since_s / FLOW_FADING_S).exp();
         let by_kg = self.comes_and_goes_kg(flow, full_kg) + FLOW_PART * full_kg;
         self.wander.push(since_s, flow.mass_kg / full_kg);
-        let rows = if shaken > FLOW_PART { FLOW_ROWS_SHAKEN } else { FLOW_ROWS };
+        // A tunnel of minutes between two rows shows in neither.
+        let rows = if shaken > FLOW_PART { 2 } else { 1 };
         self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), rows, kept)
     }
 
@@ -217,7 +213,7 @@ impl GasBounds {
     fn follow(&mut self, seen: &Seen) {
         let (coldest_k, warmest_k) = seen.extremes_k;
         let Some(last_s) = self.last_s.replace(seen.time_s) else {
-            let before_k = if seen.contact == Contact::Wall { BEFORE_K } else { 0.0 };
+            let before_k = if seen.contact == Contact::Wall { UNSEEN_WALL_K } else { 0.0 };
             (self.low_k, self.high_k) = (coldest_k - before_k, warmest_k + before_k);
             return;
         };

@@ -176,8 +176,7 @@ impl LeakState {
 mod tests {
     use super::*;
     use crate::estimator::observer::Quality;
-
-    const MINUTE_S: f64 = 60.0;
+    use crate::units::MINUTE_S;
 
     /// Probability of a leak after a day in which the mass was 0.4 % too small for the last twenty minutes, so far in doubt, kg, with evidence that comes up
     /// once in such a time without a leak, s.

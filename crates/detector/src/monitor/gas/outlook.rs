@@ -91,8 +91,7 @@ mod tests {
     use super::*;
     use crate::estimator::thermal::vessel::presets;
     use crate::monitor::Interval;
-
-    const HOUR_S: f64 = 3600.0;
+    use crate::units::HOUR_S;
 
     #[test]
     fn in_a_leak_the_time_left_counts_from_the_mass_that_is_there() {

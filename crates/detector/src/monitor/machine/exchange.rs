@@ -2,8 +2,6 @@
 //!
 //! The observer goes back before the jump and takes it with the mass free; a shadow of it goes on without the pressure, and what it
 //! expects shows what the jump was. Until that is told, what is said of the gas is between both, and no more certain than they are apart.
-//! Where the observer's flowing member, which has the pressure, has the mass of before, within what the surroundings may have done to it, no gas was exchanged; where its
-//! mass has moved by less than half of what the shadow makes of the pressure, the shadow has been led astray.
 //!
 //! Beside the jumps, bounds of the mass tell gas that flows steadily ([`crate::monitor::gas::bounds`]), by the walls and by that member.
 use serde::{Deserialize, Serialize};
@@ -15,15 +13,13 @@ use crate::estimator::observer::{Estimate, Flow, Quality};
 use crate::estimator::sensor::ParameterKind;
 use crate::estimator::thermal::scenario::sensor::SensorKind;
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
-use crate::monitor::gas::jump::{Cause, Examination, Innovated};
+use crate::monitor::gas::jump::{
+    Cause, Compared, Examination, Innovated, LONGEST_INTERVAL_S, NO_OFFSET, USUAL_LARGEST,
+};
 use crate::monitor::gas::leak::Change;
 use crate::monitor::machine::judgement::MATTERS;
 use crate::monitor::{Event, EventKind, Reason};
 
-/// Change of the pressure across a gap that is no error of the observer, beside what the surroundings may have done meanwhile, Pa of a fill of 200 bar, and the
-/// gap, s.
-const ACROSS_PA: f64 = 2e5;
-const ACROSS_S: f64 = 900.0;
 /// Time for which a jump that remained unclear leaves doubt, s.
 const DOUBT_S: f64 = 86_400.0;
 /// Time by which an announced exchange may begin earlier or later than was said, s.
@@ -34,18 +30,9 @@ const ANNOUNCED_WITHIN_S: f64 = 600.0;
 pub(super) struct Examined {
     pub examination: Examination,
     before_kg: f64,
-    /// What the flowing member said before.
-    flow: Option<Flow>,
     pub samples: usize,
     pub flowing: bool,
 }
-
-/// Part of the gas that is gone or has come at least where bounds are certain of it.
-const CERTAIN: f64 = 0.02;
-/// Part of what the shadow misses that the flowing member must miss, too: nearer to it than to nothing.
-const HALF: f64 = 0.5;
-/// Part of the gas that no jump of a transmitter's offset stands for.
-const NO_OFFSET: f64 = 0.1;
 
 /// Gas that was exchanged.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -55,6 +42,11 @@ pub(super) struct Exchanged {
     pub announced: bool,
     /// How much, as a part of the fill.
     pub part: f64,
+}
+
+/// What is considered of the gas, as a part of it; an empty cylinder has none.
+fn considered_part(flow: &Flow) -> f64 {
+    if flow.mass_kg > 0.0 { flow.considered_sd_kg / flow.mass_kg } else { 0.0 }
 }
 
 impl Monitor {
@@ -84,22 +76,26 @@ impl Monitor {
             // A row that cannot be with the gas as it was: perhaps it can with other gas.
             return self.begin_examination(time_s, (0.0, 0.0), before_kg, events);
         }
-        // The rules of jumps are stated for a fill of 200 bar.
-        let of_fill = self.scale.pressure.recip();
-        let innovation_pa = of_fill * self.observer.innovations()[pressure].nu;
-        let doubt_pa = FLOW_DEVIATIONS * of_fill * self.observer.fresh_doubt_pa(pressure)?;
-        let now = Innovated { time_s, reading_pa: of_fill * self.usable[pressure], innovation_pa, doubt_pa };
-        let step_pa = of_fill * self.state.watches[pressure].step();
+        let of_full = self.full_pa.recip();
+        let innovation = of_full * self.observer.innovations()[pressure].nu;
+        let fresh = of_full * self.observer.fresh_doubt_pa(pressure)?;
+        let now = Innovated {
+            time_s,
+            reading: of_full * self.usable[pressure],
+            innovation,
+            doubt: FLOW_DEVIATIONS * fresh,
+        };
+        let step = of_full * self.state.watches[pressure].step();
         let doubted = FLOW_DEVIATIONS * self.settings.observer.flow_doubt.part;
-        let jump = self.state.jumps.notice(now, step_pa, doubted);
-        if let (Some(before_pa), Some(before_kg)) = (jump, before_kg) {
-            return self.begin_examination(time_s, (before_pa, doubt_pa), before_kg, events);
+        let jump = self.state.jumps.notice(now, step, doubted);
+        if let (Some(before), Some(before_kg)) = (jump, before_kg) {
+            return self.begin_examination(time_s, (before, fresh), before_kg, events);
         }
-        if silent_s > ACROSS_S
-            && innovation_pa.abs() > ACROSS_PA + doubt_pa
+        if silent_s > LONGEST_INTERVAL_S
+            && innovation.abs() > MATTERS + now.doubt
             && let Some(before_kg) = before_kg
         {
-            return self.take_across(time_s, innovation_pa, before_kg, events);
+            return self.take_across(time_s, innovation, before_kg, events);
         }
         self.state.rewind.taken(&self.observer, time_s, &self.usable);
         Ok(estimate)
@@ -124,10 +120,11 @@ impl Monitor {
             self.watch_flow(time_s, events);
             return Ok(estimate);
         };
-        // A jump that may be the transmitter's is being examined; so much is none.
+        // A jump that may be the transmitter's is being examined; so much is none, if it is no spike.
         let examined = self.state.examined.as_ref();
-        let open = examined.is_some_and(|examined| !examined.flowing);
-        if open && self.state.bounds.beyond() < NO_OFFSET {
+        let large = self.state.bounds.beyond() >= NO_OFFSET;
+        let may_be_gas = |of: &Examined| of.flowing || large && !of.examination.is_likely_nothing();
+        if examined.is_some_and(|of| !may_be_gas(of)) {
             return Ok(estimate);
         }
         let out = certain == Certain::Out;
@@ -140,7 +137,7 @@ impl Monitor {
         let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
         let (announced, part) = (self.is_announced(onset_s), self.state.bounds.beyond());
         self.state.bounds.gone(certain);
-        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced, part: part.max(CERTAIN) });
+        self.state.exchanged = Some(Exchanged { at_s: time_s, out, announced, part: part.max(MATTERS) });
         if self.state.examined.is_some() {
             return Ok(estimate);
         }
@@ -243,25 +240,20 @@ impl Monitor {
         self.observer.freest_mass_kg().map(|(mass_kg, _)| mass_kg)
     }
 
-    /// What of a mass that the flowing member says comes and goes without gas, kg.
-    fn comes_and_goes_kg(&self, flow: &Flow) -> f64 {
-        self.state.bounds.comes_and_goes_kg(flow, self.filled_kg.0)
-    }
-
     /// Go back before the present row, and take it with the mass free and, in the shadow, without the pressure.
     fn begin_examination(
         &mut self,
         time_s: f64,
-        (before_pa, doubt_pa): (f64, f64),
+        (before, fresh): (f64, f64),
         before_kg: f64,
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back()?;
-        let flow = self.observer.flow();
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
-        let examination = Examination::new(time_s, before_pa, doubt_pa);
-        self.state.examined = Some(Examined { examination, before_kg, flow, samples: 0, flowing: false });
+        let examination =
+            Examination::new(time_s, -before, fresh, self.settings.observer.flow_doubt.memory_s);
+        self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
         self.examine(estimate, events)
     }
 
@@ -288,46 +280,42 @@ impl Monitor {
         let reading_pa = std::mem::replace(&mut self.usable[pressure], f64::NAN);
         let blind = self.shadow.step(time_s, &self.usable)?;
         self.usable[pressure] = reading_pa;
-        let of_fill = self.scale.pressure.recip();
-        let expected_pa = of_fill * self.shadow.expected_reading(pressure)?;
+        let expected_pa = self.shadow.expected_reading(pressure)?;
         let now = self.observer.flow();
+        let of_full = self.full_pa.recip();
+        // A step is not known before there were some.
+        let step = (of_full * self.state.watches[pressure].step()).min(USUAL_LARGEST);
+        let compared = Compared {
+            time_s,
+            missing: of_full * (expected_pa - reading_pa),
+            considered: now.map_or(0.0, |flow| of_full * expected_pa * considered_part(&flow)),
+            noise: (step / 12_f64.sqrt()).hypot(of_full * self.sensors[pressure].noise_variance().sqrt()),
+        };
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;
-        let cause = examined.examination.push(
-            time_s,
-            (expected_pa, of_fill * reading_pa),
-            blind.gas_mean_k,
-            self.state.pair.moved_k(),
-        );
+        let cause = examined.examination.push(compared);
         examined.flowing = cause == Cause::Flowing;
-        let before = examined.flow;
-        let claimed_kg = (examined.examination.error_pa() / (of_fill * self.state.p15.slope_pa_kg())).abs();
-        let passed = before.zip(now).is_some_and(|(before, now)| {
-            let of_both = |doubt_kg: &dyn Fn(&Flow) -> f64| doubt_kg(&before).hypot(doubt_kg(&now));
-            let doubt_kg = match cause {
-                Cause::Gas | Cause::Unclear => of_both(&|flow| self.comes_and_goes_kg(flow)),
-                // An offset that came within minutes: what else is unknown of the mass was so before.
-                Cause::Offset(_) => of_both(&|flow| FLOW_DEVIATIONS * flow.considered_sd_kg),
-                Cause::Open | Cause::Flowing | Cause::Spike | Cause::Passed => return false,
-            };
-            (now.mass_kg - before.mass_kg).abs() < doubt_kg.max(HALF * claimed_kg)
-        });
-        let cause = if passed { Cause::Passed } else { cause };
         match cause {
             Cause::Open => return Ok(blind.or(estimate)),
             Cause::Flowing => return Ok(estimate),
             Cause::Spike | Cause::Passed | Cause::Offset(_) => {
                 self.observer.restore(&self.shadow.snapshot());
-                match cause {
-                    Cause::Spike => self.state.watches[pressure].refused(time_s),
-                    Cause::Offset(by_pa) => self.shift_transmitter(pressure, by_pa / of_fill),
-                    _ => {}
+                let shift = if let Cause::Offset(by) = cause { by } else { 0.0 };
+                if shift != 0.0 {
+                    self.shift_transmitter(pressure, shift * self.full_pa);
                 }
+                if cause == Cause::Spike {
+                    self.state.watches[pressure].refused(time_s);
+                }
+                let (reading, innovation) = (of_full * reading_pa - shift, -compared.missing - shift);
+                self.state.jumps.go_on(Innovated { time_s, reading, innovation, doubt: 0.0 });
             }
-            Cause::Gas | Cause::Unclear => self.exchange(time_s, cause == Cause::Unclear, events),
+            Cause::Gas | Cause::Unclear => {
+                self.exchange(time_s, cause == Cause::Unclear, events);
+                self.state.jumps.forget();
+            }
         }
         self.state.examined = None;
-        self.state.jumps.forget();
         self.state.rewind.begin(&self.observer);
         Ok(if matches!(cause, Cause::Gas | Cause::Unclear) { estimate } else { blind })
     }
@@ -345,7 +333,7 @@ impl Monitor {
         let Some(examined) = &self.state.examined else { return };
         let onset_s = examined.examination.onset_s();
         // Which way it went the pressure says; in a tunnel the mass may not have come to it yet.
-        let error_pa = self.scale.pressure * examined.examination.error_pa();
+        let error_pa = self.full_pa * examined.examination.error();
         let by_pressure_kg = -error_pa / self.state.p15.slope_pa_kg();
         let by_mass_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - examined.before_kg);
         let change_kg = if by_mass_kg * by_pressure_kg < 0.0 { by_pressure_kg } else { by_mass_kg };
@@ -409,7 +397,7 @@ impl Monitor {
     fn take_across(
         &mut self,
         time_s: f64,
-        innovation_pa: f64,
+        innovation: f64,
         before_kg: f64,
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
@@ -418,7 +406,7 @@ impl Monitor {
         self.observer.begin_exchange();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
-        let gained = innovation_pa > 0.0;
+        let gained = innovation > 0.0;
         if gained {
             // It may be another bottle, with sensors of its own.
             (0..self.usable.len()).for_each(|sensor| self.observer.renew(sensor));

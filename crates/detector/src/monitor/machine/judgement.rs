@@ -1,13 +1,10 @@
 //! The verdict: what is said of the cylinder, and why it cannot be told.
 use super::{EXCHANGED_S, Monitor, SETTLED_S};
+use crate::monitor::gas::bounds::ROWS;
 use crate::monitor::{Health, Known, KnownExchange, Reason};
 
-/// Part of the fill from which an exchange is the verdict, and pressure from which a flow is, Pa of a fill of 200 bar: what is smaller is an
-/// event, and leaves the verdict open until gas and wall have settled.
+/// Part of the fill from which an exchange or a flow is the verdict: what is smaller is an event, and leaves the verdict open until gas and wall have settled.
 pub(super) const MATTERS: f64 = 0.01;
-const FLOWS_PA: f64 = 8e5;
-/// Samples of an examination after which the jump is no spike.
-const NO_SPIKE: usize = 3;
 
 impl Monitor {
     /// Whether neither pressure nor temperature can be told, and why.
@@ -59,16 +56,15 @@ impl Monitor {
         if let Some(of) = recent.filter(|of| of.at_s >= since_s) {
             return Some(KnownExchange { out: of.out, announced: of.announced });
         }
-        // What the model may be off by at the mouth of a tunnel is no flow yet.
-        let examination = &flowing.filter(|of| of.examination.error_pa().abs() > FLOWS_PA)?.examination;
+        let examination = &flowing.filter(|of| of.examination.error().abs() > MATTERS)?.examination;
         let announced = self.is_announced(examination.onset_s());
-        Some(KnownExchange { out: examination.error_pa() > 0.0, announced })
+        Some(KnownExchange { out: examination.error() > 0.0, announced })
     }
 
     /// Why it cannot be told, if so.
     fn doubt(&self, time_s: f64) -> Option<Reason> {
         let state = &self.state;
-        if state.examined.as_ref().is_some_and(|examined| examined.samples >= NO_SPIKE) {
+        if state.examined.as_ref().is_some_and(|examined| examined.samples >= ROWS) {
             return Some(Reason::Jump);
         }
         if state.intake.is_astray() {

@@ -60,8 +60,6 @@ pub struct Monitor {
     tails: Tails,
     thresholds: Thresholds,
     full_pa: f64,
-    /// How the fill compares with the one that constants in pascals and kilograms are stated for.
-    scale: Scale,
     /// Errors of the observer's mass for this fill.
     mass_error: MassError,
     /// Mass that was stated and its standard deviation, kg.
@@ -233,7 +231,6 @@ impl Monitor {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: tails.thresholds(settings.false_alarm_interval_s)?,
             tails,
-            scale,
             mass_error: settings.mass_error.scaled(scale.mass),
             full_pa,
             filled_kg: (full_kg, commissioning.mass_sd * full_kg),

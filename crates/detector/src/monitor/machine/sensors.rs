@@ -36,9 +36,10 @@ impl Monitor {
         if self.roles.pair.is_some() {
             self.compare_thermometers(time_s, pair, events);
         }
-        let doubt_k = FLOW_DEVIATIONS * self.beside_the_gas_k(as_read);
+        let doubt =
+            (FLOW_DEVIATIONS * self.settings.observer.flow_doubt.part, self.beside_the_gas_k(as_read));
         let watches = &mut self.state.watches;
-        match self.state.pair.update(time_s, as_read, doubt_k, judged) {
+        match self.state.pair.update(time_s, as_read, doubt, judged) {
             None => {}
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
@@ -53,12 +54,12 @@ impl Monitor {
         }
     }
 
-    /// Error of one thermometer alone by what the surroundings do to the cylinder, standard deviation, K: a part of how far the nearer one is from the gas.
+    /// How far the nearer one is from the gas, K.
     fn beside_the_gas_k(&self, readings: [f64; 2]) -> f64 {
         let Some(flow) = self.observer.flow() else { return 0.0 };
         // Not a number counts for nothing.
         let nearest_k = readings.iter().map(|of| (of - flow.gas_mean_k).abs()).fold(f64::INFINITY, f64::min);
-        if nearest_k.is_finite() { self.settings.observer.flow_doubt.part * nearest_k } else { 0.0 }
+        if nearest_k.is_finite() { nearest_k } else { 0.0 }
     }
 
     fn compare_thermometers(&mut self, time_s: f64, pair: [usize; 2], events: &mut Vec<Event>) {

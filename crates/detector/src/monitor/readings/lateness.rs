@@ -19,10 +19,10 @@
 //! grid is that of the rows, but not below a minute.
 use std::collections::VecDeque;
 
+use crate::units::MINUTE_S;
 use serde::{Deserialize, Serialize};
 
 /// Shortest step of the grid, s, and the longest.
-const MINUTE_S: f64 = 60.0;
 const LONGEST_STEP_S: f64 = 300.0;
 /// Time over which rows are counted for it, s.
 const COUNTED_S: f64 = 3600.0;

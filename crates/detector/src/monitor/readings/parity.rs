@@ -9,13 +9,13 @@
 //! desert: with the deviation `s`, less 0.15 K, that was exceeded for half an hour a day in the two days until yesterday, all limits below are those of `|d| - s`. The evidence
 //! for a leak is divided by `sqrt(1 + ((|d| - s - 0.3 K) / (0.2 K + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
 //! one and a half hours give `d`, for as long again; beyond 2.5 the verdict is unknown; for six hours after it by what is left of that,
-//! as the observer needs its time to come back. Where `d` was above 0.5 K for three hours, the evidence from then counts for nothing
+//! as the observer needs its time to come back. Where `d` was above 0.6 K for three hours, the evidence from then counts for nothing
 //! once it is over.
 //!
 //! Which of the two is off the pressure says: with `T_p` the temperature at which the stated mass has this pressure,
 //! `a_i = T_i - T_p` less its usual value, or less that of an hour before, is `d` for the one that is off and nothing for the other.
 //! Sun, day and night, and a leak move both `a` alike (by 1 K from night to noon, as the thermometers sit outside), so it is named where
-//! `|d| > 0.6 K` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself may look the same for hours.
+//! `|d| > 0.6 K`, its own `|a| > 0.4 |d|` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself may look the same for hours.
 //! What stays within 0.3 K of itself for sixteen hours of the same one is an offset of that thermometer. A difference that nobody
 //! could be named for is the usual one after a day: either may have shifted.
 use std::collections::VecDeque;
@@ -23,50 +23,37 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use crate::monitor::median::{median, quantile};
+use crate::units::{DAY_S, HOUR_S};
 
-/// Length of a window, s, the change within it that is calm, K, and its fewest rows.
+/// Length of a window, s, and its fewest rows.
 const WINDOW_S: f64 = 600.0;
-const CALM_K: f64 = 0.6;
 const FEWEST_ROWS: u32 = 2;
-/// Time over which the usual difference is taken, s, and fewest windows.
-const USUAL_S: f64 = 48.0 * 3600.0;
-const FEWEST_USUAL: usize = 36;
-/// Windows whose median is the present difference, and time without one, s, after which nothing is known of it.
-const LATEST: usize = 3;
-const STALE_S: f64 = 3.0 * 3600.0;
-/// Difference that is usual, K, and difference beyond it that raises what is needed by 40 %, K.
+/// Difference that is usual, K, and twice that: what may change within a window that is calm, and the difference from which a thermometer is off.
 const HARMLESS_K: f64 = 0.3;
+const OFF_K: f64 = 2.0 * HARMLESS_K;
+/// Difference beyond the usual one that raises what is needed by 40 %, K.
 const SCALE_K: f64 = 0.2;
-/// Windows that are older than this, s, say how far the difference deviates on other days, and the part of them that deviates less.
-const YESTERDAY_S: f64 = 24.0 * 3600.0;
+/// Time over which the usual difference is taken, s, and fewest windows.
+const USUAL_S: f64 = 2.0 * DAY_S;
+const FEWEST_USUAL: usize = 36;
+/// Windows whose median is the present difference, and that agree on what is off; time without one after which nothing is known of it, and for which it is off until what was seen
+/// counts for nothing, s.
+const LATEST: usize = 3;
+const STALE_S: f64 = 3.0 * HOUR_S;
+/// Part of the windows of other days, those of yesterday and before, that deviates less than what is usual on some of them.
 const OTHER_DAYS: f64 = 0.98;
-/// Largest divisor: a leak of 1 bar/h is found beside whatever heater.
+/// Largest divisor: a leak of 1 bar/h is found beside whatever heater. Divisor beyond which nothing is known of small leaks, and that of a difference that is not known: in a tunnel nobody sees a kelvin.
 const LARGEST: f64 = 4.0;
-/// Time within which three calm windows say whether the difference is usual, s, and the divisor where they do not, until it is stale: in a tunnel nobody sees a kelvin.
-const KNOWN_S: f64 = 5400.0;
-const UNKNOWN: f64 = 1.3;
-/// Divisor beyond which nothing is known of small leaks.
 const BLIND: f64 = 2.5;
+const UNKNOWN: f64 = 1.3;
 /// Time constant with which it comes back, s.
-const BACK_S: f64 = 6.0 * 3600.0;
-/// Difference, K, and time, s, from which what was seen counts for nothing, and the difference at which it is over, K.
-const DISTURBED_K: f64 = 0.5;
-const DISTURBED_S: f64 = 3.0 * 3600.0;
-const OVER_K: f64 = 0.3;
-/// Time for which it is off until it is told, s, and the difference from which it is, K: from then on small leaks are not seen.
-const TOLD_S: f64 = 3600.0;
-const TOLD_K: f64 = 0.8;
-/// Difference from which one is named, K, windows running that name it, and parts of the difference that the other one may be off and it
-/// must be.
-const NAMED_K: f64 = 0.6;
-const NAMED_WINDOWS: u32 = 3;
-const OTHER_PART: f64 = 0.4;
-const OWN_PART: f64 = 0.5;
+const BACK_S: f64 = 6.0 * HOUR_S;
+/// Part of the difference that the one that is off has left what the pressure stands for by, at least, and the other one at most.
+const NAMED: f64 = 0.4;
 /// Windows before the last ones in which a leak makes little of it.
 const LATELY: usize = 6;
-/// Time for which the same one is named, s, with a difference within so much of its mean, K, until it is an offset.
-const LASTING_S: f64 = 16.0 * 3600.0;
-const LASTING_K: f64 = 0.3;
+/// Time for which the same one is named until it is an offset, s.
+const LASTING_S: f64 = 16.0 * HOUR_S;
 
 /// What changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,7 +139,7 @@ impl Window {
 
     /// Means, if it was calm; `gas_k` gives the temperature that a pressure, Pa, stands for near one, K.
     fn close(&self, gas_k: impl Fn(f64, f64) -> f64) -> Option<Calm> {
-        let calm = (0..2).all(|i| self.highest[i] - self.lowest[i] < CALM_K);
+        let calm = (0..2).all(|i| self.highest[i] - self.lowest[i] < OFF_K);
         if !calm || self.rows < FEWEST_ROWS {
             return None;
         }
@@ -201,7 +188,7 @@ impl Parity {
 
     /// What has changed with a row so long after the last one, s.
     fn tell(&mut self, elapsed_s: f64) -> Option<Disturbance> {
-        if self.unusual_k() > DISTURBED_K {
+        if self.unusual_k() > OFF_K {
             self.disturbed_s += elapsed_s;
         }
         if let Some(named) =
@@ -209,14 +196,14 @@ impl Parity {
         {
             return Some(Disturbance::Shifted(named.which, named.of_its_own(named.mean_k)));
         }
-        if self.disturbed_s > TOLD_S && self.unusual_k() > TOLD_K && !self.told {
+        if self.disturbed_s > HOUR_S && !self.told {
             self.told = true;
             return Some(Disturbance::Begun(self.off_k));
         }
-        if self.unusual_k() >= OVER_K {
+        if self.unusual_k() >= HARMLESS_K {
             return None;
         }
-        let forgotten = std::mem::take(&mut self.disturbed_s) > DISTURBED_S;
+        let forgotten = std::mem::take(&mut self.disturbed_s) > STALE_S;
         self.told = false;
         forgotten.then(|| Disturbance::Over(self.latest_k(|calm| calm.apart_k) - self.usual_k))
     }
@@ -224,7 +211,7 @@ impl Parity {
     fn compare(&mut self, calm: Calm) {
         self.calm.push_back(calm);
         let older = |than_s: f64| move |of: &Calm| of.begun_s < calm.begun_s - than_s;
-        while self.calm.front().is_some_and(older(USUAL_S + YESTERDAY_S)) {
+        while self.calm.front().is_some_and(older(USUAL_S + DAY_S)) {
             self.calm.pop_front();
         }
         let usual = self.calm.len() - self.calm.partition_point(older(USUAL_S));
@@ -235,7 +222,7 @@ impl Parity {
         }
         let before = self.calm.iter().rev().take(usual).skip(LATEST);
         let usual_k = median(before.map(|calm| calm.apart_k));
-        let yesterday = self.calm.partition_point(older(YESTERDAY_S));
+        let yesterday = self.calm.partition_point(older(DAY_S));
         let other_days = self.calm.range(..yesterday).map(|calm| (calm.apart_k - usual_k).abs());
         self.off_k = self.latest_k(|calm| calm.apart_k) - usual_k;
         self.spread_k = (quantile(OTHER_DAYS, other_days) - HARMLESS_K / 2.0).max(0.0);
@@ -246,7 +233,7 @@ impl Parity {
     }
 
     fn name(&mut self, time_s: f64) {
-        if self.unusual_k() < OVER_K {
+        if self.unusual_k() < HARMLESS_K {
             self.named = None;
             return;
         }
@@ -254,10 +241,10 @@ impl Parity {
         let is_off = |which: usize| off.contains(&Some(which));
         self.named = match self.named {
             // Once it is named, what the night makes of it names nobody else.
-            Some(named) if is_off(named.which) || named.windows >= NAMED_WINDOWS => {
+            Some(named) if is_off(named.which) || named.windows as usize >= LATEST => {
                 Some(named.goes_on(self.off_k))
             }
-            _ if self.unusual_k() < NAMED_K => None,
+            _ if self.unusual_k() < OFF_K => None,
             _ => off[0].or(off[1]).map(|which| Named::new(which, time_s, self.off_k)),
         };
     }
@@ -267,8 +254,8 @@ impl Parity {
         let above_k = [0, 1].map(|i| self.change_k(against, |calm| calm.above_k[i]));
         let which = usize::from(above_k[1].abs() > above_k[0].abs());
         // Not so without a pressure.
-        let agrees = above_k[1 - which].abs() < OTHER_PART * self.off_k.abs();
-        (agrees && above_k[which].abs() > OWN_PART * self.off_k.abs()).then_some(which)
+        let agrees = above_k[1 - which].abs() < NAMED * self.off_k.abs();
+        (agrees && above_k[which].abs() > NAMED * self.off_k.abs()).then_some(which)
     }
 
     /// Median over the last windows less that over so many before them.
@@ -283,7 +270,7 @@ impl Parity {
 
     /// A thermometer that is off while the other one agrees with the pressure, and by how much, K.
     pub fn deviating(&self) -> Option<(usize, f64)> {
-        let named = self.named.filter(|named| named.windows >= NAMED_WINDOWS)?;
+        let named = self.named.filter(|named| named.windows as usize >= LATEST)?;
         Some((named.which, named.of_its_own(self.off_k)))
     }
 
@@ -294,7 +281,7 @@ impl Parity {
 
     /// Whether the difference is the usual one, and has been for a while.
     pub fn is_usual(&self) -> bool {
-        self.unusual_k() < OVER_K && self.excess < 1.0
+        self.unusual_k() < HARMLESS_K && self.excess < 1.0
     }
 
     /// Whether nothing can be told of small leaks.
@@ -305,7 +292,8 @@ impl Parity {
     /// What the evidence for a leak is divided by.
     pub fn divisor(&self) -> f64 {
         let first = self.calm.len().checked_sub(LATEST).and_then(|at| self.calm.get(at));
-        let unknown = first.is_some_and(|first| (KNOWN_S..STALE_S).contains(&(self.last_s - first.begun_s)));
+        let unknown =
+            first.is_some_and(|first| (STALE_S / 2.0..STALE_S).contains(&(self.last_s - first.begun_s)));
         (1.0 + self.excess).max(if unknown { UNKNOWN } else { 1.0 })
     }
 
@@ -331,7 +319,7 @@ impl Named {
     fn goes_on(self, off_k: f64) -> Self {
         let windows = self.windows + 1;
         let mean_k = self.mean_k + (off_k - self.mean_k) / f64::from(windows);
-        Self { windows, mean_k, steady: self.steady && (off_k - mean_k).abs() < LASTING_K, ..self }
+        Self { windows, mean_k, steady: self.steady && (off_k - mean_k).abs() < HARMLESS_K, ..self }
     }
 }
 

@@ -4,70 +4,48 @@
 //! there, has changed its offset. A jump is what a reading adds to where the readings before lead, so that a tunnel in which both move
 //! steadily hides none:
 //!
-//! `s_k = T_n - T_{n-1} - (T_{n-1} - T_{n-1-k}) / k`, in samples that are evenly apart.
+//! `s = T_n - T_{n-1} - (T_{n-1} - T_{n-3}) / 2`, in samples that are evenly apart.
 //!
-//! It is lonely where `|s_2| > 0.7 K` and `|s_1| > 0.5 K` in a minute, those of the other one are below `0.05 |s| + 0.25 K` and
-//! `0.05 |s| + 0.35 K`, and not both were surprised by more than `0.1 |s| + 0.4 K` within the three samples before: at the mouth of a
-//! tunnel each bends in its own way. It is then not used until both have been calm for five samples, and is believed if their difference is by `(1 -+ 0.4) |s|` another one
-//! than it was when both were calm last: at the mouth of a tunnel it is what it was. After two hours without calm it is used again.
-//! One that jumps alone by 8 K again and again, or once by more than an offset can be, reads the air; so does one
-//! that is restless while the other one is not. For an hour after its jump a thermometer is not used: if it reads the air, it shows by then.
+//! It is lonely where `|s| > 0.7 K` in a minute and that of the other one is below `0.05 |s| + 0.25 K`. It is then not used until both have been calm for five samples, and is believed if
+//! their difference is by `(1 -+ 0.4) |s|` another one than it was when both were calm last: at the mouth of a tunnel, where each bends in its own way, it is what it was. After two hours
+//! without calm it is used again. One that jumps by more than an offset can, or is restless while the other one is not, reads the air. For an hour after its jump a
+//! thermometer is not used: if it reads the air, it shows by then.
 //!
-//! Readings in steps of `q` make up to `3 q` of the difference of two `s_2`: so much is added to what a jump is, and to what the other one may do; and a jump
-//! is at least 2.5 times what the other one may do, as at the mouth of a tunnel one bends twice as far as the other.
+//! Readings in steps of `q` make up to `3 q` of the difference of two `s`: so much is added to what a jump is. While the surroundings warm or cool the
+//! cylinder, what they do to one thermometer alone is in doubt: 0.44 of how far the nearer one is from the gas, and of how far both went in one of the last three samples (see
+//! the observer's flowing member). A jump is more than that.
 //!
-//! While the surroundings warm or cool the cylinder, what they do to one thermometer alone is in doubt (see the observer's flowing member): a jump is more than that.
-//!
-//! Noise of 0.05 K makes 0.09 K of `s_2` and 0.12 K of `s_1`; what is beside the parts is some three times that. How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
+//! Noise of 0.05 K makes 0.09 K of `s`; what is beside the parts is some three times that. How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
 //! and `fault_campaign` (row T2); see `book/src/measured.md`.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-/// Jump against the slope over two samples, and at least against that over one, K, in a minute: what a tunnel does grows with the interval.
+use crate::monitor::gas::jump::LONGEST_INTERVAL_S;
+use crate::units::{HOUR_S, MINUTE_S};
+
+/// Jump against the slope before, K, in a minute: what a tunnel does grows with the interval.
 const JUMP_K: f64 = 0.7;
-const JUMP_AT_LEAST_K: f64 = 0.5;
-const MINUTE_S: f64 = 60.0;
 /// Part of it by which the other thermometer may jump too, beside the noise of both differences, K.
 const ALONE: f64 = 0.05;
 const STILL_K: f64 = 0.25;
-const STILL_ONE_K: f64 = 0.35;
-/// Part of it by which both may have been surprised shortly before, and beside it, K.
-const SURPRISED: f64 = 0.1;
-const SURPRISED_K: f64 = 0.4;
-/// Least jump in parts of what the other one may do beside it.
-const APART: f64 = 2.5;
 /// Samples in which neither moves by more than this, K in a minute, that say how far they are apart, and time within which they must come after a jump, s.
 const CALM_SAMPLES: u32 = 5;
 const CALM_K: f64 = 0.15;
-const DECIDED_S: f64 = 7200.0;
+const DECIDED_S: f64 = 2.0 * HOUR_S;
 /// How far the change of the difference may be from the jump, as a part of it.
 const STEADY: f64 = 0.4;
-/// Part of it that is left when it has gone, beside the noise, K.
-const BACK: f64 = 0.2;
-const BACK_K: f64 = 0.15;
 /// Jump that no offset makes, K.
 const NO_OFFSET_K: f64 = 10.0;
-/// Lonely jumps of this size, K, within this time, s, that tell a thermometer which reads the air.
-const AIR_JUMP_K: f64 = 8.0;
-const DETACHED_JUMPS: usize = 4;
-const DETACHED_S: f64 = 86_400.0;
-/// Samples after a jump in which it is not used.
-const PROBATION: u32 = 60;
 /// Mean size of the second differences over so many samples, K, that is restless, where that of the other one is below a part of it; one
-/// counts no more than this, K.
+/// counts no more than five times that.
 const RESTLESS_K: f64 = 0.2;
 const RESTLESS_SAMPLES: f64 = 60.0;
 const RESTLESS_PART: f64 = 0.4;
-const RESTLESS_LARGEST_K: f64 = 1.0;
 /// Steps of a reading in the difference of two second differences at most.
 const STEPS: f64 = 3.0;
-/// Interval beyond which two samples are not compared, s.
-const LONGEST_INTERVAL_S: f64 = 900.0;
 /// Samples that slopes are taken from.
 const SAMPLES: usize = 3;
-/// Samples before a jump over which a surprise of both is remembered.
-const SURPRISE_SAMPLES: usize = 3;
 /// What both may have done while neither can be read, K.
 const UNSEEN_K: f64 = 5.0;
 
@@ -88,16 +66,13 @@ pub struct Pair {
     /// What their steps may make of a second difference, K.
     steps_k: f64,
     moved_k: f64,
-    surprises_k: VecDeque<f64>,
     /// The last samples: time, s, and readings, K.
     recent: VecDeque<(f64, [f64; 2])>,
     calm: Calm,
     suspect: Option<Suspect>,
-    /// Which one jumped last, and for how many samples it is not used yet.
-    probation: Option<(usize, u32)>,
+    /// Which one jumped last, and until when it is not used, s.
+    probation: Option<(usize, f64)>,
     restless_k: [f64; 2],
-    /// Times of the last lonely jumps of each, s.
-    jumps_s: [Vec<f64>; 2],
 }
 
 /// A thermometer under suspicion.
@@ -145,7 +120,6 @@ impl Pair {
     /// Compare nothing with the last readings.
     fn forget(&mut self) {
         self.recent.clear();
-        self.surprises_k.clear();
         (self.suspect, self.moved_k, self.calm) = (None, 0.0, Calm::default());
     }
 
@@ -154,9 +128,15 @@ impl Pair {
         self.moved_k
     }
 
-    /// Take in both readings, K, NaN where there is none, and what the surroundings may have done to one of them alone, K; not judged while other gas warms or cools
-    /// the one before the other.
-    pub fn update(&mut self, time_s: f64, readings: [f64; 2], doubt_k: f64, judged: bool) -> Option<Lonely> {
+    /// Take in both readings, K, NaN where there is none. The surroundings may do to one of them alone this part of what they do: of how far, K, the nearer one is from
+    /// the gas, and of how far both lately moved. Not judged while other gas warms or cools the one before the other.
+    pub fn update(
+        &mut self,
+        time_s: f64,
+        readings: [f64; 2],
+        (part, away_k): (f64, f64),
+        judged: bool,
+    ) -> Option<Lonely> {
         if self.recent.back().is_some_and(|(last_s, _)| time_s - last_s > LONGEST_INTERVAL_S) {
             self.forget();
         }
@@ -166,8 +146,10 @@ impl Pair {
         }
         self.be_calm(time_s, readings);
         let shown = match (self.suspect, second_k) {
-            (Some(suspect), _) => self.follow(suspect, time_s, readings),
-            (None, Some(second_k)) if judged => self.look_for_a_jump(time_s, second_k, doubt_k),
+            (Some(suspect), _) => self.follow(suspect, time_s),
+            (None, Some(second_k)) if judged => {
+                self.look_for_a_jump(time_s, second_k, part * away_k.max(self.shaken_k()))
+            }
             (None, _) => None,
         };
         self.recent.push_back((time_s, readings));
@@ -175,9 +157,9 @@ impl Pair {
             self.recent.pop_front();
         }
         if let Some(Lonely::Shifted(which, _)) = shown {
-            self.probation = Some((which, PROBATION));
+            self.probation = Some((which, time_s + HOUR_S));
         }
-        shown.or_else(|| self.restless(second_k?[0])).or_else(|| self.on_probation())
+        second_k.and_then(|second_k| self.restless(second_k)).or(shown).or_else(|| self.on_probation(time_s))
     }
 
     /// Whether one of them has jumped, and is not used yet.
@@ -185,73 +167,47 @@ impl Pair {
         self.probation.is_some()
     }
 
-    fn on_probation(&mut self) -> Option<Lonely> {
-        let (which, left) = self.probation?;
-        self.probation = (left > 1).then_some((which, left - 1));
-        Some(Lonely::Suspected(which))
+    fn on_probation(&mut self, time_s: f64) -> Option<Lonely> {
+        self.probation = self.probation.filter(|(_, until_s)| time_s < *until_s);
+        self.probation.map(|(which, _)| Lonely::Suspected(which))
     }
 
-    /// What this sample adds to the slopes over one sample and over two, K, NaN where there is none; also notes what both did.
-    fn second_differences(&mut self, time_s: f64, readings: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-        let mut latest = self.recent.iter().rev();
-        let &(last_s, last) = latest.next()?;
+    /// What this sample adds to the slopes before, K, NaN where there is none; also notes how far both moved.
+    fn second_differences(&mut self, time_s: f64, readings: [f64; 2]) -> Option<[f64; 2]> {
+        let &(last_s, last) = self.recent.back()?;
         let first = [0, 1].map(|i| readings[i] - last[i]);
         self.moved_k = smaller(first);
-        let against = |before: &(f64, [f64; 2]), samples: f64| {
-            // After a short interval a slope is mostly noise.
-            let along = ((time_s - last_s) / (last_s - before.0).max(f64::MIN_POSITIVE)).min(samples.recip());
-            [0, 1].map(|i| first[i] - along * (last[i] - before.1[i]))
-        };
-        let one = against(latest.next()?, 1.0);
-        let two = latest.next().map_or([f64::NAN; 2], |before| against(before, 2.0));
-        self.surprises_k.push_back(smaller(one));
-        if self.surprises_k.len() > SURPRISE_SAMPLES + 1 {
-            self.surprises_k.pop_front();
-        }
-        Some([one, two])
+        let &(before_s, before) = self.recent.front().filter(|_| self.recent.len() == SAMPLES)?;
+        // After a short interval a slope is mostly noise.
+        let along = ((time_s - last_s) / (last_s - before_s).max(f64::MIN_POSITIVE)).min(0.5);
+        Some([0, 1].map(|i| first[i] - along * (last[i] - before[i])))
     }
 
-    fn look_for_a_jump(
-        &mut self,
-        time_s: f64,
-        [one_k, two_k]: [[f64; 2]; 2],
-        doubt_k: f64,
-    ) -> Option<Lonely> {
+    /// How far both went in one of the last samples at most, K.
+    fn shaken_k(&self) -> f64 {
+        let later = self.recent.iter().skip(1);
+        let moved = self
+            .recent
+            .iter()
+            .zip(later)
+            .map(|((_, before), (_, now))| smaller([0, 1].map(|i| now[i] - before[i])));
+        moved.fold(self.moved_k, f64::max)
+    }
+
+    fn look_for_a_jump(&mut self, time_s: f64, second_k: [f64; 2], doubt_k: f64) -> Option<Lonely> {
         let (last_s, last) = *self.recent.back()?;
-        let which = usize::from(two_k[1].abs() > two_k[0].abs());
-        let (own_k, other_k) = (two_k[which], two_k[1 - which]);
+        let which = usize::from(second_k[1].abs() > second_k[0].abs());
+        let (own_k, other_k) = (second_k[which], second_k[1 - which]);
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);
-        let beside_k = |part: f64, noise_k: f64| part * own_k.abs() + noise_k;
-        let steps_k = self.steps_k;
-        let least_k = (JUMP_K * minutes + steps_k).max(APART * (STILL_K + steps_k)).max(doubt_k);
-        let jumps = own_k.abs().min((own_k - other_k).abs()) > least_k
-            && one_k[which].abs() > JUMP_AT_LEAST_K * minutes + steps_k;
+        let jumps = own_k.abs().min((own_k - other_k).abs()) > (JUMP_K * minutes + self.steps_k).max(doubt_k);
         // Not so where one of them is no number.
-        let still = other_k.abs() < beside_k(ALONE, STILL_K + steps_k)
-            && one_k[1 - which].abs() < beside_k(ALONE, STILL_ONE_K + steps_k);
-        let surprised =
-            largest(&self.surprises_k, 1..SURPRISE_SAMPLES + 1) > beside_k(SURPRISED, SURPRISED_K) * minutes;
-        if !jumps || !still || surprised {
+        let alone = other_k.abs() < ALONE * own_k.abs() + STILL_K;
+        if !jumps || !alone {
             return None;
         }
-        self.suspect = Some(Suspect {
-            which,
-            jump_k: own_k - other_k,
-            since_s: time_s,
-            apart_k: self.calm.since(f64::NEG_INFINITY).unwrap_or(last[0] - last[1]),
-        });
-        if own_k.abs() < AIR_JUMP_K {
-            return Some(Lonely::Suspected(which));
-        }
-        let jumps = &mut self.jumps_s[which];
-        jumps.retain(|at_s| time_s - at_s < DETACHED_S && *at_s <= last_s);
-        jumps.push(time_s);
-        if jumps.len() < DETACHED_JUMPS {
-            return Some(Lonely::Suspected(which));
-        }
-        jumps.clear();
-        self.suspect = None;
-        Some(Lonely::Detached(which))
+        let apart_k = self.calm.since(f64::NEG_INFINITY).unwrap_or(last[0] - last[1]);
+        self.suspect = Some(Suspect { which, jump_k: own_k - other_k, since_s: time_s, apart_k });
+        Some(Lonely::Suspected(which))
     }
 
     /// Note how far both are apart while neither moves.
@@ -262,17 +218,17 @@ impl Pair {
         self.calm.push(time_s, readings[0] - readings[1], is_calm);
     }
 
-    fn follow(&mut self, suspect: Suspect, time_s: f64, readings: [f64; 2]) -> Option<Lonely> {
+    fn follow(&mut self, suspect: Suspect, time_s: f64) -> Option<Lonely> {
         let Suspect { which, jump_k, since_s, apart_k } = suspect;
-        let changed_k = |now_k: f64| if which == 0 { now_k - apart_k } else { apart_k - now_k };
-        let is_back = changed_k(readings[0] - readings[1]).abs() < BACK * jump_k.abs() + BACK_K;
-        let by_k = self.calm.since(since_s).map(changed_k);
-        let decided = is_back || by_k.is_some() || time_s - since_s > DECIDED_S;
-        if !decided {
+        let calm_k = self.calm.since(since_s);
+        if calm_k.is_none() && time_s - since_s <= DECIDED_S {
             return Some(Lonely::Suspected(which));
         }
         self.suspect = None;
-        let by_k = by_k.filter(|by_k| !is_back && (by_k - jump_k).abs() < STEADY * jump_k.abs())?;
+        let by_k = if which == 0 { calm_k? - apart_k } else { apart_k - calm_k? };
+        if (by_k - jump_k).abs() > STEADY * jump_k.abs() {
+            return None;
+        }
         Some(if by_k.abs() < NO_OFFSET_K { Lonely::Shifted(which, by_k) } else { Lonely::Detached(which) })
     }
 
@@ -281,18 +237,13 @@ impl Pair {
             return None;
         }
         for (mean, second) in self.restless_k.iter_mut().zip(second_k) {
-            *mean += (second.abs().min(RESTLESS_LARGEST_K) - *mean) / RESTLESS_SAMPLES;
+            *mean += (second.abs().min(5.0 * RESTLESS_K) - *mean) / RESTLESS_SAMPLES;
         }
         let which = usize::from(self.restless_k[1] > self.restless_k[0]);
         let (own_k, other_k) = (self.restless_k[which], self.restless_k[1 - which]);
         (own_k > RESTLESS_K + self.steps_k && other_k < RESTLESS_PART * own_k)
             .then_some(Lonely::Detached(which))
     }
-}
-
-/// Largest within samples, counted back from the last one.
-fn largest(of: &VecDeque<f64>, samples: std::ops::Range<usize>) -> f64 {
-    of.iter().rev().skip(samples.start).take(samples.len()).copied().fold(0.0, f64::max)
 }
 
 /// Smaller size of two changes, of which one may be none.
@@ -313,7 +264,7 @@ mod tests {
         (0..600)
             .filter_map(|minute| {
                 let t = f64::from(minute);
-                pair.update(60.0 * t, [shoulder(t), valve(t)], 0.0, true)
+                pair.update(60.0 * t, [shoulder(t), valve(t)], (0.44, 0.0), true)
             })
             .filter(|lonely| !matches!(lonely, Lonely::Suspected(_)))
             .collect()
@@ -344,7 +295,10 @@ mod tests {
             let mut pair = Pair::default();
             let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
             (0..200).map(f64::from).any(|t| {
-                matches!(pair.update(60.0 * t, [step(t), 280.5], doubt_k, true), Some(Lonely::Shifted(0, _)))
+                matches!(
+                    pair.update(60.0 * t, [step(t), 280.5], (1.0, doubt_k), true),
+                    Some(Lonely::Shifted(0, _))
+                )
             })
         };
         assert!(shifts(0.9) && !shifts(1.1));

@@ -6,7 +6,9 @@ use serde_json::Value;
 use super::{Candidate, Contender, Row, overlaid};
 use crate::detector::evidence::Tails;
 use crate::detector::monitor::alarm::{AlarmName, AlarmSettings};
-use crate::detector::monitor::{Health, LIKELY, Monitor, MonitorSettings, Outcome as Loss, Output};
+use crate::detector::monitor::{
+    EventKind, Health, LIKELY, Monitor, MonitorSettings, Outcome as Loss, Output,
+};
 use crate::estimator::observer::Outcome;
 use crate::judge::JudgeError;
 use crate::judge::measures::Class;
@@ -178,8 +180,14 @@ impl Monitored {
             reaction: decided.reaction,
             exit_code: if self.was_lost { 1 } else { decided.outcome.exit_code() },
             sensor_named: class == Class::SensorFault || output.health.iter().any(is_named),
+            exchange: matches!(class, Class::Discharge | Class::Refill)
+                || output.events.iter().any(|event| is_exchange(&event.kind)),
         }
     }
+}
+
+fn is_exchange(kind: &EventKind) -> bool {
+    matches!(kind, EventKind::Discharge(_) | EventKind::Refill(_))
 }
 
 fn estimates(output: &Output) -> Estimates {

@@ -99,15 +99,14 @@ impl FaultWatch {
         if since_s < 0.0 {
             return;
         }
-        let exchange = matches!(decision.class, Class::Discharge | Class::Refill);
         let leaks = self.leak_onset_s.is_some_and(|onset_s| moment.now_s >= onset_s);
         self.leak_found |= leaks && (decision.loss || decision.says_leak());
         self.last_unknown = decision.class == Class::Unknown;
         self.leak |= decision.says_leak() && !leaks;
         self.loss |= decision.loss && !leaks;
         // A leak that is fast enough may be called a discharge.
-        self.exchange |= exchange && !(leaks && decision.class == Class::Discharge);
-        self.soon |= exchange && since_s <= RECOGNISED_S;
+        self.exchange |= decision.exchange && !(leaks && decision.class == Class::Discharge);
+        self.soon |= decision.exchange && since_s <= RECOGNISED_S;
         self.named |= decision.sensor_named;
         self.named_soon |= decision.sensor_named && since_s <= DAY_S;
         self.unknown_soon |= decision.class == Class::Unknown && moment.period == 1 && since_s <= DAY_S;

@@ -1,58 +1,55 @@
 //! Whether a pressure has jumped; the rule stands in [`super`].
+use crate::units::MINUTE_S;
 use serde::{Deserialize, Serialize};
 
-/// Change of the innovation that is a jump, Pa, beside so many usual changes, and so many steps of the transmitter,
-const JUMP_PA: f64 = 0.12e5;
+/// Change of the innovation that is a jump, as a part of the full pressure, beside so many usual changes, and so many steps of the transmitter.
+const JUMP: f64 = 6e-4;
 const JUMP_PER_USUAL: f64 = 4.0;
 const JUMP_PER_STEP: f64 = 1.2;
-/// Samples over which the usual change is a mean, and the largest that counts, Pa.
+/// Samples over which the usual change is a mean.
 const USUAL_SAMPLES: f64 = 300.0;
-const MINUTE_S: f64 = 60.0;
-const USUAL_LARGEST_PA: f64 = 1e5;
-/// Part of it that the reading's second difference makes at least.
-const BY_READING: f64 = 0.6;
-/// Part of it that is left against the sample before the last, below which it only returns.
-const RETURNED: f64 = 0.4;
+/// Largest change that counts for it, as a part of the full pressure.
+pub const USUAL_LARGEST: f64 = 5e-3;
+/// Part of it that the reading itself makes at least, and that is left against the sample before the last where it does not only return.
+const HALF: f64 = 0.5;
 /// Interval beyond which two innovations are not compared, s.
-const LONGEST_INTERVAL_S: f64 = 900.0;
+pub const LONGEST_INTERVAL_S: f64 = 900.0;
 
 /// Watches the innovations of the pressure for a jump.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JumpWatch {
     last: Option<Innovated>,
-    /// Slope of the reading to it, Pa/s, and the interval, s; the innovation before it, Pa.
-    slope_pa_s: f64,
-    interval_s: f64,
-    before_pa: f64,
-    /// Usual change of the innovation in a minute, Pa.
-    usual_pa: f64,
+    /// Innovation before it.
+    before: f64,
+    /// Usual change of the innovation in a minute.
+    usual: f64,
 }
 
-/// A reading and what was expected.
+/// A reading and what was expected, as parts of the full pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Innovated {
     /// Time, s.
     pub time_s: f64,
-    /// Reading, Pa.
-    pub reading_pa: f64,
-    /// Reading less what was expected, Pa.
-    pub innovation_pa: f64,
-    /// Largest change of the innovation by the surroundings since the reading before, Pa.
-    pub doubt_pa: f64,
+    /// Reading.
+    pub reading: f64,
+    /// Reading less what was expected.
+    pub innovation: f64,
+    /// Largest change of the innovation by the surroundings since the reading before.
+    pub doubt: f64,
 }
 
 impl Default for JumpWatch {
     /// Of a transmitter and a thermometer of which nothing is known.
     fn default() -> Self {
-        Self { last: None, slope_pa_s: 0.0, interval_s: 0.0, before_pa: f64::NAN, usual_pa: JUMP_PA }
+        Self { last: None, before: f64::NAN, usual: JUMP }
     }
 }
 
 impl JumpWatch {
-    /// Take in a reading. `step_pa` is the resolution of the transmitter, Pa; `part` the relative uncertainty of a change of the expected
+    /// Take in a reading. `step` is the resolution of the transmitter; `part` the relative uncertainty of a change of the expected
     /// pressure. Returns the innovation before the reading if the reading is a jump.
-    pub fn notice(&mut self, now: Innovated, step_pa: f64, part: f64) -> Option<f64> {
-        if !(now.reading_pa.is_finite() && now.innovation_pa.is_finite()) {
+    pub fn notice(&mut self, now: Innovated, step: f64, part: f64) -> Option<f64> {
+        if !(now.reading.is_finite() && now.innovation.is_finite()) {
             return None;
         }
         let last = self.last.replace(now)?;
@@ -60,30 +57,32 @@ impl JumpWatch {
         if interval_s > LONGEST_INTERVAL_S {
             return None;
         }
-        let change_pa = now.innovation_pa - last.innovation_pa;
-        let by_reading_pa = now.reading_pa - last.reading_pa;
-        // A slope leads no farther than the interval that it was taken over.
-        let second_pa = by_reading_pa - self.slope_pa_s * interval_s.min(self.interval_s);
-        self.slope_pa_s = if interval_s > 0.0 { by_reading_pa / interval_s } else { 0.0 };
-        self.interval_s = interval_s;
+        let change = now.innovation - last.innovation;
+        let by_reading = now.reading - last.reading;
         // The errors walk: they change by more in a longer interval.
         let grown = (interval_s / MINUTE_S).max(1.0).sqrt();
         // What goes back to where it was has taken in a jump that was not noticed: the other way it would be believed.
-        let before_pa = std::mem::replace(&mut self.before_pa, last.innovation_pa);
-        let returns = (now.innovation_pa - before_pa).abs() < RETURNED * change_pa.abs();
-        let limit_pa = JUMP_PA
-            + JUMP_PER_USUAL * self.usual_pa * grown
-            + JUMP_PER_STEP * step_pa
-            + now.doubt_pa
-            + part * (by_reading_pa - change_pa).abs();
-        self.usual_pa += ((change_pa.abs() / grown).min(USUAL_LARGEST_PA) - self.usual_pa) / USUAL_SAMPLES;
-        let read = second_pa * change_pa.signum() > BY_READING * change_pa.abs();
-        (read && !returns && change_pa.abs() > limit_pa).then_some(last.innovation_pa)
+        let before = std::mem::replace(&mut self.before, last.innovation);
+        let returns = (now.innovation - before).abs() < HALF * change.abs();
+        let limit = JUMP
+            + JUMP_PER_USUAL * self.usual * grown
+            + JUMP_PER_STEP * step
+            + now.doubt
+            + part * (by_reading - change).abs();
+        self.usual += ((change.abs() / grown).min(USUAL_LARGEST) - self.usual) / USUAL_SAMPLES;
+        // What the expectation alone did is the model's.
+        let read = by_reading * change.signum() > HALF * change.abs();
+        (read && !returns && change.abs() > limit).then_some(last.innovation)
+    }
+
+    /// A jump was none, or the transmitter's: go on after this reading.
+    pub fn go_on(&mut self, last: Innovated) {
+        *self = Self { usual: self.usual, last: Some(last), ..Self::default() };
     }
 
     /// Forget the last reading.
     pub fn forget(&mut self) {
-        *self = Self { usual_pa: self.usual_pa, ..Self::default() };
+        *self = Self { usual: self.usual, ..Self::default() };
     }
 }
 
@@ -99,7 +98,10 @@ mod tests {
         innovation_pa: f64,
         doubt_pa: f64,
     ) -> Option<f64> {
-        watch.notice(Innovated { time_s: MINUTE_S * minute, reading_pa, innovation_pa, doubt_pa }, 0.0, 0.4)
+        let [reading, innovation, doubt] = [reading_pa, innovation_pa, doubt_pa].map(|pa| pa / 200e5);
+        let before =
+            watch.notice(Innovated { time_s: MINUTE_S * minute, reading, innovation, doubt }, 0.0, 0.4);
+        before.map(|before| 200e5 * before)
     }
 
     /// A watch that has seen a thousand quiet rows, so many minutes apart.
