@@ -50,6 +50,7 @@ use rapid::MissingMass;
 pub(crate) use restless::Restless;
 pub use tail::{Tail, Tails};
 pub use thresholds::Thresholds;
+
 /// Time constants of the low-passes of the rate, s.
 const LOW_PASS_S: [f64; 3] = [4.0 * HOUR_S, 24.0 * HOUR_S, 96.0 * HOUR_S];
 /// Time constant of the low-pass behind the slowest of them, s.

@@ -4,8 +4,10 @@
 //! What is beyond two usual deviations counts as two, so that a leak of any size takes days to become usual (winsorised variance). A quarter of the prior stays for
 //! ever: in a workshop nothing moves for weeks, which says nothing of what moves slowly, as a transmitter's drift does. Constants were chosen on worlds of the families
 //! that tune (`tails` of `cylwatch-evaluation`).
-use crate::units::DAY_S;
 use serde::{Deserialize, Serialize};
+
+use crate::units::DAY_S;
+
 /// Time for which the prior counts, and memory, s.
 const PRIOR_S: f64 = 3.0 * DAY_S;
 const MEMORY_S: f64 = 5.0 * DAY_S;

@@ -10,6 +10,7 @@ use crate::estimator::observer::ObserverSettings;
 use crate::evidence::Tails;
 use crate::prognosis::{ISO_14520_LOSS, LossLaw, ReactionSettings};
 use crate::units::HOUR_S;
+
 /// Mean year, s.
 pub const YEAR_S: f64 = 365.25 * 86_400.0;
 

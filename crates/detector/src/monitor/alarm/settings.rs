@@ -5,6 +5,7 @@ use super::{Alarm, ExclusiveLimit, Limit, OffNormal, Timing};
 use crate::DetectorError;
 use crate::prognosis::ISO_14520_LOSS;
 use crate::units::{BAR_PA, DAY_S, HOUR_S, MINUTE_S};
+
 /// Warning above the operational limit, and deadbands, as parts of it: 5 bar and 1 bar at 160 bar.
 const WARNING: f64 = 5.0 / 160.0;
 const DEADBAND: f64 = 1.0 / 160.0;

@@ -305,6 +305,15 @@ mod tests {
     }
 
     #[test]
+    fn three_readings_far_off_are_no_gas_and_four_are() {
+        let spikes =
+            |rows: f64| move |minute: f64| if minute % 60.0 < rows && minute > 60.0 { 50e5 } else { 100e5 };
+        assert_eq!(certain(|minute| (spikes(3.0)(minute), (300.0, 300.0))), None);
+        let told = certain(|minute| (spikes(4.0)(minute), (300.0, 300.0)));
+        assert!(matches!(told, Some((_, Certain::Out))), "{told:?}");
+    }
+
+    #[test]
     fn one_reading_far_off_is_no_gas() {
         let spikes = |minute: f64| 100e5 * if minute % 7.0 == 3.0 { 0.5 } else { 1.0 };
         assert_eq!(certain(|minute| (spikes(minute), (300.0, 300.0))), None);

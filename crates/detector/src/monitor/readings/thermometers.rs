@@ -358,6 +358,19 @@ mod tests {
     }
 
     #[test]
+    fn what_bends_just_after_both_were_shaken_is_no_jump() {
+        // As simulated: a train leaves a warm tunnel, and sun keeps the shoulder 0.9 K warmer than the valve from then on.
+        let of = |mouth: [f64; 4], t: f64, after_k: f64| match t - 100.0 {
+            at if at < 0.0 => 280.0,
+            at if at < 4.0 => mouth[at as usize],
+            _ => after_k,
+        };
+        let (shoulder, valve) = ([312.0, 312.82, 305.4, 303.58], [316.42, 316.95, 308.72, 305.06]);
+        let courses = course(|t| of(shoulder, t, 300.9), |t| of(valve, t, 300.0));
+        assert_eq!(courses, []);
+    }
+
+    #[test]
     fn noise_of_the_other_one_hides_no_jump() {
         let step = |t: f64| if t >= 100.0 { 279.0 } else { 280.0 };
         let noise = |t: f64| [0.08, -0.1, 0.07][t as usize % 3];

@@ -105,7 +105,7 @@ impl FaultWatch {
         self.leak |= decision.says_leak() && !leaks;
         self.loss |= decision.loss && !leaks;
         // A leak that is fast enough may be called a discharge.
-        self.exchange |= decision.exchange && !(leaks && decision.class == Class::Discharge);
+        self.exchange |= decision.exchange && !(leaks && decision.class != Class::Refill);
         self.soon |= decision.exchange && since_s <= RECOGNISED_S;
         self.named |= decision.sensor_named;
         self.named_soon |= decision.sensor_named && since_s <= DAY_S;

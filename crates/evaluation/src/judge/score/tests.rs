@@ -179,6 +179,16 @@ fn a_statement_that_flickers_is_one_episode_and_one_an_hour_later_another() {
 }
 
 #[test]
+fn an_exchange_that_is_told_by_an_event_alone_counts() {
+    let puffs = toy(|_, row| {
+        let exchange = row.stamp_s == 2.0 * HOUR_S;
+        Said { decision: Some(Decision { exchange, ..decided(Class::Tight) }), ..Said::default() }
+    });
+    let score = watch(&world(&request(Overlay::Nothing, 6.0)), puffs.as_ref()).score.unwrap();
+    assert_eq!(score.episodes.unwrap().exchange.count, [1, 0]);
+}
+
+#[test]
 fn a_candidate_that_fails_or_panics_has_no_score_and_a_reason() {
     let panics = toy(|_, row| {
         assert!(row.stamp_s < 600.0, "no more");

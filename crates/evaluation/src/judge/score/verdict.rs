@@ -86,7 +86,7 @@ impl Verdicts {
         self.last = Some(decision.class);
         self.loss.take(moment, decision.loss || decision.says_leak());
         self.leak.take(moment, decision.says_leak());
-        self.exchange.take(moment, matches!(decision.class, Class::Discharge | Class::Refill));
+        self.exchange.take(moment, decision.exchange);
         self.sensor_fault.take(moment, decision.class == Class::SensorFault);
     }
 

@@ -461,6 +461,59 @@ mod tests {
     }
 
     #[test]
+    fn an_error_of_the_model_that_goes_on_is_told_at_once() {
+        let mut examination = Examination::new(0.0, 5.5e-3, 1e-4, 1200.0);
+        let fades = |minutes: f64| 1.1 * (-minutes / 20.0).exp() + 0.02;
+        let mut causes =
+            (0..10).map(f64::from).map(|minutes| examination.push(sample(minutes, fades(minutes), 0.3)));
+        assert_eq!(causes.find(|cause| *cause != Cause::Open), Some(Cause::Passed));
+    }
+
+    /// Causes of all courses of six readings that begin with a spike, with the readings, bar.
+    fn of_all_spikes() -> impl Iterator<Item = (Vec<f64>, Vec<Cause>)> {
+        (0..2 * 3_usize.pow(5)).map(|course| {
+            let first = if course % 2 == 0 { 50.0 } else { -50.0 };
+            let later = (0..5).map(|n| [0.0, 50.0, -50.0][course / 2 / 3_usize.pow(n) % 3]);
+            let readings: Vec<f64> = std::iter::once(first).chain(later).collect();
+            let mut examination = begun(0.0);
+            let mut push = |(minute, bar): (usize, &f64)| examination.push(sample(minute as f64, *bar, 0.0));
+            let causes = readings.iter().enumerate().map(&mut push).collect();
+            (readings, causes)
+        })
+    }
+
+    #[test]
+    fn an_examination_never_ends_on_a_spike() {
+        // Again when all has come to rest, and is not sure.
+        let spikes =
+            |minutes: f64| if minutes == 0.0 || (25.0..28.0).contains(&minutes) { 50.0 } else { 0.0 };
+        for tenths in 1..60 {
+            let considered_bar = 0.1 * f64::from(tenths);
+            let mut examination = begun(considered_bar);
+            let mut causes = (0..40).map(f64::from).map(|minutes| {
+                (spikes(minutes), examination.push(sample(minutes, spikes(minutes), considered_bar)))
+            });
+            let end = causes.find(|(_, cause)| !matches!(cause, Cause::Open | Cause::Flowing));
+            assert!(
+                matches!(end, Some((0.0, Cause::Spike | Cause::Passed))),
+                "{considered_bar} bar: {end:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn pairs_of_spikes_with_a_good_reading_between_are_no_flow() {
+        for (readings, causes) in of_all_spikes() {
+            let longest = readings.chunk_by(|a, b| a == b).filter(|of| of[0] != 0.0).map(<[f64]>::len).max();
+            // One that follows another one of the other sign at once is taken for gas for a reading.
+            let crosses = readings.windows(2).any(|of| of[0] * of[1] < 0.0);
+            if longest <= Some(2) && !crosses {
+                assert!(!causes.contains(&Cause::Flowing), "{readings:?}: {causes:?}");
+            }
+        }
+    }
+
+    #[test]
     fn what_was_seen_before_the_surroundings_moved_decides() {
         // Gas let out nine minutes before a tunnel that throws the shadow off.
         let course = |minute: f64| {

@@ -1,6 +1,7 @@
 //! Whether a pressure has jumped; the rule stands in [`super`].
-use crate::units::MINUTE_S;
 use serde::{Deserialize, Serialize};
+
+use crate::units::MINUTE_S;
 
 /// Change of the innovation that is a jump, as a part of the full pressure, beside so many usual changes, and so many steps of the transmitter.
 const JUMP: f64 = 6e-4;
@@ -145,6 +146,13 @@ mod tests {
             noticed(&mut accustomed(184e5, 1.0), 0.0, 184e5 + rise_pa - 1.9e5, -1.9e5, 0.0).is_some()
         };
         assert!(!jumps(5e5) && jumps(0.0));
+    }
+
+    #[test]
+    fn the_first_reading_after_an_examination_may_jump_again() {
+        let mut watch = accustomed(200e5, 1.0);
+        watch.go_on(Innovated { time_s: 0.0, reading: 1.0, innovation: 0.0, doubt: 0.0 });
+        assert!(noticed(&mut watch, 1.0, 250e5, 50e5, 0.0).is_some());
     }
 
     #[test]
