@@ -456,6 +456,13 @@ impl Observer {
         }
     }
 
+    /// The observer as it is now, in the memory of another snapshot of it.
+    pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
+        snapshot.bank.copy_from(&self.bank);
+        snapshot.clock.clone_from(&self.clock);
+        snapshot.warm_start = self.cylinder.warm_start();
+    }
+
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.bank.copy_from(&snapshot.bank);

@@ -40,7 +40,6 @@ impl Monitor {
         let undisturbed = &mut self.state.undisturbed;
         if std::mem::take(&mut undisturbed.returning) {
             self.observer.end_exchange();
-            self.state.rewind.begin(&self.observer);
             self.state.look = (time_s + LOOK_S, Reason::Settling);
             undisturbed.due_s = time_s + BETWEEN_S;
         } else if time_s >= undisturbed.due_s && self.state.parity.is_usual() {

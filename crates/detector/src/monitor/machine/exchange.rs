@@ -61,13 +61,13 @@ impl Monitor {
             let estimate = self.observer.step(time_s, &self.usable)?;
             return self.examine(estimate, events);
         }
+        self.keep_for_the_way_back();
         let before_kg = self.masses_kg();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
         if self.blindness(time_s).is_some() {
             // Without a temperature every change of the air is a change of the pressure.
             self.state.jumps.forget();
-            self.state.rewind.taken(&self.observer, time_s, &self.usable);
             return Ok(estimate);
         }
         if estimate.quality == Quality::Restarted
@@ -97,7 +97,6 @@ impl Monitor {
         {
             return self.take_across(time_s, innovation, before_kg, events);
         }
-        self.state.rewind.taken(&self.observer, time_s, &self.usable);
         Ok(estimate)
     }
 
@@ -166,7 +165,6 @@ impl Monitor {
             (flow.mass_kg - held_kg.fold(flow.mass_kg, f64::min)).max(least_kg)
         };
         self.observer.follow_the_flow();
-        self.state.rewind.begin(&self.observer);
         self.state.jumps.forget();
         self.state.bounds.gone(certain);
         self.state.flowed_s = time_s;
@@ -185,11 +183,10 @@ impl Monitor {
 
     /// The present row once more, with nothing known of the gas.
     fn step_anew(&mut self, time_s: f64) -> Result<Estimate, DetectorError> {
-        self.go_back()?;
+        self.go_back();
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
-        self.state.rewind.begin(&self.observer);
         Ok(estimate)
     }
 
@@ -248,7 +245,7 @@ impl Monitor {
         before_kg: f64,
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
-        self.go_back()?;
+        self.go_back();
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let examination =
@@ -265,12 +262,20 @@ impl Monitor {
         }
     }
 
-    /// Both observers as they were before the present row.
-    fn go_back(&mut self) -> Result<(), DetectorError> {
-        if self.state.rewind.restore(&mut self.shadow, self.usable.len())? {
-            self.observer.restore(&self.shadow.snapshot());
+    /// The observer as it is now is the one to go back to: before each row, and after an examination.
+    fn keep_for_the_way_back(&mut self) {
+        match &mut self.before {
+            Some(before) => self.observer.snapshot_into(before),
+            before => *before = Some(self.observer.snapshot()),
         }
-        Ok(())
+    }
+
+    /// Both observers as they were before the present row.
+    fn go_back(&mut self) {
+        if let Some(before) = &self.before {
+            self.observer.restore(before);
+            self.shadow.restore(before);
+        }
     }
 
     /// A sample of a jump: what it shows, and what follows.
@@ -316,7 +321,7 @@ impl Monitor {
             }
         }
         self.state.examined = None;
-        self.state.rewind.begin(&self.observer);
+        self.keep_for_the_way_back();
         Ok(if matches!(cause, Cause::Gas | Cause::Unclear) { estimate } else { blind })
     }
 
@@ -381,7 +386,6 @@ impl Monitor {
         if let Some((onset_s, gain_kg)) = self.state.gains.push(time_s, mass_kg, self.filled_kg.0) {
             self.observer.begin_exchange();
             self.observer.end_exchange();
-            self.state.rewind.begin(&self.observer);
             self.exchanged(time_s, onset_s, gain_kg, false, events);
         }
     }
@@ -402,7 +406,7 @@ impl Monitor {
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         let silent_since_s = self.state.last_s;
-        self.go_back()?;
+        self.go_back();
         self.observer.begin_exchange();
         let estimate = self.observer.step(time_s, &self.usable)?;
         self.observer.end_exchange();
@@ -411,7 +415,6 @@ impl Monitor {
             // It may be another bottle, with sensors of its own.
             (0..self.usable.len()).for_each(|sensor| self.observer.renew(sensor));
         }
-        self.state.rewind.begin(&self.observer);
         if gained {
             let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
             self.exchanged(time_s, silent_since_s, change_kg.max(0.0), false, events);

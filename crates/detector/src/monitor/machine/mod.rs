@@ -3,7 +3,6 @@ mod disturbance;
 mod exchange;
 mod judgement;
 mod output;
-mod rewind;
 mod sensors;
 mod wiring;
 
@@ -11,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use self::disturbance::Undisturbed;
 use self::exchange::{Examined, Exchanged};
-use self::rewind::Rewind;
 use super::alarm::{AlarmEvent, AlarmPanel};
 use super::gas::bounds::GasBounds;
 use super::gas::contents::Tangent;
@@ -79,6 +77,8 @@ pub struct Monitor {
     /// Of the present row.
     usable: Vec<f64>,
     leaks: Vec<Leak>,
+    /// The observer before the present row.
+    before: Option<Snapshot>,
 }
 
 /// All that a row changes, but for the observers.
@@ -101,7 +101,6 @@ struct State {
     bounds: GasBounds,
     gains: GainWatch,
     examined: Option<Examined>,
-    rewind: Rewind,
     leak: LeakState,
     evidence: Evidence,
     /// Pressure was lost across a gap.
@@ -205,7 +204,6 @@ impl Monitor {
             bounds: GasBounds::default(),
             gains: GainWatch::default(),
             examined: None,
-            rewind: Rewind::default(),
             leak: LeakState::default(),
             evidence: Evidence::try_new(&settings.observer)?,
             lost_across: false,
@@ -244,6 +242,7 @@ impl Monitor {
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
             leaks: Vec::with_capacity(settings.observer.bank.len()),
+            before: None,
             settings: settings.clone(),
             vessel: vessel.clone(),
             contents,

@@ -10,9 +10,8 @@ use crate::monitor::readings::parity::Disturbance;
 use crate::monitor::readings::thermometers::Lonely;
 use crate::monitor::{Event, EventKind};
 
-/// Standard deviation of a thermometer's offset after it jumped, K and as a part of the jump.
+/// Standard deviation of a thermometer's offset after it jumped, beside the jump, K.
 const JUMPED_K: f64 = 0.5;
-const JUMPED_PART: f64 = 0.1;
 /// Time without use after which a thermometer counts as missing, s.
 const DEGRADED_AFTER_S: f64 = 3600.0;
 
@@ -31,8 +30,7 @@ impl Monitor {
         let Some(pair) = self.roles.pair.or(one) else { return };
         // Gas that comes in or goes out warms or cools the shoulder before the valve.
         let judged = self.roles.pair.is_some() && !self.state.is_exchanging(time_s);
-        let watches = &self.state.watches;
-        let as_read = pair.map(|sensor| self.usable[sensor] + watches[sensor].correction());
+        let as_read = pair.map(|sensor| self.usable[sensor]);
         if self.roles.pair.is_some() {
             self.compare_thermometers(time_s, pair, events);
         }
@@ -43,9 +41,8 @@ impl Monitor {
             None => {}
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
-                self.take_off(pair[which], by_k);
+                self.let_shift(pair[which], by_k);
                 self.state.undisturbed = Undisturbed::default();
-                self.state.rewind.begin(&self.observer);
             }
             Some(Lonely::Detached(which)) => {
                 watches[pair[which]].detach();
@@ -85,7 +82,7 @@ impl Monitor {
             }
             Some(Disturbance::Shifted(which, by_k)) => {
                 self.go_back_before_disturbance();
-                self.take_off(pair[which], by_k);
+                self.let_shift(pair[which], by_k);
             }
         }
         let deviating = self.state.parity.deviating();
@@ -95,13 +92,12 @@ impl Monitor {
         }
     }
 
-    /// A thermometer's offset has changed by so much, K.
-    fn take_off(&mut self, sensor: usize, by_k: f64) {
-        self.state.watches[sensor].shift(by_k);
+    /// A thermometer's offset may have changed by so much, K: that is in doubt of it, and the pressure tells how far it did. To take it off would be as wrong as it may be none.
+    fn let_shift(&mut self, sensor: usize, by_k: f64) {
+        self.state.watches[sensor].may_have_shifted(by_k);
         self.state.parity.forget();
         self.usable[sensor] = f64::NAN;
-        // How far it jumped is known by a part of it, and whether it did is not certain.
-        self.observer.loosen(self.place_of(sensor), JUMPED_K + JUMPED_PART * by_k.abs());
+        self.observer.loosen(self.place_of(sensor), by_k.hypot(JUMPED_K));
     }
 
     /// Whether the first rows fit the filling that was stated.
@@ -168,5 +164,47 @@ impl Monitor {
     /// Whether a thermometer has not been used for an hour.
     pub(super) fn is_degraded(&self, time_s: f64) -> bool {
         self.roles.thermometers.iter().any(|sensor| self.unused_s(*sensor, time_s) > DEGRADED_AFTER_S)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimator::sensor::Sensor;
+    use crate::estimator::thermal::vessel::presets;
+    use crate::monitor::{Health, MonitorSettings};
+    use crate::units::MINUTE_S;
+
+    const FILL_K: f64 = 288.15;
+
+    /// Gas temperature and health of the shoulder after ten hours at rest. From the fifth on it reads one kelvin more, until a time, h, from which that fades within an hour: it was the sun.
+    fn after_a_jump(until_h: f64) -> (f64, Health) {
+        let vessel = presets::load("nitrogen-20l").unwrap();
+        let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+        let filled = Commissioning::filled(200e5, FILL_K);
+        let mut monitor = Monitor::new(&vessel, &sensors, &filled, &MonitorSettings::default()).unwrap();
+        let (mut gas_k, mut health) = (f64::NAN, Health::Good);
+        for minute in 0..600 {
+            let hour = f64::from(minute) / 60.0;
+            // What never changes counts as stuck.
+            let noise = if minute % 2 == 0 { 0.02 } else { -0.02 };
+            let fades = (until_h + 1.0 - hour).clamp(0.0, 1.0);
+            let shoulder_k = FILL_K + noise + if hour >= 5.0 { fades } else { 0.0 };
+            let row = [shoulder_k, FILL_K - noise, 200e5 + 1e4 * noise];
+            for output in monitor.step(MINUTE_S * f64::from(minute), &row).unwrap() {
+                (gas_k, health) = (output.estimate.gas_mean_k, output.health[0]);
+            }
+        }
+        (gas_k, health)
+    }
+
+    #[test]
+    fn a_thermometer_that_may_have_shifted_misleads_neither_where_it_did_nor_where_it_did_not() {
+        for until_h in [10.0, 6.5] {
+            let (gas_k, health) = after_a_jump(until_h);
+            assert!(matches!(health, Health::Shifted(_)), "until {until_h} h: {health:?}");
+            // Taken off, a jump that was none leaves half of it on the gas, which has two thermometers: 0.5 K.
+            assert!((gas_k - FILL_K).abs() < 0.3, "until {until_h} h: {:.3} K off", gas_k - FILL_K);
+        }
     }
 }

@@ -10,7 +10,6 @@ use crate::evidence::Evidence;
 use crate::monitor::gas::jump::JumpWatch;
 use crate::monitor::gas::leak::Change;
 use crate::monitor::intake::Row;
-use crate::monitor::machine::rewind::Rewind;
 use crate::monitor::readings::health::SensorWatch;
 use crate::monitor::readings::lateness::DelayLine;
 use crate::monitor::readings::parity::Parity;
@@ -135,8 +134,7 @@ impl Monitor {
         }
         let state = &mut self.state;
         state.watches = self.sensors.iter().map(SensorWatch::new).collect();
-        (state.jumps, state.rewind, state.pair) =
-            (JumpWatch::default(), Rewind::default(), pair(&self.sensors, &self.roles));
+        (state.jumps, state.pair) = (JumpWatch::default(), pair(&self.sensors, &self.roles));
         (state.parity, state.undisturbed) = (Parity::default(), Undisturbed::default());
         state.evidence = Evidence::try_new(&self.settings.observer)?;
         state.start_s = Some(time_s);

@@ -55,6 +55,8 @@ pub struct SensorWatch {
     last_used_s: f64,
     /// Taken off every reading, K or Pa.
     correction: f64,
+    /// By how much its offset has changed, taken off or not.
+    shifted: f64,
     detached: bool,
     /// Off by so much, K, while others agree.
     deviates: Option<f64>,
@@ -83,6 +85,7 @@ impl SensorWatch {
             spiked_s: f64::NEG_INFINITY,
             last_used_s: f64::NEG_INFINITY,
             correction: 0.0,
+            shifted: 0.0,
             detached: false,
             deviates: None,
             health: Health::Good,
@@ -114,7 +117,7 @@ impl SensorWatch {
         self.health = match self.deviates {
             _ if time_s - self.spiked_s < SPIKES_S => Health::Spikes,
             Some(by) => Health::Deviates(by),
-            None if self.correction != 0.0 => Health::Shifted(self.correction),
+            None if self.shifted != 0.0 => Health::Shifted(self.shifted),
             None => Health::Good,
         };
         reading - self.correction
@@ -169,6 +172,12 @@ impl SensorWatch {
     /// From now on so much more, K or Pa, is taken off.
     pub fn shift(&mut self, by: f64) {
         self.correction += by;
+        self.shifted += by;
+    }
+
+    /// Its offset may have changed by so much; the reading is left as it is.
+    pub fn may_have_shifted(&mut self, by: f64) {
+        self.shifted += by;
     }
 
     /// From the next reading on it is off by so much, K, while others agree, or no longer.
@@ -189,11 +198,6 @@ impl SensorWatch {
     /// Health after the last reading.
     pub fn health(&self) -> Health {
         self.health
-    }
-
-    /// What is taken off every reading, K or Pa.
-    pub fn correction(&self) -> f64 {
-        self.correction
     }
 
     /// The observer took the reading.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::{UdBank, stride};
 use crate::filter::lanes::Lanes;
 
-/// Factors without working memory.
+/// Factors without working memory, and of `U` what is above its diagonal, column by column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Factors {
     states: usize,
@@ -15,7 +15,9 @@ pub(super) struct Factors {
 
 impl From<UdBank> for Factors {
     fn from(bank: UdBank) -> Self {
-        Self { states: bank.n, leading: bank.spans.len(), u: bank.u, d: bank.d }
+        let columns = bank.u.chunks_exact(stride(bank.n)).enumerate();
+        let u = columns.flat_map(|(j, column)| &column[..j]).copied().collect();
+        Self { states: bank.n, leading: bank.spans.len(), u, d: bank.d }
     }
 }
 
@@ -24,11 +26,19 @@ impl TryFrom<Factors> for UdBank {
 
     fn try_from(saved: Factors) -> Result<Self, String> {
         let Factors { states, leading, u, d } = saved;
-        if leading > states || d.len() != states || states.checked_mul(stride(states)) != Some(u.len()) {
+        let above = states.checked_mul(states.saturating_sub(1)).map(|twice| twice / 2);
+        if leading > states || d.len() != states || above != Some(u.len()) {
             return Err(format!(
                 "factors of {states} states need as many columns, and {leading} moving ones"
             ));
         }
-        Ok(Self { u, d, ..Self::new(states, leading) })
+        let mut bank = Self { d, ..Self::new(states, leading) };
+        let mut left = u.as_slice();
+        for (j, column) in bank.u.chunks_exact_mut(stride(states)).enumerate() {
+            let (own, others) = left.split_at(j);
+            column[..j].copy_from_slice(own);
+            left = others;
+        }
+        Ok(bank)
     }
 }

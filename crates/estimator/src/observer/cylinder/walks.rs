@@ -11,9 +11,9 @@ const LARGEST_FILM_W_M2_K: f64 = 80.0;
 const LN_INSIDE_BOUND: f64 = 1.5;
 /// Bounds on constants of the model and of sensors about the means of their priors, in standard deviations of the prior:
 /// coloured model error would carry a combination that the data do not tell apart further and further. What walks away from
-/// its prior by itself, such as a transmitter that drifts, has none.
-const MODEL_BOUND_SD: f64 = 4.0;
-const SENSOR_BOUND_SD: f64 = 3.0;
+/// its prior by itself, such as a transmitter that drifts, has none. One sensor of 16 000 is beyond four of them; beyond three it was one of 370, and a
+/// cylinder whose transmitter was one leaked for ever.
+const BOUND_SD: f64 = 4.0;
 
 /// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +87,7 @@ impl Cylinder {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
                 let (low, high) = parameter.domain();
                 let (least, most) = match parameter.walk_per_sqrt_s {
-                    0.0 => within(parameter.mean, SENSOR_BOUND_SD * parameter.sd),
+                    0.0 => within(parameter.mean, BOUND_SD * parameter.sd),
                     _ => (f64::NEG_INFINITY, f64::INFINITY),
                 };
                 Some((low.max(least), high.min(most)))
@@ -115,7 +115,7 @@ impl Cylinder {
 
 /// Bounds of a constant of the model whose prior has the mean 0, unless its walk leads away from the prior.
 fn within_prior(walk: &Walk) -> Option<(f64, f64)> {
-    walk.stays_within_prior().then(|| within(0.0, MODEL_BOUND_SD * walk.prior_sd))
+    walk.stays_within_prior().then(|| within(0.0, BOUND_SD * walk.prior_sd))
 }
 
 fn within(mean: f64, by: f64) -> (f64, f64) {
