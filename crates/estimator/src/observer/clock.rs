@@ -9,6 +9,8 @@ use crate::sensor::Sensor;
 pub(super) struct Clock {
     pub time_s: Option<f64>,
     pub last_reading_s: Vec<f64>,
+    /// What each sensor's offset may have changed by since it was new, standard deviation.
+    pub loosened: Vec<f64>,
     /// Last reading of each sensor that was no fault, and how far a thermometer on the surface lately moved between two, K.
     pub last_reading: Vec<f64>,
     pub moved_k: f64,
@@ -40,6 +42,7 @@ impl Clock {
         Self {
             time_s: None,
             last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
+            loosened: vec![0.0; sensors.len()],
             last_reading: vec![f64::NAN; sensors.len()],
             moved_k: 0.0,
             ambiguous_k: 0.0,

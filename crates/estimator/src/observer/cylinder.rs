@@ -56,6 +56,8 @@ pub struct Cylinder {
     caution_pa_k: f64,
     /// Bounded states with their bounds.
     bounds: Vec<(usize, f64, f64)>,
+    /// What each sensor's offset may have changed by since it was new, standard deviation.
+    loosened: Vec<f64>,
     /// States in which the equations are not linear, with the inverse of the difference for which a linearisation serves.
     near: Vec<(usize, f64)>,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
@@ -139,6 +141,7 @@ impl Cylinder {
             caution_pa_k: 0.0,
             walking: vec![Walking::default(); states.leading],
             bounds: Vec::new(),
+            loosened: vec![0.0; sensors.len()],
             near: Vec::new(),
             sensors: sensors.to_vec(),
             targets,

@@ -467,6 +467,7 @@ impl Observer {
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.bank.copy_from(&snapshot.bank);
         self.clock.clone_from(&snapshot.clock);
+        self.cylinder.set_loosened(&self.clock.loosened);
         self.cylinder.model().set_warm_start(&snapshot.warm_start);
     }
 
@@ -478,7 +479,7 @@ impl Observer {
         let (states, sensors) = (self.cylinder.states(), self.cylinder.outputs());
         let clock = &snapshot.clock;
         let fits = snapshot.bank.is_like(&self.cylinder.settings().bank, states, sensors)
-            && [clock.last_reading_s.len(), clock.screens.len()] == [sensors; 2]
+            && [clock.last_reading_s.len(), clock.loosened.len(), clock.screens.len()] == [sensors; 3]
             && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
         if !fits {
             return Err(EstimatorError::SnapshotForeign);

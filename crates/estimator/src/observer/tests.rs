@@ -455,6 +455,11 @@ fn an_exchange_takes_every_leak_rate_back_to_its_prior() {
     assert!(observer.leaks().nth(1).unwrap().sd_kg_s > 0.0);
 }
 
+fn bounds_of(observer: &Observer, state: usize) -> (f64, f64) {
+    let bounds = observer.cylinder.bounds();
+    bounds.iter().find(|of| of.0 == state).map(|&(_, low, high)| (low, high)).expect("it is bounded")
+}
+
 #[test]
 fn a_loosened_offset_is_uncertain_by_so_much_more_and_a_renewed_sensor_by_all_that_it_was() {
     let mut observer = observer(Engine::Extended);
@@ -477,6 +482,15 @@ fn a_loosened_offset_is_uncertain_by_so_much_more_and_a_renewed_sensor_by_all_th
             "state {state}: {before} to {after}"
         );
     }
+    // A shift of the shoulder's offset that was none can be undone, beyond what its data sheet allows, also from a saved state.
+    let (low, high) = bounds_of(&observer, offset);
+    assert!(high - low > 8.0 * 0.7, "{low} to {high}");
+    let mut other = self::observer(Engine::Extended);
+    other.restore(&observer.snapshot());
+    assert_eq!(bounds_of(&other, offset), (low, high));
+    observer.renew(0);
+    let (low, high) = bounds_of(&observer, offset);
+    assert!(high - low < 8.0 * 0.7, "{low} to {high}");
     let before = variances(&observer);
     observer.renew(2);
     let parameters = observer.cylinder.sensors()[2].parameters().to_vec();

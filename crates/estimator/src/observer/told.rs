@@ -33,11 +33,14 @@ impl Observer {
         }
     }
 
-    /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there. Of a sensor without
+    /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there, and held no nearer to its prior than that allows. Of a sensor without
     /// an uncertain offset nothing is said.
     pub fn loosen(&mut self, sensor: usize, sd: f64) {
         if let Some(state) = self.cylinder.state_map().offset_of(sensor, self.cylinder.sensors()) {
             self.bank.inflate(state, sd * sd);
+            let loosened = &mut self.clock.loosened;
+            loosened[sensor] = loosened[sensor].hypot(sd);
+            self.cylinder.set_loosened(loosened);
         }
     }
 
@@ -59,5 +62,7 @@ impl Observer {
         let uncertain =
             states.iter().zip(parameters).filter_map(|(state, of)| Some(((*state)?, of.sd * of.sd)));
         uncertain.for_each(|(state, variance)| self.bank.inflate(state, variance));
+        self.clock.loosened[sensor] = 0.0;
+        self.cylinder.set_loosened(&self.clock.loosened);
     }
 }

@@ -16,7 +16,8 @@
 //! learnt of films and sensors changes from day to day.
 //!
 //! Readings far off must not count: bounds are believed that four rows in a row agree on, one more than a spike is long. Those of the observer, which has judged the
-//! readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree.
+//! readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree. A gain is not urgent: the observer's bounds tell it
+//! when the surroundings can no more make as much as 0.003 of the mass.
 //!
 //! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
 //! all pressures alike.
@@ -179,7 +180,9 @@ impl GasBounds {
         self.wander.push(since_s, flow.mass_kg / full_kg);
         // A tunnel of minutes between two rows shows in neither.
         let rows = if shaken > FLOW_PART { 2 } else { 1 };
-        self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), rows, kept)
+        let certain = self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), rows, kept);
+        let calm = flow.considered_sd_kg <= FLOW_PART * full_kg;
+        certain.filter(|&way| way == Certain::Out || calm)
     }
 
     /// What of a mass that the observer says comes and goes without gas, kg.
@@ -361,6 +364,21 @@ mod tests {
             minutes(181).find_map(|t| bounds.push_flow(t, &flow(1.0, 2e-3), 1.0, 0.0)),
             Some(Certain::In)
         );
+    }
+
+    #[test]
+    fn a_gain_waits_until_the_surroundings_make_no_more_of_it_and_a_loss_does_not() {
+        let told = |mass_kg: f64, considered_sd_kg: f64| {
+            let mut bounds = GasBounds::default();
+            let of = |mass_kg: f64, considered_sd_kg: f64| Flow { considered_sd_kg, ..flow(mass_kg, 2e-3) };
+            (0..60).for_each(|minute| {
+                bounds.push_flow(60.0 * f64::from(minute), &of(1.0, 0.0), 1.0, 0.0);
+            });
+            bounds.push_flow(3600.0, &of(mass_kg, considered_sd_kg), 1.0, 0.0)
+        };
+        assert_eq!(told(1.05, 0.004), None);
+        assert_eq!(told(1.05, 0.002), Some(Certain::In));
+        assert_eq!(told(0.95, 0.004), Some(Certain::Out));
     }
 
     #[test]

@@ -3,6 +3,7 @@ use super::super::settings::{LeakHypothesis, Walk};
 use super::super::states::StateKind;
 use super::Cylinder;
 use super::transition::Walking;
+use crate::sensor::ParameterKind;
 
 /// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
 const LEAST_FILM_W_M2_K: f64 = 4.0;
@@ -74,6 +75,14 @@ impl Cylinder {
         self.bounds = (0..self.states.count()).filter_map(of).collect();
     }
 
+    /// What each sensor's offset may have changed by since it was new, standard deviation: it is held within as much more.
+    pub fn set_loosened(&mut self, loosened: &[f64]) {
+        if self.loosened != loosened {
+            self.loosened.copy_from_slice(loosened);
+            self.set_bounds();
+        }
+    }
+
     fn bounds_of(&self, state: usize) -> Option<(f64, f64)> {
         let film_w_m2_k = self.settings.film_w_m2_k;
         match &self.states.kinds[state] {
@@ -86,8 +95,10 @@ impl Cylinder {
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
                 let (low, high) = parameter.domain();
+                let changed =
+                    if parameter.kind == ParameterKind::Offset { self.loosened[*sensor] } else { 0.0 };
                 let (least, most) = match parameter.walk_per_sqrt_s {
-                    0.0 => within(parameter.mean, BOUND_SD * parameter.sd),
+                    0.0 => within(parameter.mean, BOUND_SD * parameter.sd.hypot(changed)),
                     _ => (f64::NEG_INFINITY, f64::INFINITY),
                 };
                 Some((low.max(least), high.min(most)))
