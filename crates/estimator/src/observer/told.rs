@@ -33,8 +33,8 @@ impl Observer {
         }
     }
 
-    /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there, and held no nearer to its prior than that allows. Of a sensor without
-    /// an uncertain offset nothing is said.
+    /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there, and held no nearer to its
+    /// prior than that allows. Of a sensor without an uncertain offset nothing is said.
     pub fn loosen(&mut self, sensor: usize, sd: f64) {
         if let Some(state) = self.cylinder.state_map().offset_of(sensor, self.cylinder.sensors()) {
             self.bank.inflate(state, sd * sd);

@@ -16,8 +16,8 @@
 //! learnt of films and sensors changes from day to day.
 //!
 //! Readings far off must not count: bounds are believed that four rows in a row agree on, one more than a spike is long. Those of the observer, which has judged the
-//! readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree. A gain is not urgent: the observer's bounds tell it
-//! when the surroundings can no more make as much as 0.003 of the mass.
+//! readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree.
+//! A gain is not urgent: the observer's bounds tell it when the surroundings can no more make as much as 0.003 of the mass.
 //!
 //! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
 //! all pressures alike.

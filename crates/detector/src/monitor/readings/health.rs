@@ -172,7 +172,7 @@ impl SensorWatch {
     /// From now on so much more, K or Pa, is taken off.
     pub fn shift(&mut self, by: f64) {
         self.correction += by;
-        self.shifted += by;
+        self.may_have_shifted(by);
     }
 
     /// Its offset may have changed by so much; the reading is left as it is.

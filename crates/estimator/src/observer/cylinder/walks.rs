@@ -12,7 +12,7 @@ const LARGEST_FILM_W_M2_K: f64 = 80.0;
 const LN_INSIDE_BOUND: f64 = 1.5;
 /// Bounds on constants of the model and of sensors about the means of their priors, in standard deviations of the prior:
 /// coloured model error would carry a combination that the data do not tell apart further and further. What walks away from
-/// its prior by itself, such as a transmitter that drifts, has none. One sensor of 16 000 is beyond four of them; beyond three it was one of 370, and a
+/// its prior by itself, such as a transmitter that drifts, has none, and an offset that may have changed as much more. One sensor of 16 000 is beyond four of them; beyond three it was one of 370, and a
 /// cylinder whose transmitter was one leaked for ever.
 const BOUND_SD: f64 = 4.0;
 

@@ -26,7 +26,8 @@
 //! Spikes are "nothing" with readings far off.
 //!
 //! An offset is as likely as gas; by the densities of their sizes small steps are the transmitter's and large ones are gas. The examination ends when nothing is left of the jump with
-//! [`SURE`] odds, or when the error has not grown for [`REST_S`], as then gas and wall are at rest; an offset waits until the surroundings no more make half of it. What is then not [`LIKELY`] is unclear, and where the model is right again, what is missing by less than half of what the cause says has passed.
+//! [`SURE`] odds, or when the error has not grown for [`REST_S`], as then gas and wall are at rest; what is not gas for sure waits until the surroundings no more make half of it. What is then not
+//! [`LIKELY`] is unclear, and where the model is right again, what is missing by less than half of what the cause says has passed.
 //!
 //! Assumes that a jump of gas is over within two hours; a longer one is a flow.
 //!
@@ -281,12 +282,13 @@ impl Examination {
             return Cause::Open;
         }
         let (left, sd) = (some.mean[1], some.variance[1].max(0.0).sqrt());
+        let half = left.abs() / 2.0;
         // What the surroundings may still do is told to be the transmitter's when they do it no more.
-        if gas <= LIKELY && self.model > left.abs() / 2.0 && time_s - self.onset_s < LONGEST_S {
+        if gas <= LIKELY && self.model > half && time_s - self.onset_s < LONGEST_S {
             return Cause::Open;
         }
         // Where the model's error has gone, what is not missing now was its.
-        let still = self.model.max(self.error * left.signum()) > left.abs() / 2.0;
+        let still = self.model.max(self.error * left.signum()) > half;
         match () {
             () if !still || left.abs() < DEVIATIONS * sd.hypot(FLOOR) => Cause::Passed,
             () if gas > LIKELY || left.abs() > NO_OFFSET => Cause::Gas,
