@@ -5,7 +5,8 @@
 //! leave ([`settings::LeakHypothesis`]): in the first the mass itself walks a little; it gives the mass. Slow ones hold the mass
 //! but for a leak rate that walks, each with its own bandwidth; the middle one gives leak rate and gas temperature. The freest,
 //! whose mass walks far, judges the others and takes the place of those that cannot be right (`belief`). The last one follows gas that
-//! flows within minutes, either way ([`Flow`]).
+//! flows within minutes, either way ([`Flow`]). One that holds the mass and has no leak rate, if there is one beside the first, tells leaks of any onset by
+//! their signature ([`Onset`]).
 //!
 //! Where all thermometers are surprised to one side, air and wind may have changed since the row before: steps of both are tried, and the
 //! likeliest explanation of the row stays ([`AirStep`]).
@@ -36,6 +37,7 @@ mod roles;
 mod scale;
 mod screen;
 pub mod settings;
+mod signature;
 mod smoother;
 pub mod states;
 mod surroundings;
@@ -65,10 +67,12 @@ pub use learned::Learned;
 pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 pub(crate) use roles::middle_slow;
-use roles::{flowing, freest, thermometer};
+use roles::{flowing, freest, held, thermometer};
 pub use scale::Scale;
 pub use screen::{Fault, FaultCount};
 pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSettings, Walk};
+pub use signature::Onset;
+use signature::Onsets;
 pub use smoother::Smoother;
 
 /// Temperature at which the settled pressure is quoted, K: 15 °C.
@@ -92,6 +96,7 @@ const SHORTEST_S: f64 = 1e-3;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot {
     bank: Bank,
+    onsets: Onsets,
     clock: Clock,
     warm_start: WarmStart,
 }
@@ -107,10 +112,15 @@ pub struct Observer {
     shared: Shared,
     learned: Option<Learned>,
     prior: DMatrix<f64>,
+    /// Leaks by their signature in the innovations of the member that holds the mass, and what that has to be told.
+    onsets: Onsets,
+    to_tell: Vec<f64>,
     clock: Clock,
     gate: f64,
-    /// The middle one of the members that have a leak rate, in the order of the bank.
+    /// The middle one of the members that have a leak rate, in the order of the bank; without any, the one that holds the mass.
     slow: Option<usize>,
+    /// The member that holds the mass.
+    held: Option<usize>,
     /// The member that gives the gas temperature: the same, if it trusts the pressure, or the first.
     thermometer: usize,
     /// The member whose mass walks most freely: it judges the others.
@@ -159,10 +169,13 @@ impl Observer {
             bank: Bank::default(),
             learned: None,
             prior: DMatrix::zeros(0, 0),
+            onsets: Onsets::default(),
+            to_tell: Vec::with_capacity(cylinder.states()),
             clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
             gate,
-            slow: middle_slow(&settings.bank),
+            slow: middle_slow(&settings.bank).or(held(&settings.bank)),
+            held: held(&settings.bank),
             thermometer: thermometer(&settings.bank),
             freest: freest(&settings.bank),
             flowing: flowing(&settings.bank),
@@ -175,9 +188,9 @@ impl Observer {
         })
     }
 
-    /// Without the member whose gas may flow; before the first sample.
+    /// Without the member whose gas may flow, and without onsets of leaks; before the first sample.
     fn without_flow(mut self) -> Self {
-        self.flowing = None;
+        (self.flowing, self.held) = (None, None);
         self.cylinder.suppose_no_flow();
         self
     }
@@ -221,12 +234,14 @@ impl Observer {
             }
             self.cylinder.set_repeats(sensor, screen.repeats());
         }
+        self.record_the_step();
         let restarted = self.take(time_s, &usable);
         self.remember(time_s, &usable);
         self.mark_faulty(time_s, readings, &usable);
         self.usable = usable;
         let restarted = restarted?;
         self.replace_the_wrong();
+        self.follow_onsets(time_s, restarted);
         self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
     }
@@ -451,6 +466,7 @@ impl Observer {
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {
             bank: self.bank.clone(),
+            onsets: self.onsets.clone(),
             clock: self.clock.clone(),
             warm_start: self.cylinder.warm_start(),
         }
@@ -459,6 +475,7 @@ impl Observer {
     /// The observer as it is now, in the memory of another snapshot of it.
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         snapshot.bank.copy_from(&self.bank);
+        snapshot.onsets.clone_from(&self.onsets);
         snapshot.clock.clone_from(&self.clock);
         snapshot.warm_start = self.cylinder.warm_start();
     }
@@ -466,6 +483,7 @@ impl Observer {
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.bank.copy_from(&snapshot.bank);
+        self.onsets.clone_from(&snapshot.onsets);
         self.clock.clone_from(&snapshot.clock);
         self.cylinder.set_loosened(&self.clock.loosened);
         self.cylinder.model().set_warm_start(&snapshot.warm_start);
@@ -479,6 +497,7 @@ impl Observer {
         let (states, sensors) = (self.cylinder.states(), self.cylinder.outputs());
         let clock = &snapshot.clock;
         let fits = snapshot.bank.is_like(&self.cylinder.settings().bank, states, sensors)
+            && snapshot.onsets.is_like(states)
             && [clock.last_reading_s.len(), clock.loosened.len(), clock.screens.len()] == [sensors; 3]
             && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
         if !fits {

@@ -18,6 +18,16 @@ pub(super) fn freest(bank: &[LeakHypothesis]) -> usize {
     (0..bank.len()).rev().max_by(|a, b| walk(a).total_cmp(&walk(b))).unwrap_or(0)
 }
 
+/// The one that holds the mass, beside the first: no leak rate, and a mass that walks less than the freest one's.
+pub(super) fn held(bank: &[LeakHypothesis]) -> Option<usize> {
+    let freest = freest(bank);
+    let holds = |&index: &usize| {
+        let walk = bank[index].mass_walk_kg_per_sqrt_s;
+        bank[index].rate.is_known() && walk < bank[freest].mass_walk_kg_per_sqrt_s
+    };
+    (1..bank.len()).find(holds)
+}
+
 /// The one whose gas may flow: the last, if it does.
 pub(super) fn flowing(bank: &[LeakHypothesis]) -> Option<usize> {
     bank.last().filter(|last| last.is_flowing()).map(|_| bank.len() - 1)

@@ -26,6 +26,7 @@ impl Observer {
             self.bank.begin_anew(index, flowing, &self.cylinder);
             self.anew[index] = true;
         }
+        self.onsets.begin_anew(self.cylinder.state_map().leak);
         let mass = self.cylinder.state_map().mass;
         self.bank.write_moments(mass, &mut self.masses);
         if let Some(time_s) = self.clock.time_s {
@@ -52,6 +53,7 @@ impl Observer {
         if let (Some(state), Some(offset)) = (state, offset) {
             let (mean, variance) = (offset.mean, offset.sd * offset.sd);
             self.bank.forget(state, mean, variance);
+            self.onsets.reset(state);
         }
     }
 

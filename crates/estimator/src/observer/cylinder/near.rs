@@ -21,7 +21,8 @@ impl Cylinder {
         (reference, a): (&LeakHypothesis, &[f64]),
         (other, b): (&LeakHypothesis, &[f64]),
     ) -> f64 {
-        if !other.rate.is_known() && other.rate.decay_per_s() != reference.rate.decay_per_s() {
+        // Without a leak rate the estimate takes no notice of its decay, but the signature of a leak does.
+        if other.rate.decay_per_s() != reference.rate.decay_per_s() {
             return f64::INFINITY;
         }
         let farther = |most: f64, &(state, limit): &(usize, f64)| {

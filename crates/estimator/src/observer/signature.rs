@@ -1,0 +1,290 @@
+//! Leaks by their signature in the innovations of a member that knows of none.
+//!
+//! One member of the bank [holds](super::roles::held) the mass: no leak rate, and a mass that hardly walks. What a leak of unit rate since a time
+//! `k` would have made of its error by now, `f_k`, follows from its own transition `Phi`, gradients `h` and gains `K`, with 1 in the leak rate for
+//! ever:
+//!
+//! `f <- Phi f` over an interval, `g = h' f`, `f <- f - K g` at a reading.
+//!
+//! So an innovation `nu` of variance `S` has the mean `r g` in a leak of rate `r` since `k`, and generalised least squares from three sums tell its rate,
+//! its standard deviation and how far it is from none:
+//!
+//! `d = sum w g nu/S`, `J = sum w g^2/S`, `I = sum g^2/S`;   `r = d/J`, `s = sqrt(I)/J`, `z = d/sqrt(I)`.
+//!
+//! The weight `w = min(1, 2 sqrt(S)/|nu|)` bounds what a single reading counts for (Huber). A possible onset comes with the first sample and every
+//! ten minutes; older ones are thinned out to a geometric ladder of ages up to sixty days, some twenty-five. The likeliest of them and its neighbours
+//! stay: between two that lie far apart neither has the rate of a leak that began in between.
+//!
+//! The recursion is linear, the filter is not. A member that knows of no leak explains one of a hundredth of the mass by its films, and the rate comes out a
+//! third too large. So the member is told the likeliest leak beyond three standard deviations, `r (1 - 9/z^2)`: its estimate is moved by that times `f`. What
+//! it has been told, `t`, follows the same recursion, and `nu + h' t` stands for `nu` in `d`: the innovation as it would have been without. The weight is by `nu` itself.
+//!
+//! Where the member begins anew from the freest one its error has nothing of the leak any more: `f = 0` but for the rate; what the sums have stays. An exchange of gas or a
+//! restart ends all onsets.
+//!
+//! Assumptions: one leak of constant rate since its onset; innovations that are independent, which they are not: their colour makes `z` larger or smaller
+//! than a standard normal number, and who decides must learn how much. Constant time and memory per sample.
+//!
+//! Source: generalised likelihood ratio, A. S. Willsky, H. L. Jones, IEEE Trans. Autom. Control 21 (1976) 108; bounded weight, P. J. Huber, Ann. Math. Stat.
+//! 35 (1964) 73.
+use serde::{Deserialize, Serialize};
+
+use super::Observer;
+use super::pass::Pass;
+use crate::filter::StateSpace;
+use crate::filter::kernel::{axpy, column, dot};
+
+/// Interval between possible onsets, s.
+const EVERY_S: f64 = 600.0;
+/// Age beyond which an onset is given up, s.
+const LONGEST_S: f64 = 60.0 * 86_400.0;
+/// Largest ratio of the ages of two onsets between which one is thinned out.
+const RATIO: f64 = 1.7;
+/// Standard deviations up to which an innovation counts in full.
+const BOUND: f64 = 2.0;
+/// Standard deviations from which the member is told a leak.
+const TOLD: f64 = 3.0;
+
+/// The leak that there would be if it had begun at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Onset {
+    /// Time at which it would have begun, s.
+    pub since_s: f64,
+    /// Its rate, kg/s.
+    pub rate_kg_s: f64,
+    /// Standard deviation of the rate if innovations were independent, kg/s.
+    pub sd_kg_s: f64,
+}
+
+/// Sums of one onset.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Sums {
+    since_s: f64,
+    /// `d`, `J`, `I`.
+    score: f64,
+    weighted: f64,
+    information: f64,
+}
+
+/// All onsets that are possible, oldest first.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Onsets {
+    sums: Vec<Sums>,
+    /// What each has made of the member's error, and last what the member was told: (n) each.
+    responses: Vec<f64>,
+    told: Vec<f64>,
+    /// When the next one comes, s.
+    due_s: Option<f64>,
+}
+
+impl Clone for Onsets {
+    fn clone(&self) -> Self {
+        let Self { sums, responses, told, due_s } = self;
+        Self { sums: sums.clone(), responses: responses.clone(), told: told.clone(), due_s: *due_s }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.sums.clone_from(&other.sums);
+        self.responses.clone_from(&other.responses);
+        self.told.clone_from(&other.told);
+        self.due_s = other.due_s;
+    }
+}
+
+impl Sums {
+    fn z(&self) -> f64 {
+        if self.information > 0.0 { self.score / self.information.sqrt() } else { 0.0 }
+    }
+
+    fn rate(&self) -> f64 {
+        if self.weighted > 0.0 { self.score / self.weighted } else { 0.0 }
+    }
+}
+
+impl Onsets {
+    /// Whether it is of a member with so many states.
+    pub fn is_like(&self, states: usize) -> bool {
+        self.responses.len() == self.sums.len() * states
+            && (self.told.len() == states || self.sums.is_empty() && self.told.is_empty())
+    }
+
+    /// The onsets that tell something, oldest first.
+    pub fn all(&self) -> impl DoubleEndedIterator<Item = Onset> {
+        self.sums.iter().filter(|sums| sums.weighted > 0.0).map(|sums| Onset {
+            since_s: sums.since_s,
+            rate_kg_s: sums.rate(),
+            sd_kg_s: sums.information.sqrt() / sums.weighted,
+        })
+    }
+
+    /// None any more.
+    pub fn clear(&mut self) {
+        self.sums.clear();
+        self.responses.clear();
+        self.told.fill(0.0);
+        self.due_s = None;
+    }
+
+    /// The member's error has nothing of a leak any more, but for the rate.
+    pub fn begin_anew(&mut self, leak: usize) {
+        let n = self.told.len();
+        self.told.fill(0.0);
+        for response in self.responses.chunks_mut(n.max(1)) {
+            response.fill(0.0);
+            response[leak] = 1.0;
+        }
+    }
+
+    /// The member's state is another one, whatever leak there was.
+    pub fn reset(&mut self, state: usize) {
+        let n = self.told.len();
+        let responses = self.responses.chunks_mut(n.max(1)).chain([self.told.as_mut_slice()]);
+        responses.filter(|response| !response.is_empty()).for_each(|response| response[state] = 0.0);
+    }
+
+    /// Take a step of the member.
+    fn follow(&mut self, pass: &Pass, leak: usize) {
+        if pass.opened {
+            self.clear();
+        }
+        let (step, n) = (&pass.step, self.told.len());
+        let mut moved = vec![0.0; step.phi.nrows()];
+        for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
+            carry(pass, response, &mut moved);
+        }
+        for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
+            let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
+            let (nu, s) = (step.innovation[sensor], step.variance[sensor]);
+            let weight = (BOUND * s.sqrt() / nu.abs()).min(1.0);
+            let expected = dot(h, &self.told);
+            axpy(-expected, gain, &mut self.told);
+            for (sums, response) in self.sums.iter_mut().zip(self.responses.chunks_mut(n)) {
+                let g = dot(h, response);
+                sums.score += weight * g * (nu + expected) / s;
+                sums.weighted += weight * g * g / s;
+                sums.information += g * g / s;
+                axpy(-g, gain, response);
+            }
+        }
+        if pass.begun_anew {
+            self.begin_anew(leak);
+        }
+    }
+
+    /// A new onset where one is due; without those that are too old or too close.
+    fn renew(&mut self, time_s: f64, leak: usize) {
+        let n = self.told.len();
+        if self.due_s.is_some_and(|due_s| time_s < due_s) {
+            return;
+        }
+        self.due_s = Some(time_s + EVERY_S);
+        while self.sums.first().is_some_and(|oldest| time_s - oldest.since_s > LONGEST_S) {
+            self.remove(0, n);
+        }
+        self.sums.push(Sums { since_s: time_s, score: 0.0, weighted: 0.0, information: 0.0 });
+        self.responses.resize(self.sums.len() * n, 0.0);
+        let last = self.responses.len() - n;
+        self.responses[last + leak] = 1.0;
+        self.thin_out(time_s, n);
+    }
+
+    /// What lies between two onsets of nearly one age goes; the likeliest and its neighbours stay.
+    fn thin_out(&mut self, time_s: f64, n: usize) {
+        let mut index = 1;
+        while index + 1 < self.sums.len() {
+            let age_s = |index: usize| time_s - self.sums[index].since_s;
+            let stays = self.likeliest().is_some_and(|likeliest| likeliest.abs_diff(index) <= 1);
+            if !stays && age_s(index - 1) < RATIO * age_s(index + 1) {
+                self.remove(index, n);
+            } else {
+                index += 1;
+            }
+        }
+    }
+
+    fn remove(&mut self, index: usize, n: usize) {
+        self.sums.remove(index);
+        self.responses.drain(index * n..(index + 1) * n);
+    }
+
+    /// The onset since which a loss is likeliest.
+    fn likeliest(&self) -> Option<usize> {
+        let losing = (0..self.sums.len()).filter(|&index| self.sums[index].z() > 0.0);
+        losing.max_by(|&a, &b| self.sums[a].z().total_cmp(&self.sums[b].z()))
+    }
+
+    /// What the member should have been told by now: (n).
+    fn to_tell(&self, to: &mut Vec<f64>) {
+        let n = self.told.len();
+        to.clear();
+        to.resize(n, 0.0);
+        let Some(index) = self.likeliest() else { return };
+        let z = self.sums[index].z();
+        if z > TOLD {
+            let rate = self.sums[index].rate() * (1.0 - TOLD * TOLD / (z * z));
+            axpy(rate, column(&self.responses, n, index), to);
+        }
+    }
+}
+
+/// Take a response over an interval, with memory for its moving part.
+fn carry(pass: &Pass, response: &mut [f64], moved: &mut [f64]) {
+    let (phi, m) = (pass.step.phi.as_slice(), moved.len());
+    moved.fill(0.0);
+    for (column, &by) in phi.chunks_exact(m).zip(&*response) {
+        if by != 0.0 {
+            axpy(by, column, moved);
+        }
+    }
+    response[..m].copy_from_slice(moved);
+    response.iter_mut().zip(&pass.relaxed).skip(m).for_each(|(by, factor)| *by *= factor);
+}
+
+impl Observer {
+    /// What a leak would be that had begun at one of some twenty-five times, oldest first; none without a member that holds the mass.
+    pub fn onsets(&self) -> impl DoubleEndedIterator<Item = Onset> {
+        self.onsets.all()
+    }
+
+    /// Nothing that has been seen so far speaks for or against a leak any more.
+    pub fn forget_onsets(&mut self) {
+        self.onsets.clear();
+        if let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) {
+            member.x[self.cylinder.state_map().leak] = 0.0;
+        }
+    }
+
+    /// The member that holds the mass keeps what it does at the next sample.
+    pub(super) fn record_the_step(&mut self) {
+        let (n, m, sensors) = (self.cylinder.states(), self.cylinder.leading(), self.cylinder.outputs());
+        if let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) {
+            member.pass.get_or_insert_with(|| Box::new(Pass::new(n, m, sensors))).begin(0.0);
+        }
+    }
+
+    /// Take what the member did into the onsets, and tell it the leak that is nearly certain.
+    pub(super) fn follow_onsets(&mut self, time_s: f64, restarted: bool) {
+        if restarted {
+            self.onsets.clear();
+        }
+        let leak = self.cylinder.state_map().leak;
+        let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) else { return };
+        self.onsets.told.resize(member.x.len(), 0.0);
+        if let Some(pass) = &member.pass {
+            self.onsets.follow(pass, leak);
+        }
+        self.onsets.renew(time_s, leak);
+        self.onsets.to_tell(&mut self.to_tell);
+        self.reference_x.copy_from_slice(&member.x);
+        for ((x, to), told) in self.reference_x.iter_mut().zip(&self.to_tell).zip(&self.onsets.told) {
+            *x += to - told;
+        }
+        if self.cylinder.is_possible(&self.reference_x) {
+            member.x.copy_from_slice(&self.reference_x);
+            self.onsets.told.copy_from_slice(&self.to_tell);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
