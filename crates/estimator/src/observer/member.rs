@@ -48,7 +48,7 @@ pub(super) struct Member {
     pub pulled: Vec<f64>,
     /// Whether a constant or a film stood at its bound after the last step.
     pub at_bound: bool,
-    /// The last step, for a smoother; it is not saved.
+    /// The last step, for a smoother or the signature of a leak; it is not saved.
     #[serde(skip)]
     pub pass: Option<Box<Pass>>,
 }
@@ -64,6 +64,12 @@ impl Member {
             at_bound: false,
             pass: None,
         }
+    }
+
+    /// Its last step, kept from now on; so many of its states move.
+    pub fn recorded(&mut self, leading: usize) -> &mut Pass {
+        let (n, sensors) = (self.x.len(), self.innovations.len());
+        self.pass.get_or_insert_with(|| Box::new(Pass::new(n, leading, sensors)))
     }
 
     /// Become as another one is, without allocating unless it keeps its steps for a smoother.

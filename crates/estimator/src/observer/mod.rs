@@ -160,6 +160,7 @@ impl Observer {
         }
         let settings = &settings;
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
+        let held = held(&settings.bank);
         let gate = settings.gate_sd * settings.gate_sd;
         Ok(Self {
             vessel: vessel.clone(),
@@ -174,8 +175,8 @@ impl Observer {
             clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
             gate,
-            slow: middle_slow(&settings.bank).or(held(&settings.bank)),
-            held: held(&settings.bank),
+            slow: middle_slow(&settings.bank).or(held),
+            held,
             thermometer: thermometer(&settings.bank),
             freest: freest(&settings.bank),
             flowing: flowing(&settings.bank),
@@ -475,7 +476,7 @@ impl Observer {
     /// The observer as it is now, in the memory of another snapshot of it.
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         snapshot.bank.copy_from(&self.bank);
-        snapshot.onsets.clone_from(&self.onsets);
+        snapshot.onsets.copy_from(&self.onsets);
         snapshot.clock.clone_from(&self.clock);
         snapshot.warm_start = self.cylinder.warm_start();
     }
@@ -483,7 +484,7 @@ impl Observer {
     /// Back to a snapshot of this observer.
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.bank.copy_from(&snapshot.bank);
-        self.onsets.clone_from(&snapshot.onsets);
+        self.onsets.copy_from(&snapshot.onsets);
         self.clock.clone_from(&snapshot.clock);
         self.cylinder.set_loosened(&self.clock.loosened);
         self.cylinder.model().set_warm_start(&snapshot.warm_start);

@@ -1,4 +1,4 @@
-//! Record of a member's last step, as a smoother needs it.
+//! Record of a member's last step, as a smoother and the signature of a leak need it.
 use nalgebra::DMatrix;
 
 use crate::filter::PassStep;

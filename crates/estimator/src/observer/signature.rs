@@ -67,28 +67,15 @@ struct Sums {
 }
 
 /// All onsets that are possible, oldest first.
-#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Onsets {
     sums: Vec<Sums>,
-    /// What each has made of the member's error, and last what the member was told: (n) each.
+    /// What each has made of the member's error: (n), one after the other.
     responses: Vec<f64>,
+    /// What the member was told: (n).
     told: Vec<f64>,
     /// When the next one comes, s.
     due_s: Option<f64>,
-}
-
-impl Clone for Onsets {
-    fn clone(&self) -> Self {
-        let Self { sums, responses, told, due_s } = self;
-        Self { sums: sums.clone(), responses: responses.clone(), told: told.clone(), due_s: *due_s }
-    }
-
-    fn clone_from(&mut self, other: &Self) {
-        self.sums.clone_from(&other.sums);
-        self.responses.clone_from(&other.responses);
-        self.told.clone_from(&other.told);
-        self.due_s = other.due_s;
-    }
 }
 
 impl Sums {
@@ -102,6 +89,14 @@ impl Sums {
 }
 
 impl Onsets {
+    /// Become as others are, without allocating where there is room.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.sums.clone_from(&other.sums);
+        self.responses.clone_from(&other.responses);
+        self.told.clone_from(&other.told);
+        self.due_s = other.due_s;
+    }
+
     /// Whether it is of a member with so many states.
     pub fn is_like(&self, states: usize) -> bool {
         self.responses.len() == self.sums.len() * states
@@ -109,7 +104,7 @@ impl Onsets {
     }
 
     /// The onsets that tell something, oldest first.
-    pub fn all(&self) -> impl DoubleEndedIterator<Item = Onset> {
+    pub fn all(&self) -> impl Iterator<Item = Onset> {
         self.sums.iter().filter(|sums| sums.weighted > 0.0).map(|sums| Onset {
             since_s: sums.since_s,
             rate_kg_s: sums.rate(),
@@ -242,7 +237,7 @@ fn carry(pass: &Pass, response: &mut [f64], moved: &mut [f64]) {
 
 impl Observer {
     /// What a leak would be that had begun at one of some twenty-five times, oldest first; none without a member that holds the mass.
-    pub fn onsets(&self) -> impl DoubleEndedIterator<Item = Onset> {
+    pub fn onsets(&self) -> impl Iterator<Item = Onset> {
         self.onsets.all()
     }
 
@@ -256,9 +251,8 @@ impl Observer {
 
     /// The member that holds the mass keeps what it does at the next sample.
     pub(super) fn record_the_step(&mut self) {
-        let (n, m, sensors) = (self.cylinder.states(), self.cylinder.leading(), self.cylinder.outputs());
         if let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) {
-            member.pass.get_or_insert_with(|| Box::new(Pass::new(n, m, sensors))).begin(0.0);
+            member.recorded(self.cylinder.leading()).begin(0.0);
         }
     }
 

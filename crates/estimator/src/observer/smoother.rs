@@ -139,8 +139,7 @@ impl Smoother {
 
     /// Record the last step of the observer; after a restart there is no step that leads there.
     fn row(&mut self, estimate: Estimate, restarted: bool) -> Row {
-        let (n, m) = (self.observer.cylinder.states(), self.observer.cylinder.leading());
-        let sensors = self.observer.cylinder.outputs();
+        let leading = self.observer.cylinder.leading();
         let mut passes = Vec::with_capacity(self.members.len());
         for &index in &self.members {
             let bank = &mut self.observer.bank;
@@ -148,11 +147,11 @@ impl Smoother {
             if restarted {
                 member.pass = None;
             }
-            let pass = member.pass.get_or_insert_with(|| Box::new(Pass::new(n, m, sensors)));
-            pass.step.x.as_mut_slice().copy_from_slice(&member.x);
-            let mut row = pass.as_ref().clone();
+            let pass = member.recorded(leading);
+            let mut row = pass.clone();
             // A row at the same time has no interval of its own.
             pass.begin(0.0);
+            row.step.x.as_mut_slice().copy_from_slice(&member.x);
             bank.covariance_into(index, &mut row.step.p);
             passes.push(row);
         }
