@@ -200,7 +200,8 @@ impl CommissionedVessel {
     /// # Errors
     /// The mean time is not positive.
     pub fn story(&self) -> Result<Story, cylwatch_detector::DetectorError> {
-        let usual = Tails::default().thresholds(self.false_alarm_years * YEAR_S)?;
+        let usual = Tails::usual(PASCAL_PER_BAR * self.fill_pressure_bar)
+            .thresholds(self.false_alarm_years * YEAR_S)?;
         let rows = self.found.scales.iter().map(|of| {
             let (low, high) = of.threshold_interval;
             let [threshold, low, high, usual] =
@@ -313,7 +314,7 @@ mod tests {
     #[test]
     fn thresholds_stand_beside_the_usual_ones_and_too_many_false_alarms_are_a_caution() {
         let words = commissioned().story().unwrap().to_text();
-        let usual = Tails::default().thresholds(10.0 * 365.25 * 86_400.0).unwrap().of(Scale::Hour);
+        let usual = Tails::usual(200e5).thresholds(10.0 * 365.25 * 86_400.0).unwrap().of(Scale::Hour);
         assert!(words.contains("month") && words.contains("3 to 6"), "{words}");
         assert!(words.contains(&number(usual, 3)), "{words} without {usual}");
         assert!(

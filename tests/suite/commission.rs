@@ -5,11 +5,11 @@ use std::path::Path;
 use std::sync::OnceLock;
 use tempfile::{TempDir, tempdir};
 
-/// Six cylinders of five days in a workshop.
+/// Six cylinders of twenty days in a workshop: shorter ones have no onset that is as old as those of the slowest statistic.
 const SMALL: [&str; 14] = [
     "--rehearsal",
     "--days",
-    "5",
+    "20",
     "--cylinders",
     "6",
     "--climate",
@@ -55,7 +55,7 @@ fn monitor(folder: &Path, vessel: &str, thresholds: &str, more: &[&str]) -> Outc
 fn thresholds_come_with_their_worlds_their_intervals_and_the_rate_of_false_alarms() {
     let (folder, outcome) = commissioned();
     assert_eq!((outcome.code, outcome.stdout.as_str()), (Some(0), ""), "{}", outcome.stderr);
-    for words in ["6 tight cylinders of 5 d", "180 to 200 bar", "workshop", "half-day", "out of sample"] {
+    for words in ["6 tight cylinders of 20 d", "180 to 200 bar", "workshop", "half-day", "out of sample"] {
         assert!(outcome.stderr.contains(words), "{words}: {}", outcome.stderr);
     }
     let usage = "cylwatch monitor nitrogen-20l LOG --commissioned thresholds.json";
@@ -76,7 +76,7 @@ fn thresholds_come_with_their_worlds_their_intervals_and_the_rate_of_false_alarm
         assert!(0.0 < low && low <= threshold && threshold <= high, "{of}");
     }
     let years = file["false_alarms"]["cylinder_years"].as_f64().unwrap();
-    assert!(years > 0.05 && years < 6.1 * 5.0 / 365.25, "{years}");
+    assert!(years > 0.2 && years < 6.1 * 20.0 / 365.25, "{years}");
 }
 
 #[test]

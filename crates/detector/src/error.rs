@@ -53,9 +53,6 @@ pub enum DetectorError {
     /// The observer could not go on.
     #[error(transparent)]
     Observer(#[from] cylwatch_estimator::EstimatorError),
-    /// The observer's bank lacks a member that the evidence needs.
-    #[error("the observer's bank must have a member whose mass walks and another one whose leak rate walks")]
-    Bank,
 }
 
 /// `value` if it is positive and finite.

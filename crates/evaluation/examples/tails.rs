@@ -3,12 +3,12 @@
 //! `cargo run --release -p cylwatch-evaluation --example tails [-- PLAN]`
 //!
 //! Runs the monitor over all worlds of PLAN (`plans/tails.toml`; what is not tuning in it is left out), takes the largest statistics of each stretch of
-//! operation and prints the tails as they stand in the library, the thresholds of one false alarm in ten years with their 95 % intervals, and the rate of false
-//! alarms that such thresholds have in cylinders that they were not fitted to. Then the cylinders whose statistics come closest to them, or above.
+//! operation and prints, for cylinders and for tanks, the tails as they stand in the library, the thresholds of one false alarm in ten years with their 95 % intervals,
+//! and the rate of false alarms that such thresholds have in cylinders that they were not fitted to. Then those whose statistics come closest to them, or above.
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use cylwatch_detector::evidence::Scale;
+use cylwatch_detector::evidence::{HIGH_PRESSURE_PA, Scale};
 use cylwatch_detector::monitor::MonitorSettings;
 use cylwatch_evaluation::judge::candidate::Registry;
 use cylwatch_evaluation::judge::plan::{Plan, Role, Unit};
@@ -32,7 +32,15 @@ fn main() -> Result<(), Fault> {
         .with_max_len(1)
         .map(|unit| of_simulation(&plan, unit))
         .collect::<Result<_, Fault>>()?;
-    print(&watched.concat())
+    let mut cylinders = watched.concat();
+    let tanks: Vec<Watched> = cylinders.extract_if(.., is_tank).collect();
+    print("Cylinders", &cylinders)?;
+    print("Tanks", &tanks)
+}
+
+/// Whether a vessel has the tails of tanks.
+fn is_tank(watched: &mut Watched) -> bool {
+    watched.request.family.vessel.nominal().is_ok_and(|nominal| nominal.fill_pa.1 < HIGH_PRESSURE_PA)
 }
 
 fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Watched>, Fault> {
@@ -41,8 +49,12 @@ fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Watched>, Fault> {
     tasks.map(|task| Ok(watch(&simulated.world(&task.request)?, &settings)?)).collect()
 }
 
-fn print(watched: &[Watched]) -> Result<(), Fault> {
+fn print(title: &str, watched: &[Watched]) -> Result<(), Fault> {
+    if watched.is_empty() {
+        return Ok(());
+    }
     let mut out = std::io::stdout();
+    writeln!(out, "{title}\n")?;
     let found = commission(watched, &FitSettings { mean_time_s: YEARS * YEAR_S, stretch: 1.0, seed: 1 })?;
     for CommissionedScale { tail, .. } in found.scales {
         let (level, interval_s, scale, shape) = (tail.level, tail.interval_s, tail.scale, tail.shape);
@@ -54,7 +66,7 @@ fn print(watched: &[Watched]) -> Result<(), Fault> {
     let years = watched.iter().map(|watched| watched.request.length_s).sum::<f64>() / YEAR_S;
     writeln!(
         out,
-        "\nThresholds of one false alarm in {YEARS} years, from {years:.1} years of {} cylinders\n",
+        "\nThresholds of one false alarm in {YEARS} years, from {years:.1} years of {} logs\n",
         watched.len()
     )?;
     for of in found.scales {
@@ -81,5 +93,6 @@ fn print(watched: &[Watched]) -> Result<(), Fault> {
     for (part, Watched { request, record }) in highest.iter().take(SHOWN) {
         writeln!(out, "{part:.2} {} {}: {:.2?}", request.family, request.seed, record.largest())?;
     }
+    writeln!(out)?;
     Ok(())
 }

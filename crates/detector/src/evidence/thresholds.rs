@@ -1,8 +1,9 @@
 //! Thresholds of the statistics, and the tails that they follow from where a vessel has none of its own.
 //!
-//! The usual tails were fitted to leak-free worlds of the families that tune: seven vessels together in railway winters, parked, in a workshop, a metro, a desert and
-//! showers. They hold for a vessel of which nothing else is known. What the statistics of one vessel reach where it stands, `cylwatch commission` finds. For the cylinder under a rail vehicle
-//! it has been run, in railway winters, parked and in a workshop, and its tails stand here.
+//! The usual tails were fitted to leak-free worlds of the families that tune, in railway winters, parked, in a workshop, a metro, a desert and showers: one set to six cylinders of
+//! 180 to 300 bar, one to a tank of 3 to 8 bar, whose gas weighs little beside its wall and follows the air at once. They hold for a vessel of which nothing else is
+//! known. What the statistics of one vessel reach where it stands, `cylwatch commission` finds. For the cylinder under a rail vehicle it has been run, in railway winters, parked
+//! and in a workshop, and its tails stand here.
 //!
 //! `cargo run --release -p cylwatch-evaluation --example tails`, `cylwatch commission nitrogen-20l`
 use std::ops::RangeInclusive;
@@ -13,12 +14,8 @@ use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 
 use super::{Scale, Statistics, Tail, Tails};
 
-impl Default for Tails {
-    /// The usual ones; see the module's head.
-    fn default() -> Self {
-        USUAL
-    }
-}
+/// Fill from which a vessel is a cylinder and no tank, at 15 °C, Pa. Between 8 and 180 bar nothing was tried; the tank's tails, which are the higher ones, stand for most of it.
+pub const HIGH_PRESSURE_PA: f64 = 100e5;
 
 impl Tails {
     /// Those of a vessel that holds so much at 15 °C, Pa: its own if it is a built-in one that has been commissioned, filled as it was then; else the usual ones.
@@ -26,7 +23,12 @@ impl Tails {
         let says = |of: &Vessel| format!("{of:?}");
         let is_built_in = |name: &str| presets::load(name).is_ok_and(|known| says(&known) == says(vessel));
         let own = OWN.iter().find(|own| own.full_pa.contains(&full_pa) && is_built_in(own.preset));
-        own.map_or(USUAL, |own| own.tails)
+        own.map_or_else(|| Self::usual(full_pa), |own| own.tails)
+    }
+
+    /// The usual ones of a vessel that holds so much at 15 °C, Pa; see the module's head.
+    pub fn usual(full_pa: f64) -> Self {
+        if full_pa < HIGH_PRESSURE_PA { TANK } else { CYLINDER }
     }
 }
 
@@ -43,21 +45,30 @@ const OWN: [Own; 1] = [Own {
     full_pa: 170e5..=210e5,
     // Of 204 cylinders, 34.6 years together.
     tails: Tails([
-        Tail { level: 3.3325, interval_s: 4.3212e5, scale: 1.1505, shape: -0.019 },
-        Tail { level: 1.8107, interval_s: 1.7294e6, scale: 0.4842, shape: 0.010 },
-        Tail { level: 1.1667, interval_s: 3.4560e6, scale: 0.2770, shape: 0.029 },
-        Tail { level: 0.6603, interval_s: 1.2186e7, scale: 0.1497, shape: 0.059 },
-        Tail { level: 0.3567, interval_s: 2.6438e7, scale: 0.0931, shape: -0.171 },
+        Tail { level: 1.6496, interval_s: 4.3212e5, scale: 0.6031, shape: -0.078 },
+        Tail { level: 2.6065, interval_s: 1.7294e6, scale: 0.6164, shape: -0.008 },
+        Tail { level: 2.6384, interval_s: 3.4560e6, scale: 0.5780, shape: 0.045 },
+        Tail { level: 2.9353, interval_s: 1.2186e7, scale: 0.5090, shape: 0.192 },
+        Tail { level: 2.4492, interval_s: 2.6438e7, scale: 0.5081, shape: 0.068 },
     ]),
 }];
 
-/// Of 294 cylinders, 49.9 years together.
-const USUAL: Tails = Tails([
-    Tail { level: 4.0753, interval_s: 4.3210e5, scale: 1.4563, shape: -0.019 },
-    Tail { level: 2.4909, interval_s: 1.7292e6, scale: 0.5763, shape: 0.107 },
-    Tail { level: 1.4264, interval_s: 3.4560e6, scale: 0.3351, shape: 0.185 },
-    Tail { level: 0.8418, interval_s: 1.2158e7, scale: 0.1742, shape: 0.249 },
-    Tail { level: 0.3783, interval_s: 2.6278e7, scale: 0.1423, shape: 0.169 },
+/// Of 204 tanks, 34.6 years together.
+const TANK: Tails = Tails([
+    Tail { level: 2.6969, interval_s: 4.3214e5, scale: 0.7965, shape: 0.101 },
+    Tail { level: 3.8213, interval_s: 1.7297e6, scale: 1.0735, shape: 0.085 },
+    Tail { level: 3.7292, interval_s: 3.4560e6, scale: 1.0903, shape: 0.127 },
+    Tail { level: 4.3671, interval_s: 1.2186e7, scale: 2.7417, shape: -0.247 },
+    Tail { level: 4.5233, interval_s: 2.6438e7, scale: 2.1242, shape: 0.222 },
+]);
+
+/// Of 252 cylinders, 42.8 years together.
+const CYLINDER: Tails = Tails([
+    Tail { level: 2.1613, interval_s: 4.3206e5, scale: 0.6253, shape: 0.015 },
+    Tail { level: 3.3428, interval_s: 1.7298e6, scale: 0.7003, shape: 0.201 },
+    Tail { level: 3.5438, interval_s: 3.4560e6, scale: 0.7863, shape: 0.165 },
+    Tail { level: 3.7376, interval_s: 1.2193e7, scale: 0.7792, shape: 0.152 },
+    Tail { level: 3.0802, interval_s: 2.6127e7, scale: 0.9079, shape: 0.250 },
 ]);
 
 /// A threshold for each statistic.

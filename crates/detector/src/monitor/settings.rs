@@ -2,7 +2,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::alarm::AlarmSettings;
-use super::gas::onset::MassError;
 use super::intake::IntakeSettings;
 use crate::DetectorError;
 use crate::error::positive;
@@ -62,8 +61,6 @@ pub struct MonitorSettings {
     pub reaction: ReactionSettings,
     /// Alarms.
     pub alarms: AlarmSettings,
-    /// Errors of the observer's mass.
-    pub mass_error: MassError,
     /// Time from the first sample on in which the sensors are being learnt, s.
     pub learning_s: f64,
     /// Time without a usable pressure, or without a usable temperature, after which nothing can be told, s.
@@ -86,7 +83,6 @@ impl Default for MonitorSettings {
             loss: LossLaw::default(),
             reaction: ReactionSettings::default(),
             alarms: AlarmSettings::default(),
-            mass_error: MassError::default(),
             learning_s: 24.0 * HOUR_S,
             blind_after_s: 0.5 * HOUR_S,
             gap_s: 6.0 * HOUR_S,
@@ -103,7 +99,6 @@ impl MonitorSettings {
     pub fn validate(&self) -> Result<(), DetectorError> {
         self.intake.validate()?;
         self.reaction.validate()?;
-        self.mass_error.validate()?;
         self.tails.as_ref().map_or(Ok(()), Tails::validate)?;
         for (setting, value) in [
             ("false_alarm_interval_s", self.false_alarm_interval_s),

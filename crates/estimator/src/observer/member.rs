@@ -72,7 +72,7 @@ impl Member {
         self.pass.get_or_insert_with(|| Box::new(Pass::new(n, leading, sensors)))
     }
 
-    /// Become as another one is, without allocating unless it keeps its steps for a smoother.
+    /// Become as another one is, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.hypothesis = other.hypothesis;
         self.x.clone_from(&other.x);
@@ -80,7 +80,10 @@ impl Member {
         self.innovations.clone_from(&other.innovations);
         self.pulled.clone_from(&other.pulled);
         self.at_bound = other.at_bound;
-        self.pass.clone_from(&other.pass);
+        match (&mut self.pass, &other.pass) {
+            (Some(to), Some(from)) => to.copy_from(from),
+            (to, from) => to.clone_from(from),
+        }
     }
 
     /// Whether it has seen so many sensors.

@@ -32,6 +32,15 @@ impl Pass {
         }
     }
 
+    /// Become as that of another bank of the same observer, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.step.copy_from(&other.step);
+        self.opened = other.opened;
+        self.opened_before.clone_from(&other.opened_before);
+        self.begun_anew = other.begun_anew;
+        self.relaxed.clone_from(&other.relaxed);
+    }
+
     /// A sample comes `dt_s`, s, after the last one.
     pub fn begin(&mut self, dt_s: f64) {
         self.step.interval_s = dt_s;
@@ -80,5 +89,31 @@ impl Pass {
             Some(sensor) => self.opened_before[sensor] = true,
             None => self.opened = true,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_is_the_step_and_not_the_one_before() {
+        let mut step = Pass::new(3, 2, 2);
+        step.begin(60.0);
+        step.move_on(&DMatrix::from_fn(2, 3, |row, column| 0.1 + row as f64 + 0.3 * column as f64));
+        step.take(1, &[1.0, 2.0, 3.0], &[0.1, 0.2, 0.3], (0.5, 2.0));
+        step.relax(2, 0.5);
+        step.open(None);
+        step.open(Some(1));
+        step.begin_anew();
+        let mut copy = Pass::new(3, 2, 2);
+        copy.copy_from(&step);
+        let marks = |of: &Pass| (of.opened, of.opened_before.clone(), of.begun_anew, of.relaxed.clone());
+        assert_eq!((&copy.step, marks(&copy)), (&step.step, marks(&step)));
+        // Its own memory of a product is as good.
+        for of in [&mut step, &mut copy] {
+            of.move_on(&DMatrix::from_element(2, 3, 0.7));
+        }
+        assert_eq!(copy.step, step.step);
     }
 }

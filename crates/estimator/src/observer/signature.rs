@@ -137,15 +137,15 @@ impl Onsets {
         responses.filter(|response| !response.is_empty()).for_each(|response| response[state] = 0.0);
     }
 
-    /// Take a step of the member.
-    fn follow(&mut self, pass: &Pass, leak: usize) {
+    /// Take a step of the member, with memory for a product.
+    fn follow(&mut self, pass: &Pass, leak: usize, moved: &mut Vec<f64>) {
         if pass.opened {
             self.clear();
         }
         let (step, n) = (&pass.step, self.told.len());
-        let mut moved = vec![0.0; step.phi.nrows()];
+        moved.resize(step.phi.nrows(), 0.0);
         for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
-            carry(pass, response, &mut moved);
+            carry(pass, response, moved);
         }
         for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
             let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
@@ -265,7 +265,7 @@ impl Observer {
         let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) else { return };
         self.onsets.told.resize(member.x.len(), 0.0);
         if let Some(pass) = &member.pass {
-            self.onsets.follow(pass, leak);
+            self.onsets.follow(pass, leak, &mut self.to_tell);
         }
         self.onsets.renew(time_s, leak);
         self.onsets.to_tell(&mut self.to_tell);

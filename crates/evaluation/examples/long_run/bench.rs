@@ -1,5 +1,5 @@
 //! All detectors side by side on the readings of one cylinder, and what they said.
-use cylwatch_detector::evidence::{Doubt, Evidence, Scale, observer_settings};
+use cylwatch_detector::evidence::{Evidence, Scale, observer_settings};
 use cylwatch_estimator::observer::{Commissioning, Observer};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -57,16 +57,15 @@ pub fn judge(run: &Run, readings: &Readings) -> Result<Vec<Record>, Fault> {
     let commissioning = Commissioning::filled(FILLING.pressure_pa, FILLING.temperature_k);
     let vessel = presets::load(&run.settings.vessel)?;
     let mut observer = Observer::new(&vessel, &sensors, &commissioning, &settings)?;
-    let mut evidence = Evidence::try_new(&settings)?;
+    let mut evidence = Evidence::new(&settings);
     let mut baselines = baselines()?;
     let onset_s = run.settings.leak.map_or(0.0, |leak| leak.start_s);
     let mut rises = vec![Rises::since(onset_s); Scale::ALL.len() + baselines.len()];
     let mut end_s = 0.0;
     for (time_s, row) in readings.rows() {
         let [shoulder_k, _, pressure_pa] = row;
-        let estimate = observer.step(time_s, &row)?;
-        let doubt = Doubt::of(&observer, &evidence, 1.0);
-        let statistics = evidence.update(&estimate, &observer.leaks().collect::<Vec<_>>(), doubt);
+        observer.step(time_s, &row)?;
+        let statistics = evidence.update(&observer, time_s, 1.0);
         let (own, others) = rises.split_at_mut(Scale::ALL.len());
         own.iter_mut().zip(statistics).for_each(|(rises, value)| rises.update(time_s, value));
         for (rises, (_, baseline)) in others.iter_mut().zip(&mut baselines) {

@@ -79,7 +79,7 @@ pub fn print(folder: &Path) -> Result<(), Fault> {
         .ok_or("there are no records of `train` yet")?
         .collect();
     let others = detectors.iter().map(|name| (name.clone(), level_of(&train, name))).collect();
-    let levels = Levels { own: Tails::default().thresholds(YEARS * YEAR_S)?, others };
+    let levels = Levels { own: Tails::usual(200e5).thresholds(YEARS * YEAR_S)?, others };
     thresholds(&levels)?;
     let names: Vec<&str> = std::iter::once(OWN).chain(detectors.iter().map(String::as_str)).collect();
     false_alarms(folder, &levels, &names)?;

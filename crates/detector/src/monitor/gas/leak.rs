@@ -1,13 +1,11 @@
 //! From evidence to a leak: found, described, over, and how likely it is.
 //!
-//! The masses have a Bayes factor of a leak (`onset`), by a law of their errors that is the same everywhere. What they do in this vessel and
+//! What the observer says of every onset makes a Bayes factor of a leak (`onset`), as if its errors were normal. What they do in this vessel and
 //! climate the evidence knows: as often as its statistics come up without a leak, once in `T`, a leak comes up once in [`LEAK_INTERVAL_S`], so what they show is
-//! one with odds of at most `T / LEAK_INTERVAL_S`. The odds are those of the masses, but beyond the prior no larger than that.
+//! one with odds of at most `T / LEAK_INTERVAL_S`. The odds are those of the Bayes factor, but beyond the prior no larger than that.
 use serde::{Deserialize, Serialize};
 
-use super::onset::{self, MassError};
-use super::trace::MassTrace;
-use crate::estimator::observer::{Estimate, Leak};
+use super::onset::Fitted;
 use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
@@ -16,22 +14,19 @@ const PRIOR_ODDS: f64 = 0.01;
 const LEAK_INTERVAL_S: f64 = 10.0 * 365.25 * 86_400.0;
 /// Odds that are as good as certain.
 const CERTAIN: f64 = 1e12;
-/// Completed bins of the trace between two looks: an hour; but a look at each while the trace is short.
-const BINS_PER_LOOK: u32 = 6;
-const SHORT: u32 = 36;
+/// Time between two looks, s.
+const BETWEEN_LOOKS_S: f64 = 600.0;
 
 /// What is known about a leak.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct LeakState {
-    trace: MassTrace,
-    /// Bins since the last look, and all.
-    bins: u32,
-    seen_bins: u32,
+    /// Time of the next look, s.
+    due_s: f64,
     found: Option<LeakFinding>,
     /// Time at which a leak was found, and at which something spoke for it last, s.
     found_s: f64,
     seen_s: f64,
-    /// Odds of a leak by the masses; `None`: they have not said anything yet.
+    /// Odds of a leak by the Bayes factor; `None`: too little has been seen.
     odds: Option<f64>,
     /// Largest odds by the evidence.
     largest_odds: f64,
@@ -45,9 +40,7 @@ const LARGEST_PER_S: f64 = 0.05 / 3600.0;
 impl Default for LeakState {
     fn default() -> Self {
         Self {
-            trace: MassTrace::default(),
-            bins: 0,
-            seen_bins: 0,
+            due_s: f64::NEG_INFINITY,
             found: None,
             found_s: f64::NAN,
             seen_s: f64::NAN,
@@ -67,16 +60,10 @@ pub(in crate::monitor) enum Change {
 }
 
 /// What a look rests on.
-pub(in crate::monitor) struct Look<'a> {
-    pub estimate: &'a Estimate,
-    /// The freest member, whose mass is right in any leak.
-    pub free: &'a Leak,
-    /// The slow member whose rate stands in as long as the trace is short.
-    pub slow: &'a Leak,
+#[derive(Clone, Copy, Debug)]
+pub(in crate::monitor) struct Look {
+    pub time_s: f64,
     pub pa_per_kg: f64,
-    pub error: &'a MassError,
-    /// Considered error of the mass by what the surroundings do, standard deviation, kg.
-    pub doubt_kg: f64,
     /// Mass of the fill, kg.
     pub filled_kg: f64,
     /// Mean time between statistics like these without a leak, s.
@@ -84,31 +71,28 @@ pub(in crate::monitor) struct Look<'a> {
     /// Whether a statistic is above its threshold, and whether all are far below.
     pub alarm: bool,
     pub calm: bool,
+    /// Gas that was lost while nothing was heard: since when, s, and how much, kg.
+    pub lost_across: Option<(f64, f64)>,
     pub over_after_s: f64,
 }
 
 impl LeakState {
-    /// Take in a sample.
-    pub fn step(&mut self, look: &Look<'_>) -> Change {
-        let time_s = look.estimate.time_s;
+    /// Take in a sample, and `fitted` at it where a look is due.
+    pub fn step(&mut self, look: &Look, fitted: impl FnOnce() -> Option<Fitted>) -> Change {
+        let time_s = look.time_s;
         self.largest_odds = (look.false_alarm_s / LEAK_INTERVAL_S).clamp(PRIOR_ODDS, CERTAIN);
-        // A tunnel or the sun may have moved this mass: it would count as lost gas.
-        let doubtful = look.doubt_kg > look.error.sd_kg;
-        let completed = !doubtful && self.trace.push(time_s, look.free.mass_kg);
-        self.bins += u32::from(completed);
-        self.seen_bins += u32::from(completed);
         let leaking = self.found.is_some();
-        let newly = look.alarm && !leaking;
-        let due = self.bins >= if self.seen_bins < SHORT { 1 } else { BINS_PER_LOOK };
-        if newly || (completed && due) {
-            self.bins = 0;
-            self.look(look, newly || leaking);
+        let alarm = look.alarm || look.lost_across.is_some();
+        let newly = alarm && !leaking;
+        if newly || time_s >= self.due_s {
+            self.due_s = time_s + BETWEEN_LOOKS_S;
+            self.look(look, fitted(), newly || leaking);
         }
         if newly {
             (self.found_s, self.seen_s) = (time_s, time_s);
             return self.found.map_or(Change::None, Change::Found);
         }
-        if !look.calm {
+        if alarm || !look.calm {
             self.seen_s = time_s;
         }
         if leaking && time_s - self.seen_s > look.over_after_s {
@@ -118,34 +102,32 @@ impl LeakState {
         Change::None
     }
 
-    fn look(&mut self, look: &Look<'_>, leaking: bool) {
-        let fitted = if leaking { onset::fit(&self.trace, look.error) } else { None };
+    fn look(&mut self, look: &Look, fitted: Option<Fitted>, leaking: bool) {
         if leaking {
-            let finding = fitted.map(|fitted| fitted.finding(look.pa_per_kg));
-            self.found = finding.or(self.found).or_else(|| Some(self.by_rate(look)));
+            let loss = fitted.filter(|fitted| fitted.speaks_for_a_loss);
+            let finding = loss.map(|fitted| fitted.finding(look.pa_per_kg));
+            self.found = finding.or(self.found).or_else(|| Some(self.unseen(look)));
         }
-        // A fit has both already: the upper end of its rate is what a leak is below with 97.5 %.
-        let known = fitted.map(|fitted| (fitted.log_bayes_factor, fitted.rate_kg_s.high));
-        if let Some((log_bayes_factor, largest_kg_s)) =
-            known.or_else(|| onset::outlook(&self.trace, look.error))
-        {
-            self.odds = Some((PRIOR_ODDS * log_bayes_factor.exp()).min(CERTAIN));
-            self.largest_per_s = largest_kg_s / look.filled_kg;
+        if let Some(fitted) = fitted {
+            self.odds = Some((PRIOR_ODDS * fitted.log_bayes_factor.exp()).min(CERTAIN));
+            self.largest_per_s = fitted.rate_kg_s.high / look.filled_kg;
         }
     }
 
-    /// What a member of the bank says, where the trace says nothing yet.
-    fn by_rate(&self, look: &Look<'_>) -> LeakFinding {
-        let (rate, spread) = (look.slow.rate_kg_s.max(0.0), 1.96 * look.slow.sd_kg_s);
-        let rate_kg_s = Interval { value: rate, low: (rate - spread).max(0.0), high: rate + spread };
-        let time_s = look.estimate.time_s;
-        let oldest_s = self.trace.oldest_s().unwrap_or(time_s);
-        let middle_s = 0.5 * (oldest_s + time_s);
+    /// A leak of which nothing has been seen but what it took while nothing was heard.
+    fn unseen(&self, look: &Look) -> LeakFinding {
+        let (since_s, lost_kg) = look.lost_across.unwrap_or((look.time_s, 0.0));
+        let silent_s = (look.time_s - since_s).max(BETWEEN_LOOKS_S);
+        let rate_kg_s = Interval {
+            value: lost_kg / silent_s,
+            low: 0.0,
+            high: (lost_kg / BETWEEN_LOOKS_S).max(self.largest_per_s * look.filled_kg),
+        };
         LeakFinding {
             rate_kg_s,
             rate_pa_s: rate_kg_s.scaled(look.pa_per_kg),
-            onset_s: Interval { value: middle_s, low: oldest_s, high: time_s },
-            lost_kg: rate_kg_s.scaled(time_s - middle_s),
+            onset_s: Interval { value: 0.5 * (since_s + look.time_s), low: since_s, high: look.time_s },
+            lost_kg: Interval { value: lost_kg, low: 0.0, high: 2.0 * lost_kg },
         }
     }
 
@@ -161,7 +143,7 @@ impl LeakState {
         self.found.as_ref()
     }
 
-    /// Probability that gas is being lost, by masses and evidence; `None`: the masses have not said anything yet.
+    /// Probability that gas is being lost; `None`: too little has been seen.
     pub fn probability(&self) -> Option<f64> {
         self.odds.map(|odds| odds.min(self.largest_odds)).map(|odds| odds / (1.0 + odds))
     }
@@ -175,68 +157,70 @@ impl LeakState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimator::observer::Quality;
-    use crate::units::MINUTE_S;
 
-    /// Probability of a leak after a day in which the mass was 0.4 % too small for the last twenty minutes, so far in doubt, kg, with evidence that comes up
-    /// once in such a time without a leak, s.
-    fn after_a_tunnel(doubt_kg: f64, false_alarm_s: f64) -> f64 {
-        let error = MassError::default();
-        let mut state = LeakState::default();
-        for minute in 0..1440 {
-            let time_s = MINUTE_S * f64::from(minute);
-            let in_tunnel = minute >= 1420;
-            let mass_kg = 4.5 - if in_tunnel { 0.02 } else { 0.0 };
-            let estimate = Estimate {
-                time_s,
-                gas_mean_k: 288.15,
-                gas_mean_sd_k: 0.2,
-                mass_kg,
-                mass_sd_kg: 0.01,
-                leak_kg_s: 0.0,
-                leak_sd_kg_s: 1e-8,
-                pressure_pa: 2e7,
-                pressure_expected_pa: 2e7,
-                p15_pa: 2e7,
-                quality: Quality::Good,
-            };
-            let member = Leak {
-                rate_kg_s: 0.0,
-                sd_kg_s: 1e-8,
-                mass_kg,
-                mass_sd_kg: 0.01,
-                covariance_kg2_s: 0.0,
-                begun_anew: false,
-            };
-            let look = Look {
-                estimate: &estimate,
-                free: &member,
-                slow: &member,
-                pa_per_kg: 4.4e6,
-                error: &error,
-                doubt_kg: if in_tunnel { doubt_kg } else { 0.0 },
-                filled_kg: 4.5,
-                false_alarm_s,
-                alarm: false,
-                calm: true,
-                over_after_s: 86_400.0,
-            };
-            assert_eq!(state.step(&look), Change::None);
+    fn fitted(log_bayes_factor: f64) -> Fitted {
+        let rate_kg_s = Interval { value: 1e-6, low: 5e-7, high: 2e-6 };
+        Fitted {
+            rate_kg_s,
+            onset_s: Interval { value: 0.0, low: 0.0, high: 600.0 },
+            lost_kg: rate_kg_s.scaled(600.0),
+            log_bayes_factor,
+            speaks_for_a_loss: true,
         }
-        state.probability().unwrap_or(0.0)
+    }
+
+    fn look(time_s: f64, false_alarm_s: f64) -> Look {
+        Look {
+            time_s,
+            pa_per_kg: 4.4e6,
+            filled_kg: 4.5,
+            false_alarm_s,
+            alarm: false,
+            calm: true,
+            lost_across: None,
+            over_after_s: 86_400.0,
+        }
     }
 
     #[test]
-    fn a_mass_in_doubt_makes_no_leak_likely() {
-        let [doubted, certain] = [0.02, 0.0].map(|doubt_kg| after_a_tunnel(doubt_kg, f64::INFINITY));
-        assert!(doubted < 0.05 && certain > 0.5, "{doubted} {certain}");
-    }
-
-    #[test]
-    fn a_mass_is_no_leak_where_the_evidence_comes_up_every_week() {
-        let weekly = after_a_tunnel(0.0, 7.0 * 86_400.0);
-        assert!((weekly - 0.01 / 1.01).abs() < 1e-9, "the prior, no more: {weekly}");
+    fn a_bayes_factor_is_no_leak_where_the_evidence_comes_up_every_week() {
+        let probability = |false_alarm_s: f64| {
+            let mut state = LeakState::default();
+            assert_eq!(state.probability(), None);
+            assert_eq!(state.step(&look(0.0, false_alarm_s), || Some(fitted(20.0))), Change::None);
+            state.probability().unwrap()
+        };
+        assert!((probability(7.0 * 86_400.0) - 0.01 / 1.01).abs() < 1e-9, "the prior, no more");
         // As often without a leak as leaks come.
-        assert!((after_a_tunnel(0.0, LEAK_INTERVAL_S) - 0.5).abs() < 1e-9);
+        assert!((probability(LEAK_INTERVAL_S) - 0.5).abs() < 1e-9);
+        assert!(probability(f64::INFINITY) > 0.999_999);
+    }
+
+    #[test]
+    fn a_leak_is_found_at_once_looked_at_every_ten_minutes_and_over_a_day_after_it_was_seen() {
+        let mut state = LeakState::default();
+        let (mut looks, alarm) = (0, Look { alarm: true, calm: false, ..look(0.0, 1e12) });
+        let found = state.step(&alarm, || Some(fitted(10.0)));
+        assert_eq!(found, Change::Found(fitted(10.0).finding(4.4e6)));
+        for minute in 1..1440 {
+            let quiet = look(60.0 * f64::from(minute), 1e3);
+            let change = state.step(&quiet, || {
+                looks += 1;
+                None
+            });
+            assert_eq!(change, Change::None);
+        }
+        assert_eq!(looks, 143);
+        assert_eq!(state.step(&look(86_401.0, 1e3), || None), Change::Ended);
+    }
+
+    #[test]
+    fn what_went_while_nothing_was_heard_is_a_leak_of_hardly_known_rate() {
+        let mut state = LeakState::default();
+        let lost = Look { lost_across: Some((0.0, 0.3)), ..look(36_000.0, 1e3) };
+        let Change::Found(finding) = state.step(&lost, || None) else { panic!("not found") };
+        assert_eq!((finding.onset_s.low, finding.onset_s.high), (0.0, 36_000.0));
+        assert!(finding.lost_kg.holds(0.3) && finding.rate_kg_s.holds(0.3 / 36_000.0));
+        assert!(finding.rate_kg_s.holds(0.3 / 600.0));
     }
 }

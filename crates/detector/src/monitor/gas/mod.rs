@@ -7,5 +7,4 @@ pub mod jump;
 pub(super) mod leak;
 pub mod onset;
 pub(super) mod outlook;
-pub mod trace;
 mod wander;

@@ -1,32 +1,25 @@
-//! Rate and onset of a leak from the masses of the last weeks, with intervals.
+//! Rate and onset of a leak, with intervals, from what the observer says of every possible onset.
 //!
-//! `m(t) = a - r (t - nu)^+ + e(t)`: a level, from the onset `nu` on a loss at the rate `r`, and an error of the observer that is
-//! an Ornstein-Uhlenbeck process of known standard deviation `s` and time constant `tau`. A bin less `phi = exp(-dt/tau)` times the one
-//! before it, over `s sqrt(1 - phi^2)`, has an independent error. So level and rate are linear for each onset on a bin; the sums over the bins after an onset are
-//! suffix sums, so all onsets together cost one pass. With flat priors on level and onset, and a rate that is uniform in its logarithm over four
-//! decades, the posterior is a mixture over the onsets `k` of normal distributions cut off at zero,
+//! For an onset at `nu_k` the observer has the rate `r_k` with standard deviation `s_k` ([`Observer::onsets`]), and the evidence knows what those are too small by
+//! ([`Evidence::error_sd`]) and what is considered for the surroundings. With a flat prior on the onset, and a rate that is uniform in its logarithm over
+//! four decades, the posterior is a mixture over the onsets of normal distributions cut off at zero,
 //!
-//! `p(r, nu_k) ~ dt_k sd_k/max(r_k, sd_k) exp(L_k) N(r; r_k, sd_k^2)`, `L_k` the log-likelihood ratio against no leak,
+//! `p(r, nu_k) ~ dt_k s_k/max(r_k, s_k) exp(r_k^2/(2 s_k^2)) N(r; r_k, s_k^2)`,
 //!
 //! whose quantiles are the intervals; the mean of the likelihood ratio over onsets and rates is the Bayes factor of a leak. A prior that is flat
-//! in the rate would prefer fast leaks of the last hours to slow ones of days. An error of the rate that no mass shows, such as the slow
-//! drift of what the observer has learnt, widens the rate by a standard deviation of its own, as does what a kilogram is worth in the
-//! observer's model, 0.5 %; the onset by the length of a bin, since the mass follows a leak by some minutes.
+//! in the rate would prefer fast leaks of the last hours to slow ones of days. An error of the rate that no innovation shows, such as the slow
+//! drift of what the observer has learnt, widens the rate by a standard deviation of its own, 0.01 g/h of 4.5 kg, as does what a kilogram is worth in the
+//! observer's model, 0.5 %; the onset by ten minutes, since the mass follows a leak by some.
 //!
-//! A mass whose considered error by the surroundings is above `s` is left out, and `s` grows with what the evidence is divided by.
+//! Assumes one leak of constant rate since its onset. Onsets are half a day apart when they are two days old: between them the onset is uniform.
 //!
-//! Assumes one leak of constant rate since its onset, and that the errors are as stated. They last from minutes to days: the defaults are one
-//! process that stands for all of them, such that intervals hold the truth as often as they say (`long_run -- FOLDER accuracy`).
+//! Source: Bayesian mixture over change points, D. A. Stephens, Appl. Stat. 43 (1994) 159; D. V. Hinkley, Biometrika 56 (1969) 495.
 //!
-//! Source: change point of a regression: D. V. Hinkley, Biometrika 56 (1969) 495; Bayesian mixture: D. A. Stephens, Appl. Stat. 43
-//! (1994) 159.
+//! [`Observer::onsets`]: crate::estimator::observer::Observer::onsets
 use std::f64::consts::TAU;
 
-use serde::{Deserialize, Serialize};
-
-use super::trace::{Bin, FINE_S, MassTrace};
-use crate::DetectorError;
-use crate::error::positive;
+use crate::estimator::observer::Observer;
+use crate::evidence::Evidence;
 use crate::monitor::{Interval, LeakFinding};
 use crate::prognosis::normal_probability;
 
@@ -40,47 +33,15 @@ const BISECTIONS: usize = 30;
 const LN_RATES: f64 = 9.21;
 /// Relative error of what a kilogram is worth in the observer's model, standard deviation.
 const MODEL: f64 = 0.005;
-/// Fewest bins that tell a rate.
-const FEWEST: usize = 4;
+/// Error of the rate that lasts, as a part of the mass, 1/s.
+const DRIFT_PER_S: f64 = 1e-5 / 4.477 / 3600.0;
+/// By how much an onset may be off beside what is known of it, s.
+const ONSET_S: f64 = 600.0;
 
-/// Errors of the observer's mass, for the full 20 L nitrogen cylinder; for another fill they are parts of it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct MassError {
-    /// Standard deviation, kg.
-    pub sd_kg: f64,
-    /// Time constant, s.
-    pub time_s: f64,
-    /// Standard deviation of a rate error that lasts, kg/s.
-    pub drift_kg_s: f64,
-}
-
-impl Default for MassError {
-    /// 5 g over 5 h, 0.01 g/h.
-    fn default() -> Self {
-        Self { sd_kg: 5e-3, time_s: 18_000.0, drift_kg_s: 1e-5 / 3600.0 }
-    }
-}
-
-impl MassError {
-    /// # Errors
-    /// A value is not positive and finite.
-    pub fn validate(&self) -> Result<(), DetectorError> {
-        positive("mass_error.sd_kg", self.sd_kg)?;
-        positive("mass_error.time_s", self.time_s)?;
-        positive("mass_error.drift_kg_s", self.drift_kg_s).map(drop)
-    }
-
-    /// The same of a cylinder that holds so many times as much gas.
-    pub fn scaled(self, mass: f64) -> Self {
-        Self { sd_kg: mass * self.sd_kg, drift_kg_s: mass * self.drift_kg_s, ..self }
-    }
-}
-
-/// What the masses say about a leak.
+/// What is known of a leak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
-    /// Leak rate, kg/s.
+    /// Leak rate, kg/s; the upper end is what one is below with 97.5 %.
     pub rate_kg_s: Interval,
     /// Onset, s.
     pub onset_s: Interval,
@@ -88,6 +49,8 @@ pub struct Fitted {
     pub lost_kg: Interval,
     /// Logarithm of the Bayes factor of a leak, its rate anywhere in four decades and its onset at any time, against none.
     pub log_bayes_factor: f64,
+    /// Whether any onset makes a loss likelier than none.
+    pub speaks_for_a_loss: bool,
 }
 
 /// One onset with its rate.
@@ -99,64 +62,36 @@ struct Candidate {
     to_s: f64,
     rate: f64,
     sd: f64,
-    log_likelihood_ratio: f64,
     weight: f64,
 }
 
-/// Rate and onset of the leak that the trace shows best; `None` where it is too short, or nothing in it speaks for a loss.
-pub fn fit(trace: &MassTrace, error: &MassError) -> Option<Fitted> {
-    let posterior = posterior(trace, error).filter(|posterior| posterior.speaks_for_a_loss)?;
-    let Posterior { candidates, log_bayes_factor, end_s, .. } = posterior;
-    let sd = |one: &Candidate| one.sd.hypot(MODEL * one.rate);
-    let rates = rates(&candidates, error);
-    let losses = Mixture::new(&candidates, |one| {
-        let age_s = end_s - one.onset_s;
-        (one.rate * age_s, sd(one) * age_s)
-    });
-    let onset = |p: f64| onset_quantile(&candidates, p);
-    let onset_s = Interval {
-        value: onset(0.5),
-        low: onset(TAIL) - FINE_S,
-        high: (onset(1.0 - TAIL) + FINE_S).min(end_s),
+/// Rate and onset of a leak at a time, s, of a cylinder that holds so much, kg, if there is one; `None`: too little has been seen.
+pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) -> Option<Fitted> {
+    let onset = |of: crate::estimator::observer::Onset| {
+        let considered_kg_s = evidence.considered_kg_s(time_s - of.since_s);
+        (of.since_s, of.rate_kg_s, (evidence.error_sd() * of.sd_kg_s).hypot(considered_kg_s))
     };
-    let (rate_kg_s, lost_kg) = (rates.interval(), losses.interval());
-    Some(Fitted { rate_kg_s, onset_s, lost_kg, log_bayes_factor })
+    fit_of(&observer.onsets().map(onset).collect::<Vec<_>>(), time_s, DRIFT_PER_S * mass_kg)
 }
 
-/// Logarithm of the Bayes factor of a leak, and the rate, kg/s, that one is below with 97.5 % if there is one; `None` where the trace is
-/// too short to say anything.
-pub fn outlook(trace: &MassTrace, error: &MassError) -> Option<(f64, f64)> {
-    let posterior = posterior(trace, error)?;
-    let largest_kg_s = rates(&posterior.candidates, error).quantile(1.0 - TAIL);
-    Some((posterior.log_bayes_factor, largest_kg_s))
-}
-
-/// Rates of a leak, with errors that no mass shows.
-fn rates(candidates: &[Candidate], error: &MassError) -> Mixture {
-    let sd = |one: &Candidate| one.sd.hypot(MODEL * one.rate).hypot(error.drift_kg_s);
-    Mixture::new(candidates, |one| (one.rate, sd(one)))
-}
-
-/// All onsets with their weights.
-struct Posterior {
-    candidates: Vec<Candidate>,
-    log_bayes_factor: f64,
-    /// Whether any onset makes a loss likelier than none.
-    speaks_for_a_loss: bool,
-    end_s: f64,
-}
-
-fn posterior(trace: &MassTrace, error: &MassError) -> Option<Posterior> {
-    let bins: Vec<Bin> = trace.bins().copied().collect();
-    if bins.len() < FEWEST {
-        return None;
-    }
-    let mut candidates = candidates(&bins, error);
-    let largest = candidates.iter().map(|c| c.log_likelihood_ratio).fold(0.0, f64::max);
+/// The same of onsets, s, with their rates and standard deviations, kg/s, oldest first, and an error of the rate that lasts, kg/s.
+fn fit_of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Fitted> {
+    let mut candidates: Vec<Candidate> = onsets
+        .iter()
+        .enumerate()
+        .map(|(index, &(onset_s, rate, sd))| {
+            let before_s = index.checked_sub(1).map_or(onset_s, |before| onsets[before].0);
+            let after_s = onsets.get(index + 1).map_or(time_s, |after| after.0);
+            let (from_s, to_s) = (0.5 * (before_s + onset_s), 0.5 * (onset_s + after_s));
+            Candidate { onset_s, from_s, to_s, rate, sd, weight: 0.0 }
+        })
+        .collect();
+    let ratio = |one: &Candidate| 0.5 * (one.rate.max(0.0) / one.sd).powi(2);
+    let largest = candidates.iter().map(ratio).fold(0.0, f64::max);
     let (mut total, mut factor, mut span_s) = (0.0, 0.0, 0.0);
     for one in &mut candidates {
         let width = one.to_s - one.from_s;
-        let likelihood = (one.log_likelihood_ratio - largest).exp();
+        let likelihood = (ratio(one) - largest).exp();
         // Mean of the likelihood over rates that are uniform in their logarithm.
         let mean = likelihood * TAU.sqrt() * one.sd / (one.rate.max(one.sd) * LN_RATES);
         factor += width * mean;
@@ -166,10 +101,24 @@ fn posterior(trace: &MassTrace, error: &MassError) -> Option<Posterior> {
         span_s += width;
     }
     candidates.iter_mut().for_each(|one| one.weight /= total);
-    let end_s = bins[bins.len() - 1].time_s;
     let log_bayes_factor = largest + (factor / span_s).ln();
-    let sound = total > 0.0 && log_bayes_factor.is_finite();
-    sound.then_some(Posterior { candidates, log_bayes_factor, speaks_for_a_loss: largest > 0.0, end_s })
+    if !(total > 0.0 && log_bayes_factor.is_finite()) {
+        return None;
+    }
+    let sd = |one: &Candidate| one.sd.hypot(MODEL * one.rate);
+    let rates = Mixture::new(&candidates, |one| (one.rate, sd(one).hypot(drift_kg_s)));
+    let losses = Mixture::new(&candidates, |one| {
+        let age_s = time_s - one.onset_s;
+        (one.rate * age_s, sd(one) * age_s)
+    });
+    let onset = |p: f64| onset_quantile(&candidates, p);
+    let onset_s = Interval {
+        value: onset(0.5),
+        low: onset(TAIL) - ONSET_S,
+        high: (onset(1.0 - TAIL) + ONSET_S).min(time_s),
+    };
+    let (rate_kg_s, lost_kg) = (rates.interval(), losses.interval());
+    Some(Fitted { rate_kg_s, onset_s, lost_kg, log_bayes_factor, speaks_for_a_loss: largest > 0.0 })
 }
 
 impl Fitted {
@@ -182,62 +131,6 @@ impl Fitted {
             lost_kg: self.lost_kg,
         }
     }
-}
-
-/// Rate and likelihood for an onset at each bin but the last one.
-fn candidates(bins: &[Bin], error: &MassError) -> Vec<Candidate> {
-    let origin_s = bins[0].time_s;
-    // Rows of the whitened regression: level w, time u, mass less the first one y.
-    let mut rows = Vec::with_capacity(bins.len());
-    let (mut level_level, mut level_mass) = (0.0, 0.0);
-    for (index, bin) in bins.iter().enumerate() {
-        let (t, y) = (bin.time_s - origin_s, bin.mass_kg - bins[0].mass_kg);
-        let (phi, before_t, before_y) = match index.checked_sub(1).map(|before| &bins[before]) {
-            None => (0.0, 0.0, 0.0),
-            Some(before) => (
-                (-(bin.time_s - before.time_s) / error.time_s).exp(),
-                before.time_s - origin_s,
-                before.mass_kg - bins[0].mass_kg,
-            ),
-        };
-        let scale = (error.sd_kg * (1.0 - phi * phi).sqrt()).recip();
-        let row = [(1.0 - phi) * scale, (t - phi * before_t) * scale, (y - phi * before_y) * scale];
-        level_level += row[0] * row[0];
-        level_mass += row[0] * row[2];
-        rows.push(row);
-    }
-    // Suffix sums: ww, wu, uu, wy, uy.
-    let mut sums = [0.0; 5];
-    let mut found = Vec::with_capacity(bins.len());
-    for index in (0..bins.len() - 1).rev() {
-        let [w, u, y] = rows[index + 1];
-        for (sum, product) in sums.iter_mut().zip([w * w, w * u, u * u, w * y, u * y]) {
-            *sum += product;
-        }
-        let nu = bins[index].time_s - origin_s;
-        let [ww, wu, uu, wy, uy] = sums;
-        // The loss is minus the ramp: signature h = -(u - nu w).
-        let hh = uu - 2.0 * nu * wu + nu * nu * ww;
-        let wh = -(wu - nu * ww);
-        let hy = -(uy - nu * wy);
-        let information = hh - wh * wh / level_level;
-        if information <= 1e-9 * hh {
-            continue;
-        }
-        let rate = (hy - wh * level_mass / level_level) / information;
-        let log_likelihood_ratio = if rate > 0.0 { 0.5 * rate * rate * information } else { 0.0 };
-        found.push(Candidate {
-            onset_s: bins[index].time_s,
-            from_s: 0.5 * (bins[index.saturating_sub(1)].time_s + bins[index].time_s),
-            to_s: 0.5 * (bins[index].time_s + bins[index + 1].time_s),
-            rate,
-            sd: information.sqrt().recip(),
-            log_likelihood_ratio,
-            weight: 0.0,
-        });
-    }
-    found.reverse();
-    found
 }
 
 /// Mixture of normal distributions above zero.

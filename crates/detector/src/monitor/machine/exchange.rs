@@ -392,12 +392,13 @@ impl Monitor {
 
     pub(super) fn forget_masses(&mut self) {
         self.state.evidence.forget();
+        self.observer.forget_onsets();
         if self.state.leak.found().is_none() {
             self.state.leak.begin_anew();
         }
     }
 
-    /// The pressure is another one after a time without rows: a refill, or a loss that the trace of the masses will tell.
+    /// The pressure is another one after a time without rows: a refill, or a loss.
     fn take_across(
         &mut self,
         time_s: f64,
@@ -419,7 +420,8 @@ impl Monitor {
             let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
             self.exchanged(time_s, silent_since_s, change_kg.max(0.0), false, events);
         } else {
-            self.state.lost_across = true;
+            let lost_kg = self.masses_kg().map_or(0.0, |mass_kg| (before_kg - mass_kg).max(0.0));
+            self.state.lost_across = Some((silent_since_s, lost_kg));
         }
         Ok(estimate)
     }

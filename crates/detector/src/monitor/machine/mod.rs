@@ -17,7 +17,7 @@ use super::gas::filling::FillingCheck;
 use super::gas::gain::GainWatch;
 use super::gas::jump::JumpWatch;
 use super::gas::leak::{Change, LeakState, Look};
-use super::gas::onset::MassError;
+use super::gas::onset::{self, Fitted};
 use super::gas::outlook::LimitMasses;
 use super::intake::{Intake, Row, Taken};
 use super::readings::health::SensorWatch;
@@ -30,12 +30,10 @@ use super::settings::MonitorSettings;
 use super::state::{self, Fingerprint, StateError};
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
-use crate::estimator::observer::{
-    Commissioning, Estimate, Leak, Learned, Observer, Quality, Scale, Snapshot,
-};
+use crate::estimator::observer::{Commissioning, Estimate, Leak, Learned, Observer, Quality, Snapshot};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
-use crate::evidence::{Doubt, Evidence, Statistics, Tails, Thresholds};
+use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
 use crate::prognosis::{Contents, QUOTED_K};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
@@ -58,8 +56,6 @@ pub struct Monitor {
     tails: Tails,
     thresholds: Thresholds,
     full_pa: f64,
-    /// Errors of the observer's mass for this fill.
-    mass_error: MassError,
     /// Mass that was stated and its standard deviation, kg.
     filled_kg: (f64, f64),
     roles: Roles,
@@ -103,8 +99,8 @@ struct State {
     examined: Option<Examined>,
     leak: LeakState,
     evidence: Evidence,
-    /// Pressure was lost across a gap.
-    lost_across: bool,
+    /// Gas was lost while nothing was heard: since when, s, and how much, kg.
+    lost_across: Option<(f64, f64)>,
     /// Events that wait for a row.
     waiting: Vec<Event>,
     panel: AlarmPanel,
@@ -205,8 +201,8 @@ impl Monitor {
             gains: GainWatch::default(),
             examined: None,
             leak: LeakState::default(),
-            evidence: Evidence::try_new(&settings.observer)?,
-            lost_across: false,
+            evidence: Evidence::new(&settings.observer),
+            lost_across: None,
             waiting: Vec::new(),
             panel: AlarmPanel::default(),
             verdict: Verdict::Unknown(Reason::Learning),
@@ -222,14 +218,12 @@ impl Monitor {
             cold: Tangent::at(settings.limits.coldest_k),
             warned: false,
         };
-        let scale = Scale::of(vessel, commissioning)?;
         let compared = wiring::compared(&roles, sensors);
         let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: tails.thresholds(settings.false_alarm_interval_s)?,
             tails,
-            mass_error: settings.mass_error.scaled(scale.mass),
             full_pa,
             filled_kg: (full_kg, commissioning.mass_sd * full_kg),
             roles,
@@ -356,6 +350,11 @@ impl Monitor {
         self.state.evidence.statistics()
     }
 
+    /// Rate and onset of a leak, if there is one, whatever the evidence; `None`: too little has been seen.
+    pub fn fitted(&self) -> Option<Fitted> {
+        onset::fit(&self.observer, &self.state.evidence, self.state.last_s, self.filled_kg.0)
+    }
+
     /// What the evidence is held against.
     pub fn tails(&self) -> &Tails {
         &self.tails
@@ -427,34 +426,25 @@ impl Monitor {
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let degraded = self.is_degraded(time_s);
         let divisor = self.state.parity.divisor() * if degraded { DEGRADED } else { 1.0 };
-        let doubt = Doubt::of(&self.observer, &self.state.evidence, divisor);
-        let statistics = self.state.evidence.update(estimate, &self.leaks, doubt);
-        let alarm = self.thresholds.alarm(&statistics).is_some();
-        let calm = self.thresholds.is_calm(&statistics);
-        let lost_across = std::mem::take(&mut self.state.lost_across);
-        let (Some(free), Some(slow)) = (self.leaks.last(), self.leaks.get(1)) else { return Ok(()) };
-        // What the evidence is divided by, the errors of the masses are larger by.
-        let error = MassError { sd_kg: divisor * self.mass_error.sd_kg, ..self.mass_error };
+        let statistics = self.state.evidence.update(&self.observer, time_s, divisor);
         let look = Look {
-            estimate,
-            free,
-            slow,
+            time_s,
             pa_per_kg: self.state.p15.slope_pa_kg(),
-            error: &error,
-            doubt_kg: self.observer.flow().map_or(0.0, |flow| flow.considered_sd_kg),
             filled_kg: self.filled_kg.0,
             false_alarm_s: self.tails.mean_time_s(&statistics),
-            alarm: alarm || lost_across,
-            calm: calm && !lost_across,
+            alarm: self.thresholds.alarm(&statistics).is_some() && !self.may_pressure_stand_still(),
+            calm: self.thresholds.is_calm(&statistics),
+            lost_across: self.state.lost_across.take(),
             over_after_s: self.settings.leak_over_after_s,
         };
-        match self.state.leak.step(&look) {
+        let (observer, evidence) = (&self.observer, &self.state.evidence);
+        match self.state.leak.step(&look, || onset::fit(observer, evidence, time_s, look.filled_kg)) {
             Change::None => {}
             Change::Found(finding) => match self.state.filling.explains_leak(self.filled_kg) {
                 Some(mass_kg) => {
                     self.doubt_filling(time_s, mass_kg, events);
                     self.state.leak.begin_anew();
-                    self.state.evidence.forget();
+                    self.forget_masses();
                 }
                 None => events.push(Event::new(time_s, finding.onset_s.value, EventKind::LeakFound(finding))),
             },

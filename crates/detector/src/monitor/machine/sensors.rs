@@ -8,7 +8,7 @@ use crate::monitor::gas::bounds::FLOW_DEVIATIONS;
 use crate::monitor::intake::Row;
 use crate::monitor::readings::parity::Disturbance;
 use crate::monitor::readings::thermometers::Lonely;
-use crate::monitor::{Event, EventKind};
+use crate::monitor::{Event, EventKind, Health};
 
 /// Standard deviation of a thermometer's offset after it jumped, beside the jump, K.
 const JUMPED_K: f64 = 0.5;
@@ -20,9 +20,23 @@ impl Monitor {
     pub(super) fn screen(&mut self, row: &Row) {
         self.usable.copy_from_slice(&row.readings);
         self.state.delays.align(row.time_s, &mut self.usable);
+        let stood_still = self.is_pressure_stuck();
         for (watch, reading) in self.state.watches.iter_mut().zip(&mut self.usable) {
             *reading = watch.judge(row.time_s, *reading);
         }
+        if !stood_still && self.is_pressure_stuck() {
+            // What it read since it stood still is in what is known of every onset.
+            self.forget_masses();
+        }
+    }
+
+    fn is_pressure_stuck(&self) -> bool {
+        self.roles.pressure.is_some_and(|pressure| self.state.watches[pressure].health() == Health::Stuck)
+    }
+
+    /// Whether the pressure may be standing still: what it shows is told when that is known.
+    pub(super) fn may_pressure_stand_still(&self) -> bool {
+        self.roles.pressure.is_some_and(|pressure| self.state.watches[pressure].may_stand_still())
     }
 
     pub(super) fn watch_thermometers(&mut self, time_s: f64, events: &mut Vec<Event>) {
@@ -172,7 +186,7 @@ mod tests {
     use super::*;
     use crate::estimator::sensor::Sensor;
     use crate::estimator::thermal::vessel::presets;
-    use crate::monitor::{Health, MonitorSettings};
+    use crate::monitor::MonitorSettings;
     use crate::units::MINUTE_S;
 
     const FILL_K: f64 = 288.15;

@@ -136,7 +136,7 @@ impl Monitor {
         state.watches = self.sensors.iter().map(SensorWatch::new).collect();
         (state.jumps, state.pair) = (JumpWatch::default(), pair(&self.sensors, &self.roles));
         (state.parity, state.undisturbed) = (Parity::default(), Undisturbed::default());
-        state.evidence = Evidence::try_new(&self.settings.observer)?;
+        state.evidence = Evidence::new(&self.settings.observer);
         state.start_s = Some(time_s);
         state.bounds.forget_flow();
         if state.leak.begin_anew() == Change::Ended {

@@ -3,7 +3,8 @@
 //! * *Missing*: no number in three rows in a row. A cell that is empty now and then is how loggers are, and no fault of the sensor.
 //! * *Implausible*: a number outside what the sensor can read or at the end of its range.
 //! * *Stuck*: identical readings in a row. How many are too many depends on how often a reading of this logger repeats itself:
-//!   with the share `f` of repeated readings so far, `n` in a row have the probability `f^n`; below 2e-9 it is no chance. The share is no less
+//!   with the share `f` of repeated readings so far, `n` in a row have the probability `f^n`; below 2e-9 it is no chance, below 0.7 % what the readings
+//!   show waits for it. The share is no less
 //!   than that of a cylinder at rest in the middle of a step `q` of the sensor with the noise `sigma`, `erf(q / (2 sqrt(2) sigma))`: a
 //!   coarse sensor that stands still says nothing.
 //! * *Spikes*: readings refused by the observer's gate within the last hour.
@@ -24,6 +25,8 @@ use crate::monitor::Health;
 const MISSING_ROWS: u32 = 3;
 /// Logarithm of the probability of a repetition that is no chance.
 const NO_CHANCE: f64 = 20.0;
+/// The same of one that may be one.
+const UNUSUAL: f64 = 5.0;
 /// Fewest identical readings in a row that are too many.
 const FEWEST_IN_A_ROW: u32 = 10;
 /// Readings from which the share of repeated ones is learnt.
@@ -141,9 +144,19 @@ impl SensorWatch {
     }
 
     fn too_many(&self, in_a_row: u32) -> bool {
+        in_a_row >= FEWEST_IN_A_ROW && self.unlikeliness(in_a_row) > NO_CHANCE
+    }
+
+    /// Minus the logarithm of the probability of so many identical readings in a row.
+    fn unlikeliness(&self, in_a_row: u32) -> f64 {
         let learnt = (self.repeated + 5.0) / (self.seen + 10.0);
         let share = learnt.max(self.at_rest).clamp(0.05, 1.0 - 1e-6);
-        in_a_row >= FEWEST_IN_A_ROW && f64::from(in_a_row) * -share.ln() > NO_CHANCE
+        f64::from(in_a_row) * -share.ln()
+    }
+
+    /// Whether it may be standing still: readings have been identical for longer than is usual, and not for so long that it is no chance.
+    pub fn may_stand_still(&self) -> bool {
+        self.unlikeliness(self.in_a_row) > UNUSUAL
     }
 
     fn learn(&mut self, in_a_row: u32) {
@@ -217,6 +230,25 @@ mod tests {
 
     fn pressure() -> SensorWatch {
         SensorWatch::new(&Sensor::typical("pressure").unwrap())
+    }
+
+    #[test]
+    fn a_reading_that_repeats_itself_may_stand_still_long_before_it_does() {
+        let mut watch = SensorWatch::new(&Sensor::typical("pressure").unwrap());
+        for row in 0..500 {
+            watch.judge(60.0 * f64::from(row), 2e7 + 1e4 * f64::from(row % 7));
+            assert!(!watch.may_stand_still());
+        }
+        let doubted: Vec<bool> = (0..12)
+            .map(|row| {
+                watch.judge(30_000.0 + 60.0 * f64::from(row), 2e7);
+                watch.may_stand_still()
+            })
+            .collect();
+        assert_eq!(doubted.iter().position(|doubted| *doubted), Some(2));
+        assert!(doubted[2..].iter().all(|doubted| *doubted) && watch.health() == Health::Stuck);
+        watch.judge(40_000.0, 2.01e7);
+        assert!(!watch.may_stand_still());
     }
 
     #[test]

@@ -109,7 +109,7 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
         let nu = dot(&h, &error);
         pass.take(0, &h, &gain, (nu, 25.0));
         axpy(-nu, &gain, &mut error);
-        onsets.follow(&pass, 1);
+        onsets.follow(&pass, 1, &mut Vec::new());
         if step % 7 == 0 && step > 20 {
             // Told half of the leak: the error is less by that.
             let tell: Vec<f64> = onsets.responses.iter().map(|response| 0.5 * RATE * response).collect();
@@ -132,7 +132,7 @@ fn a_reading_far_off_counts_for_two_standard_deviations() {
         pass.begin(1.0);
         pass.move_on(&nalgebra::DMatrix::from_row_slice(2, 2, &[1.0, -1.0, 0.0, 1.0]));
         pass.take(0, &[1.0, 0.0], &[0.5, 0.0], (nu, 4.0));
-        onsets.follow(&pass, 1);
+        onsets.follow(&pass, 1, &mut Vec::new());
         (onsets.sums[0].score, onsets.all().next().unwrap().sd_kg_s)
     };
     // g = -1, S = 4.

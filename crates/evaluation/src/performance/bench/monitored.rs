@@ -3,14 +3,12 @@
 //! Each statistic of its [`Evidence`](crate::detector::evidence::Evidence) has a law for what it reaches without a leak: a value stands for
 //! the mean time between false alarms `T` whose threshold it is. The candidate's statistic is the largest `log10(T/1 year)` of all; the monitor by
 //! itself alarms at that of its settings, and the threshold that training finds says how far its laws are right.
-//! What is said about the leak comes from the masses of the freest member ([`onset`]), as in the monitor after an alarm.
+//! What is said about the leak is what the monitor says after an alarm ([`Monitor::fitted`]).
 
 use super::Plan;
 use super::candidate::{Candidate, Contender, Readings};
 use crate::EvaluationError;
 use crate::detector::evidence::Tails;
-use crate::detector::monitor::gas::onset::{self, MassError};
-use crate::detector::monitor::gas::trace::MassTrace;
 use crate::detector::monitor::{Monitor, MonitorSettings};
 use crate::estimator::observer::Commissioning;
 use crate::estimator::sensor::Sensor;
@@ -39,15 +37,11 @@ pub fn monitor(plan: &Plan) -> Result<Candidate, EvaluationError> {
 
 struct Monitored {
     monitor: Monitor,
-    trace: MassTrace,
-    error: MassError,
     tails: Tails,
     pa_per_kg: f64,
     settled_pa: Option<f64>,
-    /// The statistic, and whether the trace has got a bin since what was found was found.
+    /// The statistic.
     log_years: f64,
-    renewed: bool,
-    found: Option<Found>,
 }
 
 impl Monitored {
@@ -64,13 +58,9 @@ impl Monitored {
         Ok(Self {
             tails: *monitor.tails(),
             monitor,
-            trace: MassTrace::default(),
-            error: settings.mass_error,
             pa_per_kg,
             settled_pa: None,
             log_years: f64::NEG_INFINITY,
-            renewed: false,
-            found: None,
         })
     }
 }
@@ -80,7 +70,6 @@ impl Contender for Monitored {
         let row = [readings.shoulder_k, readings.valve_k, readings.pressure_pa];
         self.monitor.step(readings.time_s, &row)?;
         if let Some(freest) = self.monitor.observer().leaks().last() {
-            self.renewed |= self.trace.push(readings.time_s, freest.mass_kg);
             self.settled_pa = Some(freest.mass_kg * self.pa_per_kg);
         }
         self.log_years = (self.tails.mean_time_s(&self.monitor.evidence()) / YEAR_S).log10();
@@ -89,13 +78,10 @@ impl Contender for Monitored {
 
     fn found(&mut self) -> Option<Found> {
         // Below any threshold nobody asks.
-        if self.renewed && self.log_years > SELDOM {
-            let finding = onset::fit(&self.trace, &self.error)?.finding(self.pa_per_kg);
-            let (rate_pa_s, onset_s) = (finding.rate_pa_s.into(), finding.onset_s.into());
-            self.found = Some(Found { rate_pa_s: Some(rate_pa_s), onset_s: Some(onset_s) });
-            self.renewed = false;
-        }
-        self.found
+        let fitted = self.monitor.fitted().filter(|_| self.log_years > SELDOM)?;
+        let finding = fitted.finding(self.pa_per_kg);
+        let (rate_pa_s, onset_s) = (finding.rate_pa_s.into(), finding.onset_s.into());
+        Some(Found { rate_pa_s: Some(rate_pa_s), onset_s: Some(onset_s) })
     }
 
     fn settled_pa(&self) -> Option<f64> {
