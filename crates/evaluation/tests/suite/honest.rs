@@ -2,7 +2,9 @@
 use std::path::Path;
 
 use cylwatch_detector::monitor::alarm::AlarmName;
-use cylwatch_detector::monitor::{EventKind, LIKELY, Monitor, MonitorSettings, Outcome, Output, Verdict};
+use cylwatch_detector::monitor::{
+    EventKind, Health, LIKELY, Monitor, MonitorSettings, Outcome, Output, Verdict,
+};
 use cylwatch_detector::prognosis::Contents;
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::{Sensor, SensorSuite, sample};
@@ -67,6 +69,23 @@ fn a_leaking_argon_cylinder_is_never_tight_with_a_likely_leak() {
         assert!(!(likely && output.decision.verdict == Verdict::Tight));
     }
     assert!(outputs.iter().any(|output| output.decision.outcome == Outcome::Loss), "found within 5 d");
+}
+
+/// A metro moves the mass by half a per cent from row to row: a cold night was told every hour, and one shift after every spike.
+#[test]
+fn what_lasts_is_told_once_and_a_cold_night_at_most_once_a_day() {
+    let told = |family: &str, seed: u64, days: f64, is: fn(&EventKind) -> bool| -> Vec<f64> {
+        let outputs = watched(&world(family, seed, days * DAY_S, Overlay::Nothing));
+        let events = outputs.iter().flat_map(|output| &output.events);
+        events.filter(|event| is(&event.kind)).map(|event| event.time_s).collect()
+    };
+    let nights =
+        told("helium-10l/metro/mixed/class-b/300s", 2, 10.0, |kind| matches!(kind, EventKind::ColdNight(_)));
+    assert!(!nights.is_empty() && nights.windows(2).all(|pair| pair[1] - pair[0] > DAY_S), "{nights:?}");
+    let shifts = told("air-tank-8l/metro/mixed/coarse/300s", 135, 20.0, |kind| {
+        matches!(kind, EventKind::Sensor { health: Health::Shifted(_), .. })
+    });
+    assert!(shifts.len() <= 1, "{shifts:?}");
 }
 
 /// A loss of 29 % in 14 min was called a discharge, exit code 0.

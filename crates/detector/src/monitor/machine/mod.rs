@@ -118,7 +118,8 @@ struct State {
     outlook_due_s: f64,
     p15: Tangent,
     cold: Tangent,
-    warned: bool,
+    /// When the pressure of the coldest night was below the limit last, s.
+    cold_s: f64,
 }
 
 impl State {
@@ -216,7 +217,7 @@ impl Monitor {
             outlook_due_s: f64::NEG_INFINITY,
             p15: Tangent::at(QUOTED_K),
             cold: Tangent::at(settings.limits.coldest_k),
-            warned: false,
+            cold_s: f64::NEG_INFINITY,
         };
         let compared = wiring::compared(&roles, sensors);
         let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));

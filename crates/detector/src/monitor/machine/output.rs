@@ -11,9 +11,7 @@ use crate::monitor::gas::outlook::{self, Basis};
 use crate::monitor::intake::Row;
 use crate::monitor::{Event, EventKind, Interval, Known, LeakFinding, Output, decide};
 use crate::prognosis::Reaction;
-
-/// Distance from the limit at which a warning of the cold may come again, as a part of it: 1 bar at 160 bar.
-const COLD_DEADBAND: f64 = 1.0 / 160.0;
+use crate::units::DAY_S;
 
 impl Monitor {
     pub(super) fn output(
@@ -104,18 +102,13 @@ impl Monitor {
         (outlook.known || reaction > Reaction::None).then_some(reaction)
     }
 
-    /// Once, when the pressure of a tight cylinder will be below the limit on the coldest night.
+    /// When the pressure of a tight cylinder will be below the limit on the coldest night, and was not a day ago: the estimate wanders.
     fn warn_of_the_cold(&mut self, time_s: f64, cold_pressure_pa: f64, events: &mut Vec<Event>) {
-        if self.state.examined.is_some() {
+        if self.state.examined.is_some() || cold_pressure_pa >= self.settings.limits.operational_pa {
             return;
         }
-        let limit_pa = self.settings.limits.operational_pa;
-        let below = cold_pressure_pa < limit_pa;
-        if below && !self.state.warned {
+        if time_s - std::mem::replace(&mut self.state.cold_s, time_s) > DAY_S {
             events.push(Event::new(time_s, time_s, EventKind::ColdNight(cold_pressure_pa)));
         }
-        // Hysteresis: the estimate wanders.
-        let cleared_pa = (1.0 + COLD_DEADBAND) * limit_pa;
-        self.state.warned = below || (self.state.warned && cold_pressure_pa < cleared_pa);
     }
 }

@@ -7,7 +7,7 @@
 //!   show waits for it. The share is no less
 //!   than that of a cylinder at rest in the middle of a step `q` of the sensor with the noise `sigma`, `erf(q / (2 sqrt(2) sigma))`: a
 //!   coarse sensor that stands still says nothing.
-//! * *Spikes*: readings refused by the observer's gate within the last hour.
+//! * *Spikes*: readings refused by the observer's gate within the last hour. A shift lasts, and is told though there are some.
 //! * *Shifted*: a thermometer that jumps while the other one does not, and stays there, has changed its offset; a
 //!   disturbance from outside moves both, since air and sun reach both. The jump is taken off the readings from then on.
 //! * *Deviates*: for half an hour it has been off while the other thermometer agrees with the pressure; the comparison of both tells.
@@ -118,9 +118,9 @@ impl SensorWatch {
             return f64::NAN;
         }
         self.health = match self.deviates {
+            None if self.shifted != 0.0 => Health::Shifted(self.shifted),
             _ if time_s - self.spiked_s < SPIKES_S => Health::Spikes,
             Some(by) => Health::Deviates(by),
-            None if self.shifted != 0.0 => Health::Shifted(self.shifted),
             None => Health::Good,
         };
         reading - self.correction
@@ -172,7 +172,7 @@ impl SensorWatch {
     /// The observer refused the reading.
     pub fn refused(&mut self, time_s: f64) {
         self.spiked_s = time_s;
-        if matches!(self.health, Health::Good | Health::Deviates(_) | Health::Shifted(_)) {
+        if matches!(self.health, Health::Good | Health::Deviates(_)) {
             self.health = Health::Spikes;
         }
     }
@@ -312,10 +312,10 @@ mod tests {
         watch.shift(2e5);
         assert_eq!(watch.judge(0.0, 182e5), 180e5);
         assert_eq!(watch.health(), Health::Shifted(2e5));
+        // It lasts, and is told once, whatever else the sensor does.
         watch.refused(10.0);
+        assert_eq!(watch.health(), Health::Shifted(2e5));
         watch.judge(20.0, 183e5);
-        assert_eq!(watch.health(), Health::Spikes);
-        watch.judge(20.0 + SPIKES_S, 184e5);
         assert_eq!(watch.health(), Health::Shifted(2e5));
     }
 }
