@@ -199,10 +199,19 @@ impl Sensor {
         self.plausible
     }
 
-    /// Lowest and highest reading that say what the value is: one at an end of the bounds says only that the value is beyond.
+    /// Lowest and highest reading that say what the value is: one at an end of the bounds says only that the value is beyond. A transmitter's upper end
+    /// is its full scale, though its signal goes somewhat farther: there its data sheet ends, and loggers clip.
     pub fn usable_range(&self) -> (f64, f64) {
         let (low, high) = self.plausible;
         let end = END_OF_RANGE * (high - low);
+        let high = match self.kind {
+            SensorKind::Pressure {
+                reference: PressureReference::Absolute,
+                full_scale_pa: Some(scale_pa),
+            } => scale_pa,
+            SensorKind::Pressure { full_scale_pa: Some(scale_pa), .. } => ATMOSPHERE_PA + scale_pa,
+            _ => high,
+        };
         (low + end, high - end)
     }
 

@@ -92,6 +92,20 @@ fn a_transmitter_cannot_read_beyond_the_current_of_its_loop() {
 }
 
 #[test]
+fn a_reading_at_the_full_scale_says_only_that_the_pressure_is_as_high() {
+    let usable = |gauge| {
+        let of = pressure(|spec| (spec.full_scale_pa, spec.gauge) = (Some(250e5), Some(gauge)));
+        move |reading_pa: f64| {
+            let (low, high) = of.usable_range();
+            (low..=high).contains(&reading_pa)
+        }
+    };
+    let (absolute, gauge) = (usable(false), usable(true));
+    assert!(absolute(249.9e5) && !absolute(250e5) && !absolute(257e5));
+    assert!(gauge(250.9e5) && !gauge(250e5 + ATMOSPHERE_PA));
+}
+
+#[test]
 fn quantities_and_parameters_are_those_of_the_kind() {
     use ParameterKind::{Coupling, Offset, Span, TemperatureCoefficient};
     let kinds = |sensor: &Sensor| sensor.parameters().iter().map(|p| p.kind).collect::<Vec<_>>();
