@@ -32,14 +32,13 @@ fn main() -> Result<(), Fault> {
         .with_max_len(1)
         .map(|unit| of_simulation(&plan, unit))
         .collect::<Result<_, Fault>>()?;
-    let mut cylinders = watched.concat();
-    let tanks: Vec<Watched> = cylinders.extract_if(.., is_tank).collect();
+    let (tanks, cylinders): (Vec<Watched>, Vec<Watched>) = watched.into_iter().flatten().partition(is_tank);
     print("Cylinders", &cylinders)?;
     print("Tanks", &tanks)
 }
 
 /// Whether a vessel has the tails of tanks.
-fn is_tank(watched: &mut Watched) -> bool {
+fn is_tank(watched: &Watched) -> bool {
     watched.request.family.vessel.nominal().is_ok_and(|nominal| nominal.fill_pa.1 < HIGH_PRESSURE_PA)
 }
 

@@ -162,13 +162,14 @@ impl Evidence {
         self.considered_kg = observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
         self.compare(observer, time_s, interval_s);
         self.statistics = [0.0; Scale::ALL.len()];
+        let error_sd = self.error_sd();
         for onset in observer.onsets() {
             let age_s = time_s - onset.since_s;
             let Some(scale) = Scale::ALL.into_iter().find(|scale| age_s <= scale.oldest_s()) else {
                 continue;
             };
             let rate_kg_s = onset.rate_kg_s - self.considered_kg_s(age_s);
-            let score = rate_kg_s / (onset.sd_kg_s * self.error_sd());
+            let score = rate_kg_s / (onset.sd_kg_s * error_sd);
             let statistic = &mut self.statistics[scale as usize];
             *statistic = statistic.max(score);
         }

@@ -64,21 +64,15 @@ impl PassStep {
 
     /// Become as another step of the same filter, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
-        let pairs = [
-            (&mut self.phi, &other.phi),
-            (&mut self.h, &other.h),
-            (&mut self.gain, &other.gain),
-            (&mut self.p, &other.p),
-        ];
-        pairs.into_iter().for_each(|(to, from)| to.copy_from(from));
-        let pairs = [
-            (&mut self.innovation, &other.innovation),
-            (&mut self.variance, &other.variance),
-            (&mut self.x, &other.x),
-        ];
-        pairs.into_iter().for_each(|(to, from)| to.copy_from(from));
         self.interval_s = other.interval_s;
+        self.phi.copy_from(&other.phi);
+        self.h.copy_from(&other.h);
+        self.gain.copy_from(&other.gain);
+        self.innovation.copy_from(&other.innovation);
+        self.variance.copy_from(&other.variance);
         self.used.clone_from(&other.used);
+        self.x.copy_from(&other.x);
+        self.p.copy_from(&other.p);
     }
 }
 

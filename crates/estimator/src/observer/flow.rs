@@ -91,23 +91,6 @@ impl Observer {
         })
     }
 
-    /// Standard deviation of the difference of two members' masses by what has been learnt of films, capacity and sensors, kg: with covariances `P` of
-    /// mass `m` and constants `c`, the constants taken one by one, `sqrt(sum_c (P_mc - P'_mc)^2 / P_cc)`. An unknown temperature coefficient of the transmitter moves the
-    /// mass that follows the pressure, and not the one that is held. 0 without such members.
-    pub fn learnt_apart_kg(&self, free: usize, held: usize) -> f64 {
-        if free.max(held) >= self.bank.members.len() {
-            return 0.0;
-        }
-        let states = self.cylinder.state_map();
-        let apart = |constant: usize| {
-            let [free_kg, held_kg] =
-                [free, held].map(|member| self.bank.covariance_of(member, states.mass, constant));
-            let variance = self.bank.variance(free, constant);
-            if variance > 0.0 { (free_kg - held_kg).powi(2) / variance } else { 0.0 }
-        };
-        (states.leading..states.count()).map(apart).sum::<f64>().sqrt()
-    }
-
     /// What the error of the gas temperature that may have come since the row before does to a pressure, Pa; infinite before the first sample.
     ///
     /// # Errors

@@ -218,32 +218,6 @@ fn a_pressure_is_freshly_in_doubt_by_what_a_thermometer_moved_and_not_for_long()
 }
 
 #[test]
-fn an_unknown_coefficient_sets_the_free_mass_apart_from_the_held_one_where_the_transmitter_cools() {
-    let (slow, free) = (2, 3);
-    const PA_PER_KG: f64 = 4.5e6;
-    let mut observer = observer(Engine::Extended);
-    assert_eq!(observer.learnt_apart_kg(free, slow), 0.0, "no member yet");
-    let mut apart_kg = |minutes: std::ops::Range<u32>, cooled_k: &dyn Fn(f64) -> f64| {
-        for minute in minutes {
-            let by_k = cooled_k(f64::from(minute));
-            let row = [FILL_K - by_k, FILL_K - by_k, 2e7 - 1e5 * by_k];
-            observer.step(60.0 * f64::from(minute), &row).unwrap();
-        }
-        let learned = observer.learned().unwrap();
-        let coefficient = learned.names.iter().position(|name| name.contains("coefficient")).unwrap();
-        (
-            observer.learnt_apart_kg(free, slow),
-            learned.covariance[(learned.names.len() + 1) * coefficient].sqrt(),
-        )
-    };
-    let (at_rest_kg, _) = apart_kg(0..1440, &|_| 0.0);
-    let (cold_kg, sd_pa_k) = apart_kg(1440..1920, &|minute| (minute - 1440.0) / 24.0);
-    let expected_kg = 20.0 * sd_pa_k / PA_PER_KG;
-    assert!(at_rest_kg < 0.2 * cold_kg, "{at_rest_kg} {cold_kg}");
-    assert!((0.5..2.0).contains(&(cold_kg / expected_kg)), "{cold_kg} {expected_kg}");
-}
-
-#[test]
 fn what_explanations_of_a_row_disagree_on_is_in_doubt_for_a_while() {
     let mut observer = observer(Engine::Extended);
     let mut ambiguous_k = |minutes: std::ops::Range<u32>, row: [f64; 3]| {

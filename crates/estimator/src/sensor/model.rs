@@ -205,11 +205,9 @@ impl Sensor {
         let (low, high) = self.plausible;
         let end = END_OF_RANGE * (high - low);
         let high = match self.kind {
-            SensorKind::Pressure {
-                reference: PressureReference::Absolute,
-                full_scale_pa: Some(scale_pa),
-            } => scale_pa,
-            SensorKind::Pressure { full_scale_pa: Some(scale_pa), .. } => ATMOSPHERE_PA + scale_pa,
+            SensorKind::Pressure { reference, full_scale_pa: Some(scale_pa) } => {
+                reference.zero_pa() + scale_pa
+            }
             _ => high,
         };
         (low + end, high - end)

@@ -23,8 +23,7 @@ pub(in crate::monitor) struct LeakState {
     /// Time of the next look, s.
     due_s: f64,
     found: Option<LeakFinding>,
-    /// Time at which a leak was found, and at which something spoke for it last, s.
-    found_s: f64,
+    /// Time at which something spoke for it last, s.
     seen_s: f64,
     /// Odds of a leak by the Bayes factor; `None`: too little has been seen.
     odds: Option<f64>,
@@ -42,7 +41,6 @@ impl Default for LeakState {
         Self {
             due_s: f64::NEG_INFINITY,
             found: None,
-            found_s: f64::NAN,
             seen_s: f64::NAN,
             odds: None,
             largest_odds: PRIOR_ODDS,
@@ -89,7 +87,7 @@ impl LeakState {
             self.look(look, fitted(), newly || leaking);
         }
         if newly {
-            (self.found_s, self.seen_s) = (time_s, time_s);
+            self.seen_s = time_s;
             return self.found.map_or(Change::None, Change::Found);
         }
         if alarm || !look.calm {

@@ -18,7 +18,7 @@
 //! [`Observer::onsets`]: crate::estimator::observer::Observer::onsets
 use std::f64::consts::TAU;
 
-use crate::estimator::observer::Observer;
+use crate::estimator::observer::{Observer, Onset};
 use crate::evidence::Evidence;
 use crate::monitor::{Interval, LeakFinding};
 use crate::prognosis::normal_probability;
@@ -67,9 +67,10 @@ struct Candidate {
 
 /// Rate and onset of a leak at a time, s, of a cylinder that holds so much, kg, if there is one; `None`: too little has been seen.
 pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) -> Option<Fitted> {
-    let onset = |of: crate::estimator::observer::Onset| {
+    let error_sd = evidence.error_sd();
+    let onset = |of: Onset| {
         let considered_kg_s = evidence.considered_kg_s(time_s - of.since_s);
-        (of.since_s, of.rate_kg_s, (evidence.error_sd() * of.sd_kg_s).hypot(considered_kg_s))
+        (of.since_s, of.rate_kg_s, (error_sd * of.sd_kg_s).hypot(considered_kg_s))
     };
     fit_of(&observer.onsets().map(onset).collect::<Vec<_>>(), time_s, DRIFT_PER_S * mass_kg)
 }

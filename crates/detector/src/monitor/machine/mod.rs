@@ -30,7 +30,7 @@ use super::settings::MonitorSettings;
 use super::state::{self, Fingerprint, StateError};
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
-use crate::estimator::observer::{Commissioning, Estimate, Leak, Learned, Observer, Quality, Snapshot};
+use crate::estimator::observer::{Commissioning, Estimate, Learned, Observer, Quality, Snapshot};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
@@ -72,7 +72,6 @@ pub struct Monitor {
     state: State,
     /// Of the present row.
     usable: Vec<f64>,
-    leaks: Vec<Leak>,
     /// The observer before the present row.
     before: Option<Snapshot>,
 }
@@ -236,7 +235,6 @@ impl Monitor {
             shadow: observer()?,
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
-            leaks: Vec::with_capacity(settings.observer.bank.len()),
             before: None,
             settings: settings.clone(),
             vessel: vessel.clone(),
@@ -404,11 +402,11 @@ impl Monitor {
         }
         self.state.start_s.get_or_insert(time_s);
         self.state.last_s = time_s;
-        self.leaks.clear();
-        self.leaks.extend(self.observer.leaks());
+        // The member that holds the mass; the first one where there is no other.
+        let held_kg_s = self.observer.leaks().take(2).last().map_or(0.0, |leak| leak.rate_kg_s);
         self.judge_leak(&estimate, &mut events)?;
         self.tell_health(time_s, &mut events);
-        self.output(row, estimate, events)
+        self.output(row, estimate, held_kg_s, events)
     }
 
     fn judge_leak(&mut self, estimate: &Estimate, events: &mut Vec<Event>) -> Result<(), DetectorError> {

@@ -8,6 +8,7 @@ mod place;
 mod pt100;
 mod spec;
 
+use crate::units::ATMOSPHERE_PA;
 pub use build::mounted;
 pub use place::{GasPlace, PLACES, SurfacePlace};
 pub use pt100::Pt100Class;
@@ -48,6 +49,16 @@ pub enum PressureReference {
         /// Real pressure of the air, Pa.
         atmosphere_pa: f64,
     },
+}
+
+impl PressureReference {
+    /// What a reading of zero is recorded as, Pa absolute: logs hold a gauge pressure with the standard atmosphere added.
+    pub fn zero_pa(self) -> f64 {
+        match self {
+            Self::Absolute => 0.0,
+            Self::Gauge { .. } => ATMOSPHERE_PA,
+        }
+    }
 }
 
 /// A number of a sensor.

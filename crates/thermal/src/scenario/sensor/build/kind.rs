@@ -100,10 +100,7 @@ impl Table<'_> {
     pub(super) fn plausible(&self, kind: &SensorKind) -> Result<(f64, f64), ThermalError> {
         let (low, high) = match *kind {
             SensorKind::Pressure { reference, full_scale_pa } => {
-                let zero_pa = match reference {
-                    PressureReference::Absolute => 0.0,
-                    PressureReference::Gauge { .. } => ATMOSPHERE_PA,
-                };
+                let zero_pa = reference.zero_pa();
                 let of_scale =
                     |scale: f64| (zero_pa + SIGNAL_RANGE.0 * scale, zero_pa + SIGNAL_RANGE.1 * scale);
                 return Ok(full_scale_pa.map_or((-ATMOSPHERE_PA, PRESSURE_MAX_PA), of_scale));
