@@ -45,11 +45,11 @@ const OWN: [Own; 1] = [Own {
     full_pa: 170e5..=210e5,
     // Of 204 cylinders, 34.6 years together.
     tails: Tails([
-        Tail { level: 1.6496, interval_s: 4.3212e5, scale: 0.6031, shape: -0.078 },
-        Tail { level: 2.6065, interval_s: 1.7294e6, scale: 0.6164, shape: -0.008 },
-        Tail { level: 2.6384, interval_s: 3.4560e6, scale: 0.5780, shape: 0.045 },
-        Tail { level: 2.9353, interval_s: 1.2186e7, scale: 0.5090, shape: 0.192 },
-        Tail { level: 2.4492, interval_s: 2.6438e7, scale: 0.5081, shape: 0.068 },
+        Tail { level: 1.6007, interval_s: 4.3212e5, scale: 0.5945, shape: -0.070 },
+        Tail { level: 2.5885, interval_s: 1.7294e6, scale: 0.6208, shape: -0.009 },
+        Tail { level: 2.6334, interval_s: 3.4560e6, scale: 0.5829, shape: 0.041 },
+        Tail { level: 2.9353, interval_s: 1.2186e7, scale: 0.5077, shape: 0.193 },
+        Tail { level: 2.4540, interval_s: 2.6438e7, scale: 0.5080, shape: 0.063 },
     ]),
 }];
 

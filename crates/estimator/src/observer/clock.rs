@@ -19,6 +19,8 @@ pub(super) struct Clock {
     /// How far one moved from the row before to this one, and to that, K, and the interval, s.
     pub moves_k: [f64; 2],
     pub interval_s: f64,
+    /// What is considered for the surroundings is multiplied by.
+    pub doubt: f64,
     pub reference_due_s: f64,
     pub reference_mass_kg: Option<f64>,
     pub exchange: Exchange,
@@ -48,6 +50,7 @@ impl Clock {
             ambiguous_k: 0.0,
             moves_k: [0.0; 2],
             interval_s: 0.0,
+            doubt: 1.0,
             reference_due_s: f64::INFINITY,
             reference_mass_kg: None,
             exchange: Exchange::None,

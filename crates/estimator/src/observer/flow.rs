@@ -12,7 +12,8 @@
 //! `e^2 = max_i (y_i - T_g)^2 + s^2 + (a/c)^2`,   `var T = P_T + c^2 e^2`,   `var m = P_m + (m c e / T)^2`
 //!
 //! with the readings `y_i` of the thermometers on the surface, `s` the largest change of one between two rows and `a` what competing explanations of a row
-//! disagreed on the gas temperature ([`super::surroundings`]), both fading. Errors that stay,
+//! disagreed on the gas temperature ([`super::surroundings`]), both fading. `c e` is multiplied by what the observer is told that the surroundings do beyond it
+//! ([`Observer::doubt_surroundings`]). Errors that stay,
 //! a transmitter's offset above all, are in the masses of all times alike; those of the gas temperature come and go:
 //!
 //! `var (m - m') per time = m^2 min(P_T/T^2, P_m/m^2) + (m c e / T)^2`.
@@ -76,7 +77,8 @@ impl Observer {
             [states.gas, states.mass, states.leak].map(|state| self.bank.moments(index, state));
         let part = self.cylinder.settings().flow_doubt.part;
         let away_k = self.farthest_k(gas_mean_k).hypot(self.clock.moved_k);
-        let considered = ((part * away_k).hypot(self.clock.ambiguous_k) / gas_mean_k).powi(2);
+        let considered_k = self.clock.doubt * (part * away_k).hypot(self.clock.ambiguous_k);
+        let considered = (considered_k / gas_mean_k).powi(2);
         let kg2 = mass_kg * mass_kg;
         let passing = (gas / (gas_mean_k * gas_mean_k)).min(mass / kg2);
         Some(Flow {
@@ -91,7 +93,7 @@ impl Observer {
         })
     }
 
-    /// What the error of the gas temperature that may have come since the row before does to a pressure, Pa; infinite before the first sample.
+    /// What the error of the gas temperature that may have come since the row before does to a pressure, by the settings alone, Pa; infinite before the first sample.
     ///
     /// # Errors
     /// The state has no such reading.

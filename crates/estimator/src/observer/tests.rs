@@ -234,6 +234,21 @@ fn what_explanations_of_a_row_disagree_on_is_in_doubt_for_a_while() {
 }
 
 #[test]
+fn surroundings_that_do_twice_as_much_are_twice_as_much_in_doubt() {
+    let mut observer = observer(Engine::Extended);
+    observer.step(0.0, &REST).unwrap();
+    observer.step(60.0, &[FILL_K + 4.0, FILL_K + 4.0, 2.01e7]).unwrap();
+    let once = observer.flow().unwrap();
+    observer.doubt_surroundings(2.0);
+    let twice = observer.flow().unwrap();
+    assert!(once.considered_sd_kg > 0.0 && twice.considered_sd_kg == 2.0 * once.considered_sd_kg);
+    let more = (twice.mass_sd_kg.powi(2) - once.mass_sd_kg.powi(2)) / once.considered_sd_kg.powi(2);
+    assert!((more - 3.0).abs() < 1e-6, "{more}");
+    observer.doubt_surroundings(0.5);
+    assert_eq!(observer.flow().unwrap(), once, "not less than the settings say");
+}
+
+#[test]
 fn only_the_extended_filter_follows_gas_that_flows() {
     for (word, follows) in [("ekf", true), ("ukf", false), ("stationary", false), ("mhe", false)] {
         let mut observer = observer(word.parse().unwrap());

@@ -34,6 +34,11 @@ impl Observer {
         }
     }
 
+    /// The surroundings do so many times more to this cylinder than is considered by its settings, as between rows that are far apart; at least once.
+    pub fn doubt_surroundings(&mut self, times: f64) {
+        self.clock.doubt = times.max(1.0);
+    }
+
     /// A sensor's offset may have changed by so much, standard deviation, K or Pa: it is learnt anew from there, and held no nearer to its
     /// prior than that allows. Of a sensor without an uncertain offset nothing is said.
     pub fn loosen(&mut self, sensor: usize, sd: f64) {

@@ -27,8 +27,9 @@ use crate::prognosis::normal_probability;
 const TAIL: f64 = 0.025;
 /// Weight of an onset that adds nothing.
 const NEGLIGIBLE: f64 = 1e-6;
-/// Halvings of an interval until its ends are one number in print.
-const BISECTIONS: usize = 30;
+/// Relative error of a quantile, and steps to it at most: as many halvings make it.
+const EXACT: f64 = 1e-9;
+const MOST_STEPS: usize = 60;
 /// Decades over which a leak rate may be anything, as a natural logarithm: 0.001 to 10 bar/h.
 const LN_RATES: f64 = 9.21;
 /// Relative error of what a kilogram is worth in the observer's model, standard deviation.
@@ -134,39 +135,63 @@ impl Fitted {
     }
 }
 
+/// Normal distribution above zero.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    weight: f64,
+    mean: f64,
+    sd: f64,
+    /// What a normal distribution has below zero.
+    cut: f64,
+}
+
+impl Part {
+    fn new(weight: f64, (mean, sd): (f64, f64)) -> Self {
+        Self { weight, mean, sd, cut: normal_probability(-mean / sd) }
+    }
+
+    /// Probability of less than `value`, and the density there.
+    fn at(&self, value: f64) -> (f64, f64) {
+        let above = (1.0 - self.cut).max(f64::MIN_POSITIVE);
+        let z = (value - self.mean) / self.sd;
+        let density = (-0.5 * z * z).exp() / (TAU.sqrt() * self.sd);
+        let share = self.weight / above;
+        (share * (normal_probability(z) - self.cut).max(0.0), share * density)
+    }
+}
+
 /// Mixture of normal distributions above zero.
 struct Mixture {
-    /// Weight, mean and standard deviation.
-    parts: Vec<(f64, f64, f64)>,
+    parts: Vec<Part>,
 }
 
 impl Mixture {
     fn new(candidates: &[Candidate], of: impl Fn(&Candidate) -> (f64, f64)) -> Self {
-        let part = |one: &Candidate| {
-            let (mean, sd) = of(one);
-            (one.weight, mean, sd)
-        };
-        Self { parts: candidates.iter().filter(|one| one.weight > NEGLIGIBLE).map(part).collect() }
+        let counted = candidates.iter().filter(|one| one.weight > NEGLIGIBLE);
+        Self { parts: counted.map(|one| Part::new(one.weight, of(one))).collect() }
     }
 
-    /// Probability of less than `value`.
-    fn below(&self, value: f64) -> f64 {
-        let share = |&(weight, mean, sd): &(f64, f64, f64)| {
-            let cut = normal_probability(-mean / sd);
-            let above = (1.0 - cut).max(f64::MIN_POSITIVE);
-            weight * (normal_probability((value - mean) / sd) - cut).max(0.0) / above
-        };
-        self.parts.iter().map(share).sum()
+    /// Probability of less than `value`, and the density there.
+    fn at(&self, value: f64) -> (f64, f64) {
+        let parts = self.parts.iter().map(|part| part.at(value));
+        parts.fold((0.0, 0.0), |(below, density), part| (below + part.0, density + part.1))
     }
 
+    /// By Newton's method inside a bracket that each step narrows.
     fn quantile(&self, p: f64) -> f64 {
         let (mut low, mut high) =
-            (0.0, self.parts.iter().map(|(_, mean, sd)| mean.max(0.0) + 10.0 * sd).fold(0.0, f64::max));
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if self.below(middle) < p { low = middle } else { high = middle }
+            (0.0, self.parts.iter().map(|part| part.mean.max(0.0) + 10.0 * part.sd).fold(0.0, f64::max));
+        let mut value = 0.5 * (low + high);
+        for _ in 0..MOST_STEPS {
+            let (below, density) = self.at(value);
+            if below < p { low = value } else { high = value }
+            let newton = value - (below - p) / density;
+            let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - std::mem::replace(&mut value, next)).abs() <= EXACT * next {
+                break;
+            }
         }
-        0.5 * (low + high)
+        value
     }
 
     fn interval(&self) -> Interval {

@@ -128,10 +128,11 @@ impl Monitor {
         }
         let out = certain == Certain::Out;
         if out && self.state.leak.found().is_some() {
-            // It is told already, and goes on: the mass follows, the leak stays.
+            // It is told already, and goes on: where the mass has not followed it does, the leak stays.
             self.state.bounds.gone(certain);
-            let examined = self.state.examined.is_some();
-            return if examined { Ok(estimate) } else { self.step_anew(time_s) };
+            let followed = before_kg.is_some_and(|mass_kg| self.state.bounds.allow(mass_kg));
+            let done = followed || self.state.examined.is_some();
+            return if done { Ok(estimate) } else { self.step_anew(time_s) };
         }
         let onset_s = examined.map_or(time_s, |examined| examined.examination.onset_s());
         let (announced, part) = (self.is_announced(onset_s), self.state.bounds.beyond());
@@ -157,6 +158,13 @@ impl Monitor {
         let certain = self.state.bounds.push_flow(time_s, &flow, self.filled_kg.0, shaken);
         let Some(certain) = certain else { return };
         let out = certain == Certain::Out;
+        let known = out && self.state.leak.found().is_some();
+        let beside_kg = self.masses_kg().map_or(f64::INFINITY, |mass_kg| (mass_kg - flow.mass_kg).abs());
+        if known && beside_kg < self.state.bounds.comes_and_goes_kg(&flow, self.filled_kg.0) {
+            // The leak that was found has done it.
+            self.state.bounds.gone(certain);
+            return;
+        }
         let held_kg = self.observer.leaks().map(|member| member.mass_kg);
         let least_kg = MATTERS * self.filled_kg.0;
         let change_kg = if out {
@@ -168,7 +176,7 @@ impl Monitor {
         self.state.jumps.forget();
         self.state.bounds.gone(certain);
         self.state.flowed_s = time_s;
-        if out && self.state.leak.found().is_some() {
+        if known {
             return;
         }
         let lasting = |of: &&mut Exchanged| time_s - of.at_s < SETTLED_S && of.out == out;
@@ -248,6 +256,7 @@ impl Monitor {
         self.go_back();
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
+        let fresh = self.state.jumps.excess() * fresh;
         let examination =
             Examination::new(time_s, -before, fresh, self.settings.observer.flow_doubt.memory_s);
         self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
@@ -308,6 +317,8 @@ impl Monitor {
                 let shift = if let Cause::Offset(by) = cause { by } else { 0.0 };
                 if shift != 0.0 {
                     self.shift_transmitter(pressure, shift * self.full_pa);
+                } else {
+                    self.state.jumps.was_none();
                 }
                 if cause == Cause::Spike {
                     self.state.watches[pressure].refused(time_s);

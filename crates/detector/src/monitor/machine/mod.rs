@@ -384,6 +384,7 @@ impl Monitor {
         self.read_wiring(row);
         self.watch_thermometers(time_s, &mut events);
         self.place();
+        self.observer.doubt_surroundings(self.state.jumps.excess());
         if silent_s.is_finite() && silent_s > self.settings.gap_s {
             self.state.look = (time_s + LOOK_S, Reason::Gap);
         }

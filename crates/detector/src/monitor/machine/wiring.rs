@@ -84,7 +84,8 @@ impl Monitor {
         stepped?;
         if !self.state.is_exchanging(time_s) {
             let of = |observer: &Observer| compared.map(|sensor| innovation(observer, sensor));
-            self.state.wiring.compare(of(&self.observer), of(twin));
+            let noise = compared.map(|sensor| self.sensors[sensor].noise_variance());
+            self.state.wiring.compare(of(&self.observer), of(twin), noise);
         }
         Ok(())
     }

@@ -11,7 +11,7 @@
 //! * *Shifted*: a thermometer that jumps while the other one does not, and stays there, has changed its offset; a
 //!   disturbance from outside moves both, since air and sun reach both. The jump is taken off the readings from then on.
 //! * *Deviates*: for half an hour it has been off while the other thermometer agrees with the pressure; the comparison of both tells.
-//! * *Detached*: a thermometer that jumps so by more than an offset can, or is restless while the other one is not, reads the air.
+//! * *Detached*: a thermometer that jumps so by more than an offset can, or is restless while the other one is not and more so than usually, reads the air.
 //!
 //! What a transmitter's jump is, [`crate::monitor::gas::jump`] tells.
 use serde::{Deserialize, Serialize};

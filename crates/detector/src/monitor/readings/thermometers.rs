@@ -8,7 +8,7 @@
 //!
 //! It is lonely where `|s| > 0.7 K` in a minute and that of the other one is below `0.05 |s| + 0.25 K`. It is then not used until both have been calm for five samples, and is believed if
 //! their difference is by `(1 -+ 0.4) |s|` another one than it was when both were calm last: at the mouth of a tunnel, where each bends in its own way, it is what it was. After two hours
-//! without calm it is used again. One that jumps by more than an offset can, or is restless while the other one is not, reads the air. For an hour after its jump a
+//! without calm it is used again. One that jumps by more than an offset can, or is restless while the other one is not and more so than usually, reads the air. For an hour after its jump a
 //! thermometer is not used: if it reads the air, it shows by then.
 //!
 //! Readings in steps of `q` make up to `3 q` of the difference of two `s`: so much is added to what a jump is. While the surroundings warm or cool the
@@ -22,7 +22,7 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use crate::monitor::gas::jump::LONGEST_INTERVAL_S;
-use crate::units::{HOUR_S, MINUTE_S};
+use crate::units::{DAY_S, HOUR_S, MINUTE_S};
 
 /// Jump against the slope before, K, in a minute: what a tunnel does grows with the interval.
 const JUMP_K: f64 = 0.7;
@@ -37,11 +37,13 @@ const DECIDED_S: f64 = 2.0 * HOUR_S;
 const STEADY: f64 = 0.4;
 /// Jump that no offset makes, K.
 const NO_OFFSET_K: f64 = 10.0;
-/// Mean size of the second differences over so many samples, K, that is restless, where that of the other one is below a part of it; one
-/// counts no more than five times that.
+/// Mean size of the second differences lately, K, that is restless, where that of the other one is a smaller part of it than usually by so much, and the times that both
+/// are means of, s. Until a day is seen that part is the one of a massive shoulder beside a thin valve in gusts. One counts no more than ten times that.
 const RESTLESS_K: f64 = 0.2;
-const RESTLESS_SAMPLES: f64 = 60.0;
-const RESTLESS_PART: f64 = 0.4;
+const UNUSUAL: f64 = 0.5;
+const LATELY_S: f64 = 2.0 * HOUR_S;
+const USUALLY_S: f64 = 2.0 * DAY_S;
+const IN_GUSTS: f64 = 1.0 / 3.0;
 /// Steps of a reading in the difference of two second differences at most.
 const STEPS: f64 = 3.0;
 /// Samples that slopes are taken from.
@@ -72,7 +74,7 @@ pub struct Pair {
     suspect: Option<Suspect>,
     /// Which one jumped last, and until when it is not used, s.
     probation: Option<(usize, f64)>,
-    restless_k: [f64; 2],
+    restless: Restless,
 }
 
 /// A thermometer under suspicion.
@@ -152,6 +154,8 @@ impl Pair {
             }
             (None, _) => None,
         };
+        let interval_s = self.recent.back().map_or(0.0, |(last_s, _)| time_s - last_s);
+        let restless = second_k.and_then(|second_k| self.restless.push(interval_s, second_k, self.steps_k));
         self.recent.push_back((time_s, readings));
         if self.recent.len() > SAMPLES {
             self.recent.pop_front();
@@ -159,7 +163,7 @@ impl Pair {
         if let Some(Lonely::Shifted(which, _)) = shown {
             self.probation = Some((which, time_s + HOUR_S));
         }
-        second_k.and_then(|second_k| self.restless(second_k)).or(shown).or_else(|| self.on_probation(time_s))
+        restless.or(shown).or_else(|| self.on_probation(time_s))
     }
 
     /// Whether one of them has jumped, and is not used yet.
@@ -231,18 +235,36 @@ impl Pair {
         }
         Some(if by_k.abs() < NO_OFFSET_K { Lonely::Shifted(which, by_k) } else { Lonely::Detached(which) })
     }
+}
 
-    fn restless(&mut self, second_k: [f64; 2]) -> Option<Lonely> {
+/// How restless both are: mean sizes of their second differences.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Restless {
+    lately_k: [f64; 2],
+    usually_k: [f64; 2],
+    /// How long they have been seen, s.
+    seen_s: f64,
+}
+
+impl Restless {
+    /// Take in the second differences, K, of a sample so long after the last one, s: which one reads the air.
+    fn push(&mut self, interval_s: f64, second_k: [f64; 2], steps_k: f64) -> Option<Lonely> {
         if second_k.iter().any(|second| second.is_nan()) {
             return None;
         }
-        for (mean, second) in self.restless_k.iter_mut().zip(second_k) {
-            *mean += (second.abs().min(5.0 * RESTLESS_K) - *mean) / RESTLESS_SAMPLES;
+        self.seen_s += interval_s;
+        let size_k = second_k.map(|second| second.abs().min(10.0 * RESTLESS_K));
+        for (means, memory_s) in [(&mut self.lately_k, LATELY_S), (&mut self.usually_k, USUALLY_S)] {
+            let share = -(-interval_s / memory_s).exp_m1();
+            for (mean, size) in means.iter_mut().zip(size_k) {
+                *mean += share * (size - *mean);
+            }
         }
-        let which = usize::from(self.restless_k[1] > self.restless_k[0]);
-        let (own_k, other_k) = (self.restless_k[which], self.restless_k[1 - which]);
-        (own_k > RESTLESS_K + self.steps_k && other_k < RESTLESS_PART * own_k)
-            .then_some(Lonely::Detached(which))
+        let which = usize::from(self.lately_k[1] > self.lately_k[0]);
+        let part = |of: [f64; 2]| of[1 - which] / of[which];
+        let usual = if self.seen_s < DAY_S { IN_GUSTS } else { part(self.usually_k) };
+        let alone = part(self.lately_k) < UNUSUAL * usual.min(1.0);
+        (self.lately_k[which] > RESTLESS_K + steps_k && alone).then_some(Lonely::Detached(which))
     }
 }
 
@@ -383,6 +405,25 @@ mod tests {
         let noise = |t: f64| 0.5 * if t as i64 % 3 == 0 { 1.0 } else { -0.5 };
         assert!(course(|_| 280.0, |t| 281.0 + noise(t)).contains(&Lonely::Detached(1)));
         assert_eq!(course(|t| 280.0 + noise(t), |t| 281.0 + 0.6 * noise(t)), []);
+    }
+
+    /// What a pair says first, with its minute, of readings that are so restless, K; five minutes apart for four days.
+    fn restless(sizes_k: impl Fn(f64) -> [f64; 2]) -> Option<(f64, Lonely)> {
+        let mut pair = Pair::default();
+        (0..1152).find_map(|row| {
+            let minute = 5.0 * f64::from(row);
+            let noise = if row % 3 == 0 { 1.0 } else { -0.5 };
+            let readings = sizes_k(minute).map(|size_k| 290.0 + size_k * noise);
+            pair.update(60.0 * minute, readings, (0.44, 0.0), true).map(|told| (minute, told))
+        })
+    }
+
+    #[test]
+    fn a_thin_valve_in_gusts_is_not_detached_and_one_that_comes_off_there_is() {
+        assert_eq!(restless(|_| [0.1, 0.2]), None);
+        let comes_off = |minute: f64| if minute < 2880.0 { [0.1, 0.2] } else { [0.1, 0.6] };
+        let told = restless(comes_off);
+        assert!(matches!(told, Some((2880.0..3120.0, Lonely::Detached(1)))), "{told:?}");
     }
 
     #[test]

@@ -27,8 +27,6 @@ const BELIEVED: f64 = 0.2;
 /// Part of it that the pressure must bear out.
 const BY_PRESSURE: f64 = 0.1;
 const FEWEST: f64 = 200.0;
-/// Noise below which a difference of innovations says nothing, K and Pa.
-const NOISE: [f64; 3] = [0.05, 0.05, 1e3];
 
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,10 +64,10 @@ impl WiringCheck {
         }
     }
 
-    /// Take in what the observer and its twin made of the same row.
-    pub fn compare(&mut self, observer: [Innovation; 3], twin: [Innovation; 3]) {
+    /// Take in what the observer and its twin made of the same row, of sensors with such a noise, variances in K² and Pa².
+    pub fn compare(&mut self, observer: [Innovation; 3], twin: [Innovation; 3], noise: [f64; 3]) {
         for i in 0..3 {
-            let [own, other] = [observer[i], twin[i]].map(|of| (of.nu * of.nu + NOISE[i] * NOISE[i]).ln());
+            let [own, other] = [observer[i], twin[i]].map(|of| (of.nu * of.nu + noise[i]).ln());
             if own.is_finite() && other.is_finite() {
                 self.differences[i] += other - own;
                 self.rows[i] += 1.0;
@@ -122,6 +120,8 @@ mod tests {
     use super::*;
     use crate::estimator::observer::Outcome;
 
+    const NOISE: [f64; 3] = [0.05 * 0.05, 0.05 * 0.05, 1e3 * 1e3];
+
     fn innovation(nu: f64) -> Innovation {
         Innovation { nu, s: 1.0, outcome: Outcome::Accepted }
     }
@@ -133,7 +133,7 @@ mod tests {
             // A spike once in a while, in both.
             let spike = if n % 50 == 0 { 40.0 } else { 0.0 };
             let of = |nu: f64| [innovation(nu + spike), innovation(nu), innovation(1e4 * nu)];
-            check.compare(of(own), of(other));
+            check.compare(of(own), of(other), NOISE);
         }
         check
     }
@@ -147,13 +147,13 @@ mod tests {
         assert_eq!(compared(0.2, 0.2, 1440).judge(JUDGED_S), Finding::Open);
         assert_eq!(compared(0.2, 0.2, 1440).judge(GIVEN_UP_S + 1.0), Finding::Sound);
         let mut blind = compared(0.3, 0.2, 1440);
-        blind.compare([innovation(f64::NAN); 3], [innovation(0.2); 3]);
+        blind.compare([innovation(f64::NAN); 3], [innovation(0.2); 3], NOISE);
         assert_eq!(blind.judge(JUDGED_S), Finding::Swapped, "a row without a reading counts for nothing");
         let mut by_thermometers = WiringCheck::default();
         by_thermometers.read(0.0, [280.0, 280.0, 180e5]);
         for _ in 0..1440 {
             let of = |nu: f64| [innovation(nu), innovation(nu), innovation(2e3)];
-            by_thermometers.compare(of(0.3), of(0.2));
+            by_thermometers.compare(of(0.3), of(0.2), NOISE);
         }
         assert_eq!(by_thermometers.judge(JUDGED_S), Finding::Open, "the pressure does not bear it out");
         blind.forget_twin();

@@ -13,6 +13,10 @@
 //! `W = 2.2 c (dp/dT (s + (1 - exp(-dt / tau)) e) + |E|)`. In a tunnel it takes more to be a jump; gas that flows there is told by the observer's
 //! flowing member.
 //!
+//! Between two rows that are far apart a tunnel may begin and end, and neither shows it. So `L` is multiplied by what it was exceeded by lately, and a quarter more, where that was
+//! no jump and three tenths of `L` were for the surroundings: at most fourfold, and forgotten within days. As much more is considered of all that the surroundings do
+//! ([`Observer::doubt_surroundings`](crate::estimator::observer::Observer::doubt_surroundings)).
+//!
 //! # Examined
 //! What it was a bank of causes tells ([`Examination`]): nothing, an offset, gas.
 mod examination;

@@ -1,7 +1,7 @@
 //! Whether a pressure has jumped; the rule stands in [`super`].
 use serde::{Deserialize, Serialize};
 
-use crate::units::MINUTE_S;
+use crate::units::{DAY_S, MINUTE_S};
 
 /// Change of the innovation that is a jump, as a part of the full pressure, beside so many usual changes, and so many steps of the transmitter.
 const JUMP: f64 = 6e-4;
@@ -13,6 +13,12 @@ const USUAL_SAMPLES: f64 = 300.0;
 pub const USUAL_LARGEST: f64 = 5e-3;
 /// Part of it that the reading itself makes at least, and that is left against the sample before the last where it does not only return.
 const HALF: f64 = 0.5;
+/// How far beyond the largest change that was none, and the time within which that one is forgotten, s.
+const BEYOND: f64 = 1.25;
+const FORGOTTEN_S: f64 = 5.0 * DAY_S;
+/// Part of the limit that is for the surroundings at least where they may have made it, and how much it counts for at most.
+const THEIRS: f64 = 0.3;
+const MOST: f64 = 3.0;
 /// Interval beyond which two innovations are not compared, s.
 pub const LONGEST_INTERVAL_S: f64 = 900.0;
 
@@ -24,6 +30,11 @@ pub struct JumpWatch {
     before: f64,
     /// Usual change of the innovation in a minute.
     usual: f64,
+    /// What the limit is multiplied by, at least 1, and when a reading was seen last, s.
+    excess: f64,
+    seen_s: Option<f64>,
+    /// How large the last change was against the limit, if the surroundings made it.
+    latest: f64,
 }
 
 /// A reading and what was expected, as parts of the full pressure.
@@ -42,7 +53,7 @@ pub struct Innovated {
 impl Default for JumpWatch {
     /// Of a transmitter and a thermometer of which nothing is known.
     fn default() -> Self {
-        Self { last: None, before: f64::NAN, usual: JUMP }
+        Self { last: None, before: f64::NAN, usual: JUMP, excess: 1.0, seen_s: None, latest: 0.0 }
     }
 }
 
@@ -53,6 +64,8 @@ impl JumpWatch {
         if !(now.reading.is_finite() && now.innovation.is_finite()) {
             return None;
         }
+        let since_s = self.seen_s.replace(now.time_s).map_or(0.0, |seen_s| now.time_s - seen_s);
+        self.excess = 1.0 + (self.excess - 1.0) * (-since_s / FORGOTTEN_S).exp();
         let last = self.last.replace(now)?;
         let interval_s = now.time_s - last.time_s;
         if interval_s > LONGEST_INTERVAL_S {
@@ -65,25 +78,40 @@ impl JumpWatch {
         // What goes back to where it was has taken in a jump that was not noticed: the other way it would be believed.
         let before = std::mem::replace(&mut self.before, last.innovation);
         let returns = (now.innovation - before).abs() < HALF * change.abs();
-        let limit = JUMP
-            + JUMP_PER_USUAL * self.usual * grown
-            + JUMP_PER_STEP * step
-            + now.doubt
-            + part * (by_reading - change).abs();
+        let surroundings = now.doubt + part * (by_reading - change).abs();
+        let limit = JUMP + JUMP_PER_USUAL * self.usual * grown + JUMP_PER_STEP * step + surroundings;
         self.usual += ((change.abs() / grown).min(USUAL_LARGEST) - self.usual) / USUAL_SAMPLES;
         // What the expectation alone did is the model's.
         let read = by_reading * change.signum() > HALF * change.abs();
-        (read && !returns && change.abs() > limit).then_some(last.innovation)
+        let beyond = change.abs() / limit;
+        // What a reading does by itself, at rest, says nothing of the surroundings.
+        self.latest = if surroundings > THEIRS * limit { beyond.min(MOST) } else { 0.0 };
+        if read && !returns && beyond > self.excess {
+            return Some(last.innovation);
+        }
+        self.was_none();
+        None
+    }
+
+    /// How much more than is considered the surroundings have done to it lately, at least 1.
+    pub fn excess(&self) -> f64 {
+        self.excess
+    }
+
+    /// The last change was no jump: only what is beyond it is one.
+    pub fn was_none(&mut self) {
+        self.excess = self.excess.max(BEYOND * self.latest);
     }
 
     /// A jump was none, or the transmitter's: go on after this reading.
     pub fn go_on(&mut self, last: Innovated) {
-        *self = Self { usual: self.usual, last: Some(last), ..Self::default() };
+        self.forget();
+        self.last = Some(last);
     }
 
     /// Forget the last reading.
     pub fn forget(&mut self) {
-        *self = Self { usual: self.usual, ..Self::default() };
+        (self.last, self.before) = (None, f64::NAN);
     }
 }
 
@@ -153,6 +181,29 @@ mod tests {
         let mut watch = accustomed(200e5, 1.0);
         watch.go_on(Innovated { time_s: 0.0, reading: 1.0, innovation: 0.0, doubt: 0.0 });
         assert!(noticed(&mut watch, 1.0, 250e5, 50e5, 0.0).is_some());
+    }
+
+    /// Whether a watch that was accustomed jumps by so much, Pa, after it jumped by so much and that was none, with what the surroundings may have done, Pa.
+    fn jumps_again(by_pa: f64, none_pa: f64, doubt_pa: f64, days: f64) -> bool {
+        let mut watch = accustomed(184e5, 1.0);
+        assert!(noticed(&mut watch, 0.0, 184e5 - none_pa, -none_pa, doubt_pa).is_some());
+        watch.was_none();
+        watch.forget();
+        let minute = 1440.0 * days;
+        for row in 0..3 {
+            // Nothing is compared across days.
+            assert_eq!(noticed(&mut watch, minute + f64::from(row), 184e5, 0.0, doubt_pa), None);
+        }
+        noticed(&mut watch, minute + 3.0, 184e5 - by_pa, -by_pa, doubt_pa).is_some()
+    }
+
+    #[test]
+    fn what_the_surroundings_were_seen_to_do_is_no_jump_for_some_days() {
+        assert!(jumps_again(2.6e5, 2e5, 0.9e5, 0.01) && !jumps_again(2.2e5, 2e5, 0.9e5, 0.01));
+        // At rest, it was the reading that was far off; weeks later, nothing is known of it.
+        assert!(jumps_again(2.2e5, 2e5, 0.0, 0.01) && jumps_again(2.2e5, 2e5, 0.9e5, 20.0));
+        // However much it was.
+        assert!(jumps_again(6e5, 60e5, 0.9e5, 0.01));
     }
 
     #[test]

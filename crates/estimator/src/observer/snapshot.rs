@@ -1,0 +1,68 @@
+//! The observer at one time: what it goes back to, and what a program that was stopped goes on from.
+use serde::{Deserialize, Serialize};
+
+use super::Observer;
+use super::bank::Bank;
+use super::clock::Clock;
+use super::signature::Onsets;
+use crate::EstimatorError;
+use crate::filter::StateSpace;
+use crate::thermal::model::reduced::WarmStart;
+
+/// The members as they were after a sample: what a late sample goes back to, and what a program that was stopped goes on from. With
+/// another engine than the extended filter it cannot be serialised. It holds numbers that are none, which JSON has no
+/// word for: take a binary format.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Snapshot {
+    bank: Bank,
+    onsets: Onsets,
+    pub(super) clock: Clock,
+    warm_start: WarmStart,
+}
+
+impl Observer {
+    /// The observer as it is now.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            bank: self.bank.clone(),
+            onsets: self.onsets.clone(),
+            clock: self.clock.clone(),
+            warm_start: self.cylinder.warm_start(),
+        }
+    }
+
+    /// The observer as it is now, in the memory of another snapshot of it.
+    pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
+        snapshot.bank.copy_from(&self.bank);
+        snapshot.onsets.copy_from(&self.onsets);
+        snapshot.clock.clone_from(&self.clock);
+        snapshot.warm_start = self.cylinder.warm_start();
+    }
+
+    /// Back to a snapshot of this observer.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.bank.copy_from(&snapshot.bank);
+        self.onsets.copy_from(&snapshot.onsets);
+        self.clock.clone_from(&snapshot.clock);
+        self.cylinder.set_loosened(&self.clock.loosened);
+        self.cylinder.model().set_warm_start(&snapshot.warm_start);
+    }
+
+    /// Back to a snapshot that comes from elsewhere, such as a file.
+    ///
+    /// # Errors
+    /// It is that of an observer of another cylinder, other sensors or another bank; this one stays as it was.
+    pub fn try_restore(&mut self, snapshot: &Snapshot) -> Result<(), EstimatorError> {
+        let (states, sensors) = (self.cylinder.states(), self.cylinder.outputs());
+        let clock = &snapshot.clock;
+        let fits = snapshot.bank.is_like(&self.cylinder.settings().bank, states, sensors)
+            && snapshot.onsets.is_like(states)
+            && [clock.last_reading_s.len(), clock.loosened.len(), clock.screens.len()] == [sensors; 3]
+            && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
+        if !fits {
+            return Err(EstimatorError::SnapshotForeign);
+        }
+        self.restore(snapshot);
+        Ok(())
+    }
+}
