@@ -88,6 +88,36 @@ fn what_lasts_is_told_once_and_a_cold_night_at_most_once_a_day() {
     assert!(shifts.len() <= 1, "{shifts:?}");
 }
 
+/// From 8 % on the walls are certain that gas is gone: the leak that was found was begun anew, and its onset was that day's.
+#[test]
+fn a_leak_that_was_found_keeps_its_onset_however_much_it_loses() {
+    let onset_s = 36.0 * HOUR_S;
+    let leak = Overlay::Leak { part_per_h: 1e-3, onset_s };
+    let outputs = watched(&world("hydrogen-50l/workshop/mixed/class-b/300s", 12, 6.5 * DAY_S, leak));
+    let found = outputs.last().and_then(|output| output.leak).expect("12 % are gone");
+    assert!(found.onset_s.holds(onset_s), "{:?}", found.onset_s);
+    assert!(found.onset_s.high - found.onset_s.low < DAY_S, "{:?}", found.onset_s);
+}
+
+/// A tunnel between two rows of five minutes was a refill on the sixth day, and a shift of the transmitter on the eleventh.
+#[test]
+fn what_a_tunnel_does_between_two_rows_is_no_exchange_of_gas_and_no_shift() {
+    let outputs =
+        watched(&world("air-composite-7l/metro/mixed/lagging/300s", 246, 11.0 * DAY_S, Overlay::Nothing));
+    for output in &outputs {
+        let exchange = |kind: &EventKind| matches!(kind, EventKind::Refill(_) | EventKind::Discharge(_));
+        assert!(!output.events.iter().any(|event| exchange(&event.kind)), "{:?}", output.events);
+        assert!(!output.health.iter().any(|health| matches!(health, Health::Shifted(_))), "{:?}", output.health);
+    }
+}
+
+/// Air that gusts around the thin valve: it was detached on its first morning, for good.
+#[test]
+fn a_valve_in_the_gusts_of_a_desert_is_not_detached() {
+    let outputs = watched(&world("argon-50l/desert/mixed/class-a/300s", 201, DAY_S, Overlay::Nothing));
+    assert!(outputs.iter().all(|output| !output.health.contains(&Health::Detached)));
+}
+
 /// A loss of 29 % in 14 min was called a discharge, exit code 0.
 #[test]
 fn a_fast_loss_is_a_loss_within_minutes_and_an_announced_discharge_is_none() {

@@ -11,7 +11,8 @@
 //! drift of what the observer has learnt, widens the rate by a standard deviation of its own, 0.01 g/h of 4.5 kg, as does what a kilogram is worth in the
 //! observer's model, 0.5 %; the onset by ten minutes, since the mass follows a leak by some.
 //!
-//! Assumes one leak of constant rate since its onset. Onsets are half a day apart when they are two days old: between them the onset is uniform.
+//! Assumes one leak of constant rate since its onset. Onsets are half a day apart when they are two days old: what speaks for one speaks for all from the one before it to the
+//! one after it, the less the farther.
 //!
 //! Source: Bayesian mixture over change points, D. A. Stephens, Appl. Stat. 43 (1994) 159; D. V. Hinkley, Biometrika 56 (1969) 495.
 //!
@@ -57,7 +58,7 @@ pub struct Fitted {
 /// One onset with its rate.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
-    /// Onset, s, and the times that are nearer to it than to another one.
+    /// Onset, the one before it and the one after it, s.
     onset_s: f64,
     from_s: f64,
     to_s: f64,
@@ -82,9 +83,8 @@ fn fit_of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Fi
         .iter()
         .enumerate()
         .map(|(index, &(onset_s, rate, sd))| {
-            let before_s = index.checked_sub(1).map_or(onset_s, |before| onsets[before].0);
-            let after_s = onsets.get(index + 1).map_or(time_s, |after| after.0);
-            let (from_s, to_s) = (0.5 * (before_s + onset_s), 0.5 * (onset_s + after_s));
+            let from_s = index.checked_sub(1).map_or(onset_s, |before| onsets[before].0);
+            let to_s = onsets.get(index + 1).map_or(time_s, |after| after.0);
             Candidate { onset_s, from_s, to_s, rate, sd, weight: 0.0 }
         })
         .collect();
@@ -92,7 +92,7 @@ fn fit_of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Fi
     let largest = candidates.iter().map(ratio).fold(0.0, f64::max);
     let (mut total, mut factor, mut span_s) = (0.0, 0.0, 0.0);
     for one in &mut candidates {
-        let width = one.to_s - one.from_s;
+        let width = 0.5 * (one.to_s - one.from_s);
         let likelihood = (ratio(one) - largest).exp();
         // Mean of the likelihood over rates that are uniform in their logarithm.
         let mean = likelihood * TAU.sqrt() * one.sd / (one.rate.max(one.sd) * LN_RATES);
@@ -113,7 +113,7 @@ fn fit_of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Fi
         let age_s = time_s - one.onset_s;
         (one.rate * age_s, sd(one) * age_s)
     });
-    let onset = |p: f64| onset_quantile(&candidates, p);
+    let onset = |p: f64| onset_quantile(&candidates, p, time_s);
     let onset_s = Interval {
         value: onset(0.5),
         low: onset(TAIL) - ONSET_S,
@@ -177,21 +177,9 @@ impl Mixture {
         parts.fold((0.0, 0.0), |(below, density), part| (below + part.0, density + part.1))
     }
 
-    /// By Newton's method inside a bracket that each step narrows.
     fn quantile(&self, p: f64) -> f64 {
-        let (mut low, mut high) =
-            (0.0, self.parts.iter().map(|part| part.mean.max(0.0) + 10.0 * part.sd).fold(0.0, f64::max));
-        let mut value = 0.5 * (low + high);
-        for _ in 0..MOST_STEPS {
-            let (below, density) = self.at(value);
-            if below < p { low = value } else { high = value }
-            let newton = value - (below - p) / density;
-            let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - std::mem::replace(&mut value, next)).abs() <= EXACT * next {
-                break;
-            }
-        }
-        value
+        let high = self.parts.iter().map(|part| part.mean.max(0.0) + 10.0 * part.sd).fold(0.0, f64::max);
+        quantile(p, (0.0, high), |value| self.at(value))
     }
 
     fn interval(&self) -> Interval {
@@ -199,16 +187,47 @@ impl Mixture {
     }
 }
 
-/// Quantile of the onset, uniform around each bin.
-fn onset_quantile(candidates: &[Candidate], p: f64) -> f64 {
-    let mut sum = 0.0;
-    for one in candidates {
-        if sum + one.weight >= p && one.weight > 0.0 {
-            return one.from_s + (p - sum) / one.weight * (one.to_s - one.from_s);
+/// Quantile of the onset, s: a mixture of triangles.
+fn onset_quantile(candidates: &[Candidate], p: f64, time_s: f64) -> f64 {
+    let at = |value_s: f64| {
+        let parts = candidates.iter().map(|one| one.onset_at(value_s));
+        parts.fold((0.0, 0.0), |(below, density), part| (below + part.0, density + part.1))
+    };
+    quantile(p, (candidates.first().map_or(time_s, |first| first.from_s), time_s), at)
+}
+
+impl Candidate {
+    /// Probability of an onset before `value_s`, and its density there.
+    fn onset_at(&self, value_s: f64) -> (f64, f64) {
+        let (rise_s, fall_s) = (self.onset_s - self.from_s, self.to_s - self.onset_s);
+        let peak = 2.0 * self.weight / (rise_s + fall_s);
+        if value_s <= self.from_s {
+            (0.0, 0.0)
+        } else if value_s >= self.to_s {
+            (self.weight, 0.0)
+        } else if value_s < self.onset_s {
+            let density = peak * (value_s - self.from_s) / rise_s;
+            (0.5 * density * (value_s - self.from_s), density)
+        } else {
+            let density = peak * (self.to_s - value_s) / fall_s;
+            (self.weight - 0.5 * density * (self.to_s - value_s), density)
         }
-        sum += one.weight;
     }
-    candidates.last().map_or(f64::NAN, |last| last.to_s)
+}
+
+/// Where a distribution reaches a probability, of which `at` gives what is below a value and the density there: by Newton's method inside a bracket that each step narrows.
+fn quantile(p: f64, (mut low, mut high): (f64, f64), at: impl Fn(f64) -> (f64, f64)) -> f64 {
+    let mut value = 0.5 * (low + high);
+    for _ in 0..MOST_STEPS {
+        let (below, density) = at(value);
+        if below < p { low = value } else { high = value }
+        let newton = value - (below - p) / density;
+        let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - std::mem::replace(&mut value, next)).abs() <= EXACT * next {
+            break;
+        }
+    }
+    value
 }
 
 #[cfg(test)]
