@@ -55,20 +55,20 @@ const OWN: [Own; 1] = [Own {
 
 /// Of 204 tanks, 34.6 years together.
 const TANK: Tails = Tails([
-    Tail { level: 2.6969, interval_s: 4.3214e5, scale: 0.7965, shape: 0.101 },
-    Tail { level: 3.8213, interval_s: 1.7297e6, scale: 1.0735, shape: 0.085 },
-    Tail { level: 3.7292, interval_s: 3.4560e6, scale: 1.0903, shape: 0.127 },
-    Tail { level: 4.3671, interval_s: 1.2186e7, scale: 2.7417, shape: -0.247 },
-    Tail { level: 4.5233, interval_s: 2.6438e7, scale: 2.1242, shape: 0.222 },
+    Tail { level: 2.5732, interval_s: 4.3214e5, scale: 0.7763, shape: 0.109 },
+    Tail { level: 3.7453, interval_s: 1.7297e6, scale: 0.9519, shape: 0.176 },
+    Tail { level: 3.7091, interval_s: 3.4560e6, scale: 1.0432, shape: 0.167 },
+    Tail { level: 4.4570, interval_s: 1.2186e7, scale: 2.8130, shape: -0.248 },
+    Tail { level: 4.6797, interval_s: 2.6438e7, scale: 2.6420, shape: 0.038 },
 ]);
 
 /// Of 252 cylinders, 42.8 years together.
 const CYLINDER: Tails = Tails([
-    Tail { level: 2.1613, interval_s: 4.3206e5, scale: 0.6253, shape: 0.015 },
-    Tail { level: 3.3428, interval_s: 1.7298e6, scale: 0.7003, shape: 0.201 },
-    Tail { level: 3.5438, interval_s: 3.4560e6, scale: 0.7863, shape: 0.165 },
-    Tail { level: 3.7376, interval_s: 1.2193e7, scale: 0.7792, shape: 0.152 },
-    Tail { level: 3.0802, interval_s: 2.6127e7, scale: 0.9079, shape: 0.250 },
+    Tail { level: 2.1357, interval_s: 4.3206e5, scale: 0.6297, shape: 0.010 },
+    Tail { level: 3.3416, interval_s: 1.7298e6, scale: 0.7052, shape: 0.197 },
+    Tail { level: 3.5573, interval_s: 3.4560e6, scale: 0.7781, shape: 0.166 },
+    Tail { level: 3.7321, interval_s: 1.2193e7, scale: 0.7684, shape: 0.161 },
+    Tail { level: 3.0802, interval_s: 2.6127e7, scale: 0.8678, shape: 0.250 },
 ]);
 
 /// A threshold for each statistic.
