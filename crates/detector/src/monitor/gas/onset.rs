@@ -9,7 +9,7 @@
 //! whose quantiles are the intervals; the mean of the likelihood ratio over onsets and rates is the Bayes factor of a leak. A prior that is flat
 //! in the rate would prefer fast leaks of the last hours to slow ones of days. An error of the rate that no innovation shows, such as the slow
 //! drift of what the observer has learnt, widens the rate by a standard deviation of its own, 0.01 g/h of 4.5 kg, as does what a kilogram is worth in the
-//! observer's model, 0.5 %; the onset by ten minutes, since the mass follows a leak by some.
+//! observer's model, 1 % (of 125 leaks in seven vessels and six climates the 95 % intervals then hold 95 %); the onset by ten minutes, since the mass follows a leak by some.
 //!
 //! Assumes one leak of constant rate since its onset. Onsets are half a day apart when they are two days old: what speaks for one speaks for all from the one before it to the
 //! one after it, the less the farther.
@@ -34,7 +34,7 @@ const MOST_STEPS: usize = 60;
 /// Decades over which a leak rate may be anything, as a natural logarithm: 0.001 to 10 bar/h.
 const LN_RATES: f64 = 9.21;
 /// Relative error of what a kilogram is worth in the observer's model, standard deviation.
-const MODEL: f64 = 0.005;
+const MODEL: f64 = 0.01;
 /// Error of the rate that lasts, as a part of the mass, 1/s.
 const DRIFT_PER_S: f64 = 1e-5 / 4.477 / 3600.0;
 /// By how much an onset may be off beside what is known of it, s.

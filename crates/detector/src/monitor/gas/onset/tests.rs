@@ -28,8 +28,8 @@ fn one_onset_that_stands_out_gives_onset_rate_and_loss() {
 fn errors_that_no_innovation_shows_widen_the_rate() {
     let rate = |drift: f64| fit_of(&onsets(|_| 12.0), 24.0 * HOUR_S, drift).unwrap().rate_kg_s;
     let [without, with] = [0.0, 2.0 * G_H].map(rate).map(|rate| rate.high - rate.low);
-    // 1 g/h and 0.5 % of 12 g/h, and 2 g/h beside.
-    assert!((with / without - 1.0_f64.hypot(0.06).hypot(2.0) / 1.0_f64.hypot(0.06)).abs() < 0.01);
+    // 1 g/h and 1 % of 12 g/h, and 2 g/h beside.
+    assert!((with / without - 1.0_f64.hypot(0.12).hypot(2.0) / 1.0_f64.hypot(0.12)).abs() < 0.01);
 }
 
 #[test]
