@@ -12,7 +12,7 @@
 //! `e^2 = max_i (y_i - T_g)^2 + s^2 + (a/c)^2`,   `var T = P_T + c^2 e^2`,   `var m = P_m + (m c e / T)^2`
 //!
 //! with the readings `y_i` of the thermometers on the surface, `s` the largest change of one between two rows and `a` what competing explanations of a row
-//! disagreed on the gas temperature ([`super::surroundings`]), both fading. `c e` is multiplied by what the observer is told that the surroundings do beyond it
+//! disagreed on the gas temperature ([`super::surroundings`]), both fading. `c e` is multiplied by `k`, where the observer is told that the surroundings do more
 //! ([`Observer::doubt_surroundings`]). Errors that stay,
 //! a transmitter's offset above all, are in the masses of all times alike; those of the gas temperature come and go:
 //!
