@@ -420,8 +420,8 @@ mod tests {
 
     #[test]
     fn a_thin_valve_in_gusts_is_not_detached_and_one_that_comes_off_there_is() {
-        assert_eq!(restless(|_| [0.1, 0.2]), None);
-        let comes_off = |minute: f64| if minute < 2880.0 { [0.1, 0.2] } else { [0.1, 0.6] };
+        assert_eq!(restless(|_| [0.1, 0.23]), None);
+        let comes_off = |minute: f64| if minute < 2880.0 { [0.1, 0.23] } else { [0.1, 0.7] };
         let told = restless(comes_off);
         assert!(matches!(told, Some((2880.0..3120.0, Lonely::Detached(1)))), "{told:?}");
     }
