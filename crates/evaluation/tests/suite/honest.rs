@@ -107,7 +107,11 @@ fn what_a_tunnel_does_between_two_rows_is_no_exchange_of_gas_and_no_shift() {
     for output in &outputs {
         let exchange = |kind: &EventKind| matches!(kind, EventKind::Refill(_) | EventKind::Discharge(_));
         assert!(!output.events.iter().any(|event| exchange(&event.kind)), "{:?}", output.events);
-        assert!(!output.health.iter().any(|health| matches!(health, Health::Shifted(_))), "{:?}", output.health);
+        assert!(
+            !output.health.iter().any(|health| matches!(health, Health::Shifted(_))),
+            "{:?}",
+            output.health
+        );
     }
 }
 

@@ -220,7 +220,11 @@ fn quantile(p: f64, (mut low, mut high): (f64, f64), at: impl Fn(f64) -> (f64, f
     let mut value = 0.5 * (low + high);
     for _ in 0..MOST_STEPS {
         let (below, density) = at(value);
-        if below < p { low = value } else { high = value }
+        if below < p {
+            low = value
+        } else {
+            high = value
+        }
         let newton = value - (below - p) / density;
         let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
         if (next - std::mem::replace(&mut value, next)).abs() <= EXACT * next {

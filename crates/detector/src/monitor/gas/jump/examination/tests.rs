@@ -171,8 +171,7 @@ fn of_all_spikes() -> impl Iterator<Item = (Vec<f64>, Vec<Cause>)> {
 #[test]
 fn an_examination_never_ends_on_a_spike() {
     // Again when all has come to rest, and is not sure.
-    let spikes =
-        |minutes: f64| if minutes == 0.0 || (25.0..28.0).contains(&minutes) { 50.0 } else { 0.0 };
+    let spikes = |minutes: f64| if minutes == 0.0 || (25.0..28.0).contains(&minutes) { 50.0 } else { 0.0 };
     for tenths in 1..60 {
         let considered_bar = 0.1 * f64::from(tenths);
         let mut examination = begun(considered_bar);
@@ -180,10 +179,7 @@ fn an_examination_never_ends_on_a_spike() {
             (spikes(minutes), examination.push(sample(minutes, spikes(minutes), considered_bar)))
         });
         let end = causes.find(|(_, cause)| !matches!(cause, Cause::Open | Cause::Flowing));
-        assert!(
-            matches!(end, Some((0.0, Cause::Spike | Cause::Passed))),
-            "{considered_bar} bar: {end:?}"
-        );
+        assert!(matches!(end, Some((0.0, Cause::Spike | Cause::Passed))), "{considered_bar} bar: {end:?}");
     }
 }
 
