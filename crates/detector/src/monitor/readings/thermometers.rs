@@ -74,7 +74,7 @@ pub struct Pair {
     suspect: Option<Suspect>,
     /// Which one jumped last, and until when it is not used, s.
     probation: Option<(usize, f64)>,
-    restless: Restless,
+    restless: Restlessness,
 }
 
 /// A thermometer under suspicion.
@@ -239,14 +239,14 @@ impl Pair {
 
 /// How restless both are: mean sizes of their second differences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Restless {
+struct Restlessness {
     lately_k: [f64; 2],
     usually_k: [f64; 2],
     /// How long they have been seen, s.
     seen_s: f64,
 }
 
-impl Restless {
+impl Restlessness {
     /// Take in the second differences, K, of a sample so long after the last one, s: which one reads the air.
     fn push(&mut self, interval_s: f64, second_k: [f64; 2], steps_k: f64) -> Option<Lonely> {
         if second_k.iter().any(|second| second.is_nan()) {
