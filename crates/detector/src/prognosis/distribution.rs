@@ -250,7 +250,7 @@ fn ln_upper_tail(z: f64) -> f64 {
 
 /// Root of a rising function between two points with a change of sign, by Chandrupatla's method: inverse quadratic where that is safe,
 /// halving where not.
-fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 {
+pub(crate) fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 {
     let (mut b, mut a) = (low, high);
     let mut c = a;
     let mut share = 0.5;

@@ -39,8 +39,8 @@ mod state;
 mod tests;
 
 pub use contents::{Contents, ISO_14520_LOSS, QUOTED_K};
-pub(crate) use distribution::normal_probability;
 pub use distribution::{Passage, Prognosis, Quantiles};
+pub(crate) use distribution::{normal_probability, root};
 pub use lambert::lambert_w;
 pub use reaction::{Advice, Reaction, ReactionSettings};
 pub use state::{LossLaw, MassAndLeak};

@@ -22,15 +22,12 @@ use std::f64::consts::TAU;
 use crate::estimator::observer::{Observer, Onset};
 use crate::evidence::Evidence;
 use crate::monitor::{Interval, LeakFinding};
-use crate::prognosis::normal_probability;
+use crate::prognosis::{normal_probability, root};
 
 /// Probability on either side of an interval.
 const TAIL: f64 = 0.025;
 /// Weight of an onset that adds nothing.
 const NEGLIGIBLE: f64 = 1e-6;
-/// Relative error of a quantile, and steps to it at most: as many halvings make it.
-const EXACT: f64 = 1e-9;
-const MOST_STEPS: usize = 60;
 /// Decades over which a leak rate may be anything, as a natural logarithm: 0.001 to 10 bar/h.
 const LN_RATES: f64 = 9.21;
 /// Relative error of what a kilogram is worth in the observer's model, standard deviation.
@@ -150,13 +147,10 @@ impl Part {
         Self { weight, mean, sd, cut: normal_probability(-mean / sd) }
     }
 
-    /// Probability of less than `value`, and the density there.
-    fn at(&self, value: f64) -> (f64, f64) {
+    /// Probability of less than `value`.
+    fn below(&self, value: f64) -> f64 {
         let above = (1.0 - self.cut).max(f64::MIN_POSITIVE);
-        let z = (value - self.mean) / self.sd;
-        let density = (-0.5 * z * z).exp() / (TAU.sqrt() * self.sd);
-        let share = self.weight / above;
-        (share * (normal_probability(z) - self.cut).max(0.0), share * density)
+        self.weight * (normal_probability((value - self.mean) / self.sd) - self.cut).max(0.0) / above
     }
 }
 
@@ -171,15 +165,9 @@ impl Mixture {
         Self { parts: counted.map(|one| Part::new(one.weight, of(one))).collect() }
     }
 
-    /// Probability of less than `value`, and the density there.
-    fn at(&self, value: f64) -> (f64, f64) {
-        let parts = self.parts.iter().map(|part| part.at(value));
-        parts.fold((0.0, 0.0), |(below, density), part| (below + part.0, density + part.1))
-    }
-
     fn quantile(&self, p: f64) -> f64 {
         let high = self.parts.iter().map(|part| part.mean.max(0.0) + 10.0 * part.sd).fold(0.0, f64::max);
-        quantile(p, (0.0, high), |value| self.at(value))
+        quantile(p, (0.0, high), |value| self.parts.iter().map(|part| part.below(value)).sum())
     }
 
     fn interval(&self) -> Interval {
@@ -189,49 +177,32 @@ impl Mixture {
 
 /// Quantile of the onset, s: a mixture of triangles.
 fn onset_quantile(candidates: &[Candidate], p: f64, time_s: f64) -> f64 {
-    let at = |value_s: f64| {
-        let parts = candidates.iter().map(|one| one.onset_at(value_s));
-        parts.fold((0.0, 0.0), |(below, density), part| (below + part.0, density + part.1))
-    };
-    quantile(p, (candidates.first().map_or(time_s, |first| first.from_s), time_s), at)
+    let first_s = candidates.first().map_or(time_s, |first| first.from_s);
+    quantile(p, (first_s, time_s), |value_s| candidates.iter().map(|one| one.onset_before(value_s)).sum())
 }
 
 impl Candidate {
-    /// Probability of an onset before `value_s`, and its density there.
-    fn onset_at(&self, value_s: f64) -> (f64, f64) {
+    /// Probability of an onset before `value_s`.
+    fn onset_before(&self, value_s: f64) -> f64 {
         let (rise_s, fall_s) = (self.onset_s - self.from_s, self.to_s - self.onset_s);
-        let peak = 2.0 * self.weight / (rise_s + fall_s);
-        if value_s <= self.from_s {
-            (0.0, 0.0)
+        let of_weight = if value_s <= self.from_s {
+            0.0
         } else if value_s >= self.to_s {
-            (self.weight, 0.0)
+            1.0
         } else if value_s < self.onset_s {
-            let density = peak * (value_s - self.from_s) / rise_s;
-            (0.5 * density * (value_s - self.from_s), density)
+            (value_s - self.from_s).powi(2) / (rise_s * (rise_s + fall_s))
         } else {
-            let density = peak * (self.to_s - value_s) / fall_s;
-            (self.weight - 0.5 * density * (self.to_s - value_s), density)
-        }
+            1.0 - (self.to_s - value_s).powi(2) / (fall_s * (rise_s + fall_s))
+        };
+        self.weight * of_weight
     }
 }
 
-/// Where a distribution reaches a probability, of which `at` gives what is below a value and the density there: by Newton's method inside a bracket that each step narrows.
-fn quantile(p: f64, (mut low, mut high): (f64, f64), at: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let mut value = 0.5 * (low + high);
-    for _ in 0..MOST_STEPS {
-        let (below, density) = at(value);
-        if below < p {
-            low = value
-        } else {
-            high = value
-        }
-        let newton = value - (below - p) / density;
-        let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - std::mem::replace(&mut value, next)).abs() <= EXACT * next {
-            break;
-        }
-    }
-    value
+/// Where a distribution, of which `below` gives what is below a value, reaches a probability between two values.
+fn quantile(p: f64, (low, high): (f64, f64), below: impl Fn(f64) -> f64) -> f64 {
+    let value = |part: f64| low + part * (high - low);
+    let excess = |part: f64| below(value(part)) - p;
+    value(root(excess, [0.0, 1.0].map(|end| (end, excess(end)))))
 }
 
 #[cfg(test)]
