@@ -22,6 +22,7 @@ pub use self::history::{History, Subject};
 pub use self::judge::{Case, CaseLeak, Missed, allowed_delay_s, judge};
 pub use self::reading::{DeadCode, MixUp};
 pub use self::record::{Arrival, Record, Snapshot, Step};
+pub(crate) use self::table::TABLE_FULL_SCALE_PA;
 pub use self::table::{Requirement, TableRow};
 use crate::EvaluationError;
 
@@ -91,6 +92,8 @@ pub enum Fault {
         sensor: String,
         /// What it gives.
         code: DeadCode,
+        /// Full scale of a transmitter, Pa.
+        full_scale_pa: f64,
         /// For so long, s.
         lasting_s: f64,
     },

@@ -12,10 +12,8 @@ const ZERO_DEGC_K: f64 = 273.15;
 const CALIBRATED_K: f64 = 288.15;
 const STANDARD_PRESSURE_PA: f64 = 101_325.0;
 const PA_PER_PSI: f64 = 6_894.757_293_168;
-/// Full scale of a typical transmitter, Pa,
-const FULL_SCALE_PA: f64 = 250e5;
-/// and what it shows at 3.6 mA, the signal of a broken wire: `(3.6 - 4)/16` of it.
-const WIRE_BREAK_PA: f64 = -0.025 * FULL_SCALE_PA;
+/// What a transmitter shows at 3.6 mA, the signal of a broken wire, as a part of its full scale: `(3.6 - 4)/16`.
+const WIRE_BREAK: f64 = -0.025;
 /// What an open Pt100 shows, the top of its range, K.
 const OPEN_PT100_K: f64 = 850.0 + ZERO_DEGC_K;
 
@@ -42,17 +40,17 @@ impl DeadCode {
     pub const ALL: [Self; 6] =
         [Self::Zero, Self::FullScale, Self::NotANumber, Self::Infinite, Self::Minus999, Self::WireBreak];
 
-    /// The reading, Pa or K.
-    fn reading(self, pressure: bool) -> f64 {
-        match self {
-            Self::Zero => 0.0,
-            Self::NotANumber => f64::NAN,
-            Self::Infinite => f64::INFINITY,
-            Self::Minus999 if pressure => -999e5,
-            Self::Minus999 => -999.0 + ZERO_DEGC_K,
-            Self::FullScale if pressure => FULL_SCALE_PA,
-            Self::WireBreak if pressure => WIRE_BREAK_PA,
-            Self::FullScale | Self::WireBreak => OPEN_PT100_K,
+    /// The reading of a transmitter of such a full scale, Pa; of a thermometer without one, K.
+    fn reading(self, full_scale_pa: Option<f64>) -> f64 {
+        match (self, full_scale_pa) {
+            (Self::Zero, _) => 0.0,
+            (Self::NotANumber, _) => f64::NAN,
+            (Self::Infinite, _) => f64::INFINITY,
+            (Self::Minus999, Some(_)) => -999e5,
+            (Self::Minus999, None) => -999.0 + ZERO_DEGC_K,
+            (Self::FullScale, Some(full_scale_pa)) => full_scale_pa,
+            (Self::WireBreak, Some(full_scale_pa)) => WIRE_BREAK * full_scale_pa,
+            (Self::FullScale | Self::WireBreak, None) => OPEN_PT100_K,
         }
     }
 }
@@ -132,7 +130,10 @@ impl Fault {
             Self::Noise { sd, .. } => rows.noise(*sd, random),
             Self::Quantised { step, .. } => rows.always(|reading| (reading / step).round() * step),
             Self::Spikes { height, longest, share, .. } => rows.spikes(*height, *longest, *share, random),
-            Self::Dead { code, .. } => rows.each(|_, _| code.reading(pressure)),
+            Self::Dead { code, full_scale_pa, .. } => {
+                let full_scale_pa = Some(*full_scale_pa).filter(|_| pressure);
+                rows.each(|_, _| code.reading(full_scale_pa));
+            }
             Self::Lost { sensors, .. } => rows.lose(sensors)?,
             Self::Swapped { first, second } => {
                 let (a, b) = (rows.record.sensor(first)?, rows.record.sensor(second)?);

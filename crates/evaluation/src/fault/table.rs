@@ -11,7 +11,7 @@ const DAY_S: f64 = 24.0 * HOUR_S;
 const YEAR_S: f64 = 365.25 * DAY_S;
 const BAR_PA: f64 = 1e5;
 /// Full scale of the transmitter that the relative errors of the table are of, Pa.
-const FULL_SCALE_PA: f64 = 250.0 * BAR_PA;
+pub(crate) const TABLE_FULL_SCALE_PA: f64 = 250.0 * BAR_PA;
 /// Noise of a typical transmitter, Pa, and of a typical thermometer, K.
 const NOISE_PA: f64 = 1e3;
 const NOISE_K: f64 = 0.05;
@@ -192,7 +192,7 @@ impl Draw {
             TableRow::P4 => Fault::Span {
                 sensor,
                 share: self.signed(&[0.005]),
-                per_k: self.signed(&[0.0015]) * FULL_SCALE_PA / 10.0,
+                per_k: self.signed(&[0.0015]) * TABLE_FULL_SCALE_PA / 10.0,
             },
             TableRow::P5 => match self.0.random_range(0..3) {
                 // Ten times the noise: 99 times the variance on top.
@@ -205,7 +205,8 @@ impl Draw {
             }
             TableRow::P7 => {
                 let lasting_s = self.between(HOUR_S, 4.0 * DAY_S);
-                Fault::Dead { sensor, code: self.one(&DeadCode::ALL), lasting_s }
+                let code = self.one(&DeadCode::ALL);
+                Fault::Dead { sensor, code, full_scale_pa: TABLE_FULL_SCALE_PA, lasting_s }
             }
             TableRow::E7 => {
                 Fault::Pulses { sensor, height_pa: 0.1 * BAR_PA, mean_s: self.between(20.0, 1200.0) }

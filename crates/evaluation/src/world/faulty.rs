@@ -8,10 +8,8 @@ use super::overlay::FaultRow;
 use super::rows::Rows;
 use super::truth::Truth;
 use super::{Snapshot, WorldError};
-use crate::fault::{Arrival, Fault, Record, Step};
+use crate::fault::{Arrival, Fault, Record, Step, TABLE_FULL_SCALE_PA};
 
-/// Range that the table's pressures are stated for, Pa.
-const TABLE_RANGE_PA: f64 = 250e5;
 const AMBIENT: &str = "ambient";
 
 /// Rows as they arrive with a fault.
@@ -25,7 +23,7 @@ pub(super) struct Faulty {
 
 /// The fault of a row of the table for a transmitter's range, Pa; `None` for what happens to the cylinder.
 pub(super) fn draw(row: FaultRow, full_scale_pa: f64, seed: u64) -> Option<Fault> {
-    let share = full_scale_pa / TABLE_RANGE_PA;
+    let share = full_scale_pa / TABLE_FULL_SCALE_PA;
     let mut fault = row.draw(seed)?;
     match &mut fault {
         Fault::Offset { sensor, by: size }
@@ -34,6 +32,7 @@ pub(super) fn draw(row: FaultRow, full_scale_pa: f64, seed: u64) -> Option<Fault
         | Fault::Noise { sensor, sd: size }
         | Fault::Quantised { sensor, step: size }
         | Fault::Spikes { sensor, height: size, .. }
+        | Fault::Dead { sensor, full_scale_pa: size, .. }
             if sensor == "pressure" =>
         {
             *size *= share;

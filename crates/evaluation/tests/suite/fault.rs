@@ -43,6 +43,11 @@ fn pressure() -> String {
     "pressure".into()
 }
 
+/// A sensor that is dead for an hour, a transmitter of 250 bar.
+fn dead(sensor: &str, code: DeadCode) -> Fault {
+    Fault::Dead { sensor: sensor.into(), code, full_scale_pa: 250e5, lasting_s: HOUR_S }
+}
+
 /// Every fault once.
 fn all() -> Vec<Fault> {
     let sensor = pressure;
@@ -54,7 +59,7 @@ fn all() -> Vec<Fault> {
         Fault::Noise { sensor: sensor(), sd: 1e4 },
         Fault::Quantised { sensor: sensor(), step: 1e4 },
         Fault::Spikes { sensor: sensor(), height: 50e5, longest: 3, share: 0.05 },
-        Fault::Dead { sensor: sensor(), code: DeadCode::Minus999, lasting_s: HOUR_S },
+        dead("pressure", DeadCode::Minus999),
         Fault::Lost { sensors: vec!["shoulder".into(), "valve".into()], lasting_s: HOUR_S },
         Fault::Swapped { first: "shoulder".into(), second: "valve".into() },
         Fault::Units { sensors: vec![sensor()], mix_up: MixUp::GaugeAsAbsolute },
@@ -104,7 +109,7 @@ fn a_fault_that_ends_leaves_what_follows_as_it_was() {
         assert!(within >= 59, "{}: {within}", fault.name());
     };
     untouched(Fault::Stuck { sensor: pressure(), lasting_s: HOUR_S }, 2);
-    untouched(Fault::Dead { sensor: pressure(), code: DeadCode::NotANumber, lasting_s: HOUR_S }, 2);
+    untouched(dead("pressure", DeadCode::NotANumber), 2);
     untouched(Fault::Lost { sensors: vec!["valve".into()], lasting_s: HOUR_S }, 1);
 }
 
@@ -177,7 +182,7 @@ fn spikes_have_their_share_their_height_and_their_length() {
 fn dead_sensors_give_what_no_sensor_measures() {
     for code in DeadCode::ALL {
         for (sensor, index, plausible) in [("pressure", 2, 0.1e5..249e5), ("shoulder", 0, 100.0..400.0)] {
-            let after = injected(&Fault::Dead { sensor: sensor.into(), code, lasting_s: HOUR_S });
+            let after = injected(&dead(sensor, code));
             let reading = after.rows().nth(1010).unwrap().readings[index];
             assert!(!plausible.contains(&reading), "{code:?} {sensor}: {reading}");
         }

@@ -15,16 +15,19 @@
 //! walls; `s` is the part of its standard deviation that comes and goes, `w` how far its mass usually is from that of the day before ([`super::wander`]). These bounds fade within hours, since what the observer has
 //! learnt of films and sensors changes from day to day.
 //!
-//! Readings far off must not count: bounds are believed that four rows in a row agree on, one more than a spike is long. Those of the observer, which has judged the
-//! readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree.
+//! Readings far off must not count: bounds are believed that four rows in a row agree on, and more than twice as many as have lately been beyond the bounds and come back: two
+//! spikes may meet. Those of the observer, which has judged the readings, count at once; where thermometers moved so far since the row before that a tunnel between the two rows may have done 0.003 of the mass, when two rows agree.
 //! A gain is not urgent: the observer's bounds tell it when the surroundings can no more make as much as 0.003 of the mass.
 //!
 //! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
 //! all pressures alike.
 //!
 //! Assumes that no part of the wall is farther than `d` from all thermometers for longer than the gas takes to follow it.
+use std::collections::VecDeque;
+
 use serde::{Deserialize, Serialize};
 
+use super::jump::FORGOTTEN_S;
 use super::wander::Wander;
 use crate::estimator::observer::Flow;
 
@@ -35,7 +38,7 @@ const UNSEEN_WALL_K: f64 = 12.0;
 const UNSEEN_GAS_K: f64 = 5.0;
 /// Standard deviations of the transmitter's coefficient and noise that count.
 const DEVIATIONS: f64 = 3.0;
-/// Rows in a row that have to agree on a bound: one more than a spike is long.
+/// Fewest rows in a row that have to agree on a bound: one more than a spike is long.
 pub(in crate::monitor) const ROWS: usize = 4;
 /// The same for what the observer says: standard deviations, part of the fill beside them, and time constant with which its bounds
 /// fade, s: what it has wrongly learnt changes from day to day.
@@ -76,10 +79,10 @@ pub(in crate::monitor) enum Certain {
 }
 
 /// Bounds of the mass in the last rows, and the tightest ones so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Ratchet {
     /// Lower and upper bound, the latest ones first, kg.
-    recent_kg: [Option<(f64, f64)>; ROWS],
+    recent_kg: VecDeque<(f64, f64)>,
     /// Highest lower and lowest upper bound, kg.
     floor_kg: Option<f64>,
     ceiling_kg: Option<f64>,
@@ -89,8 +92,8 @@ impl Ratchet {
     /// Take in the bounds of a row; those that so many rows in a row agree on may become the tightest ones, of which a part has been
     /// kept since the last row.
     fn push(&mut self, bounds_kg: (f64, f64), agreeing: usize, kept: f64) -> Option<Certain> {
-        self.recent_kg.rotate_right(1);
-        self.recent_kg[0] = Some(bounds_kg);
+        self.recent_kg.push_front(bounds_kg);
+        self.recent_kg.truncate(agreeing);
         let certain = self.certain(agreeing);
         if let (None, Some((least_kg, most_kg))) = (certain, self.agreed(agreeing)) {
             let faded = |bound_kg: f64, now_kg: f64| now_kg + kept * (bound_kg - now_kg);
@@ -116,15 +119,14 @@ impl Ratchet {
     /// Bounds that so many last rows agree on, kg.
     fn agreed(&self, rows: usize) -> Option<(f64, f64)> {
         let none = (f64::INFINITY, f64::NEG_INFINITY);
-        self.recent_kg[..rows].iter().try_fold(none, |(least, most), bounds| {
-            bounds.map(|(low, high)| (low.min(least), high.max(most)))
-        })
+        let wider = |(least, most): (f64, f64), &(low, high): &(f64, f64)| (low.min(least), high.max(most));
+        (self.recent_kg.len() == rows).then(|| self.recent_kg.iter().fold(none, wider))
     }
 
     /// Part of the gas that is certainly gone or has certainly come, against the bound that it is beyond; 0 if none.
     fn beyond(&self) -> f64 {
         let (Some(now), Some(floor_kg), Some(ceiling_kg)) =
-            (self.recent_kg[0], self.floor_kg, self.ceiling_kg)
+            (self.recent_kg.front(), self.floor_kg, self.ceiling_kg)
         else {
             return 0.0;
         };
@@ -139,14 +141,42 @@ impl Ratchet {
     }
 }
 
-/// Bounds of the mass since gas was last exchanged.
+/// Rows in a row beyond the bounds: those up to now, and the most that have lately come back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Excursions {
+    now: usize,
+    most: usize,
+    most_s: f64,
+}
+
+impl Excursions {
+    /// Take in whether a row is beyond, and whether it is certain: then it is no spike.
+    fn push(&mut self, time_s: f64, beyond: bool, certain: bool) {
+        if beyond || certain {
+            self.now = if certain { 0 } else { self.now + 1 };
+            return;
+        }
+        let came_back = std::mem::take(&mut self.now);
+        if came_back > 0 && came_back >= self.lately(time_s) {
+            (self.most, self.most_s) = (came_back, time_s);
+        }
+    }
+
+    /// The most that have lately come back.
+    fn lately(&self, time_s: f64) -> usize {
+        if time_s - self.most_s < FORGOTTEN_S { self.most } else { 0 }
+    }
+}
+
+/// Bounds of the mass since gas was last exchanged.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct GasBounds {
     last_s: Option<f64>,
     /// Extremes of the thermometers lately, K.
     low_k: f64,
     high_k: f64,
     walls: Ratchet,
+    excursions: Excursions,
     /// The same by the observer's flowing member, and when it last said something, s.
     flow: Ratchet,
     flow_s: Option<f64>,
@@ -168,7 +198,10 @@ impl GasBounds {
         if !(least_kg.is_finite() && most_kg.is_finite()) {
             return None;
         }
-        self.walls.push((least_kg, most_kg), ROWS, 1.0)
+        let rows = ROWS.max(2 * self.excursions.lately(seen.time_s) + 1);
+        let certain = self.walls.push((least_kg, most_kg), rows, 1.0);
+        self.excursions.push(seen.time_s, self.walls.beyond() > 0.0, certain.is_some());
+        certain
     }
 
     /// Take in what the observer says of gas that may flow, in a cylinder that is filled with so much, kg, and what the surroundings may have done to it since the row
@@ -197,7 +230,10 @@ impl GasBounds {
 
     /// Whether a mass, kg, can be that of the present row.
     pub fn allow(&self, mass_kg: f64) -> bool {
-        self.walls.recent_kg[0].is_none_or(|(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
+        self.walls
+            .recent_kg
+            .front()
+            .is_none_or(|&(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
     }
 
     /// Gas has gone that way: what bounded the mass from that side does so no more. After a refill it is still no less than before.
@@ -310,10 +346,30 @@ mod tests {
     #[test]
     fn three_readings_far_off_are_no_gas_and_four_are() {
         let spikes =
-            |rows: f64| move |minute: f64| if minute % 60.0 < rows && minute > 60.0 { 50e5 } else { 100e5 };
+            |rows: f64| move |minute: f64| if minute % 60.0 < rows && minute > 100.0 { 50e5 } else { 100e5 };
         assert_eq!(certain(|minute| (spikes(3.0)(minute), (300.0, 300.0))), None);
         let told = certain(|minute| (spikes(4.0)(minute), (300.0, 300.0)));
         assert!(matches!(told, Some((_, Certain::Out))), "{told:?}");
+    }
+
+    /// Spikes of three rows, of which one day two meet.
+    #[test]
+    fn spikes_that_meet_are_no_gas_and_what_stays_is() {
+        let spikes = |minute: f64| minute % 60.0 < 3.0 || (900.0..906.0).contains(&minute);
+        let pressure = |minute: f64| if spikes(minute) && minute > 100.0 { 50e5 } else { 100e5 };
+        assert_eq!(certain(|minute| (pressure(minute), (300.0, 300.0))), None);
+        let lost = |minute: f64| if minute < 1510.0 { pressure(minute) } else { 50e5 };
+        let (minute, way) = certain(|minute| (lost(minute), (300.0, 300.0))).unwrap();
+        assert_eq!((minute, way), (1510.0 + 12.0, Certain::Out), "thirteen rows");
+        // What was long ago says nothing of today.
+        let late = |minute: f64| if minute < 120.0 { pressure(minute) } else { 100e5 };
+        let mut bounds = GasBounds::default();
+        let days = 1440.0 * 6.0;
+        let told = (0..10_000).map(f64::from).find(|&minute| {
+            let pressure_pa = if minute < days { late(minute) } else { 50e5 };
+            bounds.push(&seen(minute, pressure_pa, (300.0, 300.0)), mass_kg).is_some()
+        });
+        assert_eq!(told, Some(days + 3.0));
     }
 
     #[test]
@@ -352,7 +408,7 @@ mod tests {
         assert_eq!(lost, Some(Certain::Out));
         bounds.gone(Certain::Out);
         assert_eq!(minutes(121).find_map(|t| bounds.push_flow(t, &flow(0.98, 2e-3), 1.0, 0.0)), None, "once");
-        let mut shaken = bounds;
+        let mut shaken = bounds.clone();
         let come = flow(1.0, 2e-3);
         assert_eq!(
             shaken.push_flow(181.0 * 60.0, &come, 1.0, 0.01),
@@ -423,7 +479,7 @@ mod tests {
     fn a_row_outside_the_gas_says_nothing() {
         let mut bounds = GasBounds::default();
         bounds.push(&seen(0.0, 100e5, (300.0, 300.0)), mass_kg);
-        let before = bounds;
+        let before = bounds.clone();
         assert_eq!(bounds.push(&seen(1.0, 10e5, (300.0, 300.0)), |_, _| f64::NAN), None);
         assert_eq!(before.walls, bounds.walls);
     }

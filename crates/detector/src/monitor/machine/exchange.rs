@@ -257,8 +257,8 @@ impl Monitor {
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let fresh = self.state.jumps.excess() * fresh;
-        let examination =
-            Examination::new(time_s, -before, fresh, self.settings.observer.flow_doubt.memory_s);
+        let memory_s = self.settings.observer.flow_doubt.memory_s;
+        let examination = Examination::new(time_s, (-before, fresh), memory_s, self.state.jumps.far_off());
         self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
         self.examine(estimate, events)
     }
@@ -314,6 +314,7 @@ impl Monitor {
             Cause::Flowing => return Ok(estimate),
             Cause::Spike | Cause::Passed | Cause::Offset(_) => {
                 self.observer.restore(&self.shadow.snapshot());
+                self.state.jumps.were_far_off(examined.examination.far_off());
                 let shift = if let Cause::Offset(by) = cause { by } else { 0.0 };
                 if shift != 0.0 {
                     self.shift_transmitter(pressure, shift * self.full_pa);

@@ -185,6 +185,7 @@ fn pressures_of_the_fault_table_are_parts_of_the_transmitters_range() {
                 Fault::Noise { sd, .. } => Some(*sd),
                 Fault::Quantised { step, .. } => Some(*step),
                 Fault::Spikes { sensor, height, .. } if sensor == "pressure" => Some(*height),
+                Fault::Dead { full_scale_pa, .. } => Some(*full_scale_pa),
                 _ => None,
             };
             match (size(&table), size(&tank)) {

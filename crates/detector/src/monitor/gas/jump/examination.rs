@@ -22,8 +22,8 @@
 //!
 //! An isentropic step of the pressure is 1.4 to 1.67 times the isothermal one that is left when gas and wall have one temperature again: gas that goes
 //! at once comes back by a part `r`, and no transmitter does. Each cause is a linear Gaussian model with one unknown, so a Kalman filter of two states gives
-//! its likelihood with the unknown integrated out. Any reading may be far off, by chance, under each cause: then it says nothing of it and costs the same everywhere.
-//! Spikes are "nothing" with readings far off.
+//! its likelihood with the unknown integrated out. Any reading may be far off, by up to the full pressure either way, under each cause: then it says nothing of it and costs
+//! what it is worth in this transmitter ([`FarOff`]). Spikes are "nothing" with readings far off.
 //!
 //! An offset is as likely as gas; by the densities of their sizes small steps are the transmitter's and large ones are gas. The examination ends when nothing is left of the jump with
 //! [`SURE`] odds, or when the error has not grown for [`REST_S`], as then gas and wall are at rest; what is not gas for sure waits until the surroundings no more make half of it. What is then not
@@ -36,10 +36,10 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use super::far::FarOff;
+
 /// Model's error at rest, as a part of the full pressure.
 const FLOOR: f64 = 1e-4;
-/// Chance that a reading is far off, by up to the full pressure either way.
-const FAR_OFF: f64 = 0.01;
 /// Standard deviations of an offset, and of gas that goes or an offset of a transmitter that has broken, as parts of the full pressure.
 const OFFSET: f64 = 0.015;
 const ANY: f64 = 1.0;
@@ -166,7 +166,7 @@ impl Member {
     }
 
     /// Take in an error, so long after the jump, s, with the variance of the noise.
-    fn update(&mut self, course: Course, since_s: f64, error: f64, noise: f64) {
+    fn update(&mut self, course: Course, since_s: f64, (error, noise): (f64, f64), far_off: &FarOff) {
         let by = match course {
             Course::Nothing => 0.0,
             Course::Offset { .. } | Course::Flow { .. } => 1.0,
@@ -176,7 +176,8 @@ impl Member {
         let variance = gain[0] + by * gain[1] + noise;
         let innovation = error - self.mean[0] - by * self.mean[1];
         let ln_density = -0.5 * (innovation * innovation / variance + (TAU * variance).ln());
-        let (near, far) = ((1.0 - FAR_OFF).ln() + ln_density, (FAR_OFF / 2.0).ln());
+        let chance = far_off.chance(self.far);
+        let (near, far) = ((1.0 - chance).ln() + ln_density, (chance / 2.0).ln());
         self.ln_odds += near.max(far);
         self.far = near < far;
         if self.far {
@@ -206,12 +207,15 @@ pub struct Examination {
     largest: f64,
     largest_s: f64,
     members: Vec<Member>,
+    /// How often readings are far off, and how often they were, if it is nothing.
+    far_off: FarOff,
+    seen: FarOff,
 }
 
 impl Examination {
     /// Of a jump at `onset_s`, s, before which so much was missing, as a part of the full pressure; the surroundings may have done `fresh` to it since, sd, and what
     /// they do is forgotten within `memory_s`, s.
-    pub fn new(onset_s: f64, before: f64, fresh: f64, memory_s: f64) -> Self {
+    pub fn new(onset_s: f64, (before, fresh): (f64, f64), memory_s: f64, far_off: FarOff) -> Self {
         let members = courses().map(|(course, prior)| Member::new(course, prior, before, fresh.hypot(FLOOR)));
         Self {
             onset_s,
@@ -222,6 +226,8 @@ impl Examination {
             largest: 0.0,
             largest_s: onset_s,
             members: members.collect(),
+            far_off,
+            seen: FarOff::default(),
         }
     }
 
@@ -248,16 +254,25 @@ impl Examination {
         self.model = model;
         self.error = now.missing;
         let noise = now.noise * now.noise;
+        let was_far = self.members[0].far;
         for ((course, _), member) in courses().zip(&mut self.members) {
             if since_s > 0.0 {
                 member.predict(course, interval_s, (kept, fresh));
             }
-            member.update(course, since_s, self.error, noise);
+            member.update(course, since_s, (self.error, noise), &self.far_off);
+        }
+        if self.members[0].far {
+            self.seen.saw_one_far_off(was_far);
         }
         if self.error.abs() > (1.0 + GROWTH) * self.largest.abs() + DEVIATIONS * now.noise {
             (self.largest, self.largest_s) = (self.error, now.time_s);
         }
         self.judge(now.time_s)
+    }
+
+    /// Readings that were far off, if there was nothing.
+    pub fn far_off(&self) -> FarOff {
+        self.seen
     }
 
     /// Whether it is more likely than not that there was nothing.

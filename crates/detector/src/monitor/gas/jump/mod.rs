@@ -20,7 +20,9 @@
 //! # Examined
 //! What it was a bank of causes tells ([`Examination`]): nothing, an offset, gas.
 mod examination;
+mod far;
 mod notice;
 
 pub use examination::{Cause, Compared, Examination, NO_OFFSET};
+pub use far::FORGOTTEN_S;
 pub use notice::{Innovated, JumpWatch, LONGEST_INTERVAL_S, USUAL_LARGEST};

@@ -1,7 +1,8 @@
 //! Whether a pressure has jumped; the rule stands in [`super`].
 use serde::{Deserialize, Serialize};
 
-use crate::units::{DAY_S, MINUTE_S};
+use super::far::{FORGOTTEN_S, FarOff};
+use crate::units::MINUTE_S;
 
 /// Change of the innovation that is a jump, as a part of the full pressure, beside so many usual changes, and so many steps of the transmitter.
 const JUMP: f64 = 6e-4;
@@ -13,9 +14,8 @@ const USUAL_SAMPLES: f64 = 300.0;
 pub const USUAL_LARGEST: f64 = 5e-3;
 /// Part of it that the reading itself makes at least, and that is left against the sample before the last where it does not only return.
 const HALF: f64 = 0.5;
-/// How far beyond the largest change that was none, and the time within which that one is forgotten, s.
+/// How far beyond the largest change that was none.
 const BEYOND: f64 = 1.25;
-const FORGOTTEN_S: f64 = 5.0 * DAY_S;
 /// Part of the limit that is for the surroundings at least where they may have made it, and how much it counts for at most.
 const THEIRS: f64 = 0.3;
 const MOST: f64 = 3.0;
@@ -33,6 +33,7 @@ pub struct JumpWatch {
     /// What the limit is multiplied by, at least 1, and when a reading was seen last, s.
     excess: f64,
     seen_s: Option<f64>,
+    far_off: FarOff,
     /// How large the last change was against the limit, if the surroundings made it.
     latest: f64,
 }
@@ -53,7 +54,15 @@ pub struct Innovated {
 impl Default for JumpWatch {
     /// Of a transmitter and a thermometer of which nothing is known.
     fn default() -> Self {
-        Self { last: None, before: f64::NAN, usual: JUMP, excess: 1.0, seen_s: None, latest: 0.0 }
+        Self {
+            last: None,
+            before: f64::NAN,
+            usual: JUMP,
+            excess: 1.0,
+            seen_s: None,
+            far_off: FarOff::default(),
+            latest: 0.0,
+        }
     }
 }
 
@@ -66,6 +75,7 @@ impl JumpWatch {
         }
         let since_s = self.seen_s.replace(now.time_s).map_or(0.0, |seen_s| now.time_s - seen_s);
         self.excess = 1.0 + (self.excess - 1.0) * (-since_s / FORGOTTEN_S).exp();
+        self.far_off.saw_a_good_one(since_s);
         let last = self.last.replace(now)?;
         let interval_s = now.time_s - last.time_s;
         if interval_s > LONGEST_INTERVAL_S {
@@ -96,6 +106,16 @@ impl JumpWatch {
     /// How much more than is considered the surroundings have done to it lately, at least 1.
     pub fn excess(&self) -> f64 {
         self.excess
+    }
+
+    /// How often readings have been far off lately.
+    pub fn far_off(&self) -> FarOff {
+        self.far_off
+    }
+
+    /// Readings were far off in an examination.
+    pub fn were_far_off(&mut self, seen: FarOff) {
+        self.far_off.add(seen);
     }
 
     /// The last change was no jump: only what is beyond it is one.

@@ -3,7 +3,7 @@ use crate::units::MINUTE_S;
 
 /// Of a jump before which 0.02 bar of 200 bar were missing, where the surroundings may have done so much, bar.
 fn begun(fresh_bar: f64) -> Examination {
-    Examination::new(0.0, -1e-4, fresh_bar / 200.0, 1200.0)
+    Examination::new(0.0, (-1e-4, fresh_bar / 200.0), 1200.0, FarOff::default())
 }
 
 /// What is missing after so many minutes beside that, bar.
@@ -48,6 +48,33 @@ fn what_jumps_is_told_by_what_comes_back() {
     assert!(matches!(cause(|_| -12.0), Cause::Offset(by) if by > 0.05));
     // A bottle that is let go to 20 bar in a minute.
     assert_eq!(cause(|minutes| 150.0 + 10.0 * (-minutes / 4.0).exp()), Cause::Gas);
+}
+
+/// Spikes of two and of three readings that nearly meet, one up and one down, of a transmitter that has many of them, and of one that has none.
+#[test]
+fn who_has_many_spikes_has_more_of_them() {
+    let mut many = FarOff::default();
+    for _ in 0..60 {
+        (0..60).for_each(|_| many.saw_a_good_one(MINUTE_S));
+        [false, true].into_iter().for_each(|again| many.saw_one_far_off(again));
+    }
+    let says_gas = |far_off: FarOff| {
+        let mut examination = Examination::new(0.0, (-1e-4, 0.0), 1200.0, far_off);
+        let missing_bar = [-50.0, -50.0, 0.0, 50.0, 50.0, 50.0, 0.0, 0.0, 0.0];
+        let causes: Vec<Cause> = missing_bar
+            .into_iter()
+            .zip(0..)
+            .map(|(missing_bar, minute)| examination.push(sample(f64::from(minute), missing_bar, 0.0)))
+            .take_while(|cause| *cause != Cause::Spike)
+            .collect();
+        (causes.contains(&Cause::Flowing), examination.far_off())
+    };
+    let (gas, seen) = says_gas(many);
+    assert!(!gas);
+    let mut five = FarOff::default();
+    [false, true, false, true, true].into_iter().for_each(|again| five.saw_one_far_off(again));
+    assert_eq!(seen, five);
+    assert!(says_gas(FarOff::default()).0);
 }
 
 #[test]
@@ -97,7 +124,7 @@ fn a_step_that_the_surroundings_may_have_made_is_no_offset() {
 #[test]
 fn what_the_model_was_off_by_before_comes_back_and_is_no_offset() {
     // Rain had cooled the valve: the observer was off by 1.1 bar, and is right again.
-    let mut examination = Examination::new(0.0, 5.5e-3, 1e-3, 1200.0);
+    let mut examination = Examination::new(0.0, (5.5e-3, 1e-3), 1200.0, FarOff::default());
     let mut causes = (0..40).map(|row| {
         let minutes = 5.0 * f64::from(row);
         let considered_bar = 0.6 * (-minutes / 20.0).exp();
@@ -148,7 +175,7 @@ fn spikes_of_three_readings_are_no_gas_at_any_time() {
 
 #[test]
 fn an_error_of_the_model_that_goes_on_is_told_at_once() {
-    let mut examination = Examination::new(0.0, 5.5e-3, 1e-4, 1200.0);
+    let mut examination = Examination::new(0.0, (5.5e-3, 1e-4), 1200.0, FarOff::default());
     let fades = |minutes: f64| 1.1 * (-minutes / 20.0).exp() + 0.02;
     let mut causes =
         (0..10).map(f64::from).map(|minutes| examination.push(sample(minutes, fades(minutes), 0.3)));
