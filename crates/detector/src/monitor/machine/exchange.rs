@@ -314,7 +314,7 @@ impl Monitor {
             Cause::Flowing => return Ok(estimate),
             Cause::Spike | Cause::Passed | Cause::Offset(_) => {
                 self.observer.restore(&self.shadow.snapshot());
-                self.state.jumps.were_far_off(examined.examination.far_off());
+                self.state.jumps.were_far_off(examined.examination.seen_far_off());
                 let shift = if let Cause::Offset(by) = cause { by } else { 0.0 };
                 if shift != 0.0 {
                     self.shift_transmitter(pressure, shift * self.full_pa);

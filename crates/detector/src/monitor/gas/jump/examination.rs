@@ -271,7 +271,7 @@ impl Examination {
     }
 
     /// Readings that were far off, if there was nothing.
-    pub fn far_off(&self) -> FarOff {
+    pub fn seen_far_off(&self) -> FarOff {
         self.seen
     }
 

@@ -67,7 +67,7 @@ fn who_has_many_spikes_has_more_of_them() {
             .map(|(missing_bar, minute)| examination.push(sample(f64::from(minute), missing_bar, 0.0)))
             .take_while(|cause| *cause != Cause::Spike)
             .collect();
-        (causes.contains(&Cause::Flowing), examination.far_off())
+        (causes.contains(&Cause::Flowing), examination.seen_far_off())
     };
     let (gas, seen) = says_gas(many);
     assert!(!gas);
