@@ -372,6 +372,18 @@ mod tests {
         assert_eq!(told, Some(days + 3.0));
     }
 
+    /// What was certain and not believed, since it was being examined, makes no later loss wait.
+    #[test]
+    fn a_certainty_that_came_back_is_no_spike() {
+        let mut bounds = GasBounds::default();
+        let pressure =
+            |minute: f64| if (200.0..240.0).contains(&minute) || minute >= 300.0 { 50e5 } else { 100e5 };
+        let mut told = (0..400).map(f64::from).filter(|&minute| {
+            bounds.push(&seen(minute, pressure(minute), (300.0, 300.0)), mass_kg).is_some()
+        });
+        assert_eq!(told.find(|&minute| minute > 250.0), Some(303.0));
+    }
+
     #[test]
     fn one_reading_far_off_is_no_gas() {
         let spikes = |minute: f64| 100e5 * if minute % 7.0 == 3.0 { 0.5 } else { 1.0 };
