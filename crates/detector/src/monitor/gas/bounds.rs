@@ -141,10 +141,12 @@ impl Ratchet {
     }
 }
 
-/// Rows in a row beyond the bounds: those up to now, and the most that have lately come back.
+/// Rows in a row beyond the bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Excursions {
+    /// Up to now.
     now: usize,
+    /// The most that have come back, and when they did, s.
     most: usize,
     most_s: f64,
 }

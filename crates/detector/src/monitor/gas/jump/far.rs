@@ -12,6 +12,11 @@ const WORTH: f64 = 300.0;
 /// Time within which what a transmitter did is forgotten, s.
 pub const FORGOTTEN_S: f64 = 5.0 * DAY_S;
 
+/// Part of what a transmitter did so long ago, s, that is not forgotten.
+pub fn kept(since_s: f64) -> f64 {
+    (-since_s / FORGOTTEN_S).exp()
+}
+
 /// Readings that were good, that were the first ones far off, and that were so after one that was.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FarOff {
@@ -21,9 +26,8 @@ pub struct FarOff {
 }
 
 impl FarOff {
-    /// Take in a reading, so long after the last one, s, that is as good as any.
-    pub fn saw_a_good_one(&mut self, since_s: f64) {
-        let kept = (-since_s / FORGOTTEN_S).exp();
+    /// Take in a reading that is as good as any, since the last of which a part of what was seen is kept.
+    pub fn saw_a_good_one(&mut self, kept: f64) {
         *self = Self { good: kept * self.good + 1.0, begun: kept * self.begun, lasted: kept * self.lasted };
     }
 
@@ -61,12 +65,12 @@ mod tests {
         let mut seen = FarOff::default();
         assert_eq!([false, true].map(|again| seen.chance(again)), [FAR_OFF; 2]);
         for _ in 0..100 {
-            (0..50).for_each(|_| seen.saw_a_good_one(MINUTE_S));
+            (0..50).for_each(|_| seen.saw_a_good_one(kept(MINUTE_S)));
             [false, true, true].into_iter().for_each(|again| seen.saw_one_far_off(again));
         }
         assert!((0.017..0.02).contains(&seen.chance(false)), "{}", seen.chance(false));
         assert!((0.6..0.667).contains(&seen.chance(true)), "{}", seen.chance(true));
-        (0..60_000).for_each(|_| seen.saw_a_good_one(MINUTE_S));
+        (0..60_000).for_each(|_| seen.saw_a_good_one(kept(MINUTE_S)));
         assert_eq!(seen.chance(false), FAR_OFF);
         assert!(seen.chance(true) < 0.1, "{}", seen.chance(true));
     }

@@ -1,7 +1,7 @@
 //! Whether a pressure has jumped; the rule stands in [`super`].
 use serde::{Deserialize, Serialize};
 
-use super::far::{FORGOTTEN_S, FarOff};
+use super::far::{FarOff, kept};
 use crate::units::MINUTE_S;
 
 /// Change of the innovation that is a jump, as a part of the full pressure, beside so many usual changes, and so many steps of the transmitter.
@@ -74,8 +74,9 @@ impl JumpWatch {
             return None;
         }
         let since_s = self.seen_s.replace(now.time_s).map_or(0.0, |seen_s| now.time_s - seen_s);
-        self.excess = 1.0 + (self.excess - 1.0) * (-since_s / FORGOTTEN_S).exp();
-        self.far_off.saw_a_good_one(since_s);
+        let kept = kept(since_s);
+        self.excess = 1.0 + (self.excess - 1.0) * kept;
+        self.far_off.saw_a_good_one(kept);
         let last = self.last.replace(now)?;
         let interval_s = now.time_s - last.time_s;
         if interval_s > LONGEST_INTERVAL_S {

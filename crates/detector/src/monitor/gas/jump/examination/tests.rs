@@ -1,4 +1,5 @@
 use super::*;
+use crate::monitor::gas::jump::far::kept;
 use crate::units::MINUTE_S;
 
 /// Of a jump before which 0.02 bar of 200 bar were missing, where the surroundings may have done so much, bar.
@@ -55,7 +56,7 @@ fn what_jumps_is_told_by_what_comes_back() {
 fn who_has_many_spikes_has_more_of_them() {
     let mut many = FarOff::default();
     for _ in 0..60 {
-        (0..60).for_each(|_| many.saw_a_good_one(MINUTE_S));
+        (0..60).for_each(|_| many.saw_a_good_one(kept(MINUTE_S)));
         [false, true].into_iter().for_each(|again| many.saw_one_far_off(again));
     }
     let says_gas = |far_off: FarOff| {
