@@ -1,6 +1,6 @@
 //! The observer's state vector: what each entry is.
 //!
-//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m | r | T_air | o | sun | sensor lags || i | c | s | sensor parameters]`
+//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m | r | T_air | o | sun | valve heat | sensor lags || i | c | s | sensor parameters]`
 //!
 //! with the leak rate `r` and the logarithms `o, i, c` of the multipliers on outside film, inside film and capacity,
 //! and the change `s` of the outside film along the axis.
@@ -30,6 +30,8 @@ pub enum StateKind {
     OutsideFilm,
     /// Sun on the upper quarter of the wall, W.
     Sun,
+    /// Heat on the valve beside that of the sun on the wall, W.
+    ValveHeat,
     /// Reading behind the lag of a sensor, K or Pa.
     Lag {
         /// Index of the sensor.
@@ -75,6 +77,8 @@ pub struct States {
     pub outside: Option<usize>,
     /// Sun.
     pub sun: Option<usize>,
+    /// Heat on the valve.
+    pub valve_heat: Option<usize>,
     /// Inside film.
     pub inside: Option<usize>,
     /// Heat capacity.
@@ -112,6 +116,8 @@ impl States {
         let air = push(&mut kinds, StateKind::Air);
         let outside = uncertain(&mut kinds, &settings.ln_outside_film, StateKind::OutsideFilm);
         let sun = uncertain(&mut kinds, &settings.sun, StateKind::Sun);
+        let valve_heat =
+            valve.and_then(|_| uncertain(&mut kinds, &settings.valve_heat, StateKind::ValveHeat));
         let lag = sensors
             .iter()
             .enumerate()
@@ -146,6 +152,7 @@ impl States {
             air,
             outside,
             sun,
+            valve_heat,
             inside,
             capacity,
             slope,
@@ -170,6 +177,7 @@ fn name(kind: &StateKind, sensors: &[Sensor]) -> String {
         StateKind::Air => "air_k".into(),
         StateKind::OutsideFilm => "ln_outside_film".into(),
         StateKind::Sun => "sun_w".into(),
+        StateKind::ValveHeat => "valve_heat_w".into(),
         StateKind::InsideFilm => "ln_inside_film".into(),
         StateKind::Capacity => "ln_capacity".into(),
         StateKind::FilmSlope => "film_slope".into(),

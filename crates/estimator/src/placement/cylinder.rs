@@ -346,7 +346,12 @@ fn scale(kind: &StateKind, candidates: &[Sensor]) -> f64 {
             let sd = candidates[sensor].parameters()[parameter].sd;
             if sd > 0.0 { sd } else { reading(sensor) }
         }
-        StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Air | StateKind::Sun => 1.0,
+        StateKind::Wall(_)
+        | StateKind::Valve
+        | StateKind::Gas
+        | StateKind::Air
+        | StateKind::Sun
+        | StateKind::ValveHeat => 1.0,
         StateKind::OutsideFilm | StateKind::InsideFilm | StateKind::Capacity | StateKind::FilmSlope => 0.1,
     }
 }
@@ -376,6 +381,7 @@ pub fn state_at(
         StateKind::Leak
         | StateKind::OutsideFilm
         | StateKind::Sun
+        | StateKind::ValveHeat
         | StateKind::InsideFilm
         | StateKind::Capacity
         | StateKind::FilmSlope => 0.0,

@@ -72,6 +72,7 @@ pub(super) fn told(candidates: &[Sensor], settings: &ObserverSettings) -> (Vec<S
         ln_capacity: known(settings.ln_capacity),
         film_slope: known(settings.film_slope),
         sun: known(settings.sun),
+        valve_heat: known(settings.valve_heat),
         ..settings.clone()
     };
     (candidates.iter().map(tell).collect(), told)

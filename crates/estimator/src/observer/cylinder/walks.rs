@@ -117,6 +117,7 @@ impl Cylinder {
                 StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
                 StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
                 StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
+                StateKind::ValveHeat => (s.valve_heat.per_sqrt_s, s.valve_heat.decay_per_s()),
                 _ => continue,
             };
             self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };

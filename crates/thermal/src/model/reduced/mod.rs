@@ -6,8 +6,12 @@
 //! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m]`:
 //!
 //! * wall node `i`: `e^c C_i(T_i) dT_i/dt = -e^i q_in,i - e^o q_out,i + conduction + contact + sun`
-//! * valve: `e^c C_v dT_v/dt = contact - e^o q_out + sun`
+//! * valve: `e^c C_v dT_v/dt = contact - e^o q_out + sun + Q_valve`
 //! * gas: `gas` (this folder); `dm/dt = -r`
+//!
+//! Gas in layers: where the wall is warmer above than below, the warm gas stays above and carries no heat down. Node `i` then exchanges heat with gas at
+//! `T_gas + chi l_i D^2 / (D + w)`, `D = T_w,N - T_w,1 > 0`, `w` = 0.5 K, with `l_i` the height of the node over the mean of the inner faces as a part of the height between
+//! the lowest and the highest node, so that the mean over the faces stays `T_gas`. With `chi` = 0 the gas is well mixed. Under the sun the resolved model's gas follows the wall nearly in full.
 //!
 //! The exponents `o, i, c` are the logarithms of multipliers ([`Unknowns`]). Outside there is one film coefficient for
 //! convection and radiation together. [`ReducedModel::rates`] also gives the exact Jacobian with all states
@@ -44,15 +48,19 @@ pub struct Unknowns {
     pub ln_capacity: f64,
     /// Sun absorbed by the upper quarter of the wall, W, on each node in proportion to what of it is lit; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
     pub sun_w: f64,
+    /// Heat on the valve beside that of the sun on the wall, W.
+    pub valve_w: f64,
     /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
     pub film_slope: f64,
     /// Mass flow out, kg/s.
     pub outflow_kg_s: f64,
+    /// Gas in layers: the part of the wall's rise from bottom to top that the gas follows where the wall is warmer above; 0: well mixed.
+    pub stratification: f64,
 }
 
 impl Unknowns {
     /// Number of unknowns: columns of the Jacobian behind the states, in the order of the fields.
-    pub const COUNT: usize = 7;
+    pub const COUNT: usize = 8;
     /// Column of [`Unknowns::air_k`] behind the states.
     pub const AIR: usize = 0;
     /// Column of [`Unknowns::ln_outside_film`].
@@ -63,10 +71,12 @@ impl Unknowns {
     pub const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
     pub const SUN: usize = 4;
+    /// Column of [`Unknowns::valve_w`].
+    pub const VALVE: usize = 5;
     /// Column of [`Unknowns::film_slope`].
-    pub const SLOPE: usize = 5;
+    pub const SLOPE: usize = 6;
     /// Column of [`Unknowns::outflow_kg_s`].
-    pub const OUTFLOW: usize = 6;
+    pub const OUTFLOW: usize = 7;
 
     /// Nothing but surroundings of a temperature, K.
     pub fn still(air_k: f64) -> Self {
@@ -76,8 +86,10 @@ impl Unknowns {
             ln_inside_film: 0.0,
             ln_capacity: 0.0,
             sun_w: 0.0,
+            valve_w: 0.0,
             film_slope: 0.0,
             outflow_kg_s: 0.0,
+            stratification: 0.0,
         }
     }
 }
@@ -126,6 +138,8 @@ pub struct ReducedModel {
     wall_capacity_j_k: f64,
     /// Height of each wall node above the middle as a fraction of the inner height.
     above_middle: Vec<f64>,
+    /// Place of each wall node in the rise of the gas from the bottom node to the top one; 0 in the mean over the inner faces.
+    layer: Vec<f64>,
     valve: Option<Valve>,
     /// How the heat of valve and sun spreads in the wall.
     spread: Spread,
@@ -169,6 +183,7 @@ impl ReducedModel {
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
+            layer: layers(&mesh),
             above_middle: crate::model::above_middle(&mesh),
             valve: vessel.valve.clone(),
             film_w_m2_k,
@@ -359,6 +374,16 @@ impl ReducedModel {
         self.close_gas(unknowns, &gas, rate, jacobian);
         Ok(())
     }
+}
+
+/// Height of each wall node over the mean of the inner faces as a part of the height from the bottom node to the top one.
+fn layers(mesh: &Mesh) -> Vec<f64> {
+    let height = crate::model::above_middle(mesh);
+    let area = |node: usize| mesh.columns[node].inner_area_m2;
+    let total: f64 = (0..height.len()).map(area).sum();
+    let mean = height.iter().enumerate().map(|(node, height)| area(node) * height).sum::<f64>() / total;
+    let span = height[height.len() - 1] - height[0];
+    height.iter().map(|height| if span > 0.0 { (height - mean) / span } else { 0.0 }).collect()
 }
 
 /// `c(T) / c_20` of a material.

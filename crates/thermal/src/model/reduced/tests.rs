@@ -3,6 +3,7 @@ use crate::model::inputs::{FilmInput, Inputs};
 use crate::model::{Model, lit_area_m2};
 use crate::scenario::{AxialVariation, OutsideFilm, Series, Sun, Surroundings};
 use crate::simulate::{SimulationSettings, simulate};
+use crate::vessel::{GasResolution, Stratification};
 use crate::{scenario, vessel};
 use approx::assert_relative_eq;
 use proptest::prelude::*;
@@ -126,7 +127,7 @@ proptest! {
         valve_k in 235.0..335.0_f64,
         gas_k in 235.0..335.0_f64,
         mass_kg in 0.3..5.0_f64,
-        unknown in prop::array::uniform7(-1.0..1.0_f64),
+        unknown in prop::array::uniform8(-1.0..1.0_f64),
         preset in 0..3_usize,
     ) {
         let vessel = vessel(["nitrogen-20l", "haque-i1", "closed-bottle"][preset]);
@@ -139,11 +140,13 @@ proptest! {
             ln_inside_film: values[2],
             ln_capacity: values[3],
             sun_w: values[4],
-            film_slope: values[5],
-            outflow_kg_s: values[6],
+            valve_w: values[5],
+            film_slope: values[6],
+            outflow_kg_s: values[7],
+            stratification: 0.6,
         };
-        let [a, o, i, c, s, slope, r] = unknown;
-        let at: Vec<f64> = x.iter().copied().chain([280.0 + 40.0 * a, o, 0.5 * i, 0.2 * c, 5.0 * s, 0.3 * slope, 1e-3 * r]).collect();
+        let [a, o, i, c, s, v, slope, r] = unknown;
+        let at: Vec<f64> = x.iter().copied().chain([280.0 + 40.0 * a, o, 0.5 * i, 0.2 * c, 5.0 * s, 5.0 * v, 0.3 * slope, 1e-3 * r]).collect();
         let mut jacobian = DMatrix::zeros(n, n + Unknowns::COUNT);
         let (mut rate, mut again) = (vec![0.0; n], vec![0.0; n]);
         model.rates(&at[..n], &z(&at[n..]), &mut rate, Some(&mut jacobian)).unwrap();
@@ -153,7 +156,7 @@ proptest! {
         }
         for column in 0..at.len() {
             // Steps stay clear of the flat spot of the film at rest, 0.01 K wide.
-            let step = [1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-2, 1e-4, 1e-5];
+            let step = [1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 1e-2, 1e-2, 1e-4, 1e-5];
             let step = if model.valve_index().is_some() { step[column] } else { step[column + usize::from(column > 2)] };
             let mut along = |sign: f64| {
                 let mut moved = at.clone();
@@ -277,4 +280,67 @@ fn few_nodes_tell_a_shoulder_in_the_sun() {
     );
     assert!(above > 0.7, "{above}");
     assert!(shoulder < 0.25, "{shoulder}");
+}
+
+/// Sun on the upper quarter with the gas in layers: the warm gas stays above and carries no heat down, so shoulder and valve stand farther above the mean of the wall than over
+/// well-mixed gas. The model whose gas follows the wall's rise tells most of it, the well-mixed one half.
+#[test]
+fn gas_that_follows_the_wall_tells_how_far_a_lit_shoulder_is_above_the_mean_wall() {
+    const START_K: f64 = 308.15;
+    let constant = |value: f64| Series::try_new(vec![0.0, 7200.0], vec![value; 2]).unwrap();
+    let mut vessel = vessel("nitrogen-20l");
+    vessel.gas = GasResolution::Stratified(Stratification::default());
+    let sun = Sun { irradiance_w_m2: constant(900.0), from_fraction: 0.75, to_fraction: 1.0, valve: true };
+    let lit_m2: f64 = lit_area_m2(&Mesh::new(&vessel.geometry), (0.75, 1.0)).iter().sum();
+    let sun_w = 900.0 * vessel.surface.solar_absorptivity * lit_m2;
+    let mut scenario = scenario::presets::load("bottle-step").unwrap();
+    (scenario.duration_s, scenario.sample_time_s) = (7200.0, 3600.0);
+    scenario.initial.wall_temperature_k = START_K;
+    scenario.initial.gas_temperature_k = START_K;
+    scenario.surroundings = Surroundings {
+        air_k: constant(START_K),
+        film: OutsideFilm::Coefficient { film_w_m2_k: constant(FILM) },
+        sun: Some(sun),
+        ..calm(START_K)
+    };
+    let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| {}).unwrap();
+    let expected_k: Vec<f64> =
+        run.surface_k("shoulder").unwrap().iter().zip(&run.wall_mean_k).map(|(s, w)| s - w).collect();
+    let error_k = |stratification: f64| {
+        let mut model = ReducedModel::new(&vessel, 2, FILM);
+        let place = model.surface(&SurfacePlace::Shoulder).unwrap();
+        let unknowns = Unknowns { sun_w, stratification, ..Unknowns::still(START_K) };
+        let mut x = state(&model, &[START_K; 2], START_K, START_K, run.mass_kg[0]);
+        let mut rate = vec![0.0; x.len()];
+        for _ in 0..1440 {
+            model.rates(&x, &unknowns, &mut rate, None).unwrap();
+            x.iter_mut().zip(&rate).for_each(|(x, rate)| *x += 5.0 * rate);
+        }
+        let shoulder_k =
+            x[place.state] + place.valve_share * (x[2] - x[1]) + place.sun_rise_k_w * unknowns.sun_w;
+        (shoulder_k - model.mean_wall_k(&x) - expected_k[2]).abs()
+    };
+    let [mixed_k, half_k, layers_k] = [0.0, 0.5, 1.0].map(error_k);
+    println!("sun {sun_w:.1} W: {:.2} K, off by {mixed_k:.2}, {half_k:.2}, {layers_k:.2} K", expected_k[2]);
+    assert!(expected_k[2] > 3.0 && mixed_k > 1.5, "{mixed_k}");
+    assert!(layers_k < 0.2 * expected_k[2] && layers_k < half_k && half_k < mixed_k, "{layers_k}");
+}
+
+/// What the gas does in layers ends where the wall is as warm below as above, or warmer.
+#[test]
+fn a_wall_that_is_warmer_below_mixes_the_gas() {
+    let vessel = vessel("nitrogen-20l");
+    let rates = |wall_k: [f64; 2], stratification: f64| {
+        let mut model = ReducedModel::new(&vessel, 2, FILM);
+        let x = state(&model, &wall_k, 288.0, 288.0, 4.46);
+        let mut rate = vec![0.0; model.states()];
+        model.rates(&x, &Unknowns { stratification, ..Unknowns::still(280.0) }, &mut rate, None).unwrap();
+        rate
+    };
+    for wall_k in [[288.0, 288.0], [292.0, 284.0]] {
+        assert_eq!(rates(wall_k, 0.0), rates(wall_k, 1.0));
+    }
+    let [mixed, layers] = [0.0, 1.0].map(|part| rates([284.0, 292.0], part));
+    // Less heat from above into the gas, and from the gas to what is below.
+    assert!(layers[1] > mixed[1] && layers[0] < mixed[0], "{mixed:?} {layers:?}");
 }
