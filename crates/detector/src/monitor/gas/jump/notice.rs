@@ -130,9 +130,9 @@ impl JumpWatch {
         self.last = Some(last);
     }
 
-    /// Forget the last reading.
+    /// Forget the last reading, and the change that it was.
     pub fn forget(&mut self) {
-        (self.last, self.before) = (None, f64::NAN);
+        (self.last, self.before, self.latest) = (None, f64::NAN, 0.0);
     }
 }
 
@@ -225,6 +225,17 @@ mod tests {
         assert!(jumps_again(2.2e5, 2e5, 0.0, 0.01) && jumps_again(2.2e5, 2e5, 0.9e5, 20.0));
         // However much it was.
         assert!(jumps_again(6e5, 60e5, 0.9e5, 0.01));
+    }
+
+    /// A restart of the observer begins an examination without a jump; what a jump of before was is not told by it.
+    #[test]
+    fn what_was_forgotten_is_not_learnt_from() {
+        let mut watch = accustomed(184e5, 1.0);
+        assert!(noticed(&mut watch, 0.0, 182e5, -2e5, 0.9e5).is_some());
+        watch.forget();
+        let known = watch.excess();
+        watch.was_none();
+        assert_eq!(watch.excess(), known);
     }
 
     #[test]
