@@ -247,7 +247,7 @@ impl Cylinder {
             ln_inside_film: value(self.states.inside),
             ln_capacity: value(self.states.capacity),
             sun_w: value(self.states.sun),
-            valve_w: value(self.states.valve_heat),
+            valve_heat_w: value(self.states.valve_heat),
             film_slope: value(self.states.slope),
             outflow_kg_s: x[self.states.leak],
             stratification: self.settings.stratification,

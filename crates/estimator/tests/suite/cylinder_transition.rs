@@ -204,7 +204,7 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
         ln_inside_film: value(map.inside),
         ln_capacity: value(map.capacity),
         sun_w: value(map.sun),
-        valve_w: value(map.valve_heat),
+        valve_heat_w: value(map.valve_heat),
         film_slope: value(map.slope),
         outflow_kg_s: x[map.leak],
         stratification: settings.stratification,

@@ -123,7 +123,7 @@ impl ReducedModel {
         let slope = everywhere * (1.0 + unknowns.film_slope * TOP);
         let contact_w = conductance_w_k * (x[index] - x[top] - sun_rise_k_w * unknowns.sun_w);
         rate[top] += contact_w;
-        rate[index] = Self::VALVE_SUN * unknowns.sun_w + unknowns.valve_w
+        rate[index] = Self::VALVE_SUN * unknowns.sun_w + unknowns.valve_heat_w
             - contact_w
             - slope * (x[index] - unknowns.air_k);
         let Some(j) = jacobian else { return };
@@ -135,7 +135,7 @@ impl ReducedModel {
         j[(index, n + Unknowns::OUTSIDE)] -= slope * (x[index] - unknowns.air_k);
         j[(index, n + Unknowns::SLOPE)] -= everywhere * TOP * (x[index] - unknowns.air_k);
         j[(index, n + Unknowns::SUN)] += Self::VALVE_SUN + conductance_w_k * sun_rise_k_w;
-        j[(index, n + Unknowns::VALVE)] = 1.0;
+        j[(index, n + Unknowns::VALVE_HEAT)] = 1.0;
         j[(top, n + Unknowns::SUN)] -= conductance_w_k * sun_rise_k_w;
     }
 

@@ -49,7 +49,7 @@ pub struct Unknowns {
     /// Sun absorbed by the upper quarter of the wall, W, on each node in proportion to what of it is lit; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
     pub sun_w: f64,
     /// Heat on the valve beside that of the sun on the wall, W.
-    pub valve_w: f64,
+    pub valve_heat_w: f64,
     /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
     pub film_slope: f64,
     /// Mass flow out, kg/s.
@@ -71,8 +71,8 @@ impl Unknowns {
     pub const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
     pub const SUN: usize = 4;
-    /// Column of [`Unknowns::valve_w`].
-    pub const VALVE: usize = 5;
+    /// Column of [`Unknowns::valve_heat_w`].
+    pub const VALVE_HEAT: usize = 5;
     /// Column of [`Unknowns::film_slope`].
     pub const SLOPE: usize = 6;
     /// Column of [`Unknowns::outflow_kg_s`].
@@ -86,7 +86,7 @@ impl Unknowns {
             ln_inside_film: 0.0,
             ln_capacity: 0.0,
             sun_w: 0.0,
-            valve_w: 0.0,
+            valve_heat_w: 0.0,
             film_slope: 0.0,
             outflow_kg_s: 0.0,
             stratification: 0.0,
@@ -173,6 +173,7 @@ impl ReducedModel {
             })
             .collect();
         let nodes = mesh.columns.len();
+        let above_middle = crate::model::above_middle(&mesh);
         let fine = Mesh::of_mixture(&vessel.geometry);
         let contact_w_k = vessel.valve.as_ref().map_or(0.0, |valve| valve.contact_w_k);
         let spread = Spread::new(&fine, &node_of_column, contact_w_k, film_w_m2_k);
@@ -183,8 +184,8 @@ impl ReducedModel {
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
-            layer: layers(&mesh),
-            above_middle: crate::model::above_middle(&mesh),
+            layer: layers(&mesh, &above_middle),
+            above_middle,
             valve: vessel.valve.clone(),
             film_w_m2_k,
             inside: InsideConvection::new(
@@ -377,8 +378,7 @@ impl ReducedModel {
 }
 
 /// Height of each wall node over the mean of the inner faces as a part of the height from the bottom node to the top one.
-fn layers(mesh: &Mesh) -> Vec<f64> {
-    let height = crate::model::above_middle(mesh);
+fn layers(mesh: &Mesh, height: &[f64]) -> Vec<f64> {
     let area = |node: usize| mesh.columns[node].inner_area_m2;
     let total: f64 = (0..height.len()).map(area).sum();
     let mean = height.iter().enumerate().map(|(node, height)| area(node) * height).sum::<f64>() / total;
