@@ -35,7 +35,7 @@ fn inputs_have_the_dimensions_of_the_observer_and_cases_answer_for_all_of_them()
     }
     assert!(run("another", &inputs, &Stopwatch::new(Duration::ZERO)).is_err());
     let linear = &file["filter"];
-    let (n, leading) = (18, 9);
+    let (n, leading) = (19, 9);
     assert_eq!((shape(&linear["phi"]), shape(&linear["g"])), ((leading, n), (leading, leading)));
     assert_eq!((shape(&linear["h"]), shape(&linear["prior"])), ((3, n), (n, n)));
     assert_eq!(shape(&linear["readings"]), (500, 3));

@@ -26,20 +26,19 @@ type Fault = Box<dyn std::error::Error + Send + Sync>;
 fn main() -> Result<(), Fault> {
     let usual = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/plans/tails.toml"));
     let plan = Plan::read(&std::env::args().nth(1).map_or(usual, PathBuf::from), &Registry::default(), &[])?;
-    let units = plan.units();
-    let watched: Vec<Vec<Watched>> = units
-        .par_iter()
-        .with_max_len(1)
-        .map(|unit| of_simulation(&plan, unit))
-        .collect::<Result<_, Fault>>()?;
-    let (tanks, cylinders): (Vec<Watched>, Vec<Watched>) = watched.into_iter().flatten().partition(is_tank);
-    print("Cylinders", &cylinders)?;
-    print("Tanks", &tanks)
+    // One after the other: what is found of cylinders is printed before tanks are simulated.
+    let (tanks, cylinders): (Vec<Unit>, Vec<Unit>) = plan.units().into_iter().partition(is_tank);
+    for (title, units) in [("Cylinders", cylinders), ("Tanks", tanks)] {
+        let of = units.par_iter().with_max_len(1).map(|unit| of_simulation(&plan, unit));
+        let watched: Vec<Vec<Watched>> = of.collect::<Result<_, Fault>>()?;
+        print(title, &watched.into_iter().flatten().collect::<Vec<_>>())?;
+    }
+    Ok(())
 }
 
 /// Whether a vessel has the tails of tanks.
-fn is_tank(watched: &Watched) -> bool {
-    watched.request.family.vessel.nominal().is_ok_and(|nominal| nominal.fill_pa.1 < HIGH_PRESSURE_PA)
+fn is_tank(unit: &Unit) -> bool {
+    unit.simulated.family.vessel.nominal().is_ok_and(|nominal| nominal.fill_pa.1 < HIGH_PRESSURE_PA)
 }
 
 fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Watched>, Fault> {

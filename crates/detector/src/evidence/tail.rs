@@ -56,14 +56,13 @@ impl Tail {
     }
 
     /// Mean time between stretches that exceed a value, s: infinite beyond the end of a bounded tail. Below the level, where the law says nothing,
-    /// it is continued exponentially.
+    /// it is continued so that it is 0 where nothing speaks for a leak.
     pub fn mean_time_s(&self, value: f64) -> f64 {
         let excess = (value - self.level) / self.scale;
-        let log = if self.shape == 0.0 || excess < 0.0 {
-            excess
-        } else {
-            (self.shape * excess).ln_1p() / self.shape
-        };
+        if excess < 0.0 {
+            return self.interval_s * (value / self.level).max(0.0) * excess.exp();
+        }
+        let log = if self.shape == 0.0 { excess } else { (self.shape * excess).ln_1p() / self.shape };
         // Beyond the end of a bounded tail there is no logarithm.
         if log.is_nan() { f64::INFINITY } else { self.interval_s * log.exp() }
     }

@@ -24,7 +24,7 @@ pub use pattern::Pattern;
 pub use transition::BankTransition;
 
 /// States and moving states of the cylinder's observer with its usual sensors: of known size its loops are unrolled.
-pub(crate) const USUAL: (usize, usize) = (18, 9);
+pub(crate) const USUAL: (usize, usize) = (19, 9);
 
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -143,10 +143,10 @@ pub(super) fn prior(
             }
             StateKind::OutsideFilm => (0.0, settings.ln_outside_film.prior_sd),
             StateKind::Sun => (0.0, settings.sun.prior_sd),
-            StateKind::ValveHeat => (0.0, settings.valve_heat.prior_sd),
             StateKind::InsideFilm => (0.0, settings.ln_inside_film.prior_sd),
             StateKind::Capacity => (0.0, settings.ln_capacity.prior_sd),
             StateKind::FilmSlope => (0.0, settings.film_slope.prior_sd),
+            StateKind::ValveSun => (0.0, settings.valve_sun.prior_sd),
             StateKind::Lag { sensor } => lagged(sensors, readings, sensor, body_k),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &sensors[sensor].parameters()[parameter];

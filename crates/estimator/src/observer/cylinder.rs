@@ -247,10 +247,9 @@ impl Cylinder {
             ln_inside_film: value(self.states.inside),
             ln_capacity: value(self.states.capacity),
             sun_w: value(self.states.sun),
-            valve_heat_w: value(self.states.valve_heat),
+            valve_sun: ReducedModel::VALVE_SUN + value(self.states.valve_sun),
             film_slope: value(self.states.slope),
             outflow_kg_s: x[self.states.leak],
-            stratification: self.settings.stratification,
         }
     }
 
@@ -267,7 +266,7 @@ impl Cylinder {
             states.inside,
             states.capacity,
             states.sun,
-            states.valve_heat,
+            states.valve_sun,
             states.slope,
             Some(states.leak),
         ];

@@ -70,6 +70,10 @@ impl Learned {
 fn is_learnt(kind: &StateKind) -> bool {
     matches!(
         kind,
-        StateKind::InsideFilm | StateKind::Capacity | StateKind::FilmSlope | StateKind::Parameter { .. }
+        StateKind::InsideFilm
+            | StateKind::Capacity
+            | StateKind::FilmSlope
+            | StateKind::ValveSun
+            | StateKind::Parameter { .. }
     )
 }

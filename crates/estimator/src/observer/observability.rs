@@ -45,6 +45,7 @@ impl Observability {
                     | StateKind::InsideFilm
                     | StateKind::Capacity
                     | StateKind::FilmSlope
+                    | StateKind::ValveSun
                     | StateKind::Parameter { .. }
             ) && prior[(*i, *i)] > 0.0
         };

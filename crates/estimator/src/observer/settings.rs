@@ -224,12 +224,10 @@ pub struct ObserverSettings {
     pub ln_capacity: Walk,
     /// Sun on the upper quarter of the wall, W.
     pub sun: Walk,
-    /// Heat on the valve beside the part of the sun that it usually has, W: it is shaded by itself, or stands in another wind.
-    pub valve_heat: Walk,
     /// Change of the outside film from bottom to top, relative to that in the middle.
     pub film_slope: Walk,
-    /// Part of the wall's rise from bottom to top that the gas follows where the wall is warmer above, 0 (well mixed) to 1.
-    pub stratification: f64,
+    /// Part of the sun on the wall that the valve absorbs beside, less the usual part: shade, paint, and the sun's angle.
+    pub valve_sun: Walk,
     /// Memory of a mounting coupling, s: with the wind and the place of the air it returns to its prior, and what is
     /// learnt of it lasts so long. `None`: it is constant.
     pub coupling_memory_s: Option<f64>,
@@ -277,9 +275,8 @@ impl Default for ObserverSettings {
             ln_inside_film: Walk::forgetting(0.25, 120.0 * DAY_S),
             ln_capacity: Walk::forgetting(0.12, 120.0 * DAY_S),
             sun: Walk::forgetting(6.0, 0.5 * HOUR_S),
-            valve_heat: Walk::constant(0.0),
             film_slope: Walk::forgetting(0.2, 120.0 * DAY_S),
-            stratification: 0.0,
+            valve_sun: Walk::forgetting(0.1, 120.0 * DAY_S),
             coupling_memory_s: Some(DAY_S),
             constants_memory_s: Some(120.0 * DAY_S),
             model_error: ModelError {
@@ -364,12 +361,6 @@ impl ObserverSettings {
         };
         self.engine.validate()?;
         self.band.validate()?;
-        require(
-            (0.0..=1.0).contains(&self.stratification),
-            "stratification",
-            self.stratification,
-            "from 0 to 1",
-        )?;
         require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
         require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
         positive("film_w_m2_k", self.film_w_m2_k)?;
@@ -407,8 +398,8 @@ impl ObserverSettings {
             ("ln_inside_film", &self.ln_inside_film),
             ("ln_capacity", &self.ln_capacity),
             ("sun", &self.sun),
-            ("valve_heat", &self.valve_heat),
             ("film_slope", &self.film_slope),
+            ("valve_sun", &self.valve_sun),
         ] {
             walk.check(setting)?;
         }

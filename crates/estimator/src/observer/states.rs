@@ -1,9 +1,9 @@
 //! The observer's state vector: what each entry is.
 //!
-//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m | r | T_air | o | sun | valve heat | sensor lags || i | c | s | sensor parameters]`
+//! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m | r | T_air | o | sun | sensor lags || i | c | s | b_v | sensor parameters]`
 //!
 //! with the leak rate `r` and the logarithms `o, i, c` of the multipliers on outside film, inside film and capacity,
-//! and the change `s` of the outside film along the axis.
+//! the change `s` of the outside film along the axis, and the departure `b_v` of the valve's part of the sun.
 //! What stands behind the double bar is constant but for slow walks ([`crate::filter::StateSpace::leading`]). A
 //! quantity that the settings declare known has no state.
 use crate::sensor::{ParameterKind, Sensor};
@@ -30,8 +30,6 @@ pub enum StateKind {
     OutsideFilm,
     /// Sun on the upper quarter of the wall, W.
     Sun,
-    /// Heat on the valve beside that of the sun on the wall, W.
-    ValveHeat,
     /// Reading behind the lag of a sensor, K or Pa.
     Lag {
         /// Index of the sensor.
@@ -43,6 +41,8 @@ pub enum StateKind {
     Capacity,
     /// Change of the outside film from bottom to top, relative.
     FilmSlope,
+    /// Departure of the valve's part of the sun from the usual one.
+    ValveSun,
     /// A parameter of a sensor, in the unit of its kind.
     Parameter {
         /// Index of the sensor.
@@ -77,14 +77,14 @@ pub struct States {
     pub outside: Option<usize>,
     /// Sun.
     pub sun: Option<usize>,
-    /// Heat on the valve.
-    pub valve_heat: Option<usize>,
     /// Inside film.
     pub inside: Option<usize>,
     /// Heat capacity.
     pub capacity: Option<usize>,
     /// Change of the outside film along the axis.
     pub slope: Option<usize>,
+    /// Part of the sun on the valve.
+    pub valve_sun: Option<usize>,
     /// Lag state of each sensor.
     pub lag: Vec<Option<usize>>,
     /// State of each parameter of each sensor.
@@ -116,8 +116,6 @@ impl States {
         let air = push(&mut kinds, StateKind::Air);
         let outside = uncertain(&mut kinds, &settings.ln_outside_film, StateKind::OutsideFilm);
         let sun = uncertain(&mut kinds, &settings.sun, StateKind::Sun);
-        let valve_heat =
-            valve.and_then(|_| uncertain(&mut kinds, &settings.valve_heat, StateKind::ValveHeat));
         let lag = sensors
             .iter()
             .enumerate()
@@ -127,6 +125,8 @@ impl States {
         let inside = uncertain(&mut kinds, &settings.ln_inside_film, StateKind::InsideFilm);
         let capacity = uncertain(&mut kinds, &settings.ln_capacity, StateKind::Capacity);
         let slope = uncertain(&mut kinds, &settings.film_slope, StateKind::FilmSlope);
+        let valve_sun =
+            valve.and(sun).and_then(|_| uncertain(&mut kinds, &settings.valve_sun, StateKind::ValveSun));
         let parameters = sensors
             .iter()
             .enumerate()
@@ -152,10 +152,10 @@ impl States {
             air,
             outside,
             sun,
-            valve_heat,
             inside,
             capacity,
             slope,
+            valve_sun,
             lag,
             parameters,
         }
@@ -177,10 +177,10 @@ fn name(kind: &StateKind, sensors: &[Sensor]) -> String {
         StateKind::Air => "air_k".into(),
         StateKind::OutsideFilm => "ln_outside_film".into(),
         StateKind::Sun => "sun_w".into(),
-        StateKind::ValveHeat => "valve_heat_w".into(),
         StateKind::InsideFilm => "ln_inside_film".into(),
         StateKind::Capacity => "ln_capacity".into(),
         StateKind::FilmSlope => "film_slope".into(),
+        StateKind::ValveSun => "valve_sun".into(),
         StateKind::Lag { sensor } => format!("{}.lagged", sensors[*sensor].name),
         StateKind::Parameter { sensor, parameter } => {
             let sensor = &sensors[*sensor];

@@ -346,13 +346,12 @@ fn scale(kind: &StateKind, candidates: &[Sensor]) -> f64 {
             let sd = candidates[sensor].parameters()[parameter].sd;
             if sd > 0.0 { sd } else { reading(sensor) }
         }
-        StateKind::Wall(_)
-        | StateKind::Valve
-        | StateKind::Gas
-        | StateKind::Air
-        | StateKind::Sun
-        | StateKind::ValveHeat => 1.0,
-        StateKind::OutsideFilm | StateKind::InsideFilm | StateKind::Capacity | StateKind::FilmSlope => 0.1,
+        StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Air | StateKind::Sun => 1.0,
+        StateKind::OutsideFilm
+        | StateKind::InsideFilm
+        | StateKind::Capacity
+        | StateKind::FilmSlope
+        | StateKind::ValveSun => 0.1,
     }
 }
 
@@ -381,10 +380,10 @@ pub fn state_at(
         StateKind::Leak
         | StateKind::OutsideFilm
         | StateKind::Sun
-        | StateKind::ValveHeat
         | StateKind::InsideFilm
         | StateKind::Capacity
-        | StateKind::FilmSlope => 0.0,
+        | StateKind::FilmSlope
+        | StateKind::ValveSun => 0.0,
     };
     Ok(cylinder.state_map().kinds.iter().map(value).collect())
 }

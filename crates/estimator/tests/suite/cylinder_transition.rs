@@ -1,10 +1,10 @@
 //! The observer's state space against the definitions: steps split in two, matrix exponentials, differences.
 use cylwatch_estimator::filter::{Linearisation, StateSpace, discretise};
+use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::states::StateKind;
-use cylwatch_estimator::observer::{ObserverSettings, Walk};
 use cylwatch_estimator::sensor::{ParameterKind, Sensor};
-use cylwatch_estimator::thermal::model::reduced::Unknowns;
+use cylwatch_estimator::thermal::model::reduced::{ReducedModel, Unknowns};
 use cylwatch_estimator::thermal::scenario::sensor::{PressureReference, SensorKind};
 use cylwatch_estimator::thermal::vessel::presets;
 use nalgebra::{DMatrix, DVector};
@@ -25,13 +25,7 @@ fn sensors(lag_s: f64) -> Vec<Sensor> {
 }
 
 fn cylinder(longest_step_s: f64, lag_s: f64) -> Cylinder {
-    let settings = ObserverSettings {
-        longest_step_s,
-        wall_nodes: 3,
-        valve_heat: Walk::forgetting(4.0, 1800.0),
-        stratification: 0.8,
-        ..ObserverSettings::default()
-    };
+    let settings = ObserverSettings { longest_step_s, wall_nodes: 3, ..ObserverSettings::default() };
     Cylinder::new(&presets::load("nitrogen-20l").unwrap(), &sensors(lag_s), &settings).unwrap()
 }
 
@@ -50,10 +44,10 @@ fn state(cylinder: &Cylinder, hot: bool) -> (Vec<f64>, Vec<f64>) {
         StateKind::Air => (at(248.0, rest_k), 1.0),
         StateKind::OutsideFilm => (at(0.2, 0.0), 0.2),
         StateKind::Sun => (at(3.0, 0.0), 2.0),
-        StateKind::ValveHeat => (at(1.0, 0.0), 1.0),
         StateKind::InsideFilm => (at(0.1, 0.0), 0.2),
         StateKind::Capacity => (at(0.05, 0.0), 0.1),
         StateKind::FilmSlope => (at(0.1, 0.0), 0.2),
+        StateKind::ValveSun => (at(0.05, 0.0), 0.1),
         StateKind::Lag { sensor: 0 } => (at(284.0, rest_k), 1.0),
         StateKind::Lag { .. } => (pressure_pa, 1e5),
         StateKind::Parameter { sensor, parameter } => {
@@ -193,7 +187,7 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
         map.inside,
         map.capacity,
         map.sun,
-        map.valve_heat,
+        map.valve_sun,
         map.slope,
         Some(map.leak),
     ];
@@ -204,10 +198,9 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
         ln_inside_film: value(map.inside),
         ln_capacity: value(map.capacity),
         sun_w: value(map.sun),
-        valve_heat_w: value(map.valve_heat),
+        valve_sun: ReducedModel::VALVE_SUN + value(map.valve_sun),
         film_slope: value(map.slope),
         outflow_kg_s: x[map.leak],
-        stratification: settings.stratification,
     };
     let mut rate = vec![0.0; physical];
     let mut jacobian = DMatrix::zeros(physical, physical + Unknowns::COUNT);
@@ -218,11 +211,8 @@ fn continuous(cylinder: &mut Cylinder, x: &[f64]) -> (DMatrix<f64>, DVector<f64>
         a.view_mut((0, column.unwrap()), (physical, 1)).copy_from(&jacobian.column(physical + unknown));
     }
     f.rows_mut(0, physical).copy_from_slice(&rate);
-    for (state, walk) in [
-        (map.outside.unwrap(), settings.ln_outside_film),
-        (map.sun.unwrap(), settings.sun),
-        (map.valve_heat.unwrap(), settings.valve_heat),
-    ] {
+    for (state, walk) in [(map.outside.unwrap(), settings.ln_outside_film), (map.sun.unwrap(), settings.sun)]
+    {
         let decay = walk.memory_s.unwrap().recip();
         a[(state, state)] = -decay;
         f[state] = -decay * x[state];
@@ -241,7 +231,6 @@ fn intensities(cylinder: &Cylinder, n: usize) -> DMatrix<f64> {
     sd[map.air] = s.air.per_sqrt_s;
     sd[map.outside.unwrap()] = s.ln_outside_film.per_sqrt_s;
     sd[map.sun.unwrap()] = s.sun.per_sqrt_s;
-    sd[map.valve_heat.unwrap()] = s.valve_heat.per_sqrt_s;
     DMatrix::from_diagonal(&sd.map(|sd| sd * sd))
 }
 

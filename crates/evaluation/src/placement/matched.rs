@@ -71,8 +71,8 @@ pub(super) fn told(candidates: &[Sensor], settings: &ObserverSettings) -> (Vec<S
         ln_inside_film: known(settings.ln_inside_film),
         ln_capacity: known(settings.ln_capacity),
         film_slope: known(settings.film_slope),
+        valve_sun: known(settings.valve_sun),
         sun: known(settings.sun),
-        valve_heat: known(settings.valve_heat),
         ..settings.clone()
     };
     (candidates.iter().map(tell).collect(), told)

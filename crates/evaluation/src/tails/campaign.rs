@@ -39,7 +39,7 @@ impl Default for Campaign {
     fn default() -> Self {
         Self {
             climates: vec![Climate::Railway, Climate::Parked, Climate::Workshop],
-            gases: vec![GasKind::Mixed, GasKind::Mixed, GasKind::FullMesh],
+            gases: vec![GasKind::Mixed, GasKind::Stratified, GasKind::FullMesh],
             sensors: vec![SensorClass::ClassB, SensorClass::Transmitter],
             rows: vec![RowPattern::FiveMinutes],
             cylinders: 204,

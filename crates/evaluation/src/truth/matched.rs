@@ -115,10 +115,10 @@ impl World {
             StateKind::Air => (start_k, settings.air.prior_sd),
             StateKind::OutsideFilm => (0.0, settings.ln_outside_film.prior_sd),
             StateKind::Sun => (0.0, settings.sun.prior_sd),
-            StateKind::ValveHeat => (0.0, settings.valve_heat.prior_sd),
             StateKind::InsideFilm => (0.0, settings.ln_inside_film.prior_sd),
             StateKind::Capacity => (0.0, settings.ln_capacity.prior_sd),
             StateKind::FilmSlope => (0.0, settings.film_slope.prior_sd),
+            StateKind::ValveSun => (0.0, settings.valve_sun.prior_sd),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.cylinder.sensors()[sensor].parameters()[parameter];
                 (parameter.mean, spread * parameter.sd)
@@ -159,8 +159,8 @@ pub fn settings(member: LeakHypothesis) -> ObserverSettings {
         ln_inside_film: Walk::constant(0.15),
         ln_capacity: Walk::constant(0.1),
         sun: Walk { memory_s: Some(0.5 * HOUR_S), ..Walk::per_sqrt_hour(0.6, 2.0) },
-        valve_heat: Walk::constant(0.0),
         film_slope: Walk::constant(0.0),
+        valve_sun: Walk::constant(0.0),
         coupling_memory_s: None,
         constants_memory_s: None,
         model_error: ModelError::NONE,

@@ -70,7 +70,8 @@ impl Cylinder {
             StateKind::InsideFilm => 0.5,
             StateKind::Capacity => 0.3,
             StateKind::FilmSlope => 0.2,
-            StateKind::Leak | StateKind::ValveHeat | StateKind::Lag { .. } => return None,
+            StateKind::ValveSun => 0.3,
+            StateKind::Leak | StateKind::Lag { .. } => return None,
             StateKind::Parameter { sensor, parameter } => {
                 match self.sensors[*sensor].parameters()[*parameter].kind {
                     ParameterKind::Coupling => 0.06,

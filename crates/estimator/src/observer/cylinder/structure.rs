@@ -22,7 +22,7 @@ impl Structure {
         let block: Vec<usize> = (0..states.mass).chain(lags).collect();
         let lagged = |sensor: &usize| states.lag[*sensor].is_some();
         let parameters = (0..states.lag.len()).filter(lagged).flat_map(|sensor| &states.parameters[sensor]);
-        let constants = [states.inside, states.capacity, states.slope];
+        let constants = [states.inside, states.capacity, states.slope, states.valve_sun];
         Self {
             temperatures: states.mass,
             outer: (0..states.leading).filter(|state| !block.contains(state)).collect(),

@@ -56,6 +56,7 @@ impl Cylinder {
             StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
             StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
             StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
+            StateKind::ValveSun => of(&self.settings.valve_sun, 0.0),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
                 let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
@@ -92,6 +93,7 @@ impl Cylinder {
             StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
             StateKind::Capacity => within_prior(&self.settings.ln_capacity),
             StateKind::FilmSlope => within_prior(&self.settings.film_slope),
+            StateKind::ValveSun => within_prior(&self.settings.valve_sun),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &self.sensors[*sensor].parameters()[*parameter];
                 let (low, high) = parameter.domain();
@@ -117,7 +119,6 @@ impl Cylinder {
                 StateKind::Air => (s.air.per_sqrt_s, s.air.decay_per_s()),
                 StateKind::OutsideFilm => (s.ln_outside_film.per_sqrt_s, s.ln_outside_film.decay_per_s()),
                 StateKind::Sun => (s.sun.per_sqrt_s, s.sun.decay_per_s()),
-                StateKind::ValveHeat => (s.valve_heat.per_sqrt_s, s.valve_heat.decay_per_s()),
                 _ => continue,
             };
             self.walking[i] = Walking { intensity: walk * walk, decay_per_s, ..self.walking[i] };

@@ -9,7 +9,13 @@ fn observer(engine: Engine) -> Observer {
     let mut settings = ObserverSettings { engine, ..ObserverSettings::default() };
     settings.coupling_memory_s = None;
     settings.constants_memory_s = None;
-    for walk in [&mut settings.ln_inside_film, &mut settings.ln_capacity, &mut settings.film_slope] {
+    let constants = [
+        &mut settings.ln_inside_film,
+        &mut settings.ln_capacity,
+        &mut settings.film_slope,
+        &mut settings.valve_sun,
+    ];
+    for walk in constants {
         (walk.per_sqrt_s, walk.memory_s) = (0.0, None);
     }
     settings.bank.truncate(2);

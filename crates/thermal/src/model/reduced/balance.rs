@@ -41,14 +41,10 @@ impl ReducedModel {
         let (gas_k, pressure_pa) = (x[gas_row], gas.pressure_pa.value);
         let multiplier = unknowns.ln_inside_film.exp();
         let inside_column = self.states() + Unknowns::INSIDE;
-        let top = self.wall_nodes() - 1;
-        let (warmer_k, per_k) = stable(x[top] - x[0]);
         for node in 0..self.wall_nodes() {
             let column = &self.mesh.columns[node];
             let area = column.inner_area_m2 * multiplier;
             let half = self.half_cell(x[node], column.inner_shape_m);
-            let part = unknowns.stratification * self.layer[node];
-            let (gas_k, per_top_k) = (gas_k + part * warmer_k, part * per_k);
             let (face, flux) = solve_surface_from(&half, x[node] - self.skin_k[node], |surface_k| {
                 let flux = self.inside.flux(Facing::Side, surface_k, gas_k, pressure_pa, 0.0);
                 (area * flux.flux_w_m2, area * flux.per_surface_k, flux)
@@ -66,10 +62,7 @@ impl ReducedModel {
                 j[(gas_row, column)] += by;
             };
             add(node, face.heat_per_node_k);
-            let per_gas_k = face.film_factor * area * flux.per_gas_k;
-            add(gas_row, per_gas_k + per_pressure * p_gas);
-            add(top, per_gas_k * per_top_k);
-            add(0, -per_gas_k * per_top_k);
+            add(gas_row, face.film_factor * area * flux.per_gas_k + per_pressure * p_gas);
             add(mass, per_pressure * p_mass);
             add(inside_column, face.film_factor * face.heat_w);
             for other in 0..self.mesh.columns.len() {
@@ -123,9 +116,7 @@ impl ReducedModel {
         let slope = everywhere * (1.0 + unknowns.film_slope * TOP);
         let contact_w = conductance_w_k * (x[index] - x[top] - sun_rise_k_w * unknowns.sun_w);
         rate[top] += contact_w;
-        rate[index] = Self::VALVE_SUN * unknowns.sun_w + unknowns.valve_heat_w
-            - contact_w
-            - slope * (x[index] - unknowns.air_k);
+        rate[index] = unknowns.valve_sun * unknowns.sun_w - contact_w - slope * (x[index] - unknowns.air_k);
         let Some(j) = jacobian else { return };
         j[(top, index)] += conductance_w_k;
         j[(top, top)] -= conductance_w_k;
@@ -134,8 +125,8 @@ impl ReducedModel {
         j[(index, n + Unknowns::AIR)] += slope;
         j[(index, n + Unknowns::OUTSIDE)] -= slope * (x[index] - unknowns.air_k);
         j[(index, n + Unknowns::SLOPE)] -= everywhere * TOP * (x[index] - unknowns.air_k);
-        j[(index, n + Unknowns::SUN)] += Self::VALVE_SUN + conductance_w_k * sun_rise_k_w;
-        j[(index, n + Unknowns::VALVE_HEAT)] = 1.0;
+        j[(index, n + Unknowns::SUN)] += unknowns.valve_sun + conductance_w_k * sun_rise_k_w;
+        j[(index, n + Unknowns::VALVE_SUN)] = unknowns.sun_w;
         j[(top, n + Unknowns::SUN)] -= conductance_w_k * sun_rise_k_w;
     }
 
@@ -235,14 +226,4 @@ impl ReducedModel {
         let ratio = capacity_ratio(material, temperature_k);
         (at_reference * ratio, material.heat_capacity_slope_per_k / ratio)
     }
-}
-
-/// By how much the wall is warmer above than below where that is stable, 0 elsewhere, with its derivative: `x^2 / (x + w)`.
-fn stable(above_k: f64) -> (f64, f64) {
-    const SMOOTH_K: f64 = 0.5;
-    if above_k <= 0.0 {
-        return (0.0, 0.0);
-    }
-    let sum = above_k + SMOOTH_K;
-    (above_k * above_k / sum, above_k * (above_k + 2.0 * SMOOTH_K) / (sum * sum))
 }

@@ -6,12 +6,8 @@
 //! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m]`:
 //!
 //! * wall node `i`: `e^c C_i(T_i) dT_i/dt = -e^i q_in,i - e^o q_out,i + conduction + contact + sun`
-//! * valve: `e^c C_v dT_v/dt = contact - e^o q_out + sun + Q_valve`
+//! * valve: `e^c C_v dT_v/dt = contact - e^o q_out + sun`
 //! * gas: `gas` (this folder); `dm/dt = -r`
-//!
-//! Gas in layers: where the wall is warmer above than below, the warm gas stays above and carries no heat down. Node `i` then exchanges heat with gas at
-//! `T_gas + chi l_i D^2 / (D + w)`, `D = T_w,N - T_w,1 > 0`, `w` = 0.5 K, with `l_i` the height of the node over the mean of the inner faces as a part of the height between
-//! the lowest and the highest node, so that the mean over the faces stays `T_gas`. With `chi` = 0 the gas is well mixed. Under the sun the resolved model's gas follows the wall nearly in full.
 //!
 //! The exponents `o, i, c` are the logarithms of multipliers ([`Unknowns`]). Outside there is one film coefficient for
 //! convection and radiation together. [`ReducedModel::rates`] also gives the exact Jacobian with all states
@@ -46,16 +42,14 @@ pub struct Unknowns {
     pub ln_inside_film: f64,
     /// Logarithm of the multiplier on the heat capacity of wall and valve.
     pub ln_capacity: f64,
-    /// Sun absorbed by the upper quarter of the wall, W, on each node in proportion to what of it is lit; the valve absorbs [`ReducedModel::VALVE_SUN`] of it beside.
+    /// Sun absorbed by the upper quarter of the wall, W, on each node in proportion to what of it is lit; the valve absorbs [`Unknowns::valve_sun`] of it beside.
     pub sun_w: f64,
-    /// Heat on the valve beside that of the sun on the wall, W.
-    pub valve_heat_w: f64,
+    /// Part of the sun on the wall that the valve absorbs beside, usually [`ReducedModel::VALVE_SUN`]; 0 in the shade.
+    pub valve_sun: f64,
     /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
     pub film_slope: f64,
     /// Mass flow out, kg/s.
     pub outflow_kg_s: f64,
-    /// Gas in layers: the part of the wall's rise from bottom to top that the gas follows where the wall is warmer above; 0: well mixed.
-    pub stratification: f64,
 }
 
 impl Unknowns {
@@ -71,8 +65,8 @@ impl Unknowns {
     pub const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
     pub const SUN: usize = 4;
-    /// Column of [`Unknowns::valve_heat_w`].
-    pub const VALVE_HEAT: usize = 5;
+    /// Column of [`Unknowns::valve_sun`].
+    pub const VALVE_SUN: usize = 5;
     /// Column of [`Unknowns::film_slope`].
     pub const SLOPE: usize = 6;
     /// Column of [`Unknowns::outflow_kg_s`].
@@ -86,10 +80,9 @@ impl Unknowns {
             ln_inside_film: 0.0,
             ln_capacity: 0.0,
             sun_w: 0.0,
-            valve_heat_w: 0.0,
+            valve_sun: ReducedModel::VALVE_SUN,
             film_slope: 0.0,
             outflow_kg_s: 0.0,
-            stratification: 0.0,
         }
     }
 }
@@ -138,8 +131,6 @@ pub struct ReducedModel {
     wall_capacity_j_k: f64,
     /// Height of each wall node above the middle as a fraction of the inner height.
     above_middle: Vec<f64>,
-    /// Place of each wall node in the rise of the gas from the bottom node to the top one; 0 in the mean over the inner faces.
-    layer: Vec<f64>,
     valve: Option<Valve>,
     /// How the heat of valve and sun spreads in the wall.
     spread: Spread,
@@ -157,7 +148,7 @@ pub struct ReducedModel {
 }
 
 impl ReducedModel {
-    /// Part of the sun on the wall that the valve absorbs beside.
+    /// Part of the sun on the wall that a valve usually absorbs beside.
     pub const VALVE_SUN: f64 = 0.25;
 
     /// A vessel's model with so many wall nodes (at most as many as its wall has columns) and an outside film
@@ -173,7 +164,6 @@ impl ReducedModel {
             })
             .collect();
         let nodes = mesh.columns.len();
-        let above_middle = crate::model::above_middle(&mesh);
         let fine = Mesh::of_mixture(&vessel.geometry);
         let contact_w_k = vessel.valve.as_ref().map_or(0.0, |valve| valve.contact_w_k);
         let spread = Spread::new(&fine, &node_of_column, contact_w_k, film_w_m2_k);
@@ -184,8 +174,7 @@ impl ReducedModel {
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
-            layer: layers(&mesh, &above_middle),
-            above_middle,
+            above_middle: crate::model::above_middle(&mesh),
             valve: vessel.valve.clone(),
             film_w_m2_k,
             inside: InsideConvection::new(
@@ -375,15 +364,6 @@ impl ReducedModel {
         self.close_gas(unknowns, &gas, rate, jacobian);
         Ok(())
     }
-}
-
-/// Height of each wall node over the mean of the inner faces as a part of the height from the bottom node to the top one.
-fn layers(mesh: &Mesh, height: &[f64]) -> Vec<f64> {
-    let area = |node: usize| mesh.columns[node].inner_area_m2;
-    let total: f64 = (0..height.len()).map(area).sum();
-    let mean = height.iter().enumerate().map(|(node, height)| area(node) * height).sum::<f64>() / total;
-    let span = height[height.len() - 1] - height[0];
-    height.iter().map(|height| if span > 0.0 { (height - mean) / span } else { 0.0 }).collect()
 }
 
 /// `c(T) / c_20` of a material.

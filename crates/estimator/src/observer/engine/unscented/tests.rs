@@ -24,7 +24,8 @@ fn start(cylinder: &Cylinder) -> (Vec<f64>, DMatrix<f64>) {
             StateKind::Air => (270.0, 5.0),
             StateKind::OutsideFilm | StateKind::InsideFilm | StateKind::Capacity => (0.1, 0.3),
             StateKind::FilmSlope => (0.05, 0.2),
-            StateKind::Sun | StateKind::ValveHeat | StateKind::Lag { .. } => (1.0, 2.0),
+            StateKind::ValveSun => (0.02, 0.1),
+            StateKind::Sun | StateKind::Lag { .. } => (1.0, 2.0),
             StateKind::Parameter { sensor, parameter } => {
                 let parameter = &cylinder.sensors()[*sensor].parameters()[*parameter];
                 (parameter.mean, parameter.sd)
