@@ -2,7 +2,7 @@
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::states::{StateKind, States};
+use super::states::States;
 
 /// Constants with their joint uncertainty: film and capacity multipliers, offsets, couplings, coefficients. Plain data.
 ///
@@ -27,7 +27,7 @@ impl Learned {
     pub const VERSION: u32 = 1;
 
     pub(super) fn of(vessel: &str, states: &States, x: &[f64], p: &DMatrix<f64>) -> Self {
-        let learnt: Vec<usize> = (0..states.count()).filter(|&i| is_learnt(&states.kinds[i])).collect();
+        let learnt: Vec<usize> = states.constants().collect();
         Self {
             version: Self::VERSION,
             vessel: vessel.to_owned(),
@@ -64,16 +64,4 @@ impl Learned {
             }
         }
     }
-}
-
-/// What belongs to the cylinder and its sensors, not to the moment.
-fn is_learnt(kind: &StateKind) -> bool {
-    matches!(
-        kind,
-        StateKind::InsideFilm
-            | StateKind::Capacity
-            | StateKind::FilmSlope
-            | StateKind::ValveSun
-            | StateKind::Parameter { .. }
-    )
 }

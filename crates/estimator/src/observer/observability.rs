@@ -3,9 +3,11 @@
 //! The posterior covariance `P` is compared with the prior `P_0` in units of the prior: the eigenvectors of `P_0^-1/2 P P_0^-1/2` with
 //! eigenvalues near one are the combinations of states about which the data have said nothing. They are what no amount of
 //! further data of this kind will tell, e.g. a common offset of the temperature sensors against the mass.
+use std::iter;
+
 use nalgebra::DMatrix;
 
-use super::states::{StateKind, States};
+use super::states::States;
 
 /// Part of the prior variance that must be left for a combination to count as not learnt.
 const NOT_LEARNT: f64 = 0.5;
@@ -38,18 +40,9 @@ pub struct Observability {
 
 impl Observability {
     pub(super) fn of(states: &States, prior: &DMatrix<f64>, posterior: &DMatrix<f64>) -> Self {
-        let constant = |i: &usize| {
-            matches!(
-                states.kinds[*i],
-                StateKind::Mass
-                    | StateKind::InsideFilm
-                    | StateKind::Capacity
-                    | StateKind::FilmSlope
-                    | StateKind::ValveSun
-                    | StateKind::Parameter { .. }
-            ) && prior[(*i, *i)] > 0.0
-        };
-        let chosen: Vec<usize> = (0..states.count()).filter(constant).collect();
+        let uncertain = |i: &usize| prior[(*i, *i)] > 0.0;
+        let chosen: Vec<usize> =
+            iter::once(states.mass).chain(states.constants()).filter(uncertain).collect();
         let k = chosen.len();
         let sd0 = |i: usize| prior[(chosen[i], chosen[i])].sqrt();
         let scaled = DMatrix::from_fn(k, k, |i, j| posterior[(chosen[i], chosen[j])] / (sd0(i) * sd0(j)));

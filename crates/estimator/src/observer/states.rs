@@ -6,6 +6,8 @@
 //! the change `s` of the outside film along the axis, and the departure `b_v` of the valve's part of the sun.
 //! What stands behind the double bar is constant but for slow walks ([`crate::filter::StateSpace::leading`]). A
 //! quantity that the settings declare known has no state.
+use std::ops::Range;
+
 use crate::sensor::{ParameterKind, Sensor};
 use crate::thermal::model::reduced::ReducedModel;
 
@@ -159,6 +161,11 @@ impl States {
             lag,
             parameters,
         }
+    }
+
+    /// States that belong to the cylinder and its sensors, not to the moment.
+    pub fn constants(&self) -> Range<usize> {
+        self.leading..self.count()
     }
 
     /// Number of states.

@@ -1,5 +1,5 @@
 //! Which states the equations of a step couple.
-use super::super::states::States;
+use super::super::states::{StateKind, States};
 
 /// Which states the equations have.
 #[derive(Clone, Debug)]
@@ -20,15 +20,16 @@ impl Structure {
     pub fn of(states: &States) -> Self {
         let lags = states.lag.iter().flatten().copied();
         let block: Vec<usize> = (0..states.mass).chain(lags).collect();
-        let lagged = |sensor: &usize| states.lag[*sensor].is_some();
-        let parameters = (0..states.lag.len()).filter(lagged).flat_map(|sensor| &states.parameters[sensor]);
-        let constants = [states.inside, states.capacity, states.slope, states.valve_sun];
+        let acts = |state: &usize| match states.kinds[*state] {
+            StateKind::Parameter { sensor, .. } => states.lag[sensor].is_some(),
+            _ => true,
+        };
         Self {
             temperatures: states.mass,
             outer: (0..states.leading).filter(|state| !block.contains(state)).collect(),
             mass: states.mass,
             leak: states.leak,
-            constants: constants.into_iter().chain(parameters.copied()).flatten().collect(),
+            constants: states.constants().filter(acts).collect(),
             block,
         }
     }
