@@ -9,7 +9,7 @@ use num_dual::DualSVec64;
 
 use super::gas::{Gas, GasPoint};
 use super::inputs::Inputs;
-use super::well_mixed::{WellMixed, jet_film};
+use super::well_mixed::{WellMixed, jet_film, jets};
 use super::{Model, WallAction};
 use crate::ThermalError;
 use crate::wall::conduction::link_flow;
@@ -76,13 +76,16 @@ impl Model {
         let outlet = self.grid.outlet;
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
         let jet_of = |gas: &WellMixed| -> Result<[f64; 3], ThermalError> {
-            let node = gas.node(seed(mass[outlet], 0), seed(energy[outlet], 1), seed(mean, 2))?;
+            if jets(&self.flows, open).next().is_none() {
+                return Ok([0.0; 3]);
+            }
+            let node = gas.differentiated(seed(mass[outlet], 0), seed(energy[outlet], 1), seed(mean, 2))?;
             Ok(gradient(jet_film(&self.fluid, &node, &self.flows, open, self.inner_diameter_m)))
         };
         match &self.gas {
             Gas::WellMixed(gas) => {
                 let seed = |value: f64, index: usize| Dual5::from(value).derivative(index);
-                let node = gas.node(seed(mass[0], 0), seed(energy[0], 1), seed(mean, 2))?;
+                let node = gas.differentiated(seed(mass[0], 0), seed(energy[0], 1), seed(mean, 2))?;
                 let rates = gas.rates(&node, &boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
                 let mut matrix = DMatrix::zeros(5, 7);
                 let rows = [rates.mass_kg_s, rates.energy_w, rates.mass_kg_s, rates.enthalpy_w, rates.work_w];

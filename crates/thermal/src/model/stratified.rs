@@ -30,7 +30,7 @@ use crate::transfer::inside::GRAVITY_M_S2;
 use crate::vessel::{InnerVolume, Stratification, Vessel};
 
 /// Time in which a pressure difference between neighbours dies out, s, and the sound speed that scales it, m/s.
-const EQUALISATION_S: f64 = 1e-5;
+const EQUALISATION_S: f64 = 1e-4;
 const SOUND_M_S: f64 = 350.0;
 /// Smoothing of sign changes: heat flow W, temperature difference K, enthalpy J/kg, mass flow kg/s.
 const SMOOTH_W: f64 = 0.05;
@@ -315,7 +315,7 @@ impl Stratified {
         let n = self.nodes.len();
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
         let nodes: Vec<Node<Dual3>> = (0..n)
-            .map(|i| self.nodes[i].node(seed(mass_kg[i], 0), seed(energy_j[i], 1), seed(wall_k, 2)))
+            .map(|i| self.nodes[i].differentiated(seed(mass_kg[i], 0), seed(energy_j[i], 1), seed(wall_k, 2)))
             .collect::<Result<_, _>>()?;
         let exchange = boundary.exchange(self.nodes[0].fluid(), &nodes[self.outlet].state)?;
         let cores: Vec<Core<Dual3>> = nodes.iter().map(|node| self.core(node)).collect();

@@ -2,8 +2,8 @@
 //! `V = V_0 [1 + a (T_w - T_0) + b (p - p_0)]`.
 //!
 //! `dm/dt = sum m_in - sum m_out`, `dU/dt = Q + sum m_in h_in - sum m_out h - p dV/dt`. Temperature and volume follow
-//! from `u(m/V, T) = U/m` and the volume law by Newton's method in two unknowns; one more Newton step in
-//! dual numbers gives all derivatives exactly. With `dV = V_m dm + V_U dU + V_T dT_w` the energy balance is explicit:
+//! from `u(m/V, T) = U/m` and the volume law by Newton's method in two unknowns; with their slopes by the implicit
+//! function theorem, one evaluation in dual numbers gives all first derivatives exactly. With `dV = V_m dm + V_U dU + V_T dT_w` the energy balance is explicit:
 //! `dU/dt = [Q + H - p (V_m dm/dt + V_T dT_w/dt)] / (1 + p V_U)`.
 use std::cell::Cell;
 
@@ -15,6 +15,8 @@ use crate::transfer::inside::jet_film_w_m2_k;
 use crate::vessel::InnerVolume;
 
 const MAX_ITERATIONS: usize = 60;
+/// Relative length of the last Newton step; the error after it is about its square, a rounding.
+const TOLERANCE: f64 = 1e-8;
 
 /// State of the node with the derivatives of its volume.
 #[derive(Clone, Copy, Debug)]
@@ -49,14 +51,26 @@ pub struct Rates<D> {
 pub struct WellMixed {
     fluid: Fluid,
     volume: InnerVolume,
-    /// Last solution (V, T): where Newton starts, without influence on where it ends.
-    guess: Cell<(f64, f64)>,
+    /// Temperature at which the first solution is sought, K.
+    start_k: f64,
+    /// Last solution: the answer to the same question, else where Newton starts, without influence on where it ends.
+    last: Cell<Option<Solved>>,
+}
+
+/// A node with what it solves.
+#[derive(Clone, Copy, Debug)]
+struct Solved {
+    /// Mass, kg, energy, J, and temperature of the wall, K.
+    inputs: [f64; 3],
+    node: Node<f64>,
+    /// Derivatives of the temperature with the inputs.
+    temperature_by: [f64; 3],
 }
 
 impl WellMixed {
     /// A node of a fluid in a volume, started near a temperature.
     pub fn new(fluid: Fluid, volume: InnerVolume, temperature_k: f64) -> Self {
-        Self { fluid, volume, guess: Cell::new((volume.volume_m3, temperature_k)) }
+        Self { fluid, volume, start_k: temperature_k, last: Cell::new(None) }
     }
 
     /// The fluid.
@@ -64,31 +78,68 @@ impl WellMixed {
         &self.fluid
     }
 
-    /// State from mass, energy and mean wall temperature, with derivatives where `D` is a dual number.
+    /// State from mass, energy and mean wall temperature.
     ///
     /// # Errors
     /// No temperature gives this energy at this density.
-    pub fn node<D: Real>(&self, mass_kg: D, energy_j: D, wall_k: D) -> Result<Node<D>, ThermalError> {
-        let (v, t) = self.solve(mass_kg.re(), energy_j.re(), wall_k.re())?;
-        self.guess.set((v, t));
-        // One Newton step from the solution carries the derivatives; for plain numbers it is the last polish.
-        let at = self.linearise(mass_kg, energy_j, wall_k, D::from(v), D::from(t));
-        let [dv, dt] = at.newton_step();
-        let (volume, temperature) = (D::from(v) - dv, D::from(t) - dt);
-        let at = self.linearise(mass_kg, energy_j, wall_k, volume, temperature);
+    pub fn node(&self, mass_kg: f64, energy_j: f64, wall_k: f64) -> Result<Node<f64>, ThermalError> {
+        Ok(self.solved([mass_kg, energy_j, wall_k])?.node)
+    }
+
+    /// The same with first derivatives.
+    ///
+    /// # Errors
+    /// As [`WellMixed::node`].
+    pub fn differentiated<D: Real>(
+        &self,
+        mass_kg: D,
+        energy_j: D,
+        wall_k: D,
+    ) -> Result<Node<D>, ThermalError> {
+        let inputs = [mass_kg, energy_j, wall_k];
+        let Solved { inputs: at, node, temperature_by } = self.solved(inputs.map(|input| input.re()))?;
+        let lift = |value: f64, by: [f64; 3]| {
+            (0..3).fold(D::from(value), |sum, i| sum + (inputs[i] - at[i]) * by[i])
+        };
+        let volume =
+            lift(node.volume_m3, [node.volume_per_mass, node.volume_per_energy, node.volume_per_wall]);
+        let temperature = lift(node.state.temperature_k, temperature_by);
+        Ok(self.node_at(inputs, volume, temperature).0)
+    }
+
+    fn solved(&self, inputs: [f64; 3]) -> Result<Solved, ThermalError> {
+        if let Some(last) = self.last.get().filter(|last| last.inputs == inputs) {
+            return Ok(last);
+        }
+        let (v, t) = self.solve(inputs)?;
+        let (node, temperature_by) = self.node_at(inputs, v, t);
+        let solved = Solved { inputs, node, temperature_by };
+        self.last.set(Some(solved));
+        Ok(solved)
+    }
+
+    /// The node at its solution, and the derivatives of its temperature with the inputs.
+    fn node_at<D: Real>(&self, inputs: [D; 3], volume_m3: D, temperature_k: D) -> (Node<D>, [D; 3]) {
+        let at = self.linearise(inputs, volume_m3, temperature_k);
         let (v0, a, b) = self.coefficients();
-        let s = at.state;
-        let energy_per_mass = s.internal_energy_j_kg + s.density_kg_m3 * at.u_rho;
-        let pressure_per_mass = s.dp_drho_pa_m3_kg / volume;
+        let state = at.state;
+        let energy_per_mass = state.internal_energy_j_kg + state.density_kg_m3 * at.u_rho;
+        let pressure_per_mass = state.dp_drho_pa_m3_kg / volume_m3;
         // Implicit function theorem on (F1, F2), rows as in `linearise`.
-        let solve_v = |f1: D, f2: D| -(f1 * at.jacobian[1][1] - f2 * at.jacobian[0][1]) / at.determinant();
-        Ok(Node {
-            state: s,
-            volume_m3: volume,
-            volume_per_mass: solve_v(energy_per_mass, pressure_per_mass * (-v0 * b)),
-            volume_per_energy: solve_v(D::from(-1.0), D::from(0.0)),
-            volume_per_wall: solve_v(D::from(0.0), D::from(-v0 * a)),
-        })
+        let [by_mass, by_energy, by_wall] = [
+            [energy_per_mass, pressure_per_mass * (-v0 * b)],
+            [D::from(-1.0), D::from(0.0)],
+            [D::from(0.0), D::from(-v0 * a)],
+        ]
+        .map(|slope| at.solve(slope).map(|x| -x));
+        let node = Node {
+            state,
+            volume_m3,
+            volume_per_mass: by_mass[0],
+            volume_per_energy: by_energy[0],
+            volume_per_wall: by_wall[0],
+        };
+        (node, [by_mass[1], by_energy[1], by_wall[1]])
     }
 
     fn coefficients(&self) -> (f64, f64, f64) {
@@ -96,7 +147,7 @@ impl WellMixed {
         (v.volume_m3, v.thermal_expansion_per_k, v.pressure_expansion_per_pa)
     }
 
-    fn linearise<D: Real>(&self, m: D, energy: D, wall_k: D, v: D, t: D) -> Linearised<D> {
+    fn linearise<D: Real>(&self, [m, energy, wall_k]: [D; 3], v: D, t: D) -> Linearised<D> {
         let (v0, a, b) = self.coefficients();
         let state = self.fluid.state(m / v, t);
         let rho = state.density_kg_m3;
@@ -115,18 +166,22 @@ impl WellMixed {
         }
     }
 
-    fn solve(&self, m: f64, energy: f64, wall_k: f64) -> Result<(f64, f64), ThermalError> {
-        let (mut v, mut t) = self.guess.get();
+    fn solve(&self, inputs: [f64; 3]) -> Result<(f64, f64), ThermalError> {
+        let [m, energy, _] = inputs;
+        let start = (self.volume.volume_m3, self.start_k);
+        let (mut v, mut t) =
+            self.last.get().map_or(start, |last| (last.node.volume_m3, last.node.state.temperature_k));
         if m > 0.0 && m.is_finite() && energy.is_finite() {
             for _ in 0..MAX_ITERATIONS {
-                let [dv, dt] = self.linearise(m, energy, wall_k, v, t).newton_step();
+                let at = self.linearise(inputs, v, t);
+                let [dv, dt] = at.solve(at.residual);
                 // Never leave the positive quadrant, never jump by more than a third.
                 v -= dv.clamp(-0.3 * v, 0.3 * v);
                 t -= dt.clamp(-0.3 * t, 0.3 * t);
                 if !(v.is_finite() && t.is_finite()) {
                     break;
                 }
-                if dv.abs() <= 1e-13 * v && dt.abs() <= 1e-12 * t {
+                if dv.abs() <= TOLERANCE * v && dt.abs() <= TOLERANCE * t {
                     return Ok((v, t));
                 }
             }
@@ -188,6 +243,16 @@ impl<D: Real> Node<D> {
     }
 }
 
+/// Jets of open refills: mass flow, kg/s, and inlet diameter, m.
+pub fn jets(flows: &[Flow], open: &[bool]) -> impl Iterator<Item = (f64, f64)> {
+    flows.iter().zip(open).filter(|&(_, &open)| open).filter_map(|(flow, _)| match flow.kind {
+        FlowKind::Refill { mass_flow_kg_s, inlet_diameter_m: Some(inlet), .. } => {
+            Some((mass_flow_kg_s, inlet))
+        }
+        _ => None,
+    })
+}
+
 /// Film of the jets of open refills, W/(m² K); 0 without one.
 pub fn jet_film<D: Real>(
     fluid: &Fluid,
@@ -196,16 +261,12 @@ pub fn jet_film<D: Real>(
     open: &[bool],
     vessel_diameter_m: f64,
 ) -> D {
-    let mut sum = D::from(0.0);
-    for flow in flows.iter().zip(open).filter_map(|(flow, &open)| open.then_some(flow)) {
-        if let FlowKind::Refill { mass_flow_kg_s, inlet_diameter_m: Some(inlet), .. } = flow.kind {
-            let (rho, t) = (node.state.density_kg_m3, node.state.temperature_k);
-            let k = fluid.conductivity_w_m_k(rho, t);
-            let mu = fluid.viscosity_pa_s(rho, t);
-            sum += jet_film_w_m2_k(k, mu, mass_flow_kg_s, inlet, vessel_diameter_m);
-        }
-    }
-    sum
+    let (rho, t) = (node.state.density_kg_m3, node.state.temperature_k);
+    jets(flows, open).fold(D::from(0.0), |sum, (mass_flow_kg_s, inlet_m)| {
+        let k = fluid.conductivity_w_m_k(rho, t);
+        let mu = fluid.viscosity_pa_s(rho, t);
+        sum + jet_film_w_m2_k(k, mu, mass_flow_kg_s, inlet_m, vessel_diameter_m)
+    })
 }
 
 /// The two node equations and their derivatives at a trial point.
@@ -219,14 +280,11 @@ struct Linearised<D> {
 }
 
 impl<D: Real> Linearised<D> {
-    fn determinant(&self) -> D {
+    /// Solve the linearised equations for a right-hand side.
+    fn solve(&self, f: [D; 2]) -> [D; 2] {
         let j = &self.jacobian;
-        j[0][0] * j[1][1] - j[0][1] * j[1][0]
-    }
-
-    fn newton_step(&self) -> [D; 2] {
-        let (j, f, det) = (&self.jacobian, &self.residual, self.determinant());
-        [(f[0] * j[1][1] - f[1] * j[0][1]) / det, (f[1] * j[0][0] - f[0] * j[1][0]) / det]
+        let determinant = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        [(f[0] * j[1][1] - f[1] * j[0][1]) / determinant, (f[1] * j[0][0] - f[0] * j[1][0]) / determinant]
     }
 }
 
