@@ -3,8 +3,7 @@
 //! The usual tails were fitted to leak-free worlds of the families that tune, in railway winters, parked, in a workshop, a metro, a desert and showers: one set to six cylinders of
 //! 180 to 300 bar, one to a tank of 3 to 8 bar, whose gas weighs little beside its wall and follows the air at once. They hold for a vessel of which nothing else is
 //! known. What the statistics of one vessel reach where it stands, `cylwatch commission` finds. For the cylinder under a rail vehicle it has been run, in railway winters, parked
-//! and in a workshop, a third of the cylinders with gas in layers, and its tails stand here. The usual ones were fitted before gas in layers was among what they are fitted to, and before the
-//! valve's part of the sun was learnt.
+//! and in a workshop, and its tails stand here. A third of all cylinders have gas in layers; the tanks were tried before such gas was among what they are fitted to.
 //!
 //! `cargo run --release -p cylwatch-evaluation --example tails`, `cylwatch commission nitrogen-20l`
 use std::ops::RangeInclusive;
@@ -63,13 +62,13 @@ const TANK: Tails = Tails([
     Tail { level: 4.6797, interval_s: 2.6438e7, scale: 2.6420, shape: 0.038 },
 ]);
 
-/// Of 252 cylinders, 42.8 years together.
+/// Of 252 cylinders, 42.8 years together, a third of them with gas in layers.
 const CYLINDER: Tails = Tails([
-    Tail { level: 2.1357, interval_s: 4.3206e5, scale: 0.6297, shape: 0.010 },
-    Tail { level: 3.3416, interval_s: 1.7298e6, scale: 0.7052, shape: 0.197 },
-    Tail { level: 3.5573, interval_s: 3.4560e6, scale: 0.7781, shape: 0.166 },
-    Tail { level: 3.7321, interval_s: 1.2193e7, scale: 0.7684, shape: 0.161 },
-    Tail { level: 3.0802, interval_s: 2.6127e7, scale: 0.8678, shape: 0.250 },
+    Tail { level: 2.1584, interval_s: 4.3206e5, scale: 0.6417, shape: -0.018 },
+    Tail { level: 3.3186, interval_s: 1.7298e6, scale: 0.6788, shape: 0.209 },
+    Tail { level: 3.5455, interval_s: 3.4560e6, scale: 0.7572, shape: 0.198 },
+    Tail { level: 3.9165, interval_s: 1.2193e7, scale: 0.7031, shape: 0.249 },
+    Tail { level: 3.4901, interval_s: 2.6127e7, scale: 0.9538, shape: 0.249 },
 ]);
 
 /// A threshold for each statistic.

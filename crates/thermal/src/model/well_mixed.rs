@@ -17,6 +17,8 @@ use crate::vessel::InnerVolume;
 const MAX_ITERATIONS: usize = 60;
 /// Relative length of the last Newton step; the error after it is about its square, a rounding.
 const TOLERANCE: f64 = 1e-8;
+/// Relative change over which the slopes of the last solution may lead to the next one.
+const NEAR: f64 = 0.05;
 
 /// State of the node with the derivatives of its volume.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +55,7 @@ pub struct WellMixed {
     volume: InnerVolume,
     /// Temperature at which the first solution is sought, K.
     start_k: f64,
-    /// Last solution: the answer to the same question, else where Newton starts, without influence on where it ends.
+    /// Last solution: the answer to the same question, else it leads to where Newton starts, without influence on where that ends.
     last: Cell<Option<Solved>>,
 }
 
@@ -65,6 +67,18 @@ struct Solved {
     node: Node<f64>,
     /// Derivatives of the temperature with the inputs.
     temperature_by: [f64; 3],
+}
+
+impl Solved {
+    /// Volume, m³, and temperature, K, for other inputs, to first order.
+    fn along<D: Real>(&self, inputs: [D; 3]) -> (D, D) {
+        let lift = |value: f64, by: [f64; 3]| {
+            (0..3).fold(D::from(value), |sum, i| sum + (inputs[i] - self.inputs[i]) * by[i])
+        };
+        let node = &self.node;
+        let volume_by = [node.volume_per_mass, node.volume_per_energy, node.volume_per_wall];
+        (lift(node.volume_m3, volume_by), lift(node.state.temperature_k, self.temperature_by))
+    }
 }
 
 impl WellMixed {
@@ -97,13 +111,7 @@ impl WellMixed {
         wall_k: D,
     ) -> Result<Node<D>, ThermalError> {
         let inputs = [mass_kg, energy_j, wall_k];
-        let Solved { inputs: at, node, temperature_by } = self.solved(inputs.map(|input| input.re()))?;
-        let lift = |value: f64, by: [f64; 3]| {
-            (0..3).fold(D::from(value), |sum, i| sum + (inputs[i] - at[i]) * by[i])
-        };
-        let volume =
-            lift(node.volume_m3, [node.volume_per_mass, node.volume_per_energy, node.volume_per_wall]);
-        let temperature = lift(node.state.temperature_k, temperature_by);
+        let (volume, temperature) = self.solved(inputs.map(|input| input.re()))?.along(inputs);
         Ok(self.node_at(inputs, volume, temperature).0)
     }
 
@@ -168,9 +176,7 @@ impl WellMixed {
 
     fn solve(&self, inputs: [f64; 3]) -> Result<(f64, f64), ThermalError> {
         let [m, energy, _] = inputs;
-        let start = (self.volume.volume_m3, self.start_k);
-        let (mut v, mut t) =
-            self.last.get().map_or(start, |last| (last.node.volume_m3, last.node.state.temperature_k));
+        let (mut v, mut t) = self.start(inputs);
         if m > 0.0 && m.is_finite() && energy.is_finite() {
             for _ in 0..MAX_ITERATIONS {
                 let at = self.linearise(inputs, v, t);
@@ -187,6 +193,15 @@ impl WellMixed {
             }
         }
         Err(ThermalError::NoGasState { mass_kg: m, energy_j: energy })
+    }
+
+    /// Where Newton starts: along the slopes of the last solution, if that does not lead far.
+    fn start(&self, inputs: [f64; 3]) -> (f64, f64) {
+        let Some(last) = self.last.get() else { return (self.volume.volume_m3, self.start_k) };
+        let from = (last.node.volume_m3, last.node.state.temperature_k);
+        let to = last.along(inputs);
+        let is_near = |to: f64, from: f64| (to - from).abs() <= NEAR * from;
+        if is_near(to.0, from.0) && is_near(to.1, from.1) { to } else { from }
     }
 
     /// Rates of change for a heat flow from the wall and a rate of change of the mean wall temperature.
