@@ -54,7 +54,7 @@ pub enum Command {
     Estimate(Box<EstimateArguments>),
     /// Decide whether gas is being lost: verdict, leak rate, onset, time left, events and alarms from a log.
     Monitor(Box<MonitorArguments>),
-    /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; half an hour.
+    /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; twenty minutes.
     Commission(Box<CommissionArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.
     Identify(Box<IdentifyArguments>),

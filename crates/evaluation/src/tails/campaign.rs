@@ -34,7 +34,7 @@ pub struct Campaign {
 }
 
 impl Default for Campaign {
-    /// The climates that the usual tails were fitted to, sensors of class B and transmitters that are far off, two months each. Rows come every
+    /// Three of the climates that the usual tails were fitted to, sensors of class B and transmitters that are far off, two months each. Rows come every
     /// five minutes: every two they cost a third more, and the thresholds of the 20 L cylinder are the same within their intervals.
     fn default() -> Self {
         Self {

@@ -2,8 +2,8 @@
 //!
 //! Each cell is a [`super::well_mixed`] node with mass `m_i` and energy `U_i`; what flows between neighbours
 //! leaves one and enters the other, so mass and energy are conserved by construction.
-//! * **Core flow** `C = K (p_i - p_(i+1))` with a conductance so large that the cells differ by less than 1e-4 of
-//!   the pressure: the low-Mach limit, without an algebraic equation. It carries the enthalpy of the cell it leaves.
+//! * **Core flow** `C = K (p_i - p_(i+1))` with a conductance so large that neighbours differ by some 1e-5 of the
+//!   pressure where a minute empties the vessel: the low-Mach limit, without an algebraic equation. It carries the enthalpy of the cell it leaves.
 //! * **Boundary layer** along the side wall, marched upwards over heated cells and downwards over cooled ones. Mass
 //!   flow by Eckert and Jackson, `m = 0.0979 P mu Gr_z^0.4 Pr^(-8/15) (1 + 0.494 Pr^(2/3))^(-0.4)`, limited by
 //!   its buoyancy, `m (h_next - h_i) <= H`. It takes up the wall's heat and gives its excess `H` back to the core over
@@ -29,7 +29,7 @@ use crate::fluid::Real;
 use crate::transfer::inside::GRAVITY_M_S2;
 use crate::vessel::{InnerVolume, Stratification, Vessel};
 
-/// Time in which a pressure difference between neighbours dies out, s, and the sound speed that scales it, m/s.
+/// Time in which a pressure difference between neighbours dies out, s: shorter than that of sound through a cell. And the sound speed that scales it, m/s.
 const EQUALISATION_S: f64 = 1e-4;
 const SOUND_M_S: f64 = 350.0;
 /// Smoothing of sign changes: heat flow W, temperature difference K, enthalpy J/kg, mass flow kg/s.

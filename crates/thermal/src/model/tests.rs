@@ -1,4 +1,5 @@
 use super::grid::GasGrid;
+use super::well_mixed::WellMixed;
 use crate::vessel::{GasResolution, Stratification, presets};
 use crate::wall::geometry::Orientation;
 use crate::wall::mesh::{Facing, Mesh};
@@ -51,4 +52,27 @@ fn slabs_of_a_lying_cylinder_have_the_volumes_of_circle_segments() {
     let segment = (0.5_f64.acos() - 3.0_f64.sqrt() / 4.0) / std::f64::consts::PI;
     assert_relative_eq!(grid.cells[0].volume_fraction, segment, max_relative = 1e-4);
     assert_relative_eq!(grid.cells[1].volume_fraction, 0.5 - segment, max_relative = 1e-4);
+}
+
+/// The last solution decides where Newton starts, and nothing else.
+#[test]
+fn the_state_of_the_gas_does_not_depend_on_what_was_asked_before() {
+    let vessel = presets::load("nitrogen-20l").unwrap();
+    let gas = || WellMixed::new(vessel.fluid.clone(), vessel.volume, 288.0);
+    // Mass, kg, energy, J, and temperature of the wall, K.
+    let asked = [
+        (4.5, 8.5e5, 288.0),
+        (4.5, 8.500001e5, 288.0),
+        (4.49, 8.4e5, 287.0),
+        (4.5, 8.5e5, 288.0),
+        (0.5, 1.2e5, 300.0),
+    ];
+    let one = gas();
+    for (mass_kg, energy_j, wall_k) in asked {
+        let [warm, fresh] = [&one, &gas()].map(|gas| gas.node(mass_kg, energy_j, wall_k).unwrap());
+        assert_relative_eq!(warm.state.temperature_k, fresh.state.temperature_k, max_relative = 1e-13);
+        assert_relative_eq!(warm.state.pressure_pa, fresh.state.pressure_pa, max_relative = 1e-12);
+        let energy = warm.state.internal_energy_j_kg * mass_kg;
+        assert_relative_eq!(energy, energy_j, max_relative = 1e-12);
+    }
 }

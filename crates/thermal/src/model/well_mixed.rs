@@ -27,12 +27,8 @@ pub struct Node<D> {
     pub state: State<D>,
     /// Volume, m³.
     pub volume_m3: D,
-    /// `dV/dm` at constant energy and wall temperature, m³/kg.
-    volume_per_mass: D,
-    /// `dV/dU`, m³/J.
-    volume_per_energy: D,
-    /// `dV/dT_w`, m³/K.
-    volume_per_wall: D,
+    /// Its derivatives with mass, m³/kg, energy, m³/J, and temperature of the wall, m³/K.
+    volume_by: [D; 3],
 }
 
 /// Everything that flows, and what it does to the node.
@@ -76,8 +72,7 @@ impl Solved {
             (0..3).fold(D::from(value), |sum, i| sum + (inputs[i] - self.inputs[i]) * by[i])
         };
         let node = &self.node;
-        let volume_by = [node.volume_per_mass, node.volume_per_energy, node.volume_per_wall];
-        (lift(node.volume_m3, volume_by), lift(node.state.temperature_k, self.temperature_by))
+        (lift(node.volume_m3, node.volume_by), lift(node.state.temperature_k, self.temperature_by))
     }
 }
 
@@ -134,20 +129,13 @@ impl WellMixed {
         let energy_per_mass = state.internal_energy_j_kg + state.density_kg_m3 * at.u_rho;
         let pressure_per_mass = state.dp_drho_pa_m3_kg / volume_m3;
         // Implicit function theorem on (F1, F2), rows as in `linearise`.
-        let [by_mass, by_energy, by_wall] = [
+        let by_input = [
             [energy_per_mass, pressure_per_mass * (-v0 * b)],
             [D::from(-1.0), D::from(0.0)],
             [D::from(0.0), D::from(-v0 * a)],
         ]
         .map(|slope| at.solve(slope).map(|x| -x));
-        let node = Node {
-            state,
-            volume_m3,
-            volume_per_mass: by_mass[0],
-            volume_per_energy: by_energy[0],
-            volume_per_wall: by_wall[0],
-        };
-        (node, [by_mass[1], by_energy[1], by_wall[1]])
+        (Node { state, volume_m3, volume_by: by_input.map(|by| by[0]) }, by_input.map(|by| by[1]))
     }
 
     fn coefficients(&self) -> (f64, f64, f64) {
@@ -224,10 +212,10 @@ impl<D: Real> Node<D> {
     /// Rates of the node for its net mass, enthalpy and heat inflow and the rate of the mean wall temperature.
     pub fn balance(&self, mass_kg_s: D, enthalpy_w: D, heat_w: D, wall_rate_k_s: D) -> Rates<D> {
         let p = self.state.pressure_pa;
-        let volume_rate_without_energy =
-            self.volume_per_mass * mass_kg_s + self.volume_per_wall * wall_rate_k_s;
+        let [by_mass, by_energy, by_wall] = self.volume_by;
+        let volume_rate_without_energy = by_mass * mass_kg_s + by_wall * wall_rate_k_s;
         let supplied = heat_w + enthalpy_w;
-        let energy_w = (supplied - p * volume_rate_without_energy) / (p * self.volume_per_energy + 1.0);
+        let energy_w = (supplied - p * volume_rate_without_energy) / (p * by_energy + 1.0);
         Rates { mass_kg_s, energy_w, enthalpy_w, work_w: supplied - energy_w }
     }
 
@@ -251,9 +239,7 @@ impl<D: Real> Node<D> {
                 expansion_per_k: f(s.expansion_per_k),
             },
             volume_m3: f(self.volume_m3),
-            volume_per_mass: f(self.volume_per_mass),
-            volume_per_energy: f(self.volume_per_energy),
-            volume_per_wall: f(self.volume_per_wall),
+            volume_by: self.volume_by.map(f),
         }
     }
 }

@@ -85,12 +85,12 @@ fn with_flows(kinds: Vec<FlowKind>) -> Scenario {
     scenario
 }
 
-/// Rounding of the flow that equalises stacked cells: 1e-8 Pa over a conductance of 1e-2 kg/(s Pa), and its enthalpy.
+/// Rounding of the flow that equalises stacked cells: 1e-8 Pa over a conductance of 1e-3 kg/(s Pa), and its enthalpy.
 fn equalisation(layout: &Layout, row: usize) -> f64 {
     match row {
         _ if layout.gas == 1 || row < layout.mass => 0.0,
-        r if r < layout.energy => 1e-10,
-        _ => 4e-5,
+        r if r < layout.energy => 1e-11,
+        _ => 4e-6,
     }
 }
 
