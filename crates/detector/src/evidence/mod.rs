@@ -9,7 +9,7 @@
 //!
 //! | scale | age of the onset | finds within |
 //! |---|---|---|
-//! | [`Scale::Hour`] | up to 2 h | an hour |
+//! | [`Scale::Hour`] | up to 66 min | an hour |
 //! | [`Scale::HalfDay`] | up to 12 h | a day |
 //! | [`Scale::Day`] | up to 2 d | three days |
 //! | [`Scale::Week`] | up to 10 d | a week |
@@ -86,7 +86,7 @@ impl Scale {
     /// Age of the oldest onset that it is about, s.
     fn oldest_s(self) -> f64 {
         match self {
-            Self::Hour => 2.0 * HOUR_S,
+            Self::Hour => 1.1 * HOUR_S,
             Self::HalfDay => 12.0 * HOUR_S,
             Self::Day => 2.0 * DAY_S,
             Self::Week => 10.0 * DAY_S,

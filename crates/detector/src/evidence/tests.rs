@@ -34,7 +34,7 @@ fn each_scale_has_the_largest_score_of_its_ages() {
     let mut largest = [0.0_f64; 3];
     for onset in observer.onsets() {
         let age_h = (time_s - onset.since_s) / HOUR_S;
-        let scale = if age_h <= 2.0 { 0 } else { 1 + usize::from(age_h > 12.0) };
+        let scale = if age_h <= 1.1 { 0 } else { 1 + usize::from(age_h > 12.0) };
         largest[scale] = largest[scale].max(onset.rate_kg_s / onset.sd_kg_s);
     }
     // At rest next to nothing is considered.

@@ -64,11 +64,11 @@ const TANK: Tails = Tails([
 
 /// Of 252 cylinders, 42.8 years together, a third of them with gas in layers.
 const CYLINDER: Tails = Tails([
-    Tail { level: 2.1584, interval_s: 4.3206e5, scale: 0.6417, shape: -0.018 },
-    Tail { level: 3.3186, interval_s: 1.7298e6, scale: 0.6788, shape: 0.209 },
-    Tail { level: 3.5455, interval_s: 3.4560e6, scale: 0.7572, shape: 0.198 },
-    Tail { level: 3.9165, interval_s: 1.2193e7, scale: 0.7031, shape: 0.249 },
-    Tail { level: 3.4901, interval_s: 2.6127e7, scale: 0.9538, shape: 0.249 },
+    Tail { level: 1.9555, interval_s: 4.3206e5, scale: 0.6246, shape: -0.033 },
+    Tail { level: 3.3326, interval_s: 1.7298e6, scale: 0.6595, shape: 0.203 },
+    Tail { level: 3.5014, interval_s: 3.4560e6, scale: 0.7243, shape: 0.151 },
+    Tail { level: 3.7429, interval_s: 1.2193e7, scale: 0.7054, shape: 0.017 },
+    Tail { level: 3.1069, interval_s: 2.6127e7, scale: 0.9006, shape: -0.018 },
 ]);
 
 /// A threshold for each statistic.

@@ -210,6 +210,11 @@ impl Backward {
         self.information[i..].iter_mut().step_by(n).for_each(|value| *value *= factor);
     }
 
+    /// The estimate was moved by `force P e_i`, its covariance stayed: smoothed estimates of before know nothing of that.
+    pub fn push(&mut self, i: usize, force: f64) {
+        self.adjoint[i] -= force;
+    }
+
     /// State `i` was made independent of its past: what comes after says nothing of what it was before.
     pub fn forget(&mut self, i: usize) {
         let n = self.adjoint.len();

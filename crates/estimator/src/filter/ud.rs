@@ -113,6 +113,16 @@ where
         (i..n).map(|j| self.d[j] * u[j * n + i] * u[j * n + i]).sum()
     }
 
+    /// Write the covariance of state `i` with all states: (n).
+    pub fn write_column(&self, i: usize, y: &mut [f64]) {
+        let (n, u) = (self.states(), self.u.as_slice());
+        y.fill(0.0);
+        for (j, d) in self.d.as_slice().iter().enumerate().skip(i) {
+            let u = &column(u, n, j)[..=j];
+            axpy(d * u[i], u, y);
+        }
+    }
+
     /// Variance `h^T P h` of a linear function of the state; `h`: (n).
     pub fn quadratic(&self, h: &[f64]) -> f64 {
         let (n, u) = (self.states(), self.u.as_slice());

@@ -57,6 +57,19 @@ impl Default for Covariances {
     }
 }
 
+impl Covariances {
+    /// Covariance of a state with all states: (n).
+    fn write_column(&self, index: usize, state: usize, column: &mut [f64]) {
+        match self {
+            Self::Together(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].bank.write_column(lane, state, column);
+            }
+            Self::Separate(all) => all[index].write_column(state, column),
+        }
+    }
+}
+
 impl Bank {
     /// Members that start at one mean and covariance, but for the leak rate, of which each has its own prior.
     ///
@@ -192,7 +205,11 @@ impl Bank {
         if let Covariances::Separate(all) = &mut self.covariances {
             all.iter_mut().zip(&mut self.members).for_each(|(one, member)| one.finish(cylinder, member));
         }
-        self.members.iter_mut().for_each(|member| member.bound(cylinder));
+        for index in 0..self.members.len() {
+            let covariances = &self.covariances;
+            let write = |state: usize, column: &mut [f64]| covariances.write_column(index, state, column);
+            self.members[index].bound(cylinder, write, &mut shared.gain);
+        }
         Ok(())
     }
 

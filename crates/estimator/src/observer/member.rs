@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::cylinder::Cylinder;
 use super::pass::Pass;
 use super::settings::LeakHypothesis;
+use crate::filter::kernel::axpy;
 
 /// What became of a reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,11 +105,31 @@ impl Member {
         outcome
     }
 
-    /// Keep constants and films within what can be.
-    pub fn bound(&mut self, cylinder: &Cylinder) {
+    /// Keep constants and films within what can be, with a function that writes the covariance of a state with all others into memory for it: (n).
+    ///
+    /// What a state may not be the others take on as far as they are correlated with it, so that readings are explained as before: the state within the bound that is nearest
+    /// in the metric of the covariance (D. Simon, IET Control Theory Appl. 4 (2010) 1303). Were it cut off alone, the pressure would be expected too high from then on, row
+    /// by row, which is what a leak looks like.
+    pub fn bound(&mut self, cylinder: &Cylinder, covariance: impl Fn(usize, &mut [f64]), memory: &mut [f64]) {
         self.at_bound = false;
         for &(state, low, high) in cylinder.bounds() {
-            self.at_bound |= !(low..=high).contains(&self.x[state]);
+            let lacks = self.x[state].clamp(low, high) - self.x[state];
+            if lacks == 0.0 {
+                continue;
+            }
+            self.at_bound = true;
+            covariance(state, memory);
+            let variance = memory[state];
+            if variance > 0.0 {
+                memory.iter_mut().for_each(|of| *of /= variance);
+                axpy(lacks, memory, &mut self.x);
+                if let Some(pass) = &mut self.pass {
+                    pass.bound(state, lacks / variance, memory);
+                }
+            }
+        }
+        // What another one has pushed beyond its own.
+        for &(state, low, high) in cylinder.bounds() {
             self.x[state] = self.x[state].clamp(low, high);
         }
     }

@@ -15,6 +15,10 @@ pub(super) struct Pass {
     pub begun_anew: bool,
     /// Factor by which each state came nearer to its rest before the readings: (n).
     pub relaxed: Vec<f64>,
+    /// States that were held at a bound after the readings, with what each lacked over its variance; and the shares of that which all states took on: (n), one after
+    /// the other.
+    pub bounded: Vec<(usize, f64)>,
+    pub shares: Vec<f64>,
     /// Memory of a product.
     product: DMatrix<f64>,
 }
@@ -28,6 +32,8 @@ impl Pass {
             begun_anew: false,
             opened_before: vec![false; sensors],
             relaxed: vec![1.0; n],
+            bounded: Vec::with_capacity(n),
+            shares: Vec::with_capacity(n * n),
             product: DMatrix::zeros(leading, n),
         }
     }
@@ -39,6 +45,8 @@ impl Pass {
         self.opened_before.clone_from(&other.opened_before);
         self.begun_anew = other.begun_anew;
         self.relaxed.clone_from(&other.relaxed);
+        self.bounded.clone_from(&other.bounded);
+        self.shares.clone_from(&other.shares);
     }
 
     /// A sample comes `dt_s`, s, after the last one.
@@ -50,6 +58,8 @@ impl Pass {
         self.begun_anew = false;
         self.relaxed.fill(1.0);
         self.opened_before.fill(false);
+        self.bounded.clear();
+        self.shares.clear();
     }
 
     /// Part of the interval with the transition `phi`: (leading, n).
@@ -76,6 +86,12 @@ impl Pass {
     /// A constant came nearer to its rest.
     pub fn relax(&mut self, state: usize, factor: f64) {
         self.relaxed[state] *= factor;
+    }
+
+    /// A state was held at its bound, lacking so much over its variance; all took on such shares of what it lacked: (n), 1 of itself.
+    pub fn bound(&mut self, state: usize, force: f64, shares: &[f64]) {
+        self.bounded.push((state, force));
+        self.shares.extend_from_slice(shares);
     }
 
     /// The member began anew.
@@ -105,10 +121,14 @@ mod tests {
         step.relax(2, 0.5);
         step.open(None);
         step.open(Some(1));
+        step.bound(1, 0.2, &[0.4, 1.0, -0.1]);
         step.begin_anew();
         let mut copy = Pass::new(3, 2, 2);
         copy.copy_from(&step);
-        let marks = |of: &Pass| (of.opened, of.opened_before.clone(), of.begun_anew, of.relaxed.clone());
+        let marks = |of: &Pass| {
+            let bounds = (of.bounded.clone(), of.shares.clone());
+            (of.opened, of.opened_before.clone(), of.begun_anew, of.relaxed.clone(), bounds)
+        };
         assert_eq!((&copy.step, marks(&copy)), (&step.step, marks(&step)));
         // Its own memory of a product is as good.
         for of in [&mut step, &mut copy] {

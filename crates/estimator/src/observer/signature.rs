@@ -4,7 +4,7 @@
 //! `k` would have made of its error by now, `f_k`, follows from its own transition `Phi`, gradients `h` and gains `K`, with 1 in the leak rate for
 //! ever:
 //!
-//! `f <- Phi f` over an interval, `g = h' f`, `f <- f - K g` at a reading.
+//! `f <- Phi f` over an interval, `g = h' f`, `f <- f - K g` at a reading, `f <- f - P e f_i/P_ii` where a state `i` is held at its bound.
 //!
 //! So an innovation `nu` of variance `S` has the mean `r g` in a leak of rate `r` since `k`, and generalised least squares from three sums tell its rate,
 //! its standard deviation and how far it is from none:
@@ -159,6 +159,11 @@ impl Onsets {
                 sums.weighted += weight * g * g / s;
                 sums.information += g * g / s;
                 axpy(-g, gain, response);
+            }
+        }
+        for (&(state, _), shares) in pass.bounded.iter().zip(pass.shares.chunks(n.max(1))) {
+            for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
+                axpy(-response[state], shares, response);
             }
         }
         if pass.begun_anew {

@@ -243,6 +243,9 @@ fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States)
         backward.clear();
         return;
     }
+    for &(state, force) in &pass.bounded {
+        backward.push(state, force);
+    }
     let freed = [states.mass, states.gas];
     for sensor in (0..pass.step.used.len()).rev() {
         if pass.step.used[sensor] {

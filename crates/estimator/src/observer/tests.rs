@@ -96,6 +96,49 @@ fn a_constant_beyond_its_bound_is_put_back_and_the_observer_says_so() {
     }
 }
 
+/// A state that its covariance has taken beyond a bound, with all that is correlated with it, goes back to where it was.
+#[test]
+fn what_a_constant_may_not_be_the_other_states_take_on() {
+    for engine in [Engine::Extended, Engine::Unscented, Engine::Stationary] {
+        let mut observer = observer(engine);
+        for k in 0..90 {
+            let warm = 4.0 * (f64::from(k) / 20.0).sin();
+            observer.step(60.0 * f64::from(k), &[288.15 + warm, 288.15 + warm, 2e7 + 0.7e5 * warm]).unwrap();
+        }
+        let (names, covariance) = (observer.cylinder.state_map().names.clone(), observer.bank.covariance(0));
+        assert!(covariance[(observer.cylinder.state_map().mass, observer.cylinder.states() - 1)] != 0.0);
+        for (state, low, high) in observer.cylinder.bounds().to_vec() {
+            let variance = covariance[(state, state)];
+            if variance == 0.0 {
+                continue;
+            }
+            let mut allowed = observer.bank.members[0].x.clone();
+            allowed[state] = high;
+            let mut bank = observer.bank.clone();
+            for (x, i) in bank.members[0].x.iter_mut().zip(0..) {
+                *x = allowed[i] + covariance[(i, state)] / variance * 1e-3 * (high - low);
+            }
+            bank.update(
+                &mut observer.cylinder,
+                &mut observer.shared,
+                &[f64::NAN; 3],
+                Gates { all: 25.0, flow: 25.0 },
+            )
+            .unwrap();
+            let name = &names[state];
+            assert!(bank.members[0].at_bound, "{engine:?}: {name}");
+            for (i, expected) in allowed.iter().enumerate() {
+                let (x, sd) = (bank.members[0].x[i], covariance[(i, i)].sqrt());
+                let off = (x - expected).abs();
+                assert!(
+                    off <= 1e-9 * sd + 1e-12 * expected.abs(),
+                    "{engine:?}: {name} moves state {i}: {off}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_stated_of_the_gas_is_narrower_than_the_filters_variance_only_as_long_as_nothing_is_learnt() {
     let mut observer = observer(Engine::Extended);

@@ -126,6 +126,11 @@ impl Separate {
         self.mechanism.variance(&self.p, state)
     }
 
+    /// Covariance of a state with all states: (n).
+    pub fn write_column(&self, state: usize, column: &mut [f64]) {
+        self.mechanism.write_column(&self.p, state, column);
+    }
+
     pub fn covariance(&self) -> DMatrix<f64> {
         self.mechanism.covariance(&self.p)
     }

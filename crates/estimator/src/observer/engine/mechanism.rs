@@ -238,6 +238,14 @@ impl Mechanism {
         }
     }
 
+    /// Covariance of a state with all states, with all that is uncertain: (n).
+    pub fn write_column(&self, p: &UdFactors<Dyn>, state: usize, column: &mut [f64]) {
+        match self {
+            Self::Stationary(stationary) => stationary.write_column(p, state, column),
+            _ => p.write_column(state, column),
+        }
+    }
+
     /// Covariance of all states, with all that is uncertain: (n, n).
     pub fn covariance(&self, p: &UdFactors<Dyn>) -> DMatrix<f64> {
         match self {

@@ -267,6 +267,28 @@ impl Stationary {
         given + self.of_constants(|c| self.sensitivity[(state, c)])
     }
 
+    /// Covariance of a state with all states, with all that is uncertain: (n).
+    pub fn write_column(&self, p: &UdFactors<Dyn>, state: usize, column: &mut [f64]) {
+        let (m, count) = self.sensitivity.shape();
+        match (&self.steady, self.phase) {
+            (Some(steady), Phase::Settled | Phase::Within(_)) => {
+                column.copy_from_slice(steady.covariance.column(state).as_slice());
+            }
+            _ => p.write_column(state, column),
+        }
+        let (leading, constants) = column.split_at_mut(m);
+        if state >= m {
+            leading.fill(0.0);
+        }
+        for (c, with) in constants.iter_mut().enumerate() {
+            let of = |other: usize| {
+                if state < m { self.sensitivity[(state, other)] } else { f64::from(other == state - m) }
+            };
+            *with = (0..count).map(|other| self.constants[(c, other)] * of(other)).sum();
+            axpy(*with, self.sensitivity.column(c).as_slice(), leading);
+        }
+    }
+
     /// Covariance of all states, with all that is uncertain: (n, n).
     pub fn covariance(&self, p: &UdFactors<Dyn>) -> DMatrix<f64> {
         let (m, count) = self.sensitivity.shape();
