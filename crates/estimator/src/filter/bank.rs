@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, Dyn};
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use super::lanes::Lanes;
+use super::lanes::{LANES, Lanes};
 use super::ud::UdFactors;
 
 mod factors;
@@ -31,6 +31,8 @@ pub(crate) const USUAL: (usize, usize) = (19, 9);
 #[serde(into = "Factors", try_from = "Factors")]
 pub struct UdBank {
     n: usize,
+    /// Filters that are kept when it is saved, from the first lane on.
+    filters: usize,
     /// Vector registers of this machine.
     arch: Arch,
     /// Columns of `U`, each in whole groups of four numbers; what is below `U` is zero.
@@ -58,6 +60,7 @@ impl UdBank {
         u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
         Self {
             n,
+            filters: LANES,
             arch: Arch::new(),
             u,
             d: vec![Lanes::ZERO; n],
@@ -69,6 +72,11 @@ impl UdBank {
             weighted: vec![[Lanes::ZERO; 2]; leading],
             moved: vec![[Lanes::ZERO; 2]; leading],
         }
+    }
+
+    /// Only the first lanes are filters, so many of them: the others do what they do, and are not saved.
+    pub fn with_filters(self, filters: usize) -> Self {
+        Self { filters: filters.clamp(1, LANES), ..self }
     }
 
     /// Number of states.

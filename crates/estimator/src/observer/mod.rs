@@ -22,6 +22,7 @@
 mod band;
 mod bank;
 mod belief;
+mod checkpoint;
 mod clock;
 pub mod commissioning;
 pub mod cylinder;
@@ -54,6 +55,7 @@ use band::Band;
 pub use band::BandSettings;
 use bank::{Bank, Gates};
 use belief::{Belief, Moments};
+pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;

@@ -43,9 +43,14 @@ impl Observer {
     pub fn restore(&mut self, snapshot: &Snapshot) {
         self.bank.copy_from(&snapshot.bank);
         self.onsets.copy_from(&snapshot.onsets);
-        self.clock.clone_from(&snapshot.clock);
+        self.turn_back(&snapshot.clock, &snapshot.warm_start);
+    }
+
+    /// The clock and the model as they were.
+    pub(super) fn turn_back(&mut self, clock: &Clock, warm_start: &WarmStart) {
+        self.clock.clone_from(clock);
         self.cylinder.set_loosened(&self.clock.loosened);
-        self.cylinder.model().set_warm_start(&snapshot.warm_start);
+        self.cylinder.model().set_warm_start(warm_start);
     }
 
     /// Back to a snapshot that comes from elsewhere, such as a file.

@@ -1,21 +1,22 @@
 //! Which rows were taken lately, and where there were none: a replay is no news, whatever its stamps say about the clock.
 //!
-//! Rows are remembered by two Bloom filters that take turns: of the last 2000 to 4000 rows none is forgotten, and one in 45 others is
-//! taken for one of them at most: `(1 - e^(-k n/m))^k` with `k = 4`, `n = 2000`, `m = 16384`.
+//! Of every row a fingerprint of 16 bits is kept, in five generations of 500 rows: of the last 2000 rows none is forgotten, and of the others one in 26,
+//! `2500 / 2^16`, is taken for one of them at most. A generation is sorted, so that it is saved by the gaps between its fingerprints: 8.5 bits of a row.
 //!
-//! Source: B. H. Bloom, Commun. ACM 13 (1970) 422.
+//! Source: set of fingerprints, L. Carter et al., STOC 1978, 59; code of the gaps, R. F. Rice, JPL Publication 79-22 (1979).
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
 use super::clock::Stray;
 use super::exact;
+use generation::Generation;
 
-/// Bits of a filter, `64 * WORDS`, and rows that it takes.
-const WORDS: usize = 256;
-const ROWS: u32 = 2000;
-/// Bits of a row.
-const BITS_OF_ROW: usize = 4;
+mod generation;
+
+/// Rows of a generation, and generations.
+const ROWS: u32 = 500;
+const GENERATIONS: usize = 5;
 /// Times without rows that are remembered.
 const GAPS: usize = 16;
 /// Constants of the FNV-1a hash of 64 bits.
@@ -25,8 +26,9 @@ const PRIME: u64 = 0x0000_0100_0000_01b3;
 /// Rows that were taken, and times without any.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Memory {
-    young: Vec<u64>,
-    old: Vec<u64>,
+    /// The youngest one last.
+    generations: VecDeque<Generation>,
+    /// Rows in it.
     rows: u32,
     gaps: VecDeque<Gap>,
 }
@@ -43,21 +45,22 @@ struct Gap {
 impl Memory {
     /// Remember a row.
     pub fn keep(&mut self, hash: u64) {
-        if self.young.is_empty() || self.rows == ROWS {
-            self.old = std::mem::replace(&mut self.young, vec![0; WORDS]);
+        if self.generations.is_empty() || self.rows == ROWS {
+            if self.generations.len() == GENERATIONS {
+                self.generations.pop_front();
+            }
+            self.generations.push_back(Generation::default());
             self.rows = 0;
         }
         self.rows += 1;
-        for (word, bit) in places(hash) {
-            self.young[word] |= bit;
+        if let Some(youngest) = self.generations.back_mut() {
+            youngest.insert(fingerprint(hash));
         }
     }
 
     /// Whether a row is one of those.
     pub fn knows(&self, hash: u64) -> bool {
-        let holds =
-            |filter: &[u64]| !filter.is_empty() && places(hash).all(|(word, bit)| filter[word] & bit != 0);
-        holds(&self.young) || holds(&self.old)
+        self.generations.iter().any(|generation| generation.contains(fingerprint(hash)))
     }
 
     /// Remember a time without rows, s.
@@ -74,12 +77,8 @@ impl Memory {
     }
 }
 
-/// Words and bits of a hash.
-fn places(hash: u64) -> impl Iterator<Item = (usize, u64)> {
-    (0..BITS_OF_ROW).map(move |k| {
-        let place = (hash >> (16 * k)) as usize % (64 * WORDS);
-        (place / 64, 1 << (place % 64))
-    })
+fn fingerprint(hash: u64) -> u16 {
+    (hash >> 48) as u16
 }
 
 /// FNV-1a over the bytes of stamp and readings, mixed once more; one NaN is as good as another.

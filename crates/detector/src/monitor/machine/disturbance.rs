@@ -3,18 +3,18 @@
 use serde::{Deserialize, Serialize};
 
 use super::{LOOK_S, Monitor};
-use crate::estimator::observer::Snapshot;
+use crate::estimator::observer::Checkpoint;
 use crate::monitor::Reason;
 
-/// Time between two snapshots of an undisturbed observer, s. The one before the last is gone back to: a disturbance is noticed an hour or two late.
+/// Time between two checkpoints of an undisturbed observer, s. The one before the last is gone back to: a disturbance is noticed an hour or two late.
 const BETWEEN_S: f64 = 6.0 * 3600.0;
 
 /// The observer as it was before a disturbance.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Undisturbed {
     due_s: f64,
-    latest: Option<Snapshot>,
-    before: Option<Snapshot>,
+    latest: Option<Checkpoint>,
+    before: Option<Checkpoint>,
     /// The present row is the first one after a disturbance.
     returning: bool,
 }
@@ -28,8 +28,7 @@ impl Monitor {
             return;
         }
         if let Some(before) = &self.state.undisturbed.before {
-            self.observer.restore(before);
-            self.observer.begin_exchange();
+            self.observer.begin_exchange_from(before);
             self.state.undisturbed.returning = true;
             self.state.jumps.forget();
         }
@@ -44,7 +43,7 @@ impl Monitor {
             undisturbed.due_s = time_s + BETWEEN_S;
         } else if time_s >= undisturbed.due_s && self.state.parity.is_usual() {
             undisturbed.due_s = time_s + BETWEEN_S;
-            undisturbed.before = undisturbed.latest.replace(self.observer.snapshot());
+            undisturbed.before = undisturbed.latest.replace(self.observer.checkpoint());
         }
     }
 }

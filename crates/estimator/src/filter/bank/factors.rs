@@ -2,22 +2,26 @@
 use serde::{Deserialize, Serialize};
 
 use super::{UdBank, stride};
-use crate::filter::lanes::Lanes;
+use crate::filter::lanes::{LANES, Lanes};
 
-/// Factors without working memory, and of `U` what is above its diagonal, column by column.
+/// Factors of the filters that there are, without working memory, and of `U` what is above its diagonal, column by column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Factors {
     states: usize,
     leading: usize,
-    u: Vec<Lanes>,
-    d: Vec<Lanes>,
+    filters: usize,
+    /// Filter by filter, each element of `U` and of `d`.
+    u: Vec<f64>,
+    d: Vec<f64>,
 }
 
 impl From<UdBank> for Factors {
     fn from(bank: UdBank) -> Self {
+        let of_filters = |lanes: &Lanes| lanes.0.into_iter().take(bank.filters);
         let columns = bank.u.chunks_exact(stride(bank.n)).enumerate();
-        let u = columns.flat_map(|(j, column)| &column[..j]).copied().collect();
-        Self { states: bank.n, leading: bank.spans.len(), u, d: bank.d }
+        let u = columns.flat_map(|(j, column)| &column[..j]).flat_map(of_filters).collect();
+        let d = bank.d.iter().flat_map(of_filters).collect();
+        Self { states: bank.n, leading: bank.spans.len(), filters: bank.filters, u, d }
     }
 }
 
@@ -25,20 +29,23 @@ impl TryFrom<Factors> for UdBank {
     type Error = String;
 
     fn try_from(saved: Factors) -> Result<Self, String> {
-        let Factors { states, leading, u, d } = saved;
+        let Factors { states, leading, filters, u, d } = saved;
         let above = states.checked_mul(states.saturating_sub(1)).map(|twice| twice / 2);
-        if leading > states || d.len() != states || above != Some(u.len()) {
+        let times = |elements: usize| elements.checked_mul(filters);
+        let fits = Some(u.len()) == above.and_then(times) && Some(d.len()) == times(states);
+        if leading > states || !(1..=LANES).contains(&filters) || !fits {
             return Err(format!(
-                "factors of {states} states need as many columns, and {leading} moving ones"
+                "factors of {states} states need as many columns of one to {LANES} filters, and {leading} moving ones"
             ));
         }
-        let mut bank = Self { d, ..Self::new(states, leading) };
-        let mut left = u.as_slice();
+        let mut bank = Self { filters, ..Self::new(states, leading) };
+        // A lane without a filter does as the first one.
+        let lanes = |of: &[f64]| Lanes(std::array::from_fn(|lane| of.get(lane).copied().unwrap_or(of[0])));
+        let mut left = u.chunks_exact(filters).map(lanes);
         for (j, column) in bank.u.chunks_exact_mut(stride(states)).enumerate() {
-            let (own, others) = left.split_at(j);
-            column[..j].copy_from_slice(own);
-            left = others;
+            column[..j].iter_mut().zip(&mut left).for_each(|(to, from)| *to = from);
         }
+        bank.d = d.chunks_exact(filters).map(lanes).collect();
         Ok(bank)
     }
 }

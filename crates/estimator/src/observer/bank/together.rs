@@ -74,7 +74,8 @@ impl Together {
 
     /// Members with these covariances.
     pub fn new(cylinder: &Cylinder, factors: &[UdFactors<Dyn>]) -> Self {
-        let mut bank = UdBank::new(cylinder.states(), cylinder.leading());
+        let mut bank =
+            UdBank::new(cylinder.states(), cylinder.leading()).with_filters(factors.len());
         // A lane without a member does as the first one.
         for lane in 0..LANES {
             bank.set(lane, factors.get(lane).unwrap_or(&factors[0]));
