@@ -38,6 +38,7 @@ pub mod identify;
 mod least_squares;
 pub mod log;
 pub mod minimum;
+mod numbers;
 pub mod observer;
 pub mod placement;
 pub mod sensor;

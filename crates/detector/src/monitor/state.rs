@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The fingerprint is the SHA-256 of vessel, sensors and what the settings say of the rows: a state goes on only with the same. The payload is
-//! the state in postcard's format, which keeps every bit of every number.
+//! the state in postcard's format, which keeps every bit of every number. What is kept rounded is rounded when it is kept, not when it is saved.
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::lanes::{LANES, Lanes};
 use super::ud::UdFactors;
+use crate::numbers;
 
 mod factors;
 mod pattern;
@@ -96,6 +97,14 @@ impl UdBank {
     pub fn copy_from(&mut self, other: &Self) {
         self.u.copy_from_slice(&other.u);
         self.d.copy_from_slice(&other.d);
+    }
+
+    /// The same with every factor [coarse](numbers::coarse): still a covariance, whatever is rounded.
+    pub(crate) fn coarse(mut self) -> Self {
+        for value in self.u.iter_mut().chain(&mut self.d) {
+            value.0 = value.0.map(numbers::coarse);
+        }
+        self
     }
 
     /// Let a lane have the covariance of another one.

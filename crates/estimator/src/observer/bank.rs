@@ -14,6 +14,7 @@ use super::settings::LeakHypothesis;
 use crate::EstimatorError;
 use crate::filter::lanes::Lanes;
 use crate::filter::{StateSpace, UdFactors};
+use crate::numbers;
 use separate::Separate;
 use together::Together;
 
@@ -31,6 +32,16 @@ pub(super) struct Bank {
     pub members: Vec<Member>,
     covariances: Covariances,
     /// Time since slow walks were added, s.
+    slow_s: f64,
+}
+
+/// Means and covariances of the members, rounded.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Outline {
+    /// Member by member, of single precision.
+    #[serde(with = "numbers")]
+    means: Vec<f64>,
+    covariances: Covariances,
     slow_s: f64,
 }
 
@@ -118,6 +129,26 @@ impl Bank {
             }
             _ => self.clone_from(other),
         }
+    }
+
+    /// Means and covariances, rounded.
+    pub fn outline(&self) -> Outline {
+        let covariances = match &self.covariances {
+            Covariances::Together(packs) => {
+                Covariances::Together(packs.iter().map(Together::coarse).collect())
+            }
+            separate => separate.clone(),
+        };
+        let means = self.members.iter().flat_map(|member| &member.x).copied().map(numbers::single);
+        Outline { means: means.collect(), covariances, slow_s: self.slow_s }
+    }
+
+    /// Become as the outline of this bank is; no reading has been refused lately.
+    pub fn return_to(&mut self, outline: &Outline) {
+        let means = outline.means.chunks_exact((outline.means.len() / self.members.len().max(1)).max(1));
+        self.members.iter_mut().zip(means).for_each(|(member, mean)| member.place_at(mean));
+        self.covariances.clone_from(&outline.covariances);
+        self.slow_s = outline.slow_s;
     }
 
     /// Time update over an interval, in steps no longer than the settings allow.

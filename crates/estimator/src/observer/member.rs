@@ -6,6 +6,7 @@ use super::cylinder::Cylinder;
 use super::pass::Pass;
 use super::settings::LeakHypothesis;
 use crate::filter::kernel::axpy;
+use crate::numbers;
 
 /// What became of a reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -41,11 +42,13 @@ impl Innovation {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Member {
     pub hypothesis: LeakHypothesis,
+    #[serde(with = "numbers")]
     pub x: Vec<f64>,
     /// Rejections in a row of each sensor.
     rejected: Vec<u32>,
     pub innovations: Vec<Innovation>,
     /// Change of each sensor's expected reading by its last reading.
+    #[serde(with = "numbers")]
     pub pulled: Vec<f64>,
     /// Whether a constant or a film stood at its bound after the last step.
     pub at_bound: bool,
@@ -85,6 +88,12 @@ impl Member {
             (Some(to), Some(from)) => to.copy_from(from),
             (to, from) => to.clone_from(from),
         }
+    }
+
+    /// Have another mean (n), and no reading refused.
+    pub fn place_at(&mut self, mean: &[f64]) {
+        self.x.copy_from_slice(mean);
+        self.rejected.fill(0);
     }
 
     /// Whether it has seen so many sensors.

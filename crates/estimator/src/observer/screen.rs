@@ -34,32 +34,48 @@ pub struct FaultCount {
 /// Watch over one sensor.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Screen {
-    low: f64,
-    high: f64,
-    /// Pull, in the sensor's unit, from which identical readings are stuck.
-    limit: f64,
+    /// Those of the sensor: not saved.
+    #[serde(skip)]
+    limits: Limits,
     latest: f64,
     in_a_row: u32,
     pulled: f64,
+    pub count: FaultCount,
+}
+
+/// What a sensor can read and do.
+#[derive(Clone, Copy, Debug, Default)]
+struct Limits {
+    low: f64,
+    high: f64,
+    /// Pull, in the sensor's unit, from which identical readings are stuck.
+    pull: f64,
     /// Half a step of the readings.
     half_step: f64,
-    pub count: FaultCount,
+}
+
+impl Limits {
+    fn of(sensor: &Sensor) -> Self {
+        let (low, high) = sensor.usable_range();
+        let pull = PULLED * sensor.noise_variance().sqrt();
+        Self { low, high, pull, half_step: 0.5 * sensor.resolution }
+    }
 }
 
 impl Screen {
     pub fn new(sensor: &Sensor) -> Self {
-        let (low, high) = sensor.usable_range();
-        let limit = PULLED * sensor.noise_variance().sqrt();
         Self {
-            low,
-            high,
-            limit,
+            limits: Limits::of(sensor),
             latest: f64::NAN,
             in_a_row: 0,
             pulled: 0.0,
-            half_step: 0.5 * sensor.resolution,
             count: FaultCount::default(),
         }
+    }
+
+    /// The same screen of a sensor after it has been saved.
+    pub fn of(self, sensor: &Sensor) -> Self {
+        Self { limits: Limits::of(sensor), ..self }
     }
 
     /// Judge and count a reading; NaN is none.
@@ -67,7 +83,7 @@ impl Screen {
         if !reading.is_finite() {
             return None;
         }
-        if reading < self.low || reading > self.high {
+        if reading < self.limits.low || reading > self.limits.high {
             self.count.implausible += 1;
             return Some(Fault::Implausible);
         }
@@ -77,7 +93,7 @@ impl Screen {
             (self.latest, self.in_a_row, self.pulled) = (reading, 1, 0.0);
         }
         // A sensor without noise of its own tells nothing by standing still.
-        if self.in_a_row >= IN_A_ROW && self.limit > 0.0 && self.pulled.abs() > self.limit {
+        if self.in_a_row >= IN_A_ROW && self.limits.pull > 0.0 && self.pulled.abs() > self.limits.pull {
             self.count.stuck += 1;
             return Some(Fault::Stuck);
         }
@@ -91,7 +107,7 @@ impl Screen {
 
     /// A reading that was so far from its expectation has been used, and has changed it by so much.
     pub fn pull(&mut self, by: f64, innovation: f64) {
-        if innovation.abs() > self.half_step {
+        if innovation.abs() > self.limits.half_step {
             self.pulled += by;
         }
     }

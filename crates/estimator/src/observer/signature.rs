@@ -33,6 +33,7 @@ use super::Observer;
 use super::pass::Pass;
 use crate::filter::StateSpace;
 use crate::filter::kernel::{axpy, column, dot};
+use crate::numbers;
 
 /// Interval between possible onsets, s.
 const EVERY_S: f64 = 600.0;
@@ -71,8 +72,10 @@ struct Sums {
 pub(super) struct Onsets {
     sums: Vec<Sums>,
     /// What each has made of the member's error: (n), one after the other.
+    #[serde(with = "numbers")]
     responses: Vec<f64>,
     /// What the member was told: (n).
+    #[serde(with = "numbers")]
     told: Vec<f64>,
     /// When the next one comes, s.
     due_s: Option<f64>,

@@ -49,6 +49,9 @@ impl Observer {
     /// The clock and the model as they were.
     pub(super) fn turn_back(&mut self, clock: &Clock, warm_start: &WarmStart) {
         self.clock.clone_from(clock);
+        for (screen, sensor) in self.clock.screens.iter_mut().zip(self.cylinder.sensors()) {
+            *screen = screen.of(sensor);
+        }
         self.cylinder.set_loosened(&self.clock.loosened);
         self.cylinder.model().set_warm_start(warm_start);
     }

@@ -237,6 +237,24 @@ fn a_monitor_killed_and_restored_at_every_row_says_the_same_to_the_last_digit() 
 }
 
 /// Rows with one reading late by whole rows.
+#[test]
+fn a_state_stays_below_24_kb_over_sixty_days() {
+    let mut monitor = monitor();
+    let (mut first_days, mut largest) = (0, 0);
+    for row in 0..60 * 288 {
+        // Every fifth minute of four days, again and again.
+        let (t, readings) = tight()[5 * row % tight().len()];
+        let again_s = 4.0 * DAY_S * (5 * row / tight().len()) as f64;
+        monitor.step(again_s + t, &readings).unwrap();
+        if row % 100 == 99 {
+            let bytes = monitor.save().unwrap().len();
+            largest = largest.max(bytes);
+            first_days = if row < 3 * 288 { largest } else { first_days };
+        }
+    }
+    assert!(first_days < 22_000 && largest < 24_000, "{first_days} bytes in three days, {largest} in sixty");
+}
+
 fn late(rows: &Rows, sensor: usize, by: usize) -> Rows {
     let reading = |n: usize| rows[n.saturating_sub(by)].1[sensor];
     let mut late = rows.clone();

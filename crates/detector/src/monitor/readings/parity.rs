@@ -24,6 +24,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::monitor::median::{median, quantile};
 use crate::units::{DAY_S, HOUR_S};
+use calm::Calm;
+
+mod calm;
 
 /// Length of a window, s, and its fewest rows.
 const WINDOW_S: f64 = 600.0;
@@ -66,16 +69,6 @@ pub(in crate::monitor) enum Disturbance {
     Shifted(usize, f64),
 }
 
-/// Means of a calm window.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Calm {
-    begun_s: f64,
-    /// First less second thermometer, K.
-    apart_k: f64,
-    /// Each less the temperature that the pressure stands for, K; NaN without a pressure.
-    above_k: [f64; 2],
-}
-
 /// A thermometer that is off while the other one agrees with the pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Named {
@@ -92,6 +85,7 @@ struct Named {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct Parity {
     window: Option<Window>,
+    #[serde(with = "calm")]
     calm: VecDeque<Calm>,
     off_k: f64,
     /// How far the difference deviated from its median on other days, K, beyond the harmless.
@@ -145,11 +139,7 @@ impl Window {
         }
         let mean_k = self.sum_k.map(|sum_k| sum_k / f64::from(self.rows));
         let gas_k = gas_k(self.sum_pa / f64::from(self.rows), 0.5 * (mean_k[0] + mean_k[1]));
-        Some(Calm {
-            begun_s: self.begun_s,
-            apart_k: mean_k[0] - mean_k[1],
-            above_k: mean_k.map(|mean_k| mean_k - gas_k),
-        })
+        Some(Calm::new(self.begun_s, self.rows, self.sum_k, gas_k))
     }
 }
 
@@ -177,7 +167,7 @@ impl Parity {
         if let Some(calm) = completed {
             self.compare(calm);
         }
-        if self.calm.back().is_some_and(|calm| time_s - calm.begun_s > STALE_S) {
+        if self.calm.back().is_some_and(|calm| time_s - calm.begun_s() > STALE_S) {
             (self.off_k, self.named) = (0.0, None);
         }
         let beyond_k = (self.unusual_k() - HARMLESS_K).max(0.0);
@@ -205,12 +195,12 @@ impl Parity {
         }
         let forgotten = std::mem::take(&mut self.disturbed_s) > STALE_S;
         self.told = false;
-        forgotten.then(|| Disturbance::Over(self.latest_k(|calm| calm.apart_k) - self.usual_k))
+        forgotten.then(|| Disturbance::Over(self.latest_k(|calm| calm.apart_k()) - self.usual_k))
     }
 
     fn compare(&mut self, calm: Calm) {
         self.calm.push_back(calm);
-        let older = |than_s: f64| move |of: &Calm| of.begun_s < calm.begun_s - than_s;
+        let older = |than_s: f64| move |of: &Calm| of.begun_s() < calm.begun_s() - than_s;
         while self.calm.front().is_some_and(older(USUAL_S + DAY_S)) {
             self.calm.pop_front();
         }
@@ -221,15 +211,15 @@ impl Parity {
             return;
         }
         let before = self.calm.iter().rev().take(usual).skip(LATEST);
-        let usual_k = median(before.map(|calm| calm.apart_k));
+        let usual_k = median(before.map(|calm| calm.apart_k()));
         let yesterday = self.calm.partition_point(older(DAY_S));
-        let other_days = self.calm.range(..yesterday).map(|calm| (calm.apart_k - usual_k).abs());
-        self.off_k = self.latest_k(|calm| calm.apart_k) - usual_k;
+        let other_days = self.calm.range(..yesterday).map(|calm| (calm.apart_k() - usual_k).abs());
+        self.off_k = self.latest_k(|calm| calm.apart_k()) - usual_k;
         self.spread_k = (quantile(OTHER_DAYS, other_days) - HARMLESS_K / 2.0).max(0.0);
         if self.disturbed_s == 0.0 {
             self.usual_k = usual_k;
         }
-        self.name(calm.begun_s);
+        self.name(calm.begun_s());
     }
 
     fn name(&mut self, time_s: f64) {
@@ -251,7 +241,7 @@ impl Parity {
 
     /// Which one has left what the pressure stands for, against so many windows before, while the other one has not.
     fn which_is_off(&self, against: usize) -> Option<usize> {
-        let above_k = [0, 1].map(|i| self.change_k(against, |calm| calm.above_k[i]));
+        let above_k = [0, 1].map(|i| self.change_k(against, |calm| calm.above_k()[i]));
         let which = usize::from(above_k[1].abs() > above_k[0].abs());
         // Not so without a pressure.
         let agrees = above_k[1 - which].abs() < NAMED * self.off_k.abs();
@@ -293,7 +283,7 @@ impl Parity {
     pub fn divisor(&self) -> f64 {
         let first = self.calm.len().checked_sub(LATEST).and_then(|at| self.calm.get(at));
         let unknown =
-            first.is_some_and(|first| (STALE_S / 2.0..STALE_S).contains(&(self.last_s - first.begun_s)));
+            first.is_some_and(|first| (STALE_S / 2.0..STALE_S).contains(&(self.last_s - first.begun_s())));
         (1.0 + self.excess).max(if unknown { UNKNOWN } else { 1.0 })
     }
 

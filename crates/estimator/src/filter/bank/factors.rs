@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{UdBank, stride};
 use crate::filter::lanes::{LANES, Lanes};
+use crate::numbers;
 
 /// Factors of the filters that there are, without working memory, and of `U` what is above its diagonal, column by column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -11,7 +12,9 @@ pub(super) struct Factors {
     leading: usize,
     filters: usize,
     /// Filter by filter, each element of `U` and of `d`.
+    #[serde(with = "numbers")]
     u: Vec<f64>,
+    #[serde(with = "numbers")]
     d: Vec<f64>,
 }
 

@@ -74,8 +74,7 @@ impl Together {
 
     /// Members with these covariances.
     pub fn new(cylinder: &Cylinder, factors: &[UdFactors<Dyn>]) -> Self {
-        let mut bank =
-            UdBank::new(cylinder.states(), cylinder.leading()).with_filters(factors.len());
+        let mut bank = UdBank::new(cylinder.states(), cylinder.leading()).with_filters(factors.len());
         // A lane without a member does as the first one.
         for lane in 0..LANES {
             bank.set(lane, factors.get(lane).unwrap_or(&factors[0]));
@@ -87,6 +86,11 @@ impl Together {
     pub fn copy_from(&mut self, other: &Self) {
         self.bank.copy_from(&other.bank);
         self.groups.clone_from(&other.groups);
+    }
+
+    /// Covariances with factors that are [coarse](UdBank::coarse).
+    pub fn coarse(&self) -> Self {
+        Self { bank: self.bank.clone().coarse(), groups: Vec::new() }
     }
 
     /// Time update over an interval, in steps no longer than the settings allow.

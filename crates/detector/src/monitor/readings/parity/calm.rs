@@ -1,0 +1,103 @@
+//! Calm windows, of which there are hundreds, in whole numbers: when each began, ms, and sums over its rows in units of half a millikelvin.
+//!
+//! Thermometers read in hundredths, thousandths or sixteenths of a kelvin: the difference of two of them is exact so. What the pressure stands for is rounded.
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Deserializer, Serializer};
+
+/// The unit, K.
+const UNIT_K: f64 = 5e-4;
+/// Where there is no pressure.
+const NONE: i32 = i32::MIN;
+
+/// Means of a calm window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Calm {
+    begun_ms: i64,
+    rows: u32,
+    /// Sum of the first less the second thermometer, units.
+    apart: i32,
+    /// Mean of the first less the temperature that the pressure stands for, units.
+    above: i32,
+}
+
+impl Calm {
+    /// A window that began then, s, of so many rows, with the sums of two thermometers and the temperature that the pressure stands for, K, NaN without a
+    /// pressure.
+    pub fn new(begun_s: f64, rows: u32, sums_k: [f64; 2], gas_k: f64) -> Self {
+        let units = |of_k: f64| (of_k / UNIT_K).round() as i32;
+        let above = if gas_k.is_nan() { NONE } else { units(sums_k[0] / f64::from(rows) - gas_k) };
+        Self { begun_ms: (1e3 * begun_s).round() as i64, rows, apart: units(sums_k[0] - sums_k[1]), above }
+    }
+
+    /// When it began, s.
+    pub fn begun_s(&self) -> f64 {
+        self.begun_ms as f64 / 1e3
+    }
+
+    /// First less second thermometer, K.
+    pub fn apart_k(&self) -> f64 {
+        UNIT_K * f64::from(self.apart) / f64::from(self.rows)
+    }
+
+    /// Each less the temperature that the pressure stands for, K; NaN without a pressure.
+    pub fn above_k(&self) -> [f64; 2] {
+        let first_k = if self.above == NONE { f64::NAN } else { UNIT_K * f64::from(self.above) };
+        [first_k, first_k - self.apart_k()]
+    }
+}
+
+/// Write windows, each with the time since the one before.
+pub(super) fn serialize<S: Serializer>(windows: &VecDeque<Calm>, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut before_ms = 0;
+    serializer.collect_seq(windows.iter().map(|calm| {
+        let since_ms = calm.begun_ms.wrapping_sub(std::mem::replace(&mut before_ms, calm.begun_ms));
+        (since_ms, calm.rows, calm.apart, calm.above)
+    }))
+}
+
+/// Read windows.
+pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<VecDeque<Calm>, D::Error> {
+    let saved = Vec::<(i64, u32, i32, i32)>::deserialize(deserializer)?;
+    let mut begun_ms = 0_i64;
+    let windows = saved.into_iter().map(|(since_ms, rows, apart, above)| {
+        begun_ms = begun_ms.wrapping_add(since_ms);
+        Calm { begun_ms, rows, apart, above }
+    });
+    Ok(windows.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Serialize;
+
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Saved(#[serde(with = "super")] VecDeque<Calm>);
+
+    #[test]
+    fn windows_come_back_in_ten_bytes_each() {
+        let window = |n: u32| {
+            let gas_k = if n % 7 == 0 { f64::NAN } else { 279.0 };
+            Calm::new(1.7e9 + 600.1 * f64::from(n), 5, [1400.0 + 0.01 * f64::from(n), 1400.3], gas_k)
+        };
+        let saved = Saved((0..400).map(window).collect());
+        let bytes = postcard::to_stdvec(&saved).unwrap();
+        assert!(bytes.len() < 4000, "{} bytes", bytes.len());
+        assert_eq!(postcard::from_bytes::<Saved>(&bytes).unwrap(), saved);
+    }
+
+    #[test]
+    fn a_difference_of_readings_in_hundredths_or_sixteenths_is_that_of_their_means() {
+        for step_k in [0.01, 0.0625] {
+            let sums_k = [23.0, 31.0].map(|steps| 3.0 * 280.0 + steps * step_k);
+            let calm = Calm::new(0.0, 3, sums_k, 280.1);
+            assert!((calm.apart_k() + 8.0 * step_k / 3.0).abs() < 1e-12);
+            let [first_k, second_k] = calm.above_k();
+            assert!((first_k - (23.0 * step_k / 3.0 - 0.1)).abs() <= 0.5 * UNIT_K);
+            assert!((first_k - second_k - calm.apart_k()).abs() < 1e-12);
+        }
+        assert!(Calm::new(0.0, 3, [840.0; 2], f64::NAN).above_k().iter().all(|of_k| of_k.is_nan()));
+    }
+}
