@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn windows_come_back_in_ten_bytes_each() {
         let window = |n: u32| {
-            let gas_k = if n % 7 == 0 { f64::NAN } else { 279.0 };
+            let gas_k = if n.is_multiple_of(7) { f64::NAN } else { 279.0 };
             Calm::new(1.7e9 + 600.1 * f64::from(n), 5, [1400.0 + 0.01 * f64::from(n), 1400.3], gas_k)
         };
         let saved = Saved((0..400).map(window).collect());
