@@ -45,11 +45,11 @@ const OWN: [Own; 1] = [Own {
     full_pa: 170e5..=210e5,
     // Of 204 cylinders, 34.6 years together, a third of them with gas in layers.
     tails: Tails([
-        Tail { level: 2.0045, interval_s: 4.3212e5, scale: 1.2041, shape: -0.072 },
-        Tail { level: 3.4995, interval_s: 1.7294e6, scale: 1.5064, shape: -0.243 },
-        Tail { level: 3.3909, interval_s: 3.4560e6, scale: 1.2800, shape: -0.249 },
-        Tail { level: 3.5608, interval_s: 1.2186e7, scale: 1.1996, shape: -0.082 },
-        Tail { level: 2.7858, interval_s: 2.6438e7, scale: 0.9135, shape: 0.249 },
+        Tail { level: 1.8239, interval_s: 4.3212e5, scale: 1.0834, shape: -0.086 },
+        Tail { level: 3.5588, interval_s: 1.7294e6, scale: 1.5122, shape: -0.223 },
+        Tail { level: 3.3987, interval_s: 3.4560e6, scale: 1.2393, shape: -0.203 },
+        Tail { level: 3.5676, interval_s: 1.2186e7, scale: 1.1631, shape: -0.051 },
+        Tail { level: 2.8058, interval_s: 2.6438e7, scale: 0.8693, shape: 0.249 },
     ]),
 }];
 
