@@ -118,7 +118,8 @@ impl Member {
     ///
     /// What a state may not be the others take on as far as they are correlated with it, so that readings are explained as before: the state within the bound that is nearest
     /// in the metric of the covariance (D. Simon, IET Control Theory Appl. 4 (2010) 1303). Were it cut off alone, the pressure would be expected too high from then on, row
-    /// by row, which is what a leak looks like.
+    /// by row, which is what a leak looks like. A state that has gone farther than its standard deviation in one row did not creep there, as in a filling: what its covariance
+    /// says of the others is worth nothing then, and it is cut off alone.
     pub fn bound(&mut self, cylinder: &Cylinder, covariance: impl Fn(usize, &mut [f64]), memory: &mut [f64]) {
         self.at_bound = false;
         for &(state, low, high) in cylinder.bounds() {
@@ -129,7 +130,7 @@ impl Member {
             self.at_bound = true;
             covariance(state, memory);
             let variance = memory[state];
-            if variance > 0.0 {
+            if variance > 0.0 && lacks * lacks <= variance {
                 memory.iter_mut().for_each(|of| *of /= variance);
                 axpy(lacks, memory, &mut self.x);
                 if let Some(pass) = &mut self.pass {

@@ -107,7 +107,7 @@ fn what_a_constant_may_not_be_the_other_states_take_on() {
         }
         let (names, covariance) = (observer.cylinder.state_map().names.clone(), observer.bank.covariance(0));
         assert!(covariance[(observer.cylinder.state_map().mass, observer.cylinder.states() - 1)] != 0.0);
-        for (state, low, high) in observer.cylinder.bounds().to_vec() {
+        for (state, _, high) in observer.cylinder.bounds().to_vec() {
             let variance = covariance[(state, state)];
             if variance == 0.0 {
                 continue;
@@ -116,7 +116,7 @@ fn what_a_constant_may_not_be_the_other_states_take_on() {
             allowed[state] = high;
             let mut bank = observer.bank.clone();
             for (x, i) in bank.members[0].x.iter_mut().zip(0..) {
-                *x = allowed[i] + covariance[(i, state)] / variance * 1e-3 * (high - low);
+                *x = allowed[i] + covariance[(i, state)] / variance * 0.5 * variance.sqrt();
             }
             bank.update(
                 &mut observer.cylinder,
