@@ -79,3 +79,26 @@ fn check(campaign: &Campaign, stretch: f64) -> anyhow::Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Program {
+        #[command(flatten)]
+        arguments: CommissionArguments,
+    }
+
+    #[test]
+    fn the_seed_is_that_of_the_cylinders_and_of_the_fit() {
+        let of = |seed: &str| {
+            let words = ["commission", "nitrogen-20l", "-o", "-", "--seed", seed];
+            let options = Options::checked(Program::parse_from(words).arguments).unwrap();
+            assert_eq!(options.fit.seed.to_string(), seed);
+            options.campaign.requests()[0].seed
+        };
+        assert_ne!(of("1"), of("2"));
+    }
+}

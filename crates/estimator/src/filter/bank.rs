@@ -156,15 +156,6 @@ impl UdBank {
         sum
     }
 
-    /// Write the covariance of state `i` of a lane with all its states: (n).
-    pub fn write_column(&self, lane: usize, i: usize, y: &mut [f64]) {
-        y.fill(0.0);
-        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(i) {
-            let by = d.0[lane] * u[i].0[lane];
-            y.iter_mut().zip(u).for_each(|(y, u)| *y += by * u.0[lane]);
-        }
-    }
-
     /// Variance of state `i` of every lane.
     pub fn variances(&self, i: usize) -> Lanes {
         let mut sum = [Lanes::ZERO; 2];

@@ -74,7 +74,8 @@ impl Covariances {
         match self {
             Self::Together(packs) => {
                 let (pack, lane) = place(index);
-                packs[pack].bank.write_column(lane, state, column);
+                let of = |other| packs[pack].bank.covariance_of(lane, state, other);
+                column.iter_mut().zip(0..).for_each(|(with, other)| *with = of(other));
             }
             Self::Separate(all) => all[index].write_column(state, column),
         }
@@ -145,8 +146,12 @@ impl Bank {
 
     /// Become as the outline of this bank is; no reading has been refused lately.
     pub fn return_to(&mut self, outline: &Outline) {
-        let means = outline.means.chunks_exact((outline.means.len() / self.members.len().max(1)).max(1));
-        self.members.iter_mut().zip(means).for_each(|(member, mean)| member.place_at(mean));
+        let mut means = outline.means.as_slice();
+        for member in &mut self.members {
+            let (own, others) = means.split_at(member.x.len());
+            member.place_at(own);
+            means = others;
+        }
         self.covariances.clone_from(&outline.covariances);
         self.slow_s = outline.slow_s;
     }

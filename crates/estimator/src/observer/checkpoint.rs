@@ -52,27 +52,28 @@ mod tests {
         Observer::new(&vessel, &sensors, &filled, &ObserverSettings::default()).unwrap()
     }
 
-    fn rows(observer: &mut Observer, minutes: std::ops::Range<u32>) -> Vec<Estimate> {
+    /// Rows of these minutes, with a shoulder that reads so much too warm, K.
+    fn rows(observer: &mut Observer, minutes: std::ops::Range<u32>, off_k: f64) -> Vec<Estimate> {
         let row = |minute: u32| {
             let warm_k = 4.0 * (f64::from(minute) / 300.0).sin();
-            [288.0 + warm_k, 288.1 + warm_k, 200e5 + 0.7e5 * warm_k]
+            [288.0 + warm_k + off_k, 288.1 + warm_k, 200e5 + 0.7e5 * warm_k]
         };
         minutes.map(|minute| observer.step(60.0 * f64::from(minute), &row(minute)).unwrap()).collect()
     }
 
-    /// An observer after a disturbance, and its checkpoint before that.
+    /// An observer after a disturbance, and what it was before that.
     fn disturbed() -> (Observer, Checkpoint, super::super::Snapshot) {
         let mut observer = new();
-        rows(&mut observer, 0..600);
+        rows(&mut observer, 0..600, 0.0);
         let (checkpoint, snapshot) = (observer.checkpoint(), observer.snapshot());
-        rows(&mut observer, 600..900);
+        rows(&mut observer, 600..900, 3.0);
         (observer, checkpoint, snapshot)
     }
 
     fn go_on(observer: &mut Observer) -> Vec<Estimate> {
-        let first = rows(observer, 900..901);
+        let first = rows(observer, 900..901, 0.0);
         observer.end_exchange();
-        first.into_iter().chain(rows(observer, 901..1500)).collect()
+        first.into_iter().chain(rows(observer, 901..1500, 0.0)).collect()
     }
 
     #[test]

@@ -138,9 +138,11 @@ impl Member {
                 }
             }
         }
-        // What another one has pushed beyond its own.
-        for &(state, low, high) in cylinder.bounds() {
-            self.x[state] = self.x[state].clamp(low, high);
+        if self.at_bound {
+            // Those that were cut off alone, and what another one has pushed beyond its own.
+            for &(state, low, high) in cylinder.bounds() {
+                self.x[state] = self.x[state].clamp(low, high);
+            }
         }
     }
 

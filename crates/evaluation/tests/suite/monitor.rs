@@ -236,7 +236,6 @@ fn a_monitor_killed_and_restored_at_every_row_says_the_same_to_the_last_digit() 
     assert_eq!(print(&outputs), print(&expected));
 }
 
-/// Rows with one reading late by whole rows.
 #[test]
 fn a_state_stays_below_25_kb_over_sixty_days() {
     let mut monitor = monitor();
@@ -255,6 +254,7 @@ fn a_state_stays_below_25_kb_over_sixty_days() {
     assert!(first_days < 22_000 && largest < 25_000, "{first_days} bytes in four days, {largest} in sixty");
 }
 
+/// Rows with one reading late by whole rows.
 fn late(rows: &Rows, sensor: usize, by: usize) -> Rows {
     let reading = |n: usize| rows[n.saturating_sub(by)].1[sensor];
     let mut late = rows.clone();

@@ -11,7 +11,7 @@ pub(super) struct Factors {
     states: usize,
     leading: usize,
     filters: usize,
-    /// Filter by filter, each element of `U` and of `d`.
+    /// Of each element of `U`, and of `d`, the value in every filter.
     #[serde(with = "numbers")]
     u: Vec<f64>,
     #[serde(with = "numbers")]
