@@ -119,7 +119,7 @@ pub fn intention(nominal: &NominalVessel, campaign: &Campaign) -> String {
     let Worlds { climates, gases, sensors, rows, cylinders, days, cylinder_years } = Worlds::of(campaign);
     format!(
         "{}: simulating {cylinders} tight cylinders of {} d ({} years)\n  fill {} to {} bar at 15 °C, transmitter up to {} bar, \
-         seed {}\n  climates {}; gas {}; sensors {}; rows {}",
+         seed {}\n  climates {}; gas {}; sensors {} on each; rows {}",
         nominal.vessel.name,
         number(days, 4),
         number(cylinder_years, 3),

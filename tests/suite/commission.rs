@@ -163,7 +163,7 @@ fn what_cannot_be_commissioned_is_refused_before_anything_is_simulated() {
         refused(folder, &[&["commission", "nitrogen-20l", "-o", "out.json"], more].concat(), words);
         assert!(files(folder).is_empty());
     };
-    refuses(&["--cylinders", "100"], &["--cylinders 100", "202 are needed", "62 d"]);
+    refuses(&["--cylinders", "100"], &["--cylinders 100", "102 are needed", "62 d"]);
     refuses(&["--days", "30"], &["--days 30", "30.04 d and longer"]);
     refuses(&["--days", "nan"], &["--days NaN"]);
     refuses(&["--days", "500"], &["--days", "between"]);

@@ -47,7 +47,7 @@ pub struct CommissionArguments {
     #[arg(long = "gas", value_name = "LIST", value_delimiter = ',', value_parser = kinds(GasKind::ALL, GasKind::key),
         default_value = listed(&Campaign::default().gases))]
     pub gases: Vec<GasKind>,
-    /// Classes of sensors.
+    /// Classes of sensors; every cylinder has a set of each.
     #[arg(long = "sensor-class", value_name = "LIST", value_delimiter = ',',
         value_parser = kinds(SensorClass::ALL, SensorClass::key), default_value = listed(&Campaign::default().sensors))]
     pub sensors: Vec<SensorClass>,
@@ -92,8 +92,8 @@ that its statistics exceed once in the stated time. The rate of false alarms tha
 them is that of one half of the cylinders at thresholds fitted to the other half.
 
 A cylinder with another fill, another wall or other surroundings needs thresholds of its own. Some
-200 cylinders of two months are the least that the slowest statistic can be fitted to. Ctrl-C ends
-the run and leaves nothing.
+100 cylinders of two months with two sets of sensors are the least that the slowest statistic can
+be fitted to. Ctrl-C ends the run and leaves nothing.
 
 Examples:
   cylwatch commission nitrogen-20l -o thresholds.json

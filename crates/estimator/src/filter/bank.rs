@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 
 use super::lanes::{LANES, Lanes};
 use super::ud::UdFactors;
-use crate::numbers;
 
 mod factors;
 mod pattern;
@@ -99,12 +98,11 @@ impl UdBank {
         self.d.copy_from_slice(&other.d);
     }
 
-    /// The same with every factor [coarse](numbers::coarse): still a covariance, whatever is rounded.
-    pub(crate) fn coarse(mut self) -> Self {
+    /// Round every factor: still a covariance, whatever is rounded.
+    pub(crate) fn round(&mut self, rounded: impl Fn(f64) -> f64) {
         for value in self.u.iter_mut().chain(&mut self.d) {
-            value.0 = value.0.map(numbers::coarse);
+            value.0 = value.0.map(&rounded);
         }
-        self
     }
 
     /// Let a lane have the covariance of another one.

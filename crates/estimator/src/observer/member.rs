@@ -91,8 +91,8 @@ impl Member {
     }
 
     /// Have another mean (n), and no reading refused.
-    pub fn place_at(&mut self, mean: &[f64]) {
-        self.x.copy_from_slice(mean);
+    pub fn place_at(&mut self, mean: impl Iterator<Item = f64>) {
+        self.x.iter_mut().zip(mean).for_each(|(x, mean)| *x = mean);
         self.rejected.fill(0);
     }
 

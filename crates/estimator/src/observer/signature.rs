@@ -115,6 +115,11 @@ impl Onsets {
         })
     }
 
+    /// Round the responses, and what the member was told, to single precision.
+    pub fn round(&mut self) {
+        self.responses.iter_mut().chain(&mut self.told).for_each(|value| *value = numbers::single(*value));
+    }
+
     /// None any more.
     pub fn clear(&mut self) {
         self.sums.clear();

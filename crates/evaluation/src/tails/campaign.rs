@@ -9,19 +9,21 @@ use super::found::FOLDS;
 use super::record::{HOUR_S, Record};
 use crate::EvaluationError;
 use crate::world::{
-    Climate, Family, GasKind, NominalVessel, Request, RowPattern, SensorClass, Simulated, VesselKind, World,
+    Climate, Family, GasKind, NominalVessel, Request, RowPattern, SensorClass, Simulated, SimulationKey,
+    VesselKind, World,
 };
 
 const DAY_S: f64 = 86_400.0;
 
-/// Tight cylinders around a vessel, each with another seed. The families are gone through in turn; a kind that is named twice has twice as many.
+/// Tight cylinders around a vessel, each with another seed, and each read by all classes of sensors. The other kinds are gone through in turn; one that is named twice
+/// has twice as many cylinders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campaign {
     /// Climates.
     pub climates: Vec<Climate>,
     /// How the gas and the wall of the truth are resolved.
     pub gases: Vec<GasKind>,
-    /// Sensors.
+    /// Sensors, a set of each class on every cylinder.
     pub sensors: Vec<SensorClass>,
     /// How often rows come.
     pub rows: Vec<RowPattern>,
@@ -42,7 +44,7 @@ impl Default for Campaign {
             gases: vec![GasKind::Mixed, GasKind::Stratified, GasKind::FullMesh],
             sensors: vec![SensorClass::ClassB, SensorClass::Transmitter],
             rows: vec![RowPattern::FiveMinutes],
-            cylinders: 204,
+            cylinders: 117,
             length_s: 62.0 * DAY_S,
             seed: 1,
         }
@@ -54,7 +56,7 @@ impl Campaign {
     /// no number is enough, because a log has no whole stretch. `stretch` as in [`Record::stretch_h`].
     pub fn needed(&self, stretch: f64) -> Option<usize> {
         // The last hour may have lost its rows.
-        let each = ((self.length_s - HOUR_S) / longest_s(stretch)) as usize;
+        let each = self.sensors.len() * ((self.length_s - HOUR_S) / longest_s(stretch)) as usize;
         // One more in each half, for halves that are not quite alike.
         (each > 0).then(|| FOLDS * (STRETCHES.div_ceil(each) + 1))
     }
@@ -64,26 +66,26 @@ impl Campaign {
         HOUR_S + longest_s(stretch)
     }
 
-    /// What is to be simulated. The kind of vessel is only a name. Seeds are far from those of plans that judge.
+    /// What is to be watched, cylinder by cylinder. The kind of vessel is only a name. Seeds are far from those of plans that judge.
     pub fn requests(&self) -> Vec<Request> {
-        let families: Vec<Family> = self.families().collect();
-        let request = |cylinder: usize| {
+        let around: Vec<_> = self.around().collect();
+        let of_cylinder = |cylinder: usize| {
+            let (climate, gas, rows) = around[cylinder % around.len()];
             let seed = (self.seed.wrapping_add(1) << 32) + cylinder as u64;
-            Request::tight(families[cylinder % families.len()], seed, self.length_s)
+            self.sensors.iter().zip(0..).map(move |(&sensors, set)| {
+                let family = Family { vessel: VesselKind::Nitrogen20, climate, gas, sensors, rows };
+                Request { set, ..Request::tight(family, seed, self.length_s) }
+            })
         };
-        if families.is_empty() { Vec::new() } else { (0..self.cylinders).map(request).collect() }
+        if around.is_empty() { Vec::new() } else { (0..self.cylinders).flat_map(of_cylinder).collect() }
     }
 
-    /// Every combination of the kinds, the sensors fastest.
-    fn families(&self) -> impl Iterator<Item = Family> {
-        let vessel = VesselKind::Nitrogen20;
+    /// Every combination of the kinds but the sensors, the climates fastest.
+    fn around(&self) -> impl Iterator<Item = (Climate, GasKind, RowPattern)> {
         self.rows.iter().flat_map(move |&rows| {
-            self.gases.iter().flat_map(move |&gas| {
-                self.climates.iter().flat_map(move |&climate| {
-                    let of = move |&sensors: &SensorClass| Family { vessel, climate, gas, sensors, rows };
-                    self.sensors.iter().map(of)
-                })
-            })
+            self.gases
+                .iter()
+                .flat_map(move |&gas| self.climates.iter().map(move |&climate| (climate, gas, rows)))
         })
     }
 }
@@ -94,7 +96,7 @@ fn longest_s(stretch: f64) -> f64 {
     hours.into_iter().fold(0.0, |longest, hours| longest.max(HOUR_S * hours as f64))
 }
 
-/// A cylinder that was watched.
+/// A cylinder that was watched with one set of sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watched {
     /// What decided its world.
@@ -119,7 +121,8 @@ pub fn watch(world: &World, settings: &MonitorSettings) -> Result<Watched, Evalu
     Ok(Watched { request: world.request, record })
 }
 
-/// Simulate cylinders around a vessel and watch each, on all threads; the same on any number of them. `progress` is told the part that is done.
+/// Simulate cylinders around a vessel and watch each, on all threads; the same on any number of them. Requests of one simulation that follow each other share it.
+/// `progress` is told the part that is done.
 ///
 /// # Errors
 /// A simulation that fails, or as [`watch`].
@@ -130,13 +133,18 @@ pub fn watch_all(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Vec<Watched>, EvaluationError> {
     let done = AtomicUsize::new(0);
-    let one = |request: &Request| {
-        let watched = watch(&Simulated::around(nominal.clone(), request)?.world(request)?, settings)?;
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+    let one = |requests_of_it: &[Request]| {
+        let simulated = Simulated::around(nominal.clone(), &requests_of_it[0])?;
+        let watched = requests_of_it.iter().map(|request| watch(&simulated.world(request)?, settings));
+        let watched = watched.collect::<Result<Vec<_>, EvaluationError>>()?;
+        let done = done.fetch_add(watched.len(), Ordering::Relaxed) + watched.len();
         progress(done as f64 / requests.len() as f64);
         Ok(watched)
     };
-    requests.par_iter().with_max_len(1).map(one).collect()
+    let shared = |a: &Request, b: &Request| SimulationKey::of(a) == SimulationKey::of(b);
+    let simulations: Vec<&[Request]> = requests.chunk_by(shared).collect();
+    let watched = simulations.into_par_iter().with_max_len(1).map(one);
+    Ok(watched.collect::<Result<Vec<_>, EvaluationError>>()?.concat())
 }
 
 #[cfg(test)]
@@ -146,10 +154,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_cylinder_has_a_seed_of_its_own_and_families_come_in_turn() {
-        let campaign = Campaign { cylinders: 36, ..Campaign::default() };
+    fn each_cylinder_has_a_seed_of_its_own_and_all_sensors_and_the_other_kinds_come_in_turn() {
+        let campaign = Campaign { cylinders: 18, ..Campaign::default() };
         let requests = campaign.requests();
-        assert_eq!(requests.iter().map(|request| request.seed).collect::<BTreeSet<_>>().len(), 36);
+        assert_eq!(requests.iter().map(|request| request.seed).collect::<BTreeSet<_>>().len(), 18);
+        for pair in requests.chunks(2) {
+            assert_eq!(SimulationKey::of(&pair[0]), SimulationKey::of(&pair[1]));
+            assert!(pair[0].set != pair[1].set && pair[0].family.sensors != pair[1].family.sensors);
+        }
         let next = Campaign { seed: 2, ..campaign }.requests();
         assert!(requests.iter().all(|request| next.iter().all(|other| other.seed != request.seed)));
         assert!(requests.iter().all(|request| request.seed > 1 << 32));
@@ -163,7 +175,7 @@ mod tests {
     fn two_hundred_stretches_of_the_slowest_scale_are_needed_in_each_half() {
         let of_days = |days: f64| Campaign { length_s: days * DAY_S, ..Campaign::default() }.needed(1.0);
         // A month each: 62 days have two stretches, 30 none that is over.
-        assert_eq!((of_days(62.0), of_days(31.0), of_days(30.0)), (Some(202), Some(402), None));
+        assert_eq!((of_days(62.0), of_days(31.0), of_days(30.0)), (Some(102), Some(202), None));
         assert!(Campaign::shortest_s(1.0) > 30.0 * DAY_S && Campaign::shortest_s(1.0) <= 31.0 * DAY_S);
     }
 
@@ -172,7 +184,6 @@ mod tests {
         let campaign = Campaign {
             climates: vec![Climate::Workshop],
             gases: vec![GasKind::Mixed],
-            rows: vec![RowPattern::FiveMinutes],
             cylinders: 3,
             length_s: 0.5 * DAY_S,
             ..Campaign::default()

@@ -66,7 +66,7 @@ pub fn commission(watched: &[Watched], settings: &FitSettings) -> Result<Commiss
     let records: Vec<&Record> = watched.iter().map(|watched| &watched.record).collect();
     let tails = fit(&records, stretch)?;
     let thresholds = tails.thresholds(mean_time_s)?;
-    let intervals = interval(&records, stretch, mean_time_s, seed)?;
+    let intervals = interval(watched, stretch, mean_time_s, seed)?;
     let of = |scale: Scale| CommissionedScale {
         scale,
         tail: tails.0[scale as usize],

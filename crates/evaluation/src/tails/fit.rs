@@ -2,16 +2,20 @@
 //!
 //! The law is that of [`Tail`]. Its level is the value that one in ten stretches exceeds. Scale and shape are those of largest likelihood
 //! (Grimshaw's profile in `k/s`), the shape kept within -1/4 to 1/4: beyond, hundreds of peaks do not tell it. The interval of a threshold is that of
-//! records drawn again with replacement, whole cylinders at a time.
+//! records drawn again with replacement, whole cylinders with all their sets of sensors at a time.
 //!
 //! Source: J. Pickands, Ann. Stat. 3 (1975) 119; S. D. Grimshaw, Technometrics 35 (1993) 185.
+use std::collections::BTreeMap;
+
 use cylwatch_detector::evidence::{Scale, Tail, Tails, Thresholds};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use super::campaign::Watched;
 use super::record::{HOUR_S, Record};
 use crate::EvaluationError;
+use crate::world::SimulationKey;
 
 /// Part of the stretches that the tail is fitted to.
 const PART: f64 = 0.1;
@@ -71,18 +75,23 @@ fn fit_peaks(peaks: &[&Peaks], stretch: f64) -> Result<Tails, EvaluationError> {
     Ok(Tails([a?, b?, c?, d?, e?]))
 }
 
-/// Low and high thresholds, 95 %, of a mean time between false alarms, s: of draws of as many records with replacement.
+/// Low and high thresholds, 95 %, of a mean time between false alarms, s: of draws of as many cylinders with replacement.
 ///
 /// # Errors
 /// As [`fit`], or the time is not positive.
 pub fn interval(
-    records: &[&Record],
+    watched: &[Watched],
     stretch: f64,
     mean_time_s: f64,
     seed: u64,
 ) -> Result<[(f64, f64); Scale::ALL.len()], EvaluationError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let peaks: Vec<Peaks> = records.iter().map(|record| peaks(record, stretch)).collect();
+    let mut of_simulations: BTreeMap<SimulationKey, Peaks> = BTreeMap::new();
+    for Watched { request, record } in watched {
+        let all = of_simulations.entry(SimulationKey::of(request)).or_default();
+        all.iter_mut().zip(peaks(record, stretch)).for_each(|(all, of_set)| all.extend(of_set));
+    }
+    let peaks: Vec<Peaks> = of_simulations.into_values().collect();
     let mut draw = || peaks.iter().map(|_| &peaks[random.random_range(0..peaks.len())]).collect();
     let draws: Vec<Vec<&Peaks>> = (0..DRAWS).map(|_| draw()).collect();
     let thresholds = |again: &Vec<&Peaks>| Ok(fit_peaks(again, stretch)?.thresholds(mean_time_s)?);

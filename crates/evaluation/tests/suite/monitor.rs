@@ -237,7 +237,7 @@ fn a_monitor_killed_and_restored_at_every_row_says_the_same_to_the_last_digit() 
 }
 
 #[test]
-fn a_state_stays_below_25_kb_over_sixty_days() {
+fn a_state_stays_below_16_kb_over_sixty_days() {
     let mut monitor = monitor();
     let (mut first_days, mut largest) = (0, 0);
     // Four days again and again: every fifth minute, and every thirtieth between the first and the last ones.
@@ -251,7 +251,7 @@ fn a_state_stays_below_25_kb_over_sixty_days() {
         }
         first_days = if again == 0 { largest } else { first_days };
     }
-    assert!(first_days < 22_000 && largest < 25_000, "{first_days} bytes in four days, {largest} in sixty");
+    assert!(first_days < 15_000 && largest < 16_000, "{first_days} bytes in four days, {largest} in sixty");
 }
 
 /// Rows with one reading late by whole rows.

@@ -5,7 +5,6 @@
 //! or slower.
 use serde::{Deserialize, Serialize};
 
-use super::exact;
 use super::row::Row;
 
 /// Rows in a bin at most; a fuller one is handed out early.
@@ -16,7 +15,6 @@ const SLOW: f64 = 0.9;
 /// The bin that is being filled.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bins {
-    #[serde(with = "exact::number")]
     step_s: f64,
     filling: Vec<Row>,
     /// Time of the last row where it was handed out at once, s.

@@ -5,15 +5,12 @@
 //! `jump = (first stamp of the run - offset) - (latest time + usual interval)`.
 use serde::{Deserialize, Serialize};
 
-use super::exact;
 use super::row::{Row, United};
 
 /// A row whose time is not believed yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stray {
-    #[serde(with = "exact::number")]
     pub stamp_s: f64,
-    #[serde(with = "exact::numbers")]
     pub readings: Vec<f64>,
 }
 
@@ -32,10 +29,8 @@ pub(super) enum Place {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Guard {
     /// Stamp minus internal time, s.
-    #[serde(with = "exact::number")]
     pub offset_s: f64,
     /// Latest internal time that was believed, s; minus infinity before the first row.
-    #[serde(with = "exact::number")]
     pub latest_s: f64,
     /// Sorted, of distinct stamps.
     run: Vec<Stray>,

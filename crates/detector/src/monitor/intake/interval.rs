@@ -1,18 +1,14 @@
 //! The usual interval between rows: median of the last few.
 use serde::{Deserialize, Serialize};
 
-use super::exact;
-
 /// Intervals that are remembered: seven gaps among them change nothing.
 const REMEMBERED: usize = 15;
 
 /// Running median of the intervals.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct UsualInterval {
-    #[serde(with = "exact::numbers")]
     recent_s: Vec<f64>,
     next: usize,
-    #[serde(with = "exact::number")]
     median_s: f64,
 }
 

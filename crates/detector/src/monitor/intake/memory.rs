@@ -1,7 +1,7 @@
 //! Which rows were taken lately, and where there were none: a replay is no news, whatever its stamps say about the clock.
 //!
-//! Of every row a fingerprint of 16 bits is kept, in five generations of 500 rows: of the last 2000 rows none is forgotten, and of the others one in 26,
-//! `2500 / 2^16`, is taken for one of them at most. A generation is sorted, so that it is saved by the gaps between its fingerprints: 8.5 bits of a row.
+//! Of every row a fingerprint of 16 bits is kept, in four generations of 600 rows: of the last 1800 rows none is forgotten, and of the others one in 27,
+//! `2400 / 2^16`, is taken for one of them at most. A generation is sorted, so that it is saved by the gaps between its fingerprints: 8.3 bits of a row.
 //!
 //! Source: set of fingerprints, L. Carter et al., STOC 1978, 59; code of the gaps, R. F. Rice, JPL Publication 79-22 (1979).
 use std::collections::VecDeque;
@@ -9,14 +9,13 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use super::clock::Stray;
-use super::exact;
 use generation::Generation;
 
 mod generation;
 
 /// Rows of a generation, and generations.
-const ROWS: u32 = 500;
-const GENERATIONS: usize = 5;
+const ROWS: u32 = 600;
+const GENERATIONS: usize = 4;
 /// Times without rows that are remembered.
 const GAPS: usize = 16;
 /// Constants of the FNV-1a hash of 64 bits.
@@ -36,9 +35,7 @@ pub(super) struct Memory {
 /// A time without rows on the internal axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Gap {
-    #[serde(with = "exact::number")]
     from_s: f64,
-    #[serde(with = "exact::number")]
     to_s: f64,
 }
 

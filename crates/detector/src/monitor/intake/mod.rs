@@ -9,13 +9,12 @@
 //! * Rows of one time belong together, and what has been handed out stands.
 //! * A jump forward within the longest gap is a gap; one hour of summer time is then an hour without rows.
 //! * A jump backward within the lateness cannot be told from late rows, and is taken as such. Nor can rows of a time in which
-//!   there were none: they come from a store. Rows that are replayed as they were are known for the last 2000 at least.
+//!   there were none: they come from a store. Rows that are replayed as they were are known for the last 1800 at least.
 //!
 //! As long as the clock does not jump and no row is later than the lateness, the rows that come out depend on the set of rows
 //! that came in alone, not on their order nor on how often each came: bit for bit. State and time per row are bounded.
 mod bins;
 mod clock;
-mod exact;
 mod interval;
 mod memory;
 mod order;

@@ -2,19 +2,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::Event;
-use super::exact;
 
 /// A row in its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Time on the internal axis, s: the stamp without the jumps of the clock. Never before that of the row handed out last.
-    #[serde(with = "exact::number")]
     pub time_s: f64,
     /// Time as it was stamped, s.
-    #[serde(with = "exact::number")]
     pub stamp_s: f64,
     /// Readings, SI, NaN where missing. A second row of one time has only what the first had not.
-    #[serde(with = "exact::numbers")]
     pub readings: Vec<f64>,
 }
 

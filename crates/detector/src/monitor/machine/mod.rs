@@ -391,6 +391,10 @@ impl Monitor {
         self.check_filling(time_s, &mut events)?;
         let estimate = self.observe(time_s, silent_s, &mut events)?;
         let estimate = self.watch_bounds(estimate, &mut events)?;
+        self.observer.round();
+        if self.state.examined.is_some() {
+            self.shadow.round();
+        }
         self.mark_outcomes(time_s);
         self.keep_undisturbed(time_s);
         self.notice_gain(time_s, &mut events);

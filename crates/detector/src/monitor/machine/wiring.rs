@@ -82,6 +82,7 @@ impl Monitor {
         let stepped = twin.step(time_s, &self.usable);
         self.usable.swap(first, second);
         stepped?;
+        twin.round();
         if !self.state.is_exchanging(time_s) {
             let of = |observer: &Observer| compared.map(|sensor| innovation(observer, sensor));
             let noise = compared.map(|sensor| self.sensors[sensor].noise_variance());

@@ -13,6 +13,7 @@ use crate::filter::bank::{BankTransition, UdBank};
 use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::{StateSpace, UdFactors};
+use crate::numbers;
 use crate::observer::cylinder::{Crossing, Cylinder, HARDLY};
 use crate::observer::engine::Shared;
 use crate::observer::member::{Member, Outcome, freed};
@@ -88,9 +89,20 @@ impl Together {
         self.groups.clone_from(&other.groups);
     }
 
-    /// Covariances with factors that are [coarse](UdBank::coarse).
-    pub fn coarse(&self) -> Self {
-        Self { bank: self.bank.clone().coarse(), groups: Vec::new() }
+    /// The covariance of the first member, with factors that are [coarse](numbers::coarse).
+    pub fn outline(&self) -> Self {
+        let mut bank = self.bank.clone().with_filters(1);
+        (1..LANES).for_each(|lane| bank.copy_lane(0, lane));
+        bank.round(numbers::coarse);
+        Self { bank, groups: Vec::new() }
+    }
+
+    /// Become as the outline is, each member with this variance of the state `leak`.
+    pub fn return_to(&mut self, outline: &Self, leak: usize, variances: &[f64]) {
+        self.copy_from(outline);
+        for (lane, &variance) in variances.iter().enumerate().skip(1) {
+            self.bank.decorrelate_and_set(lane, leak, variance);
+        }
     }
 
     /// Time update over an interval, in steps no longer than the settings allow.
