@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::disturbance::Undisturbed;
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
-use crate::estimator::observer::{Estimate, Flow, Quality};
+use crate::estimator::observer::{Estimate, Flow, Innovation, Quality};
 use crate::estimator::sensor::ParameterKind;
 use crate::estimator::thermal::scenario::sensor::SensorKind;
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
@@ -77,7 +77,8 @@ impl Monitor {
             return self.begin_examination(time_s, (0.0, 0.0), before_kg, events);
         }
         let of_full = self.full_pa.recip();
-        let innovation = of_full * self.observer.innovations()[pressure].nu;
+        let Innovation { nu, s, .. } = self.observer.innovations()[pressure];
+        let innovation = of_full * nu;
         let fresh = of_full * self.observer.fresh_doubt_pa(pressure)?;
         let now = Innovated {
             time_s,
@@ -91,8 +92,10 @@ impl Monitor {
         if let (Some(before), Some(before_kg)) = (jump, before_kg) {
             return self.begin_examination(time_s, (before, fresh), before_kg, events);
         }
+        // Readings on both sides of a silence do not show what the surroundings did in it; what the observer expects does.
+        let unseen = FLOW_DEVIATIONS * of_full * s.sqrt();
         if silent_s > LONGEST_INTERVAL_S
-            && innovation.abs() > MATTERS + now.doubt
+            && innovation.abs() > MATTERS + now.doubt.max(unseen)
             && let Some(before_kg) = before_kg
         {
             return self.take_across(time_s, innovation, before_kg, events);
