@@ -115,7 +115,7 @@ pub type Statistics = [f64; Scale::ALL.len()];
 /// model's, always to the same side. The first member, which gives mass and gas temperature, trusts it as usual.
 pub fn observer_settings() -> ObserverSettings {
     let bank = vec![
-        LeakHypothesis::walking_mass(1.5),
+        LeakHypothesis::walking_mass(1.5).considering_offset(),
         LeakHypothesis::walking_mass(0.1).cautious(0.5e5),
         LeakHypothesis::walking_mass(30.0).cautious(2e5),
     ];

@@ -56,6 +56,8 @@ pub struct Cylinder {
     caution_pa_k: f64,
     /// Bounded states with their bounds.
     bounds: Vec<(usize, f64, f64)>,
+    /// Offsets of transmitters.
+    offsets: Vec<usize>,
     /// What each sensor's offset may have changed by since it was new, standard deviation.
     loosened: Vec<f64>,
     /// States in which the equations are not linear, with the inverse of the difference for which a linearisation serves.
@@ -141,6 +143,7 @@ impl Cylinder {
             caution_pa_k: 0.0,
             walking: vec![Walking::default(); states.leading],
             bounds: Vec::new(),
+            offsets: Vec::new(),
             loosened: vec![0.0; sensors.len()],
             near: Vec::new(),
             sensors: sensors.to_vec(),
@@ -152,6 +155,9 @@ impl Cylinder {
         };
         cylinder.set_walks();
         cylinder.set_bounds();
+        let transmitters = (0..sensors.len()).filter(|&sensor| cylinder.reads_pressure(sensor));
+        let offset = |sensor| cylinder.states.offset_of(sensor, sensors);
+        cylinder.offsets = transmitters.filter_map(offset).collect();
         let limit = |(state, kind)| cylinder.nearness(kind).map(|limit| (state, limit));
         cylinder.near = cylinder.states.kinds.iter().enumerate().filter_map(limit).collect();
         cylinder.suppose(&settings.bank[0]);
@@ -181,6 +187,11 @@ impl Cylinder {
     /// Where the model's iterations start next.
     pub(super) fn warm_start(&self) -> WarmStart {
         self.model.warm_start()
+    }
+
+    /// States that are offsets of transmitters.
+    pub fn transmitter_offsets(&self) -> &[usize] {
+        &self.offsets
     }
 
     /// Whether a sensor reads the gas pressure.

@@ -132,6 +132,13 @@ impl Member {
             let variance = memory[state];
             if variance > 0.0 && lacks * lacks <= variance {
                 memory.iter_mut().for_each(|of| *of /= variance);
+                if self.hypothesis.considers_offset {
+                    cylinder
+                        .transmitter_offsets()
+                        .iter()
+                        .filter(|&&of| of != state)
+                        .for_each(|&of| memory[of] = 0.0);
+                }
                 axpy(lacks, memory, &mut self.x);
                 if let Some(pass) = &mut self.pass {
                     pass.bound(state, lacks / variance, memory);

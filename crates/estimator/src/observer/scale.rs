@@ -49,6 +49,7 @@ impl Scale {
                 memory_s: member.rate.memory_s,
             },
             caution_pa_k: pressure * member.caution_pa_k,
+            ..*member
         });
         ObserverSettings {
             bank: bank.collect(),

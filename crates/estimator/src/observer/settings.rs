@@ -89,6 +89,10 @@ pub struct LeakHypothesis {
     /// the mass mostly in calm hours, and is no thermometer.
     #[serde(default)]
     pub caution_pa_k: f64,
+    /// Whether the offset of a transmitter is considered, not estimated, but by readings that say much of it: thousands that say next to nothing move it along what nobody sees, a
+    /// lighter cylinder with a transmitter that reads too much. With [`Engine::Extended`].
+    #[serde(default)]
+    pub considers_offset: bool,
 }
 
 impl LeakHypothesis {
@@ -98,6 +102,7 @@ impl LeakHypothesis {
             mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * PER_HOUR.sqrt(),
             rate: Walk::constant(0.0),
             caution_pa_k: 0.0,
+            considers_offset: false,
         }
     }
 
@@ -107,6 +112,7 @@ impl LeakHypothesis {
             mass_walk_kg_per_sqrt_s: 0.0,
             rate: Walk::per_sqrt_hour(0.0, grams_per_h_per_sqrt_h * 1e-3 * PER_HOUR),
             caution_pa_k: 0.0,
+            considers_offset: false,
         }
     }
 
@@ -116,6 +122,7 @@ impl LeakHypothesis {
             mass_walk_kg_per_sqrt_s: 0.0,
             rate: Walk::forgetting(grams_per_h * 1e-3 * PER_HOUR, memory_s),
             caution_pa_k: 0.0,
+            considers_offset: false,
         }
     }
 
@@ -132,6 +139,11 @@ impl LeakHypothesis {
     /// The same with so much error of the pressure per kelvin between wall and gas, Pa/K.
     pub fn cautious(self, caution_pa_k: f64) -> Self {
         Self { caution_pa_k, ..self }
+    }
+
+    /// The same with the offset of a transmitter considered.
+    pub fn considering_offset(self) -> Self {
+        Self { considers_offset: true, ..self }
     }
 }
 

@@ -538,3 +538,31 @@ fn a_loosened_offset_is_uncertain_by_so_much_more_and_a_renewed_sensor_by_all_th
         assert!((after - before - added).abs() <= 1e-9 * (before + added).max(1.0), "state {index}");
     }
 }
+
+/// Offset of the transmitter, Pa, after one day, after forty, and after another reading when it may have changed: the air swings by 8 K either way, and the pressure by a tenth
+/// less than the law of the gas says.
+fn offsets(member: LeakHypothesis) -> [f64; 3] {
+    let mut observer = observer_of(Engine::Extended, vec![member]);
+    let (pressure, offset) = (2, observer.cylinder.transmitter_offsets()[0]);
+    let mut after = |k: u32, off_pa: f64| {
+        let warm_k = 8.0 * (f64::from(k) * std::f64::consts::TAU / 48.0).sin();
+        if off_pa > 0.0 {
+            observer.loosen(pressure, off_pa);
+        }
+        let row = [FILL_K + warm_k, FILL_K + warm_k, 2e7 + off_pa + 0.9e5 * warm_k];
+        observer.step(1800.0 * f64::from(k), &row).unwrap();
+        observer.bank.members[0].x[offset]
+    };
+    let of_days: Vec<f64> = (0..40 * 48).map(|k| after(k, 0.0)).collect();
+    [of_days[48], of_days[of_days.len() - 1], after(40 * 48, 1e5)]
+}
+
+#[test]
+fn an_offset_that_is_considered_is_moved_by_readings_that_say_much_of_it_alone() {
+    let member = LeakHypothesis::walking_mass(1.5);
+    let [first, last, _] = offsets(member);
+    assert!((last - first).abs() > 5e3, "estimated, it creeps: {first} to {last} Pa");
+    let [first, last, changed] = offsets(member.considering_offset());
+    assert!(first == last, "{first} to {last} Pa");
+    assert!((1e4..1e5).contains(&(changed - last)), "{last} to {changed} Pa");
+}

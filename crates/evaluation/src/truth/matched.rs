@@ -181,6 +181,7 @@ pub fn leak_member() -> LeakHypothesis {
         mass_walk_kg_per_sqrt_s: 0.0,
         rate: Walk::per_sqrt_hour(0.2 * g_h, 0.02 * g_h),
         caution_pa_k: 0.0,
+        considers_offset: false,
     }
 }
 

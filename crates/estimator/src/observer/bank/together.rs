@@ -18,6 +18,9 @@ use crate::observer::cylinder::{Crossing, Cylinder, HARDLY};
 use crate::observer::engine::Shared;
 use crate::observer::member::{Member, Outcome, freed};
 
+/// Part of the variance of an offset that a reading explains at least that moves it where it is considered.
+const TELLING: f64 = 0.01;
+
 /// Covariances of up to four members.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Together {
@@ -197,6 +200,9 @@ impl Together {
         let s = self.bank.project(&memory.h) + r;
         let used = self.judge(cylinder, memory, members, sensor, (nu, s, &mut r), gates);
         let used_s = self.bank.update(r, used, &mut memory.gain);
+        if members.iter().any(|member| member.hypothesis.considers_offset) {
+            self.consider(cylinder.transmitter_offsets(), members, used_s, &mut memory.gain);
+        }
         for (lane, member) in lanes_of(used, members) {
             if let Some(pass) = &mut member.pass {
                 one_lane(lane, &memory.h, &mut memory.one_h);
@@ -209,6 +215,18 @@ impl Together {
             }
         }
         Ok(())
+    }
+
+    /// No gain on what a member considers, but where the reading, of the variance `s`, says much of it.
+    fn consider(&self, offsets: &[usize], members: &[Member], s: Lanes, gain: &mut [Lanes]) {
+        for &state in offsets {
+            let (gain, variance) = (&mut gain[state], self.bank.variances(state));
+            for (lane, _) in members.iter().enumerate().filter(|(_, of)| of.hypothesis.considers_offset) {
+                if gain.0[lane].powi(2) * s.0[lane] < TELLING * variance.0[lane] {
+                    gain.0[lane] = 0.0;
+                }
+            }
+        }
     }
 
     /// Which members use a reading; its noise grows, or the covariance opens, for those that had refused it too often.
