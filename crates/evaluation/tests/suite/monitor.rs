@@ -254,6 +254,22 @@ fn a_state_stays_below_16_kb_over_sixty_days() {
     assert!(first_days < 15_000 && largest < 16_000, "{first_days} bytes in four days, {largest} in sixty");
 }
 
+#[test]
+fn after_a_silence_only_what_the_surroundings_cannot_have_done_is_other_gas() {
+    let rows: Vec<_> = tight().iter().step_by(5).collect();
+    let told = |by: f64| {
+        let mut monitor = monitor();
+        for (t, readings) in &rows[..500] {
+            monitor.step(*t, readings).unwrap();
+        }
+        let (t, mut readings) = *rows[504];
+        readings[PRESSURE] *= 1.0 + by;
+        let outputs = monitor.step(t, &readings).unwrap();
+        events(&outputs).any(|kind| matches!(kind, EventKind::Refill(_)))
+    };
+    assert!(!told(0.03) && told(0.1));
+}
+
 /// Rows with one reading late by whole rows.
 fn late(rows: &Rows, sensor: usize, by: usize) -> Rows {
     let reading = |n: usize| rows[n.saturating_sub(by)].1[sensor];
