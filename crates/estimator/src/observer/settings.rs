@@ -96,34 +96,27 @@ pub struct LeakHypothesis {
 }
 
 impl LeakHypothesis {
+    /// A leak rate, and no mass that walks by itself.
+    pub fn leaking(rate: Walk) -> Self {
+        Self { mass_walk_kg_per_sqrt_s: 0.0, rate, caution_pa_k: 0.0, considers_offset: false }
+    }
+
     /// The mass walks by so many grams in the square root of an hour; no leak rate.
     pub fn walking_mass(grams_per_sqrt_h: f64) -> Self {
         Self {
             mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * PER_HOUR.sqrt(),
-            rate: Walk::constant(0.0),
-            caution_pa_k: 0.0,
-            considers_offset: false,
+            ..Self::leaking(Walk::constant(0.0))
         }
     }
 
     /// A leak rate that changes by so many g/h in the square root of an hour.
     pub fn walking_rate(grams_per_h_per_sqrt_h: f64) -> Self {
-        Self {
-            mass_walk_kg_per_sqrt_s: 0.0,
-            rate: Walk::per_sqrt_hour(0.0, grams_per_h_per_sqrt_h * 1e-3 * PER_HOUR),
-            caution_pa_k: 0.0,
-            considers_offset: false,
-        }
+        Self::leaking(Walk::per_sqrt_hour(0.0, grams_per_h_per_sqrt_h * 1e-3 * PER_HOUR))
     }
 
     /// A leak rate of so many g/h, either way, that is another one after a memory, s: gas that flows.
     pub fn flowing(grams_per_h: f64, memory_s: f64) -> Self {
-        Self {
-            mass_walk_kg_per_sqrt_s: 0.0,
-            rate: Walk::forgetting(grams_per_h * 1e-3 * PER_HOUR, memory_s),
-            caution_pa_k: 0.0,
-            considers_offset: false,
-        }
+        Self::leaking(Walk::forgetting(grams_per_h * 1e-3 * PER_HOUR, memory_s))
     }
 
     /// Whether it has a leak rate that lasts.

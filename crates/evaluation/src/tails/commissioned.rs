@@ -116,6 +116,23 @@ mod tests {
         assert_eq!(serde_json::from_str::<Commissioned>(&json).unwrap().tails().unwrap().0.len(), 5);
     }
 
+    /// Another set of sensors on the same cylinder tells little more of the tails.
+    #[test]
+    fn intervals_are_those_of_cylinders_however_many_sets_of_sensors_each_has() {
+        let cylinders: Vec<Watched> = (0..8).map(watched).collect();
+        let width = |watched: &[Watched]| {
+            let (low, high) = commission(watched, &settings()).unwrap().scales[0].threshold_interval;
+            high - low
+        };
+        let sets = |cylinder: &Watched| {
+            (0..4)
+                .map(|set| Watched { request: Request { set, ..cylinder.request }, ..cylinder.clone() })
+                .collect()
+        };
+        let of_sets: Vec<Watched> = cylinders.iter().flat_map::<Vec<Watched>, _>(sets).collect();
+        assert!(width(&of_sets) > 0.8 * width(&cylinders), "{} {}", width(&of_sets), width(&cylinders));
+    }
+
     #[test]
     fn scales_in_another_order_and_tails_that_are_none_are_refused() {
         let watched: Vec<Watched> = (0..8).map(watched).collect();

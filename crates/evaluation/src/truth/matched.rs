@@ -177,12 +177,7 @@ pub fn mass_member() -> LeakHypothesis {
 /// A member whose leak rate walks, by 0.02 g/h in the square root of an hour from 0 +- 0.2 g/h.
 pub fn leak_member() -> LeakHypothesis {
     let g_h = 1e-3 / HOUR_S;
-    LeakHypothesis {
-        mass_walk_kg_per_sqrt_s: 0.0,
-        rate: Walk::per_sqrt_hour(0.2 * g_h, 0.02 * g_h),
-        caution_pa_k: 0.0,
-        considers_offset: false,
-    }
+    LeakHypothesis::leaking(Walk::per_sqrt_hour(0.2 * g_h, 0.02 * g_h))
 }
 
 /// Random numbers of a truth.
