@@ -32,6 +32,8 @@ pub(super) struct Examined {
     before_kg: f64,
     pub samples: usize,
     pub flowing: bool,
+    /// Since when nothing had been heard before it, s, if that was for long.
+    silent_since_s: Option<f64>,
 }
 
 /// Gas that was exchanged.
@@ -65,7 +67,9 @@ impl Monitor {
         let before_kg = self.masses_kg();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
-        if self.blindness(time_s).is_some() {
+        let silent_since_s = (silent_s > LONGEST_INTERVAL_S).then_some(self.state.last_s);
+        let any_temperature = self.roles.thermometers.iter().any(|&sensor| self.usable[sensor].is_finite());
+        if self.blindness(time_s).is_some() && !(silent_since_s.is_some() && any_temperature) {
             // Without a temperature every change of the air is a change of the pressure.
             self.state.jumps.forget();
             return Ok(estimate);
@@ -74,7 +78,7 @@ impl Monitor {
             && let Some(before_kg) = before_kg
         {
             // A row that cannot be with the gas as it was: perhaps it can with other gas.
-            return self.begin_examination(time_s, (0.0, 0.0), before_kg, events);
+            return self.begin_examination((time_s, silent_since_s), (0.0, 0.0, 0.0), before_kg, events);
         }
         let of_full = self.full_pa.recip();
         let Innovation { nu, s, .. } = self.observer.innovations()[pressure];
@@ -89,18 +93,16 @@ impl Monitor {
         let step = of_full * self.state.watches[pressure].step();
         let doubted = FLOW_DEVIATIONS * self.settings.observer.flow_doubt.part;
         let jump = self.state.jumps.notice(now, step, doubted);
-        if let (Some(before), Some(before_kg)) = (jump, before_kg) {
-            return self.begin_examination(time_s, (before, fresh), before_kg, events);
+        // What the surroundings did in a silence no reading shows: they may have made all of it.
+        let unexpected = innovation.abs() > MATTERS + FLOW_DEVIATIONS * of_full * s.sqrt();
+        let silent = silent_since_s.filter(|_| unexpected).map(|_| (0.0, 0.0, innovation.abs()));
+        let begun = jump.map(|before| (before, fresh, 0.0)).or(silent);
+        match (begun, before_kg) {
+            (Some(before), Some(before_kg)) => {
+                self.begin_examination((time_s, silent_since_s), before, before_kg, events)
+            }
+            _ => Ok(estimate),
         }
-        // Readings on both sides of a silence do not show what the surroundings did in it; what the observer expects does.
-        let unseen = FLOW_DEVIATIONS * of_full * s.sqrt();
-        if silent_s > LONGEST_INTERVAL_S
-            && innovation.abs() > MATTERS + now.doubt.max(unseen)
-            && let Some(before_kg) = before_kg
-        {
-            return self.take_across(time_s, innovation, before_kg, events);
-        }
-        Ok(estimate)
     }
 
     /// Loss and gain of gas that no temperature explains, whatever the observer says.
@@ -251,8 +253,8 @@ impl Monitor {
     /// Go back before the present row, and take it with the mass free and, in the shadow, without the pressure.
     fn begin_examination(
         &mut self,
-        time_s: f64,
-        (before, fresh): (f64, f64),
+        (time_s, silent_since_s): (f64, Option<f64>),
+        (before, fresh, unseen): (f64, f64, f64),
         before_kg: f64,
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
@@ -261,8 +263,10 @@ impl Monitor {
         let estimate = self.observer.step(time_s, &self.usable)?;
         let fresh = self.state.jumps.excess() * fresh;
         let memory_s = self.settings.observer.flow_doubt.memory_s;
-        let examination = Examination::new(time_s, (-before, fresh), memory_s, self.state.jumps.far_off());
-        self.state.examined = Some(Examined { examination, before_kg, samples: 0, flowing: false });
+        let examination =
+            Examination::new(time_s, (-before, fresh, unseen), memory_s, self.state.jumps.far_off());
+        self.state.examined =
+            Some(Examined { examination, before_kg, samples: 0, flowing: false, silent_since_s });
         self.examine(estimate, events)
     }
 
@@ -366,7 +370,19 @@ impl Monitor {
             self.state.look = (time_s + DOUBT_S, Reason::Jump);
             return;
         }
-        self.exchanged(time_s, onset_s, change_kg, change_kg < 0.0, events);
+        let out = change_kg < 0.0;
+        match examined.silent_since_s {
+            Some(since_s) if out => {
+                self.state.bounds.gone(Certain::Out);
+                self.state.lost_across = Some(([since_s, onset_s], -change_kg));
+            }
+            Some(since_s) => {
+                // It may be another bottle, with sensors of its own.
+                (0..self.usable.len()).for_each(|sensor| self.observer.renew(sensor));
+                self.exchanged(time_s, since_s, change_kg, out, events);
+            }
+            None => self.exchanged(time_s, onset_s, change_kg, out, events),
+        }
     }
 
     fn exchanged(&mut self, time_s: f64, onset_s: f64, change_kg: f64, out: bool, events: &mut Vec<Event>) {
@@ -411,33 +427,5 @@ impl Monitor {
         if self.state.leak.found().is_none() {
             self.state.leak.begin_anew();
         }
-    }
-
-    /// The pressure is another one after a time without rows: a refill, or a loss.
-    fn take_across(
-        &mut self,
-        time_s: f64,
-        innovation: f64,
-        before_kg: f64,
-        events: &mut Vec<Event>,
-    ) -> Result<Estimate, DetectorError> {
-        let silent_since_s = self.state.last_s;
-        self.go_back();
-        self.observer.begin_exchange();
-        let estimate = self.observer.step(time_s, &self.usable)?;
-        self.observer.end_exchange();
-        let gained = innovation > 0.0;
-        if gained {
-            // It may be another bottle, with sensors of its own.
-            (0..self.usable.len()).for_each(|sensor| self.observer.renew(sensor));
-        }
-        if gained {
-            let change_kg = self.masses_kg().map_or(f64::NAN, |mass_kg| mass_kg - before_kg);
-            self.exchanged(time_s, silent_since_s, change_kg.max(0.0), false, events);
-        } else {
-            let lost_kg = self.masses_kg().map_or(0.0, |mass_kg| (before_kg - mass_kg).max(0.0));
-            self.state.lost_across = Some((silent_since_s, lost_kg));
-        }
-        Ok(estimate)
     }
 }

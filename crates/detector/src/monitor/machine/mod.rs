@@ -98,8 +98,8 @@ struct State {
     examined: Option<Examined>,
     leak: LeakState,
     evidence: Evidence,
-    /// Gas was lost while nothing was heard: since when, s, and how much, kg.
-    lost_across: Option<(f64, f64)>,
+    /// Gas was lost while nothing was heard: from when until when, s, and how much, kg.
+    lost_across: Option<([f64; 2], f64)>,
     /// Events that wait for a row.
     waiting: Vec<Event>,
     panel: AlarmPanel,

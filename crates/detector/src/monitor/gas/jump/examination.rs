@@ -11,7 +11,11 @@
 //!
 //! `x_k = rho min(1, s_k / s_{k-1}) x_{k-1} + v_k`, `rho = exp(-dt / tau)`, `var x -> s_k^2`.
 //!
-//! What was seen before a tunnel so counts in full, and what is seen in it counts little. `h` is what each cause makes of it:
+//! What was seen before a tunnel so counts in full, and what is seen in it counts little.
+//! After a silence of more than a quarter of an hour nobody has seen what they did: all that was not expected of the first reading, `u`, may be theirs. Then `(u exp(-t / tau))^2` is added
+//! to `s_k^2`, and it is nothing only once half of `u` has gone back.
+//!
+//! `h` is what each cause makes of it:
 //!
 //! | cause | `h_k` | prior |
 //! |---|---|---|
@@ -200,6 +204,8 @@ pub struct Examination {
     onset_s: f64,
     /// Model's error at the last sample, sd.
     model: f64,
+    /// What the surroundings may have done in a silence before it, sd.
+    unseen: f64,
     memory_s: f64,
     last_s: f64,
     error: f64,
@@ -213,13 +219,20 @@ pub struct Examination {
 }
 
 impl Examination {
-    /// Of a jump at `onset_s`, s, before which so much was missing, as a part of the full pressure; the surroundings may have done `fresh` to it since, sd, and what
-    /// they do is forgotten within `memory_s`, s.
-    pub fn new(onset_s: f64, (before, fresh): (f64, f64), memory_s: f64, far_off: FarOff) -> Self {
-        let members = courses().map(|(course, prior)| Member::new(course, prior, before, fresh.hypot(FLOOR)));
+    /// Of a jump at `onset_s`, s, before which so much was missing, as a part of the full pressure; the surroundings may have done `fresh` to it since, sd, and
+    /// `unseen` where nothing was heard before it. What they do is forgotten within `memory_s`, s.
+    pub fn new(
+        onset_s: f64,
+        (before, fresh, unseen): (f64, f64, f64),
+        memory_s: f64,
+        far_off: FarOff,
+    ) -> Self {
+        let model = unseen.hypot(FLOOR);
+        let members = courses().map(|(course, prior)| Member::new(course, prior, before, fresh.hypot(model)));
         Self {
             onset_s,
-            model: FLOOR,
+            model,
+            unseen,
             memory_s,
             last_s: onset_s,
             error: 0.0,
@@ -248,7 +261,8 @@ impl Examination {
             return if since_s > LONGEST_S { Cause::Unclear } else { Cause::Open };
         }
         let interval_s = now.time_s - std::mem::replace(&mut self.last_s, now.time_s);
-        let model = now.considered.hypot(FLOOR);
+        let unseen = self.unseen * (-since_s / self.memory_s).exp();
+        let model = now.considered.hypot(unseen).hypot(FLOOR);
         let kept = (-interval_s / self.memory_s).exp() * (model / self.model).min(1.0);
         let fresh = model * model - (kept * self.model).powi(2);
         self.model = model;
@@ -283,29 +297,32 @@ impl Examination {
     fn judge(&self, time_s: f64) -> Cause {
         let probability = self.probability();
         let [nothing, offset, gas] = [Course::is_nothing, Course::is_offset, Course::is_gas].map(probability);
-        let at_rest = time_s - self.largest_s >= REST_S || time_s - self.onset_s >= LONGEST_S;
+        let over = time_s - self.onset_s >= LONGEST_S;
+        let at_rest = over || time_s - self.largest_s >= REST_S;
         let level = if at_rest { LIKELY } else { SURE };
-        // A reading that is far off may be the first of some.
-        if nothing > level && !self.members[0].far {
+        // A reading that is far off may be the first of some, and what the surroundings did unseen goes back.
+        let goes_back = self.unseen == 0.0 || self.error.abs() < self.unseen / 2.0;
+        if nothing > level && !self.members[0].far && (goes_back || over) {
             return if self.members[0].spiked { Cause::Spike } else { Cause::Passed };
         }
         if !at_rest {
             return if gas > SURE { Cause::Flowing } else { Cause::Open };
         }
         let Some(some) = self.likeliest() else { return Cause::Passed };
-        if some.far && time_s - self.onset_s < LONGEST_S {
+        if some.far && !over {
             return Cause::Open;
         }
         let (left, sd) = (some.mean[1], some.variance[1].max(0.0).sqrt());
         let half = left.abs() / 2.0;
+        let unknown = left.abs() < DEVIATIONS * sd.hypot(FLOOR);
         // What the surroundings may still do is told to be the transmitter's when they do it no more.
-        if gas <= LIKELY && self.model > half && time_s - self.onset_s < LONGEST_S {
+        if (gas <= LIKELY && self.model > half || unknown && !goes_back) && !over {
             return Cause::Open;
         }
         // Where the model's error has gone, what is not missing now was its.
         let still = self.model.max(self.error * left.signum()) > half;
         match () {
-            () if !still || left.abs() < DEVIATIONS * sd.hypot(FLOOR) => Cause::Passed,
+            () if !still || unknown => Cause::Passed,
             () if gas > LIKELY || left.abs() > NO_OFFSET => Cause::Gas,
             // Of a gain the transmitter is the safe assumption: it leaves the mass as low as it was.
             () if offset > LIKELY || left < 0.0 => Cause::Offset(-left),

@@ -4,7 +4,7 @@ use crate::units::MINUTE_S;
 
 /// Of a jump before which 0.02 bar of 200 bar were missing, where the surroundings may have done so much, bar.
 fn begun(fresh_bar: f64) -> Examination {
-    Examination::new(0.0, (-1e-4, fresh_bar / 200.0), 1200.0, FarOff::default())
+    Examination::new(0.0, (-1e-4, fresh_bar / 200.0, 0.0), 1200.0, FarOff::default())
 }
 
 /// What is missing after so many minutes beside that, bar.
@@ -60,7 +60,7 @@ fn who_has_many_spikes_has_more_of_them() {
         [false, true].into_iter().for_each(|again| many.saw_one_far_off(again));
     }
     let says_gas = |far_off: FarOff| {
-        let mut examination = Examination::new(0.0, (-1e-4, 0.0), 1200.0, far_off);
+        let mut examination = Examination::new(0.0, (-1e-4, 0.0, 0.0), 1200.0, far_off);
         let missing_bar = [-50.0, -50.0, 0.0, 50.0, 50.0, 50.0, 0.0, 0.0, 0.0];
         let causes: Vec<Cause> = missing_bar
             .into_iter()
@@ -125,7 +125,7 @@ fn a_step_that_the_surroundings_may_have_made_is_no_offset() {
 #[test]
 fn what_the_model_was_off_by_before_comes_back_and_is_no_offset() {
     // Rain had cooled the valve: the observer was off by 1.1 bar, and is right again.
-    let mut examination = Examination::new(0.0, (5.5e-3, 1e-3), 1200.0, FarOff::default());
+    let mut examination = Examination::new(0.0, (5.5e-3, 1e-3, 0.0), 1200.0, FarOff::default());
     let mut causes = (0..40).map(|row| {
         let minutes = 5.0 * f64::from(row);
         let considered_bar = 0.6 * (-minutes / 20.0).exp();
@@ -176,7 +176,7 @@ fn spikes_of_three_readings_are_no_gas_at_any_time() {
 
 #[test]
 fn an_error_of_the_model_that_goes_on_is_told_at_once() {
-    let mut examination = Examination::new(0.0, (5.5e-3, 1e-4), 1200.0, FarOff::default());
+    let mut examination = Examination::new(0.0, (5.5e-3, 1e-4, 0.0), 1200.0, FarOff::default());
     let fades = |minutes: f64| 1.1 * (-minutes / 20.0).exp() + 0.02;
     let mut causes =
         (0..10).map(f64::from).map(|minutes| examination.push(sample(minutes, fades(minutes), 0.3)));
