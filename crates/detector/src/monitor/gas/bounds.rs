@@ -3,7 +3,7 @@
 //! Gas is no colder than the coldest wall that it has lately lain against, and no warmer than the warmest. So a pressure `p` at
 //! thermometers that lately read from `T_low` to `T_high` bounds the mass,
 //!
-//! `m(p - e, T_high + d) <= m <= m(p + e, T_low - d)`, `m(p, T) = rho(p, T) V(T, p)`,
+//! `m(p - e, (1 + d) T_high) <= m <= m(p + e, (1 - d) T_low)`, `m(p, T) = rho(p, T) V(T, p)`,
 //!
 //! `d` for what no thermometer sees: another part of the wall, in the sun or in the wind; `e` for what the transmitter does with
 //! its own temperature and its noise. A tight cylinder has one mass that lies within all of these intervals. Where the highest of the lower bounds
@@ -22,7 +22,7 @@
 //! Extremes fade to the present readings with a time constant that is long against those of wall and gas. Constant errors of the transmitter are in
 //! all pressures alike.
 //!
-//! Assumes that no part of the wall is farther than `d` from all thermometers for longer than the gas takes to follow it.
+//! Assumes that no part of the wall is farther than `d` of its temperature from all thermometers for longer than the gas takes to follow it.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
@@ -33,9 +33,10 @@ use crate::estimator::observer::Flow;
 
 /// Time constant with which extremes fade, s.
 const FADING_S: f64 = 2700.0;
-/// What the gas may be beyond thermometers on the wall, and beyond one in the gas, K; those on the wall may have been so far from what they first read before.
-const UNSEEN_WALL_K: f64 = 12.0;
-const UNSEEN_GAS_K: f64 = 5.0;
+/// What the gas may be beyond thermometers on the wall, and beyond one in the gas, as a part of their temperature (12 and 5 K at 15 °C); those on the wall may have been so far from what they
+/// first read before.
+const UNSEEN_WALL: f64 = 0.042;
+const UNSEEN_GAS: f64 = 0.017;
 /// Standard deviations of the transmitter's coefficient and noise that count.
 const DEVIATIONS: f64 = 3.0;
 /// Fewest rows in a row that have to agree on a bound: one more than a spike is long.
@@ -189,14 +190,14 @@ impl GasBounds {
     /// Take in a row, with the mass of a pressure, Pa, and a temperature, K, kg; not a number outside the gas's domain.
     pub fn push(&mut self, seen: &Seen, mass_kg: impl Fn(f64, f64) -> f64) -> Option<Certain> {
         self.follow(seen);
-        let unseen_k = match seen.contact {
-            Contact::Wall => UNSEEN_WALL_K,
-            Contact::Gas => UNSEEN_GAS_K,
+        let unseen = match seen.contact {
+            Contact::Wall => UNSEEN_WALL,
+            Contact::Gas => UNSEEN_GAS,
         };
         let drift_pa = seen.coefficient_pa_k * (self.high_k - self.low_k);
         let error_pa = DEVIATIONS * drift_pa.hypot(seen.noise_pa);
-        let least_kg = mass_kg(seen.pressure_pa - error_pa, self.high_k + unseen_k);
-        let most_kg = mass_kg(seen.pressure_pa + error_pa, self.low_k - unseen_k);
+        let least_kg = mass_kg(seen.pressure_pa - error_pa, (1.0 + unseen) * self.high_k);
+        let most_kg = mass_kg(seen.pressure_pa + error_pa, (1.0 - unseen) * self.low_k);
         if !(least_kg.is_finite() && most_kg.is_finite()) {
             return None;
         }
@@ -254,8 +255,8 @@ impl GasBounds {
     fn follow(&mut self, seen: &Seen) {
         let (coldest_k, warmest_k) = seen.extremes_k;
         let Some(last_s) = self.last_s.replace(seen.time_s) else {
-            let before_k = if seen.contact == Contact::Wall { UNSEEN_WALL_K } else { 0.0 };
-            (self.low_k, self.high_k) = (coldest_k - before_k, warmest_k + before_k);
+            let before = if seen.contact == Contact::Wall { UNSEEN_WALL } else { 0.0 };
+            (self.low_k, self.high_k) = ((1.0 - before) * coldest_k, (1.0 + before) * warmest_k);
             return;
         };
         let kept = (-(seen.time_s - last_s) / FADING_S).exp();

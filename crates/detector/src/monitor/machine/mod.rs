@@ -184,12 +184,13 @@ impl Monitor {
         let full_pa = contents.pressure_pa(full_kg, QUOTED_K)?;
         let tails = settings.tails.unwrap_or_else(|| Tails::of(vessel, full_pa));
         let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
+        let (pair, parity) = wiring::compared_by(sensors, &roles, settings);
         let state = State {
             intake: Intake::new(settings.intake, sensors.len())?,
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
-            pair: wiring::pair(sensors, &roles),
-            parity: Parity::default(),
+            pair,
+            parity,
             undisturbed: Undisturbed::default(),
             wiring: WiringCheck::of_all(),
             delays: DelayLine::default(),

@@ -10,8 +10,8 @@ use crate::monitor::readings::parity::Disturbance;
 use crate::monitor::readings::thermometers::Lonely;
 use crate::monitor::{Event, EventKind, Health};
 
-/// Standard deviation of a thermometer's offset after it jumped, beside the jump, K.
-const JUMPED_K: f64 = 0.5;
+/// Standard deviation of a thermometer's offset after it jumped, beside the jump, in errors of a surface temperature.
+const JUMPED: f64 = 4.0;
 /// Time without use after which a thermometer counts as missing, s.
 const DEGRADED_AFTER_S: f64 = 3600.0;
 
@@ -87,7 +87,7 @@ impl Monitor {
             }
             Some(Disturbance::Over(by_k)) => {
                 self.go_back_before_disturbance();
-                if by_k.abs() > JUMPED_K {
+                if by_k.abs() > self.jumped_k() {
                     // One of them has shifted, nobody knows which.
                     for sensor in pair {
                         self.observer.loosen(self.place_of(sensor), by_k.abs());
@@ -106,12 +106,16 @@ impl Monitor {
         }
     }
 
+    fn jumped_k(&self) -> f64 {
+        JUMPED * self.settings.observer.model_error.surface_k
+    }
+
     /// A thermometer's offset may have changed by so much, K: that is in doubt of it, and the pressure tells how far it did. To take it off would be as wrong as it may be none.
     fn let_shift(&mut self, sensor: usize, by_k: f64) {
         self.state.watches[sensor].may_have_shifted(by_k);
         self.state.parity.forget();
         self.usable[sensor] = f64::NAN;
-        self.observer.loosen(self.place_of(sensor), by_k.hypot(JUMPED_K));
+        self.observer.loosen(self.place_of(sensor), by_k.hypot(self.jumped_k()));
     }
 
     /// Whether the first rows fit the filling that was stated.

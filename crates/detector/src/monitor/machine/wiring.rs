@@ -7,6 +7,7 @@ use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::scenario::Fill;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::Evidence;
+use crate::monitor::MonitorSettings;
 use crate::monitor::gas::jump::JumpWatch;
 use crate::monitor::gas::leak::Change;
 use crate::monitor::intake::Row;
@@ -48,7 +49,9 @@ impl Monitor {
                 row.readings[sensor]
             }
         };
-        self.state.wiring.read(row.time_s, compared.map(read));
+        let [first, second, pressure_pa] = compared.map(read);
+        let error_k = self.state.pair.error_k();
+        self.state.wiring.read(row.time_s, [first / error_k, second / error_k, pressure_pa]);
     }
 
     /// Usable readings in the order of the places.
@@ -136,8 +139,8 @@ impl Monitor {
         }
         let state = &mut self.state;
         state.watches = self.sensors.iter().map(SensorWatch::new).collect();
-        (state.jumps, state.pair) = (JumpWatch::default(), pair(&self.sensors, &self.roles));
-        (state.parity, state.undisturbed) = (Parity::default(), Undisturbed::default());
+        (state.pair, state.parity) = compared_by(&self.sensors, &self.roles, &self.settings);
+        (state.jumps, state.undisturbed) = (JumpWatch::default(), Undisturbed::default());
         state.evidence = Evidence::new(&self.settings.observer);
         state.start_s = Some(time_s);
         state.bounds.forget_flow();
@@ -169,9 +172,13 @@ impl Monitor {
     }
 }
 
-/// The two thermometers, with the coarser one's steps.
-pub(super) fn pair(sensors: &[Sensor], roles: &Roles) -> Pair {
-    Pair::new(roles.pair.into_iter().flatten().map(|of| sensors[of].resolution).fold(0.0, f64::max))
+/// What compares two thermometers, with the coarser one's steps and the noise of the one that has more.
+pub(super) fn compared_by(sensors: &[Sensor], roles: &Roles, settings: &MonitorSettings) -> (Pair, Parity) {
+    let largest = |of: fn(&Sensor) -> f64, least: f64| {
+        roles.pair.into_iter().flatten().map(|sensor| of(&sensors[sensor])).fold(least, f64::max)
+    };
+    let error_k = largest(|sensor| sensor.noise_sd, settings.observer.model_error.surface_k);
+    (Pair::new(largest(|sensor| sensor.resolution, 0.0), error_k), Parity::new(error_k))
 }
 
 fn innovation(observer: &Observer, sensor: usize) -> Innovation {

@@ -31,8 +31,8 @@ const BRIDGED: f64 = 1.25;
 /// Longest difference that is looked for, steps.
 const LONGEST: usize = 4;
 const LAGS: usize = 2 * LONGEST + 1;
-/// Least sum of products at the peak, K², and its least part of the largest that there can be; the same of the pressure.
-const LEAST_K2: f64 = 10.0;
+/// Least sum of products at the peak, in squared errors of a surface temperature, and its least part of the largest that there can be; the same of the pressure.
+const LEAST: f64 = 700.0;
 const LEAST_PART: f64 = 0.5;
 const LEAST_PART_PRESSURE: f64 = 0.12;
 /// Where the correlation with the pressure changes its sign if none is late, steps of a minute.
@@ -41,7 +41,7 @@ const NONE_LATE: f64 = -0.34;
 const APART: f64 = 0.4;
 const APART_PRESSURE: f64 = 0.75;
 
-/// Readings of two thermometers, K, and of the pressure, Pa.
+/// Readings of two thermometers, in errors of a surface temperature, and of the pressure, Pa.
 type Three = [f64; 3];
 const NONE: Three = [f64::NAN; 3];
 
@@ -86,7 +86,7 @@ impl Correlation {
     /// Steps by which the first channel is later, by the peak.
     fn peak(&self) -> Option<f64> {
         let at = self.largest();
-        if !(self.products[at] > LEAST_K2 && self.part(at) > LEAST_PART) {
+        if !(self.products[at] > LEAST && self.part(at) > LEAST_PART) {
             return None;
         }
         let [before, peak, after] = [at - 1, at, at + 1].map(|i| self.products[i]);
@@ -156,7 +156,7 @@ pub(in crate::monitor) struct LagMeter {
 }
 
 impl LagMeter {
-    /// Take in two thermometers, K, and the pressure, Pa; NaN where there is none.
+    /// Take in two thermometers, in errors of a surface temperature, and the pressure, Pa; NaN where there is none.
     pub fn push(&mut self, time_s: f64, readings: Three) {
         let Self { grid, points, differences, thermometers, with_pressure } = self;
         grid.push(time_s, readings, |point| {
@@ -253,7 +253,9 @@ mod tests {
             let time_s = row as f64 * row_s;
             let noise = |i: usize| ((row * (7 + 4 * i)) % 13) as f64 - 6.0;
             let of = |i: usize| course[((time_s - late_s[i]).max(0.0)) as usize][i];
-            meter.push(time_s, std::array::from_fn(|i| of(i) + [0.01, 0.01, 150.0][i] * noise(i)));
+            let scale = [0.12, 0.12, 1.0];
+            let readings = std::array::from_fn(|i| (of(i) + [0.01, 0.01, 150.0][i] * noise(i)) / scale[i]);
+            meter.push(time_s, readings);
         }
         meter
     }

@@ -2,21 +2,22 @@
 //!
 //! Sensors sit at the top. Something warm beside the bottom, a hall with warm air under the roof, sun: the mean of the wall is then not
 //! what the shoulder says, the gas is some kelvin off, and pressure and mass with it, with no leak. It shows in the difference of the
-//! two thermometers. In calm windows of ten minutes (neither moves by more than 0.6 K) it stays within 0.1 to 0.2 K for weeks, tunnels
-//! and all; with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two.
+//! two thermometers. In calm windows of ten minutes (neither moves by more than `5 e`) it stays within 0.1 to 0.2 K for weeks, tunnels
+//! and all; with the air by 10 K warmer or colder at one end it is 0.5 to 3 K off within an hour or two. `e` is what the model misses of a temperature on the surface
+//! ([`ModelError::surface_k`](crate::estimator::observer::ModelError), 0.12 K), or a thermometer's noise where that is more.
 //!
 //! `d` is the median of the last three calm windows less that of the two days before. What comes with every day is usual, as a morning's sun on one end in a
-//! desert: with the deviation `s`, less 0.15 K, that was exceeded for half an hour a day in the two days until yesterday, all limits below are those of `|d| - s`. The evidence
-//! for a leak is divided by `sqrt(1 + ((|d| - s - 0.3 K) / (0.2 K + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
+//! desert: with the deviation `s`, less `1.25 e`, that was exceeded for half an hour a day in the two days until yesterday, all limits below are those of `|d| - s`. The evidence
+//! for a leak is divided by `sqrt(1 + ((|d| - s - 2.5 e) / (1.7 e + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
 //! one and a half hours give `d`, for as long again; beyond 2.5 the verdict is unknown; for six hours after it by what is left of that,
-//! as the observer needs its time to come back. Where `d` was above 0.6 K for three hours, the evidence from then counts for nothing
+//! as the observer needs its time to come back. Where `d` was above `5 e` for three hours, the evidence from then counts for nothing
 //! once it is over.
 //!
 //! Which of the two is off the pressure says: with `T_p` the temperature at which the stated mass has this pressure,
 //! `a_i = T_i - T_p` less its usual value, or less that of an hour before, is `d` for the one that is off and nothing for the other.
 //! Sun, day and night, and a leak move both `a` alike (by 1 K from night to noon, as the thermometers sit outside), so it is named where
-//! `|d| > 0.6 K`, its own `|a| > 0.4 |d|` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself may look the same for hours.
-//! What stays within 0.3 K of itself for sixteen hours of the same one is an offset of that thermometer. A difference that nobody
+//! `|d| > 5 e`, its own `|a| > 0.4 |d|` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself may look the same for hours.
+//! What stays within `2.5 e` of itself for sixteen hours of the same one is an offset of that thermometer. A difference that nobody
 //! could be named for is the usual one after a day: either may have shifted.
 use std::collections::VecDeque;
 
@@ -31,11 +32,11 @@ mod calm;
 /// Length of a window, s, and its fewest rows.
 const WINDOW_S: f64 = 600.0;
 const FEWEST_ROWS: u32 = 2;
-/// Difference that is usual, K, and twice that: what may change within a window that is calm, and the difference from which a thermometer is off.
-const HARMLESS_K: f64 = 0.3;
-const OFF_K: f64 = 2.0 * HARMLESS_K;
-/// Difference beyond the usual one that raises what is needed by 40 %, K.
-const SCALE_K: f64 = 0.2;
+/// Difference that is usual, in errors of a surface temperature, and twice that: what may change within a window that is calm, and the difference from which a thermometer is off.
+const HARMLESS: f64 = 2.5;
+const OFF: f64 = 2.0 * HARMLESS;
+/// Difference beyond the usual one that raises what is needed by 40 %, errors.
+const SCALE: f64 = 1.7;
 /// Time over which the usual difference is taken, s, and fewest windows.
 const USUAL_S: f64 = 2.0 * DAY_S;
 const FEWEST_USUAL: usize = 36;
@@ -84,6 +85,8 @@ struct Named {
 /// Watches the difference of two thermometers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct Parity {
+    /// What the model misses of a temperature on the surface, K.
+    error_k: f64,
     window: Option<Window>,
     #[serde(with = "calm")]
     calm: VecDeque<Calm>,
@@ -131,9 +134,9 @@ impl Window {
         self.rows += 1;
     }
 
-    /// Means, if it was calm; `gas_k` gives the temperature that a pressure, Pa, stands for near one, K.
-    fn close(&self, gas_k: impl Fn(f64, f64) -> f64) -> Option<Calm> {
-        let calm = (0..2).all(|i| self.highest[i] - self.lowest[i] < OFF_K);
+    /// Means, if it was calm: neither moved by more than so much, K. `gas_k` gives the temperature that a pressure, Pa, stands for near one, K.
+    fn close(&self, most_k: f64, gas_k: impl Fn(f64, f64) -> f64) -> Option<Calm> {
+        let calm = (0..2).all(|i| self.highest[i] - self.lowest[i] < most_k);
         if !calm || self.rows < FEWEST_ROWS {
             return None;
         }
@@ -144,6 +147,15 @@ impl Window {
 }
 
 impl Parity {
+    /// Of thermometers where the model misses so much of a temperature on the surface, K.
+    pub fn new(error_k: f64) -> Self {
+        Self { error_k, ..Self::default() }
+    }
+
+    fn harmless_k(&self) -> f64 {
+        HARMLESS * self.error_k
+    }
+
     /// Take in both thermometers, K, and the pressure, Pa; those that are none count for nothing. `gas_k` gives the temperature that a pressure,
     /// Pa, stands for near one, K.
     pub fn push(
@@ -157,7 +169,7 @@ impl Parity {
         self.last_s = time_s;
         let window = self.window.get_or_insert(Window::new(time_s));
         let completed = if time_s - window.begun_s >= WINDOW_S {
-            std::mem::replace(window, Window::new(time_s)).close(gas_k)
+            std::mem::replace(window, Window::new(time_s)).close(OFF * self.error_k, gas_k)
         } else {
             None
         };
@@ -170,15 +182,15 @@ impl Parity {
         if self.calm.back().is_some_and(|calm| time_s - calm.begun_s() > STALE_S) {
             (self.off_k, self.named) = (0.0, None);
         }
-        let beyond_k = (self.unusual_k() - HARMLESS_K).max(0.0);
-        let now = (beyond_k / (SCALE_K + self.spread_k)).hypot(1.0).min(LARGEST) - 1.0;
+        let beyond_k = (self.unusual_k() - self.harmless_k()).max(0.0);
+        let now = (beyond_k / (SCALE * self.error_k + self.spread_k)).hypot(1.0).min(LARGEST) - 1.0;
         self.excess = now.max(self.excess * (-elapsed_s / BACK_S).exp());
         self.tell(elapsed_s)
     }
 
     /// What has changed with a row so long after the last one, s.
     fn tell(&mut self, elapsed_s: f64) -> Option<Disturbance> {
-        if self.unusual_k() > OFF_K {
+        if self.unusual_k() > OFF * self.error_k {
             self.disturbed_s += elapsed_s;
         }
         if let Some(named) =
@@ -190,7 +202,7 @@ impl Parity {
             self.told = true;
             return Some(Disturbance::Begun(self.off_k));
         }
-        if self.unusual_k() >= HARMLESS_K {
+        if self.unusual_k() >= self.harmless_k() {
             return None;
         }
         let forgotten = std::mem::take(&mut self.disturbed_s) > STALE_S;
@@ -215,7 +227,7 @@ impl Parity {
         let yesterday = self.calm.partition_point(older(DAY_S));
         let other_days = self.calm.range(..yesterday).map(|calm| (calm.apart_k() - usual_k).abs());
         self.off_k = self.latest_k(|calm| calm.apart_k()) - usual_k;
-        self.spread_k = (quantile(OTHER_DAYS, other_days) - HARMLESS_K / 2.0).max(0.0);
+        self.spread_k = (quantile(OTHER_DAYS, other_days) - self.harmless_k() / 2.0).max(0.0);
         if self.disturbed_s == 0.0 {
             self.usual_k = usual_k;
         }
@@ -223,7 +235,7 @@ impl Parity {
     }
 
     fn name(&mut self, time_s: f64) {
-        if self.unusual_k() < HARMLESS_K {
+        if self.unusual_k() < self.harmless_k() {
             self.named = None;
             return;
         }
@@ -232,9 +244,9 @@ impl Parity {
         self.named = match self.named {
             // Once it is named, what the night makes of it names nobody else.
             Some(named) if is_off(named.which) || named.windows as usize >= LATEST => {
-                Some(named.goes_on(self.off_k))
+                Some(named.goes_on(self.off_k, self.harmless_k()))
             }
-            _ if self.unusual_k() < OFF_K => None,
+            _ if self.unusual_k() < OFF * self.error_k => None,
             _ => off[0].or(off[1]).map(|which| Named::new(which, time_s, self.off_k)),
         };
     }
@@ -271,7 +283,7 @@ impl Parity {
 
     /// Whether the difference is the usual one, and has been for a while.
     pub fn is_usual(&self) -> bool {
-        self.unusual_k() < HARMLESS_K && self.excess < 1.0
+        self.unusual_k() < self.harmless_k() && self.excess < 1.0
     }
 
     /// Whether nothing can be told of small leaks.
@@ -290,7 +302,7 @@ impl Parity {
     /// Another offset of a thermometer is taken off from now on: the difference is learnt anew.
     pub fn forget(&mut self) {
         let (excess, last_s) = (self.excess, self.last_s);
-        *self = Self { excess, last_s, ..Self::default() };
+        *self = Self { excess, last_s, ..Self::new(self.error_k) };
     }
 }
 
@@ -305,11 +317,11 @@ impl Named {
         if self.which == 0 { off_k } else { -off_k }
     }
 
-    /// After a further window, with the difference in it, K.
-    fn goes_on(self, off_k: f64) -> Self {
+    /// After a further window, with the difference in it, K, which is steady within so much, K.
+    fn goes_on(self, off_k: f64, within_k: f64) -> Self {
         let windows = self.windows + 1;
         let mean_k = self.mean_k + (off_k - self.mean_k) / f64::from(windows);
-        Self { windows, mean_k, steady: self.steady && (off_k - mean_k).abs() < HARMLESS_K, ..self }
+        Self { windows, mean_k, steady: self.steady && (off_k - mean_k).abs() < within_k, ..self }
     }
 }
 

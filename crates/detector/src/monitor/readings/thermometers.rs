@@ -6,7 +6,10 @@
 //!
 //! `s = T_n - T_{n-1} - (T_{n-1} - T_{n-3}) / 2`, in samples that are evenly apart.
 //!
-//! It is lonely where `|s| > 0.7 K` in a minute and that of the other one is below `0.05 |s| + 0.25 K`. It is then not used until both have been calm for five samples, and is believed if
+//! Temperatures are held against `e`, what the model misses of a temperature on the surface
+//! ([`ModelError::surface_k`](crate::estimator::observer::ModelError), 0.12 K), or a thermometer's noise where that is more.
+//!
+//! It is lonely where `|s| > 6 e` in a minute and that of the other one is below `0.05 |s| + 2 e`. It is then not used until both have been calm for five samples, and is believed if
 //! their difference is by `(1 -+ 0.4) |s|` another one than it was when both were calm last: at the mouth of a tunnel, where each bends in its own way, it is what it was. After two hours
 //! without calm it is used again. One that jumps by more than an offset can, or is restless while the other one is not and more so than usually, reads the air. For an hour after its jump a
 //! thermometer is not used: if it reads the air, it shows by then.
@@ -15,7 +18,7 @@
 //! cylinder, what they do to one thermometer alone is in doubt: 0.44 of how far the nearer one is from the gas, and of how far both went in one of the last three samples (see
 //! the observer's flowing member). A jump is more than that.
 //!
-//! Noise of 0.05 K makes 0.09 K of `s`; what is beside the parts is some three times that. How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
+//! How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
 //! and `fault_campaign` (row T2); see `book/src/measured.md`.
 use std::collections::VecDeque;
 
@@ -24,22 +27,22 @@ use serde::{Deserialize, Serialize};
 use crate::monitor::gas::jump::LONGEST_INTERVAL_S;
 use crate::units::{DAY_S, HOUR_S, MINUTE_S};
 
-/// Jump against the slope before, K, in a minute: what a tunnel does grows with the interval.
-const JUMP_K: f64 = 0.7;
-/// Part of it by which the other thermometer may jump too, beside the noise of both differences, K.
+/// Jump against the slope before, in errors of a surface temperature, in a minute: what a tunnel does grows with the interval.
+const JUMP: f64 = 6.0;
+/// Part of it by which the other thermometer may jump too, beside the noise of both differences, errors.
 const ALONE: f64 = 0.05;
-const STILL_K: f64 = 0.25;
-/// Samples in which neither moves by more than this, K in a minute, that say how far they are apart, and time within which they must come after a jump, s.
+const STILL: f64 = 2.0;
+/// Samples in which neither moves by more than this, errors in a minute, that say how far they are apart, and time within which they must come after a jump, s.
 const CALM_SAMPLES: u32 = 5;
-const CALM_K: f64 = 0.15;
+const CALM: f64 = 1.25;
 const DECIDED_S: f64 = 2.0 * HOUR_S;
 /// How far the change of the difference may be from the jump, as a part of it.
 const STEADY: f64 = 0.4;
-/// Jump that no offset makes, K.
-const NO_OFFSET_K: f64 = 10.0;
-/// Mean size of the second differences lately, K, that is restless, where that of the other one is a smaller part of it than usually by so much, and the times that both
+/// Jump that no offset makes, errors.
+const NO_OFFSET: f64 = 80.0;
+/// Mean size of the second differences lately, errors, that is restless, where that of the other one is a smaller part of it than usually by so much, and the times that both
 /// are means of, s. Until a day is seen that part is the one of a massive shoulder beside a thin valve in gusts. One counts no more than ten times that.
-const RESTLESS_K: f64 = 0.2;
+const RESTLESS: f64 = 1.7;
 const UNUSUAL: f64 = 0.5;
 const LATELY_S: f64 = 2.0 * HOUR_S;
 const USUALLY_S: f64 = 2.0 * DAY_S;
@@ -48,8 +51,8 @@ const IN_GUSTS: f64 = 1.0 / 3.0;
 const STEPS: f64 = 3.0;
 /// Samples that slopes are taken from.
 const SAMPLES: usize = 3;
-/// What both may have done while neither can be read, K.
-const UNSEEN_K: f64 = 5.0;
+/// What both may have done while neither can be read, errors.
+const UNSEEN: f64 = 40.0;
 
 /// What a pair of thermometers showed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,6 +68,8 @@ pub enum Lonely {
 /// Two thermometers on one cylinder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
+    /// What the model misses of a temperature on the surface, K.
+    error_k: f64,
     /// What their steps may make of a second difference, K.
     steps_k: f64,
     moved_k: f64,
@@ -114,9 +119,14 @@ impl Calm {
 }
 
 impl Pair {
-    /// Of thermometers that read in steps of so much at most, K.
-    pub fn new(resolution_k: f64) -> Self {
-        Self { steps_k: STEPS * resolution_k, ..Self::default() }
+    /// Of thermometers that read in steps of so much at most, K, where the model misses so much of a temperature on the surface, K.
+    pub fn new(resolution_k: f64, error_k: f64) -> Self {
+        Self { error_k, steps_k: STEPS * resolution_k, ..Self::default() }
+    }
+
+    /// What the model misses of a temperature on the surface, K.
+    pub fn error_k(&self) -> f64 {
+        self.error_k
     }
 
     /// Compare nothing with the last readings.
@@ -155,7 +165,8 @@ impl Pair {
             (None, _) => None,
         };
         let interval_s = self.recent.back().map_or(0.0, |(last_s, _)| time_s - last_s);
-        let restless = second_k.and_then(|second_k| self.restless.push(interval_s, second_k, self.steps_k));
+        let restless = second_k
+            .and_then(|second_k| self.restless.push(interval_s, second_k, (self.error_k, self.steps_k)));
         self.recent.push_back((time_s, readings));
         if self.recent.len() > SAMPLES {
             self.recent.pop_front();
@@ -180,11 +191,17 @@ impl Pair {
     fn second_differences(&mut self, time_s: f64, readings: [f64; 2]) -> Option<[f64; 2]> {
         let &(last_s, last) = self.recent.back()?;
         let first = [0, 1].map(|i| readings[i] - last[i]);
-        self.moved_k = smaller(first);
+        self.moved_k = self.smaller_k(first);
         let &(before_s, before) = self.recent.front().filter(|_| self.recent.len() == SAMPLES)?;
         // After a short interval a slope is mostly noise.
         let along = ((time_s - last_s) / (last_s - before_s).max(f64::MIN_POSITIVE)).min(0.5);
         Some([0, 1].map(|i| first[i] - along * (last[i] - before[i])))
+    }
+
+    /// Smaller size of two changes, K, of which one may be none.
+    fn smaller_k(&self, changes: [f64; 2]) -> f64 {
+        let size = changes[0].abs().min(changes[1].abs());
+        if size.is_nan() { UNSEEN * self.error_k } else { size }
     }
 
     /// How far both went in one of the last samples at most, K.
@@ -194,7 +211,7 @@ impl Pair {
             .recent
             .iter()
             .zip(later)
-            .map(|((_, before), (_, now))| smaller([0, 1].map(|i| now[i] - before[i])));
+            .map(|((_, before), (_, now))| self.smaller_k([0, 1].map(|i| now[i] - before[i])));
         moved.fold(self.moved_k, f64::max)
     }
 
@@ -203,9 +220,10 @@ impl Pair {
         let which = usize::from(second_k[1].abs() > second_k[0].abs());
         let (own_k, other_k) = (second_k[which], second_k[1 - which]);
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);
-        let jumps = own_k.abs().min((own_k - other_k).abs()) > (JUMP_K * minutes + self.steps_k).max(doubt_k);
+        let jumps = own_k.abs().min((own_k - other_k).abs())
+            > (JUMP * self.error_k * minutes + self.steps_k).max(doubt_k);
         // Not so where one of them is no number.
-        let alone = other_k.abs() < ALONE * own_k.abs() + STILL_K;
+        let alone = other_k.abs() < ALONE * own_k.abs() + STILL * self.error_k;
         if !jumps || !alone {
             return None;
         }
@@ -217,7 +235,7 @@ impl Pair {
     /// Note how far both are apart while neither moves.
     fn be_calm(&mut self, time_s: f64, readings: [f64; 2]) {
         let Some(&(last_s, last)) = self.recent.back() else { return };
-        let most_k = CALM_K * ((time_s - last_s) / MINUTE_S).max(1.0);
+        let most_k = CALM * self.error_k * ((time_s - last_s) / MINUTE_S).max(1.0);
         let is_calm = [0, 1].iter().all(|&i| (readings[i] - last[i]).abs() < most_k);
         self.calm.push(time_s, readings[0] - readings[1], is_calm);
     }
@@ -233,7 +251,11 @@ impl Pair {
         if (by_k - jump_k).abs() > STEADY * jump_k.abs() {
             return None;
         }
-        Some(if by_k.abs() < NO_OFFSET_K { Lonely::Shifted(which, by_k) } else { Lonely::Detached(which) })
+        Some(if by_k.abs() < NO_OFFSET * self.error_k {
+            Lonely::Shifted(which, by_k)
+        } else {
+            Lonely::Detached(which)
+        })
     }
 }
 
@@ -248,12 +270,18 @@ struct Restlessness {
 
 impl Restlessness {
     /// Take in the second differences, K, of a sample so long after the last one, s: which one reads the air.
-    fn push(&mut self, interval_s: f64, second_k: [f64; 2], steps_k: f64) -> Option<Lonely> {
+    fn push(
+        &mut self,
+        interval_s: f64,
+        second_k: [f64; 2],
+        (error_k, steps_k): (f64, f64),
+    ) -> Option<Lonely> {
         if second_k.iter().any(|second| second.is_nan()) {
             return None;
         }
         self.seen_s += interval_s;
-        let size_k = second_k.map(|second| second.abs().min(10.0 * RESTLESS_K));
+        let restless_k = RESTLESS * error_k;
+        let size_k = second_k.map(|second| second.abs().min(10.0 * restless_k));
         for (means, memory_s) in [(&mut self.lately_k, LATELY_S), (&mut self.usually_k, USUALLY_S)] {
             let share = -(-interval_s / memory_s).exp_m1();
             for (mean, size) in means.iter_mut().zip(size_k) {
@@ -264,22 +292,18 @@ impl Restlessness {
         let part = |of: [f64; 2]| of[1 - which] / of[which];
         let usual = if self.seen_s < DAY_S { IN_GUSTS } else { part(self.usually_k) };
         let alone = part(self.lately_k) < UNUSUAL * usual.min(1.0);
-        (self.lately_k[which] > RESTLESS_K + steps_k && alone).then_some(Lonely::Detached(which))
+        (self.lately_k[which] > restless_k + steps_k && alone).then_some(Lonely::Detached(which))
     }
-}
-
-/// Smaller size of two changes, of which one may be none.
-fn smaller(changes: [f64; 2]) -> f64 {
-    let size = changes[0].abs().min(changes[1].abs());
-    if size.is_nan() { UNSEEN_K } else { size }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const ERROR_K: f64 = 0.12;
+
     fn course(shoulder: impl Fn(f64) -> f64, valve: impl Fn(f64) -> f64) -> Vec<Lonely> {
-        told(Pair::default(), shoulder, valve)
+        told(Pair::new(0.0, ERROR_K), shoulder, valve)
     }
 
     fn told(mut pair: Pair, shoulder: impl Fn(f64) -> f64, valve: impl Fn(f64) -> f64) -> Vec<Lonely> {
@@ -303,18 +327,18 @@ mod tests {
     fn a_reading_in_steps_jumps_by_more_than_its_steps() {
         // It drifts, and changes by a whole step of 0.5 K at a time.
         let coarse = |t: f64| 0.5 * (560.0 + 0.02 * t).floor();
-        assert_eq!(told(Pair::new(0.5), coarse, |_| 280.0), []);
+        assert_eq!(told(Pair::new(0.5, ERROR_K), coarse, |_| 280.0), []);
         let jumps = |t: f64| coarse(t) + if t >= 120.0 { 5.0 } else { 0.0 };
-        assert_eq!(told(Pair::new(0.5), jumps, |_| 280.0), [Lonely::Shifted(0, 5.0)]);
+        assert_eq!(told(Pair::new(0.5, ERROR_K), jumps, |_| 280.0), [Lonely::Shifted(0, 5.0)]);
         // The mouth of a tunnel, where one bends by 3.8 K and the other one by 1.9 K.
         let mouth = |t: f64, by: f64| 280.0 + if t >= 120.0 { by } else { 0.0 };
-        assert_eq!(told(Pair::new(0.5), |t| mouth(t, 4.0), |t| mouth(t, 1.5)), []);
+        assert_eq!(told(Pair::new(0.5, ERROR_K), |t| mouth(t, 4.0), |t| mouth(t, 1.5)), []);
     }
 
     #[test]
     fn what_the_surroundings_may_have_done_to_one_alone_is_no_jump() {
         let shifts = |doubt_k: f64| {
-            let mut pair = Pair::default();
+            let mut pair = Pair::new(0.0, ERROR_K);
             let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
             (0..200).map(f64::from).any(|t| {
                 matches!(
@@ -409,7 +433,7 @@ mod tests {
 
     /// What a pair says first, with its minute, of readings that are so restless, K; five minutes apart for four days.
     fn restless(sizes_k: impl Fn(f64) -> [f64; 2]) -> Option<(f64, Lonely)> {
-        let mut pair = Pair::default();
+        let mut pair = Pair::new(0.0, ERROR_K);
         (0..1152).find_map(|row| {
             let minute = 5.0 * f64::from(row);
             let noise = if row % 3 == 0 { 1.0 } else { -0.5 };

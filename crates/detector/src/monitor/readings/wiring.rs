@@ -57,7 +57,7 @@ impl WiringCheck {
         Self { lags: Some(LagMeter::default()), ..Self::default() }
     }
 
-    /// Take in the readings of two thermometers, K, and the pressure, Pa.
+    /// Take in the readings of two thermometers, in errors of a surface temperature, and the pressure, Pa.
     pub fn read(&mut self, time_s: f64, readings: [f64; 3]) {
         self.begun_s.get_or_insert(time_s);
         if let Some(meter) = &mut self.lags {

@@ -129,7 +129,7 @@ impl FaultWatch {
             Requirement::Warned => quiet && (self.named || !self.tight),
             Requirement::Undecidable => true,
             Requirement::Recognised => !false_leak && self.soon,
-            Requirement::Found => self.leak || self.exchange,
+            Requirement::Found => self.leak || self.exchange || self.leak_found,
         };
         let may_be_unknown = matches!(
             self.row.requirement(),

@@ -14,7 +14,7 @@ struct Watched {
 
 /// So many hours of both thermometers and the temperature that the pressure stands for, K.
 fn compared(hours: f64, course: impl Fn(f64) -> [f64; 3]) -> Watched {
-    let parity = Parity::default();
+    let parity = Parity::new(0.12);
     let mut watched = Watched { parity, divisors: Vec::new(), changes: Vec::new(), deviating: Vec::new() };
     for minute in 0..(60.0 * hours) as u32 {
         let hour = f64::from(minute) / 60.0;
