@@ -27,10 +27,10 @@
 //! An isentropic step of the pressure is 1.4 to 1.67 times the isothermal one that is left when gas and wall have one temperature again: gas that goes
 //! at once comes back by a part `r`, and no transmitter does. Each cause is a linear Gaussian model with one unknown, so a Kalman filter of two states gives
 //! its likelihood with the unknown integrated out. Any reading may be far off, by up to the full pressure either way, under each cause: then it says nothing of it and costs
-//! what it is worth in this transmitter ([`FarOff`]). Spikes are "nothing" with readings far off.
+//! what it is worth in this transmitter ([`FarOff`]). Spikes are "nothing" with readings far off, for less than [`REST_S`].
 //!
 //! An offset is as likely as gas; by the densities of their sizes small steps are the transmitter's and large ones are gas. The examination ends when nothing is left of the jump with
-//! [`SURE`] odds, or when the error has not grown for [`REST_S`], as then gas and wall are at rest; what is not gas for sure waits until the surroundings no more make half of it. What is then not
+//! [`SURE`] odds, or when the error has stayed for [`REST_S`], as then gas and wall are at rest; what is not gas for sure waits until the surroundings no more make half of it. What is then not
 //! [`LIKELY`] is unclear, and where the model is right again, what is missing by less than half of what the cause says has passed.
 //!
 //! Assumes that a jump of gas is over within two hours; a longer one is a flow.
@@ -59,11 +59,12 @@ const NOTHING: f64 = 0.7;
 /// Probability from which a cause is told at once, and from which it is told at the end.
 const SURE: f64 = 0.97;
 const LIKELY: f64 = 0.9;
-/// Time after the largest error until gas and wall are at rest, s, and the longest examination, s.
+/// Time for which the error stays where gas and wall are at rest, s, and the longest examination, s.
 const REST_S: f64 = 1500.0;
 const LONGEST_S: f64 = 7200.0;
-/// Relative growth of the error that moves the largest one, and standard deviations that are more than chance.
+/// Relative growth of the error that moves the largest one, relative change that is none of rest, and standard deviations that are more than chance.
 const GROWTH: f64 = 0.03;
+const CHANGE: f64 = 0.2;
 const DEVIATIONS: f64 = 5.0;
 /// Part of the full pressure that no jump of a transmitter's offset makes.
 pub const NO_OFFSET: f64 = 0.1;
@@ -212,6 +213,9 @@ pub struct Examination {
     /// Largest error and when it came to it, s.
     largest: f64,
     largest_s: f64,
+    /// Error that it has stayed near, and since when, s.
+    rest: f64,
+    rest_s: f64,
     members: Vec<Member>,
     /// How often readings are far off, and how often they were, if it is nothing.
     far_off: FarOff,
@@ -238,6 +242,8 @@ impl Examination {
             error: 0.0,
             largest: 0.0,
             largest_s: onset_s,
+            rest: 0.0,
+            rest_s: onset_s,
             members: members.collect(),
             far_off,
             seen: FarOff::default(),
@@ -278,8 +284,12 @@ impl Examination {
         if self.members[0].far {
             self.seen.saw_one_far_off(was_far);
         }
-        if self.error.abs() > (1.0 + GROWTH) * self.largest.abs() + DEVIATIONS * now.noise {
+        let chance = DEVIATIONS * now.noise;
+        if self.error.abs() > (1.0 + GROWTH) * self.largest.abs() + chance {
             (self.largest, self.largest_s) = (self.error, now.time_s);
+        }
+        if (self.error - self.rest).abs() > CHANGE * self.rest.abs() + chance {
+            (self.rest, self.rest_s) = (self.error, now.time_s);
         }
         self.judge(now.time_s)
     }
@@ -298,15 +308,17 @@ impl Examination {
         let probability = self.probability();
         let [nothing, offset, gas] = [Course::is_nothing, Course::is_offset, Course::is_gas].map(probability);
         let over = time_s - self.onset_s >= LONGEST_S;
-        let at_rest = over || time_s - self.largest_s >= REST_S;
+        let at_rest = over || time_s - self.rest_s >= REST_S;
         let level = if at_rest { LIKELY } else { SURE };
         // A reading that is far off may be the first of some, and what the surroundings did unseen goes back.
         let goes_back = self.unseen == 0.0 || self.error.abs() < self.unseen / 2.0;
         if nothing > level && !self.members[0].far && (goes_back || over) {
-            return if self.members[0].spiked { Cause::Spike } else { Cause::Passed };
+            let brief = time_s - self.onset_s < REST_S;
+            return if self.members[0].spiked && brief { Cause::Spike } else { Cause::Passed };
         }
         if !at_rest {
-            return if gas > SURE { Cause::Flowing } else { Cause::Open };
+            let grows = time_s - self.largest_s < REST_S;
+            return if gas > SURE && grows { Cause::Flowing } else { Cause::Open };
         }
         let Some(some) = self.likeliest() else { return Cause::Passed };
         if some.far && !over {
