@@ -57,6 +57,14 @@ pub(in crate::monitor) enum Change {
     Ended,
 }
 
+/// Gas that was lost while nothing was heard: from when until when, s, and how much, kg.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(in crate::monitor) struct LostUnheard {
+    pub from_s: f64,
+    pub until_s: f64,
+    pub mass_kg: f64,
+}
+
 /// What a look rests on.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::monitor) struct Look {
@@ -69,8 +77,8 @@ pub(in crate::monitor) struct Look {
     /// Whether a statistic is above its threshold, and whether all are far below.
     pub alarm: bool,
     pub calm: bool,
-    /// Gas that was lost while nothing was heard: from when until when, s, and how much, kg.
-    pub lost_across: Option<([f64; 2], f64)>,
+    /// Gas that was lost while nothing was heard.
+    pub lost_across: Option<LostUnheard>,
     pub over_after_s: f64,
 }
 
@@ -114,8 +122,9 @@ impl LeakState {
 
     /// A leak of which nothing has been seen but what it took while nothing was heard.
     fn unseen(&self, look: &Look) -> LeakFinding {
-        let ([since_s, until_s], lost_kg) = look.lost_across.unwrap_or(([look.time_s; 2], 0.0));
-        let silent_s = (until_s - since_s).max(BETWEEN_LOOKS_S);
+        let nothing = LostUnheard { from_s: look.time_s, until_s: look.time_s, mass_kg: 0.0 };
+        let LostUnheard { from_s, until_s, mass_kg: lost_kg } = look.lost_across.unwrap_or(nothing);
+        let silent_s = (until_s - from_s).max(BETWEEN_LOOKS_S);
         let rate_kg_s = Interval {
             value: lost_kg / silent_s,
             low: 0.0,
@@ -124,7 +133,7 @@ impl LeakState {
         LeakFinding {
             rate_kg_s,
             rate_pa_s: rate_kg_s.scaled(look.pa_per_kg),
-            onset_s: Interval { value: 0.5 * (since_s + until_s), low: since_s, high: until_s },
+            onset_s: Interval { value: 0.5 * (from_s + until_s), low: from_s, high: until_s },
             lost_kg: Interval { value: lost_kg, low: 0.0, high: 2.0 * lost_kg },
         }
     }
@@ -215,7 +224,8 @@ mod tests {
     #[test]
     fn what_went_while_nothing_was_heard_is_a_leak_of_hardly_known_rate() {
         let mut state = LeakState::default();
-        let lost = Look { lost_across: Some(([0.0, 36_000.0], 0.3)), ..look(39_600.0, 1e3) };
+        let unheard = LostUnheard { from_s: 0.0, until_s: 36_000.0, mass_kg: 0.3 };
+        let lost = Look { lost_across: Some(unheard), ..look(39_600.0, 1e3) };
         let Change::Found(finding) = state.step(&lost, || None) else { panic!("not found") };
         assert_eq!((finding.onset_s.low, finding.onset_s.high), (0.0, 36_000.0));
         assert!(finding.lost_kg.holds(0.3) && finding.rate_kg_s.holds(0.3 / 36_000.0));

@@ -14,9 +14,9 @@ use crate::estimator::sensor::ParameterKind;
 use crate::estimator::thermal::scenario::sensor::SensorKind;
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
 use crate::monitor::gas::jump::{
-    Cause, Compared, Examination, Innovated, LONGEST_INTERVAL_S, NO_OFFSET, USUAL_LARGEST,
+    Before, Cause, Compared, Examination, Innovated, LONGEST_INTERVAL_S, NO_OFFSET, USUAL_LARGEST,
 };
-use crate::monitor::gas::leak::Change;
+use crate::monitor::gas::leak::{Change, LostUnheard};
 use crate::monitor::machine::judgement::MATTERS;
 use crate::monitor::{Event, EventKind, Reason};
 
@@ -78,7 +78,7 @@ impl Monitor {
             && let Some(before_kg) = before_kg
         {
             // A row that cannot be with the gas as it was: perhaps it can with other gas.
-            return self.begin_examination((time_s, silent_since_s), (0.0, 0.0, 0.0), before_kg, events);
+            return self.begin_examination((time_s, silent_since_s), Before::default(), before_kg, events);
         }
         let of_full = self.full_pa.recip();
         let Innovation { nu, s, .. } = self.observer.innovations()[pressure];
@@ -95,8 +95,10 @@ impl Monitor {
         let jump = self.state.jumps.notice(now, step, doubted);
         // What the surroundings did in a silence no reading shows: they may have made all of it.
         let unexpected = innovation.abs() > MATTERS + FLOW_DEVIATIONS * of_full * s.sqrt();
-        let silent = silent_since_s.filter(|_| unexpected).map(|_| (0.0, 0.0, innovation.abs()));
-        let begun = jump.map(|before| (before, fresh, 0.0)).or(silent);
+        let silent = silent_since_s.filter(|_| unexpected);
+        let silent = silent.map(|_| Before { unseen: innovation.abs(), ..Before::default() });
+        let fresh = self.state.jumps.excess() * fresh;
+        let begun = jump.map(|before| Before { missing: -before, fresh, unseen: 0.0 }).or(silent);
         match (begun, before_kg) {
             (Some(before), Some(before_kg)) => {
                 self.begin_examination((time_s, silent_since_s), before, before_kg, events)
@@ -254,17 +256,15 @@ impl Monitor {
     fn begin_examination(
         &mut self,
         (time_s, silent_since_s): (f64, Option<f64>),
-        (before, fresh, unseen): (f64, f64, f64),
+        before: Before,
         before_kg: f64,
         events: &mut Vec<Event>,
     ) -> Result<Estimate, DetectorError> {
         self.go_back();
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
-        let fresh = self.state.jumps.excess() * fresh;
         let memory_s = self.settings.observer.flow_doubt.memory_s;
-        let examination =
-            Examination::new(time_s, (-before, fresh, unseen), memory_s, self.state.jumps.far_off());
+        let examination = Examination::new(time_s, before, memory_s, self.state.jumps.far_off());
         self.state.examined =
             Some(Examined { examination, before_kg, samples: 0, flowing: false, silent_since_s });
         self.examine(estimate, events)
@@ -374,7 +374,8 @@ impl Monitor {
         match examined.silent_since_s {
             Some(since_s) if out => {
                 self.state.bounds.gone(Certain::Out);
-                self.state.lost_across = Some(([since_s, onset_s], -change_kg));
+                self.state.lost_across =
+                    Some(LostUnheard { from_s: since_s, until_s: onset_s, mass_kg: -change_kg });
             }
             Some(since_s) => {
                 // It may be another bottle, with sensors of its own.

@@ -16,7 +16,7 @@ use super::gas::contents::Tangent;
 use super::gas::filling::FillingCheck;
 use super::gas::gain::GainWatch;
 use super::gas::jump::JumpWatch;
-use super::gas::leak::{Change, LeakState, Look};
+use super::gas::leak::{Change, LeakState, Look, LostUnheard};
 use super::gas::onset::{self, Fitted};
 use super::gas::outlook::LimitMasses;
 use super::intake::{Intake, Row, Taken};
@@ -98,8 +98,8 @@ struct State {
     examined: Option<Examined>,
     leak: LeakState,
     evidence: Evidence,
-    /// Gas was lost while nothing was heard: from when until when, s, and how much, kg.
-    lost_across: Option<([f64; 2], f64)>,
+    /// Until the next look.
+    lost_across: Option<LostUnheard>,
     /// Events that wait for a row.
     waiting: Vec<Event>,
     panel: AlarmPanel,

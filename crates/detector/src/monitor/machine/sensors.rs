@@ -107,7 +107,7 @@ impl Monitor {
     }
 
     fn jumped_k(&self) -> f64 {
-        JUMPED * self.settings.observer.model_error.surface_k
+        JUMPED * self.state.pair.error_k()
     }
 
     /// A thermometer's offset may have changed by so much, K: that is in doubt of it, and the pressure tells how far it did. To take it off would be as wrong as it may be none.

@@ -324,6 +324,14 @@ mod tests {
     }
 
     #[test]
+    fn a_step_is_held_against_what_the_model_misses() {
+        let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
+        assert_eq!(told(Pair::new(0.0, 2.0 * ERROR_K), step, |_| 280.5), []);
+        let twice = |t: f64| 2.0 * step(t) - 280.0;
+        assert_eq!(told(Pair::new(0.0, 2.0 * ERROR_K), twice, |_| 280.5), [Lonely::Shifted(0, 2.0)]);
+    }
+
+    #[test]
     fn a_reading_in_steps_jumps_by_more_than_its_steps() {
         // It drifts, and changes by a whole step of 0.5 K at a time.
         let coarse = |t: f64| 0.5 * (560.0 + 0.02 * t).floor();

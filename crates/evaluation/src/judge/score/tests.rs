@@ -10,7 +10,7 @@ use crate::judge::fixture::{WHOLE_KG, decided, toy, world};
 use crate::judge::measures::Class;
 use crate::judge::said::{Decision, Innovation};
 use crate::judge::watch::watch;
-use crate::world::{Family, FaultRow, Regime, Request, RowPattern};
+use crate::world::{Family, FaultRow, Leak, Regime, Request, RowPattern};
 
 const HOUR_S: f64 = 3600.0;
 
@@ -101,6 +101,26 @@ fn a_fault_is_recognised_by_what_its_row_requires() {
     });
     assert_eq!(exchanges, [(false, true, true), (true, false, true)]);
     assert!(outcome(FaultRow::P1, leaks.as_ref()).false_loss && outcome(FaultRow::P1, names.as_ref()).named);
+}
+
+#[test]
+fn a_leak_beside_a_leak_is_found_whenever_it_is_told() {
+    let leak = Some(Leak { part_per_h: 5e-4, onset_s: 36.0 * HOUR_S });
+    let overlay = Overlay::Fault { row: FaultRow::G4, onset_s: 30.0 * HOUR_S, leak };
+    let world = world(&request(overlay, 60.0));
+    let recognised = |says: &dyn crate::judge::candidate::Candidate| {
+        watch(&world, says).score.unwrap().fault.unwrap().recognised
+    };
+    let told = [leak_from_hour::<31>(), leak_from_hour::<40>(), leak_from_hour::<70>()];
+    assert_eq!(told.map(|says| recognised(says.as_ref())), [true, true, false]);
+}
+
+/// Says tight, and from an hour on a leak.
+fn leak_from_hour<const HOUR: u32>() -> std::sync::Arc<dyn crate::judge::candidate::Candidate> {
+    toy(|_, row| {
+        let class = if row.stamp_s > f64::from(HOUR) * HOUR_S { Class::Leak } else { Class::Tight };
+        Said { decision: Some(decided(class)), ..Said::default() }
+    })
 }
 
 #[test]

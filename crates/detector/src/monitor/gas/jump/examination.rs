@@ -88,6 +88,17 @@ pub enum Cause {
     Unclear,
 }
 
+/// What was before a jump, as parts of the full pressure.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Before {
+    /// What was missing.
+    pub missing: f64,
+    /// What the surroundings may have done to it since, sd.
+    pub fresh: f64,
+    /// The same while nothing was heard.
+    pub unseen: f64,
+}
+
 /// A sample of the shadow and the transmitter.
 #[derive(Clone, Copy, Debug)]
 pub struct Compared {
@@ -223,16 +234,12 @@ pub struct Examination {
 }
 
 impl Examination {
-    /// Of a jump at `onset_s`, s, before which so much was missing, as a part of the full pressure; the surroundings may have done `fresh` to it since, sd, and
-    /// `unseen` where nothing was heard before it. What they do is forgotten within `memory_s`, s.
-    pub fn new(
-        onset_s: f64,
-        (before, fresh, unseen): (f64, f64, f64),
-        memory_s: f64,
-        far_off: FarOff,
-    ) -> Self {
+    /// Of a jump at `onset_s`, s. What the surroundings do is forgotten within `memory_s`, s.
+    pub fn new(onset_s: f64, before: Before, memory_s: f64, far_off: FarOff) -> Self {
+        let Before { missing, fresh, unseen } = before;
         let model = unseen.hypot(FLOOR);
-        let members = courses().map(|(course, prior)| Member::new(course, prior, before, fresh.hypot(model)));
+        let members =
+            courses().map(|(course, prior)| Member::new(course, prior, missing, fresh.hypot(model)));
         Self {
             onset_s,
             model,

@@ -23,6 +23,6 @@ mod examination;
 mod far;
 mod notice;
 
-pub use examination::{Cause, Compared, Examination, NO_OFFSET};
+pub use examination::{Before, Cause, Compared, Examination, NO_OFFSET};
 pub use far::FORGOTTEN_S;
 pub use notice::{Innovated, JumpWatch, LONGEST_INTERVAL_S, USUAL_LARGEST};
