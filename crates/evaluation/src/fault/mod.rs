@@ -9,8 +9,6 @@
 //! Source of the kinds: E. Balaban et al., IEEE Sensors J. 9 (2009) 1907 (bias, drift, scaling, dropout); B. de Bruijn et al.,
 //! Sensors 16 (2016) (random, malfunction, bias, drift).
 mod arrival;
-mod history;
-mod judge;
 mod reading;
 mod record;
 mod table;
@@ -18,8 +16,6 @@ mod table;
 use serde::{Deserialize, Serialize};
 
 pub use self::arrival::EPOCH_S;
-pub use self::history::{History, Subject};
-pub use self::judge::{Case, CaseLeak, Missed, allowed_delay_s, judge};
 pub use self::reading::{DeadCode, MixUp};
 pub use self::record::{Arrival, Record, Snapshot, Step};
 pub(crate) use self::table::TABLE_FULL_SCALE_PA;

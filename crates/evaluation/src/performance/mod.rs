@@ -7,7 +7,6 @@
 //! | reliability | how often does it alarm without a leak? | [`AlarmRate`]: alarms per cylinder-year |
 //! | sensitivity | how small a leak does it find, how soon? | [`Detection`], [`SmallestLeak`], [`Delay`] against the delay that no detector can go below |
 //! | accuracy | how well does it say how much and since when? | [`Accuracy`] of rate and onset, coverage of their intervals; [`Confusion`] of classes |
-//! | robustness | what is left of that when something is wrong? | [`Robustness`]: the same measures against those without a disturbance |
 //!
 //! Every measure is a pure function of [`Run`]s and comes with an interval, since a number of runs is all that stands
 //! behind it. An alarm before the onset of a leak is a false one: it ends the time at risk, and such a run says nothing
@@ -41,7 +40,6 @@ mod confusion;
 mod delay;
 mod detection;
 mod proportion;
-mod robustness;
 mod run;
 mod smallest;
 mod summary;
@@ -53,7 +51,6 @@ pub use confusion::{Class, Confusion};
 pub use delay::Delay;
 pub use detection::{Detection, Horizon};
 pub use proportion::Proportion;
-pub use robustness::Robustness;
 pub use run::{Estimated, Found, Run, TrueLeak, by_rate};
 pub use smallest::{Reached, SmallestLeak};
 pub use summary::{Performance, Row, Sensitivity};

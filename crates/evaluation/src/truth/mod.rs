@@ -192,32 +192,6 @@ pub fn generate_through(
     Truth::sample(course, seed, settings.leak, &cylinder, &trajectory, &samples)
 }
 
-/// From the seed of one set of sensors to that of the next.
-const NEXT_SET: u64 = 1_000_000;
-
-/// One simulated cylinder read by several sets of sensors, each with offsets, couplings, coefficient and noise of its own: cylinders
-/// of one train, for the cost of one simulation. The first set, 0, is that of [`generate_with`]. Samples every `sample_time_s`, s.
-///
-/// # Errors
-/// As [`generate_with`].
-pub fn generate_sets(
-    course: &Course,
-    seed: u64,
-    sample_time_s: f64,
-    settings: &TruthSettings,
-    sets: impl IntoIterator<Item = u64>,
-) -> Result<impl Iterator<Item = Result<Truth, EvaluationError>>, EvaluationError> {
-    let (cylinder, trajectory) = simulate_truth(course, seed, sample_time_s, settings)?;
-    let samples: Vec<usize> = (0..trajectory.time_s.len()).collect();
-    let nominal = presets::load(&settings.vessel)?;
-    Ok(sets.into_iter().map(move |set| {
-        let seed = seed + set * NEXT_SET;
-        let sensors = draw_cylinder(&nominal, settings, seed)?.sensors;
-        let cylinder = Cylinder { sensors, ..cylinder.clone() };
-        Truth::sample(course, seed, settings.leak, &cylinder, &trajectory, &samples)
-    }))
-}
-
 /// The simulation behind a truth, with every wall and gas cell, at every `sample_time_s`, s.
 ///
 /// # Errors

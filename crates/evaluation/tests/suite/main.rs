@@ -1,9 +1,9 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod baseline;
-mod campaign;
 mod evidence;
 mod fault;
+mod fault_table;
 mod honest;
 mod matched;
 mod monitor;

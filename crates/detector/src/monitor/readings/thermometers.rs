@@ -18,8 +18,7 @@
 //! cylinder, what they do to one thermometer alone is in doubt: 0.44 of how far the nearer one is from the gas, and of how far both went in one of the last three samples (see
 //! the observer's flowing member). A jump is more than that.
 //!
-//! How often a jump is believed that is none, and one missed, is measured by the examples `quiet_monitor`
-//! and `fault_campaign` (row T2); see `book/src/measured.md`.
+//! How often a jump is believed that is none, and one missed, the plans `tight.toml` and `fault.toml` (row T2) of `cylwatch-evaluation` measure; see `book/src/measured.md`.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};

@@ -12,8 +12,7 @@
 //! A discharge that is not announced is a loss; a refill is not, and is counted apart, as every false exchange is.
 //!
 //! With a leak beside the fault it must be told, too, before the end; where the requirement is flagged, degraded, undecidable or warned,
-//! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false. The
-//! stricter judgement of single rows and delays is that of [`judge`](crate::fault::judge()).
+//! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false.
 use serde::{Deserialize, Serialize};
 
 use super::Moment;

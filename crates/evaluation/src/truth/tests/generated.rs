@@ -1,9 +1,7 @@
 //! Whole truths: what the simulation makes of a course.
 use cylwatch_thermal::vessel::presets;
 
-use super::super::{
-    Course, Truth, TruthLeak, TruthSettings, generate, generate_sets, generate_with, simulate_truth,
-};
+use super::super::{Course, Truth, TruthLeak, TruthSettings, generate, generate_with, simulate_truth};
 use super::mean;
 
 const ZERO_DEGC_K: f64 = 273.15;
@@ -136,19 +134,4 @@ fn default_settings_are_those_of_the_plain_generator() {
     let with = generate_with(&course, 5, 1200.0, &TruthSettings::default()).unwrap();
     assert_eq!(plain.log.values, with.log.values);
     assert_eq!(plain.log.channels.len(), 5);
-}
-
-#[test]
-fn sets_of_sensors_share_what_happened_and_read_it_in_their_own_way() {
-    let course = Course::RailwayWeeks { days: 0.5 };
-    let settings = TruthSettings::fast();
-    let sets = generate_sets(&course, 3, 60.0, &settings, 0..3).unwrap();
-    let sets: Vec<Truth> = sets.collect::<Result<_, _>>().unwrap();
-    let alone = generate_with(&course, 3, 60.0, &settings).unwrap();
-    assert_eq!(sets[0].log.values, alone.log.values);
-    for set in &sets {
-        assert_eq!((&set.pressure_pa, &set.shoulder_k), (&alone.pressure_pa, &alone.shoulder_k));
-    }
-    assert!(sets[1].log.values != sets[0].log.values && sets[2].log.values != sets[1].log.values);
-    assert!(sets[1].sensors != sets[0].sensors);
 }

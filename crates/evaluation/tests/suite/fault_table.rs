@@ -1,0 +1,43 @@
+//! Rows of the fault table that happen to the data, through the monitor and the judge: `plans/fault.toml` in short.
+use cylwatch_evaluation::judge::candidate::Registry;
+use cylwatch_evaluation::judge::plan::Plan;
+use cylwatch_evaluation::judge::watch::watch;
+use cylwatch_evaluation::world::generate;
+
+/// Left to the long plan are offsets, and faults of the installation that a monitor has from its first row on: after a day of learning, half a bar or a kelvin while wall and
+/// gas move is not told from a loss of 10 g.
+const PLAN: &str = r#"
+title = "Faults of the data"
+between_false_alarms_y = 10.0
+judge = ["*/*/*/*/*"]
+
+[[candidate]]
+name = "cylwatch"
+kind = "monitor"
+
+[[group]]
+name = "faults"
+families = ["nitrogen-20l/railway/mixed/class-b/120s", "argon-50l/workshop/mixed/class-a/120s"]
+seeds = [21, 21]
+length_d = 2.0
+overlays = [{ kind = "fault", rows = ["P1", "P3", "P6", "P7", "T1", "T4", "T5", "E7", "D1", "D3", "D5"], onset_h = [30.0, 32.0] }]
+"#;
+
+#[test]
+fn faults_of_the_data_end_in_no_panic_no_nan_no_contradiction_and_no_leak() {
+    let plan = Plan::parse(PLAN, "faults of the data", &Registry::default(), &[]).unwrap();
+    assert_eq!(plan.tasks.len(), 22);
+    for task in &plan.tasks {
+        let world = generate(&task.request).unwrap();
+        let score = watch(&world, &*plan.candidates[0].candidate).score;
+        let score = score.unwrap_or_else(|error| panic!("{:?}: {error}", task.request));
+        let outcome = score.fault.unwrap();
+        assert!(
+            score.said > 0 && outcome.recognised && !outcome.false_loss,
+            "{:?}: {outcome:?}",
+            task.request
+        );
+        let contradictions = score.disagreements.unwrap();
+        assert_eq!(contradictions.disagreeing, 0, "{:?}", task.request);
+    }
+}
