@@ -5,9 +5,8 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use cylwatch_estimator::filter::{
-    CovarianceForm, ExtendedKalman, FixedLag, Information, Joseph, KalmanSettings, SequentialFilter,
-    SquareRoot, StateSpace, Stationary, StationarySettings, UdFactors, Unscented, UnscentedSettings,
-    steady_state,
+    CovarianceForm, ExtendedKalman, Joseph, KalmanSettings, SequentialFilter, StateSpace, Stationary,
+    StationarySettings, UdFactors, Unscented, UnscentedSettings, steady_state,
 };
 use nalgebra::{Const, DMatrix, DVector, Dyn, SMatrix};
 
@@ -54,16 +53,8 @@ fn forms(c: &mut Criterion) {
         let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
         kalman(model, form)
     });
-    bench_steps(c, "kalman, square root", |model| {
-        let form = SquareRoot::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
-        kalman(model, form)
-    });
     bench_steps(c, "kalman, joseph", |model| {
         let form = Joseph::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
-        kalman(model, form)
-    });
-    bench_steps(c, "kalman, information", |model| {
-        let form = Information::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
         kalman(model, form)
     });
 }
@@ -92,13 +83,7 @@ fn observer(c: &mut Criterion) {
     let mut filter = kalman(model.clone(), fixed.clone());
     group.bench_function("kalman, ud of static size", |b| b.iter(|| filter.step(1.0, &z).is_ok()));
     bench_covariance(&mut group, "covariance alone, dynamic", form, model.clone());
-    bench_covariance(&mut group, "covariance alone, static", fixed, model.clone());
-    let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
-    let mut filter = kalman(model, form);
-    let mut smoother = FixedLag::try_new(20, &filter).expect("no consider states");
-    group.bench_function("kalman, ud, and fixed lag of 20 steps", |b| {
-        b.iter(|| filter.step(1.0, &z).is_ok() && smoother.push(&filter).is_ok());
-    });
+    bench_covariance(&mut group, "covariance alone, static", fixed, model);
 }
 
 type Group<'a> = criterion::BenchmarkGroup<'a, criterion::measurement::WallTime>;

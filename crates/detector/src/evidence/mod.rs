@@ -3,7 +3,7 @@
 //! The observer's member that holds the mass has the signature of a leak in its innovations, for every possible onset at once ([`Observer::onsets`]): with
 //! rate `r`, standard deviation `s` and age `A` of each,
 //!
-//! `z = max(0, r - p min(1, 3 tau/A)/A) / (s F D)`.
+//! `z = max(0, r - (p min(1, 3 tau/A) + q)/A) / (s F D)`.
 //!
 //! A scale's statistic is the largest `z` of its onsets:
 //!
@@ -17,11 +17,12 @@
 //!
 //! * `p` is what the observer considers of the mass for what the surroundings do now ([`Flow::considered_sd_kg`]). It fades with `tau`, and weighs on onsets that
 //!   have seen little else.
+//! * `q` is what else the mass may be off by now, for as long as it may: the gas is not what the thermometers say.
 //! * `F` is the cylinder's own: innovations are coloured, and how much depends on vessel, climate and sensors. The rates of two onsets, of which the older one rests on all that the
 //!   younger one does, differ by `s_i^2 - s_k^2` in their variance if the innovations are independent; `F^2` is the running mean of the square of their difference
 //!   over that (`restless`), of onsets 1.5, 8 and 32 h old, where the younger one has the lower rate. Where it has the higher one, that may be a leak: what one that began before
 //!   has made of the filter's error is the larger a rate, the shorter the time that it is put down to.
-//! * `D`, at least 1, is what else is in doubt: a thermometer is missing, or stands for the gas less than usual.
+//! * `D`, at least 1, is what else is in doubt: a thermometer is missing.
 //!
 //! What the statistics reach without a leak is measured ([`Tails`]).
 //!
@@ -132,8 +133,9 @@ pub struct Evidence {
     last_s: Option<f64>,
     usual: Restless,
     divisor: f64,
-    /// What is considered of the mass, standard deviation, kg.
+    /// What is considered of the mass, and what else it may be off by, standard deviations, kg.
     considered_kg: f64,
+    off_kg: f64,
     statistics: Statistics,
 }
 
@@ -146,19 +148,20 @@ impl Evidence {
             usual: Restless::with_prior(USUAL),
             divisor: 1.0,
             considered_kg: 0.0,
+            off_kg: 0.0,
             statistics: [0.0; Scale::ALL.len()],
         }
     }
 
-    /// Take what the observer says after a sample at a time, s, with so much else in doubt, at least 1; the statistics after it. Samples not later than the last one
-    /// change nothing.
-    pub fn update(&mut self, observer: &Observer, time_s: f64, divisor: f64) -> Statistics {
+    /// Take what the observer says after a sample at a time, s, with rates less certain by a divisor, at least 1, and a mass that may be off by so much, kg; the statistics
+    /// after it. Samples not later than the last one change nothing.
+    pub fn update(&mut self, observer: &Observer, time_s: f64, (divisor, off_kg): (f64, f64)) -> Statistics {
         let interval_s = self.last_s.map_or(0.0, |last_s| time_s - last_s);
         if self.last_s.is_some() && interval_s <= 0.0 {
             return self.statistics;
         }
         self.last_s = Some(time_s);
-        self.divisor = divisor;
+        (self.divisor, self.off_kg) = (divisor, off_kg);
         self.considered_kg = observer.flow().map_or(0.0, |flow| flow.considered_sd_kg);
         self.compare(observer, time_s, interval_s);
         self.statistics = [0.0; Scale::ALL.len()];
@@ -196,7 +199,7 @@ impl Evidence {
 
     /// What the rate of an onset of an age, s, may be off by for what the surroundings do now, standard deviation, kg/s.
     pub fn considered_kg_s(&self, age_s: f64) -> f64 {
-        self.considered_kg * (FADED * self.memory_s / age_s).min(1.0) / age_s
+        (self.considered_kg * (FADED * self.memory_s / age_s).min(1.0) + self.off_kg) / age_s
     }
 
     /// What the standard deviations of the rates are larger by than if innovations were independent and nothing else were in doubt.

@@ -8,7 +8,7 @@
 //! | [`readings::health`], [`readings::thermometers`] | readings that are none, stand still or have an offset that jumped |
 //! | wiring | whether a channel is late or the thermometers are in each other's place: put right |
 //! | filling | whether the first readings fit the filling that was stated |
-//! | parity | whether one end is warmed or cooled by itself: the evidence for a leak counts less |
+//! | parity | whether one end is warmed or cooled by itself, and what the gas may be off by then |
 //! | the observer | mass, gas temperature and leak rate ([`crate::estimator::observer`]) |
 //! | [`gas::jump`] | a pressure that jumps: gas, transmitter or spike, told by what comes back |
 //! | [`crate::evidence`] | whether gas is being lost, on time scales from an hour to a month, at a stated rate of false alarms |

@@ -47,25 +47,6 @@ pub(crate) fn transposed_product(c: &mut [f64], a: &[f64], b: &[f64], inner: usi
     }
 }
 
-/// Turn `x` into the vector `v` of the reflection `I - beta v v^T` that maps `x` onto element `pivot`.
-///
-/// Returns that element's new value and `beta`; `beta = 0` if `x` is zero.
-pub(crate) fn householder(x: &mut [f64], pivot: usize) -> (f64, f64) {
-    let norm = dot(x, x).sqrt();
-    if norm == 0.0 {
-        return (0.0, 0.0);
-    }
-    let reflected = -norm.copysign(x[pivot]);
-    let beta = 1.0 / (norm * (norm + x[pivot].abs()));
-    x[pivot] -= reflected;
-    (reflected, beta)
-}
-
-/// `y <- (I - beta v v^T) y`.
-pub(crate) fn reflect(beta: f64, v: &[f64], y: &mut [f64]) {
-    axpy(-beta * dot(v, y), v, y);
-}
-
 /// Factors of a square matrix with row exchanges, in place: `L` below the diagonal, `U` on and above it.
 ///
 /// Returns whether the matrix has an inverse; `exchanges`: (n).
@@ -91,17 +72,6 @@ pub(crate) fn factor_lu(a: &mut [f64], n: usize, exchanges: &mut [usize]) -> boo
         }
     }
     true
-}
-
-/// Solve `A^T x = b` in place of `b`, with the factors of [`factor_lu`].
-pub(crate) fn solve_lu_transposed(a: &[f64], n: usize, exchanges: &[usize], b: &mut [f64]) {
-    solve_upper_transposed(a, n, b);
-    for j in (0..n).rev() {
-        b[j] -= dot(&column(a, n, j)[j + 1..], &b[j + 1..]);
-    }
-    for (j, &other) in exchanges.iter().enumerate().rev() {
-        b.swap(j, other);
-    }
 }
 
 /// Solve `R x = b` in place of `b`, for the upper triangle `R` of a column-major matrix (n, n).

@@ -160,18 +160,6 @@ pub(crate) fn factor_root(p: &mut [f64], d: &mut [f64]) -> Result<(), EstimatorE
     Ok(())
 }
 
-/// `P = S S^T` of an upper triangular, column-major `S` (n, n), both triangles.
-pub(crate) fn square_root(s: &[f64], n: usize, p: &mut [f64]) {
-    p.fill(0.0);
-    for l in 0..n {
-        let s = &column(s, n, l)[..=l];
-        for j in 0..=l {
-            axpy(s[j], &s[..=j], &mut column_mut(p, n, j)[..=j]);
-        }
-    }
-    mirror(p, n);
-}
-
 /// Copy the upper triangle of a column-major matrix into its lower one.
 pub(crate) fn mirror(p: &mut [f64], n: usize) {
     for j in 0..n {

@@ -1,11 +1,9 @@
-//! How a covariance is carried: four forms with the same steps, equal up to rounding.
+//! How a covariance is carried: two forms with the same steps, equal up to rounding.
 //!
 //! | form | carries | accuracy | costs |
 //! |---|---|---|---|
 //! | [`UdFactors`] | `P = U diag(d) U^T` | never indefinite, singular `P` allowed | least |
-//! | [`SquareRoot`] | `P = S S^T` | as above | about twice |
 //! | [`Joseph`] | `P` itself | loses small eigenvalues of ill-conditioned problems | dense products: the reference |
-//! | [`Information`] | `P^-1 = R^T R` | exact measurements excluded, `P` and `Phi` must have inverses | most |
 use nalgebra::allocator::Allocator;
 use nalgebra::{DMatrix, DefaultAllocator, Dim};
 
@@ -14,13 +12,9 @@ use super::state_space::Linearisation;
 use super::ud::UdFactors;
 use crate::EstimatorError;
 
-mod information;
 mod joseph;
-mod square_root;
 
-pub use information::Information;
 pub use joseph::Joseph;
-pub use square_root::SquareRoot;
 
 /// A covariance `P` of `n` states that can be moved in time and updated by scalar measurements.
 ///
@@ -60,7 +54,7 @@ pub trait CovarianceForm: Clone {
         dot(h, work) + r
     }
 
-    /// Variance of state `i`. [`Information`] allocates to find it.
+    /// Variance of state `i`.
     fn variance(&self, i: usize) -> f64;
 
     /// Write `P` into a column-major slice of length n^2.

@@ -24,7 +24,7 @@ pub mod unscented;
 pub mod van_loan;
 
 pub use failure::StepError;
-pub use form::{CovarianceForm, Information, Joseph, SquareRoot};
+pub use form::{CovarianceForm, Joseph};
 pub use gate::{GateCount, GateSettings, Outcome};
 pub use kalman::{ExtendedKalman, KalmanSettings};
 pub use report::{OutputReport, StepReport};
@@ -32,7 +32,7 @@ pub use riccati::{SteadyState, steady_prediction, steady_state};
 pub use ring::{Placement, Refilter};
 pub use sequential::{KalmanSnapshot, SequentialFilter};
 pub(crate) use smoother::Backward;
-pub use smoother::{FixedLag, PassStep, Smoothed, smooth_fixed_interval};
+pub use smoother::{PassStep, Smoothed, smooth_fixed_interval};
 pub use state_space::{Linearisation, StateSpace};
 pub use stationary::{Stationary, StationarySettings, StationarySnapshot};
 pub use ud::UdFactors;

@@ -19,10 +19,6 @@ use super::kernel::{axpy, column, dot};
 use super::state_space::StateSpace;
 use crate::EstimatorError;
 
-mod fixed_lag;
-
-pub use fixed_lag::FixedLag;
-
 /// One step of a filter as the smoother needs it: plain data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassStep {

@@ -1,6 +1,6 @@
 //! The extended Kalman filter in every form against the textbook filter, on linear processes.
 use cylwatch_estimator::filter::{
-    CovarianceForm, ExtendedKalman, Information, Joseph, KalmanSettings, Outcome, SquareRoot, UdFactors,
+    CovarianceForm, ExtendedKalman, Joseph, KalmanSettings, Outcome, UdFactors,
 };
 use nalgebra::{DMatrix, DVector, Dyn};
 
@@ -37,18 +37,8 @@ fn filter_on_ud_factors_is_the_textbook_filter() {
 }
 
 #[test]
-fn filter_on_the_square_root_is_the_textbook_filter() {
-    assert_follows_the_textbook(|p| SquareRoot::<Dyn>::from_covariance(p).unwrap(), 22);
-}
-
-#[test]
 fn filter_on_josephs_form_is_the_textbook_filter() {
     assert_follows_the_textbook(|p| Joseph::<Dyn>::from_covariance(p).unwrap(), 23);
-}
-
-#[test]
-fn filter_on_the_information_is_the_textbook_filter() {
-    assert_follows_the_textbook(|p| Information::<Dyn>::from_covariance(p).unwrap(), 24);
 }
 
 fn ud_filter(

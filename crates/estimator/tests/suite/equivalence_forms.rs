@@ -1,6 +1,5 @@
 //! Every covariance form against dense matrices, and against what dense matrices cannot do.
-use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::filter::{CovarianceForm, Information, Joseph, Linearisation, SquareRoot, UdFactors};
+use cylwatch_estimator::filter::{CovarianceForm, Joseph, UdFactors};
 use nalgebra::{Const, DMatrix, DVector, Dyn};
 
 use crate::linear_model::{LinearModel, covariance, covariance_difference, rng, uniform};
@@ -46,18 +45,8 @@ fn ud_factors_follow_dense_matrices() {
 }
 
 #[test]
-fn square_root_follows_dense_matrices() {
-    assert_form_follows_dense_matrices(|p| SquareRoot::<Dyn>::from_covariance(p).unwrap(), 12);
-}
-
-#[test]
 fn joseph_follows_dense_matrices() {
     assert_form_follows_dense_matrices(|p| Joseph::<Dyn>::from_covariance(p).unwrap(), 13);
-}
-
-#[test]
-fn information_follows_dense_matrices() {
-    assert_form_follows_dense_matrices(|p| Information::<Dyn>::from_covariance(p).unwrap(), 14);
 }
 
 #[test]
@@ -72,28 +61,8 @@ fn forms_of_static_size_follow_those_of_dynamic_size() {
         form.update(h.as_slice(), 0.1, &mut [0.0; 6]).unwrap();
         form.to_dense()
     }
-    let roots = run(SquareRoot::<Const<6>>::from_covariance(&fixed).unwrap(), &model, &h);
-    assert_eq!(roots, run(SquareRoot::<Dyn>::from_covariance(&p).unwrap(), &model, &h));
     let joseph = run(Joseph::<Const<6>>::from_covariance(&fixed).unwrap(), &model, &h);
     assert_eq!(joseph, run(Joseph::<Dyn>::from_covariance(&p).unwrap(), &model, &h));
-    let information = run(Information::<Const<6>>::from_covariance(&fixed).unwrap(), &model, &h);
-    assert_eq!(information, run(Information::<Dyn>::from_covariance(&p).unwrap(), &model, &h));
-}
-
-#[test]
-fn information_refuses_what_has_no_inverse() {
-    let singular = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0]);
-    assert!(matches!(
-        Information::<Dyn>::from_covariance(&singular),
-        Err(EstimatorError::CovarianceSingular { state: 0 })
-    ));
-    let mut form = Information::<Dyn>::from_covariance(&DMatrix::identity(2, 2)).unwrap();
-    assert!(matches!(form.predict(&Linearisation::zeros(2, 1, 1)), Err(EstimatorError::TransitionSingular)));
-    assert!(matches!(
-        form.update(&[1.0, 0.0], 0.0, &mut [0.0; 2]),
-        Err(EstimatorError::NoiseNotPositive { variance: 0.0 })
-    ));
-    assert_eq!(form.to_dense(), DMatrix::identity(2, 2));
 }
 
 #[test]

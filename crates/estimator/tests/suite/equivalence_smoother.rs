@@ -1,7 +1,7 @@
 //! Smoothers against the dense solution for all states at once.
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::filter::{
-    CovarianceForm, ExtendedKalman, FixedLag, KalmanSettings, PassStep, UdFactors, smooth_fixed_interval,
+    CovarianceForm, ExtendedKalman, KalmanSettings, PassStep, UdFactors, smooth_fixed_interval,
 };
 use nalgebra::{DMatrix, DVector, Dyn};
 
@@ -98,26 +98,6 @@ fn smoother_needs_no_process_noise_and_no_inverse() {
     known.model.q_c.fill(0.0);
     known.model.q_c[(0, 0)] = 0.5;
     assert_is_the_dense_solution(&known);
-}
-
-#[test]
-fn fixed_lag_is_fixed_interval_on_the_window() {
-    let case = Case::random(&mut rng(48), (6, 4, 2), 20);
-    for lag in [0, 1, 4, 20] {
-        let (mut filter, steps) = (case.filter(), case.pass());
-        let mut smoother = FixedLag::try_new(lag, &filter).unwrap();
-        for (k, (dt_s, z)) in case.dt_s.iter().zip(&case.z).enumerate() {
-            filter.step(*dt_s, z).unwrap();
-            let lagged = smoother.push(&filter).unwrap();
-            assert_eq!(lagged.is_some(), k + 1 >= lag);
-            if let Some(lagged) = lagged {
-                let expected = &smooth_fixed_interval(&steps[..=k + 1])[k + 1 - lag];
-                assert!(state_difference(lagged.x.as_slice(), &expected.x, &expected.p) < 1e-12);
-                assert!(covariance_difference(&lagged.p, &expected.p) < 1e-12);
-            }
-            assert!(smoother.steps().len() <= lag + 1);
-        }
-    }
 }
 
 #[test]

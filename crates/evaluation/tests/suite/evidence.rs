@@ -54,7 +54,7 @@ fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, St
     let step = |(time_s, row): &Row| {
         before(*time_s, observer);
         observer.step(*time_s, row).unwrap();
-        (*time_s, evidence.update(observer, *time_s, 1.0))
+        (*time_s, evidence.update(observer, *time_s, (1.0, 0.0)))
     };
     rows.iter().map(step).collect()
 }
@@ -134,8 +134,8 @@ fn saved_and_restored_at_any_sample_it_goes_on_bit_for_bit() {
         }
         let bits = |statistics: Statistics| statistics.map(f64::to_bits);
         assert_eq!(
-            bits(whole.update(&observer, *time_s, 1.0)),
-            bits(restored.update(&observer, *time_s, 1.0))
+            bits(whole.update(&observer, *time_s, (1.0, 0.0))),
+            bits(restored.update(&observer, *time_s, (1.0, 0.0)))
         );
     }
     assert_eq!(whole, restored);

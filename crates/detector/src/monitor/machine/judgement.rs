@@ -2,6 +2,7 @@
 use super::{EXCHANGED_S, Monitor, SETTLED_S};
 use crate::monitor::gas::bounds::ROWS;
 use crate::monitor::{Health, Known, KnownExchange, Reason};
+use crate::prognosis::QUOTED_K;
 
 /// Part of the fill from which an exchange or a flow is the verdict: what is smaller is an event, and leaves the verdict open until gas and wall have settled.
 pub(super) const MATTERS: f64 = 0.01;
@@ -46,6 +47,11 @@ impl Monitor {
         self.state.leak.probability().filter(|_| found || doubt.is_none())
     }
 
+    /// What the mass may be off by while one end of the cylinder is warmed or cooled by itself, as a part of it, at a gas temperature, K.
+    pub(super) fn off_by_one_end(&self, gas_k: f64) -> f64 {
+        self.state.parity.doubt_k() / gas_k
+    }
+
     /// Gas that flows fast, or did a while ago.
     fn known_exchange(&self, time_s: f64) -> Option<KnownExchange> {
         let state = &self.state;
@@ -82,7 +88,7 @@ impl Monitor {
         if state.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S) {
             return Some(Reason::Settling);
         }
-        if state.parity.is_blind() {
+        if self.off_by_one_end(QUOTED_K) > MATTERS {
             return Some(Reason::Disturbed);
         }
         let learning = state.start_s.is_some_and(|start_s| time_s - start_s < self.settings.learning_s);

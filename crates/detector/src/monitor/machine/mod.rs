@@ -430,8 +430,9 @@ impl Monitor {
         }
         self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let degraded = self.is_degraded(time_s);
-        let divisor = self.state.parity.divisor() * if degraded { DEGRADED } else { 1.0 };
-        let statistics = self.state.evidence.update(&self.observer, time_s, divisor);
+        let divisor = if degraded { DEGRADED } else { 1.0 };
+        let off_kg = self.off_by_one_end(estimate.gas_mean_k) * self.filled_kg.0;
+        let statistics = self.state.evidence.update(&self.observer, time_s, (divisor, off_kg));
         let look = Look {
             time_s,
             pa_per_kg: self.state.p15.slope_pa_kg(),

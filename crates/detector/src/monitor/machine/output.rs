@@ -1,7 +1,7 @@
 //! Output of a row: estimate, decision, outlook and alarms.
 //!
 //! The member of the observer's bank that gives mass and gas temperature depends on the state of the cylinder. At rest the members that hold the mass are
-//! the most precise. While a leak is known, the mass comes from the freest member. While gas flows, and until it has come to rest, mass, gas
+//! the most precise, and what one end that is warmed by itself hides is added to what they are uncertain by. While a leak is known, the mass comes from the freest member. While gas flows, and until it has come to rest, mass, gas
 //! temperature and rate come from the flowing member.
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
@@ -36,6 +36,10 @@ impl Monitor {
                 (estimate.gas_mean_k, estimate.gas_mean_sd_k) = (flow.gas_mean_k, flow.gas_mean_sd_k);
             }
         }
+        let off_k = self.state.parity.doubt_k();
+        estimate.gas_mean_sd_k = estimate.gas_mean_sd_k.hypot(off_k);
+        let off_kg = self.off_by_one_end(estimate.gas_mean_k) * estimate.mass_kg;
+        estimate.mass_sd_kg = estimate.mass_sd_kg.hypot(off_kg);
         estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
         self.warn_of_the_cold(time_s, cold_pressure_pa, &mut events);

@@ -7,11 +7,11 @@
 //! ([`ModelError::surface_k`](crate::estimator::observer::ModelError), 0.12 K), or a thermometer's noise where that is more.
 //!
 //! `d` is the median of the last three calm windows less that of the two days before. What comes with every day is usual, as a morning's sun on one end in a
-//! desert: with the deviation `s`, less `1.25 e`, that was exceeded for half an hour a day in the two days until yesterday, all limits below are those of `|d| - s`. The evidence
-//! for a leak is divided by `sqrt(1 + ((|d| - s - 2.5 e) / (1.7 e + s))^2)` from there on, at most 4, and by 1.3 at least where no three calm windows of the last
-//! one and a half hours give `d`, for as long again; beyond 2.5 the verdict is unknown; for six hours after it by what is left of that,
-//! as the observer needs its time to come back. Where `d` was above `5 e` for three hours, the evidence from then counts for nothing
-//! once it is over.
+//! desert: with the deviation `s`, less `1.25 e`, that was exceeded for half an hour a day in the two days until yesterday, all limits below are those of `u = |d| - s`. The gas
+//! may then be off by `g = 2 sqrt(u^2 - (2.5 e)^2)`: of 1 K at one end a well mixed gas takes a part, and one in layers hides as much again. What that is of the mass is considered
+//! in the evidence for a leak, in the mass and in the gas temperature; it fades within six hours after it, as the observer needs its time to come back, within a day where nobody sees whether it
+//! is over. Where `d` was above `5 e` for three hours, the evidence from then
+//! counts for nothing once it is over.
 //!
 //! Which of the two is off the pressure says: with `T_p` the temperature at which the stated mass has this pressure,
 //! `a_i = T_i - T_p` less its usual value, or less that of an hour before, is `d` for the one that is off and nothing for the other.
@@ -35,8 +35,8 @@ const FEWEST_ROWS: u32 = 2;
 /// Difference that is usual, in errors of a surface temperature, and twice that: what may change within a window that is calm, and the difference from which a thermometer is off.
 const HARMLESS: f64 = 2.5;
 const OFF: f64 = 2.0 * HARMLESS;
-/// Difference beyond the usual one that raises what is needed by 40 %, errors.
-const SCALE: f64 = 1.7;
+/// Error of the gas temperature as a part of the difference beyond the usual one.
+const PART: f64 = 2.0;
 /// Time over which the usual difference is taken, s, and fewest windows.
 const USUAL_S: f64 = 2.0 * DAY_S;
 const FEWEST_USUAL: usize = 36;
@@ -46,10 +46,6 @@ const LATEST: usize = 3;
 const STALE_S: f64 = 3.0 * HOUR_S;
 /// Part of the windows of other days, those of yesterday and before, that deviates less than what is usual on some of them.
 const OTHER_DAYS: f64 = 0.98;
-/// Largest divisor: a leak of 1 bar/h is found beside whatever heater. Divisor beyond which nothing is known of small leaks, and that of a difference that is not known: in a tunnel nobody sees a kelvin.
-const LARGEST: f64 = 4.0;
-const BLIND: f64 = 2.5;
-const UNKNOWN: f64 = 1.3;
 /// Time constant with which it comes back, s.
 const BACK_S: f64 = 6.0 * HOUR_S;
 /// Part of the difference that the one that is off has left what the pressure stands for by, at least, and the other one at most.
@@ -90,14 +86,15 @@ pub(in crate::monitor) struct Parity {
     window: Option<Window>,
     #[serde(with = "calm")]
     calm: VecDeque<Calm>,
-    off_k: f64,
+    /// Present difference less the usual one, K; `None` where either is not known.
+    off_k: Option<f64>,
     /// How far the difference deviated from its median on other days, K, beyond the harmless.
     spread_k: f64,
     named: Option<Named>,
     /// Usual difference before it was off, K.
     usual_k: f64,
-    /// What the evidence is divided by, less one.
-    excess: f64,
+    /// What the gas may be off by, K.
+    doubt_k: f64,
     last_s: f64,
     disturbed_s: f64,
     told: bool,
@@ -180,11 +177,11 @@ impl Parity {
             self.compare(calm);
         }
         if self.calm.back().is_some_and(|calm| time_s - calm.begun_s() > STALE_S) {
-            (self.off_k, self.named) = (0.0, None);
+            (self.off_k, self.named) = (None, None);
         }
-        let beyond_k = (self.unusual_k() - self.harmless_k()).max(0.0);
-        let now = (beyond_k / (SCALE * self.error_k + self.spread_k)).hypot(1.0).min(LARGEST) - 1.0;
-        self.excess = now.max(self.excess * (-elapsed_s / BACK_S).exp());
+        let now_k = PART * (self.unusual_k().powi(2) - self.harmless_k().powi(2)).max(0.0).sqrt();
+        let memory_s = if self.off_k.is_some() { BACK_S } else { DAY_S };
+        self.doubt_k = now_k.max(self.doubt_k * (-elapsed_s / memory_s).exp());
         self.tell(elapsed_s)
     }
 
@@ -200,7 +197,7 @@ impl Parity {
         }
         if self.disturbed_s > HOUR_S && !self.told {
             self.told = true;
-            return Some(Disturbance::Begun(self.off_k));
+            return Some(Disturbance::Begun(self.off_k()));
         }
         if self.unusual_k() >= self.harmless_k() {
             return None;
@@ -219,14 +216,14 @@ impl Parity {
         let usual = self.calm.len() - self.calm.partition_point(older(USUAL_S));
         if usual < FEWEST_USUAL + LATEST {
             // What was found against other days is no finding of these.
-            (self.off_k, self.named) = (0.0, None);
+            (self.off_k, self.named) = (None, None);
             return;
         }
         let before = self.calm.iter().rev().take(usual).skip(LATEST);
         let usual_k = median(before.map(|calm| calm.apart_k()));
         let yesterday = self.calm.partition_point(older(DAY_S));
         let other_days = self.calm.range(..yesterday).map(|calm| (calm.apart_k() - usual_k).abs());
-        self.off_k = self.latest_k(|calm| calm.apart_k()) - usual_k;
+        self.off_k = Some(self.latest_k(|calm| calm.apart_k()) - usual_k);
         self.spread_k = (quantile(OTHER_DAYS, other_days) - self.harmless_k() / 2.0).max(0.0);
         if self.disturbed_s == 0.0 {
             self.usual_k = usual_k;
@@ -244,10 +241,10 @@ impl Parity {
         self.named = match self.named {
             // Once it is named, what the night makes of it names nobody else.
             Some(named) if is_off(named.which) || named.windows as usize >= LATEST => {
-                Some(named.goes_on(self.off_k, self.harmless_k()))
+                Some(named.goes_on(self.off_k(), self.harmless_k()))
             }
             _ if self.unusual_k() < OFF * self.error_k => None,
-            _ => off[0].or(off[1]).map(|which| Named::new(which, time_s, self.off_k)),
+            _ => off[0].or(off[1]).map(|which| Named::new(which, time_s, self.off_k())),
         };
     }
 
@@ -256,8 +253,8 @@ impl Parity {
         let above_k = [0, 1].map(|i| self.change_k(against, |calm| calm.above_k()[i]));
         let which = usize::from(above_k[1].abs() > above_k[0].abs());
         // Not so without a pressure.
-        let agrees = above_k[1 - which].abs() < NAMED * self.off_k.abs();
-        (agrees && above_k[which].abs() > NAMED * self.off_k.abs()).then_some(which)
+        let agrees = above_k[1 - which].abs() < NAMED * self.off_k().abs();
+        (agrees && above_k[which].abs() > NAMED * self.off_k().abs()).then_some(which)
     }
 
     /// Median over the last windows less that over so many before them.
@@ -273,36 +270,32 @@ impl Parity {
     /// A thermometer that is off while the other one agrees with the pressure, and by how much, K.
     pub fn deviating(&self) -> Option<(usize, f64)> {
         let named = self.named.filter(|named| named.windows as usize >= LATEST)?;
-        Some((named.which, named.of_its_own(self.off_k)))
+        Some((named.which, named.of_its_own(self.off_k())))
     }
 
     /// How far the present difference is from the usual one beyond the usual deviations, K.
     fn unusual_k(&self) -> f64 {
-        (self.off_k.abs() - self.spread_k).max(0.0)
+        (self.off_k().abs() - self.spread_k).max(0.0)
+    }
+
+    fn off_k(&self) -> f64 {
+        self.off_k.unwrap_or_default()
     }
 
     /// Whether the difference is the usual one, and has been for a while.
     pub fn is_usual(&self) -> bool {
-        self.unusual_k() < self.harmless_k() && self.excess < 1.0
+        self.unusual_k() < self.harmless_k() && self.doubt_k < OFF * self.error_k
     }
 
-    /// Whether nothing can be told of small leaks.
-    pub fn is_blind(&self) -> bool {
-        self.divisor() > BLIND
-    }
-
-    /// What the evidence for a leak is divided by.
-    pub fn divisor(&self) -> f64 {
-        let first = self.calm.len().checked_sub(LATEST).and_then(|at| self.calm.get(at));
-        let unknown =
-            first.is_some_and(|first| (STALE_S / 2.0..STALE_S).contains(&(self.last_s - first.begun_s())));
-        (1.0 + self.excess).max(if unknown { UNKNOWN } else { 1.0 })
+    /// What the mean gas temperature may be off by, as one end is warmed or cooled by itself, K.
+    pub fn doubt_k(&self) -> f64 {
+        self.doubt_k
     }
 
     /// Another offset of a thermometer is taken off from now on: the difference is learnt anew.
     pub fn forget(&mut self) {
-        let (excess, last_s) = (self.excess, self.last_s);
-        *self = Self { excess, last_s, ..Self::new(self.error_k) };
+        let (doubt_k, last_s) = (self.doubt_k, self.last_s);
+        *self = Self { doubt_k, last_s, ..Self::new(self.error_k) };
     }
 }
 
