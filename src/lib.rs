@@ -4,7 +4,7 @@
 //! logs as files ([`log`]), results as text and figures ([`report`]), gas properties ([`properties`]), the reproduction of
 //! the paper that it follows ([`reproduce`]).
 //!
-//! # The way of the data
+//! # Data flow
 //!
 //! One type stands at each station, and one function leads to the next. All signatures are SI, with the unit in the name.
 //!
@@ -13,7 +13,7 @@
 //! | files of vessel and scenario | [`read_vessel`](thermal::vessel::read_vessel), [`read_scenario`](thermal::scenario::read_scenario) | [`Vessel`](thermal::vessel::Vessel), [`Scenario`](thermal::scenario::Scenario) |
 //! | vessel and scenario | [`simulate`](thermal::simulate::simulate) | [`Trajectory`](thermal::trajectory::Trajectory) |
 //! | trajectory and [sensors](estimator::sensor) | [`sample`](estimator::sensor::sample) | [`Log`](estimator::log::Log) |
-//! | a file of readings | [`LogReader`](log::LogReader), or [`Inspector`](log::inspect::Inspector) for one that nobody knows | rows |
+//! | a file of readings | [`LogReader`](log::LogReader), or [`Inspector`](log::inspect::Inspector) for an unknown one | rows |
 //! | rows | [`Observer`](estimator::observer::Observer) | [`Estimate`](estimator::observer::Estimate): gas temperature, mass and leak rate with standard deviations |
 //! | rows | [`Monitor`](detector::monitor::Monitor) | [`Output`](detector::monitor::Output): [`Verdict`](detector::monitor::Verdict), events, time left |
 //! | any result | [`report`] | tables, JSON, [`Figure`](report::figure::Figure) |

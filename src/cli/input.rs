@@ -222,7 +222,7 @@ impl<R> LogInput<R> {
         self.length.is_none()
     }
 
-    /// Share of the bytes that has been read, as they are in the file; 0 where nobody knows how many there will be.
+    /// Share of the bytes that has been read, as they are in the file; 0 where the total is unknown.
     pub fn fraction_of_bytes(&self) -> f64 {
         self.length.map_or(0.0, |length| self.passed.bytes.get() as f64 / length.max(1) as f64)
     }

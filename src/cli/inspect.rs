@@ -43,7 +43,7 @@ pub enum InspectionFormat {
 
 const EXAMPLES: &str = "\
 Says how the file is written, which times and columns it has and what they are taken for, what is
-odd, which --map may be right for the columns that nobody knows, and which of estimate, monitor,
+odd, which --map may fit an unrecognised column, and which of estimate, monitor,
 identify and calibrate can use it, with the command line to run next. A log that these commands
 would refuse is inspected all the same.
 

@@ -32,7 +32,7 @@ pub enum Kind {
     DecimalComma,
     /// A simulated value without a sensor's reading beside it: taken as the reading.
     Perfect,
-    /// Columns that nobody knows: set aside.
+    /// Unrecognised columns: ignored.
     SetAside,
     /// Lines above the header: passed over.
     Preamble,

@@ -150,7 +150,7 @@ impl Reproduction {
         let covered = self.beside.iter().map(|score| 100.0 * score.covered).sum::<f64>()
             / self.beside.len().max(1) as f64;
         story
-            .heading("The same scenarios on cylinders that nobody knows")
+            .heading("The same scenarios on cylinders unknown to the observer")
             .text(format!("{DRAWN} {} cylinders for each. {covered:.0} % of the true temperatures lie within two of the observer\u{2019}s standard deviations.", self.cylinders))
             .rows("Error of the mean gas temperature in K, root mean square (least to largest of a cylinder)", &header, gas)
             .rows("Pressure that seems to be missing in bar, root mean square (least to largest of a cylinder)", &header, missing)
@@ -172,7 +172,7 @@ impl Reproduction {
         let caption =
             "Leaks 50 min after the tunnel\u{2019}s mouth, watched for 2 h 10 min (losses: least to largest)";
         story
-            .heading("Leaks after the tunnel on cylinders that nobody knows")
+            .heading("Leaks after the tunnel on cylinders unknown to the observer")
             .text(DRAWN_LEAKS)
             .rows(caption, &header, rows)
     }

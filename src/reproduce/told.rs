@@ -121,7 +121,7 @@ impl Reproduction {
         );
         story = self.figure_3(story);
         story = show(story, "figure-3", "Errors beyond 4 K, of the start at zero, are left out.");
-        story = story.heading("Figures 4, 5 and 7: the way of the data").text(FIGURE_4);
+        story = story.heading("Figures 4, 5 and 7: data flow").text(FIGURE_4);
         story = show(
             story,
             "figure-4-5-7",

@@ -169,7 +169,7 @@ fn command_of(image: &Path) -> String {
 fn every_image_states_a_command_that_works_in_any_folder_and_stands_in_the_text() {
     let folder = root().join("book/src/images");
     let texts: String = pages().iter().map(|page| read(page)).collect();
-    let texts = texts.replace("\\\n", " ").replace("cargo run --release -- ", "cylwatch ");
+    let texts = texts.replace("\\\n", " ").replace("cargo run -- ", "cylwatch ");
     let texts = texts.split_whitespace().collect::<Vec<_>>().join(" ");
     for image in ["png", "svg"].iter().flat_map(|ending| files(&folder, ending)) {
         let command = command_of(&image);

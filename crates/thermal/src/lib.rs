@@ -1,7 +1,7 @@
 //! Thermal model of a gas cylinder: real-gas fluid, finite-volume wall, films inside and outside,
 //! leaks and other flows, and the adaptive implicit simulation of all of them together.
 //!
-//! The way of the data is one type per arrow:
+//! Data flow, one type per arrow:
 //! [`vessel::VesselSpec`] and [`scenario::ScenarioSpec`] are what a file says; validated they become a
 //! [`vessel::Vessel`] and a [`scenario::Scenario`]; [`simulate::simulate`] turns the pair into a
 //! [`trajectory::Trajectory`]. All signatures are SI, with the unit in the name.

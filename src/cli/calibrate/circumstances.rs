@@ -203,7 +203,7 @@ impl Exposure<'_> {
     }
 }
 
-/// A change of the air that is over before the next row: nobody knows when within the interval it was.
+/// A change of the air that is over before the next row: when within the interval is unknown.
 fn jump(recording: &Recording) -> Option<String> {
     let changes = recording.air.windows(2).map(|pair| (pair[0].0, pair[1].0, pair[1].1 - pair[0].1));
     let (from_s, to_s, change_k) = changes.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;

@@ -107,7 +107,7 @@ Which sensors, and where: for each number of sensors the best layout by one crit
 layout can fall below, all that are as good within 2 %, and the same layouts by every other
 number: gas temperature, mass, leak rate, smallest leak found in time, delay of a leak, and the
 error along a scenario when films, couplings and gas are not as supposed. Then cost against
-accuracy and delay, every sensor lost and at fault, the effect of errors that nobody knows of,
+accuracy and delay, every sensor lost and at fault, the effect of unknown errors,
 one thermometer at each place, and the same by the measure of the paper that this starts from:
 the fit of a first-order model.
 

@@ -357,7 +357,7 @@ fn twice(second: &Found<'_>, first: &Found<'_>, at: &str) -> LogError {
     }
 }
 
-/// Names the columns that nobody knows, once, and what the first of them that looks like a slip may have meant.
+/// Names the unrecognised columns, once, and what the first of them that looks like a slip may have meant.
 fn set_aside(found: &[Found<'_>], at: &str, cautions: &mut Cautions) {
     let simulated = found.iter().any(|c| matches!(c.meaning, Meaning::Reading { measured: true, .. }));
     let is_known = |column: &Found<'_>| {

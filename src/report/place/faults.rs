@@ -1,4 +1,4 @@
-//! Sensors that are lost or wrong, and errors that nobody knows of.
+//! Sensors that are lost or wrong, and unknown errors.
 use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit, WATT};
 use crate::estimator::placement::study::{Bias, BiasSource, Failure};
 use crate::report::Story;
@@ -77,7 +77,7 @@ impl Placed<'_> {
         let header =
             ["unknown", "one sd", "K: 1 h", "1 d", "7 d", "g: 1 h", "1 d", "7 d", "g/h: 1 h", "1 d", "7 d"];
         let rows: Vec<Vec<String>> = self.study.biases.iter().map(|bias| self.bias(bias)).collect();
-        let explained = "one sd of what nobody knows of, from some moment on, in the estimates after so long; coupling: with 10 K between \
+        let explained = "error of the estimates after so long, from an unknown error of one sd that sets in; coupling: with 10 K between \
                          air and wall";
         Story::default().explained_rows(
             "Unknown errors in the estimates: gas temperature in K, mass in g, leak rate in g/h",

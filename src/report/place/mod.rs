@@ -5,7 +5,7 @@
 //! | `summary` | what was asked, and the order of the tables |
 //! | `rankings` | the best layouts, and layouts by every number |
 //! | `places` | cost against accuracy, and one thermometer anywhere |
-//! | `faults` | sensors lost and at fault, errors that nobody knows of |
+//! | `faults` | sensors lost and at fault, unknown errors |
 //! | `paper` | the same places by the paper's measure |
 //! | `achieved` | what Monte Carlo runs achieve |
 //! | `document` | CSV, JSON, matrices |

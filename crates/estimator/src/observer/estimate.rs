@@ -8,7 +8,7 @@ use super::{Observer, QUOTED_K, REFERENCE_AFTER_S};
 use crate::EstimatorError;
 use crate::filter::StateSpace;
 
-/// How far an estimate can be relied on.
+/// What an estimate rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quality {
     /// Every sensor was heard.
@@ -65,7 +65,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Mass and gas temperature where nobody knows whether it is this or the other: between the two, and no more certain than they are apart.
+    /// Mass and gas temperature where it may be this or the other: between the two, and no more certain than they are apart.
     pub fn or(self, other: Self) -> Self {
         let between = |one: (f64, f64), other: (f64, f64)| {
             let (mean, variance) = mixture(0.5, (one.0, one.1 * one.1), (other.0, other.1 * other.1));

@@ -11,7 +11,7 @@
 //! Where all thermometers are surprised to one side, air and wind may have changed since the row before: steps of both are tried, and the
 //! likeliest explanation of the row stays ([`AirStep`]).
 //!
-//! Missing readings are NaN; any reading may miss at any time, and samples may come at any interval. Readings are used one after the
+//! Missing readings are NaN; any reading may be missing, and samples may come at any interval. Readings are used one after the
 //! other, each behind a gate on its own innovation. The estimate never ends in NaN: where it cannot go on, it starts again
 //! from the prior with what it has learnt, and says so ([`Quality::Restarted`]).
 //!

@@ -88,7 +88,7 @@ impl Monitor {
             Some(Disturbance::Over(by_k)) => {
                 self.go_back_before_disturbance();
                 if by_k.abs() > self.jumped_k() {
-                    // One of them has shifted, nobody knows which.
+                    // One of them has shifted, and which is unknown.
                     for sensor in pair {
                         self.observer.loosen(self.place_of(sensor), by_k.abs());
                     }

@@ -1,4 +1,4 @@
-//! What is lost with a sensor, whether its fault is found, and what errors that nobody knows of do to the estimates.
+//! What is lost with a sensor, whether its fault is found, and what unknown errors do to the estimates.
 //!
 //! A fault is a constant error of one sensor's readings from some sample on. It is found like a leak, by its signature in the
 //! innovations ([`Disturbance`]), and it is told from a leak and from the fault of any other sensor by what its signature has that theirs has not.

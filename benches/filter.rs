@@ -1,6 +1,6 @@
 //! Cost of one step, prediction and update, of every estimator on a process that costs next to nothing itself.
 //!
-//! `cargo bench -p cylwatch-estimator --bench filter`
+//! `cargo bench -p cylwatch-benches --bench filter`
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -10,7 +10,7 @@ use cylwatch_estimator::filter::{
 };
 use nalgebra::{Const, DMatrix, DVector, Dyn, SMatrix};
 
-#[path = "../tests/suite/copying_model.rs"]
+#[path = "../crates/estimator/tests/suite/copying_model.rs"]
 mod copying_model;
 
 use copying_model::CopyingModel;

@@ -3,7 +3,7 @@
 //! A chain of thermal nodes, the gas mass and the leak rate; one output reads mass and temperature together, the
 //! others read nodes. The "observer" has 15 states, 9 of which move, 7 noise sources and 3 outputs.
 //!
-//! `cargo bench -p cylwatch-estimator --bench horizon`
+//! `cargo bench -p cylwatch-benches --bench horizon`
 use std::convert::Infallible;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};

@@ -1,6 +1,6 @@
 //! Cost of an identification by every method, and of refined instruments beside the crate `dsmc`.
 //!
-//! `cargo bench -p cylwatch-estimator --bench identify`
+//! `cargo bench -p cylwatch-benches --bench identify`
 use std::time::Duration;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};

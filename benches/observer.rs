@@ -3,7 +3,7 @@
 //! A cylinder of 20 L with shoulder, valve and pressure sensors through one day of a railway week
 //! ([`cylwatch_evaluation::truth`], six tunnels), again and again. One step includes the estimate.
 //!
-//! `cargo bench -p cylwatch-evaluation --bench observer`
+//! `cargo bench -p cylwatch-benches --bench observer`
 use std::sync::OnceLock;
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 #[allow(dead_code)]
-#[path = "../tests/suite/calibrate/study.rs"]
+#[path = "../crates/estimator/tests/suite/calibrate/study.rs"]
 mod study;
 
 use study::{Case, preset};

@@ -1,6 +1,6 @@
 //! Cost of the search for sensors on the 20 L cylinder.
 //!
-//! `cargo bench -p cylwatch-estimator --bench placement`
+//! `cargo bench -p cylwatch-benches --bench placement`
 use std::hint::black_box;
 use std::time::Duration;
 

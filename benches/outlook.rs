@@ -1,6 +1,6 @@
 //! Cost of a prognosis.
 //!
-//! `cargo bench -p cylwatch-detector --bench outlook`
+//! `cargo bench -p cylwatch-benches --bench outlook`
 use criterion::{Criterion, criterion_group, criterion_main};
 use cylwatch_detector::prognosis::{LossLaw, MassAndLeak, Prognosis};
 

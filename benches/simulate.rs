@@ -1,6 +1,6 @@
 //! Cost of a simulation: the paper's scenario 4 on the default mesh, and how it grows with the number of wall cells.
 //!
-//! `cargo bench -p cylwatch-thermal --bench simulate`
+//! `cargo bench -p cylwatch-benches --bench simulate`
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use cylwatch_thermal::scenario::{self, Scenario};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
