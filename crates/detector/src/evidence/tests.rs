@@ -76,7 +76,8 @@ fn the_same_score_counts_for_less_in_a_cylinder_that_is_restless() {
 fn what_the_mass_may_be_off_by_is_no_loss() {
     let (observer, mut evidence, time_s) = after(40, (0.2, 20.0));
     let certain = evidence.clone().update(&observer, time_s + 1.0, (1.0, 0.0));
-    let lost_kg = 0.2e-3 * 20.0;
+    // 0.2 bar of 200 in each of 20 hours.
+    let lost_kg = 4.477 * 0.02;
     let doubted = evidence.update(&observer, time_s + 1.0, (1.0, lost_kg / 2.0));
     assert!(doubted[2] < 0.7 * certain[2] && doubted[2] > 0.3 * certain[2], "{doubted:?} of {certain:?}");
     assert_eq!(evidence.update(&observer, time_s + 2.0, (1.0, 2.0 * lost_kg)), [0.0; 5]);
