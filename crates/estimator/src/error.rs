@@ -86,15 +86,14 @@ pub enum EstimatorError {
         /// Time of the last row, s; NaN: there was none.
         last_s: f64,
     },
-    /// A covariance has no inverse, and the chosen form carries the inverse.
-    #[error("the covariance has no inverse: other states explain state {state}; carry it in another form")]
+    /// A covariance has no inverse, and one is needed.
+    #[error(
+        "the covariance has no inverse: other states explain state {state}; leave out what is known exactly"
+    )]
     CovarianceSingular {
         /// State, from 0.
         state: usize,
     },
-    /// A transition has no inverse, and the chosen form needs it.
-    #[error("the transition of the moving states has no inverse: carry the covariance in another form")]
-    TransitionSingular,
     /// A noise variance cannot be used.
     #[error("noise variance {variance} must be positive")]
     NoiseNotPositive {

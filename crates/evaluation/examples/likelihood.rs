@@ -20,6 +20,7 @@ use std::error::Error;
 use std::path::Path;
 
 use cylwatch_detector::evidence::observer_settings;
+use cylwatch_estimator::consistency::Coverage;
 use cylwatch_estimator::minimum::golden_section;
 use cylwatch_estimator::observer::{Observer, ObserverSettings};
 use cylwatch_evaluation::judge::candidate::Registry;
@@ -47,8 +48,8 @@ struct Watched {
     rows: f64,
     gas_k2: f64,
     mass_part2: f64,
-    /// Normalised squared errors of the constants of the sensors, with their names.
-    constants: Vec<(&'static str, f64)>,
+    /// Errors of the constants of the sensors and their standard deviations, with their names.
+    constants: Vec<(&'static str, [f64; 2])>,
 }
 
 fn main() -> Result<(), Failure> {
@@ -132,8 +133,8 @@ fn watch(world: &World, settings: &ObserverSettings) -> Result<Watched, Failure>
     Ok(watched)
 }
 
-/// Normalised squared errors of the constants of the sensors that are states.
-fn constants(world: &World, observer: &mut Observer) -> Vec<(&'static str, f64)> {
+/// Errors of the constants of the sensors that are states, and their standard deviations.
+fn constants(world: &World, observer: &mut Observer) -> Vec<(&'static str, [f64; 2])> {
     let Some((mean, covariance)) = observer.state(0) else { return Vec::new() };
     let drawn = &world.drawn.sensors;
     let truths = [
@@ -145,7 +146,7 @@ fn constants(world: &World, observer: &mut Observer) -> Vec<(&'static str, f64)>
     let names = &observer.cylinder().state_map().names;
     let of = |&(name, truth): &(&'static str, f64)| {
         let state = names.iter().position(|state| state == name)?;
-        Some((name, (mean[state] - truth).powi(2) / covariance[(state, state)]))
+        Some((name, [mean[state] - truth, covariance[(state, state)].sqrt()]))
     };
     truths.iter().filter_map(of).collect()
 }
@@ -169,11 +170,12 @@ fn say(what: &str, worlds: &[Watched]) {
     names.dedup();
     for name in names {
         let of_name = worlds.iter().flat_map(|of| &of.constants).filter(|(of, _)| *of == name);
-        let squares: Vec<f64> = of_name.map(|(_, square)| *square).collect();
-        let (count, inside) = (squares.len() as f64, squares.iter().filter(|square| **square < 3.84).count());
-        println!(
-            "  {name}: NEES {:.2}, {inside} of {count} in their 95 %",
-            squares.iter().sum::<f64>() / count
-        );
+        let (mut squares, mut band) = (0.0, Coverage::default());
+        for (_, [error, sd]) in of_name {
+            squares += (error / sd).powi(2);
+            band.add(*error, *sd);
+        }
+        let Coverage { inside, samples } = band;
+        println!("  {name}: NEES {:.2}, {inside} of {samples} in their 95 %", squares / samples as f64);
     }
 }

@@ -10,7 +10,6 @@ use nalgebra::{DMatrix, DefaultAllocator, Dim};
 use super::kernel::dot;
 use super::state_space::Linearisation;
 use super::ud::UdFactors;
-use crate::EstimatorError;
 
 mod joseph;
 
@@ -30,17 +29,11 @@ pub trait CovarianceForm: Clone {
     fn copy_from(&mut self, other: &Self);
 
     /// Time update `P <- F P F^T + G diag(q) G^T`.
-    ///
-    /// # Errors
-    /// This form cannot carry the result; the covariance is then as before.
-    fn predict(&mut self, linear: &Linearisation) -> Result<(), EstimatorError>;
+    fn predict(&mut self, linear: &Linearisation);
 
     /// Update by a scalar measurement `z = h^T x + v`, `v ~ N(0, r)`; writes the gain `K = P h / S` (n), returns
     /// `S = h^T P h + r`. If `S = 0`, the gain is zero.
-    ///
-    /// # Errors
-    /// This form cannot carry the result; the covariance is then as before.
-    fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> Result<f64, EstimatorError>;
+    fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> f64;
 
     /// `P <- P + c v v^T` with `c >= 0`; `v`: (n).
     fn add_rank_one(&mut self, c: f64, v: &[f64]);
@@ -84,13 +77,12 @@ where
         self.copy_from(other);
     }
 
-    fn predict(&mut self, linear: &Linearisation) -> Result<(), EstimatorError> {
+    fn predict(&mut self, linear: &Linearisation) {
         self.predict(linear);
-        Ok(())
     }
 
-    fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> Result<f64, EstimatorError> {
-        Ok(self.update(h, r, gain))
+    fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> f64 {
+        self.update(h, r, gain)
     }
 
     fn add_rank_one(&mut self, c: f64, v: &[f64]) {

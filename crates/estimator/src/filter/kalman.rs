@@ -188,7 +188,7 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
         self.propagate(dt_s)?;
         self.work.point.copy_from_slice(&self.work.predicted);
         self.linearise(z, true)?;
-        self.commit_prediction(dt_s)?;
+        self.commit_prediction(dt_s);
         self.assimilate(z)?;
         Ok(&self.report)
     }
@@ -200,7 +200,7 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     pub fn predict(&mut self, dt_s: f64) -> Result<(), StepError<M::Error>> {
         check_sample(dt_s, 0, 0)?;
         self.propagate(dt_s)?;
-        self.commit_prediction(dt_s)?;
+        self.commit_prediction(dt_s);
         Ok(())
     }
 
@@ -226,14 +226,13 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     }
 
     /// From here on the filter is at the new time.
-    fn commit_prediction(&mut self, dt_s: f64) -> Result<(), EstimatorError> {
+    fn commit_prediction(&mut self, dt_s: f64) {
         if dt_s > 0.0 {
-            self.form.predict(&self.work.linear)?;
+            self.form.predict(&self.work.linear);
         }
         self.x.copy_from_slice(&self.work.predicted);
         self.work.dt_s = dt_s;
         self.report.clear();
-        Ok(())
     }
 }
 

@@ -7,10 +7,12 @@ use nalgebra::DMatrix;
 /// A dense, stable process with constant matrices, whatever the interval. It does not allocate in a step.
 #[derive(Clone, Debug)]
 pub struct CopyingModel {
-    linear: Linearisation,
+    pub linear: Linearisation,
     moved: Vec<f64>,
     /// Gradients of the outputs, one per column.
-    h: DMatrix<f64>,
+    pub h: DMatrix<f64>,
+    /// Variance of each reading.
+    r: f64,
 }
 
 impl CopyingModel {
@@ -22,7 +24,12 @@ impl CopyingModel {
         linear.q.fill(0.01);
         let h =
             DMatrix::from_fn(states, outputs, |i, j| if i == (2 * j) % states { 1.0 } else { weak(j, i) });
-        Self { linear, moved: vec![0.0; leading], h }
+        Self::of(linear, h, 0.1)
+    }
+
+    /// Of these matrices, with one variance of all readings.
+    pub fn of(linear: Linearisation, h: DMatrix<f64>, r: f64) -> Self {
+        Self { moved: vec![0.0; linear.phi.nrows()], linear, h, r }
     }
 }
 
@@ -73,6 +80,6 @@ impl StateSpace for CopyingModel {
     }
 
     fn noise_variance(&self, _j: usize, _x: &[f64]) -> f64 {
-        0.1
+        self.r
     }
 }

@@ -58,7 +58,7 @@ where
         self.p.copy_from(&other.p);
     }
 
-    fn predict(&mut self, linear: &Linearisation) -> Result<(), EstimatorError> {
+    fn predict(&mut self, linear: &Linearisation) {
         let (m, n) = linear.phi.shape();
         let (p, product) = (self.p.as_mut_slice(), &mut self.product.as_mut_slice()[..m * n]);
         product.fill(0.0);
@@ -78,16 +78,15 @@ where
             }
         }
         symmetrise(p, n);
-        Ok(())
     }
 
-    fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> Result<f64, EstimatorError> {
+    fn update(&mut self, h: &[f64], r: f64, gain: &mut [f64]) -> f64 {
         let n = self.states();
         self.covariance_with(h, gain);
         let s = dot(gain, h) + r;
         if s <= 0.0 {
             gain.fill(0.0);
-            return Ok(0.0);
+            return 0.0;
         }
         gain.iter_mut().for_each(|k| *k /= s);
         let left = self.left.as_mut_slice();
@@ -102,7 +101,7 @@ where
         add_product_transposed(p, product, |_| 1.0, left, n, n);
         add_product_transposed(p, gain, |_| r, gain, n, n);
         symmetrise(p, n);
-        Ok(s)
+        s
     }
 
     fn add_rank_one(&mut self, c: f64, v: &[f64]) {

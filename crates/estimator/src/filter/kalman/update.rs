@@ -1,6 +1,5 @@
 //! The update of an extended Kalman filter: linearise, judge, correct, and repeat if so wanted.
 use super::ExtendedKalman;
-use crate::EstimatorError;
 use crate::filter::failure::{StepError, check_output};
 use crate::filter::form::CovarianceForm;
 use crate::filter::gate::Outcome;
@@ -29,10 +28,11 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     /// The update, iterated if so wanted.
     pub(super) fn assimilate(&mut self, z: &[f64]) -> Result<(), StepError<M::Error>> {
         if self.iterations == 0 {
-            return Ok(self.pass(z, true)?);
+            self.pass(z, true);
+            return Ok(());
         }
         self.work.form.copy_from(&self.form);
-        self.pass(z, true)?;
+        self.pass(z, true);
         if self.report.outputs.iter().any(|output| output.outcome.is_used()) {
             self.iterate(z)?;
         }
@@ -47,7 +47,7 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
             if self.linearise(z, false).is_err() {
                 break;
             }
-            self.restart_update(z)?;
+            self.restart_update(z);
             self.report.iterations += 1;
             if self.has_settled() {
                 return Ok(());
@@ -56,14 +56,15 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
         self.report.converged = false;
         self.work.point.copy_from_slice(&self.work.predicted);
         self.linearise(z, false)?;
-        Ok(self.restart_update(z)?)
+        self.restart_update(z);
+        Ok(())
     }
 
     /// Update the prediction with the present gradients and the outcomes already known.
-    fn restart_update(&mut self, z: &[f64]) -> Result<(), EstimatorError> {
+    fn restart_update(&mut self, z: &[f64]) {
         self.form.copy_from(&self.work.form);
         self.x.copy_from_slice(&self.work.predicted);
-        self.pass(z, false)
+        self.pass(z, false);
     }
 
     /// No state is further from the point of linearisation than the tolerance.
@@ -75,7 +76,7 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     }
 
     /// One scalar update after the other. The `first` pass judges the readings, later ones keep its judgement.
-    fn pass(&mut self, z: &[f64], first: bool) -> Result<(), EstimatorError> {
+    fn pass(&mut self, z: &[f64], first: bool) {
         let n = self.x.len();
         for (j, z) in z.iter().enumerate() {
             if !z.is_finite() {
@@ -97,12 +98,11 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
                 Outcome::Accepted => {}
                 Outcome::Reacquired => self.inflate_along(j, nu, s),
             }
-            self.correct(j, nu)?;
+            self.correct(j, nu);
         }
         if !self.consider.is_empty() {
             self.hold_consider_states();
         }
-        Ok(())
     }
 
     /// Let the covariance grow along `P h` until the reading passes the gate.
@@ -113,14 +113,13 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
     }
 
     /// Scalar update by the innovation `nu` of output `j`.
-    fn correct(&mut self, j: usize, nu: f64) -> Result<(), EstimatorError> {
+    fn correct(&mut self, j: usize, nu: f64) {
         let (n, work) = (self.x.len(), &mut self.work);
         let range = j * n..(j + 1) * n;
         let gain = &mut work.gain[range.clone()];
-        let s = self.form.update(&work.h[range], work.r[j], gain)?;
+        let s = self.form.update(&work.h[range], work.r[j], gain);
         (work.innovation[j], work.variance[j]) = (nu, s);
         axpy(nu, gain, &mut self.x);
-        Ok(())
     }
 
     /// Take back what the pass did to the consider states.
