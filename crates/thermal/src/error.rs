@@ -1,4 +1,5 @@
 //! Everything that can be wrong with the input of this crate, and what its numerics can refuse.
+#[cfg(feature = "files")]
 use crate::document::Problem;
 
 /// Errors of the thermal crate. Messages are fragments that name value, bound and remedy.
@@ -6,6 +7,7 @@ use crate::document::Problem;
 #[non_exhaustive]
 pub enum ThermalError {
     /// A value of a specification cannot be used.
+    #[cfg(feature = "files")]
     #[error("{problem}")]
     Specification {
         /// Path of the value by field names, e.g. `layer[1].thickness_m`.
@@ -14,6 +16,7 @@ pub enum ThermalError {
         problem: Box<Problem>,
     },
     /// A line of a document cannot be used.
+    #[cfg(feature = "files")]
     #[error("{file}:{line}: {problem}")]
     Document {
         /// File as the caller named it.

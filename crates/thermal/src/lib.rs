@@ -11,7 +11,11 @@
 //! | [`fluid`] | equations of state and transport properties; coefficients are data with their source |
 //! | [`wall`], [`transfer`], [`flow`] | conduction in a mesh without temperatures; films, radiation, sun; orifices and leaks |
 //! | [`vessel`], [`scenario`] | files, presets and what they become when they are valid; [`units`] reads the suffixes of their keys |
+//! | [`reduced`] | the few nodes that an observer carries |
 //! | [`model`], [`simulate`] | state, right-hand side, Jacobian and ledger; the solver |
+//!
+//! Without default features the crate is what runs beside a sensor: fluid, transfer, flow, reduced model and the validated types. `files` reads and writes TOML, `simulate` adds
+//! scenarios, the full model and its solver.
 //!
 //! ```
 //! use cylwatch_thermal::simulate::{SimulationSettings, simulate};
@@ -26,13 +30,20 @@
 //! # Ok(())
 //! # }
 //! ```
+#[cfg(feature = "files")]
 pub mod document;
 pub mod error;
 pub mod flow;
 pub mod fluid;
+#[cfg(feature = "simulate")]
 pub mod model;
+pub mod reduced;
+#[cfg(feature = "simulate")]
 pub mod scenario;
+pub mod sensor;
+#[cfg(feature = "simulate")]
 pub mod simulate;
+#[cfg(feature = "simulate")]
 pub mod trajectory;
 pub mod transfer;
 pub mod units;

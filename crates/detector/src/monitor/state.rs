@@ -1,20 +1,20 @@
 //! A monitor's state as bytes: what continues after a restart, and what is refused.
 //!
 //! ```text
-//! magic 8 | version u32 | fingerprint 32 | length u64 | payload | SHA-256 of all before 32        little endian
+//! magic 8 | version u32 | fingerprint 16 | length u64 | payload | check sum of all before 16        little endian
 //! ```
 //!
-//! The fingerprint is the SHA-256 of vessel, sensors and what the settings say of the rows: a state goes on only with the same. The payload is
+//! Check sum and fingerprint are SipHash-1-3 with 128 bits: they find accidents, not forgery. The fingerprint is that of vessel, sensors and what the settings say of the rows: a state goes on only with the same. The payload is
 //! the state in postcard's format, which keeps every bit of every number. What is kept rounded is rounded when it is kept, not when it is saved.
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
+use siphasher::sip128::SipHasher13;
 
 const MAGIC: &[u8; 8] = b"cylwatch";
 /// Version of the payload: one more with every change of what it holds.
-pub const VERSION: u32 = 21;
-const HEAD: usize = 8 + 4 + 32 + 8;
-const SUM: usize = 32;
+pub const VERSION: u32 = 22;
+const HEAD: usize = 8 + 4 + SUM + 8;
+const SUM: usize = 16;
 
 /// Why a state cannot be continued from. A cold start can always be declared instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
@@ -49,12 +49,16 @@ pub enum StateError {
     Engine,
 }
 
-/// SHA-256 of all that a state belongs to.
-pub type Fingerprint = [u8; 32];
+/// Hash of all that a state belongs to.
+pub type Fingerprint = [u8; SUM];
 
 /// Fingerprint of things by how they print.
 pub fn fingerprint(of: &dyn std::fmt::Debug) -> Fingerprint {
-    Sha256::digest(format!("{of:?}")).into()
+    sum(format!("{of:?}").as_bytes())
+}
+
+fn sum(bytes: &[u8]) -> [u8; SUM] {
+    SipHasher13::new().hash(bytes).as_bytes()
 }
 
 /// The bytes of a state.
@@ -69,8 +73,8 @@ pub fn encode<T: Serialize>(state: &T, fingerprint: &Fingerprint) -> Result<Vec<
     bytes.extend_from_slice(fingerprint);
     bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
     bytes.extend_from_slice(&payload);
-    let sum: [u8; SUM] = Sha256::digest(&bytes).into();
-    bytes.extend_from_slice(&sum);
+    let check = sum(&bytes);
+    bytes.extend_from_slice(&check);
     Ok(bytes)
 }
 
@@ -90,18 +94,17 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8], fingerprint: &Fingerprint) -> R
     if version != VERSION {
         return Err(StateError::Version { found: version, expected: VERSION });
     }
-    let length = part(44, 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes);
+    let length = part(HEAD - 8, 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes);
     let length = usize::try_from(length.ok_or(cut(HEAD + SUM))?).map_err(|_| StateError::Corrupted)?;
     let expected = length.checked_add(HEAD + SUM).ok_or(StateError::Corrupted)?;
     if bytes.len() < expected {
         return Err(cut(expected));
     }
-    let (body, sum) = bytes.split_at(HEAD + length);
-    let actual: [u8; SUM] = Sha256::digest(body).into();
-    if sum != actual {
+    let (body, check) = bytes.split_at(HEAD + length);
+    if check != sum(body) {
         return Err(StateError::Corrupted);
     }
-    if part(12, 32) != Some(fingerprint.as_slice()) {
+    if part(12, SUM) != Some(fingerprint.as_slice()) {
         return Err(StateError::Foreign);
     }
     postcard::from_bytes(&body[HEAD..]).map_err(|_| StateError::Corrupted)

@@ -6,6 +6,7 @@
 //! place is kept under its path (`layer[1].thickness_m`), so that a bound that is checked after reading still
 //! points at file, line and text as they were written.
 pub mod check;
+#[cfg(feature = "simulate")]
 pub(crate) mod column;
 mod keys;
 mod problem;

@@ -5,10 +5,7 @@ use super::inputs::{FilmInput, Inputs};
 use crate::transfer::outside::{Body, convection_w_m2_k, radiation_w_m2};
 use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
 use crate::vessel::Valve;
-use crate::wall::mesh::Mesh;
-
-/// Height of the valve above the middle, as a fraction of the inner height.
-pub(crate) const TOP: f64 = 0.5;
+use crate::wall::mesh::TOP;
 
 /// Air and film at one height.
 struct Exposure {
@@ -108,32 +105,4 @@ impl Model {
         let sun = self.valve_absorbing_m2 * inputs.irradiance_w_m2;
         (valve.area_m2 * heat - sun, valve.area_m2 * slope)
     }
-}
-
-/// Height of the middle of each column above that of the vessel, as a fraction of the inner height.
-pub(crate) fn above_middle(mesh: &Mesh) -> Vec<f64> {
-    let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
-    mesh.columns
-        .iter()
-        .map(|column| 0.5 * (column.inner_height_m.0 + column.inner_height_m.1) / top - 0.5)
-        .collect()
-}
-
-/// Projected area of each column in the sun, m²: its outer area over pi, times the part of its height that is lit, from
-/// one fraction of the height to another.
-pub(crate) fn lit_area_m2(mesh: &Mesh, fractions: (f64, f64)) -> Vec<f64> {
-    let top = mesh.columns.iter().map(|c| c.inner_height_m.1).fold(0.0, f64::max);
-    let (from, to) = (fractions.0 * top, fractions.1 * top);
-    mesh.columns
-        .iter()
-        .map(|column| {
-            let (low, high) = column.inner_height_m;
-            let lit = if high > low {
-                ((high.min(to) - low.max(from)) / (high - low)).max(0.0)
-            } else {
-                f64::from(u8::from(from <= low && low <= to))
-            };
-            lit * column.outer_area_m2 / std::f64::consts::PI
-        })
-        .collect()
 }

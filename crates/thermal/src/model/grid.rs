@@ -3,6 +3,7 @@
 //! Stacked cells are horizontal slabs of equal height. Standing, a slab is cut out of the contour and touches
 //! the columns whose heights it overlaps, the flat floor and ceiling at the ends. Lying, it is cut out of
 //! the circle and touches every column with its share of the circumference (flat ends: of the disc).
+use crate::sensor::GasPlace;
 use crate::vessel::{GasResolution, Vessel};
 use crate::wall::geometry::{Geometry, Orientation};
 use crate::wall::mesh::{Facing, Mesh};
@@ -138,6 +139,26 @@ fn contacts_of(
                     (overlap > 1e-9 * height_m).then(|| side(i, overlap / (high - low)))
                 })
                 .collect()
+        }
+    }
+}
+
+impl GasPlace {
+    /// Gas cell that stands for the place, from 0; `None` for a number or height that the vessel does not have.
+    pub fn cell(&self, vessel: &Vessel, mesh: &Mesh) -> Option<usize> {
+        let grid = GasGrid::new(vessel, mesh);
+        match *self {
+            Self::Cell { number } => number.checked_sub(1).filter(|&cell| cell < grid.cells.len()),
+            Self::Height { height_m } => {
+                let geometry = &vessel.geometry;
+                let (below_m, inner_m) = match geometry.orientation {
+                    Orientation::Horizontal => (geometry.thickness_m(), geometry.inner_diameter_m),
+                    Orientation::Vertical => (geometry.bottom.thickness_m, geometry.inner_height_m()),
+                };
+                let z = height_m - below_m;
+                let count = grid.cells.len();
+                (0.0..=inner_m).contains(&z).then(|| ((z / inner_m * count as f64) as usize).min(count - 1))
+            }
         }
     }
 }

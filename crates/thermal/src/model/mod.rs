@@ -17,7 +17,6 @@ pub mod inputs;
 mod jacobian;
 pub mod layout;
 mod output;
-pub mod reduced;
 pub mod stratified;
 pub mod well_mixed;
 
@@ -40,7 +39,7 @@ use layout::Layout;
 use stratified::{Stratified, WallAction};
 use well_mixed::WellMixed;
 
-pub(crate) use faces::{TOP, above_middle, lit_area_m2};
+pub use crate::reduced;
 pub use jacobian::Assembly;
 pub use output::Output;
 
@@ -85,7 +84,7 @@ struct Scratch {
 /// Area of each column that absorbs the sun, m².
 fn absorbing_m2(mesh: &Mesh, sun: Option<&Sun>, absorptivity: f64) -> Vec<f64> {
     let Some(sun) = sun else { return vec![0.0; mesh.columns.len()] };
-    let lit_m2 = lit_area_m2(mesh, (sun.from_fraction, sun.to_fraction));
+    let lit_m2 = mesh.lit_area_m2((sun.from_fraction, sun.to_fraction));
     lit_m2.iter().map(|area| area * absorptivity).collect()
 }
 
@@ -122,7 +121,7 @@ impl Model {
         let absorptivity = vessel.surface.solar_absorptivity;
         let sun = scenario.surroundings.sun.as_ref();
         Ok(Self {
-            above_middle: above_middle(&mesh),
+            above_middle: mesh.above_middle(),
             film_slope: scenario.surroundings.axial.film_slope,
             absorbing_m2: absorbing_m2(&mesh, sun, absorptivity),
             valve_absorbing_m2: match (&vessel.valve, sun) {

@@ -6,17 +6,15 @@ mod build;
 mod flows;
 pub mod presets;
 mod read;
-pub mod sensor;
 pub mod series;
 mod signal;
 pub mod spec;
 
+pub use crate::sensor::{self, MountedSensor, PLACES, SensorKind, SensorSpec};
+pub use crate::vessel::Fill;
 pub use read::{read_scenario, schema};
-pub use sensor::{MountedSensor, PLACES, SensorKind, SensorSpec};
 pub use series::Series;
 pub use spec::ScenarioSpec;
-
-use serde::{Deserialize, Serialize};
 
 use crate::flow::Flow;
 
@@ -50,28 +48,6 @@ pub struct Initial {
     pub wall_temperature_k: f64,
     /// Temperature of the gas at time 0, K.
     pub gas_temperature_k: f64,
-}
-
-/// What fixes the gas mass.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Fill {
-    /// Settled pressure at a settled temperature of gas and wall, as a filling station states it.
-    Settled {
-        /// Absolute pressure, Pa.
-        pressure_pa: f64,
-        /// Temperature of gas and wall, K.
-        temperature_k: f64,
-    },
-    /// Pressure at time 0 with the initial gas and wall temperatures.
-    Pressure {
-        /// Absolute pressure, Pa.
-        pressure_pa: f64,
-    },
-    /// Gas mass, kg.
-    Mass {
-        /// Mass, kg.
-        mass_kg: f64,
-    },
 }
 
 /// What surrounds the cylinder, as functions of time.

@@ -1,15 +1,25 @@
 //! What a cylinder is: fluid, contour, wall, valve, surface and films, independent of what happens to it.
 //!
 //! [`VesselSpec`] is the raw content of a vessel file; [`VesselSpec::build`] checks it and gives a [`Vessel`].
+#[cfg(feature = "files")]
 mod build;
+#[cfg(feature = "files")]
 mod calibration;
+#[cfg(feature = "files")]
 mod contour;
+#[cfg(feature = "files")]
 pub mod presets;
+#[cfg(feature = "files")]
 mod read;
+#[cfg(feature = "files")]
 pub mod spec;
 
+#[cfg(feature = "files")]
 pub use read::{read_specification, read_vessel, schema};
+#[cfg(feature = "files")]
 pub use spec::VesselSpec;
+
+use serde::{Deserialize, Serialize};
 
 use crate::fluid::Fluid;
 use crate::wall::geometry::Geometry;
@@ -164,4 +174,26 @@ impl Valve {
     pub fn capacity_j_k(&self) -> f64 {
         self.mass_kg * self.material.heat_capacity_j_kg_k
     }
+}
+
+/// What fixes the gas mass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Fill {
+    /// Settled pressure at a settled temperature of gas and wall, as a filling station states it.
+    Settled {
+        /// Absolute pressure, Pa.
+        pressure_pa: f64,
+        /// Temperature of gas and wall, K.
+        temperature_k: f64,
+    },
+    /// Pressure at time 0 with the initial gas and wall temperatures.
+    Pressure {
+        /// Absolute pressure, Pa.
+        pressure_pa: f64,
+    },
+    /// Gas mass, kg.
+    Mass {
+        /// Mass, kg.
+        mass_kg: f64,
+    },
 }

@@ -16,6 +16,9 @@ use std::f64::consts::PI;
 use super::geometry::{End, EndShape, Geometry};
 use super::material::Material;
 
+/// Height of the valve above the middle, as a fraction of the inner height.
+pub(crate) const TOP: f64 = 0.5;
+
 /// What a column belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Section {
@@ -250,6 +253,37 @@ impl Mesh {
             "neck" => Some(last),
             _ => None,
         }
+    }
+
+    /// Height of the middle of each column above that of the vessel, as a fraction of the inner height.
+    pub(crate) fn above_middle(&self) -> Vec<f64> {
+        let top_m = self.inner_height_m();
+        let middle =
+            |column: &Column| 0.5 * (column.inner_height_m.0 + column.inner_height_m.1) / top_m - 0.5;
+        self.columns.iter().map(middle).collect()
+    }
+
+    /// Projected area of each column in the sun, m²: its outer area over pi, times the part of its height that is lit, from
+    /// one fraction of the height to another.
+    pub(crate) fn lit_area_m2(&self, fractions: (f64, f64)) -> Vec<f64> {
+        let top_m = self.inner_height_m();
+        let (from, to) = (fractions.0 * top_m, fractions.1 * top_m);
+        self.columns
+            .iter()
+            .map(|column| {
+                let (low, high) = column.inner_height_m;
+                let lit = if high > low {
+                    ((high.min(to) - low.max(from)) / (high - low)).max(0.0)
+                } else {
+                    f64::from(u8::from(from <= low && low <= to))
+                };
+                lit * column.outer_area_m2 / std::f64::consts::PI
+            })
+            .collect()
+    }
+
+    fn inner_height_m(&self) -> f64 {
+        self.columns.iter().map(|column| column.inner_height_m.1).fold(0.0, f64::max)
     }
 
     fn resolved(geometry: &Geometry) -> Self {

@@ -6,10 +6,9 @@ use nalgebra::DMatrix;
 
 use super::gas::{GasState, Slope};
 use super::{ReducedModel, Unknowns, capacity_ratio};
-use crate::model::TOP;
 use crate::transfer::{HalfCell, solve_surface, solve_surface_from};
 use crate::wall::conduction::link_flow;
-use crate::wall::mesh::Facing;
+use crate::wall::mesh::{Facing, TOP};
 
 type Jacobian<'a> = Option<&'a mut DMatrix<f64>>;
 

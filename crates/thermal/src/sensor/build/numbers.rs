@@ -2,7 +2,7 @@
 use super::Table;
 use crate::ThermalError;
 use crate::document::check;
-use crate::scenario::sensor::{CorrelatedNoise, Pt100Class, Stated};
+use crate::sensor::{CorrelatedNoise, Pt100Class, Stated};
 
 impl Table<'_> {
     pub(super) fn lag_s(&self) -> Result<f64, ThermalError> {

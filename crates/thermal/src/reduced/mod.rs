@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ThermalError;
 use crate::fluid::Fluid;
-use crate::scenario::sensor::SurfacePlace;
+use crate::sensor::SurfacePlace;
 use crate::transfer::inside::InsideConvection;
 use crate::vessel::{Valve, Vessel};
 use crate::wall::geometry::Geometry;
@@ -46,7 +46,7 @@ pub struct Unknowns {
     pub sun_w: f64,
     /// Part of the sun on the wall that the valve absorbs beside, usually [`ReducedModel::VALVE_SUN`]; 0 in the shade.
     pub valve_sun: f64,
-    /// Change of the outside film from bottom to top relative to that in the middle ([`crate::scenario::AxialVariation`]).
+    /// Change of the outside film from bottom to top relative to that in the middle.
     pub film_slope: f64,
     /// Mass flow out, kg/s.
     pub outflow_kg_s: f64,
@@ -174,7 +174,7 @@ impl ReducedModel {
             node_of_column,
             wall_capacity_j_k: capacity_j_k.iter().sum(),
             capacity_j_k,
-            above_middle: crate::model::above_middle(&mesh),
+            above_middle: mesh.above_middle(),
             valve: vessel.valve.clone(),
             film_w_m2_k,
             inside: InsideConvection::new(

@@ -1,6 +1,6 @@
 use super::*;
+use crate::model::Model;
 use crate::model::inputs::{FilmInput, Inputs};
-use crate::model::{Model, lit_area_m2};
 use crate::scenario::{AxialVariation, OutsideFilm, Series, Sun, Surroundings};
 use crate::simulate::{SimulationSettings, simulate};
 use crate::{scenario, vessel};
@@ -265,7 +265,7 @@ fn calm(air_k: f64) -> Surroundings {
 fn sunny(vessel: &Vessel, valve: bool) -> (Surroundings, f64) {
     let sun = Sun { irradiance_w_m2: constant(500.0), from_fraction: 0.8, to_fraction: 1.0, valve };
     let lit_m2: f64 =
-        lit_area_m2(&Mesh::new(&vessel.geometry), (sun.from_fraction, sun.to_fraction)).iter().sum();
+        Mesh::new(&vessel.geometry).lit_area_m2((sun.from_fraction, sun.to_fraction)).iter().sum();
     let sun_w = 500.0 * vessel.surface.solar_absorptivity * lit_m2;
     (Surroundings { sun: Some(sun), ..calm(START_K) }, sun_w)
 }

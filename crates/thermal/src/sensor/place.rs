@@ -1,9 +1,6 @@
 //! Places of sensors, and the cells of a model that stand for them.
-use crate::model::grid::GasGrid;
-use crate::model::{self, TOP};
-use crate::vessel::Vessel;
-use crate::wall::geometry::{Geometry, Orientation};
-use crate::wall::mesh::{Facing, Mesh};
+use crate::wall::geometry::Geometry;
+use crate::wall::mesh::{Facing, Mesh, TOP};
 
 /// Names of places that a surface sensor can sit at.
 pub const PLACES: [&str; 5] = ["bottom", "middle", "shoulder", "neck", "valve"];
@@ -85,32 +82,12 @@ impl SurfacePlace {
         sides.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Height above the middle as a fraction of the inner height, as [`crate::scenario::AxialVariation`] counts it;
+    /// Height above the middle as a fraction of the inner height, as the film and the air of the surroundings change with it;
     /// `None` as for [`SurfacePlace::column`], but the valve is the top.
     pub fn above_middle(&self, geometry: &Geometry, mesh: &Mesh) -> Option<f64> {
         match self {
             Self::Valve => Some(TOP),
-            place => Some(model::above_middle(mesh)[place.column(geometry, mesh)?]),
-        }
-    }
-}
-
-impl GasPlace {
-    /// Gas cell that stands for the place, from 0; `None` for a number or height that the vessel does not have.
-    pub fn cell(&self, vessel: &Vessel, mesh: &Mesh) -> Option<usize> {
-        let grid = GasGrid::new(vessel, mesh);
-        match *self {
-            Self::Cell { number } => number.checked_sub(1).filter(|&cell| cell < grid.cells.len()),
-            Self::Height { height_m } => {
-                let geometry = &vessel.geometry;
-                let (below_m, inner_m) = match geometry.orientation {
-                    Orientation::Horizontal => (geometry.thickness_m(), geometry.inner_diameter_m),
-                    Orientation::Vertical => (geometry.bottom.thickness_m, geometry.inner_height_m()),
-                };
-                let z = height_m - below_m;
-                let count = grid.cells.len();
-                (0.0..=inner_m).contains(&z).then(|| ((z / inner_m * count as f64) as usize).min(count - 1))
-            }
+            place => Some(mesh.above_middle()[place.column(geometry, mesh)?]),
         }
     }
 }

@@ -3,15 +3,21 @@
 //! A number of a sensor is [`Stated`]: the value, and how far the real one may be from it. A scenario draws the
 //! real one; an estimator takes it as its prior. How a reading follows from these numbers is the business of whoever
 //! simulates or predicts it.
+#[cfg(feature = "files")]
 mod build;
 mod place;
+#[cfg(feature = "files")]
 mod pt100;
+#[cfg(feature = "files")]
 mod spec;
 
 use crate::units::ATMOSPHERE_PA;
+#[cfg(feature = "files")]
 pub use build::mounted;
 pub use place::{GasPlace, PLACES, SurfacePlace};
+#[cfg(feature = "files")]
 pub use pt100::Pt100Class;
+#[cfg(feature = "files")]
 pub use spec::{KindChoice, SensorSpec};
 
 /// What a sensor reads, and where.

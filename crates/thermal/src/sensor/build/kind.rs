@@ -2,8 +2,8 @@
 use super::{Table, cell_of};
 use crate::ThermalError;
 use crate::document::check;
-use crate::scenario::sensor::spec::KindChoice;
-use crate::scenario::sensor::{GasPlace, PLACES, PressureReference, SensorKind, SurfacePlace};
+use crate::sensor::spec::KindChoice;
+use crate::sensor::{GasPlace, PLACES, PressureReference, SensorKind, SurfacePlace};
 use crate::units::{ATMOSPHERE_PA, ZERO_CELSIUS_K};
 
 /// Lowest and highest temperature outside that can be a reading, K: colder than the coldest weather, hotter than

@@ -2,7 +2,7 @@
 use super::Table;
 use crate::ThermalError;
 use crate::document::check;
-use crate::scenario::sensor::spec::KindChoice;
+use crate::sensor::spec::KindChoice;
 
 /// Which kinds of sensor a key belongs to.
 #[derive(Clone, Copy)]

@@ -17,7 +17,6 @@
 //! what is faster stays model error.
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::model::lit_area_m2;
 use crate::wall::mesh::Mesh;
 
 /// Inside film of the profile, W/(m² K): free convection of dense gas at some tenths of a kelvin.
@@ -48,7 +47,7 @@ impl Spread {
         let wall = wall_matrix(fine, outside_film_w_m2_k);
         let last = fine.columns.len() - 1;
         let valve = above_nodes(fine, node_of_column, &wall, |j| if j == last { 1.0 } else { 0.0 });
-        let lit_m2 = lit_area_m2(fine, (LIT_FROM_FRACTION, 1.0));
+        let lit_m2 = fine.lit_area_m2((LIT_FROM_FRACTION, 1.0));
         let sun = above_nodes(fine, node_of_column, &wall, |j| lit_m2[j]);
         let conductance_w_k =
             if contact_w_k > 0.0 { (contact_w_k.recip() + valve[last]).recip() } else { 0.0 };
