@@ -21,7 +21,7 @@
 //! |---|---|---|
 //! | nothing | 0 | |
 //! | offset | `b` | `b` of 1.5 % as a rule, of 100 % where the transmitter breaks |
-//! | gas, at once | `a (1 + r exp(-t / T))` | `a` of 100 %, `r` of 0 or, each with `T` of 1 to 9 min, of 0.1 to 0.4 |
+//! | gas, at once | `a (1 + r exp(-t / T))` | `a` of 1 or 100 %, `r` of 0 or, each with `T` of 1 to 9 min, of 0.1 to 0.4 |
 //! | gas that flows | `w_k`, a random walk | by 0.1, 1 or 100 % in a minute |
 //!
 //! An isentropic step of the pressure is 1.4 to 1.67 times the isothermal one that is left when gas and wall have one temperature again: gas that goes
@@ -44,9 +44,12 @@ use super::far::FarOff;
 
 /// Model's error at rest, as a part of the full pressure.
 const FLOOR: f64 = 1e-4;
-/// Standard deviations of an offset, and of gas that goes or an offset of a transmitter that has broken, as parts of the full pressure.
+/// Standard deviations of an offset, of a puff, and of gas that goes or an offset of a transmitter that has broken, as parts of the full pressure.
 const OFFSET: f64 = 0.015;
+const PUFF: f64 = 0.01;
 const ANY: f64 = 1.0;
+/// Part of the jumps by gas that are puffs.
+const PUFFS: f64 = 0.2;
 /// Chance that a transmitter whose offset jumps has broken, and that gas that flows does so in jumps.
 const BROKEN: f64 = 0.05;
 /// Parts of a step of gas that come back after the first sample, and the time constants with which they do, s.
@@ -117,7 +120,7 @@ pub struct Compared {
 enum Course {
     Nothing,
     Offset { sd: f64 },
-    Gas { rebound: f64, time_s: f64 },
+    Gas { sd: f64, rebound: f64, time_s: f64 },
     Flow { per_sqrt_minute: f64 },
 }
 
@@ -125,18 +128,19 @@ enum Course {
 fn courses() -> impl Iterator<Item = (Course, f64)> {
     let either = (1.0 - NOTHING) / 2.0;
     let gas = either / (REBOUNDS.len() * REBOUND_S.len() + FLOWS.len() + 1) as f64;
+    let sizes = [(PUFF, PUFFS), (ANY, 1.0 - PUFFS)].into_iter();
     let offsets =
         [(OFFSET, 1.0 - BROKEN), (ANY, BROKEN)].map(|(sd, share)| (Course::Offset { sd }, either * share));
-    let at_once = REBOUNDS
-        .into_iter()
-        .flat_map(move |rebound| REBOUND_S.map(|time_s| (Course::Gas { rebound, time_s }, gas)));
+    let rebounds = REBOUNDS.into_iter().flat_map(|rebound| REBOUND_S.map(|time_s| (rebound, time_s)));
     // All of it may have come back before the first sample.
-    let back = [(Course::Gas { rebound: 0.0, time_s: REST_S }, gas)];
+    let at_once = rebounds.chain([(0.0, REST_S)]).flat_map(move |(rebound, time_s)| {
+        sizes.clone().map(move |(sd, share)| (Course::Gas { sd, rebound, time_s }, gas * share))
+    });
     // One that jumps again and again is as rare as a transmitter that has broken.
     let rarely = |per_sqrt_minute: f64| if per_sqrt_minute < ANY { 1.0 } else { BROKEN };
     let flows =
         FLOWS.map(|per_sqrt_minute| (Course::Flow { per_sqrt_minute }, gas * rarely(per_sqrt_minute)));
-    [(Course::Nothing, NOTHING)].into_iter().chain(offsets).chain(back).chain(at_once).chain(flows)
+    [(Course::Nothing, NOTHING)].into_iter().chain(offsets).chain(at_once).chain(flows)
 }
 
 /// Filter of one cause: the model's error and the unknown.
@@ -158,7 +162,8 @@ impl Member {
         let unknown = match course {
             Course::Nothing => 0.0,
             Course::Offset { sd } => sd,
-            Course::Gas { .. } | Course::Flow { .. } => ANY,
+            Course::Gas { sd, .. } => sd,
+            Course::Flow { .. } => ANY,
         };
         let variance = [fresh * fresh, unknown * unknown];
         Self {
@@ -186,7 +191,7 @@ impl Member {
         let by = match course {
             Course::Nothing => 0.0,
             Course::Offset { .. } | Course::Flow { .. } => 1.0,
-            Course::Gas { rebound, time_s } => 1.0 + rebound * (-since_s / time_s).exp(),
+            Course::Gas { rebound, time_s, .. } => 1.0 + rebound * (-since_s / time_s).exp(),
         };
         let gain = [self.variance[0] + by * self.covariance, self.covariance + by * self.variance[1]];
         let variance = gain[0] + by * gain[1] + noise;

@@ -55,6 +55,13 @@ fn what_jumps_is_told_by_what_comes_back() {
     assert_eq!(cause(|minutes| 150.0 + 10.0 * (-minutes / 4.0).exp()), Cause::Gas);
 }
 
+#[test]
+fn a_puff_smaller_than_a_usual_offset_is_told_by_what_comes_back() {
+    for (bar, part) in [(0.3, 0.2), (0.5, 0.1), (0.8, 0.1)] {
+        assert_eq!(cause(|minutes| bar * (1.0 + part * (-minutes / 3.0).exp())), Cause::Gas, "{bar} bar");
+    }
+}
+
 /// Spikes of two and of three readings that nearly meet, one up and one down, of a transmitter that has many of them, and of one that has none.
 #[test]
 fn who_has_many_spikes_has_more_of_them() {
