@@ -4,7 +4,8 @@
 //! name that is known or mapped; without one, the first line of words above a line of as many cells with numbers. What is
 //! above it is passed over with a caution. A line of units below the names belongs to them.
 use super::cell::Cell;
-use super::columns::{self, Label};
+use super::columns;
+use super::label::{self, Label};
 use super::record::{Records, separator};
 use super::{LogError, LogOptions};
 
@@ -67,7 +68,7 @@ fn units(records: &mut Records, separator: u8, names: &mut [String]) -> Result<(
         cells.resize(names.len(), String::new());
     }
     let words: Vec<&str> = cells.iter().map(|cell| bare(cell)).collect();
-    let is_unit = |word: &&str| columns::suffixes(word).is_some();
+    let is_unit = |word: &&str| label::suffixes(word).is_some();
     let is_line = words.len() == names.len()
         && words.iter().any(is_unit)
         && !cells.iter().any(|cell| is_value(cell))

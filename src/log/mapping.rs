@@ -1,6 +1,6 @@
 //! `ours=theirs`: a column of a log under a foreign name.
 use super::LogError;
-use super::columns::Label;
+use super::label::Label;
 
 /// One foreign column: `shoulder_degc=T1 (C)`.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,6 +22,7 @@ mod date;
 mod error;
 mod header;
 pub mod inspect;
+mod label;
 mod mapping;
 #[cfg(feature = "parquet")]
 mod parquet;

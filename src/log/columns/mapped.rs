@@ -1,5 +1,6 @@
 //! Columns under foreign names: which mapping names which column, and in which unit.
-use super::{Label, units};
+use super::units;
+use crate::log::label::Label;
 use crate::log::mapping::is_named;
 use crate::log::{LogError, Mapping};
 

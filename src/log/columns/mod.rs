@@ -10,15 +10,14 @@
 //!   was read, and set aside; of these only a pressure without `measured_pressure` is taken as a reading.
 //!
 //! A unit may stand in brackets, too: `Pressure [bar]`. `--map` goes before all of this. Everything else is set aside.
-mod label;
 mod mapped;
 mod survey;
 mod units;
 
-pub(super) use label::{Label, suffixes};
 pub(super) use survey::survey;
 
 use super::caution::{Cautions, Kind};
+use super::label::Label;
 use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Quantity};
 use crate::thermal::document::Problem;

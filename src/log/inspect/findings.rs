@@ -2,7 +2,8 @@
 use super::column::Column;
 use super::proposal::{by_range, propose};
 use super::*;
-use crate::log::columns::{self, Label, TimeForm, TruthQuantity};
+use crate::log::columns::{self, TimeForm, TruthQuantity};
+use crate::log::label::Label;
 use crate::log::{Kind, Zone};
 use crate::thermal::units::{self, Dimension, PASCAL_PER_BAR};
 

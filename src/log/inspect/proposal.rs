@@ -1,7 +1,8 @@
 //! Which column may be what: by the words of its name, the unit in its header, and the range of its values.
 use super::{ColumnReport, Role};
-use crate::log::columns::{self, Label};
+use crate::log::columns;
 use crate::log::header::is_value;
+use crate::log::label::{self, Label};
 use crate::log::{Mapping, date};
 use crate::thermal::units::{self, Dimension};
 
@@ -172,5 +173,5 @@ fn unique_name(reports: &[ColumnReport], k: usize) -> String {
     let others = reports.iter().enumerate().filter(|(other, _)| *other != k);
     let is_unique = others.clone().all(|(_, other)| Label::of(&other.header).base != base);
     let name = if is_unique { base } else { header };
-    if columns::suffixes(name).is_some() { header.clone() } else { name.to_owned() }
+    if label::suffixes(name).is_some() { header.clone() } else { name.to_owned() }
 }

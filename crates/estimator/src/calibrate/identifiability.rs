@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use super::fit::Fit;
 use super::sensitivity::relative_error;
-use super::solve::Solution;
+use super::solution::Solution;
 use super::uncertainty::{of_free, prior_information};
 use super::{CalibrateError, ParameterKind};
 

@@ -34,6 +34,7 @@ mod profile;
 mod residuals;
 mod sensitivity;
 mod settings;
+mod solution;
 mod solve;
 mod specification;
 mod uncertainty;

@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use super::fit::{Evaluation, Fit};
 use super::identifiability::{check_determined, identifiability, usual_width};
 use super::sensitivity::sensitivities;
+use super::solution::{Solution, cost};
 use super::{CalibrateError, CalibrationSettings};
 use crate::least_squares::{Damping, solve};
 
@@ -26,20 +27,6 @@ const LARGEST_BEND: f64 = 0.75;
 /// Steps shorter than this many standard deviations are straight.
 const STRAIGHT_SD: f64 = 1.0;
 
-/// Where the search ended.
-#[derive(Clone, Debug)]
-pub(super) struct Solution {
-    /// Coordinates.
-    pub z: Vec<f64>,
-    pub evaluation: Evaluation,
-    /// Derivatives of the weighted readings, (readings, parameters).
-    pub jacobian: DMatrix<f64>,
-    /// Sum of squares, priors included.
-    pub cost: f64,
-    pub iterations: usize,
-    pub held: Vec<bool>,
-}
-
 /// Normal equations of the coordinates that are free.
 struct Normal {
     matrix: DMatrix<f64>,
@@ -47,18 +34,6 @@ struct Normal {
     /// Widths of the parameters to the power -2.
     scale: DVector<f64>,
     held: Vec<bool>,
-}
-
-/// Sum of squares of readings and priors.
-fn cost(fit: &Fit, z: &[f64], evaluation: &Evaluation) -> f64 {
-    let readings: f64 = evaluation.residuals.iter().map(|r| r * r).sum();
-    let priors: f64 = fit
-        .specs
-        .iter()
-        .zip(z)
-        .filter_map(|(spec, z)| spec.prior_coordinate().map(|(mean, sd)| ((z - mean) / sd).powi(2)))
-        .sum();
-    readings + priors
 }
 
 /// A step of a search.
@@ -121,13 +96,6 @@ pub(super) fn search_watched(
 }
 
 impl Solution {
-    fn at(fit: &Fit, z: Vec<f64>, held: &[bool]) -> Result<Self, CalibrateError> {
-        let evaluation = fit.evaluate(&z)?;
-        let cost = cost(fit, &z, &evaluation);
-        let jacobian = DMatrix::zeros(fit.samples(), z.len());
-        Ok(Self { z, evaluation, jacobian, cost, iterations: 0, held: held.to_vec() })
-    }
-
     /// A point of a lower sum; `None`: there is none however short the step.
     fn lower(
         &self,

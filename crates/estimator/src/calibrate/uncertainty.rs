@@ -3,7 +3,7 @@ use nalgebra::DMatrix;
 
 use super::fit::Fit;
 use super::residuals::ChannelResiduals;
-use super::solve::Solution;
+use super::solution::Solution;
 use crate::least_squares::invert;
 
 /// Information of the readings, `J^T J`, and the same with a factor on each channel.

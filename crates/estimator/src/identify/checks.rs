@@ -3,8 +3,7 @@ use nalgebra::DMatrix;
 
 use super::model::poles;
 use super::parametrisation::{Coefficients, Parametrisation};
-use super::problem::Problem;
-use super::solve::Search;
+use super::problem::{Problem, Units};
 use super::start;
 use super::{Data, DeadTime, Derived, IdentifyError, Parameter, Settings, Structure};
 
@@ -35,11 +34,11 @@ pub(super) fn check_poles(problem: &Problem, k: &Coefficients) -> Result<(), Ide
 
 /// Every coefficient of the denominator must differ from zero, the dead time from the ends of its range.
 pub(super) fn check_parameters(
-    search: &Search<'_>,
+    parametrisation: &Parametrisation,
+    units: &Units,
     theta: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Result<(), IdentifyError> {
-    let (parametrisation, units) = (search.parametrisation, &search.problem.units);
     for (i, parameter) in parametrisation.parameters.iter().enumerate() {
         let unit = parametrisation.unit(*parameter, units);
         let (value, sd) = (theta[i] * unit, covariance[(i, i)].sqrt() * unit);

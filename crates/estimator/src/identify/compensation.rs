@@ -9,12 +9,18 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Hold;
-use super::equations::Variances;
 use super::parametrisation::Coefficients;
 use super::problem::Problem;
 use super::propagator::{Propagator, Propagators};
 use super::response::{cascade, companion};
 use super::schedule::{Piece, Schedule};
+
+/// Variances of white sensor noise, in the record's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Variances {
+    pub input: f64,
+    pub output: f64,
+}
 
 /// The noise's part in this many samples in a row must not change for the recursion to have settled.
 const SETTLED_SAMPLES: usize = 4;

@@ -20,18 +20,11 @@
 //! Source: Young and Jakeman 1980, Garnier, Mensler and Richard 2003, Söderström 2007.
 use nalgebra::{DMatrix, DVector};
 
-use super::compensation::{Instruments, NoiseMoments, noise_moments};
+use super::compensation::{Instruments, NoiseMoments, Variances, noise_moments};
 use super::parametrisation::{Coefficients, Parametrisation};
 use super::problem::Problem;
 use super::response::{filter_output, respond};
 use super::schedule::Schedule;
-
-/// Variances of white sensor noise, in the record's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Variances {
-    pub input: f64,
-    pub output: f64,
-}
 
 /// Which system of equations.
 #[derive(Clone, Copy, Debug, PartialEq)]

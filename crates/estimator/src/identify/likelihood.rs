@@ -13,7 +13,7 @@
 //! Source: Söderström 2007 (section 8); Ljung 1999 (section 10.1).
 use nalgebra::{DMatrix, DVector, Dyn};
 
-use super::equations::Variances;
+use super::compensation::Variances;
 use super::parametrisation::{Coefficients, Parametrisation};
 use super::problem::Problem;
 use super::response::respond;

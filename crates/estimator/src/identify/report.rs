@@ -4,7 +4,6 @@ use nalgebra::DMatrix;
 use super::identified::{derive, quantile};
 use super::parametrisation::Parametrisation;
 use super::problem::Problem;
-use super::run::Found;
 use super::schedule::Schedule;
 use super::solve::{Search, Solution};
 use super::statistics::{Residuals, Statistics};
@@ -12,6 +11,16 @@ use super::{Caution, Data, Estimate, Identified, InitialState, Interval, Model, 
 
 /// Correlations are judged at all lags together: this many times the bound of one lag.
 const ALL_LAGS: f64 = 1.5;
+
+/// Parameters of the structure with their covariance, perhaps with one more parameter.
+pub(super) struct Found {
+    pub solution: Solution,
+    pub covariance: DMatrix<f64>,
+    pub residuals: Residuals,
+    /// Logarithm of the intensity of the input's course.
+    pub intensity: Option<f64>,
+    pub coloured: bool,
+}
 
 /// Errors of the simulation in the units of the data, with the input at their times.
 pub(super) fn residuals(search: &Search<'_>, solution: &Solution) -> Residuals {

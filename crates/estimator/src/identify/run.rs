@@ -1,13 +1,13 @@
 //! From data to a model: start, iterate, judge.
-use nalgebra::DMatrix;
 
 use super::checks::{check_derived, check_direction, check_parameters, check_poles};
-use super::equations::{Equations, Scheme, Variances};
+use super::compensation::Variances;
+use super::equations::{Equations, Scheme};
 use super::likelihood::{Likelihood, without_intensity};
 use super::model::poles;
 use super::parametrisation::Parametrisation;
 use super::problem::Problem;
-use super::report::{feedback, report, residuals};
+use super::report::{Found, feedback, report, residuals};
 use super::solve::{Search, Solution};
 use super::start;
 use super::statistics::Residuals;
@@ -41,7 +41,12 @@ pub fn identify(
     let search = Search { problem: &problem, parametrisation: &parametrisation, settings };
     let found = estimate(&search, start.theta, method).and_then(|found| {
         check_poles(&problem, &parametrisation.expand(&found.solution.theta))?;
-        check_parameters(&search, &found.solution.theta, &found.covariance)?;
+        check_parameters(
+            search.parametrisation,
+            &search.problem.units,
+            &found.solution.theta,
+            &found.covariance,
+        )?;
         Ok(found)
     });
     // A right direction leaves errors that do not foretell the input.
@@ -80,16 +85,6 @@ fn first_model(problem: &mut Problem, structure: &Structure) -> Result<start::St
         *value *= rough.unit(*parameter, &before) / rough.unit(*parameter, &problem.units);
     }
     Ok(start)
-}
-
-/// Parameters of the structure with their covariance, perhaps with one more parameter.
-pub(super) struct Found {
-    pub solution: Solution,
-    pub covariance: DMatrix<f64>,
-    pub residuals: Residuals,
-    /// Logarithm of the intensity of the input's course.
-    pub intensity: Option<f64>,
-    pub coloured: bool,
 }
 
 fn estimate(search: &Search<'_>, start: Vec<f64>, method: &Method) -> Result<Found, IdentifyError> {

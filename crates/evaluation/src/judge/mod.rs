@@ -15,6 +15,7 @@
 pub mod candidate;
 pub mod clock;
 pub mod cost;
+pub mod entry;
 mod error;
 pub mod journal;
 pub mod measures;

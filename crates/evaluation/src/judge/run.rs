@@ -9,15 +9,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
 use super::JudgeError;
 use super::clock::Clock;
 use super::cost::{Costs, Times};
+use super::entry::{Entry, Facts};
 use super::journal::{Binding, Journal};
 use super::plan::{Plan, Unit};
 use super::score::Score;
-use super::score::detection::{Detecting, LeakFacts};
+use super::score::detection::Detecting;
 use super::table;
 use super::watch::{watch, words_of};
 use crate::world::{Request, Simulated, World, WorldError};
@@ -59,26 +58,6 @@ impl Source for Simulator {
     fn world(&self, simulated: &Simulated, request: &Request) -> Result<World, WorldError> {
         simulated.world(request)
     }
-}
-
-/// What the journal holds of a world.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
-    /// What is true of it; or why it could not be made.
-    pub facts: Result<Facts, String>,
-    /// Scores in the order of the task's candidates; or why there is none.
-    pub scores: Vec<Result<Score, String>>,
-}
-
-/// What is true of a world, beside its request.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Facts {
-    /// Rows.
-    pub rows: u64,
-    /// True time from the first row to the last one, s.
-    pub length_s: f64,
-    /// Its leak.
-    pub leak: Option<LeakFacts>,
 }
 
 /// How a plan is run.

@@ -1,16 +1,17 @@
 //! The worlds that a vessel is commissioned on, and the monitor in them.
 use cylwatch_detector::evidence::Scale;
-use cylwatch_detector::monitor::{Monitor, MonitorSettings};
+use cylwatch_detector::monitor::MonitorSettings;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::fit::STRETCHES;
 use super::found::FOLDS;
 use super::record::{HOUR_S, Record};
+use super::watched::{Watched, watch};
 use crate::EvaluationError;
 use crate::world::{
     Climate, Family, GasKind, NominalVessel, Request, RowPattern, SensorClass, Simulated, SimulationKey,
-    VesselKind, World,
+    VesselKind,
 };
 
 const DAY_S: f64 = 86_400.0;
@@ -94,31 +95,6 @@ impl Campaign {
 fn longest_s(stretch: f64) -> f64 {
     let hours = Scale::ALL.map(|scale| Record::stretch_h(scale, stretch));
     hours.into_iter().fold(0.0, |longest, hours| longest.max(HOUR_S * hours as f64))
-}
-
-/// A cylinder that was watched with one set of sensors.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Watched {
-    /// What decided its world.
-    pub request: Request,
-    /// What the statistics reached.
-    pub record: Record,
-}
-
-/// Run the monitor over a world and keep what its statistics reach.
-///
-/// # Errors
-/// What the monitor refuses.
-pub fn watch(world: &World, settings: &MonitorSettings) -> Result<Watched, EvaluationError> {
-    let told = &world.told;
-    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
-    let mut record = Record::default();
-    for (stamp_s, readings) in world.log.rows() {
-        for output in monitor.step(stamp_s, readings)? {
-            record.update(output.estimate.time_s, &monitor.evidence());
-        }
-    }
-    Ok(Watched { request: world.request, record })
 }
 
 /// Simulate cylinders around a vessel and watch each, on all threads; the same on any number of them. Requests of one simulation that follow each other share it.

@@ -2,10 +2,10 @@
 use cylwatch_detector::evidence::{Scale, Tail, Tails};
 use serde::{Deserialize, Serialize};
 
-use super::campaign::Watched;
 use super::fit::{fit, interval};
 use super::found::found;
 use super::record::Record;
+use super::watched::Watched;
 use crate::EvaluationError;
 use crate::judge::table::Rate;
 

@@ -12,8 +12,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::campaign::Watched;
 use super::record::{HOUR_S, Record};
+use super::watched::Watched;
 use crate::EvaluationError;
 use crate::world::SimulationKey;
 

@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 
 use cylwatch_detector::monitor::MonitorSettings;
 
-use super::campaign::Watched;
 use super::fit::fit;
 use super::record::{HOUR_S, Record};
+use super::watched::Watched;
 use crate::EvaluationError;
 use crate::judge::table::{Clustered, Rate};
 use crate::world::{Family, SimulationKey};

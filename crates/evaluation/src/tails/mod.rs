@@ -8,9 +8,11 @@ mod commissioned;
 mod fit;
 mod found;
 mod record;
+mod watched;
 
-pub use campaign::{Campaign, Watched, watch, watch_all};
+pub use campaign::{Campaign, watch_all};
 pub use commissioned::{Commissioned, CommissionedScale, FitSettings, commission};
 pub use fit::{fit, fit_one, interval};
 pub use found::found;
 pub use record::{Alarms, Record};
+pub use watched::{Watched, watch};

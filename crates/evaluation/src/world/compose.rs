@@ -21,8 +21,21 @@ use crate::random::Purpose;
 const SHOULDER_ABOVE: f64 = 0.4;
 const VALVE_ABOVE: f64 = 0.5;
 
+impl Simulated {
+    /// The world of a request over this simulation. The request may differ from that of [`Simulated::run`] in sensors, set, rows
+    /// that need no other samples, a shorter length, slow leaks and faults of data.
+    ///
+    /// # Errors
+    /// A request that needs another simulation.
+    pub fn world(&self, request: &Request) -> Result<World, WorldError> {
+        request.validate()?;
+        self.check(request)?;
+        world(self, request)
+    }
+}
+
 /// The world of a request that fits a simulation.
-pub(super) fn world(simulated: &Simulated, request: &Request) -> Result<World, WorldError> {
+fn world(simulated: &Simulated, request: &Request) -> Result<World, WorldError> {
     let family = request.family;
     let seed = seed_of_set(request.seed, request.set);
     let rows = rows(request, seed);

@@ -13,8 +13,7 @@ use super::gas::GasDraw;
 use super::samples::Samples;
 use super::vessel::VesselDraw;
 use super::{
-    Climate, Family, GasKind, Leak, NominalVessel, Overlay, Request, RowPattern, VesselKind, World,
-    WorldError, compose,
+    Climate, Family, GasKind, Leak, NominalVessel, Overlay, Request, RowPattern, VesselKind, WorldError,
 };
 
 /// Shortest and longest log, s.
@@ -173,17 +172,6 @@ impl Simulated {
         })
     }
 
-    /// The world of a request over this simulation. The request may differ from that of [`Simulated::run`] in sensors, set, rows
-    /// that need no other samples, a shorter length, slow leaks and faults of data.
-    ///
-    /// # Errors
-    /// A request that needs another simulation.
-    pub fn world(&self, request: &Request) -> Result<World, WorldError> {
-        request.validate()?;
-        self.check(request)?;
-        compose::world(self, request)
-    }
-
     /// Balance of mass and energy of the simulation.
     pub const fn ledger(&self) -> &Ledger {
         &self.ledger
@@ -210,7 +198,8 @@ impl Simulated {
         self.jumps_s.iter().map(|t| t - self.drawn.fill.lead_s)
     }
 
-    fn check(&self, request: &Request) -> Result<(), WorldError> {
+    /// Whether a request fits this simulation.
+    pub(super) fn check(&self, request: &Request) -> Result<(), WorldError> {
         let same_overlay = request.overlay.simulated_part(request.length_s) == self.overlay;
         let is_same = SimulationKey::of(request) == self.key
             && same_overlay

@@ -13,6 +13,7 @@ mod data;
 pub mod helmholtz;
 mod ideal_gas;
 mod peng_robinson;
+mod root;
 mod saturation;
 mod solve;
 mod state;

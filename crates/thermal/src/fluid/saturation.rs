@@ -5,7 +5,7 @@
 //! unphysical loops of multiparameter equations in between do no harm. The saturation pressure is where the Gibbs
 //! energies of the branches agree; their slopes in pressure are the volumes, so that Newton's method finds it, inside a
 //! bracket. No ancillary equation is needed.
-use super::solve::bracketed_newton;
+use super::root::bracketed_newton;
 use super::{Description, Fluid};
 use crate::ThermalError;
 

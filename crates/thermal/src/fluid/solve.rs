@@ -4,43 +4,13 @@
 //! the bracket it is halved. The functions are monotone on their brackets (`dp/drho > 0` on a stable branch, `cv > 0`,
 //! `cp > 0`), so the root is unique. Solves that carry derivatives converge in plain numbers first; one more
 //! Newton step in dual numbers then gives the exact derivatives.
+use super::root::bracketed_newton;
 use super::saturation::CRITICAL_MARGIN;
 use super::{Description, Fluid, Real, State};
 use crate::ThermalError;
 
-const MAX_ITERATIONS: usize = 200;
 /// Up to this part of the critical pressure a gas above 0.8 critical temperatures is not near its saturation line.
 const THIN: f64 = 0.2;
-/// Relative length of the last Newton step of all roots; the error after it is about its square.
-const TOLERANCE: f64 = 1e-9;
-
-/// Newton in a bracket for an increasing function given with its slope; `None` if it does not converge.
-pub(super) fn bracketed_newton(
-    mut low: f64,
-    mut high: f64,
-    start: f64,
-    mut f: impl FnMut(f64) -> (f64, f64),
-) -> Option<f64> {
-    let mut x = start.clamp(low, high);
-    for _ in 0..MAX_ITERATIONS {
-        let (value, slope) = f(x);
-        if !value.is_finite() {
-            return None;
-        }
-        if value > 0.0 {
-            high = x
-        } else {
-            low = x
-        }
-        let newton = x - value / slope;
-        if slope > 0.0 && (newton - x).abs() <= TOLERANCE * x.abs() {
-            return Some(newton);
-        }
-        let inside = slope > 0.0 && newton > low && newton < high;
-        x = if inside { newton } else { 0.5 * (low + high) };
-    }
-    (high - low <= 1e-9 * high.abs()).then_some(x)
-}
 
 impl Fluid {
     /// Density, kg/m³, at a pressure, Pa, and temperature, K.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use super::Likelihood;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, StateSpace};
-use crate::identify::equations::Variances;
+use crate::identify::compensation::Variances;
 use crate::identify::parametrisation::Coefficients;
 use crate::identify::propagator::{Propagator, Propagators};
 use crate::identify::response::companion;

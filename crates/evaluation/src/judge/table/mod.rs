@@ -25,9 +25,9 @@ pub use self::threshold::Tuned;
 use self::tally::Tally;
 use self::threshold::{Tuning, at_threshold};
 use super::JudgeError;
+use super::entry::Entry;
 use super::journal::Results;
 use super::plan::{Plan, Role};
-use super::run::Entry;
 use crate::noise::Noise;
 use crate::world::{Overlay, Request, SimulationKey};
 

@@ -2,9 +2,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::clustered::Clustered;
+use crate::judge::entry::Facts;
 use crate::judge::measures::{Run, TrueLeak};
 use crate::judge::plan::Task;
-use crate::judge::run::Facts;
 use crate::judge::score::Score;
 use crate::judge::score::agreement::Disagreements;
 use crate::judge::score::coverage::Cell;

@@ -5,8 +5,8 @@
 //! that it leaks.
 use serde::Serialize;
 
+use crate::judge::entry::Facts;
 use crate::judge::measures::{AlarmLevel, Class, Trace, YEAR_S, alarm_level};
-use crate::judge::run::Facts;
 use crate::judge::score::detection::Detected;
 use crate::judge::score::verdict::{Episode, Episodes, Shares};
 use crate::judge::score::{FIRST_DAY_S, Score};

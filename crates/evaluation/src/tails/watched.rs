@@ -1,0 +1,31 @@
+//! A cylinder and what the statistics of its monitor reached.
+use cylwatch_detector::monitor::{Monitor, MonitorSettings};
+
+use super::record::Record;
+use crate::EvaluationError;
+use crate::world::{Request, World};
+
+/// A cylinder that was watched with one set of sensors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watched {
+    /// What decided its world.
+    pub request: Request,
+    /// What the statistics reached.
+    pub record: Record,
+}
+
+/// Run the monitor over a world and keep what its statistics reach.
+///
+/// # Errors
+/// What the monitor refuses.
+pub fn watch(world: &World, settings: &MonitorSettings) -> Result<Watched, EvaluationError> {
+    let told = &world.told;
+    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
+    let mut record = Record::default();
+    for (stamp_s, readings) in world.log.rows() {
+        for output in monitor.step(stamp_s, readings)? {
+            record.update(output.estimate.time_s, &monitor.evidence());
+        }
+    }
+    Ok(Watched { request: world.request, record })
+}
