@@ -1,6 +1,5 @@
 //! Which column may be what: by the words of its name, the unit in its header, and the range of its values.
 use super::{ColumnReport, Role};
-use crate::log::columns;
 use crate::log::header::is_value;
 use crate::log::label::{self, Label};
 use crate::log::{Mapping, date};
