@@ -14,25 +14,6 @@ pub(crate) fn add_product(c: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows
     }
 }
 
-/// `C <- C + A diag(w) B^T`; `A`: (rows, inner), `B`: (columns, inner), `w`: (inner), `C`: (rows, columns).
-pub(crate) fn add_product_transposed(
-    c: &mut [f64],
-    a: &[f64],
-    w: impl Fn(usize) -> f64,
-    b: &[f64],
-    rows: usize,
-    columns: usize,
-) {
-    if rows == 0 || columns == 0 {
-        return;
-    }
-    for (l, (a, b)) in a.chunks_exact(rows).zip(b.chunks_exact(columns)).enumerate() {
-        for (c, b) in c.chunks_exact_mut(rows).zip(b) {
-            axpy(w(l) * b, a, c);
-        }
-    }
-}
-
 /// `C <- A^T B`; `A`: (inner, rows), `B`: (inner, columns), `C`: (rows, columns).
 pub(crate) fn transposed_product(c: &mut [f64], a: &[f64], b: &[f64], inner: usize) {
     if inner == 0 {
@@ -108,12 +89,6 @@ pub(crate) fn factor_cholesky(a: &mut [f64], n: usize) -> bool {
         r[j] = left.sqrt();
     }
     true
-}
-
-/// The identity (n, n), column-major.
-pub(crate) fn set_identity(a: &mut [f64], n: usize) {
-    a.fill(0.0);
-    a.iter_mut().step_by(n + 1).for_each(|a| *a = 1.0);
 }
 
 /// Symmetric part of a column-major matrix (n, n).

@@ -13,11 +13,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::{add_product, symmetrise, transposed_product};
-use super::form::CovarianceForm;
+use super::gate::Outcome;
 use super::kalman::ExtendedKalman;
 use super::kernel::{axpy, column, dot};
 use super::state_space::StateSpace;
-use crate::EstimatorError;
 
 /// One step of a filter as the smoother needs it: plain data.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,26 +80,11 @@ pub struct Smoothed {
     pub p: DMatrix<f64>,
 }
 
-impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
+impl<M: StateSpace> ExtendedKalman<M> {
     /// Record the last step, or the start if there was none.
-    ///
-    /// # Errors
-    /// The filter has consider states, whose gains are not optimal: its pass cannot be smoothed.
-    pub fn record(&self) -> Result<PassStep, EstimatorError> {
-        let (n, outputs, leading) = (self.state().len(), self.gate_counts().len(), self.model().leading());
+    pub fn record(&self) -> PassStep {
+        let (n, outputs, leading) = (self.state().len(), self.innovations().len(), self.model().leading());
         let mut step = PassStep::zeros(n, leading, outputs);
-        self.record_into(&mut step)?;
-        Ok(step)
-    }
-
-    /// Record the last step into the memory of another record, without allocating.
-    ///
-    /// # Errors
-    /// As [`record`](Self::record).
-    pub fn record_into(&self, step: &mut PassStep) -> Result<(), EstimatorError> {
-        if self.has_consider_states() {
-            return Err(EstimatorError::ConsiderStatesSmoothed);
-        }
         let work = self.work();
         step.interval_s = work.dt_s;
         if work.dt_s > 0.0 {
@@ -110,14 +94,13 @@ impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
         }
         step.h.as_mut_slice().copy_from_slice(&work.h);
         step.gain.as_mut_slice().copy_from_slice(&work.gain);
-        step.innovation.as_mut_slice().copy_from_slice(&work.innovation);
-        step.variance.as_mut_slice().copy_from_slice(&work.variance);
-        for (used, output) in step.used.iter_mut().zip(&self.report().outputs) {
-            *used = output.outcome.is_used();
+        for (j, innovation) in self.innovations().iter().enumerate() {
+            (step.innovation[j], step.variance[j]) = (innovation.nu, innovation.s);
+            step.used[j] = innovation.outcome == Outcome::Accepted;
         }
         step.x.as_mut_slice().copy_from_slice(self.state());
-        self.form().write_covariance(step.p.as_mut_slice());
-        Ok(())
+        self.factors().write_covariance(step.p.as_mut_slice());
+        step
     }
 }
 

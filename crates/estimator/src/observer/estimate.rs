@@ -3,10 +3,9 @@ use serde::{Deserialize, Serialize};
 
 use super::belief::{Belief, mixture};
 use super::clock::Exchange;
-use super::member::Outcome;
 use super::{Observer, QUOTED_K, REFERENCE_AFTER_S};
 use crate::EstimatorError;
-use crate::filter::StateSpace;
+use crate::filter::{Outcome, StateSpace};
 
 /// What an estimate rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

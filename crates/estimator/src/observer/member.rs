@@ -6,37 +6,8 @@ use super::cylinder::Cylinder;
 use super::pass::Pass;
 use super::settings::LeakHypothesis;
 use crate::filter::kernel::axpy;
+use crate::filter::{Gate, Innovation, Outcome};
 use crate::numbers;
-
-/// What became of a reading.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Outcome {
-    /// It was used.
-    Accepted,
-    /// Its gate refused it.
-    Rejected,
-    /// It was taken after too many rejections in a row: the estimate was opened for it.
-    Reacquired,
-    /// There was none.
-    #[default]
-    Missing,
-}
-
-/// Innovation of one sensor, before its gate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Innovation {
-    /// Reading minus prediction, K or Pa.
-    pub nu: f64,
-    /// Its predicted variance, K² or Pa².
-    pub s: f64,
-    /// What became of the reading.
-    pub outcome: Outcome,
-}
-
-impl Innovation {
-    /// No reading.
-    pub const MISSING: Self = Self { nu: f64::NAN, s: f64::NAN, outcome: Outcome::Missing };
-}
 
 /// Mean and counters of a member; its covariance is in the bank's.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -101,15 +72,9 @@ impl Member {
         [self.rejected.len(), self.innovations.len(), self.pulled.len()] == [sensors; 3]
     }
 
-    /// What becomes of a reading with the innovation `nu` of variance `s` at a gate, in variances.
-    pub fn judge(&mut self, sensor: usize, (nu, s): (f64, f64), gate: f64, most_in_a_row: u32) -> Outcome {
-        let rejected = &mut self.rejected[sensor];
-        let outcome = match () {
-            () if nu * nu > gate * s && *rejected < most_in_a_row => Outcome::Rejected,
-            () if nu * nu > gate * s => Outcome::Reacquired,
-            () => Outcome::Accepted,
-        };
-        *rejected = if outcome == Outcome::Rejected { *rejected + 1 } else { 0 };
+    /// What becomes of a reading with the innovation `nu` of variance `s` at a gate.
+    pub fn judge(&mut self, sensor: usize, (nu, s): (f64, f64), gate: Gate) -> Outcome {
+        let outcome = gate.judge((nu, s), &mut self.rejected[sensor]);
         self.innovations[sensor] = Innovation { nu, s, outcome };
         outcome
     }

@@ -9,7 +9,7 @@ use crate::EstimatorError;
 use crate::filter::StateSpace;
 use crate::thermal::model::reduced::WarmStart;
 
-/// The members as they were after a sample: what a late sample goes back to, and what a program that was stopped goes on from. With
+/// The members as they were after a sample: what to go back to, and what a program that was stopped goes on from. With
 /// another engine than the extended filter it cannot be serialised. It holds numbers that are none, which JSON has no
 /// word for: take a binary format.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -1,28 +1,22 @@
 //! Smoothers against the dense solution for all states at once.
-use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::filter::{
-    CovarianceForm, ExtendedKalman, KalmanSettings, PassStep, UdFactors, smooth_fixed_interval,
-};
-use nalgebra::{DMatrix, DVector, Dyn};
+use cylwatch_estimator::filter::{ExtendedKalman, PassStep, UdFactors, smooth_fixed_interval};
+use nalgebra::{DMatrix, DVector};
 
 use crate::linear_model::{Case, LinearModel, covariance_difference, rng, state_difference, uniform};
 
-type Filter = ExtendedKalman<LinearModel, UdFactors<Dyn>>;
-
 impl Case {
-    fn filter(&self) -> Filter {
-        let form = UdFactors::from_covariance(&self.p0).unwrap();
-        let settings = KalmanSettings::default();
-        ExtendedKalman::try_new(self.model.clone(), self.x0.as_slice(), form, &settings).unwrap()
+    fn filter(&self) -> ExtendedKalman<LinearModel> {
+        let p = UdFactors::from_covariance(&self.p0).unwrap();
+        ExtendedKalman::try_new(self.model.clone(), self.x0.as_slice(), p).unwrap()
     }
 
     /// The start and all steps, recorded.
     fn pass(&self) -> Vec<PassStep> {
         let mut filter = self.filter();
-        let mut steps = vec![filter.record().unwrap()];
+        let mut steps = vec![filter.record()];
         for (dt_s, z) in self.dt_s.iter().zip(&self.z) {
             filter.step(*dt_s, z).unwrap();
-            steps.push(filter.record().unwrap());
+            steps.push(filter.record());
         }
         steps
     }
@@ -104,28 +98,17 @@ fn smoother_needs_no_process_noise_and_no_inverse() {
 fn a_step_taken_in_two_calls_is_smoothed_as_one() {
     let case = Case::random(&mut rng(49), (4, 3, 2), 10);
     let mut filter = case.filter();
-    let mut steps = vec![filter.record().unwrap()];
+    let none = vec![f64::NAN; case.model.r.len()];
+    let mut steps = vec![filter.record()];
     for (dt_s, z) in case.dt_s.iter().zip(&case.z) {
-        filter.predict(*dt_s).unwrap();
-        steps.push(filter.record().unwrap());
-        filter.update(z).unwrap();
-        steps.push(filter.record().unwrap());
+        filter.step(*dt_s, &none).unwrap();
+        steps.push(filter.record());
+        filter.step(0.0, z).unwrap();
+        steps.push(filter.record());
     }
     let apart = smooth_fixed_interval(&steps);
     for (k, expected) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
         assert!(state_difference(apart[2 * k].x.as_slice(), &expected.x, &expected.p) < 1e-12);
         assert!(covariance_difference(&apart[2 * k].p, &expected.p) < 1e-12);
     }
-}
-
-#[test]
-fn a_pass_with_consider_states_is_refused() {
-    let case = Case::random(&mut rng(50), (3, 2, 1), 1);
-    let form = UdFactors::<Dyn>::from_covariance(&case.p0).unwrap();
-    let settings = KalmanSettings { consider: vec![2], ..KalmanSettings::default() };
-    let filter = ExtendedKalman::try_new(case.model.clone(), case.x0.as_slice(), form, &settings).unwrap();
-    assert!(matches!(filter.record(), Err(EstimatorError::ConsiderStatesSmoothed)));
-    assert!(smooth_fixed_interval(&[]).is_empty());
-    let form = filter.form();
-    assert!(covariance_difference(&form.to_dense(), &case.p0) < 1e-14);
 }

@@ -2,10 +2,10 @@
 use nalgebra::{DMatrix, Dyn};
 
 use crate::EstimatorError;
-use crate::filter::UdFactors;
+use crate::filter::{Gate, Outcome, UdFactors};
 use crate::observer::cylinder::Cylinder;
 use crate::observer::engine::{Engine, Mechanism, Predicted, Shared};
-use crate::observer::member::{Member, Outcome, freed};
+use crate::observer::member::{Member, freed};
 
 /// Covariance and engine of a member.
 #[derive(Clone, Debug)]
@@ -57,8 +57,8 @@ impl Separate {
         let Predicted { value, mut r } = mechanism.expect(cylinder, shared, (&member.x, p), sensor)?;
         let nu = reading - value;
         let s = mechanism.innovation_variance(shared, p, sensor, r);
-        let most_in_a_row = cylinder.settings().rejections_in_a_row;
-        match member.judge(sensor, (nu, s), gate, most_in_a_row) {
+        let gate = Gate { limit: gate, rejections_in_a_row: cylinder.settings().rejections_in_a_row };
+        match member.judge(sensor, (nu, s), gate) {
             Outcome::Rejected => {
                 mechanism.interrupt(p);
                 return Ok(());

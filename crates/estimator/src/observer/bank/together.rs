@@ -12,11 +12,11 @@ use crate::EstimatorError;
 use crate::filter::bank::{BankTransition, UdBank};
 use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
-use crate::filter::{StateSpace, UdFactors};
+use crate::filter::{Gate, Outcome, StateSpace, UdFactors};
 use crate::numbers;
 use crate::observer::cylinder::{Crossing, Cylinder, HARDLY};
 use crate::observer::engine::Shared;
-use crate::observer::member::{Member, Outcome, freed};
+use crate::observer::member::{Member, freed};
 
 /// Part of the variance of an offset that a reading explains at least that moves it where it is considered.
 const TELLING: f64 = 0.01;
@@ -245,8 +245,9 @@ impl Together {
         for (lane, member) in members.iter_mut().enumerate() {
             let (nu, s) = (nu.0[lane], s.0[lane]);
             let flows = member.hypothesis.is_flowing() && cylinder.reads_pressure(sensor);
-            let (gate, most_in_a_row) = if flows { (gates.flow, 0) } else { (gates.all, most_in_a_row) };
-            let outcome = member.judge(sensor, (nu, s), gate, most_in_a_row);
+            let (limit, rejections_in_a_row) =
+                if flows { (gates.flow, 0) } else { (gates.all, most_in_a_row) };
+            let outcome = member.judge(sensor, (nu, s), Gate { limit, rejections_in_a_row });
             used[lane] = outcome != Outcome::Rejected;
             if outcome != Outcome::Reacquired {
                 continue;
