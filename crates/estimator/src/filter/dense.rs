@@ -14,6 +14,25 @@ pub(crate) fn add_product(c: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows
     }
 }
 
+/// `C <- C + A diag(w) B^T`; `A`: (rows, inner), `B`: (columns, inner), `w`: (inner), `C`: (rows, columns).
+pub(crate) fn add_product_transposed(
+    c: &mut [f64],
+    a: &[f64],
+    w: impl Fn(usize) -> f64,
+    b: &[f64],
+    rows: usize,
+    columns: usize,
+) {
+    if rows == 0 || columns == 0 {
+        return;
+    }
+    for (l, (a, b)) in a.chunks_exact(rows).zip(b.chunks_exact(columns)).enumerate() {
+        for (c, b) in c.chunks_exact_mut(rows).zip(b) {
+            axpy(w(l) * b, a, c);
+        }
+    }
+}
+
 /// `C <- A^T B`; `A`: (inner, rows), `B`: (inner, columns), `C`: (rows, columns).
 pub(crate) fn transposed_product(c: &mut [f64], a: &[f64], b: &[f64], inner: usize) {
     if inner == 0 {

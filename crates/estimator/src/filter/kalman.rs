@@ -22,20 +22,16 @@ pub struct ExtendedKalman<M> {
     work: Work,
 }
 
-/// Memory of a step. What it holds afterwards describes the step.
+/// Memory of a step.
 #[derive(Clone, Debug)]
-pub(super) struct Work {
-    /// Interval of the last step, s.
-    pub dt_s: f64,
-    /// Transition of the last step, if its interval was not zero.
-    pub linear: Linearisation,
+struct Work {
+    linear: Linearisation,
     /// Outputs at the prediction, their gradients (n each) and noise variances.
     y: Vec<f64>,
-    pub h: Vec<f64>,
+    h: Vec<f64>,
     r: Vec<f64>,
-    /// Gain of each output that was used: (n) each.
-    pub gain: Vec<f64>,
-    /// Prediction, and departure from it: (n) each.
+    /// Gain, prediction, and departure from it: (n) each.
+    gain: Vec<f64>,
     predicted: Vec<f64>,
     departure: Vec<f64>,
 }
@@ -52,12 +48,11 @@ impl<M: StateSpace> ExtendedKalman<M> {
         check_state(x)?;
         p.reserve(model.leading(), model.noises());
         let work = Work {
-            dt_s: 0.0,
             linear: Linearisation::zeros(n, model.leading(), model.noises()),
             y: vec![0.0; outputs],
             h: vec![0.0; outputs * n],
             r: vec![0.0; outputs],
-            gain: vec![0.0; outputs * n],
+            gain: vec![0.0; n],
             predicted: vec![0.0; n],
             departure: vec![0.0; n],
         };
@@ -89,10 +84,6 @@ impl<M: StateSpace> ExtendedKalman<M> {
         &self.innovations
     }
 
-    pub(super) fn work(&self) -> &Work {
-        &self.work
-    }
-
     /// Advance by `dt_s`, s, and use the readings `z` (one per output, NaN where there is none).
     ///
     /// # Errors
@@ -105,7 +96,6 @@ impl<M: StateSpace> ExtendedKalman<M> {
             self.p.predict(&self.work.linear);
         }
         self.x.copy_from_slice(&self.work.predicted);
-        self.work.dt_s = dt_s;
         for (j, z) in z.iter().enumerate() {
             self.innovations[j] = if z.is_finite() { self.correct(j, *z) } else { Innovation::MISSING };
         }
@@ -139,8 +129,7 @@ impl<M: StateSpace> ExtendedKalman<M> {
     /// Scalar update by the reading `z` of output `j`.
     fn correct(&mut self, j: usize, z: f64) -> Innovation {
         let (n, work) = (self.x.len(), &mut self.work);
-        let range = j * n..(j + 1) * n;
-        let (h, gain) = (&work.h[range.clone()], &mut work.gain[range]);
+        let (h, gain) = (&work.h[j * n..(j + 1) * n], &mut work.gain);
         for (d, (x, predicted)) in work.departure.iter_mut().zip(self.x.iter().zip(&work.predicted)) {
             *d = x - predicted;
         }

@@ -2,7 +2,8 @@
 //!
 //! A problem is a [`StateSpace`]: how the state moves between samples and what each output reads. Every filter
 //! here works on any of them.
-pub mod bank;
+mod bank;
+mod belief;
 pub(crate) mod dense;
 mod factor;
 mod failure;
@@ -10,17 +11,33 @@ mod gate;
 pub mod horizon;
 mod kalman;
 pub(crate) mod kernel;
-pub(crate) mod lanes;
+mod lanes;
+mod linear;
+mod plant;
+mod record;
 mod riccati;
-pub mod smoother;
+mod smoother;
 pub mod state_space;
+mod stationary;
 mod ud;
+pub(crate) mod ud_bank;
+mod unscented;
 
+pub(crate) use bank::Outline;
+pub use bank::{Bank, BankEngine, Workspace};
+pub(crate) use belief::mixture;
+pub use belief::{Belief, Moments};
 pub use failure::StepError;
 pub use gate::{Gate, Innovation, Outcome};
 pub use kalman::ExtendedKalman;
+pub(crate) use linear::LinearSystem;
+pub use plant::{Plant, SlowProcess, StepTransition};
+pub use record::StepRecord;
 pub use riccati::{SteadyState, steady_prediction, steady_state};
 pub(crate) use smoother::Backward;
-pub use smoother::{PassStep, Smoothed, smooth_fixed_interval};
+pub use smoother::{Smoothed, smooth};
 pub use state_space::{Linearisation, StateSpace};
 pub use ud::UdFactors;
+pub use ud_bank::Pattern;
+#[cfg(test)]
+pub(crate) use unscented::{SPREAD_SQUARED, SigmaPoints};

@@ -30,9 +30,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
-use super::pass::Pass;
-use crate::filter::StateSpace;
 use crate::filter::kernel::{axpy, column, dot};
+use crate::filter::{Plant, StateSpace, StepRecord};
 use crate::numbers;
 
 /// Interval between possible onsets, s.
@@ -146,14 +145,14 @@ impl Onsets {
     }
 
     /// Take a step of the member, with memory for a product.
-    fn follow(&mut self, pass: &Pass, leak: usize, moved: &mut Vec<f64>) {
-        if pass.opened {
+    fn follow(&mut self, step: &StepRecord, leak: usize, moved: &mut Vec<f64>) {
+        if !step.freed.is_empty() {
             self.clear();
         }
-        let (step, n) = (&pass.step, self.told.len());
+        let n = self.told.len();
         moved.resize(step.phi.nrows(), 0.0);
         for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
-            carry(pass, response, moved);
+            carry(step, response, moved);
         }
         for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
             let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
@@ -169,12 +168,12 @@ impl Onsets {
                 axpy(-g, gain, response);
             }
         }
-        for (&(state, _), shares) in pass.bounded.iter().zip(pass.shares.chunks(n.max(1))) {
+        for (&(state, _), shares) in step.bounded.iter().zip(step.shares.chunks(n.max(1))) {
             for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
                 axpy(-response[state], shares, response);
             }
         }
-        if pass.begun_anew {
+        if step.replaced {
             self.begin_anew(leak);
         }
     }
@@ -236,8 +235,8 @@ impl Onsets {
 }
 
 /// Take a response over an interval, with memory for its moving part.
-fn carry(pass: &Pass, response: &mut [f64], moved: &mut [f64]) {
-    let (phi, m) = (pass.step.phi.as_slice(), moved.len());
+fn carry(step: &StepRecord, response: &mut [f64], moved: &mut [f64]) {
+    let (phi, m) = (step.phi.as_slice(), moved.len());
     moved.fill(0.0);
     for (column, &by) in phi.chunks_exact(m).zip(&*response) {
         if by != 0.0 {
@@ -245,7 +244,7 @@ fn carry(pass: &Pass, response: &mut [f64], moved: &mut [f64]) {
         }
     }
     response[..m].copy_from_slice(moved);
-    response.iter_mut().zip(&pass.relaxed).skip(m).for_each(|(by, factor)| *by *= factor);
+    response.iter_mut().zip(&step.relaxed).skip(m).for_each(|(by, factor)| *by *= factor);
 }
 
 impl Observer {
@@ -277,8 +276,8 @@ impl Observer {
         let leak = self.cylinder.state_map().leak;
         let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) else { return };
         self.onsets.told.resize(member.x.len(), 0.0);
-        if let Some(pass) = &member.pass {
-            self.onsets.follow(pass, leak, &mut self.to_tell);
+        if let Some(step) = &member.record {
+            self.onsets.follow(step, leak, &mut self.to_tell);
         }
         self.onsets.renew(time_s, leak);
         self.onsets.to_tell(&mut self.to_tell);

@@ -23,7 +23,7 @@ impl Observer {
     pub fn follow_the_flow(&mut self) {
         let Some(flowing) = self.flowing.filter(|&index| index < self.bank.members.len()) else { return };
         for index in (0..flowing).rev() {
-            self.bank.begin_anew(index, flowing, &self.cylinder);
+            self.begin_anew(index, flowing);
             self.anew[index] = true;
         }
         self.onsets.begin_anew(self.cylinder.state_map().leak);
@@ -57,7 +57,7 @@ impl Observer {
         let state = self.cylinder.state_map().offset_of(sensor, sensors);
         if let (Some(state), Some(offset)) = (state, offset) {
             let (mean, variance) = (offset.mean, offset.sd * offset.sd);
-            self.bank.forget(state, mean, variance);
+            (0..self.bank.members.len()).for_each(|index| self.bank.set(index, state, mean, variance));
             self.onsets.reset(state);
         }
     }

@@ -1,24 +1,26 @@
 //! Smoothers against the dense solution for all states at once.
-use cylwatch_estimator::filter::{ExtendedKalman, PassStep, UdFactors, smooth_fixed_interval};
+use cylwatch_estimator::filter::{Bank, BankEngine, StepRecord, Workspace, smooth};
 use nalgebra::{DMatrix, DVector};
 
-use crate::linear_model::{Case, LinearModel, covariance_difference, rng, state_difference, uniform};
+use crate::linear_model::{Case, covariance_difference, rng, state_difference, uniform};
 
 impl Case {
-    fn filter(&self) -> ExtendedKalman<LinearModel> {
-        let p = UdFactors::from_covariance(&self.p0).unwrap();
-        ExtendedKalman::try_new(self.model.clone(), self.x0.as_slice(), p).unwrap()
-    }
-
-    /// The start and all steps, recorded.
-    fn pass(&self) -> Vec<PassStep> {
-        let mut filter = self.filter();
-        let mut steps = vec![filter.record()];
+    /// The start and all steps of an extended filter, recorded; with `split`, each interval is a step of its own.
+    fn pass(&self, split: bool) -> Vec<StepRecord> {
+        let mut model = self.model.clone();
+        let mut work = Workspace::new(&model);
+        let members = vec![((), self.p0.clone())];
+        let mut bank = Bank::new(&mut model, &BankEngine::Extended, self.x0.as_slice(), members).unwrap();
+        let mut records = vec![bank.record(0, &model)];
         for (dt_s, z) in self.dt_s.iter().zip(&self.z) {
-            filter.step(*dt_s, z).unwrap();
-            steps.push(filter.record());
+            bank.predict(&mut model, &mut work, *dt_s).unwrap();
+            if split {
+                records.push(bank.record(0, &model));
+            }
+            bank.update(&mut model, &mut work, z).unwrap();
+            records.push(bank.record(0, &model));
         }
-        steps
+        records
     }
 
     /// Mean and covariance of all states given all readings.
@@ -64,7 +66,7 @@ impl Case {
 fn assert_is_the_dense_solution(case: &Case) {
     let n = case.x0.len();
     let (x, p) = case.joint();
-    for (k, smoothed) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
+    for (k, smoothed) in smooth(&case.pass(false)).iter().enumerate() {
         let expected = p.view((k * n, k * n), (n, n)).into_owned();
         assert!(state_difference(smoothed.x.as_slice(), &x.rows(k * n, n).into_owned(), &expected) < 1e-10);
         assert!(covariance_difference(&smoothed.p, &expected) < 1e-10);
@@ -97,17 +99,8 @@ fn smoother_needs_no_process_noise_and_no_inverse() {
 #[test]
 fn a_step_taken_in_two_calls_is_smoothed_as_one() {
     let case = Case::random(&mut rng(49), (4, 3, 2), 10);
-    let mut filter = case.filter();
-    let none = vec![f64::NAN; case.model.r.len()];
-    let mut steps = vec![filter.record()];
-    for (dt_s, z) in case.dt_s.iter().zip(&case.z) {
-        filter.step(*dt_s, &none).unwrap();
-        steps.push(filter.record());
-        filter.step(0.0, z).unwrap();
-        steps.push(filter.record());
-    }
-    let apart = smooth_fixed_interval(&steps);
-    for (k, expected) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
+    let apart = smooth(&case.pass(true));
+    for (k, expected) in smooth(&case.pass(false)).iter().enumerate() {
         assert!(state_difference(apart[2 * k].x.as_slice(), &expected.x, &expected.p) < 1e-12);
         assert!(covariance_difference(&apart[2 * k].p, &expected.p) < 1e-12);
     }

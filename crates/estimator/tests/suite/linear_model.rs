@@ -1,7 +1,7 @@
 //! Random linear processes and their textbook filter in dense matrices: what the filters are compared with.
 use std::convert::Infallible;
 
-use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::filter::{Gate, Linearisation, Plant, StateSpace};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -173,6 +173,17 @@ impl StateSpace for LinearModel {
 
     fn noise_variance(&self, j: usize, _x: &[f64]) -> f64 {
         self.r[j]
+    }
+}
+
+/// Every reading passes.
+impl Plant for LinearModel {
+    type Hypothesis = ();
+
+    fn suppose(&mut self, (): &()) {}
+
+    fn gate(&self, (): &(), _output: usize) -> Gate {
+        Gate { limit: f64::INFINITY, rejections_in_a_row: 0 }
     }
 }
 

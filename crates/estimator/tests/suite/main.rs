@@ -6,6 +6,7 @@ mod calibrate;
 mod consistency_rates;
 mod copying_model;
 mod cylinder_transition;
+mod equivalence_bank;
 mod equivalence_factors;
 mod equivalence_filters;
 mod equivalence_smoother;

@@ -87,7 +87,8 @@ fn oldest(observer: &Observer) -> Onset {
 fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
     const RATE: f64 = 0.3;
     let mut random = ChaCha8Rng::seed_from_u64(5);
-    let (mut pass, mut onsets) = (Pass::new(3, 2, 1), Onsets { told: vec![0.0; 3], ..Onsets::default() });
+    let (mut pass, mut onsets) =
+        (StepRecord::new(3, 2, 1), Onsets { told: vec![0.0; 3], ..Onsets::default() });
     let mut error = [0.4, 0.0, -0.7];
     let mut draw = || random.random::<f64>() - 0.5;
     for step in 0..60 {
@@ -95,7 +96,7 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
         let mut phi = nalgebra::DMatrix::from_fn(2, 3, |_, _| 0.1 * draw());
         (phi[(0, 0)], phi[(1, 1)]) = (0.9, 1.0);
         (phi[(0, 1)], phi[(1, 0)], phi[(1, 2)]) = (-1.0, 0.0, 0.0);
-        pass.move_on(&phi);
+        pass.append(&phi);
         pass.relax(2, 0.98);
         if step == 20 {
             // The leak begins, and nothing else is wrong.
@@ -107,7 +108,7 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
         error = [moved[0], moved[1], 0.98 * error[2]];
         let (h, gain) = ([1.0, 0.0, draw()], [0.3 + 0.2 * draw(), 0.0, 0.2 * draw()]);
         let nu = dot(&h, &error);
-        pass.take(0, &h, &gain, (nu, 25.0));
+        pass.update(0, &h, &gain, (nu, 25.0));
         axpy(-nu, &gain, &mut error);
         if step % 11 > 7 {
             // The constant stands at its bound: its error is not what the leak makes of it.
@@ -134,11 +135,12 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
 #[test]
 fn a_reading_far_off_counts_for_two_standard_deviations() {
     let score = |nu: f64| {
-        let (mut pass, mut onsets) = (Pass::new(2, 2, 1), Onsets { told: vec![0.0; 2], ..Onsets::default() });
+        let (mut pass, mut onsets) =
+            (StepRecord::new(2, 2, 1), Onsets { told: vec![0.0; 2], ..Onsets::default() });
         onsets.renew(0.0, 1);
         pass.begin(1.0);
-        pass.move_on(&nalgebra::DMatrix::from_row_slice(2, 2, &[1.0, -1.0, 0.0, 1.0]));
-        pass.take(0, &[1.0, 0.0], &[0.5, 0.0], (nu, 4.0));
+        pass.append(&nalgebra::DMatrix::from_row_slice(2, 2, &[1.0, -1.0, 0.0, 1.0]));
+        pass.update(0, &[1.0, 0.0], &[0.5, 0.0], (nu, 4.0));
         onsets.follow(&pass, 1, &mut Vec::new());
         (onsets.sums[0].score, onsets.all().next().unwrap().sd_kg_s)
     };

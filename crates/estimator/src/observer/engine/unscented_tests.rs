@@ -1,6 +1,7 @@
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::*;
+use crate::filter::{Linearisation, SPREAD_SQUARED, SigmaPoints, StateSpace, UdFactors};
 use crate::observer::ObserverSettings;
 use crate::sensor::Sensor;
 use crate::thermal::vessel::presets;
@@ -46,9 +47,9 @@ fn observe(
 ) {
     let (mut h, mut gain) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     for (sensor, reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
-        let predicted = points.output(cylinder, sensor, x, p, &mut h).unwrap();
-        p.update(&h, predicted.r, &mut gain);
-        x.iter_mut().zip(&gain).for_each(|(x, k)| *x += k * (reading - predicted.value));
+        let (value, r) = points.output(cylinder, sensor, x, p, &mut h).unwrap();
+        p.update(&h, r, &mut gain);
+        x.iter_mut().zip(&gain).for_each(|(x, k)| *x += k * (reading - value));
     }
 }
 

@@ -2,28 +2,29 @@
 //!
 //! The leading states are estimated given the constants `c`, which stay where they are. Linearised at one state, over the
 //! interval at which samples come, the covariance given the constants settles at the solution of the discrete Riccati equation
-//! ([`crate::filter::steady_state`]), and with it the gain of each sensor. As long as a sample comes after that interval, is
+//! ([`steady_state`](super::steady_state)), and with it the gain of each output. As long as a sample comes after that interval, is
 //! complete, passes its gates, and is about as noisy as the steady state supposes, no covariance moves. Otherwise the covariance
 //! given the constants moves as in an extended filter, until it is back.
 //!
-//! The state of linearisation is that at commissioning. Where the cylinder has left it for good, e.g. for another season, the
-//! covariance does not come back; after [`PATIENCE`] complete samples a steady state is sought anew where the cylinder is.
+//! The state of linearisation is that of the first steady state. Where the plant has left it for good, the
+//! covariance does not come back; after [`PATIENCE`] complete samples a steady state is sought anew where the plant is.
 //!
 //! The mean moves by the nonlinear equations. What the constants' uncertainty `B` does to it follows from the sensitivity
 //! `E = dx/dc` of the error (Schmidt's consider states), which moves with the actual gradients and gains,
 //! `E <- F E + F_c`, `E <- E - K (h^T E + h_c^T)`, and the stated covariance is `P + E B E^T`.
 //!
-//! Where the outputs do not see every state (no pressure: the mass walks unseen) there is no steady state, and the covariance
+//! Where the outputs do not see every state there is no steady state, and the covariance
 //! always moves.
 //!
 //! Source: Schmidt 1966; Anderson and Moore 1979, chapter 4.
 use nalgebra::{DMatrix, Dyn};
 
-use super::super::cylinder::Cylinder;
+use super::dense::add_product;
+use super::kernel::{axpy, dot};
+use super::plant::Plant;
+use super::state_space::Linearisation;
+use super::ud::UdFactors;
 use crate::EstimatorError;
-use crate::filter::dense::add_product;
-use crate::filter::kernel::{axpy, dot};
-use crate::filter::{Linearisation, StateSpace, UdFactors};
 use steady::Steady;
 
 mod steady;
@@ -46,13 +47,13 @@ enum Phase {
     Moving,
     /// In the steady state, after a sample.
     Settled,
-    /// In the steady state, when so many sensors of a sample have been used.
+    /// In the steady state, when so many outputs of a sample have been used.
     Within(usize),
 }
 
 /// State of the engine beside mean and covariance.
 #[derive(Clone, Debug)]
-pub(in crate::observer) struct Stationary {
+pub(super) struct Stationary {
     usual_s: f64,
     /// Interval that has come so many times in a row.
     latest: (f64, u32),
@@ -69,7 +70,7 @@ pub(in crate::observer) struct Stationary {
     row: Vec<f64>,
     /// `B`: (constants, constants).
     constants: DMatrix<f64>,
-    /// A gain that nobody asks for: (n), and a covariance to compare: (n, n).
+    /// A gain that is not used: (n), and a covariance to compare: (n, n).
     scratch: Vec<f64>,
     compared: DMatrix<f64>,
 }
@@ -79,8 +80,8 @@ impl Stationary {
     ///
     /// # Errors
     /// What is left is no covariance.
-    pub fn new(cylinder: &Cylinder, p: &mut UdFactors<Dyn>) -> Result<Self, EstimatorError> {
-        let (n, leading) = (cylinder.states(), cylinder.leading());
+    pub fn new<P: Plant>(plant: &P, p: &mut UdFactors<Dyn>) -> Result<Self, EstimatorError> {
+        let (n, leading) = (plant.states(), plant.leading());
         let count = n - leading;
         let mut covariance = p.covariance();
         let constants = covariance.view((leading, leading), (count, count)).into_owned();
@@ -137,10 +138,10 @@ impl Stationary {
     }
 
     /// Variance of an innovation with the gradient `h` (n) and noise `r`, with all that is uncertain.
-    pub fn innovation_variance(&mut self, p: &UdFactors<Dyn>, sensor: usize, h: &[f64], r: f64) -> f64 {
+    pub fn innovation_variance(&mut self, p: &UdFactors<Dyn>, output: usize, h: &[f64], r: f64) -> f64 {
         self.find_row(h);
         let given = match (&self.steady, self.phase) {
-            (Some(steady), Phase::Within(_)) => steady.known[sensor],
+            (Some(steady), Phase::Within(_)) => steady.known[output],
             (Some(steady), Phase::Settled) => steady.updated.quadratic(h),
             _ => p.quadratic(h),
         };
@@ -166,19 +167,19 @@ impl Stationary {
     }
 
     /// Gain of a reading with noise of variance `r`; moves the covariance where it is not that of the steady state.
-    pub fn update(&mut self, p: &mut UdFactors<Dyn>, sensor: usize, h: &[f64], r: f64, gain: &mut [f64]) {
-        let usual = |steady: &Steady| r <= steady.r[sensor] && r >= QUIET * steady.r[sensor];
-        let within = self.phase == Phase::Within(sensor);
+    pub fn update(&mut self, p: &mut UdFactors<Dyn>, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
+        let usual = |steady: &Steady| r <= steady.r[output] && r >= QUIET * steady.r[output];
+        let within = self.phase == Phase::Within(output);
         match &self.steady {
             Some(steady) if within && usual(steady) => {
-                gain.copy_from_slice(steady.gain.column(sensor).as_slice());
-                let last = sensor + 1 == steady.r.len();
-                self.phase = if last { Phase::Settled } else { Phase::Within(sensor + 1) };
+                gain.copy_from_slice(steady.gain.column(output).as_slice());
+                let last = output + 1 == steady.r.len();
+                self.phase = if last { Phase::Settled } else { Phase::Within(output + 1) };
             }
             steady => {
                 // The noise that the steady state supposes, or the covariance would not come back to it.
                 let r =
-                    steady.as_deref().filter(|&steady| usual(steady)).map_or(r, |steady| steady.r[sensor]);
+                    steady.as_deref().filter(|&steady| usual(steady)).map_or(r, |steady| steady.r[output]);
                 self.unsettle(p);
                 p.update(h, r, gain);
             }
@@ -195,6 +196,11 @@ impl Stationary {
         }
     }
 
+    /// Whether the covariance is that of the steady state, after a sample.
+    pub fn is_settled(&self) -> bool {
+        self.phase == Phase::Settled
+    }
+
     /// Leave the steady state: its covariance goes to `p`.
     pub fn unsettle(&mut self, p: &mut UdFactors<Dyn>) {
         let Some(steady) = &self.steady else { return };
@@ -203,9 +209,9 @@ impl Stationary {
             Phase::Settled => p.copy_from(&steady.updated),
             Phase::Within(used) => {
                 p.copy_from(&steady.predicted);
-                for sensor in 0..used {
-                    let h = steady.h.column(sensor);
-                    p.update(h.as_slice(), steady.r[sensor], &mut self.scratch);
+                for output in 0..used {
+                    let h = steady.h.column(output);
+                    p.update(h.as_slice(), steady.r[output], &mut self.scratch);
                 }
             }
         }
@@ -219,17 +225,17 @@ impl Stationary {
     }
 
     /// Return to the steady state if the covariance has; seek it anew at the state `x` if it has not for long.
-    pub fn settle(&mut self, cylinder: &mut Cylinder, x: &[f64], p: &UdFactors<Dyn>) {
+    pub fn settle<P: Plant>(&mut self, plant: &mut P, x: &[f64], p: &UdFactors<Dyn>) {
         if self.phase != Phase::Moving || !self.regular {
             return;
         }
         if self.waited.is_multiple_of(PATIENCE) {
             // Without a steady state the covariance goes on moving.
-            self.steady = Steady::solve(cylinder, x, self.usual_s).ok().map(Box::new);
+            self.steady = Steady::solve(plant, x, self.usual_s).map(Box::new);
         }
         self.waited += 1;
         let (m, compared) = (self.sensitivity.nrows(), &mut self.compared);
-        if self.steady.as_ref().is_some_and(|steady| steady.is_near(p, m, SETTLED, compared)) {
+        if self.steady.as_ref().is_some_and(|steady| steady.is_close(p, m, SETTLED, compared)) {
             (self.phase, self.waited) = (Phase::Settled, 1);
         }
     }
@@ -309,6 +315,3 @@ impl Stationary {
 fn is_same(interval_s: f64, other_s: f64) -> bool {
     (interval_s - other_s).abs() <= SAME_INTERVAL * other_s
 }
-
-#[cfg(test)]
-mod tests;

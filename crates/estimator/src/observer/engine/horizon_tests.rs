@@ -1,6 +1,8 @@
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::*;
+use crate::filter::horizon::{HorizonStatus, MovingHorizon};
+use crate::filter::{Plant, StateSpace};
 use crate::observer::states::StateKind;
 use crate::observer::{LeakHypothesis, ObserverSettings};
 use crate::sensor::Sensor;
@@ -23,18 +25,18 @@ fn masses_while_pressure_rises(settings: &MovingHorizonSettings) -> Vec<f64> {
             _ => {}
         }
     }
-    let mut p = UdFactors::from_covariance(&covariance).unwrap();
     let start_pa = cylinder.output(1, &x, None).unwrap();
-    let mut horizon = Horizon::new(&mut cylinder, settings);
-    for k in 0..12 {
-        horizon.begin(60.0);
-        horizon.take(0, 288.15);
-        horizon.take(1, start_pa + 1e4 * f64::from(k));
-        horizon.refine(&mut x, &mut p);
+    let constraints = settings.constraints(&mut cylinder);
+    let mean = DVector::from_vec(x);
+    let mut window =
+        MovingHorizon::try_new(cylinder.for_window(), &mean, &covariance, constraints, settings.horizon())
+            .unwrap();
+    for k in 1..12 {
+        let estimate = window.step(60.0, &[288.15, start_pa + 1e4 * f64::from(k)]).unwrap();
+        assert!(!matches!(estimate.status, HorizonStatus::Fallback(_)));
     }
-    assert_eq!(horizon.fallbacks, 0);
     let mass = cylinder.state_map().mass;
-    horizon.window.unwrap().trajectory().iter().map(|x| x[mass]).collect()
+    window.trajectory().iter().map(|x| x[mass]).collect()
 }
 
 #[test]
@@ -46,28 +48,4 @@ fn mass_rises_nowhere_in_the_window_unless_it_may() {
     let free = MovingHorizonSettings { mass_not_rising: false, ..bound };
     let masses = masses_while_pressure_rises(&free);
     assert!(masses[10] > masses[0] + 5e-4, "{masses:?}");
-}
-
-#[test]
-fn an_opened_estimate_begins_a_new_window() {
-    let sensors = ["pressure"].map(|name| Sensor::typical(name).unwrap());
-    let vessel = presets::load("nitrogen-20l").unwrap();
-    let mut cylinder = Cylinder::new(&vessel, &sensors, &ObserverSettings::single()).unwrap();
-    let mut horizon = Horizon::new(&mut cylinder, &MovingHorizonSettings::default());
-    let n = cylinder.states();
-    let states = cylinder.state_map().clone();
-    let mut x = vec![0.0; n];
-    (0..states.wall).chain(states.valve).chain([states.gas, states.air]).for_each(|i| x[i] = 288.15);
-    x[states.mass] = 4.49;
-    let mut p = UdFactors::from_covariance(&(DMatrix::identity(n, n) * 1e-4)).unwrap();
-    let length = |horizon: &Horizon| horizon.window.as_ref().map_or(0, |window| window.trajectory().len());
-    horizon.refine(&mut x, &mut p);
-    assert_eq!(length(&horizon), 1);
-    horizon.begin(10.0);
-    horizon.refine(&mut x, &mut p);
-    assert_eq!(length(&horizon), 2);
-    horizon.clear();
-    horizon.begin(10.0);
-    horizon.refine(&mut x, &mut p);
-    assert_eq!(length(&horizon), 1);
 }

@@ -14,17 +14,15 @@
 //! Source: Julier and Uhlmann 2004; statistical linear regression: Lefebvre, Bruyninckx and De Schutter 2002.
 use nalgebra::{DMatrix, Dyn};
 
-use super::super::cylinder::Cylinder;
-use super::Predicted;
-use crate::EstimatorError;
-use crate::filter::{Linearisation, StateSpace, UdFactors};
+use super::state_space::{Linearisation, StateSpace};
+use super::ud::UdFactors;
 
 /// Square of the distance of the points, in variances.
-const SPREAD_SQUARED: f64 = 3.0;
+pub(crate) const SPREAD_SQUARED: f64 = 3.0;
 
 /// Memory of the points. Nothing in it outlives a step.
 #[derive(Clone, Debug)]
-pub(in crate::observer) struct SigmaPoints {
+pub(crate) struct SigmaPoints {
     /// Transition with the curvature as noise: `k + n + 1` sources.
     pub linear: Linearisation,
     /// Transition of the middle point: `k` sources.
@@ -39,15 +37,15 @@ pub(in crate::observer) struct SigmaPoints {
 }
 
 impl SigmaPoints {
-    pub fn noises(cylinder: &Cylinder) -> usize {
-        cylinder.noises() + cylinder.states() + 1
+    pub fn noises<M: StateSpace>(model: &M) -> usize {
+        model.noises() + model.states() + 1
     }
 
-    pub fn new(cylinder: &Cylinder) -> Self {
-        let (n, leading) = (cylinder.states(), cylinder.leading());
+    pub fn new<M: StateSpace>(model: &M) -> Self {
+        let (n, leading) = (model.states(), model.leading());
         Self {
-            linear: Linearisation::zeros(n, leading, Self::noises(cylinder)),
-            tangent: Linearisation::zeros(n, leading, cylinder.noises()),
+            linear: Linearisation::zeros(n, leading, Self::noises(model)),
+            tangent: Linearisation::zeros(n, leading, model.noises()),
             middle: vec![0.0; n],
             plus: vec![0.0; n],
             minus: vec![0.0; n],
@@ -60,23 +58,23 @@ impl SigmaPoints {
     ///
     /// # Errors
     /// The middle point cannot be advanced.
-    pub fn predict(
+    pub fn predict<M: StateSpace>(
         &mut self,
-        cylinder: &mut Cylinder,
+        model: &mut M,
         x: &mut [f64],
         p: &mut UdFactors<Dyn>,
         dt_s: f64,
-    ) -> Result<(), EstimatorError> {
-        let (leading, k) = (cylinder.leading(), cylinder.noises());
+    ) -> Result<(), M::Error> {
+        let (leading, k) = (model.leading(), model.noises());
         self.middle.copy_from_slice(x);
-        cylinder.propagate(&mut self.middle, dt_s, Some(&mut self.tangent))?;
+        model.propagate(&mut self.middle, dt_s, Some(&mut self.tangent))?;
         self.linear.g.fill(0.0);
         self.linear.g.columns_mut(0, k).copy_from(&self.tangent.g);
         self.linear.q.rows_mut(0, k).copy_from(&self.tangent.q);
         self.linear.q.rows_mut(k, x.len()).fill(1.0 / SPREAD_SQUARED);
         self.linear.q[k + x.len()] = self.shift_weight;
         for j in 0..x.len() {
-            self.move_pair(cylinder, x, p, j, dt_s);
+            self.move_pair(model, x, p, j, dt_s);
         }
         x.copy_from_slice(&self.middle);
         let shift = k + x.len();
@@ -91,12 +89,19 @@ impl SigmaPoints {
     }
 
     /// Move the points of direction `j`: column `j` of `Phi U`, and its curvature as a noise source.
-    fn move_pair(&mut self, cylinder: &mut Cylinder, x: &[f64], p: &UdFactors<Dyn>, j: usize, dt_s: f64) {
+    fn move_pair<M: StateSpace>(
+        &mut self,
+        model: &mut M,
+        x: &[f64],
+        p: &UdFactors<Dyn>,
+        j: usize,
+        dt_s: f64,
+    ) {
         let (leading, k) = (self.moved.nrows(), self.tangent.q.len());
         let step = self.draw(x, p, j);
         let inside = step > 0.0
-            && cylinder.propagate(&mut self.plus, dt_s, None).is_ok()
-            && cylinder.propagate(&mut self.minus, dt_s, None).is_ok();
+            && model.propagate(&mut self.plus, dt_s, None).is_ok()
+            && model.propagate(&mut self.minus, dt_s, None).is_ok();
         if !(inside && is_finite(&self.plus) && is_finite(&self.minus)) {
             let u = p.unit_upper().column(j);
             self.moved.column_mut(j).gemv(1.0, &self.tangent.phi.columns(0, j + 1), &u.rows(0, j + 1), 0.0);
@@ -137,27 +142,27 @@ impl SigmaPoints {
         self.linear.phi.copy_from(&self.moved);
     }
 
-    /// Predict a reading from the points; `h` (n) becomes its statistical gradient.
+    /// Mean of a reading from the points, and variance of what the gradient does not say; `h` (n) becomes its statistical gradient.
     ///
     /// # Errors
     /// The middle point has no such reading.
-    pub fn output(
+    pub fn output<M: StateSpace>(
         &mut self,
-        cylinder: &mut Cylinder,
-        sensor: usize,
+        model: &mut M,
+        output: usize,
         x: &[f64],
         p: &UdFactors<Dyn>,
         h: &mut [f64],
-    ) -> Result<Predicted, EstimatorError> {
-        let middle = cylinder.output(sensor, x, Some(h))?;
+    ) -> Result<(f64, f64), M::Error> {
+        let middle = model.output(output, x, Some(h))?;
         let (mut shift, mut curvature) = (0.0, 0.0);
         for j in 0..x.len() {
             let u = p.unit_upper().column(j);
             let step = self.draw(x, p, j);
             let pair = (step > 0.0)
                 .then(|| {
-                    let plus = cylinder.output(sensor, &self.plus, None).ok()?;
-                    Some((plus, cylinder.output(sensor, &self.minus, None).ok()?))
+                    let plus = model.output(output, &self.plus, None).ok()?;
+                    Some((plus, model.output(output, &self.minus, None).ok()?))
                 })
                 .flatten()
                 .filter(|(plus, minus)| plus.is_finite() && minus.is_finite());
@@ -175,14 +180,11 @@ impl SigmaPoints {
             self.middle[j] = slope - solved;
         }
         h.copy_from_slice(&self.middle);
-        let noise = cylinder.noise_variance(sensor, x);
-        Ok(Predicted { value: middle + shift, r: noise + curvature + self.shift_weight * shift * shift })
+        let noise = model.noise_variance(output, x);
+        Ok((middle + shift, noise + curvature + self.shift_weight * shift * shift))
     }
 }
 
 fn is_finite(x: &[f64]) -> bool {
     x.iter().all(|x| x.is_finite())
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,43 +1,42 @@
-//! Whether a member of the bank can still be believed: one whose mass goes only as a slowly changing leak takes it, or walks a
-//! little.
+//! Whether a restricted member of a bank can still be believed, by what it and a free one say of the same quantity.
 //!
-//! A member that allows little is the better thermometer as long as it is right, because a mass that stays ties the
-//! temperature to the pressure. In a fast leak it is wrong, and explains the pressure by a colder gas. The freest
-//! member, whose mass may walk far at once, tells them apart: it is right either way, only less precise. With both masses
-//! the statistic of Hausman (1978),
+//! A member that allows little is the better estimate as long as it is right. Where its hypothesis does not hold it is wrong, and explains
+//! the readings by something else. The freest member tells them apart: it is right either way, only less precise. With the means and
+//! variances of one quantity by both, the statistic of Hausman (1978),
 //!
 //! `d^2 = (m_free - m)^2 / (P_free - P)`,
 //!
-//! is that of a standard normal number while the other member is right. Its odds, with prior odds for how rare fast leaks are,
+//! is that of a standard normal number while the restricted member is right. Its odds, with prior odds for how rare the alternative is,
 //!
 //! `w / (1 - w) = prior / (1 - prior) exp(-d^2 / 2)`,
 //!
 //! weigh what both say: `x = w x_member + (1 - w) x_free`, `P = w P_member + (1 - w) P_free + w (1 - w) (x_member - x_free)^2`.
-//! A member that is out of the question begins anew from the freest one; if that has less mass, with any leak rate that can be.
+//! A member that is excluded begins anew from the freest one ([`Bank::replace`](super::Bank::replace)).
 
 /// Prior probability that a member is right.
 const PRIOR: f64 = 0.9999;
-/// `d^2` beyond which a member is out of the question: five and a half standard deviations.
-const OUT_OF_THE_QUESTION: f64 = 30.0;
-/// Least variance of the difference relative to that of the free mass.
+/// `d^2` beyond which a member is excluded: five and a half standard deviations.
+const EXCLUDED: f64 = 30.0;
+/// Least variance of the difference relative to that of the free member.
 const LEAST_PART: f64 = 0.25;
 
 /// Mean and variance.
-pub(super) type Moments = (f64, f64);
+pub type Moments = (f64, f64);
 
 /// Mean and variance of a mixture, weight `w` of the first part.
-pub(super) fn mixture(w: f64, one: Moments, other: Moments) -> Moments {
+pub(crate) fn mixture(w: f64, one: Moments, other: Moments) -> Moments {
     let apart = one.0 - other.0;
     (other.0 + w * apart, w * one.1 + (1.0 - w) * other.1 + w * (1.0 - w) * apart * apart)
 }
 
-/// What the masses, kg, of a member and of the freest one say about the member.
+/// What a member and the freest one, by one quantity, say about the member.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Belief {
+pub struct Belief {
     square: f64,
 }
 
 impl Belief {
+    /// By the moments of one quantity of a member and of the freest one.
     pub fn of(member: Moments, free: Moments) -> Self {
         let variance = (free.1 - member.1).max(LEAST_PART * free.1);
         Self { square: (free.0 - member.0).powi(2) / variance }
@@ -49,8 +48,9 @@ impl Belief {
         odds / (1.0 + odds)
     }
 
-    pub fn is_out_of_the_question(self) -> bool {
-        self.square > OUT_OF_THE_QUESTION
+    /// Whether it is beyond five and a half standard deviations.
+    pub fn is_excluded(self) -> bool {
+        self.square > EXCLUDED
     }
 
     /// Mixture of what both say of one quantity.
@@ -58,8 +58,8 @@ impl Belief {
         mixture(self.weight(), member, free)
     }
 
-    /// Mass as far as each of them is believed.
-    pub fn mass(member: Moments, free: Moments) -> Moments {
+    /// The quantity itself as far as each of them is believed.
+    pub fn blended(member: Moments, free: Moments) -> Moments {
         Self::of(member, free).blend(member, free)
     }
 }
@@ -83,8 +83,8 @@ mod tests {
         // d is 4.5: exp(-10.125) times 9999 is 0.4006.
         let doubted = Belief::of(slow, (4.4 + 0.0135, 2.8e-5));
         assert_relative_eq!(doubted.weight(), 0.4006 / 1.4006, max_relative = 1e-3);
-        assert!(!doubted.is_out_of_the_question());
-        assert!(Belief::of(slow, (4.4 + 0.018, 2.8e-5)).is_out_of_the_question());
+        assert!(!doubted.is_excluded());
+        assert!(Belief::of(slow, (4.4 + 0.018, 2.8e-5)).is_excluded());
     }
 
     #[test]
