@@ -43,6 +43,13 @@ pub struct Gate {
     pub rejections_in_a_row: u32,
 }
 
+impl Default for Gate {
+    /// Five standard deviations, ten rejections.
+    fn default() -> Self {
+        Self { limit: 25.0, rejections_in_a_row: 10 }
+    }
+}
+
 impl Gate {
     /// What becomes of a reading with the innovation `nu` of variance `s`, and the count of rejections in a row after it.
     pub fn judge(self, (nu, s): (f64, f64), rejected: &mut u32) -> Outcome {

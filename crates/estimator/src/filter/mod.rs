@@ -31,6 +31,7 @@ pub use failure::StepError;
 pub use gate::{Gate, Innovation, Outcome};
 pub use kalman::ExtendedKalman;
 pub(crate) use linear::LinearSystem;
+pub(crate) use plant::parts;
 pub use plant::{Plant, SlowProcess, StepTransition};
 pub use record::StepRecord;
 pub use riccati::{SteadyState, steady_prediction, steady_state};

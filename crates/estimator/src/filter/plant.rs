@@ -28,6 +28,12 @@ impl SlowProcess {
     }
 }
 
+/// Number and length, s, of the steps that an interval is divided into.
+pub(crate) fn parts(dt_s: f64, longest_step_s: f64) -> (usize, f64) {
+    let parts = (dt_s / longest_step_s).ceil().max(1.0);
+    (parts as usize, dt_s / parts)
+}
+
 /// Transition of a step, with the noise that it adds in parts: members of a bank differ in the intensity of some sources.
 #[derive(Clone, Debug)]
 pub struct StepTransition {
@@ -55,7 +61,7 @@ impl StepTransition {
 
 /// A process as a [bank](super::Bank) of filters sees it: each member supposes something else of it.
 ///
-/// Two methods are required. The others say what a plant has beyond a state space: bounds, constants that walk slowly, readings that
+/// One method is required. The others say what a plant has beyond a state space: bounds, constants that walk slowly, readings that
 /// free states when they are re-acquired. The last group lets members whose states are close share one linearisation.
 pub trait Plant: StateSpace + Clone + Debug {
     /// What a member of a bank supposes, such as how fast the plant leaks.
@@ -71,7 +77,9 @@ pub trait Plant: StateSpace + Clone + Debug {
     fn suppose(&mut self, hypothesis: &Self::Hypothesis);
 
     /// Gate of an output for a member with this hypothesis.
-    fn gate(&self, hypothesis: &Self::Hypothesis, output: usize) -> Gate;
+    fn gate(&self, _hypothesis: &Self::Hypothesis, _output: usize) -> Gate {
+        Gate::default()
+    }
 
     /// Whether the equations hold at a state.
     fn is_possible(&self, x: &[f64]) -> bool {
@@ -88,9 +96,9 @@ pub trait Plant: StateSpace + Clone + Debug {
         self.noise_variance(j, x)
     }
 
-    /// Number and length, s, of the steps that an interval is divided into.
-    fn parts(&self, dt_s: f64) -> (usize, f64) {
-        (1, dt_s)
+    /// Longest step of a transition, s: intervals are divided into equal steps.
+    fn longest_step_s(&self) -> f64 {
+        f64::INFINITY
     }
 
     /// Bounded states, each with its lowest and highest value.

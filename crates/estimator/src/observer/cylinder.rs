@@ -18,7 +18,7 @@ use nalgebra::DMatrix;
 use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
-use crate::filter::{Linearisation, Plant, StateSpace};
+use crate::filter::{Linearisation, Plant, StateSpace, parts};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
 use crate::thermal::model::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
@@ -446,7 +446,7 @@ impl StateSpace for Cylinder {
         if self.noise_by_step {
             self.interval_s.fill(dt_s);
         }
-        let (parts, h) = self.parts(dt_s);
+        let (parts, h) = parts(dt_s, self.settings.longest_step_s);
         let Some(linear) = linear else {
             return (0..parts).try_for_each(|_| self.step(x, h, false));
         };

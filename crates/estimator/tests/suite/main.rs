@@ -21,4 +21,5 @@ mod placement_published;
 mod placement_response;
 mod placement_study;
 mod properties;
+mod second_plant;
 mod sensors;

@@ -11,7 +11,7 @@ use super::member::Member;
 use crate::filter::gate::Outcome;
 use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
-use crate::filter::plant::{Plant, StepTransition};
+use crate::filter::plant::{Plant, StepTransition, parts};
 use crate::filter::ud::UdFactors;
 use crate::filter::ud_bank::{BankTransition, UdBank, UsualSizes};
 use crate::numbers;
@@ -121,7 +121,7 @@ impl Pack {
         members: &mut [Member<P::Hypothesis>],
         dt_s: f64,
     ) -> Result<(), P::Error> {
-        let (parts, part_s) = plant.parts(dt_s);
+        let (parts, part_s) = parts(dt_s, plant.longest_step_s());
         for _ in 0..parts {
             self.step(plant, memory, members, part_s)?;
         }

@@ -6,7 +6,7 @@ use super::windowed::Windowed;
 use super::{BankEngine, Workspace};
 use crate::EstimatorError;
 use crate::filter::gate::Outcome;
-use crate::filter::plant::Plant;
+use crate::filter::plant::{Plant, parts};
 use crate::filter::stationary::Stationary;
 use crate::filter::ud::UdFactors;
 use crate::filter::unscented::SigmaPoints;
@@ -65,7 +65,7 @@ impl<P: Plant> Single<P> {
     ) -> Result<(), P::Error> {
         plant.suppose(&member.hypothesis);
         let Self { p, engine } = self;
-        let (parts, part_s) = plant.parts(dt_s);
+        let (parts, part_s) = parts(dt_s, plant.longest_step_s());
         if let Engine::Stationary(stationary) = engine {
             stationary.begin(p, dt_s);
         }

@@ -93,9 +93,8 @@ impl Plant for Cylinder {
         variance
     }
 
-    fn parts(&self, dt_s: f64) -> (usize, f64) {
-        let parts = (dt_s / self.settings.longest_step_s).ceil().max(1.0);
-        (parts as usize, dt_s / parts)
+    fn longest_step_s(&self) -> f64 {
+        self.settings.longest_step_s
     }
 
     fn bounds(&self) -> &[(usize, f64, f64)] {
