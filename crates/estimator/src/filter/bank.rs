@@ -8,41 +8,29 @@ use serde::{Deserialize, Serialize};
 
 use super::belief::Moments;
 use super::gate::Innovation;
-use super::horizon::{Constraint, HorizonSettings};
 use super::lanes::Lanes;
 use super::plant::Plant;
 use super::record::StepRecord;
-use super::state_space::Linearisation;
 use super::ud::UdFactors;
-use super::unscented::SigmaPoints;
 use crate::EstimatorError;
 use crate::numbers;
+pub use engine::BankEngine;
 use member::Member;
 pub(crate) use outline::Outline;
-use pack::{Pack, PackMemory};
+use pack::Pack;
 use single::Single;
+pub use workspace::Workspace;
 
+mod engine;
 mod member;
 mod outline;
 mod pack;
 mod single;
 mod windowed;
+mod workspace;
 
 /// Interval at which slow walks are added to the constants, s.
 const SLOW_WALK_S: f64 = 3600.0;
-
-/// Filter that the members of a bank run.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BankEngine {
-    /// Extended Kalman filter, four members side by side.
-    Extended,
-    /// Unscented Kalman filter.
-    Unscented,
-    /// Gain of the steady state; constants are considered, not estimated.
-    Stationary,
-    /// Moving horizon on top of the extended filter, inside constraints.
-    MovingHorizon(HorizonSettings, Vec<Constraint>),
-}
 
 /// The members of a bank with their covariances.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -64,30 +52,6 @@ enum Covariances<P: Plant> {
     /// Engines that carry more than mean and covariance cannot be saved.
     #[serde(skip)]
     Singles(Vec<Single<P>>),
-}
-
-/// Memory that all members share. Nothing in it outlives a step.
-#[derive(Debug)]
-pub struct Workspace {
-    linear: Linearisation,
-    h: Vec<f64>,
-    gain: Vec<f64>,
-    points: SigmaPoints,
-    pack: PackMemory,
-}
-
-impl Workspace {
-    /// Memory for banks of this plant.
-    pub fn new<P: Plant>(plant: &P) -> Self {
-        let n = plant.states();
-        Self {
-            linear: Linearisation::zeros(n, plant.leading(), plant.noises()),
-            h: vec![0.0; n],
-            gain: vec![0.0; n],
-            points: SigmaPoints::new(plant),
-            pack: PackMemory::new(plant),
-        }
-    }
 }
 
 impl<P: Plant> Default for Bank<P> {

@@ -13,7 +13,6 @@ use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::lanes::{LANES, Lanes};
-use super::plant::Plant;
 use super::ud::UdFactors;
 
 mod factors;
@@ -29,13 +28,6 @@ pub use transition::BankTransition;
 /// Numbers of states and of moving states for which loops are unrolled.
 pub(crate) trait Unrolled {
     const SIZES: (usize, usize);
-}
-
-/// Those of a plant.
-pub(crate) struct UsualSizes<P>(PhantomData<P>);
-
-impl<P: Plant> Unrolled for UsualSizes<P> {
-    const SIZES: (usize, usize) = P::USUAL_SIZES;
 }
 
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.

@@ -5,8 +5,9 @@
 //! (`transition`, in this folder). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
 //! Intervals longer than the settings allow are divided. The noise goes to the filter as `Q = G diag(q) G^T`, one column for
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
+mod engine;
 mod lanes;
-mod nearness;
+mod linearity;
 mod noise;
 mod plant;
 mod structure;
@@ -59,7 +60,7 @@ pub struct Cylinder {
     /// What each sensor's offset may have changed by since it was new, standard deviation.
     loosened: Vec<f64>,
     /// States in which the equations are not linear, with the inverse of the difference for which a linearisation serves.
-    near: Vec<(usize, f64)>,
+    nonlinear: Vec<(usize, f64)>,
     /// Mass and gas temperature with the variances that they have when gas has flowed.
     freed: [(usize, f64); 2],
     /// Largest `nu^2/S` of a pressure where gas may flow.
@@ -152,7 +153,7 @@ impl Cylinder {
             bounds: Vec::new(),
             offsets: Vec::new(),
             loosened: vec![0.0; sensors.len()],
-            near: Vec::new(),
+            nonlinear: Vec::new(),
             sensors: sensors.to_vec(),
             targets,
             states,
@@ -166,8 +167,8 @@ impl Cylinder {
         let transmitters = (0..sensors.len()).filter(|&sensor| cylinder.reads_pressure(sensor));
         let offset = |sensor| cylinder.states.offset_of(sensor, sensors);
         cylinder.offsets = transmitters.filter_map(offset).collect();
-        let limit = |(state, kind)| cylinder.nearness(kind).map(|limit| (state, limit));
-        cylinder.near = cylinder.states.kinds.iter().enumerate().filter_map(limit).collect();
+        let limit = |(state, kind)| cylinder.linear_range(kind).map(|limit| (state, limit));
+        cylinder.nonlinear = cylinder.states.kinds.iter().enumerate().filter_map(limit).collect();
         cylinder.suppose(&settings.bank[0]);
         Ok(cylinder)
     }

@@ -13,15 +13,11 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::cylinder::Cylinder;
 use crate::EstimatorError;
-use crate::filter::BankEngine;
-use crate::filter::horizon::{Constraint, HorizonSettings, Loss};
+use crate::filter::horizon::{HorizonSettings, Loss};
 
 /// Iterations of a window per sample at most. The next sample iterates the same trajectory again.
 const ITERATIONS: usize = 2;
-/// Least mass in a window, as a share of the highest.
-const LEAST: f64 = 1e-6;
 
 /// Filter that the observer runs. [`str::parse`] takes `ekf`, `ukf`, `stationary`, `mhe` and the words of files: `extended`,
 /// `unscented`, `stationary`, `moving-horizon`.
@@ -66,7 +62,7 @@ impl Default for MovingHorizonSettings {
 }
 
 impl MovingHorizonSettings {
-    fn horizon(&self) -> HorizonSettings {
+    pub(super) fn horizon(&self) -> HorizonSettings {
         let loss = self.huber.map_or(Loss::Quadratic, |delta| Loss::Huber { delta });
         HorizonSettings {
             samples: self.samples,
@@ -75,29 +71,6 @@ impl MovingHorizonSettings {
             ..HorizonSettings::default()
         }
     }
-
-    /// Leak rate not negative, mass not rising from sample to sample, wall, valve and gas within the temperatures of the fluid's equation of
-    /// state, mass between nothing and its highest density.
-    fn constraints(&self, cylinder: &mut Cylinder) -> Vec<Constraint> {
-        let highest_kg = cylinder.model().highest_mass_kg();
-        let domain = cylinder.model().fluid().domain();
-        let states = cylinder.state_map();
-        let mut rows = vec![
-            Constraint::at_least(states.mass, LEAST * highest_kg),
-            Constraint::at_most(states.mass, highest_kg),
-        ];
-        for state in (0..states.wall).chain(states.valve).chain([states.gas]) {
-            rows.push(Constraint::at_least(state, domain.lowest_temperature_k));
-            rows.push(Constraint::at_most(state, domain.highest_temperature_k));
-        }
-        if self.leak_not_negative {
-            rows.push(Constraint::at_least(states.leak, 0.0));
-        }
-        if self.mass_not_rising {
-            rows.push(Constraint::step(&[(states.mass, 1.0)], 0.0));
-        }
-        rows
-    }
 }
 
 impl Engine {
@@ -105,18 +78,6 @@ impl Engine {
         match self {
             Self::MovingHorizon(settings) => settings.horizon().validate(),
             Self::Extended | Self::Unscented | Self::Stationary => Ok(()),
-        }
-    }
-
-    /// The same for the bank, with what a cylinder cannot do as constraints.
-    pub(super) fn of_bank(&self, cylinder: &mut Cylinder) -> BankEngine {
-        match self {
-            Self::Extended => BankEngine::Extended,
-            Self::Unscented => BankEngine::Unscented,
-            Self::Stationary => BankEngine::Stationary,
-            Self::MovingHorizon(settings) => {
-                BankEngine::MovingHorizon(settings.horizon(), settings.constraints(cylinder))
-            }
         }
     }
 
@@ -139,10 +100,3 @@ impl FromStr for Engine {
         }
     }
 }
-
-#[cfg(test)]
-mod horizon_tests;
-#[cfg(test)]
-mod stationary_tests;
-#[cfg(test)]
-mod unscented_tests;

@@ -20,12 +20,14 @@
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
 mod band;
+mod band_settings;
 mod checkpoint;
 mod clock;
 pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
 mod estimate;
+mod events;
 mod flow;
 mod learned;
 mod observability;
@@ -38,7 +40,6 @@ mod smoother;
 mod snapshot;
 pub mod states;
 mod surroundings;
-mod told;
 
 use nalgebra::DMatrix;
 
@@ -48,7 +49,7 @@ pub use crate::filter::{Innovation, Outcome};
 use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 use band::Band;
-pub use band::BandSettings;
+pub use band_settings::BandSettings;
 pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
@@ -303,8 +304,7 @@ impl Observer {
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
-        let engine = self.cylinder.settings().engine;
-        let engine = engine.of_bank(&mut self.cylinder);
+        let engine = self.cylinder.bank_engine();
         let members = self.priors(&covariance);
         self.bank = Bank::new(&mut self.cylinder, &engine, &mean, members)?;
         self.clock.await_reference(time_s + REFERENCE_AFTER_S);

@@ -4,6 +4,8 @@
 //! derivatives, `x_k' = f(x) + Phi (x_k - x)` and likewise for a reading; where they are not so close that the curvature of the
 //! equations would not show ([`LINEAR_DISTANCE`]), by their own rates and readings. A member that is far away, after something that its
 //! hypothesis does not allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
+use std::marker::PhantomData;
+
 use nalgebra::Dyn;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +15,7 @@ use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::plant::{Plant, StepTransition, parts};
 use crate::filter::ud::UdFactors;
-use crate::filter::ud_bank::{BankTransition, UdBank, UsualSizes};
+use crate::filter::ud_bank::{BankTransition, UdBank, Unrolled};
 use crate::numbers;
 
 /// Distance up to which two states differ linearly: curvature is left out.
@@ -72,6 +74,13 @@ impl PackMemory {
             one_gain: vec![0.0; n],
         }
     }
+}
+
+/// Sizes for which a plant's loops over covariances are unrolled.
+struct UsualSizes<P>(PhantomData<P>);
+
+impl<P: Plant> Unrolled for UsualSizes<P> {
+    const SIZES: (usize, usize) = P::USUAL_SIZES;
 }
 
 /// Some of the lanes.

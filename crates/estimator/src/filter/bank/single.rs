@@ -1,9 +1,10 @@
 //! A member that moves by itself: engines that carry more than mean and covariance, or linearise in their own way.
 use nalgebra::{DMatrix, Dyn};
 
+use super::engine::BankEngine;
 use super::member::Member;
 use super::windowed::Windowed;
-use super::{BankEngine, Workspace};
+use super::workspace::Workspace;
 use crate::EstimatorError;
 use crate::filter::gate::Outcome;
 use crate::filter::plant::{Plant, parts};

@@ -2,6 +2,7 @@ use std::convert::Infallible;
 
 use super::windowed::Windowed;
 use super::*;
+use crate::filter::horizon::HorizonSettings;
 use crate::filter::{Gate, Linearisation, Outcome, StateSpace};
 
 /// A level that walks and is read with an offset; a member supposes how fast it walks, variance per second.

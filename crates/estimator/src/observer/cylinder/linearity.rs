@@ -16,7 +16,7 @@ impl Cylinder {
             let part = (a[state] - b[state]).abs() * limit;
             if part <= most { most } else { part }
         };
-        let most = self.near.iter().fold(0.0, farther);
+        let most = self.nonlinear.iter().fold(0.0, farther);
         if most.is_nan() { f64::INFINITY } else { most }
     }
 
@@ -47,7 +47,7 @@ impl Cylinder {
     }
 
     /// Inverse of the largest difference of a state for which a linearisation serves; `None` where the equations are linear.
-    pub(super) fn nearness(&self, kind: &StateKind) -> Option<f64> {
+    pub(super) fn linear_range(&self, kind: &StateKind) -> Option<f64> {
         let limit = match kind {
             StateKind::Wall(_) | StateKind::Valve | StateKind::Gas => 2.0,
             StateKind::Mass => 0.05,

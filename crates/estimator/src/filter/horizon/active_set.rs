@@ -7,8 +7,8 @@ use super::constraint::{Constraint, Span, Spot};
 use super::interior_point;
 use super::outcome::{FallbackReason, HorizonStatus};
 use super::polish::polish;
+use super::problem::{Active, Resolution, WindowProblem};
 use super::program::{Basis, Optimum, Program, Row, Suspect};
-use super::resolve::{Active, Question, Resolution};
 use super::settings::Loss;
 use super::window::Path;
 
@@ -24,8 +24,8 @@ const FIXED: f64 = 1e-12;
 const BEND: f64 = 1e-9;
 
 /// The program and where its rows and suspects come from.
-pub(super) struct Asked<'a> {
-    question: &'a Question<'a>,
+pub(super) struct ActiveSet<'a> {
+    problem: &'a WindowProblem<'a>,
     /// The optimum without constraints.
     base: &'a Path,
     basis: Basis,
@@ -49,14 +49,14 @@ struct Violation {
     magnitude: f64,
 }
 
-impl<'a> Asked<'a> {
-    pub fn new(question: &'a Question<'a>, base: &'a Path) -> Self {
-        let delta = match question.loss {
+impl<'a> ActiveSet<'a> {
+    pub fn new(problem: &'a WindowProblem<'a>, base: &'a Path) -> Self {
+        let delta = match problem.loss {
             Loss::Huber { delta } => delta,
             Loss::Quadratic => f64::INFINITY,
         };
         let program = Program { rank: 0, rows: Vec::new(), suspects: Vec::new(), delta };
-        Self { question, base, basis: Basis::default(), program, rows: Vec::new(), suspects: Vec::new() }
+        Self { problem, base, basis: Basis::default(), program, rows: Vec::new(), suspects: Vec::new() }
     }
 
     /// Let what `step` violates join; whether anything did. With the first violation come the `likely` rows.
@@ -68,7 +68,7 @@ impl<'a> Asked<'a> {
         self.extend_suspects(step);
         let violations = self.violations(step);
         if self.rows.is_empty() && !violations.is_empty() {
-            for &spot in likely.iter().filter(|spot| self.question.holds(spot)) {
+            for &spot in likely.iter().filter(|spot| self.problem.holds(spot)) {
                 self.join(&Violation { spot, excess: f64::INFINITY, magnitude: f64::INFINITY })?;
             }
         }
@@ -80,13 +80,13 @@ impl<'a> Asked<'a> {
 
     /// Readings beyond the loss's bend, and those weighted down: their weight is only a stand-in for the loss.
     fn extend_suspects(&mut self, step: &Path) {
-        for (i, interval) in self.question.intervals.iter().enumerate() {
+        for (i, interval) in self.problem.intervals.iter().enumerate() {
             for reading in &interval.readings {
                 let residual = interval.residual_after(reading, &step.x[i + 1]);
                 let suspect = reading.weight < 1.0 || residual.abs() > self.program.delta * (1.0 + BEND);
                 if suspect && !self.suspects.contains(&(i, reading.output)) {
                     let a = interval.gradient.column(reading.output);
-                    let derivative = self.question.sweep.derivative_at(a.as_slice(), i + 1);
+                    let derivative = self.problem.sweep.derivative_at(a.as_slice(), i + 1);
                     self.program.suspects.push(Suspect {
                         coordinates: self.basis.coordinates(&derivative),
                         residual: interval.residual_after(reading, &self.base.x[i + 1]),
@@ -100,10 +100,10 @@ impl<'a> Asked<'a> {
 
     /// The worst places of every run of violated samples.
     fn violations(&self, step: &Path) -> Vec<Violation> {
-        let states: Vec<_> = (0..step.x.len()).map(|i| self.question.state(step, i)).collect();
+        let states: Vec<_> = (0..step.x.len()).map(|i| self.problem.state(step, i)).collect();
         let mut found = Vec::new();
-        for (row, constraint) in self.question.constraints.iter().enumerate() {
-            let spots = self.question.spots(row);
+        for (row, constraint) in self.problem.constraints.iter().enumerate() {
+            let spots = self.problem.spots(row);
             let excess: Vec<f64> = spots.iter().map(|s| excess_at(constraint, s.stage, &states)).collect();
             for (i, &spot) in spots.iter().enumerate() {
                 let magnitude = constraint.magnitude(states[spot.stage].as_slice());
@@ -123,10 +123,10 @@ impl<'a> Asked<'a> {
         if self.rows.iter().any(|joined| joined.spot == spot) {
             return Ok(());
         }
-        let constraint = &self.question.constraints[spot.row];
-        let derivative = self.question.sweep.derivative(constraint, spot);
+        let constraint = &self.problem.constraints[spot.row];
+        let derivative = self.problem.sweep.derivative(constraint, spot);
         let sd = derivative.iter().map(|d| d * d).sum::<f64>().sqrt();
-        let reference: f64 = constraint.terms().iter().map(|&(k, a)| a.abs() * self.question.spread[k]).sum();
+        let reference: f64 = constraint.terms().iter().map(|&(k, a)| a.abs() * self.problem.spread[k]).sum();
         if sd <= FIXED * reference {
             let infeasible = excess > INFEASIBLE * magnitude;
             return if infeasible { Err(FallbackReason::Infeasible) } else { Ok(()) };
@@ -135,7 +135,7 @@ impl<'a> Asked<'a> {
             return Ok(());
         }
         let scaled: Vec<f64> = derivative.iter().map(|d| d / sd).collect();
-        let inside = -self.question.excess(self.base, spot);
+        let inside = -self.problem.excess(self.base, spot);
         self.program.rows.push(Row { coordinates: self.basis.coordinates(&scaled), gap: inside / sd });
         self.rows.push(Joined { spot, sd });
         Ok(())
@@ -158,7 +158,7 @@ impl<'a> Asked<'a> {
             HorizonStatus::Solved
         };
         let optimum = polished.unwrap_or(solved.optimum);
-        let sweep = self.question.sweep;
+        let sweep = self.problem.sweep;
         let eta = self.basis.combine(optimum.v.as_slice(), sweep.drives());
         resolution.step = sweep.run(Some(&eta));
         resolution.active = self.active(&optimum);
@@ -178,7 +178,7 @@ fn excess_at(constraint: &Constraint, stage: usize, states: &[DVector<f64>]) -> 
     constraint.excess(states[stage.saturating_sub(1)].as_slice(), states[stage].as_slice())
 }
 
-impl Question<'_> {
+impl WindowProblem<'_> {
     /// Places in the window where a row holds.
     fn spots(&self, row: usize) -> Vec<Spot> {
         (0..=self.intervals.len()).map(|stage| Spot { row, stage }).filter(|spot| self.holds(spot)).collect()

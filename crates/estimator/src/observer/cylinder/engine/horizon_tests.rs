@@ -26,7 +26,7 @@ fn masses_while_pressure_rises(settings: &MovingHorizonSettings) -> Vec<f64> {
         }
     }
     let start_pa = cylinder.output(1, &x, None).unwrap();
-    let constraints = settings.constraints(&mut cylinder);
+    let constraints = cylinder.constraints(settings);
     let mean = DVector::from_vec(x);
     let mut window =
         MovingHorizon::try_new(cylinder.for_window(), &mean, &covariance, constraints, settings.horizon())

@@ -1,4 +1,4 @@
-//! What the observer is told: gas that is exchanged, sensors that are not what they were.
+//! Events from outside: gas that is exchanged, sensors that are not what they were.
 use super::clock::Exchange;
 use super::{Observer, REFERENCE_AFTER_S, SETTLE_S};
 use crate::sensor::{ParameterKind, Sensor};
