@@ -92,7 +92,7 @@ impl<P: Plant> Bank<P> {
         let covariances = if *engine == BankEngine::Extended {
             Covariances::Packs(factors.chunks(Pack::SIZE).map(|some| Pack::new(plant, some)).collect())
         } else {
-            let one = |((hypothesis, _), p): (&(P::Hypothesis, _), UdFactors<_>)| {
+            let one = |((hypothesis, _), p): (&(P::Hypothesis, _), UdFactors)| {
                 plant.suppose(hypothesis);
                 Single::new(engine, plant, p)
             };
@@ -266,7 +266,7 @@ impl<P: Plant> Bank<P> {
     }
 
     /// Add a variance to a state of every member.
-    pub fn inflate(&mut self, state: usize, variance: f64) {
+    pub(crate) fn inflate(&mut self, state: usize, variance: f64) {
         match &mut self.covariances {
             Covariances::Packs(packs) => {
                 packs.iter_mut().for_each(|p| p.bank.inflate(state, Lanes::splat(variance)));
@@ -308,7 +308,7 @@ impl<P: Plant> Bank<P> {
     }
 
     /// Whether mean and covariance of a member are made of numbers, and its mean is a possible state of the plant.
-    pub fn is_possible(&self, index: usize, plant: &P) -> bool {
+    pub(crate) fn is_possible(&self, index: usize, plant: &P) -> bool {
         let finite = match &self.covariances {
             Covariances::Packs(packs) => packs[place(index).0].bank.is_finite(),
             Covariances::Singles(all) => all[index].is_finite(),

@@ -59,7 +59,7 @@ impl Belief {
     }
 
     /// The quantity itself as far as each of them is believed.
-    pub fn blended(member: Moments, free: Moments) -> Moments {
+    pub(crate) fn blended(member: Moments, free: Moments) -> Moments {
         Self::of(member, free).blend(member, free)
     }
 }

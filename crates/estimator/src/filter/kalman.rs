@@ -3,8 +3,6 @@
 //! Prediction: `x <- f(x, dt)`, `P <- F P F^T + G diag(q) G^T`. Update: all outputs are linearised at the prediction
 //! and then taken one by one, which equals the vector update, as their noises are independent:
 //! `nu = z_j - h_j(x-) - H_j (x - x-)`, `S = H_j P H_j^T + R_j`, `K = P H_j^T / S`, `x <- x + K nu`.
-use nalgebra::Dyn;
-
 use super::failure::{StepError, check_length, check_linearisation, check_output, check_sample, check_state};
 use super::gate::{Innovation, Outcome};
 use super::kernel::{axpy, dot};
@@ -17,7 +15,7 @@ use crate::EstimatorError;
 pub struct ExtendedKalman<M> {
     model: M,
     x: Vec<f64>,
-    p: UdFactors<Dyn>,
+    p: UdFactors,
     innovations: Vec<Innovation>,
     work: Work,
 }
@@ -41,7 +39,7 @@ impl<M: StateSpace> ExtendedKalman<M> {
     ///
     /// # Errors
     /// Lengths differ, or the state is not finite.
-    pub fn try_new(model: M, x: &[f64], mut p: UdFactors<Dyn>) -> Result<Self, EstimatorError> {
+    pub fn try_new(model: M, x: &[f64], mut p: UdFactors) -> Result<Self, EstimatorError> {
         let (n, outputs) = (model.states(), model.outputs());
         check_length(x.len(), n)?;
         check_length(p.states(), n)?;
@@ -65,7 +63,7 @@ impl<M: StateSpace> ExtendedKalman<M> {
     }
 
     /// Covariance `P`.
-    pub fn factors(&self) -> &UdFactors<Dyn> {
+    pub fn factors(&self) -> &UdFactors {
         &self.p
     }
 

@@ -36,7 +36,7 @@ pub fn smooth(records: &[StepRecord]) -> Vec<Smoothed> {
         let mut at_step = Smoothed { x: record.x.clone(), p: record.p.clone() };
         backward.estimate(record, &mut at_step);
         smoothed.push(at_step);
-        backward.go_back(record);
+        backward.pass_step(record);
     }
     smoothed.reverse();
     smoothed
@@ -85,7 +85,7 @@ impl Backward {
     }
 
     /// From after a step to after the step before it.
-    pub fn go_back(&mut self, step: &StepRecord) {
+    pub fn pass_step(&mut self, step: &StepRecord) {
         if step.replaced {
             self.clear();
             return;

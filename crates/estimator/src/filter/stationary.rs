@@ -17,7 +17,7 @@
 //! always moves.
 //!
 //! Source: Schmidt 1966; Anderson and Moore 1979, chapter 4.
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 
 use super::dense::add_product;
 use super::kernel::{axpy, dot};
@@ -51,7 +51,7 @@ enum Phase {
     Within(usize),
 }
 
-/// State of the engine beside mean and covariance.
+/// State of the engine in addition to mean and covariance.
 #[derive(Clone, Debug)]
 pub(super) struct Stationary {
     usual_s: f64,
@@ -80,7 +80,7 @@ impl Stationary {
     ///
     /// # Errors
     /// What is left is no covariance.
-    pub fn new<P: Plant>(plant: &P, p: &mut UdFactors<Dyn>) -> Result<Self, EstimatorError> {
+    pub fn new<P: Plant>(plant: &P, p: &mut UdFactors) -> Result<Self, EstimatorError> {
         let (n, leading) = (plant.states(), plant.leading());
         let count = n - leading;
         let mut covariance = p.covariance();
@@ -105,7 +105,7 @@ impl Stationary {
     }
 
     /// A sample comes `dt_s`, s, after the last one.
-    pub fn begin(&mut self, p: &mut UdFactors<Dyn>, dt_s: f64) {
+    pub fn begin(&mut self, p: &mut UdFactors, dt_s: f64) {
         let run = if is_same(dt_s, self.latest.0) { self.latest.1.saturating_add(1) } else { 1 };
         self.latest = (dt_s, run);
         if run == USUAL && !is_same(dt_s, self.usual_s) {
@@ -121,7 +121,7 @@ impl Stationary {
     }
 
     /// Move on by a part of the interval.
-    pub fn predict(&mut self, linear: &Linearisation, p: &mut UdFactors<Dyn>) {
+    pub fn predict(&mut self, linear: &Linearisation, p: &mut UdFactors) {
         self.move_sensitivity(&linear.phi);
         if self.phase == Phase::Moving {
             p.predict(linear);
@@ -138,7 +138,7 @@ impl Stationary {
     }
 
     /// Variance of an innovation with the gradient `h` (n) and noise `r`, with all that is uncertain.
-    pub fn innovation_variance(&mut self, p: &UdFactors<Dyn>, output: usize, h: &[f64], r: f64) -> f64 {
+    pub fn innovation_variance(&mut self, p: &UdFactors, output: usize, h: &[f64], r: f64) -> f64 {
         self.find_row(h);
         let given = match (&self.steady, self.phase) {
             (Some(steady), Phase::Within(_)) => steady.known[output],
@@ -167,7 +167,7 @@ impl Stationary {
     }
 
     /// Gain of a reading with noise of variance `r`; moves the covariance where it is not that of the steady state.
-    pub fn update(&mut self, p: &mut UdFactors<Dyn>, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
+    pub fn update(&mut self, p: &mut UdFactors, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
         let usual = |steady: &Steady| r <= steady.r[output] && r >= QUIET * steady.r[output];
         let within = self.phase == Phase::Within(output);
         match &self.steady {
@@ -202,7 +202,7 @@ impl Stationary {
     }
 
     /// Leave the steady state: its covariance goes to `p`.
-    pub fn unsettle(&mut self, p: &mut UdFactors<Dyn>) {
+    pub fn unsettle(&mut self, p: &mut UdFactors) {
         let Some(steady) = &self.steady else { return };
         match self.phase {
             Phase::Moving => return,
@@ -219,13 +219,13 @@ impl Stationary {
     }
 
     /// A reading is missing or was rejected.
-    pub fn miss(&mut self, p: &mut UdFactors<Dyn>) {
+    pub fn miss(&mut self, p: &mut UdFactors) {
         self.regular = false;
         self.unsettle(p);
     }
 
     /// Return to the steady state if the covariance has; seek it anew at the state `x` if it has not for long.
-    pub fn settle<P: Plant>(&mut self, plant: &mut P, x: &[f64], p: &UdFactors<Dyn>) {
+    pub fn settle<P: Plant>(&mut self, plant: &mut P, x: &[f64], p: &UdFactors) {
         if self.phase != Phase::Moving || !self.regular {
             return;
         }
@@ -241,7 +241,7 @@ impl Stationary {
     }
 
     /// A moving state has nothing to do with the constants any more.
-    pub fn forget(&mut self, p: &mut UdFactors<Dyn>, state: usize) {
+    pub fn forget(&mut self, p: &mut UdFactors, state: usize) {
         self.unsettle(p);
         self.sensitivity.row_mut(state).fill(0.0);
     }
@@ -261,7 +261,7 @@ impl Stationary {
     }
 
     /// Variance of a state, with all that is uncertain.
-    pub fn variance(&self, p: &UdFactors<Dyn>, state: usize) -> f64 {
+    pub fn variance(&self, p: &UdFactors, state: usize) -> f64 {
         let m = self.sensitivity.nrows();
         if state >= m {
             return self.constants[(state - m, state - m)];
@@ -274,7 +274,7 @@ impl Stationary {
     }
 
     /// Covariance of a state with all states, with all that is uncertain: (n).
-    pub fn write_column(&self, p: &UdFactors<Dyn>, state: usize, column: &mut [f64]) {
+    pub fn write_column(&self, p: &UdFactors, state: usize, column: &mut [f64]) {
         let (m, count) = self.sensitivity.shape();
         match (&self.steady, self.phase) {
             (Some(steady), Phase::Settled | Phase::Within(_)) => {
@@ -296,7 +296,7 @@ impl Stationary {
     }
 
     /// Covariance of all states, with all that is uncertain: (n, n).
-    pub fn covariance(&self, p: &UdFactors<Dyn>) -> DMatrix<f64> {
+    pub fn covariance(&self, p: &UdFactors) -> DMatrix<f64> {
         let (m, count) = self.sensitivity.shape();
         let mut covariance = match (&self.steady, self.phase) {
             (Some(steady), Phase::Settled | Phase::Within(_)) => steady.covariance.clone(),

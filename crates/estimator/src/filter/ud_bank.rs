@@ -8,7 +8,7 @@
 //! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
 use std::marker::PhantomData;
 
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
@@ -89,7 +89,7 @@ impl UdBank {
     }
 
     /// Let a lane have the covariance of `factors`, of as many states.
-    pub fn set(&mut self, lane: usize, factors: &UdFactors<Dyn>) {
+    pub fn set(&mut self, lane: usize, factors: &UdFactors) {
         for (to, from) in self.u.chunks_exact_mut(stride(self.n)).zip(factors.unit_upper().column_iter()) {
             to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
         }

@@ -12,7 +12,7 @@
 //! reading. A direction along which a point leaves the domain of the equations is linearised at the middle point.
 //!
 //! Source: Julier and Uhlmann 2004; statistical linear regression: Lefebvre, Bruyninckx and De Schutter 2002.
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 
 use super::state_space::{Linearisation, StateSpace};
 use super::ud::UdFactors;
@@ -62,7 +62,7 @@ impl SigmaPoints {
         &mut self,
         model: &mut M,
         x: &mut [f64],
-        p: &mut UdFactors<Dyn>,
+        p: &mut UdFactors,
         dt_s: f64,
     ) -> Result<(), M::Error> {
         let (leading, k) = (model.leading(), model.noises());
@@ -89,14 +89,7 @@ impl SigmaPoints {
     }
 
     /// Move the points of direction `j`: column `j` of `Phi U`, and its curvature as a noise source.
-    fn move_pair<M: StateSpace>(
-        &mut self,
-        model: &mut M,
-        x: &[f64],
-        p: &UdFactors<Dyn>,
-        j: usize,
-        dt_s: f64,
-    ) {
+    fn move_pair<M: StateSpace>(&mut self, model: &mut M, x: &[f64], p: &UdFactors, j: usize, dt_s: f64) {
         let (leading, k) = (self.moved.nrows(), self.tangent.q.len());
         let step = self.draw(x, p, j);
         let inside = step > 0.0
@@ -114,7 +107,7 @@ impl SigmaPoints {
     }
 
     /// Points of direction `j` about `x`; returns their distance in units of `u_j`, zero where nothing is in doubt.
-    fn draw(&mut self, x: &[f64], p: &UdFactors<Dyn>, j: usize) -> f64 {
+    fn draw(&mut self, x: &[f64], p: &UdFactors, j: usize) -> f64 {
         let step = (SPREAD_SQUARED * p.diagonal()[j]).sqrt();
         self.plus.copy_from_slice(x);
         self.minus.copy_from_slice(x);
@@ -128,7 +121,7 @@ impl SigmaPoints {
     }
 
     /// `Phi = (Phi U) U^-1`.
-    fn divide_by_factor(&mut self, p: &UdFactors<Dyn>) {
+    fn divide_by_factor(&mut self, p: &UdFactors) {
         let u = p.unit_upper();
         for j in 0..u.ncols() {
             for l in 0..j {
@@ -151,7 +144,7 @@ impl SigmaPoints {
         model: &mut M,
         output: usize,
         x: &[f64],
-        p: &UdFactors<Dyn>,
+        p: &UdFactors,
         h: &mut [f64],
     ) -> Result<(f64, f64), M::Error> {
         let middle = model.output(output, x, Some(h))?;

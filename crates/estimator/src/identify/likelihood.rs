@@ -11,7 +11,7 @@
 //! `F = sum (dnu dnu^T/S + dS dS^T/(2 S^2))`; the derivatives are central differences of `nu` and `ln S`.
 //!
 //! Source: Söderström 2007 (section 8); Ljung 1999 (section 10.1).
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use super::equations::Variances;
 use super::parametrisation::{Coefficients, Parametrisation};
@@ -189,7 +189,7 @@ impl Likelihood<'_> {
         let process = Process::<N>::new(k, self, intensity);
         let n = process.states();
         let covariance = self.start_covariance(k, n);
-        let p = UdFactors::<Dyn>::from_covariance(&covariance)?;
+        let p = UdFactors::from_covariance(&covariance)?;
         let mut filter = ExtendedKalman::try_new(process, &vec![0.0; n], p)?;
         let mut innovations = Vec::with_capacity(problem.u.len() + problem.samples());
         let mut take = |filter: &mut ExtendedKalman<_>, dt: f64, z: [f64; 2]| {

@@ -199,7 +199,7 @@ impl Cylinder {
     }
 
     /// Whether a sensor reads the gas pressure.
-    pub fn reads_pressure(&self, sensor: usize) -> bool {
+    pub(crate) fn reads_pressure(&self, sensor: usize) -> bool {
         self.targets[sensor] == Target::Pressure
     }
 

@@ -82,7 +82,7 @@ impl Engine {
     }
 
     /// Whether a pass can be smoothed: its gains are those of its own covariance.
-    pub fn can_be_smoothed(&self) -> bool {
+    pub(crate) fn can_be_smoothed(&self) -> bool {
         matches!(self, Self::Extended | Self::Unscented)
     }
 }

@@ -47,7 +47,7 @@ pub struct Estimate {
     pub mass_kg: f64,
     /// Its sd, kg.
     pub mass_sd_kg: f64,
-    /// Leak rate, kg/s, by the middle one of the members that have one, else what the one that holds the mass was told; NaN without such a member.
+    /// Leak rate, kg/s, by the middle one of the members that have one, else what the one that holds the mass is compensated for; NaN without such a member.
     pub leak_kg_s: f64,
     /// Its sd, kg/s.
     pub leak_sd_kg_s: f64,

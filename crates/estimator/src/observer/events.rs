@@ -24,7 +24,7 @@ impl Observer {
         let Some(flowing) = self.flowing.filter(|&index| index < self.bank.members.len()) else { return };
         for index in (0..flowing).rev() {
             self.begin_anew(index, flowing);
-            self.anew[index] = true;
+            self.replaced[index] = true;
         }
         self.onsets.begin_anew(self.cylinder.state_map().leak);
         let mass = self.cylinder.state_map().mass;

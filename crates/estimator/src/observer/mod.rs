@@ -95,9 +95,9 @@ pub struct Observer {
     work: Workspace,
     learned: Option<Learned>,
     prior: DMatrix<f64>,
-    /// Leaks by their signature in the innovations of the member that holds the mass, and what that has to be told.
+    /// Leaks by their signature in the innovations of the member that holds the mass, and what is to be compensated.
     onsets: Onsets,
-    to_tell: Vec<f64>,
+    to_compensate: Vec<f64>,
     clock: Clock,
     gate: f64,
     /// The middle one of the members that have a leak rate, in the order of the bank; without any, the one that holds the mass.
@@ -117,8 +117,8 @@ pub struct Observer {
     reference_x: Vec<f64>,
     /// Mass of each member at the present sample.
     masses: Vec<Moments>,
-    /// Which members began anew at the present sample.
-    anew: Vec<bool>,
+    /// Which members were replaced at the present sample.
+    replaced: Vec<bool>,
     /// The readings of the present sample without the faulty ones.
     usable: Vec<f64>,
 }
@@ -154,7 +154,7 @@ impl Observer {
             learned: None,
             prior: DMatrix::zeros(0, 0),
             onsets: Onsets::default(),
-            to_tell: Vec::with_capacity(cylinder.states()),
+            to_compensate: Vec::with_capacity(cylinder.states()),
             clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
             gate,
@@ -167,7 +167,7 @@ impl Observer {
             likeliest: Bank::default(),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
-            anew: vec![false; settings.bank.len()],
+            replaced: vec![false; settings.bank.len()],
             cylinder,
         })
     }
@@ -224,7 +224,7 @@ impl Observer {
         self.mark_faulty(time_s, readings, &usable);
         self.usable = usable;
         let restarted = restarted?;
-        self.replace_the_wrong();
+        self.replace_excluded();
         self.follow_onsets(time_s, restarted);
         self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
@@ -273,14 +273,14 @@ impl Observer {
     }
 
     /// Members that are excluded begin anew from the freest one.
-    fn replace_the_wrong(&mut self) {
+    fn replace_excluded(&mut self) {
         let mass = self.cylinder.state_map().mass;
         let (freest, flowing) = (self.freest, self.flowing);
         self.bank.write_moments(mass, &mut self.masses);
-        self.anew.fill(false);
+        self.replaced.fill(false);
         for index in (0..self.masses.len()).filter(|&index| index != freest && Some(index) != flowing) {
             if Belief::of(self.masses[index], self.masses[freest]).is_excluded() {
-                self.anew[index] = true;
+                self.replaced[index] = true;
                 self.begin_anew(index, freest);
                 self.masses[index] = self.masses[freest];
             }
@@ -441,7 +441,7 @@ impl Observer {
                 mass_kg,
                 mass_sd_kg: mass_variance.sqrt(),
                 covariance_kg2_s: self.bank.covariance_of(index, states.mass, states.leak),
-                begun_anew: self.anew[index],
+                begun_anew: self.replaced[index],
             }
         };
         (0..self.flowing.unwrap_or(self.bank.members.len()).min(self.bank.members.len())).map(of)
@@ -479,11 +479,6 @@ impl Observer {
     /// windows of the moving horizon without a solution inside the constraints.
     pub fn fallbacks(&self) -> u64 {
         self.bank.fallbacks()
-    }
-
-    /// Whether a constant or a film of the first member stands at the bound of what is plausible.
-    pub fn at_bound(&self) -> bool {
-        self.bank.members.first().is_some_and(|member| member.at_bound)
     }
 
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.

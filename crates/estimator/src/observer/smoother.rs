@@ -173,7 +173,7 @@ impl Smoother {
                 out.push(estimate);
             }
             for (pass, backward) in self.record[index].passes.iter().zip(&mut self.backward) {
-                backward.go_back(pass);
+                backward.pass_step(pass);
             }
         }
         out.reverse();

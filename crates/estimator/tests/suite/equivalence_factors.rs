@@ -1,6 +1,6 @@
 //! Factors of a covariance against dense matrices.
 use cylwatch_estimator::filter::UdFactors;
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use crate::linear_model::{LinearModel, covariance, covariance_difference, rng, uniform};
 
@@ -10,7 +10,7 @@ fn ud_factors_follow_dense_matrices() {
     for (n, leading, outputs) in [(1, 1, 1), (3, 2, 1), (6, 6, 2), (9, 5, 4), (15, 9, 3)] {
         let model = LinearModel::random(&mut rng, n, leading, outputs);
         let mut p = covariance(&mut rng, n);
-        let mut factors = UdFactors::<Dyn>::from_covariance(&p).unwrap();
+        let mut factors = UdFactors::from_covariance(&p).unwrap();
         let mut gain = DVector::zeros(n);
         for step in 0..30 {
             let dt_s = 0.1 * (1 + step % 7) as f64;
@@ -43,7 +43,7 @@ fn scaling_a_state_of_ud_factors_scales_its_row_and_column_of_the_covariance() {
     let mut rng = rng(29);
     for n in [1, 2, 7, 19] {
         let mut dense = covariance(&mut rng, n);
-        let mut factors = UdFactors::<Dyn>::from_covariance(&dense).unwrap();
+        let mut factors = UdFactors::from_covariance(&dense).unwrap();
         for (step, i) in (0..n).chain((0..n).rev()).enumerate() {
             let factor = 0.3 + 0.5 * (step % 4) as f64;
             factors.scale(i, factor);

@@ -1,7 +1,7 @@
 //! Steady states against long filtering and closed forms.
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::filter::{UdFactors, steady_state};
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use crate::linear_model::{LinearModel, covariance_difference, rng};
 
@@ -20,7 +20,7 @@ fn steady_state_solves_its_equation_and_is_the_limit_of_the_filter() {
         let (f, q) = model.discrete(0.3);
         let steady = steady_state(&f, &model.h, &q, &model.r).unwrap();
         assert!(residual(&f, &model.h, &q, &model.r, &steady.predicted) < 1e-12);
-        let mut form = UdFactors::<Dyn>::from_covariance(&DMatrix::identity(n, n)).unwrap();
+        let mut form = UdFactors::from_covariance(&DMatrix::identity(n, n)).unwrap();
         let mut gain = vec![0.0; n];
         let linear = model.linearisation(0.3);
         for _ in 0..3000 {

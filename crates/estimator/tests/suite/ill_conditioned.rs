@@ -1,6 +1,6 @@
 //! Problems in which the covariance itself cannot be carried in double precision, with their closed forms.
 use cylwatch_estimator::filter::{Linearisation, UdFactors};
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use crate::linear_model::{covariance_difference, rng, uniform};
 
@@ -34,7 +34,7 @@ fn is_positive_definite(p: &DMatrix<f64>) -> bool {
 }
 
 fn assert_factors_are_right(p0: &DMatrix<f64>, h: &DMatrix<f64>, r: f64, expected: &DMatrix<f64>) {
-    let mut factors = UdFactors::<Dyn>::from_covariance(p0).unwrap();
+    let mut factors = UdFactors::from_covariance(p0).unwrap();
     for row in h.row_iter() {
         factors.update(row.transpose().as_slice(), r, &mut vec![0.0; h.ncols()]);
     }
@@ -88,7 +88,7 @@ fn a_time_update_keeps_what_the_covariance_cannot_hold() {
     let p0 = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 3.0, 2.0]));
     // Variance of h^T x: 0.3^2 + 3 0.7^2 before the reading.
     let expected = 1.0 / (1.0 / 1.56 + 1.0 / r);
-    let mut factors = UdFactors::<Dyn>::from_covariance(&p0).unwrap();
+    let mut factors = UdFactors::from_covariance(&p0).unwrap();
     factors.update(&h, r, &mut [0.0; 3]);
     factors.predict(&linear);
     assert!((factors.quadratic(&[-0.7, 0.3, 0.0]) / expected - 1.0).abs() < 1e-6);

@@ -1,6 +1,6 @@
 //! What holds for any covariance, transition and reading, however they are scaled.
 use cylwatch_estimator::filter::{Linearisation, UdFactors, steady_state};
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
 /// Sizes: states, moving states, noise sources.
@@ -58,7 +58,7 @@ fn assert_is_covariance(p: &DMatrix<f64>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn assert_steps_keep_a_covariance(mut form: UdFactors<Dyn>, problem: &Problem) -> Result<(), TestCaseError> {
+fn assert_steps_keep_a_covariance(mut form: UdFactors, problem: &Problem) -> Result<(), TestCaseError> {
     let n = problem.h.len();
     let mut gain = vec![0.0; n];
     for _ in 0..4 {
@@ -80,7 +80,7 @@ proptest! {
 
     #[test]
     fn ud_factors_stay_a_covariance_and_no_update_adds_variance(problem in problems()) {
-        let form = UdFactors::<Dyn>::from_covariance(&problem.p).unwrap();
+        let form = UdFactors::from_covariance(&problem.p).unwrap();
         assert_steps_keep_a_covariance(form.clone(), &problem)?;
         prop_assert!(form.diagonal().iter().all(|d| *d >= 0.0));
     }
@@ -90,7 +90,7 @@ proptest! {
         let problem = Problem { r: problem.r.max(1e-2), ..problem };
         let n = problem.h.len();
         let mut dense = &problem.p / problem.p.amax().max(1e-300);
-        let mut ud = UdFactors::<Dyn>::from_covariance(&dense).unwrap();
+        let mut ud = UdFactors::from_covariance(&dense).unwrap();
         let (mut gain, h) = (vec![0.0; n], DVector::from_column_slice(&problem.h));
         let Linearisation { phi, g, q } = &problem.linear;
         let mut f = DMatrix::identity(n, n);

@@ -6,7 +6,6 @@
 //! hypothesis does not allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
 use std::marker::PhantomData;
 
-use nalgebra::Dyn;
 use serde::{Deserialize, Serialize};
 
 use super::member::Member;
@@ -91,7 +90,7 @@ impl Pack {
     pub const SIZE: usize = LANES;
 
     /// Members with these covariances.
-    pub fn new<P: Plant>(plant: &P, factors: &[UdFactors<Dyn>]) -> Self {
+    pub fn new<P: Plant>(plant: &P, factors: &[UdFactors]) -> Self {
         let mut bank = UdBank::new(plant.states(), plant.leading()).with_filters(factors.len());
         // A lane without a member does as the first one.
         for lane in 0..LANES {

@@ -1,5 +1,5 @@
 //! A member that moves by itself: engines that carry more than mean and covariance, or linearise in their own way.
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 
 use super::engine::BankEngine;
 use super::member::Member;
@@ -15,11 +15,11 @@ use crate::filter::unscented::SigmaPoints;
 /// Covariance and engine of a member.
 #[derive(Clone, Debug)]
 pub(super) struct Single<P: Plant> {
-    p: UdFactors<Dyn>,
+    p: UdFactors,
     engine: Engine<P>,
 }
 
-/// An engine with its memory of the past beside mean and covariance.
+/// An engine with its memory of the past in addition to mean and covariance.
 #[derive(Clone, Debug)]
 enum Engine<P: Plant> {
     Unscented,
@@ -32,7 +32,7 @@ impl<P: Plant> Single<P> {
     ///
     /// # Errors
     /// The covariance is none.
-    pub fn new(engine: &BankEngine, plant: &P, mut p: UdFactors<Dyn>) -> Result<Self, EstimatorError> {
+    pub fn new(engine: &BankEngine, plant: &P, mut p: UdFactors) -> Result<Self, EstimatorError> {
         p.reserve(plant.leading(), plant.noises());
         let engine = match engine {
             BankEngine::Extended | BankEngine::Unscented => {

@@ -3,7 +3,7 @@
 //! The extended filter predicts, judges each reading at its gate, and takes it; then the readings that passed go into the window
 //! ([`MovingHorizon`]), whose newest state and covariance become the member's. An event that opens the estimate ends the window;
 //! it begins anew from the filter's state after that sample.
-use nalgebra::{DVector, Dyn};
+use nalgebra::DVector;
 
 use crate::filter::horizon::{Constraint, HorizonSettings, HorizonStatus, MovingHorizon};
 use crate::filter::plant::Plant;
@@ -66,7 +66,7 @@ impl<P: Plant> Windowed<P> {
     }
 
     /// Put the sample into the window; mean and covariance become those of its newest state.
-    pub fn refine(&mut self, x: &mut [f64], p: &mut UdFactors<Dyn>) {
+    pub fn refine(&mut self, x: &mut [f64], p: &mut UdFactors) {
         let dt_s = std::mem::take(&mut self.dt_s);
         let estimate = self.window.as_mut().map(|window| window.step(dt_s, &self.readings));
         self.readings.fill(f64::NAN);
@@ -87,7 +87,7 @@ impl<P: Plant> Windowed<P> {
         }
     }
 
-    fn open_window(&mut self, x: &[f64], p: &UdFactors<Dyn>) {
+    fn open_window(&mut self, x: &[f64], p: &UdFactors) {
         let (mean, covariance) = (DVector::from_column_slice(x), p.covariance());
         let (plant, constraints) = (self.plant.clone(), self.constraints.clone());
         let window = MovingHorizon::try_new(plant, &mean, &covariance, constraints, self.settings.clone());

@@ -110,8 +110,8 @@ impl GaussNewton<'_> {
             let path = window.path.towards(&proposed.resolution.step, alpha);
             let against = (self.constraints, self.settings.loss);
             if let Ok(merit) = proposed.merit.trial(model, window, &path, against) {
-                let wanted = SUFFICIENT * alpha * (proposed.current - proposed.predicted);
-                if merit <= proposed.current - wanted + ROUNDING * proposed.current {
+                let decrease = SUFFICIENT * alpha * (proposed.current - proposed.predicted);
+                if merit <= proposed.current - decrease + ROUNDING * proposed.current {
                     return self.keep_inside(window, proposed, path, alpha, merit);
                 }
                 possible.get_or_insert(path);

@@ -1,5 +1,5 @@
 //! The steady state given the constants.
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use crate::filter::linear::LinearSystem;
 use crate::filter::plant::Plant;
@@ -21,9 +21,9 @@ pub(super) struct Steady {
     /// Variance of each output's innovation without its noise.
     pub known: Vec<f64>,
     /// Covariance before a sample.
-    pub predicted: UdFactors<Dyn>,
+    pub predicted: UdFactors,
     /// Covariance after a sample.
-    pub updated: UdFactors<Dyn>,
+    pub updated: UdFactors,
     /// The same.
     pub covariance: DMatrix<f64>,
 }
@@ -59,7 +59,7 @@ impl Steady {
 
     /// Whether no covariance of `p` among the `m` leading states differs by more than a share `tolerance` of the
     /// standard deviations; `now`: (n, n) is memory.
-    pub fn is_close(&self, p: &UdFactors<Dyn>, m: usize, tolerance: f64, now: &mut DMatrix<f64>) -> bool {
+    pub fn is_close(&self, p: &UdFactors, m: usize, tolerance: f64, now: &mut DMatrix<f64>) -> bool {
         let steady = &self.covariance;
         // Variances first: they are cheap, and mostly decide.
         if !(0..m).all(|i| (p.variance(i) - steady[(i, i)]).abs() <= tolerance * steady[(i, i)]) {

@@ -2,7 +2,7 @@
 use std::ops::Range;
 
 /// Rows that are multiplied together.
-pub(super) const TOGETHER: usize = 4;
+pub(super) const BLOCK_ROWS: usize = 4;
 
 /// Columns of each leading row of a transition that may differ from zero.
 ///
@@ -56,9 +56,9 @@ impl Pattern {
         let mut row = 0;
         while let Some(columns) = rows.get(row) {
             let alike = rows[row..].iter().take_while(|other| *other == columns).count();
-            if alike >= TOGETHER && columns.len() > 1 {
+            if alike >= BLOCK_ROWS && columns.len() > 1 {
                 blocks.push(Block::new(row, columns));
-                row += TOGETHER;
+                row += BLOCK_ROWS;
             } else {
                 elements.extend(columns.iter().map(|&column| (row, column)));
                 row += 1;

@@ -18,7 +18,7 @@ struct Case {
     n: usize,
     m: usize,
     pattern: Vec<Vec<usize>>,
-    single: [UdFactors<Dyn>; 4],
+    single: [UdFactors; 4],
     bank: UdBank,
 }
 

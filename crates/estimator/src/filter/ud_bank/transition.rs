@@ -1,7 +1,7 @@
 //! Transitions of four filters and the noise that they add.
 use pulp::{Arch, Simd, WithSimd};
 
-use super::pattern::{Block, Pattern, TOGETHER};
+use super::pattern::{BLOCK_ROWS, Block, Pattern};
 use crate::filter::lanes::{LANES, Lanes};
 
 /// Transitions of four filters over one interval, of one pattern, with noise covariances.
@@ -9,7 +9,7 @@ use crate::filter::lanes::{LANES, Lanes};
 pub struct BankTransition {
     pattern: Pattern,
     /// Elements of the blocks of rows, block by block, column by column.
-    blocks: Vec<[Lanes; TOGETHER]>,
+    blocks: Vec<[Lanes; BLOCK_ROWS]>,
     /// Elements of all other rows.
     elements: Vec<Lanes>,
     /// Noise covariances, upper triangle, by columns: (leading, leading). A time update uses them up.
@@ -22,7 +22,7 @@ impl BankTransition {
         let m = pattern.leading;
         let columns = pattern.blocks.iter().flat_map(Block::columns).count();
         Self {
-            blocks: vec![[Lanes::ZERO; TOGETHER]; columns],
+            blocks: vec![[Lanes::ZERO; BLOCK_ROWS]; columns],
             elements: vec![Lanes::ZERO; pattern.elements.len()],
             noise: vec![Lanes::ZERO; m * m],
             pattern,
@@ -43,7 +43,7 @@ impl BankTransition {
             .iter()
             .flat_map(|block| block.columns().map(move |column| column * m + block.first_row));
         for (to, first) in self.blocks.iter_mut().zip(columns) {
-            let from = &phi[first..first + TOGETHER];
+            let from = &phi[first..first + BLOCK_ROWS];
             to.iter_mut().zip(from).for_each(|(to, &from)| to.put(lanes, Lanes::splat(from)));
         }
         for (to, (row, column)) in self.elements.iter_mut().zip(&self.pattern.elements) {
@@ -72,7 +72,7 @@ impl BankTransition {
     pub(super) fn multiply<const C: usize>(&self, u: [&[Lanes]; C], last: usize, out: &mut [[Lanes; C]]) {
         let mut from = self.blocks.as_slice();
         for Block { first_row, runs } in &self.pattern.blocks {
-            let mut sum = [[Lanes::ZERO; C]; TOGETHER];
+            let mut sum = [[Lanes::ZERO; C]; BLOCK_ROWS];
             for run in runs {
                 let (own, others) = from.split_at(run.len());
                 from = others;
@@ -87,7 +87,7 @@ impl BankTransition {
                     }
                 }
             }
-            out[*first_row..first_row + TOGETHER].copy_from_slice(&sum);
+            out[*first_row..first_row + BLOCK_ROWS].copy_from_slice(&sum);
         }
         let others = || self.pattern.elements.iter();
         others().for_each(|&(row, _)| out[row] = [Lanes::ZERO; C]);

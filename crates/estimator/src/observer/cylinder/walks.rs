@@ -46,7 +46,7 @@ impl Cylinder {
     }
 
     /// What each sensor's offset may have changed by since it was new, standard deviation: it is held within as much more.
-    pub fn set_loosened(&mut self, loosened: &[f64]) {
+    pub(crate) fn set_loosened(&mut self, loosened: &[f64]) {
         if self.loosened != loosened {
             self.loosened.copy_from_slice(loosened);
             self.set_bounds();

@@ -3,7 +3,7 @@ use cylwatch_estimator::bound::{Efficiency, Expectation, Moments, PosteriorBound
 use cylwatch_estimator::consistency::{EnsembleNees, NisAccumulator, Significance};
 use cylwatch_estimator::filter::{ExtendedKalman, Linearisation, StateSpace, UdFactors};
 use cylwatch_estimator::observer::ObserverSettings;
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ struct Run {
 /// The bound's part of a run.
 struct Bound {
     moments: Vec<Moments>,
-    along: UdFactors<Dyn>,
+    along: UdFactors,
     /// Variances of gas temperature and mass by the bound of this path, summed over the samples.
     variances: [f64; 2],
 }

@@ -1,4 +1,4 @@
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::filter::{Linearisation, SPREAD_SQUARED, SigmaPoints, StateSpace, UdFactors};
@@ -42,7 +42,7 @@ fn start(cylinder: &Cylinder) -> (Vec<f64>, DMatrix<f64>) {
 fn observe(
     cylinder: &mut Cylinder,
     points: &mut SigmaPoints,
-    (x, p): (&mut [f64], &mut UdFactors<Dyn>),
+    (x, p): (&mut [f64], &mut UdFactors),
     readings: &[f64],
 ) {
     let (mut h, mut gain) = (vec![0.0; x.len()], vec![0.0; x.len()]);
