@@ -1,114 +1,89 @@
-//! Cost of one step, prediction and update, of every estimator on a process that costs next to nothing itself.
+//! Cost of a sample, time and measurement update, of every engine of a bank on two plants; cost of a steady state.
+//!
+//! The plants are the cylinder with shoulder, valve and pressure sensors at rest, and the water tank of the example `second_plant`.
 //!
 //! `cargo bench -p cylwatch-benches --bench filter`
-use std::time::Duration;
-
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use cylwatch_estimator::filter::{
-    CovarianceForm, ExtendedKalman, Joseph, KalmanSettings, SequentialFilter, StateSpace, Stationary,
-    StationarySettings, UdFactors, Unscented, UnscentedSettings, steady_state,
-};
-use nalgebra::{Const, DMatrix, DVector, Dyn, SMatrix};
+use cylwatch_estimator::filter::horizon::{Constraint, HorizonSettings};
+use cylwatch_estimator::filter::{Bank, BankEngine, Plant, Workspace, steady_state};
+use cylwatch_estimator::observer::cylinder::Cylinder;
+use cylwatch_estimator::observer::{Commissioning, Observer, ObserverSettings};
+use cylwatch_estimator::sensor::Sensor;
+use cylwatch_estimator::thermal::vessel::presets;
+use nalgebra::{DMatrix, DVector};
 
-#[path = "../crates/estimator/tests/suite/copying_model.rs"]
-mod copying_model;
+#[allow(dead_code, missing_docs, reason = "the example has a main function and ensembles of its own")]
+#[path = "../crates/estimator/examples/second_plant.rs"]
+mod second_plant;
 
-use copying_model::CopyingModel;
+use second_plant::{Tank, bank, truth};
 
-/// States and outputs of the comparison; all states move, each driven by its own noise.
-const STATES: [usize; 4] = [4, 8, 12, 20];
-const OUTPUTS: [usize; 4] = [1, 2, 3, 4];
+/// Samples before the clock runs: a stationary gain needs an hour and its convergence.
+const BEFORE: usize = 600;
+/// Interval of the samples, s.
+const INTERVAL_S: f64 = 60.0;
+/// Samples in a moving horizon, and its iterations as the observer has them.
+const WINDOW: usize = 20;
+const ITERATIONS: usize = 2;
 
-fn kalman<F: CovarianceForm>(model: CopyingModel, form: F) -> ExtendedKalman<CopyingModel, F> {
-    let start = vec![0.0; model.states()];
-    ExtendedKalman::try_new(model, &start, form, &KalmanSettings::default()).expect("settings fit")
+/// One sample after the other of endless readings.
+fn bench<P: Plant>(c: &mut Criterion, name: &str, plant: &P, mut bank: Bank<P>, readings: &[Vec<f64>]) {
+    let (mut plant, mut work) = (plant.clone(), Workspace::new(plant));
+    let mut readings = readings.iter().cycle();
+    let mut sample = || {
+        let z = readings.next().expect("endless");
+        bank.predict(&mut plant, &mut work, INTERVAL_S).expect("a possible state");
+        bank.update(&mut plant, &mut work, z).expect("a possible reading");
+    };
+    (0..BEFORE).for_each(|_| sample());
+    c.benchmark_group("bank").sample_size(20).bench_function(name, |b| b.iter(&mut sample));
 }
 
-fn bench_steps<F: SequentialFilter>(c: &mut Criterion, name: &str, build: impl Fn(CopyingModel) -> F) {
-    let mut group = c.benchmark_group(name);
-    group
-        .sample_size(30)
-        .warm_up_time(Duration::from_millis(200))
-        .measurement_time(Duration::from_millis(600));
-    for n in STATES {
-        for outputs in OUTPUTS {
-            let mut filter = build(CopyingModel::new(n, n, n, outputs));
-            let z = vec![0.1; outputs];
-            group.bench_function(
-                BenchmarkId::from_parameter(format!("{n} states, {outputs} outputs")),
-                |b| {
-                    b.iter(|| filter.step(1.0, &z).is_ok());
-                },
-            );
+/// Every engine with its name; the constraint holds one state from below.
+fn engines(leak: usize) -> [(&'static str, BankEngine); 4] {
+    let settings =
+        HorizonSettings { samples: WINDOW, iterations_max: ITERATIONS, ..HorizonSettings::default() };
+    [
+        ("extended", BankEngine::Extended),
+        ("unscented", BankEngine::Unscented),
+        ("stationary", BankEngine::Stationary),
+        ("moving horizon of 20", BankEngine::MovingHorizon(settings, vec![Constraint::at_least(leak, 0.0)])),
+    ]
+}
+
+fn tank(c: &mut Criterion) {
+    let readings: Vec<Vec<f64>> = truth(1, 1.0).iter().map(|(_, z)| z.to_vec()).collect();
+    for (name, engine) in engines(3) {
+        let mut tank = Tank::default();
+        let bank = bank(&mut tank, &engine);
+        bench(c, &format!("tank, two members, {name}"), &tank, bank, &readings);
+    }
+}
+
+fn cylinder(c: &mut Criterion) {
+    let sensors =
+        ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).expect("typical sensor"));
+    let vessel = presets::load("nitrogen-20l").expect("built-in vessel");
+    let settings = ObserverSettings::default();
+    let filled = Commissioning::filled(2e7, 288.15);
+    let mut observer = Observer::new(&vessel, &sensors, &filled, &settings).expect("sound settings");
+    let row = |k: u32| {
+        let warm_k = 3.0 * (f64::from(k) / 100.0).sin();
+        vec![288.15 + warm_k, 288.15 + warm_k, 2e7 + 0.7e5 * warm_k + f64::from(k % 7)]
+    };
+    let readings: Vec<Vec<f64>> = (0..1440).map(row).collect();
+    observer.step(0.0, &readings[0]).expect("the first row");
+    let (mean, covariance) = observer.state(0).expect("one row");
+    let leak = observer.cylinder().state_map().leak;
+    for (count, hypotheses) in [("one member", &settings.bank[..1]), ("four members", &settings.bank[..4])] {
+        for (name, engine) in engines(leak) {
+            let mut cylinder = Cylinder::new(&vessel, &sensors, &settings).expect("sound settings");
+            (0..sensors.len()).for_each(|sensor| cylinder.set_interval_s(sensor, INTERVAL_S));
+            let members = hypotheses.iter().map(|hypothesis| (*hypothesis, covariance.clone())).collect();
+            let bank = Bank::new(&mut cylinder, &engine, mean.as_slice(), members).expect("a covariance");
+            bench(c, &format!("cylinder, {count}, {name}"), &cylinder, bank, &readings);
         }
     }
-}
-
-fn identity(model: &CopyingModel) -> DMatrix<f64> {
-    DMatrix::identity(model.states(), model.states())
-}
-
-fn forms(c: &mut Criterion) {
-    bench_steps(c, "kalman, ud", |model| {
-        let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
-        kalman(model, form)
-    });
-    bench_steps(c, "kalman, joseph", |model| {
-        let form = Joseph::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
-        kalman(model, form)
-    });
-}
-
-fn other_filters(c: &mut Criterion) {
-    bench_steps(c, "unscented", |model| {
-        let start = vec![0.0; model.states()];
-        let p = identity(&model);
-        Unscented::try_new(model, &start, &p, &UnscentedSettings::default()).expect("a covariance")
-    });
-    bench_steps(c, "stationary", |model| {
-        let start = vec![0.0; model.states()];
-        Stationary::try_new(model, &start, &start, &StationarySettings::new(1.0)).expect("a steady state")
-    });
-}
-
-/// An observer's covariance: 15 states, 9 of them moving, 14 noise sources, 3 outputs.
-fn observer(c: &mut Criterion) {
-    let model = CopyingModel::new(15, 9, 14, 3);
-    let mut group = c.benchmark_group("9 of 15 states, 14 noises, 3 outputs");
-    let z = [0.1; 3];
-    let form = UdFactors::<Dyn>::from_covariance(&identity(&model)).expect("a covariance");
-    let mut filter = kalman(model.clone(), form.clone());
-    group.bench_function("kalman, ud", |b| b.iter(|| filter.step(1.0, &z).is_ok()));
-    let fixed = UdFactors::<Const<15>>::from_covariance(&SMatrix::identity()).expect("a covariance");
-    let mut filter = kalman(model.clone(), fixed.clone());
-    group.bench_function("kalman, ud of static size", |b| b.iter(|| filter.step(1.0, &z).is_ok()));
-    bench_covariance(&mut group, "covariance alone, dynamic", form, model.clone());
-    bench_covariance(&mut group, "covariance alone, static", fixed, model);
-}
-
-type Group<'a> = criterion::BenchmarkGroup<'a, criterion::measurement::WallTime>;
-
-/// Prediction and three scalar updates of the covariance, without state, outputs and report.
-fn bench_covariance<F: CovarianceForm>(
-    group: &mut Group<'_>,
-    name: &str,
-    mut form: F,
-    mut model: CopyingModel,
-) {
-    let (n, m) = (model.states(), model.leading());
-    let mut linear = cylwatch_estimator::filter::Linearisation::zeros(n, m, model.noises());
-    let mut h = vec![vec![0.0; n]; model.outputs()];
-    let _ = model.propagate(&mut vec![0.0; n], 1.0, Some(&mut linear));
-    for (j, h) in h.iter_mut().enumerate() {
-        let _ = model.output(j, &vec![0.0; n], Some(h));
-    }
-    let mut gain = vec![0.0; n];
-    group.bench_function(name, |b| {
-        b.iter(|| {
-            form.predict(&linear);
-            h.iter().map(|h| form.update(h, 0.1, &mut gain)).sum::<f64>()
-        });
-    });
 }
 
 fn riccati(c: &mut Criterion) {
@@ -123,5 +98,5 @@ fn riccati(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, observer, riccati, forms, other_filters);
+criterion_group!(benches, tank, cylinder, riccati);
 criterion_main!(benches);

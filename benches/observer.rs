@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use cylwatch_estimator::observer::{
-    Commissioning, Engine, LateSamples, MovingHorizonSettings, Observer, ObserverSettings, Smoother,
+    Commissioning, Engine, MovingHorizonSettings, Observer, ObserverSettings, Smoother,
 };
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -98,17 +98,6 @@ fn around(c: &mut Criterion) {
             smoother.push(time_s, &readings(time_s)).expect("time runs forwards").len()
         });
     });
-    let mut late = LateSamples::new(observer(&engine(Engine::Extended)), 600.0).expect("positive span");
-    let mut time_s = 0.0;
-    c.benchmark_group("observer").sample_size(20).bench_function(
-        "with ten rows kept for late ones, 60 s",
-        |b| {
-            b.iter(|| {
-                time_s += 60.0;
-                late.insert(time_s, &readings(time_s)).expect("sound row")
-            });
-        },
-    );
 }
 
 criterion_group!(benches, engines, at_rest, around);

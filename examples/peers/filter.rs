@@ -5,15 +5,13 @@
 use super::linear::{Inputs, Process, rows};
 use super::stopwatch::{Stopwatch, Timing};
 use anyhow::Context;
-use cylwatch::estimator::filter::{
-    CovarianceForm, ExtendedKalman, Joseph, KalmanSettings, Linearisation, StateSpace, UdFactors,
-};
+use cylwatch::estimator::filter::{ExtendedKalman, Linearisation, StateSpace, UdFactors};
 use cylwatch::estimator::observer::{Commissioning, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::evaluation::truth::{Course, generate};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
 use cylwatch::thermal::vessel::presets;
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -101,29 +99,16 @@ pub fn readings(
 pub struct Results {
     x: Vec<f64>,
     covariance: Vec<Vec<f64>>,
-    joseph_x: Vec<f64>,
-    joseph_covariance: Vec<Vec<f64>>,
     time: Timing,
-    joseph_time: Timing,
 }
 
-/// Both forms over the record.
+/// The filter over the record.
 pub fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
-    let prior = super::linear::matrix(&inputs.prior);
-    let ud = UdFactors::<Dyn>::from_covariance(&prior)?;
-    let joseph = Joseph::<Dyn>::from_covariance(&prior)?;
-    let (x, covariance, time) = timed(inputs, ud, stopwatch)?;
-    let (joseph_x, joseph_covariance, joseph_time) = timed(inputs, joseph, stopwatch)?;
-    Ok(Results { x, covariance, joseph_x, joseph_covariance, time, joseph_time })
-}
-
-type Outcome = (Vec<f64>, Vec<Vec<f64>>, Timing);
-
-fn timed<F: CovarianceForm>(inputs: &Inputs, form: F, stopwatch: &Stopwatch) -> anyhow::Result<Outcome> {
     let process = Process::new(inputs);
     let start = vec![0.0; process.states()];
-    let filter = ExtendedKalman::try_new(process, &start, form, &KalmanSettings::default())?;
-    let over = |mut filter: ExtendedKalman<Process, F>| {
+    let prior = UdFactors::from_covariance(&super::linear::matrix(&inputs.prior))?;
+    let filter = ExtendedKalman::try_new(process, &start, prior)?;
+    let over = |mut filter: ExtendedKalman<Process>| {
         for z in &inputs.readings {
             filter.step(inputs.interval_s, z)?;
         }
@@ -131,5 +116,5 @@ fn timed<F: CovarianceForm>(inputs: &Inputs, form: F, stopwatch: &Stopwatch) -> 
     };
     let end = over(filter.clone())?;
     let time = stopwatch.time(inputs.readings.len(), || over(filter.clone()));
-    Ok((end.state().to_vec(), rows(&end.form().to_dense()), time))
+    Ok(Results { x: end.state().to_vec(), covariance: rows(&end.factors().covariance()), time })
 }

@@ -4,6 +4,7 @@
 mod peers;
 
 use approx::assert_relative_eq;
+use nalgebra::{DMatrix, DVector};
 use peers::{CASES, Inputs, Stopwatch, inputs, run};
 use serde_json::Value;
 use std::time::Duration;
@@ -27,6 +28,37 @@ fn shape(of: &Value) -> (usize, usize) {
     (rows.len(), rows[0].as_array().unwrap().len())
 }
 
+fn matrix(of: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = of.as_array().unwrap().iter().map(numbers).collect();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
+}
+
+/// State after the record by the Kalman filter on dense matrices, in Joseph's form.
+fn textbook(inputs: &Value) -> Vec<f64> {
+    let [phi, g, h, mut p, z] = ["phi", "g", "h", "prior", "readings"].map(|name| matrix(&inputs[name]));
+    let [q, r] = ["q", "r"].map(|name| numbers(&inputs[name]));
+    let (m, n) = phi.shape();
+    let (mut f, mut x) = (DMatrix::identity(n, n), DVector::zeros(n));
+    f.rows_mut(0, m).copy_from(&phi);
+    let noise = &g * DMatrix::from_diagonal(&DVector::from_vec(q)) * g.transpose();
+    for z in z.row_iter() {
+        x = &f * x;
+        p = &f * p * f.transpose();
+        let mut moving = p.view_mut((0, 0), (m, m));
+        moving += &noise;
+        for (j, &r) in r.iter().enumerate() {
+            let h = h.row(j).transpose();
+            let gain = &p * &h / (h.dot(&(&p * &h)) + r);
+            let nu = z[j] - h.dot(&x);
+            x += &gain * nu;
+            let left = DMatrix::identity(n, n) - &gain * h.transpose();
+            p = &left * p * left.transpose() + r * &gain * gain.transpose();
+            p = (&p + p.transpose()) * 0.5;
+        }
+    }
+    x.as_slice().to_vec()
+}
+
 #[test]
 fn inputs_have_the_dimensions_of_the_observer_and_cases_answer_for_all_of_them() {
     let (file, inputs) = read_inputs();
@@ -43,8 +75,8 @@ fn inputs_have_the_dimensions_of_the_observer_and_cases_answer_for_all_of_them()
 
     let filter = once("filter", &inputs);
     let sd = |i: usize| filter["covariance"][i][i].as_f64().unwrap().sqrt();
-    let pairs = numbers(&filter["x"]).into_iter().zip(numbers(&filter["joseph_x"]));
-    assert!(pairs.enumerate().all(|(i, (ud, joseph))| (ud - joseph).abs() < 1e-10 * sd(i)));
+    let pairs = numbers(&filter["x"]).into_iter().zip(textbook(linear));
+    assert!(pairs.enumerate().all(|(i, (ud, dense))| (ud - dense).abs() < 1e-10 * sd(i)));
     assert!(filter["time"]["minimum_s"].as_f64().unwrap() > 0.0);
 
     let horizon = once("horizon", &inputs);

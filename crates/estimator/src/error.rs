@@ -122,14 +122,6 @@ pub enum EstimatorError {
         /// Number of states.
         states: usize,
     },
-    /// A setting names a state that the process does not have.
-    #[error("there is no state {state}: the process has {states}, counted from 0")]
-    StateUnknown {
-        /// State as named.
-        state: usize,
-        /// Number of states.
-        states: usize,
-    },
     /// A state is NaN or infinite.
     #[error("state {state} is not a finite number")]
     StateNotFinite {
@@ -144,12 +136,6 @@ pub enum EstimatorError {
     OutputNotFinite {
         /// Output, from 0.
         output: usize,
-    },
-    /// A gate that passes everything or nothing.
-    #[error("gate probability {probability} must lie between 0 and 1, e.g. 0.9999")]
-    GateProbability {
-        /// Probability as given.
-        probability: f64,
     },
     /// The covariance of a filter grows without bound.
     #[error(
@@ -193,35 +179,6 @@ pub enum EstimatorError {
     PlacementProgram {
         /// What happened.
         what: &'static str,
-    },
-    /// A pass with consider states cannot be smoothed.
-    #[error(
-        "a filter with consider states cannot be smoothed: its gains are not optimal; estimate these states"
-    )]
-    ConsiderStatesSmoothed,
-    /// A sample has no time.
-    #[error("sample time {time_s} s must be a finite number")]
-    TimeNotFinite {
-        /// Time as given, s.
-        time_s: f64,
-    },
-    /// Sigma points without spread.
-    #[error(
-        "sigma points with alpha {alpha}, beta {beta}, kappa {kappa}: alpha^2 (n + kappa) must be positive"
-    )]
-    SigmaPoints {
-        /// Spread.
-        alpha: f64,
-        /// Weight of the middle point.
-        beta: f64,
-        /// Secondary spread.
-        kappa: f64,
-    },
-    /// A stationary filter without an interval.
-    #[error("sampling interval {interval_s} s must be positive")]
-    IntervalNotPositive {
-        /// Interval, s.
-        interval_s: f64,
     },
     /// A setting of a moving-horizon estimator is out of its range.
     #[error("moving-horizon setting {name} = {value} must be {bound}")]

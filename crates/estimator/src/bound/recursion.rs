@@ -1,5 +1,5 @@
 //! The bound from sample to sample.
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 
 use super::moments::{Moments, Transition};
 use crate::EstimatorError;
@@ -130,7 +130,7 @@ pub fn posterior_bound<M: StateSpace>(
 /// As [`Moments::add_path`].
 pub fn path_bound<M: StateSpace>(
     model: &mut M,
-    p: &mut UdFactors<Dyn>,
+    p: &mut UdFactors,
     (before, dt_s, after): (&[f64], f64, &[f64]),
     heard: &[bool],
     linear: &mut Linearisation,

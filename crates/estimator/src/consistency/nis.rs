@@ -1,7 +1,6 @@
 //! Normalised innovations squared over time.
 use super::{Band, Finding, Significance};
-use crate::filter::StepReport;
-use crate::observer::{Innovation, Outcome};
+use crate::filter::{Innovation, Outcome};
 
 /// Sum of `nu^2/S` over the readings of a run, before the gate: a gate cuts the tail and makes every filter look right.
 ///
@@ -29,15 +28,7 @@ impl NisAccumulator {
         }
     }
 
-    /// Add the innovations of a filter's step.
-    pub fn add_step(&mut self, step: &StepReport) {
-        self.sum += step.nis;
-        self.dof += step.dof as u64;
-        self.accepted_sum += step.nis_accepted;
-        self.accepted_dof += step.dof_accepted as u64;
-    }
-
-    /// Add the innovations of the observer's last sample.
+    /// Add the innovations of a sample of a filter or of the observer.
     pub fn add_innovations(&mut self, innovations: &[Innovation]) {
         for innovation in innovations {
             self.add(innovation.nu, innovation.s, innovation.outcome == Outcome::Accepted);

@@ -1,8 +1,7 @@
 //! All statistics of one run, in fixed room.
 use super::report::{ConsistencyReport, NisReport, OutputReport};
 use super::{Coverage, NisAccumulator, Normality, Significance, Whiteness};
-use crate::filter::StepReport;
-use crate::observer::{Innovation, Outcome};
+use crate::filter::{Innovation, Outcome};
 
 /// Statistics of the innovations of one run, sample by sample.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,20 +49,10 @@ impl RunConsistency {
         self.normality.push(normalised);
     }
 
-    /// Add a sample of the observer.
+    /// Add a sample of a filter or of the observer.
     pub fn record_innovations(&mut self, innovations: &[Innovation]) {
         for (output, innovation) in innovations.iter().enumerate() {
             self.record(output, innovation.nu, innovation.s, innovation.outcome == Outcome::Accepted);
-        }
-    }
-
-    /// Add a step of a filter.
-    pub fn record_step(&mut self, step: &StepReport) {
-        use crate::filter::Outcome;
-        for (output, report) in step.outputs.iter().enumerate() {
-            let heard = report.outcome != Outcome::Missing;
-            let nu = if heard { report.innovation } else { f64::NAN };
-            self.record(output, nu, report.variance, report.outcome == Outcome::Accepted);
         }
     }
 

@@ -1,469 +1,448 @@
-//! Factors `P = U diag(d) U^T` of four covariances side by side: filters of one structure that suppose different things.
+//! A bank of filters on one [`Plant`], each with its own hypothesis, and what happens to all of them alike: gates, re-acquisition,
+//! bounds, slow walks of the constants.
 //!
-//! The steps are those of [`UdFactors`] (Bierman's and Thornton's), each in four lanes at once, which costs little more than one filter:
-//! small matrices keep a processor waiting for the last result, and four independent ones fill the wait. What is zero by
-//! structure stays out: a transition has a [`Pattern`], and its rows keep the range of their elements that may differ from zero. Results do
-//! not depend on the registers that a machine has.
-//!
-//! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
-use nalgebra::{DMatrix, Dyn};
-use pulp::{Arch, Simd, WithSimd};
+//! Members with the extended filter move in a [`Pack`], in four lanes and mostly by one linearisation. Those with another
+//! engine move one by one.
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::lanes::{LANES, Lanes};
+use super::belief::Moments;
+use super::gate::Innovation;
+use super::lanes::Lanes;
+use super::plant::Plant;
+use super::record::StepRecord;
 use super::ud::UdFactors;
+use crate::EstimatorError;
+use crate::numbers;
+pub use engine::BankEngine;
+use member::Member;
+pub(crate) use outline::Outline;
+use pack::Pack;
+use single::Single;
+pub use workspace::Workspace;
 
-mod factors;
-mod pattern;
-#[cfg(test)]
-mod tests;
-mod transition;
+mod engine;
+mod member;
+mod outline;
+mod pack;
+mod single;
+mod windowed;
+mod workspace;
 
-use factors::Factors;
-pub use pattern::Pattern;
-pub use transition::BankTransition;
+/// Interval at which slow walks are added to the constants, s.
+const SLOW_WALK_S: f64 = 3600.0;
 
-/// States and moving states of the cylinder's observer with its usual sensors: of known size its loops are unrolled.
-pub(crate) const USUAL: (usize, usize) = (19, 9);
-
-/// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
+/// The members of a bank with their covariances.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(into = "Factors", try_from = "Factors")]
-pub struct UdBank {
-    n: usize,
-    /// Filters that are kept when it is saved, from the first lane on.
-    filters: usize,
-    /// Vector registers of this machine.
-    arch: Arch,
-    /// Columns of `U`, each in whole groups of four numbers; what is below `U` is zero.
-    u: Vec<Lanes>,
-    /// (n).
-    d: Vec<Lanes>,
-    /// `U^T h` in an update, `v` in a rank-one update: (n).
-    f: Vec<Lanes>,
-    /// Factors on gain and covariance by which each column changes the other in an update: (n).
-    factors: Vec<(Lanes, Lanes)>,
-    /// Columns of moving states of `Phi U` and the noise behind them, row by row in pairs: (m, 2 m).
-    rows: Vec<[Lanes; 2]>,
-    /// Elements of a row that may differ from zero.
-    spans: Vec<(usize, usize)>,
-    weights: Vec<[Lanes; 2]>,
-    weighted: Vec<[Lanes; 2]>,
-    moved: Vec<[Lanes; 2]>,
+#[serde(bound(
+    serialize = "P::Hypothesis: Serialize",
+    deserialize = "P::Hypothesis: serde::de::DeserializeOwned"
+))]
+pub struct Bank<P: Plant> {
+    pub(crate) members: Vec<Member<P::Hypothesis>>,
+    covariances: Covariances<P>,
+    /// Time since slow walks were added, s.
+    slow_s: f64,
 }
 
-impl UdBank {
-    /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
-    pub fn new(n: usize, leading: usize) -> Self {
-        let stride = stride(n);
-        let mut u = vec![Lanes::ZERO; stride * n];
-        u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
-        Self {
-            n,
-            filters: LANES,
-            arch: Arch::new(),
-            u,
-            d: vec![Lanes::ZERO; n],
-            f: vec![Lanes::ZERO; n],
-            factors: vec![(Lanes::ZERO, Lanes::ZERO); n],
-            rows: vec![[Lanes::ZERO; 2]; leading * leading],
-            spans: vec![(0, 0); leading],
-            weights: vec![[Lanes::ZERO; 2]; leading],
-            weighted: vec![[Lanes::ZERO; 2]; leading],
-            moved: vec![[Lanes::ZERO; 2]; leading],
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(serialize = "", deserialize = ""))]
+enum Covariances<P: Plant> {
+    Packs(Vec<Pack>),
+    /// Engines that carry more than mean and covariance cannot be saved.
+    #[serde(skip)]
+    Singles(Vec<Single<P>>),
+}
+
+impl<P: Plant> Default for Bank<P> {
+    fn default() -> Self {
+        Self { members: Vec::new(), covariances: Covariances::Packs(Vec::new()), slow_s: 0.0 }
+    }
+}
+
+impl<P: Plant> Covariances<P> {
+    /// Covariance of a state with all states: (n).
+    fn write_column(&self, index: usize, state: usize, column: &mut [f64]) {
+        match self {
+            Self::Packs(packs) => {
+                let (pack, lane) = place(index);
+                let of = |other| packs[pack].bank.covariance_of(lane, state, other);
+                column.iter_mut().zip(0..).for_each(|(with, other)| *with = of(other));
+            }
+            Self::Singles(all) => all[index].write_column(state, column),
+        }
+    }
+}
+
+impl<P: Plant> Bank<P> {
+    /// Members that start at one mean (n), each with its hypothesis and covariance (n, n).
+    ///
+    /// # Errors
+    /// A covariance is none.
+    pub fn new(
+        plant: &mut P,
+        engine: &BankEngine,
+        mean: &[f64],
+        members: Vec<(P::Hypothesis, DMatrix<f64>)>,
+    ) -> Result<Self, EstimatorError> {
+        let factors: Vec<_> = members
+            .iter()
+            .map(|(_, covariance)| UdFactors::from_covariance(covariance))
+            .collect::<Result<_, _>>()?;
+        let covariances = if *engine == BankEngine::Extended {
+            Covariances::Packs(factors.chunks(Pack::SIZE).map(|some| Pack::new(plant, some)).collect())
+        } else {
+            let one = |((hypothesis, _), p): (&(P::Hypothesis, _), UdFactors)| {
+                plant.suppose(hypothesis);
+                Single::new(engine, plant, p)
+            };
+            Covariances::Singles(members.iter().zip(factors).map(one).collect::<Result<_, _>>()?)
+        };
+        let outputs = plant.outputs();
+        let members =
+            members.into_iter().map(|(hypothesis, _)| Member::new(hypothesis, mean, outputs)).collect();
+        Ok(Self { members, covariances, slow_s: 0.0 })
+    }
+
+    /// Become as another bank is, without allocating where that has the same members.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let alike = self.members.len() == other.members.len();
+        match (&mut self.covariances, &other.covariances) {
+            (Covariances::Packs(packs), Covariances::Packs(others)) if alike => {
+                self.members.iter_mut().zip(&other.members).for_each(|(to, from)| to.copy_from(from));
+                packs.iter_mut().zip(others).for_each(|(to, from)| to.copy_from(from));
+                self.slow_s = other.slow_s;
+            }
+            _ => self.clone_from(other),
         }
     }
 
-    /// Only the first lanes are filters, so many of them: the others do what they do, and are not saved.
-    pub fn with_filters(self, filters: usize) -> Self {
-        Self { filters: filters.clamp(1, LANES), ..self }
-    }
-
-    /// Number of states.
-    pub fn states(&self) -> usize {
-        self.n
-    }
-
-    /// Let a lane have the covariance of `factors`, of as many states.
-    pub fn set(&mut self, lane: usize, factors: &UdFactors<Dyn>) {
-        for (to, from) in self.u.chunks_exact_mut(stride(self.n)).zip(factors.unit_upper().column_iter()) {
-            to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
-        }
-        self.d.iter_mut().zip(factors.diagonal()).for_each(|(to, &from)| to.0[lane] = from);
-    }
-
-    /// Become as another bank of as many states is, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.u.copy_from_slice(&other.u);
-        self.d.copy_from_slice(&other.d);
-    }
-
-    /// Round every factor: still a covariance, whatever is rounded.
-    pub(crate) fn round(&mut self, rounded: impl Fn(f64) -> f64) {
-        for value in self.u.iter_mut().chain(&mut self.d) {
-            value.0 = value.0.map(&rounded);
+    /// Round the covariances to single precision, of members in packs.
+    pub(crate) fn round(&mut self) {
+        if let Covariances::Packs(packs) = &mut self.covariances {
+            packs.iter_mut().for_each(|pack| pack.bank.round(numbers::single));
         }
     }
 
-    /// Let a lane have the covariance of another one.
-    pub fn copy_lane(&mut self, from: usize, to: usize) {
-        for value in self.u.iter_mut().chain(&mut self.d) {
-            value.0[to] = value.0[from];
+    /// Time update over an interval, s, in steps no longer than the plant allows.
+    ///
+    /// # Errors
+    /// The process refuses the state.
+    pub fn predict(&mut self, plant: &mut P, work: &mut Workspace, dt_s: f64) -> Result<(), P::Error> {
+        for record in self.members.iter_mut().filter_map(|member| member.record.as_mut()) {
+            record.begin(dt_s);
         }
-    }
-
-    /// Let a lane have the covariance of a lane of another bank, of as many states.
-    pub fn copy_lane_of(&mut self, other: &Self, from: usize, to: usize) {
-        for (value, other) in self.u.iter_mut().chain(&mut self.d).zip(other.u.iter().chain(&other.d)) {
-            value.0[to] = other.0[from];
-        }
-    }
-
-    /// Covariance of a lane: (n, n).
-    pub fn covariance(&self, lane: usize) -> DMatrix<f64> {
-        let mut p = DMatrix::zeros(self.n, self.n);
-        self.covariance_into(lane, &mut p);
-        p
-    }
-
-    /// Write the covariance of a lane: (n, n).
-    pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
-        p.fill(0.0);
-        for (l, (u, d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate() {
-            for j in 0..=l {
-                let factor = d.0[lane] * u[j].0[lane];
-                for i in 0..=j {
-                    p[(i, j)] += factor * u[i].0[lane];
+        match &mut self.covariances {
+            Covariances::Packs(packs) => {
+                for (pack, members) in packs.iter_mut().zip(self.members.chunks_mut(Pack::SIZE)) {
+                    pack.predict(plant, &mut work.pack, members, dt_s)?;
+                }
+            }
+            Covariances::Singles(all) => {
+                for (single, member) in all.iter_mut().zip(&mut self.members) {
+                    single.predict(plant, work, member, dt_s)?;
                 }
             }
         }
-        p.fill_lower_triangle_with_upper_triangle();
-    }
-
-    /// Variance of state `i` of a lane.
-    pub fn variance(&self, lane: usize, i: usize) -> f64 {
-        self.covariance_of(lane, i, i)
-    }
-
-    /// Covariance of states `i` and `j` of a lane.
-    pub fn covariance_of(&self, lane: usize, i: usize, j: usize) -> f64 {
-        let mut sum = 0.0;
-        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(j.max(i)) {
-            sum += d.0[lane] * u[i].0[lane] * u[j].0[lane];
+        self.slow_s += dt_s;
+        if self.slow_s >= SLOW_WALK_S {
+            self.walk_slowly(plant);
+            self.slow_s = 0.0;
         }
-        sum
+        Ok(())
     }
 
-    /// Variance of state `i` of every lane.
-    pub fn variances(&self, i: usize) -> Lanes {
-        let mut sum = [Lanes::ZERO; 2];
-        for (j, (u, &d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate().skip(i) {
-            sum[j % 2] += d * u[i] * u[i];
-        }
-        sum[0] + sum[1]
-    }
-
-    /// Whether every variance is a number.
-    pub fn is_finite(&self) -> bool {
-        self.d.iter().fold(Lanes::ZERO, |sum, &d| sum + d).0.iter().all(|sum| sum.is_finite())
-    }
-
-    /// Time update of every lane.
-    pub fn predict(&mut self, transition: &mut BankTransition) {
-        self.arch.dispatch(Predict { bank: self, transition });
-    }
-
-    #[inline(always)]
-    fn predict_in_lanes(&mut self, transition: &mut BankTransition) {
-        match (self.n, transition.leading()) {
-            USUAL => self.predict_sized(transition, USUAL),
-            (_, 0) => {}
-            sizes => self.predict_sized(transition, sizes),
-        }
-    }
-
-    /// Of known size its loops are unrolled.
-    #[inline(always)]
-    fn predict_sized(&mut self, transition: &mut BankTransition, (n, m): (usize, usize)) {
-        self.transform(transition, (n, m));
-        let weights = self.weights.as_flattened_mut();
-        weights[..m].copy_from_slice(&self.d[..m]);
-        transition.factor_noise(m, self.rows.as_flattened_mut(), &mut self.spans, &mut weights[m..]);
-        self.orthogonalise((n, m));
-    }
-
-    /// `Phi U`: its columns of moving states become rows to orthogonalise, those of constants are final.
-    #[inline(always)]
-    fn transform(&mut self, transition: &BankTransition, (n, m): (usize, usize)) {
-        let stride = stride(n);
-        let Self { u, rows, moved, spans, .. } = self;
-        // An odd last column goes alone.
-        for (pair, u) in u.chunks_mut(2 * stride).enumerate() {
-            let (left, right) = u.split_at_mut(stride);
-            let last = (2 * pair + 1).min(n - 1);
-            let both = [&*left, if right.is_empty() { &*left } else { &*right }];
-            transition.multiply(both, last, moved);
-            // Where a row's moving states end within the pair, noise takes the place of what is too much.
-            if 2 * pair < m {
-                rows.chunks_exact_mut(m).zip(&*moved).for_each(|(row, moved)| row[pair] = *moved);
-            }
-            for (j, to) in
-                [left, right].into_iter().enumerate().filter(|(j, u)| 2 * pair + j >= m && !u.is_empty())
-            {
-                to.iter_mut().zip(&*moved).for_each(|(to, moved)| *to = moved[j]);
-            }
-        }
-        for (span, &first) in spans.iter_mut().zip(transition.firsts()) {
-            *span = (first, m);
-        }
-    }
-
-    /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
-    #[inline(always)]
-    fn orthogonalise(&mut self, (n, m): (usize, usize)) {
-        let stride = stride(n);
-        let Self { u, d, rows, weights, weighted, spans, .. } = self;
-        for j in (0..m).rev() {
-            let (before, row) = rows[..(j + 1) * m].split_at_mut(j * m);
-            let span = spans[j];
-            // What is outside the span is zero: whole pairs may take part.
-            let pairs = span.0 / 2..span.1.div_ceil(2);
-            let (row, weighted) = (&row[pairs.clone()], &mut weighted[pairs.clone()]);
-            for ((to, value), weight) in weighted.iter_mut().zip(row).zip(&weights[pairs.clone()]) {
-                *to = [value[0] * weight[0], value[1] * weight[1]];
-            }
-            d[j] = dot_pairs(weighted, row);
-            let inverse = d[j].inverse();
-            let u = &mut u[j * stride..j * stride + j];
-            for ((other, u), other_span) in before.chunks_exact_mut(m).zip(u).zip(spans.iter_mut()) {
-                let other = &mut other[pairs.clone()];
-                let share = dot_pairs(weighted, other) * inverse;
-                *u = share;
-                subtract(share, row, other);
-                *other_span = (other_span.0.min(span.0), other_span.1.max(span.1));
-            }
-        }
-    }
-
-    /// Variances `h^T P h` of linear functions of the state, kept for [`update`](Self::update); `h`: (n).
-    pub fn project(&mut self, h: &[Lanes]) -> Lanes {
-        self.arch.dispatch(Project { bank: self, h })
-    }
-
-    #[inline(always)]
-    fn project_in_lanes(&mut self, h: &[Lanes]) -> Lanes {
-        match self.n {
-            n if n == USUAL.0 => self.project_sized(h, USUAL.0),
-            n => self.project_sized(h, n),
-        }
-    }
-
-    #[inline(always)]
-    fn project_sized(&mut self, h: &[Lanes], n: usize) -> Lanes {
-        let stride = stride(n);
-        let Self { u, d, f, .. } = self;
-        let mut sum = Lanes::ZERO;
-        for (j, ((u, &d), f)) in u.chunks_exact(stride).zip(&d[..n]).zip(f).enumerate() {
-            *f = dot(&h[..=j], &u[..=j]);
-            sum += *f * *f * d;
-        }
-        sum
-    }
-
-    /// Update by scalar measurements with the `h` of the last [`project`](Self::project) and noise of variances `r`, in
-    /// the lanes that are `used`. Writes the gains (n), zero in the other lanes, and returns the innovations' variances.
-    pub fn update(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
-        self.arch.dispatch(Update { bank: self, r, used, gain })
-    }
-
-    #[inline(always)]
-    fn update_in_lanes(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
-        match self.n {
-            n if n == USUAL.0 => self.update_sized(r, used, gain, USUAL.0),
-            n => self.update_sized(r, used, gain, n),
-        }
-    }
-
-    #[inline(always)]
-    fn update_sized(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes], n: usize) -> Lanes {
-        let stride = stride(n);
-        let gain = &mut gain[..n];
-        let mask = Lanes(used.map(|used| if used { 1.0 } else { 0.0 }));
-        let Self { u, d, f, factors, .. } = self;
-        let (u, d, f, factors) = (&mut u[..stride * n], &mut d[..n], &f[..n], &mut factors[..n]);
-        let mut s = r;
-        // Where no noise and no variance came before, it is zero, and so is the gain collected so far.
-        let mut inverse = r.inverse();
-        for ((d, &f), factors) in d.iter_mut().zip(f).zip(factors.iter_mut()) {
-            let f = f * mask;
-            let v = f * *d;
-            *factors = (-f * inverse, v);
-            let before = s;
-            s += f * v;
-            inverse = s.inverse();
-            *d = *d * s.choose(before * inverse, Lanes::splat(1.0));
-        }
-        let inverse = mask * inverse;
-        // Four rows at a time: their gain stays in registers. Below the diagonal of U all is zero, and the gain there too.
-        for (block, gain) in gain.chunks_mut(4).enumerate() {
-            let mut sum = [Lanes::ZERO; 4];
-            for (u, &(p, v)) in u.chunks_exact_mut(stride).zip(&*factors).skip(4 * block) {
-                if let Some(u) = u.as_chunks_mut::<4>().0.get_mut(block) {
-                    for (u, sum) in u.iter_mut().zip(&mut sum) {
-                        let old = *u;
-                        *u += *sum * p;
-                        *sum += old * v;
+    /// Motion of the constants since the last time.
+    fn walk_slowly(&mut self, plant: &P) {
+        for state in plant.leading()..plant.states() {
+            let process = plant.slow_process(state);
+            let (factor, variance) = process.over(self.slow_s);
+            if factor < 1.0 {
+                for member in &mut self.members {
+                    member.x[state] = process.rest + factor * (member.x[state] - process.rest);
+                    if let Some(record) = &mut member.record {
+                        record.relax(state, factor);
+                    }
+                }
+                match &mut self.covariances {
+                    Covariances::Packs(packs) => packs.iter_mut().for_each(|p| p.bank.scale(state, factor)),
+                    Covariances::Singles(all) => {
+                        all.iter_mut().for_each(|p| p.relax(state, factor, process.rest));
                     }
                 }
             }
-            gain.iter_mut().zip(sum).for_each(|(to, sum)| *to = sum * inverse);
-        }
-        s
-    }
-
-    /// Add variances to state `i`, its covariances unchanged.
-    pub fn inflate(&mut self, i: usize, variance: Lanes) {
-        self.f.fill(Lanes::ZERO);
-        self.f[i] = Lanes::splat(1.0);
-        self.add_leading(variance, i + 1);
-    }
-
-    /// Multiply state `i` by a positive factor in every lane: its variances by the square, its covariances by the factor.
-    pub fn scale(&mut self, i: usize, factor: f64) {
-        for (j, u) in self.u.chunks_exact_mut(stride(self.n)).enumerate().skip(i) {
-            if j == i {
-                u[..i].iter_mut().for_each(|above| *above = *above * factor.recip());
-            } else {
-                u[i] = u[i] * factor;
+            if variance > 0.0 {
+                self.inflate(state, variance);
             }
         }
-        self.d[i] = self.d[i] * (factor * factor);
     }
 
-    /// Make state `i` of a lane independent of all others, with the given variance: an event has reset it.
-    pub fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
-        for u in self.u.chunks_exact_mut(stride(self.n)).skip(i + 1) {
-            u[i].0[lane] = 0.0;
-        }
-        // What state i explained in the states before it remains theirs.
-        self.f.fill(Lanes::ZERO);
-        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * stride(self.n)..][..i]) {
-            f.0[lane] = std::mem::take(&mut above.0[lane]);
-        }
-        let mut left = Lanes::ZERO;
-        left.0[lane] = std::mem::replace(&mut self.d[i].0[lane], variance);
-        self.add_leading(left, i);
-    }
-
-    /// Rank-one update (Agee and Turner) of the leading block of `size` states by `c v v^T` with `v = f[..size]`.
-    fn add_leading(&mut self, mut c: Lanes, size: usize) {
-        for j in (0..size).rev() {
-            let (v, s) = self.f.split_at_mut(j);
-            let (s, old) = (s[0], self.d[j]);
-            let new = old + c * s * s;
-            let inverse = new.inverse();
-            let b = c * s * inverse;
-            for (u, v) in self.u[j * stride(self.n)..][..j].iter_mut().zip(v) {
-                *v -= s * *u;
-                *u += b * *v;
+    /// Measurement update with one reading per output (NaN: missing), output by output.
+    ///
+    /// # Errors
+    /// A state has no such reading.
+    pub fn update(&mut self, plant: &mut P, work: &mut Workspace, readings: &[f64]) -> Result<(), P::Error> {
+        self.members.iter_mut().for_each(|member| member.pulled.fill(0.0));
+        for (output, &reading) in readings.iter().enumerate() {
+            if reading.is_finite() {
+                self.update_by(plant, work, (output, reading))?;
+                continue;
             }
-            self.d[j] = new;
-            // Where nothing is left to add to, nothing was added.
-            c = c * new.choose(old * inverse, Lanes::splat(1.0));
+            self.members.iter_mut().for_each(|member| member.innovations[output] = Innovation::MISSING);
+            if let Covariances::Singles(all) = &mut self.covariances {
+                all.iter_mut().for_each(Single::interrupt);
+            }
+        }
+        if let Covariances::Singles(all) = &mut self.covariances {
+            all.iter_mut().zip(&mut self.members).for_each(|(one, member)| one.finish(plant, member));
+        }
+        for (index, member) in self.members.iter_mut().enumerate() {
+            let write =
+                |state: usize, column: &mut [f64]| self.covariances.write_column(index, state, column);
+            member.bound(plant, write, &mut work.gain);
+        }
+        Ok(())
+    }
+
+    /// Innovation that a reading would be for the first member, and its variance; of members in packs.
+    ///
+    /// # Errors
+    /// As [`update`](Self::update).
+    pub(crate) fn innovation_of_first(
+        &mut self,
+        plant: &mut P,
+        work: &mut Workspace,
+        reading: (usize, f64),
+    ) -> Result<(f64, f64), P::Error> {
+        match (&mut self.covariances, self.members.first()) {
+            (Covariances::Packs(packs), Some(first)) => {
+                packs[0].innovation_of(plant, (&mut work.pack, &mut work.h), first, reading)
+            }
+            _ => Ok((0.0, 1.0)),
+        }
+    }
+
+    fn update_by(
+        &mut self,
+        plant: &mut P,
+        work: &mut Workspace,
+        reading: (usize, f64),
+    ) -> Result<(), P::Error> {
+        match &mut self.covariances {
+            Covariances::Packs(packs) => {
+                packs.iter_mut().zip(self.members.chunks_mut(Pack::SIZE)).try_for_each(|(pack, members)| {
+                    pack.update(plant, (&mut work.pack, &mut work.h), members, reading)
+                })
+            }
+            Covariances::Singles(all) => all
+                .iter_mut()
+                .zip(&mut self.members)
+                .try_for_each(|(one, member)| one.update(plant, work, member, reading)),
+        }
+    }
+
+    /// Let a member become as another one in mean and covariance; its hypothesis stays.
+    pub fn replace(&mut self, index: usize, from: usize) {
+        let Ok([member, other]) = self.members.get_disjoint_mut([index, from]) else { return };
+        member.x.clone_from(&other.x);
+        if let Some(record) = &mut member.record {
+            record.replaced = true;
+        }
+        match &mut self.covariances {
+            Covariances::Packs(packs) => {
+                let ((from, from_lane), (to, to_lane)) = (place(from), place(index));
+                if from == to {
+                    packs[to].bank.copy_lane(from_lane, to_lane);
+                } else if let Ok([from, to]) = packs.get_disjoint_mut([from, to]) {
+                    to.bank.copy_lane_of(&from.bank, from_lane, to_lane);
+                }
+            }
+            Covariances::Singles(all) => {
+                if let Ok([from, to]) = all.get_disjoint_mut([from, index]) {
+                    to.copy_from(from);
+                }
+            }
+        }
+    }
+
+    /// Add a variance to a state of every member.
+    pub(crate) fn inflate(&mut self, state: usize, variance: f64) {
+        match &mut self.covariances {
+            Covariances::Packs(packs) => {
+                packs.iter_mut().for_each(|p| p.bank.inflate(state, Lanes::splat(variance)));
+            }
+            Covariances::Singles(all) => all.iter_mut().for_each(|p| p.inflate(state, variance)),
+        }
+    }
+
+    /// Set a state of a member, independent of all others.
+    pub fn set(&mut self, index: usize, state: usize, mean: f64, variance: f64) {
+        self.members[index].x[state] = mean;
+        self.set_variance(index, state, variance);
+    }
+
+    /// Make a state of a member independent of all others, with the given variance; its mean stays.
+    pub(crate) fn set_variance(&mut self, index: usize, state: usize, variance: f64) {
+        match &mut self.covariances {
+            Covariances::Packs(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].bank.decorrelate_and_set(lane, state, variance);
+            }
+            Covariances::Singles(all) => all[index].decorrelate_and_set(state, variance),
+        }
+    }
+
+    /// Free states of a member of everything known about them, before the readings of a sample: states with their variances.
+    pub(crate) fn free(&mut self, index: usize, states: impl IntoIterator<Item = (usize, f64)>) {
+        for (state, variance) in states {
+            self.set_variance(index, state, variance);
+            if let Some(record) = &mut self.members[index].record {
+                record.freed.push(state);
+            }
+        }
+    }
+
+    /// Shift a state of every member.
+    pub(crate) fn shift(&mut self, state: usize, by: f64) {
+        self.members.iter_mut().for_each(|member| member.x[state] += by);
+    }
+
+    /// Whether mean and covariance of a member are made of numbers, and its mean is a possible state of the plant.
+    pub(crate) fn is_possible(&self, index: usize, plant: &P) -> bool {
+        let finite = match &self.covariances {
+            Covariances::Packs(packs) => packs[place(index).0].bank.is_finite(),
+            Covariances::Singles(all) => all[index].is_finite(),
+        };
+        let x = &self.members[index].x;
+        finite && x.iter().sum::<f64>().is_finite() && plant.is_possible(x)
+    }
+
+    /// Mean of a member: (n).
+    pub fn mean(&self, index: usize) -> DVector<f64> {
+        self.members[index].mean()
+    }
+
+    /// Innovation of each output at the last sample, by one member.
+    pub fn innovations(&self, index: usize) -> &[Innovation] {
+        &self.members[index].innovations
+    }
+
+    /// Variance of a state.
+    pub(crate) fn variance(&self, index: usize, state: usize) -> f64 {
+        match &self.covariances {
+            Covariances::Packs(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].bank.variance(lane, state)
+            }
+            Covariances::Singles(all) => all[index].variance(state),
+        }
+    }
+
+    /// Mean and variance of a state.
+    pub fn moments(&self, index: usize, state: usize) -> Moments {
+        (self.members[index].x[state], self.variance(index, state))
+    }
+
+    /// Covariance of two states.
+    pub(crate) fn covariance_of(&self, index: usize, i: usize, j: usize) -> f64 {
+        match &self.covariances {
+            Covariances::Packs(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].bank.covariance_of(lane, i, j)
+            }
+            Covariances::Singles(all) => all[index].covariance()[(i, j)],
+        }
+    }
+
+    /// Whether it has members with these hypotheses, and so many states and outputs.
+    pub(crate) fn is_like(&self, hypotheses: &[P::Hypothesis], states: usize, outputs: usize) -> bool {
+        let members = self.members.iter().zip(hypotheses).all(|(member, hypothesis)| {
+            member.hypothesis == *hypothesis && member.x.len() == states && member.has_outputs(outputs)
+        });
+        let packs = match &self.covariances {
+            Covariances::Packs(packs) => {
+                packs.len() == hypotheses.len().div_ceil(Pack::SIZE)
+                    && packs.iter().all(|pack| pack.bank.states() == states)
+            }
+            Covariances::Singles(_) => false,
+        };
+        // Before the first sample there are none.
+        self.members.is_empty() || (members && packs && self.members.len() == hypotheses.len())
+    }
+
+    /// Mean and variance of a state, member by member.
+    pub(crate) fn write_moments(&self, state: usize, moments: &mut Vec<Moments>) {
+        moments.clear();
+        match &self.covariances {
+            Covariances::Packs(packs) => {
+                for (pack, members) in packs.iter().zip(self.members.chunks(Pack::SIZE)) {
+                    let variances = pack.bank.variances(state);
+                    moments.extend(
+                        members.iter().zip(variances.0).map(|(of, variance)| (of.x[state], variance)),
+                    );
+                }
+            }
+            Covariances::Singles(all) => {
+                moments
+                    .extend(self.members.iter().zip(all).map(|(of, own)| (of.x[state], own.variance(state))));
+            }
+        }
+    }
+
+    /// Covariance of all states: (n, n).
+    pub fn covariance(&self, index: usize) -> DMatrix<f64> {
+        let n = self.members[index].x.len();
+        let mut p = DMatrix::zeros(n, n);
+        self.covariance_into(index, &mut p);
+        p
+    }
+
+    /// The same, into a matrix of that size.
+    fn covariance_into(&self, index: usize, p: &mut DMatrix<f64>) {
+        match &self.covariances {
+            Covariances::Packs(packs) => {
+                let (pack, lane) = place(index);
+                packs[pack].bank.covariance_into(lane, p);
+            }
+            Covariances::Singles(all) => p.copy_from(&all[index].covariance()),
+        }
+    }
+
+    /// Record of a member's last step, for a [smoother](super::smooth); from the first call on its steps are recorded.
+    ///
+    /// Where the estimate began, or began again, no step leads there: forget the record before.
+    pub fn record(&mut self, index: usize, plant: &P) -> StepRecord {
+        let member = &mut self.members[index];
+        let record = member.recorded(plant.leading());
+        let mut copy = record.clone();
+        // A sample at the same time has no interval of its own.
+        record.begin(0.0);
+        copy.x.as_mut_slice().copy_from_slice(&member.x);
+        self.covariance_into(index, &mut copy.p);
+        copy
+    }
+
+    /// Whether the gain of a member is that of the steady state.
+    pub fn is_settled(&self, index: usize) -> bool {
+        match &self.covariances {
+            Covariances::Packs(_) => false,
+            Covariances::Singles(all) => all[index].is_settled(),
+        }
+    }
+
+    /// Samples at which a moving horizon found no solution inside its constraints, of all members.
+    pub fn fallbacks(&self) -> u64 {
+        match &self.covariances {
+            Covariances::Packs(_) => 0,
+            Covariances::Singles(all) => all.iter().map(Single::fallbacks).sum(),
         }
     }
 }
 
-/// The steps as what [`Arch::dispatch`] compiles for the vector registers of the machine: closures would not be inlined.
-struct Predict<'a> {
-    bank: &'a mut UdBank,
-    transition: &'a mut BankTransition,
+/// Pack and lane of a member.
+fn place(index: usize) -> (usize, usize) {
+    (index / Pack::SIZE, index % Pack::SIZE)
 }
 
-struct Project<'a> {
-    bank: &'a mut UdBank,
-    h: &'a [Lanes],
-}
-
-struct Update<'a> {
-    bank: &'a mut UdBank,
-    r: Lanes,
-    used: [bool; 4],
-    gain: &'a mut [Lanes],
-}
-
-impl WithSimd for Predict<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.bank.predict_in_lanes(self.transition);
-    }
-}
-
-impl WithSimd for Project<'_> {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Lanes {
-        self.bank.project_in_lanes(self.h)
-    }
-}
-
-impl WithSimd for Update<'_> {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Lanes {
-        self.bank.update_in_lanes(self.r, self.used, self.gain)
-    }
-}
-
-/// Length of a column in memory.
-#[inline(always)]
-const fn stride(n: usize) -> usize {
-    n.next_multiple_of(4)
-}
-
-/// `sum a_i b_i`, in four sums that do not wait for each other.
-#[inline(always)]
-fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
-    let ((a4, a1), (b4, b1)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let mut sum = [Lanes::ZERO; 4];
-    for (a, b) in a4.iter().zip(b4) {
-        for ((sum, &a), &b) in sum.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    for ((sum, &a), &b) in sum.iter_mut().zip(a1).zip(b1) {
-        *sum += a * b;
-    }
-    (sum[0] + sum[2]) + (sum[1] + sum[3])
-}
-
-/// The same for whole pairs.
-#[inline(always)]
-fn dot_pairs(a: &[[Lanes; 2]], b: &[[Lanes; 2]]) -> Lanes {
-    let ((a4, a2), (b4, b2)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
-    let mut sum = [[Lanes::ZERO; 2]; 2];
-    for (a, b) in a4.iter().zip(b4) {
-        for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
-            sum[0] += a[0] * b[0];
-            sum[1] += a[1] * b[1];
-        }
-    }
-    if let ([a], [b]) = (a2, b2) {
-        sum[0][0] += a[0] * b[0];
-        sum[0][1] += a[1] * b[1];
-    }
-    (sum[0][0] + sum[1][0]) + (sum[0][1] + sum[1][1])
-}
-
-/// `y <- y - c x`.
-#[inline(always)]
-fn subtract(c: Lanes, x: &[[Lanes; 2]], y: &mut [[Lanes; 2]]) {
-    for (x, y) in x.iter().zip(y) {
-        y[0] -= c * x[0];
-        y[1] -= c * x[1];
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -110,12 +110,6 @@ pub(crate) fn factor_cholesky(a: &mut [f64], n: usize) -> bool {
     true
 }
 
-/// The identity (n, n), column-major.
-pub(crate) fn set_identity(a: &mut [f64], n: usize) {
-    a.fill(0.0);
-    a.iter_mut().step_by(n + 1).for_each(|a| *a = 1.0);
-}
-
 /// Symmetric part of a column-major matrix (n, n).
 pub(crate) fn symmetrise(a: &mut [f64], n: usize) {
     for j in 0..n {

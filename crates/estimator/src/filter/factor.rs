@@ -146,20 +146,6 @@ fn symmetrise(p: &mut [f64], n: usize) -> Result<(), EstimatorError> {
     Ok(())
 }
 
-/// Square root `S = U diag(sqrt d)` of `P = S S^T`, upper triangular, in place of the column-major `p`; `d` is work.
-///
-/// # Errors
-/// As [`factor_udu`].
-pub(crate) fn factor_root(p: &mut [f64], d: &mut [f64]) -> Result<(), EstimatorError> {
-    let n = d.len();
-    factor_udu(p, d)?;
-    for (j, d) in d.iter().enumerate() {
-        let root = d.sqrt();
-        column_mut(p, n, j)[..=j].iter_mut().for_each(|s| *s *= root);
-    }
-    Ok(())
-}
-
 /// Copy the upper triangle of a column-major matrix into its lower one.
 pub(crate) fn mirror(p: &mut [f64], n: usize) {
     for j in 0..n {

@@ -62,31 +62,31 @@ pub(crate) fn padded(n: usize) -> usize {
 }
 
 /// Columns of a product that are summed up together.
-const TOGETHER: usize = 4;
+const GROUP: usize = 4;
 
 /// `C <- A B` of matrices (n, n) that have `high` rows, a multiple of four, of which those of `B` beyond `n` do not count.
 ///
 /// Each element is summed up in the order of the columns of `A`; a block of rows and columns stays in registers meanwhile.
 #[inline(always)]
 pub(crate) fn multiply_columns(a: &[f64], b: &[f64], high: usize, n: usize, c: &mut [f64]) {
-    let mut groups = c.chunks_exact_mut(TOGETHER * high);
+    let mut groups = c.chunks_exact_mut(GROUP * high);
     let mut first = 0;
     for group in &mut groups {
         let mut columns = group.chunks_exact_mut(high);
         if let [Some(c0), Some(c1), Some(c2), Some(c3)] = std::array::from_fn(|_| columns.next()) {
             let b = std::array::from_fn(|k| &column(b, high, first + k)[..n]);
-            multiply_together::<TOGETHER>(a, high, b, [c0, c1, c2, c3]);
+            multiply_group::<GROUP>(a, high, b, [c0, c1, c2, c3]);
         }
-        first += TOGETHER;
+        first += GROUP;
     }
     for (c, b) in groups.into_remainder().chunks_exact_mut(high).zip(b[first * high..].chunks_exact(high)) {
-        multiply_together::<1>(a, high, [&b[..n]], [c]);
+        multiply_group::<1>(a, high, [&b[..n]], [c]);
     }
 }
 
 /// `Y <- A X` for `A` with `high` rows and columns `X` and `Y`.
 #[inline(always)]
-fn multiply_together<const N: usize>(a: &[f64], high: usize, x: [&[f64]; N], mut y: [&mut [f64]; N]) {
+fn multiply_group<const N: usize>(a: &[f64], high: usize, x: [&[f64]; N], mut y: [&mut [f64]; N]) {
     for first in (0..high / 8 * 8).step_by(8) {
         multiply_block::<N, 8>(a, high, first, x, &mut y);
     }

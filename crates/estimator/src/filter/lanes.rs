@@ -21,6 +21,7 @@ impl Lanes {
     }
 
     /// Whether all lanes are zero.
+    #[cfg(test)]
     #[inline(always)]
     pub fn is_zero(self) -> bool {
         self.0 == [0.0; LANES]

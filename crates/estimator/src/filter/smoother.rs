@@ -13,64 +13,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::{add_product, symmetrise, transposed_product};
-use super::form::CovarianceForm;
-use super::kalman::ExtendedKalman;
 use super::kernel::{axpy, column, dot};
-use super::state_space::StateSpace;
-use crate::EstimatorError;
-
-/// One step of a filter as the smoother needs it: plain data.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PassStep {
-    /// Interval since the step before, s.
-    pub interval_s: f64,
-    /// Leading rows of the transition from the step before: (leading, n).
-    pub phi: DMatrix<f64>,
-    /// Gradients of the outputs, in the order of their updates: (n, outputs).
-    pub h: DMatrix<f64>,
-    /// Gains of the outputs: (n, outputs).
-    pub gain: DMatrix<f64>,
-    /// Innovations: (outputs).
-    pub innovation: DVector<f64>,
-    /// Their variances: (outputs).
-    pub variance: DVector<f64>,
-    /// Which outputs were used.
-    pub used: Vec<bool>,
-    /// State after the update: (n).
-    pub x: DVector<f64>,
-    /// Covariance after the update: (n, n).
-    pub p: DMatrix<f64>,
-}
-
-impl PassStep {
-    /// A step that tells nothing: `n` states of which `leading` move, and so many outputs.
-    pub fn zeros(n: usize, leading: usize, outputs: usize) -> Self {
-        Self {
-            interval_s: 0.0,
-            phi: DMatrix::zeros(leading, n),
-            h: DMatrix::zeros(n, outputs),
-            gain: DMatrix::zeros(n, outputs),
-            innovation: DVector::zeros(outputs),
-            variance: DVector::zeros(outputs),
-            used: vec![false; outputs],
-            x: DVector::zeros(n),
-            p: DMatrix::zeros(n, n),
-        }
-    }
-
-    /// Become as another step of the same filter, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.interval_s = other.interval_s;
-        self.phi.copy_from(&other.phi);
-        self.h.copy_from(&other.h);
-        self.gain.copy_from(&other.gain);
-        self.innovation.copy_from(&other.innovation);
-        self.variance.copy_from(&other.variance);
-        self.used.clone_from(&other.used);
-        self.x.copy_from(&other.x);
-        self.p.copy_from(&other.p);
-    }
-}
+use super::record::StepRecord;
 
 /// A smoothed state.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,58 +25,18 @@ pub struct Smoothed {
     pub p: DMatrix<f64>,
 }
 
-impl<M: StateSpace, F: CovarianceForm> ExtendedKalman<M, F> {
-    /// Record the last step, or the start if there was none.
-    ///
-    /// # Errors
-    /// The filter has consider states, whose gains are not optimal: its pass cannot be smoothed.
-    pub fn record(&self) -> Result<PassStep, EstimatorError> {
-        let (n, outputs, leading) = (self.state().len(), self.gate_counts().len(), self.model().leading());
-        let mut step = PassStep::zeros(n, leading, outputs);
-        self.record_into(&mut step)?;
-        Ok(step)
-    }
-
-    /// Record the last step into the memory of another record, without allocating.
-    ///
-    /// # Errors
-    /// As [`record`](Self::record).
-    pub fn record_into(&self, step: &mut PassStep) -> Result<(), EstimatorError> {
-        if self.has_consider_states() {
-            return Err(EstimatorError::ConsiderStatesSmoothed);
-        }
-        let work = self.work();
-        step.interval_s = work.dt_s;
-        if work.dt_s > 0.0 {
-            step.phi.copy_from(&work.linear.phi);
-        } else {
-            step.phi.fill_with_identity();
-        }
-        step.h.as_mut_slice().copy_from_slice(&work.h);
-        step.gain.as_mut_slice().copy_from_slice(&work.gain);
-        step.innovation.as_mut_slice().copy_from_slice(&work.innovation);
-        step.variance.as_mut_slice().copy_from_slice(&work.variance);
-        for (used, output) in step.used.iter_mut().zip(&self.report().outputs) {
-            *used = output.outcome.is_used();
-        }
-        step.x.as_mut_slice().copy_from_slice(self.state());
-        self.form().write_covariance(step.p.as_mut_slice());
-        Ok(())
-    }
-}
-
-/// Smooth a recorded pass over its whole interval; `steps` as recorded, the start first.
+/// Smooth a recorded pass over its whole interval; `records` in the order of time, the start first.
 ///
 /// The last smoothed state is that of the filter.
-pub fn smooth_fixed_interval(steps: &[PassStep]) -> Vec<Smoothed> {
-    let Some(last) = steps.last() else { return Vec::new() };
+pub fn smooth(records: &[StepRecord]) -> Vec<Smoothed> {
+    let Some(last) = records.last() else { return Vec::new() };
     let mut backward = Backward::new(last.x.len());
-    let mut smoothed = Vec::with_capacity(steps.len());
-    for step in steps.iter().rev() {
-        let mut at_step = Smoothed { x: step.x.clone(), p: step.p.clone() };
-        backward.estimate(step, &mut at_step);
+    let mut smoothed = Vec::with_capacity(records.len());
+    for record in records.iter().rev() {
+        let mut at_step = Smoothed { x: record.x.clone(), p: record.p.clone() };
+        backward.estimate(record, &mut at_step);
         smoothed.push(at_step);
-        backward.pass(step);
+        backward.pass_step(record);
     }
     smoothed.reverse();
     smoothed
@@ -169,7 +73,7 @@ impl Backward {
     }
 
     /// Smoothed state after the update of `step`.
-    pub fn estimate(&mut self, step: &PassStep, smoothed: &mut Smoothed) {
+    pub fn estimate(&mut self, step: &StepRecord, smoothed: &mut Smoothed) {
         let (n, p) = (step.x.len(), step.p.as_slice());
         smoothed.x.copy_from(&step.x);
         add_product(smoothed.x.as_mut_slice(), -1.0, p, &self.adjoint, n);
@@ -180,18 +84,25 @@ impl Backward {
         symmetrise(smoothed.p.as_mut_slice(), n);
     }
 
-    /// From after the update of `step` to after the update of the step before.
-    pub fn pass(&mut self, step: &PassStep) {
-        for (j, used) in step.used.iter().enumerate().rev() {
-            if *used {
-                self.pass_update(step, j);
-            }
+    /// From after a step to after the step before it.
+    pub fn pass_step(&mut self, step: &StepRecord) {
+        if step.replaced {
+            self.clear();
+            return;
         }
-        self.pass_interval(step);
-    }
-
-    /// From before the update of `step` to after the update of the step before.
-    pub fn pass_interval(&mut self, step: &PassStep) {
+        for &(state, force) in &step.bounded {
+            self.push(state, force);
+        }
+        for output in (0..step.used.len()).rev() {
+            if step.used[output] {
+                self.pass_update(step, output);
+            }
+            step.freed_by.iter().filter(|(by, _)| *by == output).for_each(|(_, state)| self.forget(*state));
+        }
+        step.freed.iter().for_each(|&state| self.forget(state));
+        for (state, &factor) in step.relaxed.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
+            self.scale(state, factor);
+        }
         if step.interval_s > 0.0 {
             self.pass_transition(&step.phi);
         }
@@ -199,7 +110,7 @@ impl Backward {
     }
 
     /// State `i` became `factor` times itself.
-    pub fn scale(&mut self, i: usize, factor: f64) {
+    fn scale(&mut self, i: usize, factor: f64) {
         let n = self.adjoint.len();
         self.adjoint[i] *= factor;
         self.information[i * n..(i + 1) * n].iter_mut().for_each(|value| *value *= factor);
@@ -207,19 +118,19 @@ impl Backward {
     }
 
     /// The estimate was moved by `force P e_i`, its covariance stayed: smoothed estimates of before know nothing of that.
-    pub fn push(&mut self, i: usize, force: f64) {
+    fn push(&mut self, i: usize, force: f64) {
         self.adjoint[i] -= force;
     }
 
     /// State `i` was made independent of its past: what comes after says nothing of what it was before.
-    pub fn forget(&mut self, i: usize) {
+    fn forget(&mut self, i: usize) {
         let n = self.adjoint.len();
         self.adjoint[i] = 0.0;
         self.information[i * n..(i + 1) * n].fill(0.0);
         self.information[i..].iter_mut().step_by(n).for_each(|value| *value = 0.0);
     }
 
-    pub fn pass_update(&mut self, step: &PassStep, output: usize) {
+    fn pass_update(&mut self, step: &StepRecord, output: usize) {
         let n = step.x.len();
         let (h, gain) = (column(step.h.as_slice(), n, output), column(step.gain.as_slice(), n, output));
         let variance = step.variance[output];

@@ -40,8 +40,10 @@ pub trait StateSpace {
     /// Number of leading states that move or are driven by noise.
     fn leading(&self) -> usize;
 
-    /// Number of noise sources `k` of a transition.
-    fn noises(&self) -> usize;
+    /// Number of noise sources `k` of a transition; by default one for each leading state.
+    fn noises(&self) -> usize {
+        self.leading()
+    }
 
     /// Number of outputs.
     fn outputs(&self) -> usize;

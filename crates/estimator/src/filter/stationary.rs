@@ -1,266 +1,317 @@
-//! Kalman filter with the gain of the steady state.
+//! The extended filter with the gain of its steady state.
 //!
-//! The process is linearised once, at a given state and interval; [`steady_state`] gives covariance and gain. As long as
-//! every sample is complete, passes the gate and comes after the same interval, a step costs one call of the process, the
-//! outputs and a product with the gain: no covariance moves.
+//! The leading states are estimated given the constants `c`, which stay where they are. Linearised at one state, over the
+//! interval at which samples come, the covariance given the constants settles at the solution of the discrete Riccati equation
+//! ([`steady_state`](super::steady_state)), and with it the gain of each output. As long as a sample comes after that interval, is
+//! complete, passes its gates, and is about as noisy as the steady state supposes, no covariance moves. Otherwise the covariance
+//! given the constants moves as in an extended filter, until it is back.
 //!
-//! A missing or rejected reading, or another interval, makes another gain right, and that until long after: the filter
-//! then moves the covariance as the full filter does, from the steady state on, with the constant matrices, until it is
-//! back there within a tolerance. So the gain is always that of the available readings and their history, and on a linear
-//! process this is the Kalman filter started in the steady state.
-use nalgebra::{DMatrix, DVector, Dyn};
+//! The state of linearisation is that of the first steady state. Where the plant has left it for good, the
+//! covariance does not come back; after [`PATIENCE`] complete samples a steady state is sought anew where the plant is.
+//!
+//! The mean moves by the nonlinear equations. What the constants' uncertainty `B` does to it follows from the sensitivity
+//! `E = dx/dc` of the error (Schmidt's consider states), which moves with the actual gradients and gains,
+//! `E <- F E + F_c`, `E <- E - K (h^T E + h_c^T)`, and the stated covariance is `P + E B E^T`.
+//!
+//! Where the outputs do not see every state there is no steady state, and the covariance
+//! always moves.
+//!
+//! Source: Schmidt 1966; Anderson and Moore 1979, chapter 4.
+use nalgebra::DMatrix;
 
-use super::failure::{StepError, check_length, check_linearisation, check_output, check_sample, check_state};
-use super::gate::{Gate, GateCount, GateSettings};
-use super::kernel::{column, column_mut};
-use super::report::StepReport;
-use super::riccati::{SteadyState, steady_state};
-use super::sequential::SequentialFilter;
-use super::state_space::{Linearisation, StateSpace};
+use super::dense::add_product;
+use super::kernel::{axpy, dot};
+use super::plant::Plant;
+use super::state_space::Linearisation;
 use super::ud::UdFactors;
 use crate::EstimatorError;
+use steady::Steady;
 
-mod update;
+mod steady;
 
-/// Where a [`Stationary`] filter is linearised, and when it uses its steady state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StationarySettings {
-    /// Interval of the samples, s.
-    pub interval_s: f64,
-    /// Gate per output; `None` uses every reading.
-    pub gate: Option<GateSettings>,
-    /// The steady state is reached when no covariance differs by more than this share of the standard deviations.
-    pub tolerance: f64,
+/// Share of the standard deviations within which a covariance counts as that of the steady state.
+const SETTLED: f64 = 0.1;
+/// Least noise variance with which the steady gain is used, as a share of that which it supposes, the most.
+const QUIET: f64 = 0.2;
+/// Complete samples out of the steady state after which it is sought anew.
+const PATIENCE: u32 = 60;
+/// Relative difference within which two intervals are the same.
+const SAME_INTERVAL: f64 = 1e-6;
+/// Equal intervals in a row that make them the usual one.
+const USUAL: u32 = 3;
+
+/// Where the covariance given the constants is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// In the factors of the member.
+    Moving,
+    /// In the steady state, after a sample.
+    Settled,
+    /// In the steady state, when so many outputs of a sample have been used.
+    Within(usize),
 }
 
-impl StationarySettings {
-    /// Samples every `interval_s`, s, no gate, tolerance 1e-9.
-    pub fn new(interval_s: f64) -> Self {
-        Self { interval_s, gate: None, tolerance: 1e-9 }
-    }
-}
-
-/// Kalman filter with stationary gain.
+/// State of the engine in addition to mean and covariance.
 #[derive(Clone, Debug)]
-pub struct Stationary<M> {
-    model: M,
-    x: Vec<f64>,
-    form: UdFactors<Dyn>,
-    /// Whether the covariance is that of the steady state; `form` is then of no meaning.
-    settled: bool,
-    gate: Gate,
-    counts: Vec<GateCount>,
-    interval_s: f64,
-    tolerance: f64,
-    steady: SteadyState,
-    fixed: Fixed,
-    report: StepReport,
-    work: Work,
+pub(super) struct Stationary {
+    usual_s: f64,
+    /// Interval that has come so many times in a row.
+    latest: (f64, u32),
+    /// Whether the sample came after the usual interval, and had every reading so far.
+    regular: bool,
+    /// Regular samples out of the steady state.
+    waited: u32,
+    steady: Option<Box<Steady>>,
+    phase: Phase,
+    /// `E`: (leading, constants).
+    sensitivity: DMatrix<f64>,
+    moved: DMatrix<f64>,
+    /// `h^T E + h_c^T`: (constants).
+    row: Vec<f64>,
+    /// `B`: (constants, constants).
+    constants: DMatrix<f64>,
+    /// A gain that is not used: (n), and a covariance to compare: (n, n).
+    scratch: Vec<f64>,
+    compared: DMatrix<f64>,
 }
 
-/// The linearised process in its steady state.
-#[derive(Clone, Debug)]
-struct Fixed {
-    linear: Linearisation,
-    /// Gradients of the outputs, one per column: (n, outputs).
-    h: DMatrix<f64>,
-    r: DVector<f64>,
-    /// Gain (n, outputs) and innovation variance of each output when those before it have been used.
-    gain: DMatrix<f64>,
-    s: DVector<f64>,
-    predicted: UdFactors<Dyn>,
-    updated: UdFactors<Dyn>,
-}
-
-/// Memory of a step.
-#[derive(Clone, Debug)]
-struct Work {
-    predicted: Vec<f64>,
-    moved: Vec<f64>,
-    gain: Vec<f64>,
-    /// Outputs at the prediction.
-    y: Vec<f64>,
-    /// Transition over another interval.
-    linear: Linearisation,
-    covariance: Vec<f64>,
-}
-
-/// Knowledge of a [`Stationary`] filter at one time.
-#[derive(Clone, Debug)]
-pub struct StationarySnapshot {
-    /// State `x`: (n).
-    pub x: Vec<f64>,
-    /// History of each output at the gate.
-    pub gate_counts: Vec<GateCount>,
-    form: UdFactors<Dyn>,
-    settled: bool,
-}
-
-impl Fixed {
-    /// Linearise `model` at the state `point`, and find its steady state.
-    fn build<M: StateSpace>(
-        model: &mut M,
-        point: &[f64],
-        interval_s: f64,
-    ) -> Result<(Self, SteadyState), StepError<M::Error>> {
-        let (n, m, outputs) = (model.states(), model.leading(), model.outputs());
-        let mut linear = Linearisation::zeros(n, m, model.noises());
-        model.propagate(&mut point.to_vec(), interval_s, Some(&mut linear)).map_err(StepError::Model)?;
-        check_linearisation(&linear)?;
-        let (mut h, mut r) = (DMatrix::zeros(n, outputs), DVector::zeros(outputs));
-        for j in 0..outputs {
-            let h = column_mut(h.as_mut_slice(), n, j);
-            let y = model.output(j, point, Some(h)).map_err(StepError::Model)?;
-            r[j] = model.noise_variance(j, point);
-            check_output(j, y, h, r[j])?;
-        }
-        let mut f = DMatrix::identity(n, n);
-        f.rows_mut(0, m).copy_from(&linear.phi);
-        let mut q = DMatrix::zeros(n, n);
-        let noise = &linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose();
-        q.view_mut((0, 0), (m, m)).copy_from(&noise);
-        let steady = steady_state(&f, &h.transpose(), &q, &r)?;
-        let predicted = UdFactors::from_covariance(&steady.predicted)?;
-        let mut fixed = Self {
-            gain: DMatrix::zeros(n, outputs),
-            s: DVector::zeros(outputs),
-            updated: predicted.clone(),
-            predicted,
-            linear,
-            h,
-            r,
-        };
-        for j in 0..outputs {
-            let gain = column_mut(fixed.gain.as_mut_slice(), n, j);
-            fixed.s[j] = fixed.updated.update(column(fixed.h.as_slice(), n, j), fixed.r[j], gain);
-        }
-        Ok((fixed, steady))
-    }
-}
-
-impl<M: StateSpace> Stationary<M> {
-    /// Filter of `model` that starts at the state `x` (n) with the covariance of the steady state, linearised at the
-    /// state `point` (n).
+impl Stationary {
+    /// `p` becomes the covariance given the constants.
     ///
     /// # Errors
-    /// The process refuses or has no steady state, lengths differ, or the settings are out of range.
-    pub fn try_new(
-        mut model: M,
-        x: &[f64],
-        point: &[f64],
-        settings: &StationarySettings,
-    ) -> Result<Self, StepError<M::Error>> {
-        let (n, outputs) = (model.states(), model.outputs());
-        check_length(x.len(), n)?;
-        check_length(point.len(), n)?;
-        check_state(x)?;
-        if !(settings.interval_s.is_finite() && settings.interval_s > 0.0) {
-            return Err(EstimatorError::IntervalNotPositive { interval_s: settings.interval_s }.into());
-        }
-        let (fixed, steady) = Fixed::build(&mut model, point, settings.interval_s)?;
-        let mut form = fixed.updated.clone();
-        form.reserve(model.leading(), model.noises());
+    /// What is left is no covariance.
+    pub fn new<P: Plant>(plant: &P, p: &mut UdFactors) -> Result<Self, EstimatorError> {
+        let (n, leading) = (plant.states(), plant.leading());
+        let count = n - leading;
+        let mut covariance = p.covariance();
+        let constants = covariance.view((leading, leading), (count, count)).into_owned();
+        covariance.columns_mut(leading, count).fill(0.0);
+        covariance.rows_mut(leading, count).fill(0.0);
+        p.copy_from(&UdFactors::from_covariance(&covariance)?);
         Ok(Self {
-            x: x.to_vec(),
-            form,
-            settled: true,
-            gate: Gate::try_new(settings.gate)?,
-            counts: vec![GateCount::default(); outputs],
-            interval_s: settings.interval_s,
-            tolerance: settings.tolerance,
-            steady,
-            report: StepReport::new(outputs),
-            work: Work {
-                predicted: vec![0.0; n],
-                moved: vec![0.0; n],
-                gain: vec![0.0; n],
-                y: vec![0.0; outputs],
-                linear: fixed.linear.clone(),
-                covariance: vec![0.0; n * n],
-            },
-            fixed,
-            model,
+            usual_s: f64::NAN,
+            latest: (f64::NAN, 0),
+            regular: false,
+            waited: 0,
+            steady: None,
+            phase: Phase::Moving,
+            sensitivity: DMatrix::zeros(leading, count),
+            moved: DMatrix::zeros(leading, count),
+            row: vec![0.0; count],
+            constants,
+            scratch: vec![0.0; n],
+            compared: covariance,
         })
     }
 
-    /// State `x`: (n).
-    pub fn state(&self) -> &[f64] {
-        &self.x
+    /// A sample comes `dt_s`, s, after the last one.
+    pub fn begin(&mut self, p: &mut UdFactors, dt_s: f64) {
+        let run = if is_same(dt_s, self.latest.0) { self.latest.1.saturating_add(1) } else { 1 };
+        self.latest = (dt_s, run);
+        if run == USUAL && !is_same(dt_s, self.usual_s) {
+            self.unsettle(p);
+            (self.usual_s, self.steady, self.waited) = (dt_s, None, 0);
+        }
+        self.regular = is_same(dt_s, self.usual_s);
+        if self.regular && self.phase == Phase::Settled {
+            self.phase = Phase::Within(0);
+        } else {
+            self.unsettle(p);
+        }
     }
 
-    /// The steady state.
-    pub fn steady_state(&self) -> &SteadyState {
-        &self.steady
+    /// Move on by a part of the interval.
+    pub fn predict(&mut self, linear: &Linearisation, p: &mut UdFactors) {
+        self.move_sensitivity(&linear.phi);
+        if self.phase == Phase::Moving {
+            p.predict(linear);
+        }
     }
 
-    /// Whether the covariance is that of the steady state.
+    /// `E <- F E + F_c` with the transition's leading rows `phi`: (leading, n).
+    fn move_sensitivity(&mut self, phi: &DMatrix<f64>) {
+        let m = self.sensitivity.nrows();
+        let (moving, constant) = phi.as_slice().split_at(m * m);
+        self.moved.as_mut_slice().copy_from_slice(constant);
+        add_product(self.moved.as_mut_slice(), 1.0, moving, self.sensitivity.as_slice(), m);
+        std::mem::swap(&mut self.sensitivity, &mut self.moved);
+    }
+
+    /// Variance of an innovation with the gradient `h` (n) and noise `r`, with all that is uncertain.
+    pub fn innovation_variance(&mut self, p: &UdFactors, output: usize, h: &[f64], r: f64) -> f64 {
+        self.find_row(h);
+        let given = match (&self.steady, self.phase) {
+            (Some(steady), Phase::Within(_)) => steady.known[output],
+            (Some(steady), Phase::Settled) => steady.updated.quadratic(h),
+            _ => p.quadratic(h),
+        };
+        given + self.of_constants(|c| self.row[c]) + r
+    }
+
+    /// `h^T E + h_c^T`: derivative of an innovation with the constants.
+    fn find_row(&mut self, h: &[f64]) {
+        let m = self.sensitivity.nrows();
+        for ((row, column), h_c) in
+            self.row.iter_mut().zip(self.sensitivity.as_slice().chunks_exact(m)).zip(&h[m..])
+        {
+            *row = h_c + dot(column, h);
+        }
+    }
+
+    /// Variance `v^T B v` of a linear function of the constants.
+    fn of_constants(&self, v: impl Fn(usize) -> f64) -> f64 {
+        let count = self.constants.nrows();
+        (0..count)
+            .map(|c| v(c) * self.constants.column(c).iter().enumerate().map(|(d, b)| b * v(d)).sum::<f64>())
+            .sum()
+    }
+
+    /// Gain of a reading with noise of variance `r`; moves the covariance where it is not that of the steady state.
+    pub fn update(&mut self, p: &mut UdFactors, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
+        let usual = |steady: &Steady| r <= steady.r[output] && r >= QUIET * steady.r[output];
+        let within = self.phase == Phase::Within(output);
+        match &self.steady {
+            Some(steady) if within && usual(steady) => {
+                gain.copy_from_slice(steady.gain.column(output).as_slice());
+                let last = output + 1 == steady.r.len();
+                self.phase = if last { Phase::Settled } else { Phase::Within(output + 1) };
+            }
+            steady => {
+                // The noise that the steady state supposes, or the covariance would not come back to it.
+                let r =
+                    steady.as_deref().filter(|&steady| usual(steady)).map_or(r, |steady| steady.r[output]);
+                self.unsettle(p);
+                p.update(h, r, gain);
+            }
+        }
+        self.correct_sensitivity(h, gain);
+    }
+
+    /// `E <- E - K (h^T E + h_c^T)`.
+    fn correct_sensitivity(&mut self, h: &[f64], gain: &[f64]) {
+        self.find_row(h);
+        let m = self.sensitivity.nrows();
+        for (column, row) in self.sensitivity.as_mut_slice().chunks_exact_mut(m).zip(&self.row) {
+            axpy(-row, gain, column);
+        }
+    }
+
+    /// Whether the covariance is that of the steady state, after a sample.
     pub fn is_settled(&self) -> bool {
-        self.settled
+        self.phase == Phase::Settled
     }
 
-    /// Covariance `P`: (n, n).
-    pub fn covariance(&self) -> DMatrix<f64> {
-        if self.settled { self.steady.updated.clone() } else { self.form.covariance() }
-    }
-
-    /// What the last step told about its readings.
-    pub fn report(&self) -> &StepReport {
-        &self.report
-    }
-
-    /// History of each output at the gate.
-    pub fn gate_counts(&self) -> &[GateCount] {
-        &self.counts
-    }
-
-    /// Advance by `dt_s`, s, and use the readings `z` (one per output, NaN where there is none).
-    ///
-    /// # Errors
-    /// An argument, the process or an output is unusable; the filter is then as it was before.
-    pub fn step(&mut self, dt_s: f64, z: &[f64]) -> Result<&StepReport, StepError<M::Error>> {
-        check_sample(dt_s, z.len(), self.model.outputs())?;
-        let regular = dt_s == self.interval_s;
-        self.propagate(dt_s, regular)?;
-        self.predict_outputs(z)?;
-        if !(self.settled && regular && self.all_pass(z)) {
-            self.move_covariance(dt_s, regular);
+    /// Leave the steady state: its covariance goes to `p`.
+    pub fn unsettle(&mut self, p: &mut UdFactors) {
+        let Some(steady) = &self.steady else { return };
+        match self.phase {
+            Phase::Moving => return,
+            Phase::Settled => p.copy_from(&steady.updated),
+            Phase::Within(used) => {
+                p.copy_from(&steady.predicted);
+                for output in 0..used {
+                    let h = steady.h.column(output);
+                    p.update(h.as_slice(), steady.r[output], &mut self.scratch);
+                }
+            }
         }
-        self.correct(z);
-        if regular && !self.settled {
-            self.settle();
+        self.phase = Phase::Moving;
+    }
+
+    /// A reading is missing or was rejected.
+    pub fn miss(&mut self, p: &mut UdFactors) {
+        self.regular = false;
+        self.unsettle(p);
+    }
+
+    /// Return to the steady state if the covariance has; seek it anew at the state `x` if it has not for long.
+    pub fn settle<P: Plant>(&mut self, plant: &mut P, x: &[f64], p: &UdFactors) {
+        if self.phase != Phase::Moving || !self.regular {
+            return;
         }
-        Ok(&self.report)
+        if self.waited.is_multiple_of(PATIENCE) {
+            // Without a steady state the covariance goes on moving.
+            self.steady = Steady::solve(plant, x, self.usual_s).map(Box::new);
+        }
+        self.waited += 1;
+        let (m, compared) = (self.sensitivity.nrows(), &mut self.compared);
+        if self.steady.as_ref().is_some_and(|steady| steady.is_close(p, m, SETTLED, compared)) {
+            (self.phase, self.waited) = (Phase::Settled, 1);
+        }
+    }
+
+    /// A moving state has nothing to do with the constants any more.
+    pub fn forget(&mut self, p: &mut UdFactors, state: usize) {
+        self.unsettle(p);
+        self.sensitivity.row_mut(state).fill(0.0);
+    }
+
+    /// A constant's error has become smaller by a factor; the error that it made has not.
+    pub fn relax(&mut self, state: usize, factor: f64) {
+        let constant = state - self.sensitivity.nrows();
+        self.constants.row_mut(constant).iter_mut().for_each(|b| *b *= factor);
+        self.constants.column_mut(constant).iter_mut().for_each(|b| *b *= factor);
+        self.sensitivity.column_mut(constant).iter_mut().for_each(|e| *e /= factor);
+    }
+
+    /// Add `variance` to a constant.
+    pub fn inflate(&mut self, state: usize, variance: f64) {
+        let constant = state - self.sensitivity.nrows();
+        self.constants[(constant, constant)] += variance;
+    }
+
+    /// Variance of a state, with all that is uncertain.
+    pub fn variance(&self, p: &UdFactors, state: usize) -> f64 {
+        let m = self.sensitivity.nrows();
+        if state >= m {
+            return self.constants[(state - m, state - m)];
+        }
+        let given = match (&self.steady, self.phase) {
+            (Some(steady), Phase::Settled | Phase::Within(_)) => steady.covariance[(state, state)],
+            _ => p.variance(state),
+        };
+        given + self.of_constants(|c| self.sensitivity[(state, c)])
+    }
+
+    /// Covariance of a state with all states, with all that is uncertain: (n).
+    pub fn write_column(&self, p: &UdFactors, state: usize, column: &mut [f64]) {
+        let (m, count) = self.sensitivity.shape();
+        match (&self.steady, self.phase) {
+            (Some(steady), Phase::Settled | Phase::Within(_)) => {
+                column.copy_from_slice(steady.covariance.column(state).as_slice());
+            }
+            _ => p.write_column(state, column),
+        }
+        let (leading, constants) = column.split_at_mut(m);
+        if state >= m {
+            leading.fill(0.0);
+        }
+        for (c, with) in constants.iter_mut().enumerate() {
+            let of = |other: usize| {
+                if state < m { self.sensitivity[(state, other)] } else { f64::from(other == state - m) }
+            };
+            *with = (0..count).map(|other| self.constants[(c, other)] * of(other)).sum();
+            axpy(*with, self.sensitivity.column(c).as_slice(), leading);
+        }
+    }
+
+    /// Covariance of all states, with all that is uncertain: (n, n).
+    pub fn covariance(&self, p: &UdFactors) -> DMatrix<f64> {
+        let (m, count) = self.sensitivity.shape();
+        let mut covariance = match (&self.steady, self.phase) {
+            (Some(steady), Phase::Settled | Phase::Within(_)) => steady.covariance.clone(),
+            _ => p.covariance(),
+        };
+        let cross = &self.sensitivity * &self.constants;
+        let mut leading = covariance.view_mut((0, 0), (m, m));
+        leading += &cross * self.sensitivity.transpose();
+        covariance.view_mut((0, m), (m, count)).copy_from(&cross);
+        covariance.view_mut((m, 0), (count, m)).copy_from(&cross.transpose());
+        covariance.view_mut((m, m), (count, count)).copy_from(&self.constants);
+        covariance
     }
 }
 
-impl<M: StateSpace> SequentialFilter for Stationary<M> {
-    type Snapshot = StationarySnapshot;
-    type Error = M::Error;
-
-    fn outputs(&self) -> usize {
-        self.counts.len()
-    }
-
-    fn snapshot(&self) -> StationarySnapshot {
-        let gate_counts = self.counts.clone();
-        StationarySnapshot { x: self.x.clone(), gate_counts, form: self.form.clone(), settled: self.settled }
-    }
-
-    fn save(&self, snapshot: &mut StationarySnapshot) {
-        snapshot.x.copy_from_slice(&self.x);
-        snapshot.gate_counts.copy_from_slice(&self.counts);
-        snapshot.form.copy_from(&self.form);
-        snapshot.settled = self.settled;
-    }
-
-    fn restore(&mut self, snapshot: &StationarySnapshot) {
-        self.x.copy_from_slice(&snapshot.x);
-        self.counts.copy_from_slice(&snapshot.gate_counts);
-        self.form.copy_from(&snapshot.form);
-        self.settled = snapshot.settled;
-    }
-
-    fn step(&mut self, dt_s: f64, z: &[f64]) -> Result<&StepReport, StepError<M::Error>> {
-        self.step(dt_s, z)
-    }
+fn is_same(interval_s: f64, other_s: f64) -> bool {
+    (interval_s - other_s).abs() <= SAME_INTERVAL * other_s
 }

@@ -10,8 +10,7 @@
 //! * added variance: Agee and Turner's rank-one update.
 //!
 //! Source: Bierman 1977 (chapters III, V, VI), Thornton 1976.
-use nalgebra::allocator::Allocator;
-use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, U1};
+use nalgebra::{DMatrix, DVector};
 
 use super::factor::{factor_udu, mirror};
 use super::kernel::{axpy, column, column_mut, dot};
@@ -24,32 +23,26 @@ mod thornton;
 /// Factors of a covariance of `n` states, with the memory that its updates work in.
 ///
 /// # Shapes
-/// `U`: (n, n) unit upper triangular; `d`: (n), not negative. `D` is `Const<n>` or `Dyn`.
+/// `U`: (n, n) unit upper triangular; `d`: (n), not negative.
 #[derive(Clone, Debug)]
-pub struct UdFactors<D: Dim>
-where
-    DefaultAllocator: Allocator<D, D> + Allocator<D>,
-{
-    u: OMatrix<f64, D, D>,
-    d: OVector<f64, D>,
+pub struct UdFactors {
+    u: DMatrix<f64>,
+    d: DVector<f64>,
     /// `U^T h` in an update, `v` in a rank-one update.
-    f: OVector<f64, D>,
+    f: DVector<f64>,
     work: TimeUpdate,
 }
 
-impl<D: Dim> UdFactors<D>
-where
-    DefaultAllocator: Allocator<D, D> + Allocator<D>,
-{
+impl UdFactors {
     /// Factors of the covariance `p`, which may be singular and may hold zero variances.
     ///
     /// A variance that the later states explain up to rounding (`n` epsilon of itself) counts as explained in full.
     ///
     /// # Errors
     /// `p` is not finite, not symmetric, or not positive semi-definite.
-    pub fn from_covariance(p: &OMatrix<f64, D, D>) -> Result<Self, EstimatorError> {
+    pub fn from_covariance(p: &DMatrix<f64>) -> Result<Self, EstimatorError> {
         let mut u = p.clone();
-        let mut d = OVector::zeros_generic(p.shape_generic().0, U1);
+        let mut d = DVector::zeros(p.nrows());
         factor_udu(u.as_mut_slice(), d.as_mut_slice())?;
         let f = d.clone();
         Ok(Self { u, d, f, work: TimeUpdate::default() })
@@ -57,7 +50,7 @@ where
 
     /// Make room for a process with `leading` moving states and `noises` noise sources, so that not even the first
     /// [`predict`](Self::predict) allocates.
-    pub fn reserve(&mut self, leading: usize, noises: usize) {
+    pub(crate) fn reserve(&mut self, leading: usize, noises: usize) {
         self.work.reserve(self.states(), leading, noises);
     }
 
@@ -67,12 +60,12 @@ where
     }
 
     /// The factor `U`: (n, n).
-    pub fn unit_upper(&self) -> &OMatrix<f64, D, D> {
+    pub(crate) fn unit_upper(&self) -> &DMatrix<f64> {
         &self.u
     }
 
     /// The factor `d`: (n).
-    pub fn diagonal(&self) -> &OVector<f64, D> {
+    pub fn diagonal(&self) -> &DVector<f64> {
         &self.d
     }
 
@@ -83,19 +76,19 @@ where
     }
 
     /// The covariance `P`: (n, n).
-    pub fn covariance(&self) -> OMatrix<f64, D, D> {
+    pub fn covariance(&self) -> DMatrix<f64> {
         let mut p = self.u.clone();
         self.covariance_into(&mut p);
         p
     }
 
     /// Write the covariance `P` into `p`: (n, n).
-    pub fn covariance_into(&self, p: &mut OMatrix<f64, D, D>) {
+    pub fn covariance_into(&self, p: &mut DMatrix<f64>) {
         self.write_covariance(p.as_mut_slice());
     }
 
     /// Write the covariance `P` into a column-major slice of length n^2.
-    pub fn write_covariance(&self, p: &mut [f64]) {
+    pub(crate) fn write_covariance(&self, p: &mut [f64]) {
         let n = self.states();
         p.fill(0.0);
         for (l, &d) in self.d.as_slice().iter().enumerate() {
@@ -114,7 +107,7 @@ where
     }
 
     /// Write the covariance of state `i` with all states: (n).
-    pub fn write_column(&self, i: usize, y: &mut [f64]) {
+    pub(crate) fn write_column(&self, i: usize, y: &mut [f64]) {
         let (n, u) = (self.states(), self.u.as_slice());
         y.fill(0.0);
         for (j, d) in self.d.as_slice().iter().enumerate().skip(i) {
@@ -132,16 +125,6 @@ where
                 f * f * self.d[j]
             })
             .sum()
-    }
-
-    /// Covariance `y = P h` of every state with a linear function of the state; `h` and `y`: (n).
-    pub fn covariance_with(&self, h: &[f64], y: &mut [f64]) {
-        let (n, u) = (self.states(), self.u.as_slice());
-        y.fill(0.0);
-        for (j, d) in self.d.as_slice().iter().enumerate() {
-            let u = &column(u, n, j)[..=j];
-            axpy(d * dot(u, h), u, y);
-        }
     }
 
     /// Time update `P <- F P F^T + G diag(q) G^T` (Thornton).
@@ -177,7 +160,7 @@ where
 
     /// As [`update`](Self::update), with the `h` of the last [`project`](Self::project); nothing may have changed the
     /// covariance since.
-    pub fn update_projected(&mut self, r: f64, gain: &mut [f64]) -> f64 {
+    pub(crate) fn update_projected(&mut self, r: f64, gain: &mut [f64]) -> f64 {
         let (u, d, f) = (self.u.as_mut_slice(), self.d.as_mut_slice(), self.f.as_slice());
         bierman(u, d, f, r, gain)
     }
@@ -210,7 +193,7 @@ where
     }
 
     /// Add `variance` to state `i`, its covariances unchanged.
-    pub fn inflate(&mut self, i: usize, variance: f64) {
+    pub(crate) fn inflate(&mut self, i: usize, variance: f64) {
         self.f.fill(0.0);
         self.f[i] = 1.0;
         self.add_leading(variance, i + 1);
@@ -230,7 +213,7 @@ where
     }
 
     /// Make state `i` independent of all others, with the given variance: an event has reset it.
-    pub fn decorrelate_and_set(&mut self, i: usize, variance: f64) {
+    pub(crate) fn decorrelate_and_set(&mut self, i: usize, variance: f64) {
         let n = self.states();
         let u = self.u.as_mut_slice();
         for j in i + 1..n {

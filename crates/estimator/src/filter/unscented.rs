@@ -1,270 +1,183 @@
-//! Unscented Kalman filter on a [`StateSpace`]: means and covariances from sigma points, no gradients of outputs.
+//! The unscented filter as a statistical linearisation, so that it shares the factorised covariance.
 //!
-//! Points `x` and `x +- sqrt(n + lambda) S_i` with `P = S S^T`, `lambda = alpha^2 (n + kappa) - n`; weights
-//! `lambda / (n + lambda)` for the first (covariance: `+ 1 - alpha^2 + beta`), `1 / (2 (n + lambda))` for the others.
-//! The default `alpha = 1, beta = kappa = 0` is the cubature rule: no weight is negative at any `n`.
+//! With `P = U diag(d) U^T` the sigma points are `x` and `x +- s sqrt(d_j) u_j`, `s^2 = 3`: the fourth moment of a
+//! Gaussian along each direction. Half the difference of a pair is linear in the point, half the sum is not: with
+//! `o_j = (y_j+ - y_j-) / (2 s)`, `e_j = (y_j+ + y_j-) / 2 - y_0` and `m = sum e_j / s^2`, the unscented mean is `y_0 + m`, the
+//! covariance with the state `U diag(sqrt d) o`, and the variance `sum o_j^2 + sum e_j^2 / s^2 + (beta - alpha^2) m^2`. So
+//! the gradient `h` with `U^T h = o / sqrt(d)` and the noise `R + sum e_j^2 / s^2 + (beta - alpha^2) m^2` put into the update of a
+//! linear measurement give the unscented update; likewise the transition, whose `e_j` and `m` become noise sources. Nothing is
+//! subtracted: with `alpha^2 = 3 / n`, `beta = 2`, `kappa = 0` all weights of noise are positive.
 //!
-//! Process noise `G diag(q) G^T` is added after the transition and new points are drawn with it, without which the
-//! filter would not be the Kalman filter on linear processes. State and outputs then form one joint Gaussian, which is
-//! conditioned on one reading after the other. A covariance that is no longer positive semi-definite is an error.
+//! Process noise is that of the middle point and is added after the transition; points are drawn anew for each
+//! reading. A direction along which a point leaves the domain of the equations is linearised at the middle point.
 //!
-//! Source: Julier and Uhlmann 2004; Wan and van der Merwe 2000; Arasaratnam and Haykin 2009 (cubature).
+//! Source: Julier and Uhlmann 2004; statistical linear regression: Lefebvre, Bruyninckx and De Schutter 2002.
 use nalgebra::DMatrix;
 
-use super::dense::symmetrise;
-use super::factor::factor_root;
-use super::failure::{StepError, check_length, check_sample, check_state};
-use super::gate::{Gate, GateCount, GateSettings};
-use super::kernel::{axpy, column};
-use super::report::StepReport;
-use super::sequential::SequentialFilter;
 use super::state_space::{Linearisation, StateSpace};
-use crate::EstimatorError;
+use super::ud::UdFactors;
 
-mod update;
+/// Square of the distance of the points, in variances.
+pub(crate) const SPREAD_SQUARED: f64 = 3.0;
 
-/// Options of an [`Unscented`] filter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnscentedSettings {
-    /// Spread of the points.
-    pub alpha: f64,
-    /// Weight of the middle point in covariances.
-    pub beta: f64,
-    /// Secondary spread.
-    pub kappa: f64,
-    /// Draw new points after each output, instead of one set for all outputs of a sample.
-    pub redraw: bool,
-    /// Gate per output; `None` uses every reading.
-    pub gate: Option<GateSettings>,
+/// Memory of the points. Nothing in it outlives a step.
+#[derive(Clone, Debug)]
+pub(crate) struct SigmaPoints {
+    /// Transition with the curvature as noise: `k + n + 1` sources.
+    pub linear: Linearisation,
+    /// Transition of the middle point: `k` sources.
+    tangent: Linearisation,
+    middle: Vec<f64>,
+    plus: Vec<f64>,
+    minus: Vec<f64>,
+    /// `Phi U`: (leading, n).
+    moved: DMatrix<f64>,
+    /// Weight `beta - alpha^2` of the mean's shift.
+    shift_weight: f64,
 }
 
-impl Default for UnscentedSettings {
-    fn default() -> Self {
-        Self { alpha: 1.0, beta: 0.0, kappa: 0.0, redraw: false, gate: None }
+impl SigmaPoints {
+    pub fn noises<M: StateSpace>(model: &M) -> usize {
+        model.noises() + model.states() + 1
     }
-}
 
-/// Spread of the points, and their weights in covariances; those in means add to one.
-#[derive(Clone, Copy, Debug)]
-struct Rule {
-    spread: f64,
-    weight: f64,
-    middle_covariance: f64,
-}
-
-impl Rule {
-    fn try_new(settings: &UnscentedSettings, n: usize) -> Result<Self, EstimatorError> {
-        let UnscentedSettings { alpha, beta, kappa, .. } = *settings;
-        let total = alpha * alpha * (n as f64 + kappa);
-        if !(total.is_finite() && total > 0.0 && beta.is_finite()) {
-            return Err(EstimatorError::SigmaPoints { alpha, beta, kappa });
+    pub fn new<M: StateSpace>(model: &M) -> Self {
+        let (n, leading) = (model.states(), model.leading());
+        Self {
+            linear: Linearisation::zeros(n, leading, Self::noises(model)),
+            tangent: Linearisation::zeros(n, leading, model.noises()),
+            middle: vec![0.0; n],
+            plus: vec![0.0; n],
+            minus: vec![0.0; n],
+            moved: DMatrix::zeros(leading, n),
+            shift_weight: 2.0 - SPREAD_SQUARED / n as f64,
         }
-        let middle_covariance = (total - n as f64) / total + 1.0 - alpha * alpha + beta;
-        Ok(Self { spread: total.sqrt(), weight: 0.5 / total, middle_covariance })
     }
 
-    /// Weight of point `i` in covariances.
-    fn covariance_weight(&self, i: usize) -> f64 {
-        if i == 0 { self.middle_covariance } else { self.weight }
-    }
-}
-
-/// Unscented Kalman filter; its covariance is dense.
-#[derive(Clone, Debug)]
-pub struct Unscented<M> {
-    model: M,
-    estimate: UnscentedSnapshot,
-    gate: Gate,
-    redraw: bool,
-    rule: Rule,
-    report: StepReport,
-    work: Work,
-}
-
-/// Knowledge of an [`Unscented`] filter at one time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UnscentedSnapshot {
-    /// State `x`: (n).
-    pub x: Vec<f64>,
-    /// Covariance `P`: (n, n), column-major.
-    pub p: Vec<f64>,
-    /// Its square root `S`, upper triangular: (n, n), column-major.
-    root: Vec<f64>,
-    /// History of each output at the gate.
-    pub gate_counts: Vec<GateCount>,
-}
-
-impl UnscentedSnapshot {
-    fn copy_from(&mut self, other: &Self) {
-        self.x.copy_from_slice(&other.x);
-        self.p.copy_from_slice(&other.p);
-        self.root.copy_from_slice(&other.root);
-        self.gate_counts.copy_from_slice(&other.gate_counts);
-    }
-
-    /// Factor the covariance.
-    fn refresh_root(&mut self, pivots: &mut [f64]) -> Result<(), EstimatorError> {
-        symmetrise(&mut self.p, pivots.len());
-        self.root.copy_from_slice(&self.p);
-        factor_root(&mut self.root, pivots)
-    }
-}
-
-/// Memory of a step.
-#[derive(Clone, Debug)]
-struct Work {
-    /// The estimate in the making.
-    next: UnscentedSnapshot,
-    linear: Linearisation,
-    /// Points: (n, 2n + 1).
-    points: Vec<f64>,
-    /// Values of the outputs at the points: (2n + 1) each.
-    outputs: Vec<f64>,
-    /// Mean of state and outputs: (n + outputs).
-    mean: Vec<f64>,
-    /// Joint covariance of state and outputs, and one column of it: (n + outputs, n + outputs).
-    joint: Vec<f64>,
-    column: Vec<f64>,
-    /// Noise variances of the outputs.
-    noise: Vec<f64>,
-    pivots: Vec<f64>,
-}
-
-impl<M: StateSpace> Unscented<M> {
-    /// Filter of `model` that starts at the state `x` (n) with the covariance `p` (n, n).
+    /// Time update of mean `x` (n) and covariance over `dt_s`, s.
     ///
     /// # Errors
-    /// Lengths differ, `p` is no covariance, or the settings are out of range.
-    pub fn try_new(
-        model: M,
+    /// The middle point cannot be advanced.
+    pub fn predict<M: StateSpace>(
+        &mut self,
+        model: &mut M,
+        x: &mut [f64],
+        p: &mut UdFactors,
+        dt_s: f64,
+    ) -> Result<(), M::Error> {
+        let (leading, k) = (model.leading(), model.noises());
+        self.middle.copy_from_slice(x);
+        model.propagate(&mut self.middle, dt_s, Some(&mut self.tangent))?;
+        self.linear.g.fill(0.0);
+        self.linear.g.columns_mut(0, k).copy_from(&self.tangent.g);
+        self.linear.q.rows_mut(0, k).copy_from(&self.tangent.q);
+        self.linear.q.rows_mut(k, x.len()).fill(1.0 / SPREAD_SQUARED);
+        self.linear.q[k + x.len()] = self.shift_weight;
+        for j in 0..x.len() {
+            self.move_pair(model, x, p, j, dt_s);
+        }
+        x.copy_from_slice(&self.middle);
+        let shift = k + x.len();
+        for (i, x) in x.iter_mut().enumerate().take(leading) {
+            let sum: f64 = (k..shift).map(|column| self.linear.g[(i, column)]).sum();
+            self.linear.g[(i, shift)] = sum / SPREAD_SQUARED;
+            *x += sum / SPREAD_SQUARED;
+        }
+        self.divide_by_factor(p);
+        p.predict(&self.linear);
+        Ok(())
+    }
+
+    /// Move the points of direction `j`: column `j` of `Phi U`, and its curvature as a noise source.
+    fn move_pair<M: StateSpace>(&mut self, model: &mut M, x: &[f64], p: &UdFactors, j: usize, dt_s: f64) {
+        let (leading, k) = (self.moved.nrows(), self.tangent.q.len());
+        let step = self.draw(x, p, j);
+        let inside = step > 0.0
+            && model.propagate(&mut self.plus, dt_s, None).is_ok()
+            && model.propagate(&mut self.minus, dt_s, None).is_ok();
+        if !(inside && is_finite(&self.plus) && is_finite(&self.minus)) {
+            let u = p.unit_upper().column(j);
+            self.moved.column_mut(j).gemv(1.0, &self.tangent.phi.columns(0, j + 1), &u.rows(0, j + 1), 0.0);
+            return;
+        }
+        for i in 0..leading {
+            self.moved[(i, j)] = (self.plus[i] - self.minus[i]) / (2.0 * step);
+            self.linear.g[(i, k + j)] = 0.5 * (self.plus[i] + self.minus[i]) - self.middle[i];
+        }
+    }
+
+    /// Points of direction `j` about `x`; returns their distance in units of `u_j`, zero where nothing is in doubt.
+    fn draw(&mut self, x: &[f64], p: &UdFactors, j: usize) -> f64 {
+        let step = (SPREAD_SQUARED * p.diagonal()[j]).sqrt();
+        self.plus.copy_from_slice(x);
+        self.minus.copy_from_slice(x);
+        if step > 0.0 {
+            for (i, u) in p.unit_upper().column(j).iter().enumerate().take(j + 1) {
+                self.plus[i] += step * u;
+                self.minus[i] -= step * u;
+            }
+        }
+        step
+    }
+
+    /// `Phi = (Phi U) U^-1`.
+    fn divide_by_factor(&mut self, p: &UdFactors) {
+        let u = p.unit_upper();
+        for j in 0..u.ncols() {
+            for l in 0..j {
+                let factor = u[(l, j)];
+                if factor != 0.0 {
+                    let (done, mut rest) = self.moved.columns_range_pair_mut(l, j);
+                    rest.axpy(-factor, &done, 1.0);
+                }
+            }
+        }
+        self.linear.phi.copy_from(&self.moved);
+    }
+
+    /// Mean of a reading from the points, and variance of what the gradient does not say; `h` (n) becomes its statistical gradient.
+    ///
+    /// # Errors
+    /// The middle point has no such reading.
+    pub fn output<M: StateSpace>(
+        &mut self,
+        model: &mut M,
+        output: usize,
         x: &[f64],
-        p: &DMatrix<f64>,
-        settings: &UnscentedSettings,
-    ) -> Result<Self, EstimatorError> {
-        let (n, outputs) = (model.states(), model.outputs());
-        check_length(x.len(), n)?;
-        check_length(p.nrows(), n)?;
-        check_length(p.ncols(), n)?;
-        check_state(x)?;
-        let mut pivots = vec![0.0; n];
-        let mut root = p.as_slice().to_vec();
-        factor_root(&mut root, &mut pivots)?;
-        let gate_counts = vec![GateCount::default(); outputs];
-        let estimate = UnscentedSnapshot { x: x.to_vec(), p: p.as_slice().to_vec(), root, gate_counts };
-        let work = Work {
-            next: estimate.clone(),
-            linear: Linearisation::zeros(n, model.leading(), model.noises()),
-            points: vec![0.0; n * (2 * n + 1)],
-            outputs: vec![0.0; outputs * (2 * n + 1)],
-            mean: vec![0.0; n + outputs],
-            joint: vec![0.0; (n + outputs) * (n + outputs)],
-            column: vec![0.0; n + outputs],
-            noise: vec![0.0; outputs],
-            pivots,
-        };
-        Ok(Self {
-            rule: Rule::try_new(settings, n)?,
-            gate: Gate::try_new(settings.gate)?,
-            redraw: settings.redraw,
-            report: StepReport::new(outputs),
-            model,
-            estimate,
-            work,
-        })
-    }
-
-    /// State `x`: (n).
-    pub fn state(&self) -> &[f64] {
-        &self.estimate.x
-    }
-
-    /// Covariance `P`: (n, n).
-    pub fn covariance(&self) -> DMatrix<f64> {
-        DMatrix::from_column_slice(self.estimate.x.len(), self.estimate.x.len(), &self.estimate.p)
-    }
-
-    /// The process.
-    pub fn model(&self) -> &M {
-        &self.model
-    }
-
-    /// The process, e.g. to set its known inputs.
-    pub fn model_mut(&mut self) -> &mut M {
-        &mut self.model
-    }
-
-    /// What the last step told about its readings.
-    pub fn report(&self) -> &StepReport {
-        &self.report
-    }
-
-    /// History of each output at the gate.
-    pub fn gate_counts(&self) -> &[GateCount] {
-        &self.estimate.gate_counts
-    }
-
-    /// Advance by `dt_s`, s, and use the readings `z` (one per output, NaN where there is none).
-    ///
-    /// # Errors
-    /// An argument, the process or an output is unusable, or a covariance is not positive semi-definite; the estimate
-    /// is then as it was before.
-    pub fn step(&mut self, dt_s: f64, z: &[f64]) -> Result<&StepReport, StepError<M::Error>> {
-        check_sample(dt_s, z.len(), self.model.outputs())?;
-        self.report.clear();
-        self.work.next.copy_from(&self.estimate);
-        if dt_s > 0.0 {
-            self.predict(dt_s)?;
+        p: &UdFactors,
+        h: &mut [f64],
+    ) -> Result<(f64, f64), M::Error> {
+        let middle = model.output(output, x, Some(h))?;
+        let (mut shift, mut curvature) = (0.0, 0.0);
+        for j in 0..x.len() {
+            let u = p.unit_upper().column(j);
+            let step = self.draw(x, p, j);
+            let pair = (step > 0.0)
+                .then(|| {
+                    let plus = model.output(output, &self.plus, None).ok()?;
+                    Some((plus, model.output(output, &self.minus, None).ok()?))
+                })
+                .flatten()
+                .filter(|(plus, minus)| plus.is_finite() && minus.is_finite());
+            // `middle[..j]` is the solution so far of `U^T h = o / sqrt(d)`; `h` still is the tangent.
+            let slope = match pair {
+                Some((plus, minus)) => {
+                    let even = 0.5 * (plus + minus) - middle;
+                    shift += even / SPREAD_SQUARED;
+                    curvature += even * even / SPREAD_SQUARED;
+                    (plus - minus) / (2.0 * step)
+                }
+                None => u.iter().zip(h.iter()).take(j + 1).map(|(u, h)| u * h).sum(),
+            };
+            let solved: f64 = u.iter().zip(&self.middle).take(j).map(|(u, h)| u * h).sum();
+            self.middle[j] = slope - solved;
         }
-        let last = z.iter().rposition(|z| z.is_finite()).map_or(0, |last| last + 1);
-        if self.redraw {
-            for j in (0..last).filter(|j| z[*j].is_finite()) {
-                self.update(z, j..j + 1)?;
-            }
-        } else if last > 0 {
-            self.update(z, 0..last)?;
-        }
-        self.estimate.copy_from(&self.work.next);
-        Ok(&self.report)
-    }
-
-    /// Points of the estimate in the making.
-    fn draw(&mut self) {
-        let Work { next, points, .. } = &mut self.work;
-        let n = next.x.len();
-        for (i, point) in points.chunks_exact_mut(n.max(1)).enumerate() {
-            point.copy_from_slice(&next.x);
-            if i > 0 {
-                let spread = if i > n { -self.rule.spread } else { self.rule.spread };
-                axpy(spread, column(&next.root, n, (i - 1) % n), point);
-            }
-        }
+        h.copy_from_slice(&self.middle);
+        let noise = model.noise_variance(output, x);
+        Ok((middle + shift, noise + curvature + self.shift_weight * shift * shift))
     }
 }
 
-impl<M: StateSpace> SequentialFilter for Unscented<M> {
-    type Snapshot = UnscentedSnapshot;
-    type Error = M::Error;
-
-    fn outputs(&self) -> usize {
-        self.gate_counts().len()
-    }
-
-    fn snapshot(&self) -> UnscentedSnapshot {
-        self.estimate.clone()
-    }
-
-    fn save(&self, snapshot: &mut UnscentedSnapshot) {
-        snapshot.copy_from(&self.estimate);
-    }
-
-    fn restore(&mut self, snapshot: &UnscentedSnapshot) {
-        self.estimate.copy_from(snapshot);
-    }
-
-    fn step(&mut self, dt_s: f64, z: &[f64]) -> Result<&StepReport, StepError<M::Error>> {
-        self.step(dt_s, z)
-    }
+fn is_finite(x: &[f64]) -> bool {
+    x.iter().all(|x| x.is_finite())
 }
-
-#[cfg(test)]
-mod tests;

@@ -11,7 +11,7 @@
 //! `F = sum (dnu dnu^T/S + dS dS^T/(2 S^2))`; the derivatives are central differences of `nu` and `ln S`.
 //!
 //! Source: Söderström 2007 (section 8); Ljung 1999 (section 10.1).
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use super::compensation::Variances;
 use super::parametrisation::{Coefficients, Parametrisation};
@@ -21,7 +21,7 @@ use super::schedule::Schedule;
 use super::solve::{Search, Solution, relative};
 use super::{Hold, IdentifyError, InitialState, InputCourse, Parameter};
 use crate::EstimatorError;
-use crate::filter::{ExtendedKalman, KalmanSettings, StateSpace, UdFactors};
+use crate::filter::{ExtendedKalman, StateSpace, StepError, UdFactors};
 use crate::least_squares::{invert, solve};
 use process::Process;
 
@@ -189,14 +189,13 @@ impl Likelihood<'_> {
         let process = Process::<N>::new(k, self, intensity);
         let n = process.states();
         let covariance = self.start_covariance(k, n);
-        let form = UdFactors::<Dyn>::from_covariance(&covariance)?;
-        let mut filter = ExtendedKalman::try_new(process, &vec![0.0; n], form, &KalmanSettings::default())?;
+        let p = UdFactors::from_covariance(&covariance)?;
+        let mut filter = ExtendedKalman::try_new(process, &vec![0.0; n], p)?;
         let mut innovations = Vec::with_capacity(problem.u.len() + problem.samples());
-        let mut take = |filter: &mut ExtendedKalman<_, _>, dt: f64, z: [f64; 2]| {
-            let report = filter.step(dt, &z)?;
-            let read = report.outputs.iter().zip(z).filter(|(_, z)| z.is_finite());
-            innovations.extend(read.map(|(output, _)| (output.innovation, output.variance)));
-            Ok::<(), crate::filter::StepError<EstimatorError>>(())
+        let mut take = |filter: &mut ExtendedKalman<_>, dt: f64, z: [f64; 2]| {
+            let read = filter.step(dt, &z)?.iter().zip(z).filter(|(_, z)| z.is_finite());
+            innovations.extend(read.map(|(innovation, _)| (innovation.nu, innovation.s)));
+            Ok::<(), StepError<EstimatorError>>(())
         };
         take(&mut filter, 0.0, [problem.u[0], schedule.initial.map_or(f64::NAN, |sample| y[sample])])?;
         for piece in &schedule.pieces {

@@ -6,14 +6,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
-use super::bank::Outline;
 use super::clock::Clock;
+use super::cylinder::Cylinder;
+use crate::filter::Outline;
 use crate::thermal::model::reduced::WarmStart;
 
 /// The members of an observer as they were after a sample, rounded, without onsets of leaks.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Checkpoint {
-    bank: Outline,
+    bank: Outline<Cylinder>,
     clock: Clock,
     warm_start: WarmStart,
 }

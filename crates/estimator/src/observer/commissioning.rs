@@ -9,7 +9,7 @@ use crate::sensor::{Sensor, SensorKind};
 use crate::thermal::scenario::Fill;
 use crate::thermal::vessel::Vessel;
 
-/// Temperature that is assumed where nobody measures one, K.
+/// Temperature that is assumed where none is measured, K.
 const ASSUMED_K: f64 = 288.15;
 const ASSUMED_SD_K: f64 = 20.0;
 /// How well a stated fill is known, as a part of its mass: at 200 bar and 15 °C, 1 K and 1 bar are 0.43 % each.
@@ -70,37 +70,37 @@ impl Commissioning {
 pub(super) struct Prior {
     /// Mean: (n).
     pub mean: Vec<f64>,
-    /// Covariance: (n, n); only the temperatures of a settled cylinder hang together.
+    /// Covariance: (n, n); only the temperatures of a settled cylinder are correlated.
     pub covariance: DMatrix<f64>,
 }
 
-/// Standard deviations of the temperatures at the start: of all together, and of each by itself, K.
+/// Standard deviations of the temperatures at the start: common to all, and of each by itself, K.
 #[derive(Clone, Copy)]
 struct Spread {
-    together_k: f64,
+    common_k: f64,
     wall_k: f64,
     gas_k: f64,
 }
 
 impl Spread {
     fn of(settled: bool, measured: bool) -> Self {
-        let together_k = match (measured, settled) {
+        let common_k = match (measured, settled) {
             (false, _) => ASSUMED_SD_K,
             (true, true) => BODY_SD_K,
             (true, false) => 0.0,
         };
         let (wall_k, gas_k) =
             if settled { (SETTLED_SD_K, SETTLED_SD_K) } else { (UNSETTLED_SD_K, UNSETTLED_GAS_SD_K) };
-        Self { together_k, wall_k, gas_k }
+        Self { common_k, wall_k, gas_k }
     }
 
-    /// Add what the temperatures of wall, valve and gas have together.
+    /// Add what is common to the temperatures of wall, valve and gas.
     fn couple(self, states: &States, covariance: &mut DMatrix<f64>) {
         let is_body =
             |kind: &StateKind| matches!(kind, StateKind::Wall(_) | StateKind::Valve | StateKind::Gas);
         let body = || (0..states.count()).filter(|&state| is_body(&states.kinds[state]));
         for (i, j) in body().flat_map(|i| body().map(move |j| (i, j))) {
-            covariance[(i, j)] += self.together_k * self.together_k;
+            covariance[(i, j)] += self.common_k * self.common_k;
         }
     }
 }
@@ -114,11 +114,11 @@ pub(super) fn prior(
     vessel: &Vessel,
     readings: &[f64],
 ) -> Result<Prior, EstimatorError> {
-    let mean_of = |wanted: fn(&SensorKind) -> bool| -> Option<f64> {
+    let mean_of = |is_kind: fn(&SensorKind) -> bool| -> Option<f64> {
         let values: Vec<f64> = sensors
             .iter()
             .zip(readings)
-            .filter(|(sensor, value)| wanted(&sensor.kind) && value.is_finite())
+            .filter(|(sensor, value)| is_kind(&sensor.kind) && value.is_finite())
             .map(|(_, value)| *value)
             .collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
@@ -139,7 +139,7 @@ pub(super) fn prior(
             StateKind::Mass => (mass_kg, commissioning.mass_sd * mass_kg),
             StateKind::Leak => (0.0, 0.0),
             StateKind::Air => {
-                (air.unwrap_or(body_k), settings.air.prior_sd.max(spread.together_k.max(spread.wall_k)))
+                (air.unwrap_or(body_k), settings.air.prior_sd.max(spread.common_k.max(spread.wall_k)))
             }
             StateKind::OutsideFilm => (0.0, settings.ln_outside_film.prior_sd),
             StateKind::Sun => (0.0, settings.sun.prior_sd),

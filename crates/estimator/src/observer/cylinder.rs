@@ -5,11 +5,11 @@
 //! (`transition`, in this folder). Process noise is integrated over the step, `Q = int exp(As) diag(q) exp(As)^T ds`, with an error of order 4.
 //! Intervals longer than the settings allow are divided. The noise goes to the filter as `Q = G diag(q) G^T`, one column for
 //! each leading state, the last one first, so that the first non-zero element of a row of `G` is 1 on its antidiagonal.
-mod crossing;
+mod engine;
 mod lanes;
-mod linear;
-mod near;
+mod linearity;
 mod noise;
+mod plant;
 mod structure;
 mod transition;
 mod walks;
@@ -19,17 +19,16 @@ use nalgebra::DMatrix;
 use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
-use crate::filter::{Linearisation, StateSpace};
+use crate::filter::{Linearisation, Plant, StateSpace, parts};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
 use crate::thermal::model::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
-pub(super) use crossing::Crossing;
-pub(crate) use linear::LinearCylinder;
-pub(super) use near::HARDLY;
 use noise::Parts;
 use structure::Structure;
 use transition::{Transition, Walking};
-pub use walks::SlowProcess;
+
+/// What the gas temperature may be while gas is exchanged.
+const FREE_GAS_SD_K: f64 = 20.0;
 
 /// What a sensor looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +60,13 @@ pub struct Cylinder {
     /// What each sensor's offset may have changed by since it was new, standard deviation.
     loosened: Vec<f64>,
     /// States in which the equations are not linear, with the inverse of the difference for which a linearisation serves.
-    near: Vec<(usize, f64)>,
+    nonlinear: Vec<(usize, f64)>,
+    /// Mass and gas temperature with the variances that they have when gas has flowed.
+    freed: [(usize, f64); 2],
+    /// Largest `nu^2/S` of a pressure where gas may flow.
+    flow_gate: f64,
+    /// Whether the noise of a sensor follows from the last step, as if it had been read before that.
+    noise_by_step: bool,
     /// Interval since each sensor's last sample, s: how much of the model error it has seen before.
     interval_s: Vec<f64>,
     /// How often in a row each sensor has read the same before.
@@ -140,12 +145,15 @@ impl Cylinder {
         let mut cylinder = Self {
             interval_s: vec![f64::INFINITY; sensors.len()],
             repeats: vec![0; sensors.len()],
+            freed: [(0, 0.0); 2],
+            flow_gate: settings.gate_sd * settings.gate_sd,
+            noise_by_step: false,
             caution_pa_k: 0.0,
             walking: vec![Walking::default(); states.leading],
             bounds: Vec::new(),
             offsets: Vec::new(),
             loosened: vec![0.0; sensors.len()],
-            near: Vec::new(),
+            nonlinear: Vec::new(),
             sensors: sensors.to_vec(),
             targets,
             states,
@@ -153,13 +161,14 @@ impl Cylinder {
             work,
             model,
         };
+        cylinder.freed = cylinder.freed_gas_of();
         cylinder.set_walks();
         cylinder.set_bounds();
         let transmitters = (0..sensors.len()).filter(|&sensor| cylinder.reads_pressure(sensor));
         let offset = |sensor| cylinder.states.offset_of(sensor, sensors);
         cylinder.offsets = transmitters.filter_map(offset).collect();
-        let limit = |(state, kind)| cylinder.nearness(kind).map(|limit| (state, limit));
-        cylinder.near = cylinder.states.kinds.iter().enumerate().filter_map(limit).collect();
+        let limit = |(state, kind)| cylinder.linear_range(kind).map(|limit| (state, limit));
+        cylinder.nonlinear = cylinder.states.kinds.iter().enumerate().filter_map(limit).collect();
         cylinder.suppose(&settings.bank[0]);
         Ok(cylinder)
     }
@@ -189,36 +198,9 @@ impl Cylinder {
         self.model.warm_start()
     }
 
-    /// States that are offsets of transmitters.
-    pub fn transmitter_offsets(&self) -> &[usize] {
-        &self.offsets
-    }
-
     /// Whether a sensor reads the gas pressure.
-    pub fn reads_pressure(&self, sensor: usize) -> bool {
+    pub(crate) fn reads_pressure(&self, sensor: usize) -> bool {
         self.targets[sensor] == Target::Pressure
-    }
-
-    /// Number and length, s, of the steps that an interval is divided into.
-    pub(super) fn parts(&self, dt_s: f64) -> (usize, f64) {
-        let parts = (dt_s / self.settings.longest_step_s).ceil().max(1.0);
-        (parts as usize, dt_s / parts)
-    }
-
-    /// Longest step of the transition, s.
-    pub fn set_longest_step_s(&mut self, longest_step_s: f64) {
-        self.settings.longest_step_s = longest_step_s;
-    }
-
-    /// Whether a state has gas, at temperatures and a density that the equation of state knows.
-    pub fn is_possible(&self, x: &[f64]) -> bool {
-        let domain = self.model.fluid().domain();
-        let temperatures = domain.lowest_temperature_k..=domain.highest_temperature_k;
-        let warm = |state: usize| temperatures.contains(&x[state]);
-        let mass_kg = x[self.states.mass];
-        (0..self.states.wall).chain(self.states.valve).chain([self.states.gas]).all(warm)
-            && mass_kg > 0.0
-            && mass_kg <= self.model.highest_mass_kg()
     }
 
     /// Hold no member whose gas may flow.
@@ -462,7 +444,10 @@ impl StateSpace for Cylinder {
         dt_s: f64,
         linear: Option<&mut Linearisation>,
     ) -> Result<(), EstimatorError> {
-        let (parts, h) = self.parts(dt_s);
+        if self.noise_by_step {
+            self.interval_s.fill(dt_s);
+        }
+        let (parts, h) = parts(dt_s, self.settings.longest_step_s);
         let Some(linear) = linear else {
             return (0..parts).try_for_each(|_| self.step(x, h, false));
         };

@@ -1,6 +1,6 @@
 //! Which filter the members of the bank run.
 //!
-//! The policy around it is one and the same for all engines and lives in the members: gates, re-acquisition, events, bounds, slow
+//! The policy around it is one and the same for all engines and lives in the [bank](crate::filter::Bank): gates, re-acquisition, events, bounds, slow
 //! walks of the constants. An engine says how mean and covariance move in time and take a reading.
 //!
 //! | engine | what it does | what it costs |
@@ -9,18 +9,12 @@
 //! | unscented | linearises statistically over the spread of the estimate | some twelve times as much |
 //! | stationary | constant gain; learns no constants | as much: no covariance moves, but the model's equations cost most |
 //! | moving horizon | best trajectory through a window of samples, inside constraints | some 250 times as much |
-mod horizon;
-mod mechanism;
-mod stationary;
-mod unscented;
-
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
 use crate::filter::horizon::{HorizonSettings, Loss};
-pub(super) use mechanism::{Mechanism, Predicted, Shared};
 
 /// Iterations of a window per sample at most. The next sample iterates the same trajectory again.
 const ITERATIONS: usize = 2;
@@ -68,7 +62,7 @@ impl Default for MovingHorizonSettings {
 }
 
 impl MovingHorizonSettings {
-    fn horizon(&self) -> HorizonSettings {
+    pub(super) fn horizon(&self) -> HorizonSettings {
         let loss = self.huber.map_or(Loss::Quadratic, |delta| Loss::Huber { delta });
         HorizonSettings {
             samples: self.samples,
@@ -88,7 +82,7 @@ impl Engine {
     }
 
     /// Whether a pass can be smoothed: its gains are those of its own covariance.
-    pub fn can_be_smoothed(&self) -> bool {
+    pub(crate) fn can_be_smoothed(&self) -> bool {
         matches!(self, Self::Extended | Self::Unscented)
     }
 }

@@ -1,12 +1,10 @@
 //! What the observer says after a sample.
 use serde::{Deserialize, Serialize};
 
-use super::belief::{Belief, mixture};
 use super::clock::Exchange;
-use super::member::Outcome;
 use super::{Observer, QUOTED_K, REFERENCE_AFTER_S};
 use crate::EstimatorError;
-use crate::filter::StateSpace;
+use crate::filter::{Belief, Outcome, StateSpace, mixture};
 
 /// What an estimate rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,7 +47,7 @@ pub struct Estimate {
     pub mass_kg: f64,
     /// Its sd, kg.
     pub mass_sd_kg: f64,
-    /// Leak rate, kg/s, by the middle one of the members that have one, else what the one that holds the mass was told; NaN without such a member.
+    /// Leak rate, kg/s, by the middle one of the members that have one, else what the one that holds the mass is compensated for; NaN without such a member.
     pub leak_kg_s: f64,
     /// Its sd, kg/s.
     pub leak_sd_kg_s: f64,
@@ -107,7 +105,7 @@ impl Observer {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
         let (thermometer, freest) = (self.thermometer, self.freest);
         let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
-        let mut mass = Belief::mass(first_mass, free_mass);
+        let mut mass = Belief::blended(first_mass, free_mass);
         let mut gas = Belief::of(slow_mass, free_mass)
             .blend(bank.moments(thermometer, states.gas), bank.moments(freest, states.gas));
         gas.1 = self.band.stated_k2(gas.1, |state| bank.moments(thermometer, state).1);
@@ -116,7 +114,7 @@ impl Observer {
         if let Some(flow) = self.flow() {
             let belief = Belief::of(slow_mass, flow.mass());
             gas = belief.blend(gas, flow.gas());
-            mass = Belief::mass(mass, flow.mass());
+            mass = Belief::blended(mass, flow.mass());
             // Of a rate of days and one of minutes a mixture would tell neither.
             if belief.weight() < 0.5 {
                 leak = flow.rate();

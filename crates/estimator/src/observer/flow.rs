@@ -28,9 +28,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
-use super::belief::Moments;
 use super::settings::FlowDoubt;
 use crate::EstimatorError;
+use crate::filter::Moments;
 use crate::sensor::SensorKind;
 
 /// Mass, gas temperature and rate where gas may flow. SI; `sd` is a standard deviation.

@@ -20,20 +20,17 @@
 //! 8 g, 0.3 K are 6 g. The standard deviation of the mass says so. Changes since commissioning are known far better:
 //! see [`Observer::observability`] and [`Observer::mass_change_sd_kg`].
 mod band;
-mod bank;
-mod belief;
+mod band_settings;
 mod checkpoint;
 mod clock;
 pub mod commissioning;
 pub mod cylinder;
 pub mod engine;
 mod estimate;
+mod events;
 mod flow;
-mod late;
 mod learned;
-mod member;
 mod observability;
-mod pass;
 mod roles;
 mod scale;
 mod screen;
@@ -43,29 +40,24 @@ mod smoother;
 mod snapshot;
 pub mod states;
 mod surroundings;
-mod told;
 
 use nalgebra::DMatrix;
 
 use crate::EstimatorError;
-use crate::filter::StateSpace;
+use crate::filter::{Bank, Belief, Moments, StateSpace, Workspace};
+pub use crate::filter::{Innovation, Outcome};
 use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 use band::Band;
-pub use band::BandSettings;
-use bank::{Bank, Gates};
-use belief::{Belief, Moments};
+pub use band_settings::BandSettings;
 pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
-use engine::Shared;
 pub use engine::{Engine, MovingHorizonSettings};
 pub use estimate::{Estimate, Leak, Quality};
 pub use flow::Flow;
-pub use late::{Insertion, LateSamples};
 pub use learned::Learned;
-pub use member::{Innovation, Outcome};
 pub use observability::{Combination, Observability};
 pub(crate) use roles::middle_slow;
 use roles::{flowing, freest, held, thermometer};
@@ -99,13 +91,13 @@ pub struct Observer {
     commissioning: Commissioning,
     cylinder: Cylinder,
     band: Band,
-    bank: Bank,
-    shared: Shared,
+    bank: Bank<Cylinder>,
+    work: Workspace,
     learned: Option<Learned>,
     prior: DMatrix<f64>,
-    /// Leaks by their signature in the innovations of the member that holds the mass, and what that has to be told.
+    /// Leaks by their signature in the innovations of the member that holds the mass, and what is to be compensated.
     onsets: Onsets,
-    to_tell: Vec<f64>,
+    to_compensate: Vec<f64>,
     clock: Clock,
     gate: f64,
     /// The middle one of the members that have a leak rate, in the order of the bank; without any, the one that holds the mass.
@@ -119,14 +111,14 @@ pub struct Observer {
     /// The member whose gas may flow.
     flowing: Option<usize>,
     /// The bank before the present sample.
-    before: Bank,
+    before: Bank<Cylinder>,
     /// The likeliest bank after a step of the surroundings.
-    likeliest: Bank,
+    likeliest: Bank<Cylinder>,
     reference_x: Vec<f64>,
     /// Mass of each member at the present sample.
     masses: Vec<Moments>,
-    /// Which members began anew at the present sample.
-    anew: Vec<bool>,
+    /// Which members were replaced at the present sample.
+    replaced: Vec<bool>,
     /// The readings of the present sample without the faulty ones.
     usable: Vec<f64>,
 }
@@ -156,13 +148,13 @@ impl Observer {
         Ok(Self {
             vessel: vessel.clone(),
             commissioning: *commissioning,
-            shared: Shared::new(&cylinder),
+            work: Workspace::new(&cylinder),
             band: Band::new(cylinder.state_map(), cylinder.sensors(), settings),
             bank: Bank::default(),
             learned: None,
             prior: DMatrix::zeros(0, 0),
             onsets: Onsets::default(),
-            to_tell: Vec::with_capacity(cylinder.states()),
+            to_compensate: Vec::with_capacity(cylinder.states()),
             clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
             gate,
@@ -175,7 +167,7 @@ impl Observer {
             likeliest: Bank::default(),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
-            anew: vec![false; settings.bank.len()],
+            replaced: vec![false; settings.bank.len()],
             cylinder,
         })
     }
@@ -232,7 +224,7 @@ impl Observer {
         self.mark_faulty(time_s, readings, &usable);
         self.usable = usable;
         let restarted = restarted?;
-        self.replace_the_wrong();
+        self.replace_excluded();
         self.follow_onsets(time_s, restarted);
         self.clock.time_s = Some(time_s);
         self.estimate(time_s, readings, restarted)
@@ -280,16 +272,16 @@ impl Observer {
         self.update(&without)
     }
 
-    /// Members that are out of the question begin anew from the freest one.
-    fn replace_the_wrong(&mut self) {
+    /// Members that are excluded begin anew from the freest one.
+    fn replace_excluded(&mut self) {
         let mass = self.cylinder.state_map().mass;
-        let freest = self.freest;
+        let (freest, flowing) = (self.freest, self.flowing);
         self.bank.write_moments(mass, &mut self.masses);
-        self.anew.fill(false);
-        for index in (0..self.masses.len()).filter(|&index| index != freest && Some(index) != self.flowing) {
-            if Belief::of(self.masses[index], self.masses[freest]).is_out_of_the_question() {
-                self.anew[index] = true;
-                self.bank.begin_anew(index, freest, &self.cylinder);
+        self.replaced.fill(false);
+        for index in (0..self.masses.len()).filter(|&index| index != freest && Some(index) != flowing) {
+            if Belief::of(self.masses[index], self.masses[freest]).is_excluded() {
+                self.replaced[index] = true;
+                self.begin_anew(index, freest);
                 self.masses[index] = self.masses[freest];
             }
         }
@@ -312,7 +304,9 @@ impl Observer {
         if let Some(learned) = &self.learned {
             learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
         }
-        self.bank = Bank::new(&mut self.cylinder, &mean, &covariance)?;
+        let engine = self.cylinder.bank_engine();
+        let members = self.priors(&covariance);
+        self.bank = Bank::new(&mut self.cylinder, &engine, &mean, members)?;
         self.clock.await_reference(time_s + REFERENCE_AFTER_S);
         self.clock.pulled_until_s = time_s + SETTLE_S;
         for sensor in 0..readings.len() {
@@ -343,15 +337,16 @@ impl Observer {
         if let Some(flowing) = self.flowing.filter(|_| self.clock.exchange == Exchange::Open) {
             // Much of the gas may go out within the interval, or as much come in, and cools or warms what is there.
             let much_kg = MUCH * self.cylinder.settings().free_mass_sd_kg;
-            self.bank.free_the_rate(flowing, &self.cylinder, much_kg / dt_s);
+            let rate_sd_kg_s = much_kg / dt_s;
+            self.bank.set_variance(flowing, self.cylinder.state_map().leak, rate_sd_kg_s * rate_sd_kg_s);
         }
-        self.bank.predict(&mut self.cylinder, &mut self.shared, dt_s)
+        self.bank.predict(&mut self.cylinder, &mut self.work, dt_s)
     }
 
     fn take_in(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         if self.clock.exchanging(time_s) {
             self.clock.pulled_until_s = time_s + SETTLE_S;
-            self.bank.open(&self.cylinder);
+            self.open();
         }
         self.update(readings)
     }
@@ -359,8 +354,8 @@ impl Observer {
     fn update(&mut self, readings: &[f64]) -> Result<(), EstimatorError> {
         // While gas is exchanged, less is gas that flows.
         let flow = if self.clock.exchange == Exchange::Open { FLOW_GATE_OPEN } else { FLOW_GATE * self.gate };
-        let gates = Gates { all: self.gate, flow };
-        self.bank.update(&mut self.cylinder, &mut self.shared, readings, gates)
+        self.cylinder.set_flow_gate(flow);
+        self.bank.update(&mut self.cylinder, &mut self.work, readings)
     }
 
     /// Whether every member but the flowing one is possible; that begins anew from the freest one where it is not.
@@ -370,11 +365,48 @@ impl Observer {
             return false;
         }
         if let Some(flowing) = self.flowing.filter(|&index| !self.bank.is_possible(index, &self.cylinder)) {
-            self.bank.begin_anew(flowing, self.freest, &self.cylinder);
+            self.begin_anew(flowing, self.freest);
             let prior_sd_kg_s = self.bank.members[flowing].hypothesis.rate.prior_sd;
-            self.bank.free_the_rate(flowing, &self.cylinder, prior_sd_kg_s);
+            self.bank.set_variance(flowing, self.cylinder.state_map().leak, prior_sd_kg_s * prior_sd_kg_s);
         }
         true
+    }
+
+    /// Hypothesis and prior of each member: one covariance, but for the leak rate, of which each has its own.
+    fn priors(&self, covariance: &DMatrix<f64>) -> Vec<(LeakHypothesis, DMatrix<f64>)> {
+        let leak = self.cylinder.state_map().leak;
+        let prior = |hypothesis: &LeakHypothesis| {
+            let mut covariance = covariance.clone();
+            covariance.row_mut(leak).fill(0.0);
+            covariance.column_mut(leak).fill(0.0);
+            covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
+            (*hypothesis, covariance)
+        };
+        self.cylinder.settings().bank.iter().map(prior).collect()
+    }
+
+    /// Let a member begin anew with all that another one knows. Where that is less mass than supposed, a leak rate that may walk
+    /// may be anything then; more mass is no leak, but tells that one was supposed in vain.
+    fn begin_anew(&mut self, index: usize, from: usize) {
+        let (mass, leak) = (self.cylinder.state_map().mass, self.cylinder.state_map().leak);
+        let lost = self.bank.members[from].x[mass] < self.bank.members[index].x[mass];
+        let free = lost && !self.bank.members[index].hypothesis.rate.is_known();
+        let sd_kg_s = if free { self.cylinder.settings().any_leak_sd_kg_s } else { 0.0 };
+        self.bank.replace(index, from);
+        self.bank.set(index, leak, 0.0, sd_kg_s * sd_kg_s);
+    }
+
+    /// Free mass and gas temperature of everything known about them, and forget the leak rate. A member whose gas may flow knows better.
+    fn open(&mut self) {
+        let leak = self.cylinder.state_map().leak;
+        for index in 0..self.bank.members.len() {
+            let member = &mut self.bank.members[index];
+            if !member.hypothesis.is_flowing() {
+                member.x[leak] = 0.0;
+                let rate = (leak, member.hypothesis.rate.prior_sd.powi(2));
+                self.bank.free(index, [rate].into_iter().chain(self.cylinder.freed_gas().iter().copied()));
+            }
+        }
     }
 
     /// What the freest member says of another one.
@@ -409,7 +441,7 @@ impl Observer {
                 mass_kg,
                 mass_sd_kg: mass_variance.sqrt(),
                 covariance_kg2_s: self.bank.covariance_of(index, states.mass, states.leak),
-                begun_anew: self.anew[index],
+                begun_anew: self.replaced[index],
             }
         };
         (0..self.flowing.unwrap_or(self.bank.members.len()).min(self.bank.members.len())).map(of)
@@ -421,7 +453,7 @@ impl Observer {
         self.bank.members.first()?;
         let free = self.bank.moments(self.freest, self.cylinder.state_map().mass);
         let (mass_kg, variance_kg2) = match self.flow() {
-            Some(flow) => Belief::mass(free, flow.mass()),
+            Some(flow) => Belief::blended(free, flow.mass()),
             None => free,
         };
         Some((mass_kg, variance_kg2.sqrt()))
@@ -447,11 +479,6 @@ impl Observer {
     /// windows of the moving horizon without a solution inside the constraints.
     pub fn fallbacks(&self) -> u64 {
         self.bank.fallbacks()
-    }
-
-    /// Whether a constant or a film of the first member stands at the bound of what is plausible.
-    pub fn at_bound(&self) -> bool {
-        self.bank.members.first().is_some_and(|member| member.at_bound)
     }
 
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.

@@ -6,7 +6,7 @@
 //! the temperature differences that the reduced model resolves worst, and what is learnt fades.
 use serde::{Deserialize, Serialize};
 
-use super::band::BandSettings;
+use super::band_settings::BandSettings;
 use super::engine::Engine;
 use crate::EstimatorError;
 use crate::log::Quantity;

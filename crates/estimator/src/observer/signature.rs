@@ -16,8 +16,8 @@
 //! stay: between two that lie far apart neither has the rate of a leak that began in between.
 //!
 //! The recursion is linear, the filter is not. A member that knows of no leak explains one of a hundredth of the mass by its films, and the rate comes out a
-//! third too large. So the member is told the likeliest leak beyond three standard deviations, `r (1 - 9/z^2)`: its estimate is moved by that times `f`. What
-//! it has been told, `t`, follows the same recursion, and `nu + h' t` stands for `nu` in `d`: the innovation as it would have been without. The weight is by `nu` itself.
+//! third too large. So the member is compensated for the likeliest leak beyond three standard deviations, `r (1 - 9/z^2)`: its estimate is moved by that times `f`. What
+//! has been compensated, `t`, follows the same recursion, and `nu + h' t` stands for `nu` in `d`: the innovation as it would have been without. The weight is by `nu` itself.
 //!
 //! Where the member begins anew from the freest one its error has nothing of the leak any more: `f = 0` but for the rate; what the sums have stays. An exchange of gas or a
 //! restart ends all onsets.
@@ -30,9 +30,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
-use super::pass::Pass;
-use crate::filter::StateSpace;
 use crate::filter::kernel::{axpy, column, dot};
+use crate::filter::{Plant, StateSpace, StepRecord};
 use crate::numbers;
 
 /// Interval between possible onsets, s.
@@ -43,8 +42,8 @@ const LONGEST_S: f64 = 60.0 * 86_400.0;
 const RATIO: f64 = 1.7;
 /// Standard deviations up to which an innovation counts in full.
 const BOUND: f64 = 2.0;
-/// Standard deviations from which the member is told a leak.
-const TOLD: f64 = 3.0;
+/// Standard deviations from which the member is compensated for a leak.
+const COMPENSATED: f64 = 3.0;
 
 /// The leak that there would be if it had begun at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,9 +73,9 @@ pub(super) struct Onsets {
     /// What each has made of the member's error: (n), one after the other.
     #[serde(with = "numbers")]
     responses: Vec<f64>,
-    /// What the member was told: (n).
+    /// What the member was compensated: (n).
     #[serde(with = "numbers")]
-    told: Vec<f64>,
+    compensated: Vec<f64>,
     /// When the next one comes, s.
     due_s: Option<f64>,
 }
@@ -96,17 +95,17 @@ impl Onsets {
     pub fn copy_from(&mut self, other: &Self) {
         self.sums.clone_from(&other.sums);
         self.responses.clone_from(&other.responses);
-        self.told.clone_from(&other.told);
+        self.compensated.clone_from(&other.compensated);
         self.due_s = other.due_s;
     }
 
     /// Whether it is of a member with so many states.
     pub fn is_like(&self, states: usize) -> bool {
         self.responses.len() == self.sums.len() * states
-            && (self.told.len() == states || self.sums.is_empty() && self.told.is_empty())
+            && (self.compensated.len() == states || self.sums.is_empty() && self.compensated.is_empty())
     }
 
-    /// The onsets that tell something, oldest first.
+    /// The onsets with information, oldest first.
     pub fn all(&self) -> impl Iterator<Item = Onset> {
         self.sums.iter().filter(|sums| sums.weighted > 0.0).map(|sums| Onset {
             since_s: sums.since_s,
@@ -115,23 +114,26 @@ impl Onsets {
         })
     }
 
-    /// Round the responses, and what the member was told, to single precision.
+    /// Round the responses, and what has been compensated, to single precision.
     pub fn round(&mut self) {
-        self.responses.iter_mut().chain(&mut self.told).for_each(|value| *value = numbers::single(*value));
+        self.responses
+            .iter_mut()
+            .chain(&mut self.compensated)
+            .for_each(|value| *value = numbers::single(*value));
     }
 
     /// None any more.
     pub fn clear(&mut self) {
         self.sums.clear();
         self.responses.clear();
-        self.told.fill(0.0);
+        self.compensated.fill(0.0);
         self.due_s = None;
     }
 
     /// The member's error has nothing of a leak any more, but for the rate.
     pub fn begin_anew(&mut self, leak: usize) {
-        let n = self.told.len();
-        self.told.fill(0.0);
+        let n = self.compensated.len();
+        self.compensated.fill(0.0);
         for response in self.responses.chunks_mut(n.max(1)) {
             response.fill(0.0);
             response[leak] = 1.0;
@@ -140,27 +142,27 @@ impl Onsets {
 
     /// The member's state is another one, whatever leak there was.
     pub fn reset(&mut self, state: usize) {
-        let n = self.told.len();
-        let responses = self.responses.chunks_mut(n.max(1)).chain([self.told.as_mut_slice()]);
+        let n = self.compensated.len();
+        let responses = self.responses.chunks_mut(n.max(1)).chain([self.compensated.as_mut_slice()]);
         responses.filter(|response| !response.is_empty()).for_each(|response| response[state] = 0.0);
     }
 
     /// Take a step of the member, with memory for a product.
-    fn follow(&mut self, pass: &Pass, leak: usize, moved: &mut Vec<f64>) {
-        if pass.opened {
+    fn follow(&mut self, step: &StepRecord, leak: usize, moved: &mut Vec<f64>) {
+        if !step.freed.is_empty() {
             self.clear();
         }
-        let (step, n) = (&pass.step, self.told.len());
+        let n = self.compensated.len();
         moved.resize(step.phi.nrows(), 0.0);
-        for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
-            carry(pass, response, moved);
+        for response in self.responses.chunks_mut(n).chain([self.compensated.as_mut_slice()]) {
+            carry(step, response, moved);
         }
         for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
             let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
             let (nu, s) = (step.innovation[sensor], step.variance[sensor]);
             let weight = (BOUND * s.sqrt() / nu.abs()).min(1.0);
-            let expected = dot(h, &self.told);
-            axpy(-expected, gain, &mut self.told);
+            let expected = dot(h, &self.compensated);
+            axpy(-expected, gain, &mut self.compensated);
             for (sums, response) in self.sums.iter_mut().zip(self.responses.chunks_mut(n)) {
                 let g = dot(h, response);
                 sums.score += weight * g * (nu + expected) / s;
@@ -169,19 +171,19 @@ impl Onsets {
                 axpy(-g, gain, response);
             }
         }
-        for (&(state, _), shares) in pass.bounded.iter().zip(pass.shares.chunks(n.max(1))) {
-            for response in self.responses.chunks_mut(n).chain([self.told.as_mut_slice()]) {
+        for (&(state, _), shares) in step.bounded.iter().zip(step.shares.chunks(n.max(1))) {
+            for response in self.responses.chunks_mut(n).chain([self.compensated.as_mut_slice()]) {
                 axpy(-response[state], shares, response);
             }
         }
-        if pass.begun_anew {
+        if step.replaced {
             self.begin_anew(leak);
         }
     }
 
     /// A new onset where one is due; without those that are too old or too close.
     fn renew(&mut self, time_s: f64, leak: usize) {
-        let n = self.told.len();
+        let n = self.compensated.len();
         if self.due_s.is_some_and(|due_s| time_s < due_s) {
             return;
         }
@@ -221,23 +223,23 @@ impl Onsets {
         losing.max_by(|&a, &b| self.sums[a].z().total_cmp(&self.sums[b].z()))
     }
 
-    /// What the member should have been told by now: (n).
-    fn to_tell(&self, to: &mut Vec<f64>) {
-        let n = self.told.len();
+    /// What should have been compensated by now: (n).
+    fn to_compensate(&self, to: &mut Vec<f64>) {
+        let n = self.compensated.len();
         to.clear();
         to.resize(n, 0.0);
         let Some(index) = self.likeliest() else { return };
         let z = self.sums[index].z();
-        if z > TOLD {
-            let rate = self.sums[index].rate() * (1.0 - TOLD * TOLD / (z * z));
+        if z > COMPENSATED {
+            let rate = self.sums[index].rate() * (1.0 - COMPENSATED * COMPENSATED / (z * z));
             axpy(rate, column(&self.responses, n, index), to);
         }
     }
 }
 
 /// Take a response over an interval, with memory for its moving part.
-fn carry(pass: &Pass, response: &mut [f64], moved: &mut [f64]) {
-    let (phi, m) = (pass.step.phi.as_slice(), moved.len());
+fn carry(step: &StepRecord, response: &mut [f64], moved: &mut [f64]) {
+    let (phi, m) = (step.phi.as_slice(), moved.len());
     moved.fill(0.0);
     for (column, &by) in phi.chunks_exact(m).zip(&*response) {
         if by != 0.0 {
@@ -245,7 +247,7 @@ fn carry(pass: &Pass, response: &mut [f64], moved: &mut [f64]) {
         }
     }
     response[..m].copy_from_slice(moved);
-    response.iter_mut().zip(&pass.relaxed).skip(m).for_each(|(by, factor)| *by *= factor);
+    response.iter_mut().zip(&step.relaxed).skip(m).for_each(|(by, factor)| *by *= factor);
 }
 
 impl Observer {
@@ -269,26 +271,28 @@ impl Observer {
         }
     }
 
-    /// Take what the member did into the onsets, and tell it the leak that is nearly certain.
+    /// Take what the member did into the onsets, and compensate it for the leak that is nearly certain.
     pub(super) fn follow_onsets(&mut self, time_s: f64, restarted: bool) {
         if restarted {
             self.onsets.clear();
         }
         let leak = self.cylinder.state_map().leak;
         let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) else { return };
-        self.onsets.told.resize(member.x.len(), 0.0);
-        if let Some(pass) = &member.pass {
-            self.onsets.follow(pass, leak, &mut self.to_tell);
+        self.onsets.compensated.resize(member.x.len(), 0.0);
+        if let Some(step) = &member.record {
+            self.onsets.follow(step, leak, &mut self.to_compensate);
         }
         self.onsets.renew(time_s, leak);
-        self.onsets.to_tell(&mut self.to_tell);
+        self.onsets.to_compensate(&mut self.to_compensate);
         self.reference_x.copy_from_slice(&member.x);
-        for ((x, to), told) in self.reference_x.iter_mut().zip(&self.to_tell).zip(&self.onsets.told) {
-            *x += to - told;
+        for ((x, to), done) in
+            self.reference_x.iter_mut().zip(&self.to_compensate).zip(&self.onsets.compensated)
+        {
+            *x += to - done;
         }
         if self.cylinder.is_possible(&self.reference_x) {
             member.x.copy_from_slice(&self.reference_x);
-            self.onsets.told.copy_from_slice(&self.to_tell);
+            self.onsets.compensated.copy_from_slice(&self.to_compensate);
         }
     }
 }

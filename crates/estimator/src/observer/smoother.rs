@@ -1,7 +1,7 @@
 //! Estimates given the samples before and after them.
 //!
 //! The observer's pass is recorded, sample by sample, and smoothed backwards (modified Bryson-Frazier recursion of
-//! [`crate::filter::smoother`]): the first member gives the mass, the middle slow one leak rate and gas temperature, and the freest
+//! [`crate::filter::smooth`]): the first member gives the mass, the middle slow one leak rate and gas temperature, and the freest
 //! one takes part with the weight that the filter gave it.
 //!
 //! A year of samples does not fit into memory, so the record has room for a number of rows, by default [`ROWS`]. A log of
@@ -13,12 +13,10 @@
 //! restart of the estimate ends one record and begins another.
 use std::collections::VecDeque;
 
-use super::belief::Belief;
 use super::engine::Engine;
-use super::pass::Pass;
 use super::{Estimate, Observer, Quality};
 use crate::EstimatorError;
-use crate::filter::{Backward, Smoothed, StateSpace};
+use crate::filter::{Backward, Belief, Smoothed, StateSpace, StepRecord};
 
 /// Rows of the record by default: at 18 states and three members some 120 MB; 23 hours at 10 s, 5.7 days at a minute.
 pub const ROWS: usize = 8192;
@@ -45,7 +43,7 @@ struct Row {
     reference_kg: Option<f64>,
     /// Weight of the first member in the mass, and of the thermometer in the gas temperature, against the freest.
     beliefs: (Belief, Belief),
-    passes: Vec<Pass>,
+    passes: Vec<StepRecord>,
 }
 
 impl Smoother {
@@ -139,22 +137,14 @@ impl Smoother {
 
     /// Record the last step of the observer; after a restart there is no step that leads there.
     fn row(&mut self, estimate: Estimate, restarted: bool) -> Row {
-        let leading = self.observer.cylinder.leading();
-        let mut passes = Vec::with_capacity(self.members.len());
-        for &index in &self.members {
-            let bank = &mut self.observer.bank;
-            let member = &mut bank.members[index];
+        let Observer { bank, cylinder, .. } = &mut self.observer;
+        let record = |&index: &usize| {
             if restarted {
-                member.pass = None;
+                bank.members[index].record = None;
             }
-            let pass = member.recorded(leading);
-            let mut row = pass.clone();
-            // A row at the same time has no interval of its own.
-            pass.begin(0.0);
-            row.step.x.as_mut_slice().copy_from_slice(&member.x);
-            bank.covariance_into(index, &mut row.step.p);
-            passes.push(row);
-        }
+            bank.record(index, cylinder)
+        };
+        let passes = self.members.iter().map(record).collect();
         let Roles { first, thermometer, .. } = self.roles();
         let belief = |role: usize| self.observer.belief(self.members[role]);
         let beliefs = (belief(first), belief(thermometer));
@@ -183,7 +173,7 @@ impl Smoother {
                 out.push(estimate);
             }
             for (pass, backward) in self.record[index].passes.iter().zip(&mut self.backward) {
-                go_back(backward, pass, self.observer.cylinder.state_map());
+                backward.pass_step(pass);
             }
         }
         out.reverse();
@@ -196,11 +186,11 @@ impl Smoother {
         let row = &self.record[index];
         for ((pass, backward), smoothed) in row.passes.iter().zip(&mut self.backward).zip(&mut self.smoothed)
         {
-            backward.estimate(&pass.step, smoothed);
+            backward.estimate(pass, smoothed);
         }
         let (filtered, reference_kg, beliefs) = (row.estimate, row.reference_kg, row.beliefs);
         let Roles { first, thermometer, slow, freest } = self.roles();
-        let learnt = &row.passes[thermometer].step.p;
+        let learnt = &row.passes[thermometer].p;
         let states = self.observer.cylinder.state_map();
         let (gas, mass, leak) = (states.gas, states.mass, states.leak);
         let [first, thermometer, slow, freest] =
@@ -235,33 +225,6 @@ struct Roles {
     thermometer: usize,
     slow: usize,
     freest: usize,
-}
-
-/// From after a step to after the step before it.
-fn go_back(backward: &mut Backward, pass: &Pass, states: &super::states::States) {
-    if pass.begun_anew {
-        backward.clear();
-        return;
-    }
-    for &(state, force) in &pass.bounded {
-        backward.push(state, force);
-    }
-    let freed = [states.mass, states.gas];
-    for sensor in (0..pass.step.used.len()).rev() {
-        if pass.step.used[sensor] {
-            backward.pass_update(&pass.step, sensor);
-        }
-        if pass.opened_before[sensor] {
-            freed.iter().for_each(|&state| backward.forget(state));
-        }
-    }
-    if pass.opened {
-        freed.iter().chain([&states.leak]).for_each(|&state| backward.forget(state));
-    }
-    for (state, &factor) in pass.relaxed.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
-        backward.scale(state, factor);
-    }
-    backward.pass_interval(&pass.step);
 }
 
 #[cfg(test)]

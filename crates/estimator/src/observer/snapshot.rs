@@ -2,19 +2,19 @@
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
-use super::bank::Bank;
 use super::clock::Clock;
+use super::cylinder::Cylinder;
 use super::signature::Onsets;
 use crate::EstimatorError;
-use crate::filter::StateSpace;
+use crate::filter::{Bank, StateSpace};
 use crate::thermal::model::reduced::WarmStart;
 
-/// The members as they were after a sample: what a late sample goes back to, and what a program that was stopped goes on from. With
+/// The members as they were after a sample: what to go back to, and what a program that was stopped goes on from. With
 /// another engine than the extended filter it cannot be serialised. It holds numbers that are none, which JSON has no
 /// word for: take a binary format.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot {
-    bank: Bank,
+    bank: Bank<Cylinder>,
     onsets: Onsets,
     pub(super) clock: Clock,
     warm_start: WarmStart,

@@ -95,7 +95,7 @@ pub struct States {
 
 impl States {
     /// The state of a sensor's offset, if it has one.
-    pub fn offset_of(&self, sensor: usize, sensors: &[Sensor]) -> Option<usize> {
+    pub(crate) fn offset_of(&self, sensor: usize, sensors: &[Sensor]) -> Option<usize> {
         let parameters = sensors.get(sensor)?.parameters();
         let offset = parameters.iter().position(|parameter| parameter.kind == ParameterKind::Offset)?;
         self.parameters[sensor][offset]

@@ -114,7 +114,8 @@ impl Observer {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
             if matches!(self.cylinder.sensors()[sensor].kind, SensorKind::Surface { .. }) {
-                let (nu, s) = self.bank.foresee(&mut self.cylinder, &mut self.shared, (sensor, reading))?;
+                let (nu, s) =
+                    self.bank.innovation_of_first(&mut self.cylinder, &mut self.work, (sensor, reading))?;
                 let in_sd = nu / s.sqrt();
                 (least, most) = (least.min(in_sd), most.max(in_sd));
             }

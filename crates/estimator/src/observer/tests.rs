@@ -1,4 +1,5 @@
 use super::*;
+use crate::filter::Plant;
 use crate::thermal::vessel::presets;
 
 const REST: [f64; 3] = [288.15, 288.15, 2e7];
@@ -68,7 +69,7 @@ fn a_restart_keeps_what_was_learnt_before_it() {
 fn the_usual_observer_has_the_sizes_that_the_filter_is_unrolled_for() {
     let observer = observer(Engine::Extended);
     let cylinder = &observer.cylinder;
-    assert_eq!((cylinder.states(), cylinder.leading()), crate::filter::bank::USUAL);
+    assert_eq!((cylinder.states(), cylinder.leading()), Cylinder::USUAL_SIZES);
     assert_eq!(cylinder.noises(), cylinder.leading());
 }
 
@@ -76,7 +77,7 @@ fn the_usual_observer_has_the_sizes_that_the_filter_is_unrolled_for() {
 fn a_constant_beyond_its_bound_is_put_back_and_the_observer_says_so() {
     let mut observer = observer(Engine::Extended);
     observer.step(0.0, &REST).unwrap();
-    assert!(!observer.at_bound());
+    assert!(!observer.bank.members[0].at_bound);
     let mut time_s = 0.0;
     for (state, low, high) in observer.cylinder.bounds().to_vec() {
         for (bound, by) in [(low, -1.0), (high, 1.0)] {
@@ -87,11 +88,11 @@ fn a_constant_beyond_its_bound_is_put_back_and_the_observer_says_so() {
             observer.step(time_s, &[f64::NAN; 3]).unwrap();
             let name = observer.cylinder.state_map().names[state].clone();
             assert_eq!(observer.bank.members[0].x[state], bound, "{name}");
-            assert!(observer.at_bound(), "{name}");
+            assert!(observer.bank.members[0].at_bound, "{name}");
             observer.bank.members[0].x[state] = inside;
             time_s += 10.0;
             observer.step(time_s, &[f64::NAN; 3]).unwrap();
-            assert!(!observer.at_bound(), "{name}");
+            assert!(!observer.bank.members[0].at_bound, "{name}");
         }
     }
 }
@@ -118,13 +119,7 @@ fn what_a_constant_may_not_be_the_other_states_take_on() {
             for (x, i) in bank.members[0].x.iter_mut().zip(0..) {
                 *x = allowed[i] + covariance[(i, state)] / variance * 0.5 * variance.sqrt();
             }
-            bank.update(
-                &mut observer.cylinder,
-                &mut observer.shared,
-                &[f64::NAN; 3],
-                Gates { all: 25.0, flow: 25.0 },
-            )
-            .unwrap();
+            bank.update(&mut observer.cylinder, &mut observer.work, &[f64::NAN; 3]).unwrap();
             let name = &names[state];
             assert!(bank.members[0].at_bound, "{engine:?}: {name}");
             for (i, expected) in allowed.iter().enumerate() {
@@ -543,7 +538,7 @@ fn a_loosened_offset_is_uncertain_by_so_much_more_and_a_renewed_sensor_by_all_th
 /// less than the law of the gas says.
 fn offsets(member: LeakHypothesis) -> [f64; 3] {
     let mut observer = observer_of(Engine::Extended, vec![member]);
-    let (pressure, offset) = (2, observer.cylinder.transmitter_offsets()[0]);
+    let (pressure, offset) = (2, observer.cylinder.considered()[0]);
     let mut after = |k: u32, off_pa: f64| {
         let warm_k = 8.0 * (f64::from(k) * std::f64::consts::TAU / 48.0).sin();
         if off_pa > 0.0 {

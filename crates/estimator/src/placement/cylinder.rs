@@ -18,8 +18,8 @@ use serde::{Deserialize, Serialize};
 use super::grouped::GroupedProblem;
 use super::problem::{CandidateOutput, LinearProblem};
 use crate::EstimatorError;
-use crate::filter::StateSpace;
-use crate::observer::cylinder::{Cylinder, LinearCylinder};
+use crate::filter::{LinearSystem, Plant, StateSpace};
+use crate::observer::cylinder::Cylinder;
 use crate::observer::states::{StateKind, States};
 use crate::observer::{Commissioning, LeakHypothesis, ObserverSettings};
 use crate::sensor::Sensor;
@@ -292,12 +292,12 @@ fn linear_around(
     cylinder: &mut Cylinder,
     point: &[f64],
     conditions: &Conditions,
-) -> Result<LinearCylinder, EstimatorError> {
+) -> Result<LinearSystem, EstimatorError> {
     let gas = cylinder.state_map().gas;
     let mut at = |apart_k: f64| {
         let mut beside = point.to_vec();
         beside[gas] += apart_k;
-        cylinder.linear_at(&beside, conditions.interval_s)
+        LinearSystem::at(cylinder, &beside, conditions.interval_s)
     };
     let mut linear = at(0.0)?;
     if conditions.apart_k == 0.0 {

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use cylwatch_estimator::consistency::{
     EnsembleNees, Finding, NisAccumulator, RunConsistency, Significance, Whiteness, normalised_error_squared,
 };
-use cylwatch_estimator::filter::{ExtendedKalman, KalmanSettings, Linearisation, StateSpace, UdFactors};
+use cylwatch_estimator::filter::{ExtendedKalman, Linearisation, StateSpace, UdFactors};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -86,13 +86,12 @@ fn run(
     truth: &Row,
     filter: &Row,
     samples: usize,
-    mut look: impl FnMut(usize, &ExtendedKalman<Row, UdFactors<nalgebra::Dyn>>, &[f64]),
+    mut look: impl FnMut(usize, &ExtendedKalman<Row>, &[f64]),
 ) {
     let mut normal = || -> f64 { StandardNormal.sample(rng) };
     let mut x: Vec<f64> = (0..STATES).map(|_| normal()).collect();
     let prior = UdFactors::from_covariance(&DMatrix::identity(STATES, STATES)).unwrap();
-    let mut kalman =
-        ExtendedKalman::try_new(filter.clone(), &[0.0; STATES], prior, &KalmanSettings::default()).unwrap();
+    let mut kalman = ExtendedKalman::try_new(filter.clone(), &[0.0; STATES], prior).unwrap();
     let mut truth = truth.clone();
     for k in 0..samples {
         if k > 0 {
@@ -127,8 +126,8 @@ fn findings(
         .map(|_| {
             let mut innovations = Vec::new();
             run(&mut rng, &truth, filter, samples, |_, kalman, _| {
-                let [a, b] = &kalman.report().outputs[..] else { panic!("two outputs") };
-                innovations.push([a.innovation, a.variance, b.innovation, b.variance]);
+                let [a, b] = kalman.innovations() else { panic!("two outputs") };
+                innovations.push([a.nu, a.s, b.nu, b.s]);
             });
             judge(&innovations)
         })
@@ -191,7 +190,7 @@ fn errors_summed_over_one_run_reject_a_perfect_filter_far_more_often_than_nomina
             // The wrong way on purpose: every sample of one run counts as an independent one.
             let mut pooled = NisAccumulator::default();
             run(&mut rng, &row, &row, 200, |_, kalman, error| {
-                let squared = normalised_error_squared(error, &kalman.form().covariance()).unwrap();
+                let squared = normalised_error_squared(error, &kalman.factors().covariance()).unwrap();
                 (0..STATES).for_each(|_| pooled.add((squared / STATES as f64).sqrt(), 1.0, true));
             });
             !pooled.finding(FIVE).is_consistent()
@@ -212,7 +211,7 @@ fn a_perfect_filter_fails_the_error_test_of_an_ensemble_at_most_at_the_nominal_r
         for _ in 0..runs {
             run(&mut rng, &row, &row, 40, |k, kalman, error| {
                 if let Some(index) = times.iter().position(|time| *time == k as f64) {
-                    nees.add(index, error, &kalman.form().covariance()).unwrap();
+                    nees.add(index, error, &kalman.factors().covariance()).unwrap();
                 }
             });
         }
@@ -233,7 +232,7 @@ fn an_ensemble_finds_a_filter_whose_noise_is_off_by_two() {
         for _ in 0..200 {
             run(&mut rng, &truth, &Row::new(MATCHED.0, factor * MATCHED.1), 40, |k, kalman, error| {
                 if let Some(index) = [9, 19, 39].iter().position(|time| *time == k) {
-                    nees.add(index, error, &kalman.form().covariance()).unwrap();
+                    nees.add(index, error, &kalman.factors().covariance()).unwrap();
                 }
             });
         }
@@ -246,8 +245,8 @@ fn the_report_of_a_perfect_run_finds_nothing() {
     let (mut rng, row) = (ChaCha8Rng::seed_from_u64(8), Row::new(MATCHED.0, MATCHED.1));
     let mut statistics = RunConsistency::new(&["left", "right"], RunConsistency::LAGS);
     run(&mut rng, &row, &row, 3000, |_, kalman, error| {
-        statistics.record_step(kalman.report());
-        statistics.record_error("left", error[0], kalman.form().variance(0).sqrt());
+        statistics.record_innovations(kalman.innovations());
+        statistics.record_error("left", error[0], kalman.factors().variance(0).sqrt());
     });
     let report = statistics.report(Significance::ONE_PERCENT);
     assert!(report.nis.finding.is_consistent() && report.normality.is_consistent(), "{report}");

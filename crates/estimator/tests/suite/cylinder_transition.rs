@@ -1,5 +1,5 @@
 //! The observer's state space against the definitions: steps split in two, matrix exponentials, differences.
-use cylwatch_estimator::filter::{Linearisation, StateSpace, discretise};
+use cylwatch_estimator::filter::{Linearisation, StateSpace};
 use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::states::StateKind;
@@ -8,6 +8,8 @@ use cylwatch_estimator::thermal::model::reduced::{ReducedModel, Unknowns};
 use cylwatch_estimator::thermal::scenario::sensor::{PressureReference, SensorKind};
 use cylwatch_estimator::thermal::vessel::presets;
 use nalgebra::{DMatrix, DVector};
+
+use crate::linear_model::discretise;
 
 /// One sensor of each kind; the pressure with an uncertain span, counted from the atmosphere.
 fn sensors(lag_s: f64) -> Vec<Sensor> {
@@ -254,8 +256,7 @@ fn a_step_is_the_exponential_of_the_linearised_equations() {
         let (mean, transition) =
             (largest(&moved, &expected, &typical), transition_difference(&f, &phi, &typical));
         assert!(mean < 1e-8 && transition < 1e-8, "{h} s: {mean:e} {transition:e}");
-        let van_loan = discretise(&a, &DMatrix::identity(n, n), &intensities(&cylinder, n), h).unwrap();
-        noise_difference(&q, &van_loan.noise)
+        noise_difference(&q, &discretise(&a, &intensities(&cylinder, n), h).1)
     });
     println!("noise of 20, 10, 5, 2.5 s by Simpson's rule: {noise:?}");
     assert!(noise[0] < 1e-3 && fall_with(&noise[1..], 4.0), "{noise:?}");

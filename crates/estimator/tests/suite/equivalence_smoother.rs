@@ -1,30 +1,26 @@
 //! Smoothers against the dense solution for all states at once.
-use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::filter::{
-    CovarianceForm, ExtendedKalman, KalmanSettings, PassStep, UdFactors, smooth_fixed_interval,
-};
-use nalgebra::{DMatrix, DVector, Dyn};
+use cylwatch_estimator::filter::{Bank, BankEngine, StepRecord, Workspace, smooth};
+use nalgebra::{DMatrix, DVector};
 
-use crate::linear_model::{Case, LinearModel, covariance_difference, rng, state_difference, uniform};
-
-type Filter = ExtendedKalman<LinearModel, UdFactors<Dyn>>;
+use crate::linear_model::{Case, covariance_difference, rng, state_difference, uniform};
 
 impl Case {
-    fn filter(&self) -> Filter {
-        let form = UdFactors::from_covariance(&self.p0).unwrap();
-        let settings = KalmanSettings::default();
-        ExtendedKalman::try_new(self.model.clone(), self.x0.as_slice(), form, &settings).unwrap()
-    }
-
-    /// The start and all steps, recorded.
-    fn pass(&self) -> Vec<PassStep> {
-        let mut filter = self.filter();
-        let mut steps = vec![filter.record().unwrap()];
+    /// The start and all steps of an extended filter, recorded; with `split`, each interval is a step of its own.
+    fn pass(&self, split: bool) -> Vec<StepRecord> {
+        let mut model = self.model.clone();
+        let mut work = Workspace::new(&model);
+        let members = vec![((), self.p0.clone())];
+        let mut bank = Bank::new(&mut model, &BankEngine::Extended, self.x0.as_slice(), members).unwrap();
+        let mut records = vec![bank.record(0, &model)];
         for (dt_s, z) in self.dt_s.iter().zip(&self.z) {
-            filter.step(*dt_s, z).unwrap();
-            steps.push(filter.record().unwrap());
+            bank.predict(&mut model, &mut work, *dt_s).unwrap();
+            if split {
+                records.push(bank.record(0, &model));
+            }
+            bank.update(&mut model, &mut work, z).unwrap();
+            records.push(bank.record(0, &model));
         }
-        steps
+        records
     }
 
     /// Mean and covariance of all states given all readings.
@@ -70,7 +66,7 @@ impl Case {
 fn assert_is_the_dense_solution(case: &Case) {
     let n = case.x0.len();
     let (x, p) = case.joint();
-    for (k, smoothed) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
+    for (k, smoothed) in smooth(&case.pass(false)).iter().enumerate() {
         let expected = p.view((k * n, k * n), (n, n)).into_owned();
         assert!(state_difference(smoothed.x.as_slice(), &x.rows(k * n, n).into_owned(), &expected) < 1e-10);
         assert!(covariance_difference(&smoothed.p, &expected) < 1e-10);
@@ -103,29 +99,9 @@ fn smoother_needs_no_process_noise_and_no_inverse() {
 #[test]
 fn a_step_taken_in_two_calls_is_smoothed_as_one() {
     let case = Case::random(&mut rng(49), (4, 3, 2), 10);
-    let mut filter = case.filter();
-    let mut steps = vec![filter.record().unwrap()];
-    for (dt_s, z) in case.dt_s.iter().zip(&case.z) {
-        filter.predict(*dt_s).unwrap();
-        steps.push(filter.record().unwrap());
-        filter.update(z).unwrap();
-        steps.push(filter.record().unwrap());
-    }
-    let apart = smooth_fixed_interval(&steps);
-    for (k, expected) in smooth_fixed_interval(&case.pass()).iter().enumerate() {
+    let apart = smooth(&case.pass(true));
+    for (k, expected) in smooth(&case.pass(false)).iter().enumerate() {
         assert!(state_difference(apart[2 * k].x.as_slice(), &expected.x, &expected.p) < 1e-12);
         assert!(covariance_difference(&apart[2 * k].p, &expected.p) < 1e-12);
     }
-}
-
-#[test]
-fn a_pass_with_consider_states_is_refused() {
-    let case = Case::random(&mut rng(50), (3, 2, 1), 1);
-    let form = UdFactors::<Dyn>::from_covariance(&case.p0).unwrap();
-    let settings = KalmanSettings { consider: vec![2], ..KalmanSettings::default() };
-    let filter = ExtendedKalman::try_new(case.model.clone(), case.x0.as_slice(), form, &settings).unwrap();
-    assert!(matches!(filter.record(), Err(EstimatorError::ConsiderStatesSmoothed)));
-    assert!(smooth_fixed_interval(&[]).is_empty());
-    let form = filter.form();
-    assert!(covariance_difference(&form.to_dense(), &case.p0) < 1e-14);
 }

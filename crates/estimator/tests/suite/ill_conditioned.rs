@@ -1,15 +1,20 @@
 //! Problems in which the covariance itself cannot be carried in double precision, with their closed forms.
-use cylwatch_estimator::filter::{CovarianceForm, Joseph, Linearisation, UdFactors};
-use nalgebra::{DMatrix, DVector, Dyn};
+use cylwatch_estimator::filter::{Linearisation, UdFactors};
+use nalgebra::{DMatrix, DVector};
 
 use crate::linear_model::{covariance_difference, rng, uniform};
 
-fn update_all<F: CovarianceForm>(mut form: F, h: &DMatrix<f64>, r: f64) -> DMatrix<f64> {
-    let mut gain = vec![0.0; h.ncols()];
+/// Joseph's form `P <- (I - K h^T) P (I - K h^T)^T + K r K^T`, row by row.
+fn update_in_josephs_form(p: &DMatrix<f64>, h: &DMatrix<f64>, r: f64) -> DMatrix<f64> {
+    let mut p = p.clone();
     for row in h.row_iter() {
-        form.update(row.transpose().as_slice(), r, &mut gain);
+        let h = row.transpose();
+        let gain = &p * &h / (h.dot(&(&p * &h)) + r);
+        let left = DMatrix::identity(p.nrows(), p.nrows()) - &gain * h.transpose();
+        p = &left * p * left.transpose() + r * &gain * gain.transpose();
+        p = (&p + p.transpose()) * 0.5;
     }
-    form.to_dense()
+    p
 }
 
 /// The plain update `P <- (I - K h^T) P`.
@@ -29,8 +34,11 @@ fn is_positive_definite(p: &DMatrix<f64>) -> bool {
 }
 
 fn assert_factors_are_right(p0: &DMatrix<f64>, h: &DMatrix<f64>, r: f64, expected: &DMatrix<f64>) {
-    let ud = update_all(UdFactors::<Dyn>::from_covariance(p0).unwrap(), h, r);
-    assert!(covariance_difference(&ud, expected) < 1e-6);
+    let mut factors = UdFactors::from_covariance(p0).unwrap();
+    for row in h.row_iter() {
+        factors.update(row.transpose().as_slice(), r, &mut vec![0.0; h.ncols()]);
+    }
+    assert!(covariance_difference(&factors.covariance(), expected) < 1e-6);
 }
 
 /// Two nearly equal, nearly exact readings: `H = [1 1 1; 1 1 1 + eps]`, `R = eps^2 I`, `P = I`.
@@ -49,7 +57,7 @@ fn nearly_equal_exact_readings_defeat_the_plain_update_and_not_the_factors() {
     let p0 = DMatrix::identity(3, 3);
     let plain = update_plainly(&p0, &h, eps * eps);
     assert!(!is_positive_definite(&plain) && covariance_difference(&plain, &expected) > 0.1);
-    let joseph = update_all(Joseph::<Dyn>::from_covariance(&p0).unwrap(), &h, eps * eps);
+    let joseph = update_in_josephs_form(&p0, &h, eps * eps);
     assert!(covariance_difference(&joseph, &expected) > 1e-3, "the covariance itself cannot hold eps^2");
     assert_factors_are_right(&p0, &h, eps * eps, &expected);
 }
@@ -77,16 +85,15 @@ fn a_time_update_keeps_what_the_covariance_cannot_hold() {
     let mut linear = Linearisation::zeros(3, 2, 1);
     // Turns the two states by 90 degrees, and with them what is known.
     linear.phi.copy_from_slice(&[0.0, 1.0, -1.0, 0.0, 0.0, 0.0]);
-    fn run<F: CovarianceForm>(mut form: F, linear: &Linearisation, h: &[f64], r: f64) -> f64 {
-        form.update(h, r, &mut [0.0; 3]);
-        form.predict(linear);
-        form.innovation_variance(&[-0.7, 0.3, 0.0], 0.0, &mut [0.0; 3])
-    }
     let p0 = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 3.0, 2.0]));
     // Variance of h^T x: 0.3^2 + 3 0.7^2 before the reading.
     let expected = 1.0 / (1.0 / 1.56 + 1.0 / r);
-    let ud = run(UdFactors::<Dyn>::from_covariance(&p0).unwrap(), &linear, &h, r);
-    assert!((ud / expected - 1.0).abs() < 1e-6);
-    let joseph = run(Joseph::<Dyn>::from_covariance(&p0).unwrap(), &linear, &h, r);
-    assert!((joseph / expected - 1.0).abs() > 1.0);
+    let mut factors = UdFactors::from_covariance(&p0).unwrap();
+    factors.update(&h, r, &mut [0.0; 3]);
+    factors.predict(&linear);
+    assert!((factors.quadratic(&[-0.7, 0.3, 0.0]) / expected - 1.0).abs() < 1e-6);
+    let joseph = update_in_josephs_form(&p0, &DMatrix::from_row_slice(1, 3, &h), r);
+    let turned = &linear.phi * joseph * linear.phi.transpose();
+    let along = DVector::from_vec(vec![-0.7, 0.3]);
+    assert!((along.dot(&(turned * &along)) / expected - 1.0).abs() > 1.0);
 }

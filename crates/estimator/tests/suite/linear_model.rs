@@ -1,7 +1,7 @@
 //! Random linear processes and their textbook filter in dense matrices: what the filters are compared with.
 use std::convert::Infallible;
 
-use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::filter::{Gate, Linearisation, Plant, StateSpace};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -27,6 +27,28 @@ pub fn uniform(rng: &mut ChaCha8Rng, rows: usize, columns: usize) -> DMatrix<f64
 
 pub fn normal(rng: &mut ChaCha8Rng, n: usize) -> DVector<f64> {
     DVector::from_fn(n, |_, _| StandardNormal.sample(rng))
+}
+
+/// Transition and noise covariance over `dt_s` of `dx = A x dt + dw`, `dw ~ N(0, Q_c dt)`: from the exponential of one block
+/// matrix (Van Loan 1978) over an interval so short that nothing in it overflows, then doubled.
+pub fn discretise(a: &DMatrix<f64>, q_c: &DMatrix<f64>, dt_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+    let n = a.nrows();
+    let norm = a.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max) * dt_s;
+    let doublings = norm.max(0.25).log2().ceil() as i32 + 2;
+    let short_s = dt_s * 0.5_f64.powi(doublings);
+    let mut block = DMatrix::zeros(2 * n, 2 * n);
+    block.view_mut((0, 0), (n, n)).copy_from(&(-a * short_s));
+    block.view_mut((0, n), (n, n)).copy_from(&(q_c * short_s));
+    block.view_mut((n, n), (n, n)).copy_from(&(a.transpose() * short_s));
+    let block = block.exp();
+    let mut f = block.view((n, n), (n, n)).transpose();
+    let mut q = &f * block.view((0, n), (n, n));
+    for _ in 0..doublings {
+        q += &f * &q * f.transpose();
+        f = &f * &f;
+    }
+    let symmetric = (&q + q.transpose()) * 0.5;
+    (f, symmetric)
 }
 
 /// A well-conditioned covariance.
@@ -68,18 +90,9 @@ impl LinearModel {
         Self { a, q_c, h: uniform(rng, outputs, n), r, leading }
     }
 
-    /// Transition and noise covariance over `dt_s` from the exponential of one block matrix (Van Loan 1978).
+    /// Transition and noise covariance over `dt_s`.
     pub fn discrete(&self, dt_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
-        let n = self.a.nrows();
-        let mut block = DMatrix::zeros(2 * n, 2 * n);
-        block.view_mut((0, 0), (n, n)).copy_from(&(-&self.a * dt_s));
-        block.view_mut((0, n), (n, n)).copy_from(&(&self.q_c * dt_s));
-        block.view_mut((n, n), (n, n)).copy_from(&(self.a.transpose() * dt_s));
-        let block = block.exp();
-        let f = block.view((n, n), (n, n)).transpose();
-        let q = &f * block.view((0, n), (n, n));
-        let symmetric = (&q + q.transpose()) * 0.5;
-        (f, symmetric)
+        discretise(&self.a, &self.q_c, dt_s)
     }
 
     /// The same as a linearisation; the noise comes in along the principal axes of its covariance.
@@ -160,6 +173,17 @@ impl StateSpace for LinearModel {
 
     fn noise_variance(&self, j: usize, _x: &[f64]) -> f64 {
         self.r[j]
+    }
+}
+
+/// Every reading passes.
+impl Plant for LinearModel {
+    type Hypothesis = ();
+
+    fn suppose(&mut self, (): &()) {}
+
+    fn gate(&self, (): &(), _output: usize) -> Gate {
+        Gate { limit: f64::INFINITY, rejections_in_a_row: 0 }
     }
 }
 

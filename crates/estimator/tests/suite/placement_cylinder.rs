@@ -1,7 +1,7 @@
 //! Sensor placement on the cylinder: the criterion is the observer's own certainty, and the searches work on it.
 use approx::assert_relative_eq;
 use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::filter::{Linearisation, StateSpace, UdFactors};
+use cylwatch_estimator::filter::{Linearisation, Plant, StateSpace, UdFactors};
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify};

@@ -21,7 +21,7 @@ use super::draws::matched_draws;
 use super::jury::{Jury, Present, Verdict, confirmation};
 use super::{Claim, ConfirmSettings, Confirmation, DAY_S, HOUR_S, Listener, Rows, RunId};
 use crate::EvaluationError;
-use crate::estimator::filter::{Linearisation, StateSpace};
+use crate::estimator::filter::{Linearisation, Plant, StateSpace};
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::{BandSettings, Commissioning, ObserverSettings, Walk};
 use crate::estimator::placement::cylinder::{Conditions, SitedCylinder, state_at};

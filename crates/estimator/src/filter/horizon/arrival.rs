@@ -8,7 +8,7 @@
 //! which loses information but adds no bias.
 //!
 //! The covariance may be singular, so the cost is `|xi|^2` with `x_0 = xbar + S xi`, `S = U sqrt(D)`.
-use nalgebra::{DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use super::interval::Interval;
 use crate::EstimatorError;
@@ -21,7 +21,7 @@ pub(super) struct Arrival {
     pub mean: DVector<f64>,
     /// `S`: (n, n) upper triangular, with zero columns where nothing is in doubt.
     pub root: DMatrix<f64>,
-    factors: UdFactors<Dyn>,
+    factors: UdFactors,
     gain: Vec<f64>,
 }
 

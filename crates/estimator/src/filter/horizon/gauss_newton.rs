@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::constraint::{Constraint, Spot};
 use super::merit::{Merit, linear_cost};
 use super::outcome::{HorizonError, HorizonStatus};
-use super::resolve::{Question, Resolution};
+use super::problem::{Resolution, WindowProblem};
 use super::settings::{HorizonSettings, Loss};
 use super::sweep::Sweep;
 use super::window::{Path, Window};
@@ -93,11 +93,11 @@ impl GaussNewton<'_> {
         sweep.factorise(intervals, path, &arrival.mean, &arrival.root);
         let spread = spread(&sweep.newest_covariance());
         let (constraints, loss) = (self.constraints, self.settings.loss);
-        let question = Question { sweep, intervals, path, constraints, loss, spread: &spread };
-        let resolution = question.resolve(likely);
-        let merit = Merit::of(&question, &resolution);
-        let current = merit.current(window, &question);
-        let predicted = linear_cost(&question, &resolution.step);
+        let problem = WindowProblem { sweep, intervals, path, constraints, loss, spread: &spread };
+        let resolution = problem.resolve(likely);
+        let merit = Merit::of(&problem, &resolution);
+        let current = merit.current(window, &problem);
+        let predicted = linear_cost(&problem, &resolution.step);
         Proposed { resolution, merit, current, predicted }
     }
 
@@ -110,8 +110,8 @@ impl GaussNewton<'_> {
             let path = window.path.towards(&proposed.resolution.step, alpha);
             let against = (self.constraints, self.settings.loss);
             if let Ok(merit) = proposed.merit.trial(model, window, &path, against) {
-                let wanted = SUFFICIENT * alpha * (proposed.current - proposed.predicted);
-                if merit <= proposed.current - wanted + ROUNDING * proposed.current {
+                let decrease = SUFFICIENT * alpha * (proposed.current - proposed.predicted);
+                if merit <= proposed.current - decrease + ROUNDING * proposed.current {
                     return self.keep_inside(window, proposed, path, alpha, merit);
                 }
                 possible.get_or_insert(path);

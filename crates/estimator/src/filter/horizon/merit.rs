@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::constraint::{Constraint, Span};
 use super::interval::Interval;
 use super::outcome::HorizonError;
-use super::resolve::{Active, Question, Resolution};
+use super::problem::{Active, Resolution, WindowProblem};
 use super::settings::Loss;
 use super::window::{Path, Window};
 use crate::filter::StateSpace;
@@ -27,10 +27,10 @@ pub(super) struct Merit {
 const MARGIN: f64 = 2.0;
 
 impl Merit {
-    /// Weights for the step that answers `question`.
-    pub fn of(question: &Question, resolution: &Resolution) -> Self {
-        let multipliers = adjoints(question, resolution);
-        let mut weights = DVector::zeros(question.path.newest().len());
+    /// Weights for the step that answers `problem`.
+    pub fn of(problem: &WindowProblem, resolution: &Resolution) -> Self {
+        let multipliers = adjoints(problem, resolution);
+        let mut weights = DVector::zeros(problem.path.newest().len());
         for p in &multipliers {
             weights.zip_apply(p, |d: &mut f64, p: f64| *d = d.max(MARGIN * p.abs()));
         }
@@ -39,12 +39,12 @@ impl Merit {
     }
 
     /// `phi` of the trajectory of linearisation.
-    pub fn current(&self, window: &Window, question: &Question) -> f64 {
+    pub fn current(&self, window: &Window, problem: &WindowProblem) -> f64 {
         let path = &window.path;
-        let mut phi = noise_cost(path) + self.outside(window, path, question.constraints);
+        let mut phi = noise_cost(path) + self.outside(window, path, problem.constraints);
         for (i, interval) in window.intervals.iter().enumerate() {
             phi += self.defect(interval, interval.advanced.clone(), path, i);
-            phi += interval.readings.iter().map(|r| question.loss.value(r.residual)).sum::<f64>();
+            phi += interval.readings.iter().map(|r| problem.loss.value(r.residual)).sum::<f64>();
         }
         phi
     }
@@ -94,11 +94,11 @@ impl Merit {
 }
 
 /// Cost of the step in the linearised problem, where it leaves no defect.
-pub(super) fn linear_cost(question: &Question, step: &Path) -> f64 {
+pub(super) fn linear_cost(problem: &WindowProblem, step: &Path) -> f64 {
     let mut cost = noise_cost(step);
-    for (interval, delta) in question.intervals.iter().zip(&step.x[1..]) {
+    for (interval, delta) in problem.intervals.iter().zip(&step.x[1..]) {
         for reading in &interval.readings {
-            cost += question.loss.value(interval.residual_after(reading, delta));
+            cost += problem.loss.value(interval.residual_after(reading, delta));
         }
     }
     cost
@@ -109,11 +109,11 @@ fn noise_cost(path: &Path) -> f64 {
 }
 
 /// Multipliers `p_0 ... p_N` of the dynamics at the step: derivative of the cost from state `i` on with that state.
-pub(super) fn adjoints(question: &Question, resolution: &Resolution) -> Vec<DVector<f64>> {
-    let n = question.path.newest().len();
-    let mut p = vec![DVector::zeros(n); question.intervals.len() + 1];
+pub(super) fn adjoints(problem: &WindowProblem, resolution: &Resolution) -> Vec<DVector<f64>> {
+    let n = problem.path.newest().len();
+    let mut p = vec![DVector::zeros(n); problem.intervals.len() + 1];
     for active in &resolution.active {
-        let constraint = &question.constraints[active.spot.row];
+        let constraint = &problem.constraints[active.spot.row];
         for &(k, a) in constraint.terms() {
             p[active.spot.stage][k] += active.multiplier * a;
             if constraint.span() == Span::Step {
@@ -121,11 +121,11 @@ pub(super) fn adjoints(question: &Question, resolution: &Resolution) -> Vec<DVec
             }
         }
     }
-    for (i, interval) in question.intervals.iter().enumerate().rev() {
+    for (i, interval) in problem.intervals.iter().enumerate().rev() {
         let (before, after) = p.split_at_mut(i + 1);
         for reading in &interval.readings {
             let r = interval.residual_after(reading, &resolution.step.x[i + 1]);
-            after[0].axpy(-question.loss.slope(r), &interval.gradient.column(reading.output), 1.0);
+            after[0].axpy(-problem.loss.slope(r), &interval.gradient.column(reading.output), 1.0);
         }
         pull_back(&interval.linear.phi, &after[0], &mut before[i]);
     }

@@ -9,7 +9,7 @@
 //!
 //! * `settings`, `constraint`, `outcome`: what goes in and out;
 //! * `window`, `interval`: trajectory and samples, linearised; `arrival`: what the samples before the window say;
-//! * `sweep`: the unconstrained optimum and posterior; `resolve`, `asked`: from there to the constrained optimum, with
+//! * `sweep`: the unconstrained optimum and posterior; `problem`, `resolve`, `active_set`: from there to the constrained optimum, with
 //!   `program`, `interior_point` and `polish` for the quadratic program;
 //! * `gauss_newton`: the iteration, `merit`: whether a step helps; `estimator`: one sample after the other.
 //!
@@ -18,8 +18,8 @@
 //! asked, since every interval in the window is passed again at each sample.
 //!
 //! Source: Rao, Rawlings and Lee 2001; Rao, Rawlings and Mayne 2003; Huber 1964.
+mod active_set;
 mod arrival;
-mod asked;
 mod constraint;
 mod estimator;
 mod gauss_newton;
@@ -28,6 +28,7 @@ mod interval;
 mod merit;
 mod outcome;
 mod polish;
+mod problem;
 mod program;
 mod resolve;
 mod settings;

@@ -1,7 +1,7 @@
 //! The small quadratic program behind constraints and outliers.
 //!
 //! In the posterior `delta = optimum + T eta` the cost of leaving the unconstrained optimum is `|eta|^2 / 2`. Only the
-//! span of the derivatives `T^T c` of the rows and readings in question can lower anything, so `eta = B v` with an
+//! span of the derivatives `T^T c` of the rows and readings in problem can lower anything, so `eta = B v` with an
 //! orthonormal basis `B` of that span, and with rows scaled to unit standard deviation the problem is
 //!
 //! `min |v|^2/2 + sum_j [(s_j^2 + (1 - omega_j) t_j^2)/2 - s_j t_j + delta |s_j|]`, `t = r - L v`, subject to `C v <= gap`,

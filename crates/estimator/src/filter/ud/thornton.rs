@@ -7,7 +7,7 @@ use crate::filter::kernel::{Group, axpy, dot_groups, multiply_rows};
 use crate::filter::state_space::Linearisation;
 
 /// Rows of the transition that are multiplied together.
-const TOGETHER: usize = 4;
+const GROUP: usize = 4;
 
 /// An element of a row of the transition.
 #[derive(Clone, Copy, Debug)]
@@ -91,10 +91,10 @@ impl TimeUpdate {
     fn sort_rows(&mut self, phi: &[f64], m: usize) {
         self.dense.clear();
         self.elements.clear();
-        for first in (0..m).step_by(TOGETHER) {
-            let group = first..(first + TOGETHER).min(m);
+        for first in (0..m).step_by(GROUP) {
+            let group = first..(first + GROUP).min(m);
             let coupled = |row: &usize| group.clone().any(|j| j != *row && phi[j * m + row] != 0.0);
-            if group.len() == TOGETHER && group.clone().filter(coupled).count() > 1 {
+            if group.len() == GROUP && group.clone().filter(coupled).count() > 1 {
                 self.dense.push(first);
                 group.for_each(|row| self.spans[row] = (0, m));
                 continue;
@@ -120,7 +120,7 @@ impl TimeUpdate {
         for (j, (moved, u)) in moved.chunks_exact_mut(m).zip(u.chunks_exact(n)).enumerate() {
             let u = &u[..used.min(j + 1)];
             for &first in dense.iter() {
-                moved[first..first + TOGETHER].copy_from_slice(&multiply_rows::<TOGETHER>(phi, m, first, u));
+                moved[first..first + GROUP].copy_from_slice(&multiply_rows::<GROUP>(phi, m, first, u));
             }
         }
         for &Element { row, column, value } in elements.iter() {

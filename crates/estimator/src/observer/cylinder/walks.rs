@@ -1,8 +1,9 @@
 //! How states walk, and how far they may.
-use super::super::settings::{LeakHypothesis, Walk};
+use super::super::settings::Walk;
 use super::super::states::StateKind;
 use super::Cylinder;
 use super::transition::Walking;
+use crate::filter::SlowProcess;
 use crate::sensor::ParameterKind;
 
 /// Least film outside, by radiation alone, and the largest, in a gale, W/(m² K).
@@ -16,68 +17,36 @@ const LN_INSIDE_BOUND: f64 = 1.5;
 /// cylinder whose transmitter was one leaked for ever.
 const BOUND_SD: f64 = 4.0;
 
-/// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlowProcess {
-    /// Variance gained in a second.
-    pub intensity: f64,
-    /// Inverse memory, 1/s; 0: a random walk.
-    pub decay_per_s: f64,
-    /// Value that it returns to.
-    pub rest: f64,
-}
-
-impl SlowProcess {
-    /// Factor on the departure from rest, and variance gained, over an interval, s.
-    pub fn over(&self, dt_s: f64) -> (f64, f64) {
-        let decay = self.decay_per_s * dt_s;
-        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
-        ((-decay).exp(), self.intensity * span_s)
+/// How a constant moves.
+pub(super) fn slow_process(cylinder: &Cylinder, state: usize) -> SlowProcess {
+    let Cylinder { settings, sensors, states, .. } = cylinder;
+    let of = |walk: &Walk, rest| SlowProcess {
+        intensity: walk.per_sqrt_s * walk.per_sqrt_s,
+        decay_per_s: walk.decay_per_s(),
+        rest,
+    };
+    match &states.kinds[state] {
+        StateKind::InsideFilm => of(&settings.ln_inside_film, 0.0),
+        StateKind::Capacity => of(&settings.ln_capacity, 0.0),
+        StateKind::FilmSlope => of(&settings.film_slope, 0.0),
+        StateKind::ValveSun => of(&settings.valve_sun, 0.0),
+        StateKind::Parameter { sensor, parameter } => {
+            let parameter = &sensors[*sensor].parameters()[*parameter];
+            let walk = settings.walk_of(parameter, sensors[*sensor].quantity());
+            of(&walk, parameter.mean)
+        }
+        _ => SlowProcess::default(),
     }
 }
 
 impl Cylinder {
-    /// Let mass and leak rate walk, and trust the pressure, as one member of the bank does.
-    pub fn suppose(&mut self, leak: &LeakHypothesis) {
-        self.caution_pa_k = leak.caution_pa_k;
-        self.walking[self.states.mass].intensity = leak.mass_walk_kg_per_sqrt_s.powi(2);
-        self.walking[self.states.leak].intensity = leak.rate.per_sqrt_s.powi(2);
-        self.walking[self.states.leak].decay_per_s = leak.rate.decay_per_s();
-    }
-
-    /// How a trailing state moves while nobody looks.
-    pub fn slow_process(&self, state: usize) -> SlowProcess {
-        let of = |walk: &Walk, rest| SlowProcess {
-            intensity: walk.per_sqrt_s * walk.per_sqrt_s,
-            decay_per_s: walk.decay_per_s(),
-            rest,
-        };
-        match &self.states.kinds[state] {
-            StateKind::InsideFilm => of(&self.settings.ln_inside_film, 0.0),
-            StateKind::Capacity => of(&self.settings.ln_capacity, 0.0),
-            StateKind::FilmSlope => of(&self.settings.film_slope, 0.0),
-            StateKind::ValveSun => of(&self.settings.valve_sun, 0.0),
-            StateKind::Parameter { sensor, parameter } => {
-                let parameter = &self.sensors[*sensor].parameters()[*parameter];
-                let walk = self.settings.walk_of(parameter, self.sensors[*sensor].quantity());
-                of(&walk, parameter.mean)
-            }
-            _ => SlowProcess { intensity: 0.0, decay_per_s: 0.0, rest: 0.0 },
-        }
-    }
-
-    /// States with the lowest and the highest value that can be; beyond them an estimate has left what it knows.
-    pub fn bounds(&self) -> &[(usize, f64, f64)] {
-        &self.bounds
-    }
-
     pub(super) fn set_bounds(&mut self) {
         let of = |state| self.bounds_of(state).map(|(low, high)| (state, low, high));
         self.bounds = (0..self.states.count()).filter_map(of).collect();
     }
 
     /// What each sensor's offset may have changed by since it was new, standard deviation: it is held within as much more.
-    pub fn set_loosened(&mut self, loosened: &[f64]) {
+    pub(crate) fn set_loosened(&mut self, loosened: &[f64]) {
         if self.loosened != loosened {
             self.loosened.copy_from_slice(loosened);
             self.set_bounds();

@@ -84,10 +84,11 @@ fn oldest(observer: &Observer) -> Onset {
 
 /// A filter whose error is known: three states of which two move, mass and leak rate, and one sensor.
 #[test]
-fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
+fn of_a_linear_filter_the_rate_is_exact_whatever_is_compensated() {
     const RATE: f64 = 0.3;
     let mut random = ChaCha8Rng::seed_from_u64(5);
-    let (mut pass, mut onsets) = (Pass::new(3, 2, 1), Onsets { told: vec![0.0; 3], ..Onsets::default() });
+    let (mut pass, mut onsets) =
+        (StepRecord::new(3, 2, 1), Onsets { compensated: vec![0.0; 3], ..Onsets::default() });
     let mut error = [0.4, 0.0, -0.7];
     let mut draw = || random.random::<f64>() - 0.5;
     for step in 0..60 {
@@ -95,7 +96,7 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
         let mut phi = nalgebra::DMatrix::from_fn(2, 3, |_, _| 0.1 * draw());
         (phi[(0, 0)], phi[(1, 1)]) = (0.9, 1.0);
         (phi[(0, 1)], phi[(1, 0)], phi[(1, 2)]) = (-1.0, 0.0, 0.0);
-        pass.move_on(&phi);
+        pass.append(&phi);
         pass.relax(2, 0.98);
         if step == 20 {
             // The leak begins, and nothing else is wrong.
@@ -107,7 +108,7 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
         error = [moved[0], moved[1], 0.98 * error[2]];
         let (h, gain) = ([1.0, 0.0, draw()], [0.3 + 0.2 * draw(), 0.0, 0.2 * draw()]);
         let nu = dot(&h, &error);
-        pass.take(0, &h, &gain, (nu, 25.0));
+        pass.update(0, &h, &gain, (nu, 25.0));
         axpy(-nu, &gain, &mut error);
         if step % 11 > 7 {
             // The constant stands at its bound: its error is not what the leak makes of it.
@@ -118,12 +119,12 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
         }
         onsets.follow(&pass, 1, &mut Vec::new());
         if step % 7 == 0 && step > 20 {
-            // Told half of the leak: the error is less by that.
-            let tell: Vec<f64> = onsets.responses.iter().map(|response| 0.5 * RATE * response).collect();
-            for ((error, tell), told) in error.iter_mut().zip(&tell).zip(&onsets.told) {
-                *error -= tell - told;
+            // Compensated for half of the leak: the error is less by that.
+            let next: Vec<f64> = onsets.responses.iter().map(|response| 0.5 * RATE * response).collect();
+            for ((error, next), done) in error.iter_mut().zip(&next).zip(&onsets.compensated) {
+                *error -= next - done;
             }
-            onsets.told = tell;
+            onsets.compensated = next;
         }
     }
     let found = onsets.all().next().unwrap();
@@ -134,11 +135,12 @@ fn of_a_linear_filter_the_rate_is_exact_whatever_it_is_told() {
 #[test]
 fn a_reading_far_off_counts_for_two_standard_deviations() {
     let score = |nu: f64| {
-        let (mut pass, mut onsets) = (Pass::new(2, 2, 1), Onsets { told: vec![0.0; 2], ..Onsets::default() });
+        let (mut pass, mut onsets) =
+            (StepRecord::new(2, 2, 1), Onsets { compensated: vec![0.0; 2], ..Onsets::default() });
         onsets.renew(0.0, 1);
         pass.begin(1.0);
-        pass.move_on(&nalgebra::DMatrix::from_row_slice(2, 2, &[1.0, -1.0, 0.0, 1.0]));
-        pass.take(0, &[1.0, 0.0], &[0.5, 0.0], (nu, 4.0));
+        pass.append(&nalgebra::DMatrix::from_row_slice(2, 2, &[1.0, -1.0, 0.0, 1.0]));
+        pass.update(0, &[1.0, 0.0], &[0.5, 0.0], (nu, 4.0));
         onsets.follow(&pass, 1, &mut Vec::new());
         (onsets.sums[0].score, onsets.all().next().unwrap().sd_kg_s)
     };
@@ -148,14 +150,14 @@ fn a_reading_far_off_counts_for_two_standard_deviations() {
     assert_eq!(score(-400.0).0, 1.0);
 }
 
-/// What a leak adds to the rate of its onset is its own; what is left over is of second order, films times differences of temperature. Too small to be told.
+/// What a leak adds to the rate of its onset is its own; what is left over is of second order, films times differences of temperature. Too small to be compensated.
 #[test]
 fn a_small_leak_adds_its_rate_to_that_of_its_onset() {
     let since_s = 20.0 * HOUR_S;
     for (hours, rate_g_h) in [(1.0, 3.0), (6.0, 1.0), (40.0, 0.1)] {
         let [without, with] = [0.0, rate_g_h].map(|rate_g_h| {
             let observer = Cylinder::with_a_leak(rate_g_h, since_s).seen_until(since_s + hours * HOUR_S);
-            assert!(observer.onsets.told.iter().all(|told| *told == 0.0));
+            assert!(observer.onsets.compensated.iter().all(|part| *part == 0.0));
             oldest(&observer)
         });
         assert_eq!(with.since_s, since_s);
@@ -174,7 +176,7 @@ fn rates_of_leaks_are_right_however_large_the_loss() {
         let found = oldest(&observer);
         println!("{rate_g_h} g/h for {hours} h: {} +- {}", found.rate_kg_s / G_H, found.sd_kg_s / G_H);
         assert!((found.rate_kg_s / (rate_g_h * G_H) - 1.0).abs() < 0.05, "{}", found.rate_kg_s / G_H);
-        // Who is told the leak has the mass right.
+        // A member that is compensated for the leak has the mass right.
         let held = observer.leaks().nth(1).unwrap();
         let true_kg = cylinder.x[cylinder.own.cylinder.state_map().mass];
         assert!((held.mass_kg / true_kg - 1.0).abs() < 2e-3, "{} {true_kg}", held.mass_kg);
@@ -182,15 +184,15 @@ fn rates_of_leaks_are_right_however_large_the_loss() {
 }
 
 #[test]
-fn a_tight_cylinder_is_told_nothing() {
+fn nothing_is_compensated_in_a_tight_cylinder() {
     let observer = Cylinder::with_a_leak(0.0, 0.0).seen_until(48.0 * HOUR_S);
     assert!(observer.onsets().all(|onset| onset.rate_kg_s.abs() < onset.sd_kg_s));
-    assert!(observer.onsets.told.iter().all(|told| *told == 0.0));
+    assert!(observer.onsets.compensated.iter().all(|part| *part == 0.0));
 }
 
 /// Onsets without readings, every ten minutes up to so many days.
 fn ladder(days: f64, mut each: impl FnMut(&mut Onsets)) -> (Onsets, f64) {
-    let (mut onsets, mut time_s) = (Onsets { told: vec![0.0], ..Onsets::default() }, 0.0);
+    let (mut onsets, mut time_s) = (Onsets { compensated: vec![0.0], ..Onsets::default() }, 0.0);
     while time_s < days * 86_400.0 {
         time_s += EVERY_S;
         onsets.renew(time_s, 0);
@@ -232,14 +234,14 @@ fn the_likeliest_onset_and_its_neighbours_stay_where_others_are_thinned_out() {
 fn an_exchange_a_restart_and_whoever_says_so_end_all_onsets() {
     let mut cylinder = Cylinder::with_a_leak(30.0, 0.0);
     let leaking = cylinder.seen_until(6.0 * HOUR_S);
-    assert!(leaking.onsets.told.iter().any(|told| *told != 0.0));
+    assert!(leaking.onsets.compensated.iter().any(|part| *part != 0.0));
     let (time_s, readings) = cylinder.next();
     let after = |what: &dyn Fn(&mut Observer)| {
         let mut observer = with_a_held_member();
         observer.try_restore(&leaking.snapshot()).unwrap();
         what(&mut observer);
         observer.step(time_s, &readings).unwrap();
-        assert!(observer.onsets.told.iter().all(|told| *told == 0.0));
+        assert!(observer.onsets.compensated.iter().all(|part| *part == 0.0));
         observer.onsets.sums.len()
     };
     assert_eq!(after(&Observer::begin_exchange), 1);
@@ -273,7 +275,7 @@ fn a_snapshot_takes_the_onsets_with_it_bit_for_bit() {
         assert_eq!(observer.step(time_s, &readings).unwrap(), reborn.step(time_s, &readings).unwrap());
         assert_eq!(observer.onsets, reborn.onsets);
     }
-    assert!(observer.onsets.told.iter().any(|told| *told != 0.0));
+    assert!(observer.onsets.compensated.iter().any(|part| *part != 0.0));
 }
 
 #[test]

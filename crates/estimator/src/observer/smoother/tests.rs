@@ -66,7 +66,7 @@ fn smoothed_constants_are_those_of_the_end_at_every_time() {
                 }
             }
             for (pass, backward) in smoother.record[index].passes.iter().zip(&mut smoother.backward) {
-                go_back(backward, pass, smoother.observer.cylinder.state_map());
+                backward.pass_step(pass);
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Many runs of a filter in worlds of its own, judged together.
 use cylwatch_estimator::bound::{Efficiency, Expectation, Moments, PosteriorBound, path_bound};
 use cylwatch_estimator::consistency::{EnsembleNees, NisAccumulator, Significance};
-use cylwatch_estimator::filter::{ExtendedKalman, KalmanSettings, Linearisation, StateSpace, UdFactors};
+use cylwatch_estimator::filter::{ExtendedKalman, Linearisation, StateSpace, UdFactors};
 use cylwatch_estimator::observer::ObserverSettings;
-use nalgebra::{DMatrix, Dyn};
+use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ struct Run {
 /// The bound's part of a run.
 struct Bound {
     moments: Vec<Moments>,
-    along: UdFactors<Dyn>,
+    along: UdFactors,
     /// Variances of gas temperature and mass by the bound of this path, summed over the samples.
     variances: [f64; 2],
 }
@@ -85,7 +85,7 @@ fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
     };
     let mut draws = Draws(ChaCha12Rng::seed_from_u64(seed));
     let mut x = draws.state(&world);
-    let mut filter = ExtendedKalman::try_new(model, &mean, p, &KalmanSettings::default()).unwrap();
+    let mut filter = ExtendedKalman::try_new(model, &mean, p).unwrap();
     let (fixed, sample_s) = (fixed(samples), plan.chamber.sample_s);
     for k in 0..samples {
         let (dt_s, before) = (if k > 0 { sample_s } else { 0.0 }, x.clone());
@@ -95,14 +95,13 @@ fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
             draws.advance(&mut world, &mut x, sample_s).unwrap();
         }
         let z = draws.readings(&mut world, &x).unwrap();
-        filter.step(dt_s, &z).unwrap();
-        run.nis.add_step(filter.report());
+        run.nis.add_innovations(filter.step(dt_s, &z).unwrap());
         let error: Vec<f64> = filter.state().iter().zip(&x).map(|(estimate, x)| estimate - x).collect();
         for (sum, state) in run.squares.iter_mut().zip(functionals) {
             *sum += error[state].powi(2);
         }
         if fixed.contains(&k) {
-            run.at.push((error, filter.form().covariance()));
+            run.at.push((error, filter.factors().covariance()));
         }
         if let Some(bound) = &mut run.bound {
             bound.add(&mut world, (&before, dt_s, &x), functionals);

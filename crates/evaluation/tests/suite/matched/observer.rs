@@ -1,5 +1,5 @@
 //! The observer against a filter put together by hand from its state space.
-use cylwatch_estimator::filter::{ExtendedKalman, KalmanSettings, StateSpace, UdFactors};
+use cylwatch_estimator::filter::{ExtendedKalman, StateSpace, UdFactors};
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::{Commissioning, LeakHypothesis, ModelError, Observer, ObserverSettings};
 use cylwatch_estimator::sensor::Sensor;
@@ -63,19 +63,18 @@ fn every_member_of_the_observer_is_an_extended_kalman_filter_on_its_state_space(
         observer.step(rows[0].0, &rows[0].1).unwrap();
         let cylinder = Cylinder::new(&vessel, &sensors, &settings).unwrap();
         let (x, p) = observer.state(0).unwrap();
-        let form = UdFactors::from_covariance(&p).unwrap();
-        let mut filter =
-            ExtendedKalman::try_new(cylinder, x.as_slice(), form, &KalmanSettings::default()).unwrap();
+        let factors = UdFactors::from_covariance(&p).unwrap();
+        let mut filter = ExtendedKalman::try_new(cylinder, x.as_slice(), factors).unwrap();
         let (mut last_s, mut heard_s) = (rows[0].0, vec![rows[0].0; sensors.len()]);
         for (time_s, z) in &rows[1..] {
             observer.step(*time_s, z).unwrap();
-            filter.predict(time_s - last_s).unwrap();
+            filter.step(time_s - last_s, &vec![f64::NAN; sensors.len()]).unwrap();
             for sensor in 0..sensors.len() {
                 // One output after the other, each linearised where the one before has led.
                 filter.model_mut().set_interval_s(sensor, time_s - heard_s[sensor]);
                 let mut one = vec![f64::NAN; sensors.len()];
                 one[sensor] = z[sensor];
-                filter.update(&one).unwrap();
+                filter.step(0.0, &one).unwrap();
                 if z[sensor].is_finite() {
                     heard_s[sensor] = *time_s;
                 }
@@ -84,7 +83,7 @@ fn every_member_of_the_observer_is_an_extended_kalman_filter_on_its_state_space(
             let (x, p) = observer.state(0).unwrap();
             let state = state_difference(filter.state(), &DVector::from_column_slice(x.as_slice()), &p);
             let covariance =
-                covariance_difference(&known_as_ones(filter.form().covariance()), &known_as_ones(p));
+                covariance_difference(&known_as_ones(filter.factors().covariance()), &known_as_ones(p));
             assert!(state < 1e-9 && covariance < 1e-9, "{time_s} s: {state:e} {covariance:e}");
         }
         assert_eq!(filter.model().states(), x.len());

@@ -3,7 +3,6 @@ mod bad_input;
 mod engines;
 mod events;
 mod fast_leak;
-mod late;
 mod saved;
 mod smoothing;
 

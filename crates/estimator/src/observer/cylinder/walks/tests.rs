@@ -1,4 +1,5 @@
 use super::*;
+use crate::filter::Plant;
 use crate::observer::ObserverSettings;
 use crate::sensor::Sensor;
 use crate::thermal::scenario::sensor::SensorSpec;

@@ -1,0 +1,131 @@
+//! One member of a bank: an estimate with its own hypothesis, and what it made of the readings.
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+
+use crate::filter::gate::{Innovation, Outcome};
+use crate::filter::kernel::axpy;
+use crate::filter::plant::Plant;
+use crate::filter::record::StepRecord;
+use crate::numbers;
+
+/// Mean and counters of a member; its covariance is in the bank's.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Member<H> {
+    pub hypothesis: H,
+    #[serde(with = "numbers")]
+    pub x: Vec<f64>,
+    /// Rejections in a row of each output.
+    rejected: Vec<u32>,
+    pub innovations: Vec<Innovation>,
+    /// Change of each output's prediction by its last reading.
+    #[serde(with = "numbers")]
+    pub pulled: Vec<f64>,
+    /// Whether a bounded state stood at its bound after the last step.
+    pub at_bound: bool,
+    /// The last step, where it is recorded; it is not saved.
+    #[serde(skip)]
+    pub record: Option<Box<StepRecord>>,
+}
+
+impl<H: Clone> Member<H> {
+    pub fn new(hypothesis: H, mean: &[f64], outputs: usize) -> Self {
+        Self {
+            hypothesis,
+            x: mean.to_vec(),
+            rejected: vec![0; outputs],
+            innovations: vec![Innovation::MISSING; outputs],
+            pulled: vec![0.0; outputs],
+            at_bound: false,
+            record: None,
+        }
+    }
+
+    /// Its last step, recorded from now on; so many of its states move.
+    pub fn recorded(&mut self, leading: usize) -> &mut StepRecord {
+        let (n, outputs) = (self.x.len(), self.innovations.len());
+        self.record.get_or_insert_with(|| Box::new(StepRecord::new(n, leading, outputs)))
+    }
+
+    /// Become as another one is, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.hypothesis.clone_from(&other.hypothesis);
+        self.x.clone_from(&other.x);
+        self.rejected.clone_from(&other.rejected);
+        self.innovations.clone_from(&other.innovations);
+        self.pulled.clone_from(&other.pulled);
+        self.at_bound = other.at_bound;
+        match (&mut self.record, &other.record) {
+            (Some(to), Some(from)) => to.copy_from(from),
+            (to, from) => to.clone_from(from),
+        }
+    }
+
+    /// Have another mean (n), and no reading refused.
+    pub fn place_at(&mut self, mean: impl Iterator<Item = f64>) {
+        self.x.iter_mut().zip(mean).for_each(|(x, mean)| *x = mean);
+        self.rejected.fill(0);
+    }
+
+    /// Whether it has so many outputs.
+    pub fn has_outputs(&self, outputs: usize) -> bool {
+        [self.rejected.len(), self.innovations.len(), self.pulled.len()] == [outputs; 3]
+    }
+
+    /// What becomes of a reading with the innovation `nu` of variance `s`.
+    pub fn judge<P: Plant<Hypothesis = H>>(
+        &mut self,
+        plant: &P,
+        output: usize,
+        (nu, s): (f64, f64),
+    ) -> Outcome {
+        let gate = plant.gate(&self.hypothesis, output);
+        let outcome = gate.judge((nu, s), &mut self.rejected[output]);
+        self.innovations[output] = Innovation { nu, s, outcome };
+        outcome
+    }
+
+    /// Keep bounded states within their bounds, with a function that writes the covariance of a state with all others into memory for it: (n).
+    ///
+    /// What a state may not be the others take on as far as they are correlated with it, so that readings are explained as before: the state within the bound that is nearest
+    /// in the metric of the covariance (D. Simon, IET Control Theory Appl. 4 (2010) 1303). Were it cut off alone, outputs would be predicted wrong from then on, row
+    /// by row, which is what a slow loss looks like. A state that has gone farther than its standard deviation in one row did not creep there: what its covariance
+    /// says of the others is worth nothing then, and it is cut off alone.
+    pub fn bound<P: Plant<Hypothesis = H>>(
+        &mut self,
+        plant: &P,
+        covariance: impl Fn(usize, &mut [f64]),
+        memory: &mut [f64],
+    ) {
+        self.at_bound = false;
+        for &(state, low, high) in plant.bounds() {
+            let lacks = self.x[state].clamp(low, high) - self.x[state];
+            if lacks == 0.0 {
+                continue;
+            }
+            self.at_bound = true;
+            covariance(state, memory);
+            let variance = memory[state];
+            if variance > 0.0 && lacks * lacks <= variance {
+                memory.iter_mut().for_each(|of| *of /= variance);
+                if plant.considers(&self.hypothesis) {
+                    plant.considered().iter().filter(|&&of| of != state).for_each(|&of| memory[of] = 0.0);
+                }
+                axpy(lacks, memory, &mut self.x);
+                if let Some(record) = &mut self.record {
+                    record.bound(state, lacks / variance, memory);
+                }
+            }
+        }
+        if self.at_bound {
+            // Those that were cut off alone, and what another one has pushed beyond its own.
+            for &(state, low, high) in plant.bounds() {
+                self.x[state] = self.x[state].clamp(low, high);
+            }
+        }
+    }
+
+    /// Mean (n).
+    pub fn mean(&self) -> DVector<f64> {
+        DVector::from_column_slice(&self.x)
+    }
+}

@@ -1,0 +1,477 @@
+//! Factors `P = U diag(d) U^T` of four covariances side by side: filters of one structure that suppose different things.
+//!
+//! The steps are those of [`UdFactors`] (Bierman's and Thornton's), each in four lanes at once, which costs little more than one filter:
+//! small matrices keep a processor waiting for the last result, and four independent ones fill the wait. What is zero by
+//! structure stays out: a transition has a [`Pattern`], and its rows keep the range of their elements that may differ from zero. Results do
+//! not depend on the registers that a machine has.
+//!
+//! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
+use std::marker::PhantomData;
+
+use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+use super::lanes::{LANES, Lanes};
+use super::ud::UdFactors;
+
+mod factors;
+mod pattern;
+#[cfg(test)]
+mod tests;
+mod transition;
+
+use factors::Factors;
+pub use pattern::Pattern;
+pub use transition::BankTransition;
+
+/// Numbers of states and of moving states for which loops are unrolled.
+pub(crate) trait Unrolled {
+    const SIZES: (usize, usize);
+}
+
+/// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "Factors", try_from = "Factors")]
+pub struct UdBank {
+    n: usize,
+    /// Filters that are kept when it is saved, from the first lane on.
+    filters: usize,
+    /// Vector registers of this machine.
+    arch: Arch,
+    /// Columns of `U`, each in whole groups of four numbers; what is below `U` is zero.
+    u: Vec<Lanes>,
+    /// (n).
+    d: Vec<Lanes>,
+    /// `U^T h` in an update, `v` in a rank-one update: (n).
+    f: Vec<Lanes>,
+    /// Factors on gain and covariance by which each column changes the other in an update: (n).
+    factors: Vec<(Lanes, Lanes)>,
+    /// Columns of moving states of `Phi U` and the noise behind them, row by row in pairs: (m, 2 m).
+    rows: Vec<[Lanes; 2]>,
+    /// Elements of a row that may differ from zero.
+    spans: Vec<(usize, usize)>,
+    weights: Vec<[Lanes; 2]>,
+    weighted: Vec<[Lanes; 2]>,
+    moved: Vec<[Lanes; 2]>,
+}
+
+impl UdBank {
+    /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
+    pub fn new(n: usize, leading: usize) -> Self {
+        let stride = stride(n);
+        let mut u = vec![Lanes::ZERO; stride * n];
+        u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
+        Self {
+            n,
+            filters: LANES,
+            arch: Arch::new(),
+            u,
+            d: vec![Lanes::ZERO; n],
+            f: vec![Lanes::ZERO; n],
+            factors: vec![(Lanes::ZERO, Lanes::ZERO); n],
+            rows: vec![[Lanes::ZERO; 2]; leading * leading],
+            spans: vec![(0, 0); leading],
+            weights: vec![[Lanes::ZERO; 2]; leading],
+            weighted: vec![[Lanes::ZERO; 2]; leading],
+            moved: vec![[Lanes::ZERO; 2]; leading],
+        }
+    }
+
+    /// Only the first lanes are filters, so many of them: the others do what they do, and are not saved.
+    pub fn with_filters(self, filters: usize) -> Self {
+        Self { filters: filters.clamp(1, LANES), ..self }
+    }
+
+    /// Number of states.
+    pub fn states(&self) -> usize {
+        self.n
+    }
+
+    /// Let a lane have the covariance of `factors`, of as many states.
+    pub fn set(&mut self, lane: usize, factors: &UdFactors) {
+        for (to, from) in self.u.chunks_exact_mut(stride(self.n)).zip(factors.unit_upper().column_iter()) {
+            to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
+        }
+        self.d.iter_mut().zip(factors.diagonal()).for_each(|(to, &from)| to.0[lane] = from);
+    }
+
+    /// Become as another bank of as many states is, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.u.copy_from_slice(&other.u);
+        self.d.copy_from_slice(&other.d);
+    }
+
+    /// Round every factor: still a covariance, whatever is rounded.
+    pub(crate) fn round(&mut self, rounded: impl Fn(f64) -> f64) {
+        for value in self.u.iter_mut().chain(&mut self.d) {
+            value.0 = value.0.map(&rounded);
+        }
+    }
+
+    /// Let a lane have the covariance of another one.
+    pub fn copy_lane(&mut self, from: usize, to: usize) {
+        for value in self.u.iter_mut().chain(&mut self.d) {
+            value.0[to] = value.0[from];
+        }
+    }
+
+    /// Let a lane have the covariance of a lane of another bank, of as many states.
+    pub fn copy_lane_of(&mut self, other: &Self, from: usize, to: usize) {
+        for (value, other) in self.u.iter_mut().chain(&mut self.d).zip(other.u.iter().chain(&other.d)) {
+            value.0[to] = other.0[from];
+        }
+    }
+
+    /// Covariance of a lane: (n, n).
+    #[cfg(test)]
+    pub fn covariance(&self, lane: usize) -> DMatrix<f64> {
+        let mut p = DMatrix::zeros(self.n, self.n);
+        self.covariance_into(lane, &mut p);
+        p
+    }
+
+    /// Write the covariance of a lane: (n, n).
+    pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
+        p.fill(0.0);
+        for (l, (u, d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate() {
+            for j in 0..=l {
+                let factor = d.0[lane] * u[j].0[lane];
+                for i in 0..=j {
+                    p[(i, j)] += factor * u[i].0[lane];
+                }
+            }
+        }
+        p.fill_lower_triangle_with_upper_triangle();
+    }
+
+    /// Variance of state `i` of a lane.
+    pub fn variance(&self, lane: usize, i: usize) -> f64 {
+        self.covariance_of(lane, i, i)
+    }
+
+    /// Covariance of states `i` and `j` of a lane.
+    pub fn covariance_of(&self, lane: usize, i: usize, j: usize) -> f64 {
+        let mut sum = 0.0;
+        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(j.max(i)) {
+            sum += d.0[lane] * u[i].0[lane] * u[j].0[lane];
+        }
+        sum
+    }
+
+    /// Variance of state `i` of every lane.
+    pub fn variances(&self, i: usize) -> Lanes {
+        let mut sum = [Lanes::ZERO; 2];
+        for (j, (u, &d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate().skip(i) {
+            sum[j % 2] += d * u[i] * u[i];
+        }
+        sum[0] + sum[1]
+    }
+
+    /// Whether every variance is a number.
+    pub fn is_finite(&self) -> bool {
+        self.d.iter().fold(Lanes::ZERO, |sum, &d| sum + d).0.iter().all(|sum| sum.is_finite())
+    }
+
+    /// Time update of every lane.
+    pub fn predict<S: Unrolled>(&mut self, transition: &mut BankTransition) {
+        self.arch.dispatch(Predict { bank: self, transition, sizes: PhantomData::<S> });
+    }
+
+    #[inline(always)]
+    fn predict_in_lanes<S: Unrolled>(&mut self, transition: &mut BankTransition) {
+        match (self.n, transition.leading()) {
+            sizes if sizes == S::SIZES => self.predict_sized(transition, S::SIZES),
+            (_, 0) => {}
+            sizes => self.predict_sized(transition, sizes),
+        }
+    }
+
+    /// Of known size its loops are unrolled.
+    #[inline(always)]
+    fn predict_sized(&mut self, transition: &mut BankTransition, (n, m): (usize, usize)) {
+        self.transform(transition, (n, m));
+        let weights = self.weights.as_flattened_mut();
+        weights[..m].copy_from_slice(&self.d[..m]);
+        transition.factor_noise(m, self.rows.as_flattened_mut(), &mut self.spans, &mut weights[m..]);
+        self.orthogonalise((n, m));
+    }
+
+    /// `Phi U`: its columns of moving states become rows to orthogonalise, those of constants are final.
+    #[inline(always)]
+    fn transform(&mut self, transition: &BankTransition, (n, m): (usize, usize)) {
+        let stride = stride(n);
+        let Self { u, rows, moved, spans, .. } = self;
+        // An odd last column goes alone.
+        for (pair, u) in u.chunks_mut(2 * stride).enumerate() {
+            let (left, right) = u.split_at_mut(stride);
+            let last = (2 * pair + 1).min(n - 1);
+            let both = [&*left, if right.is_empty() { &*left } else { &*right }];
+            transition.multiply(both, last, moved);
+            // Where a row's moving states end within the pair, noise takes the place of what is too much.
+            if 2 * pair < m {
+                rows.chunks_exact_mut(m).zip(&*moved).for_each(|(row, moved)| row[pair] = *moved);
+            }
+            for (j, to) in
+                [left, right].into_iter().enumerate().filter(|(j, u)| 2 * pair + j >= m && !u.is_empty())
+            {
+                to.iter_mut().zip(&*moved).for_each(|(to, moved)| *to = moved[j]);
+            }
+        }
+        for (span, &first) in spans.iter_mut().zip(transition.firsts()) {
+            *span = (first, m);
+        }
+    }
+
+    /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
+    #[inline(always)]
+    fn orthogonalise(&mut self, (n, m): (usize, usize)) {
+        let stride = stride(n);
+        let Self { u, d, rows, weights, weighted, spans, .. } = self;
+        for j in (0..m).rev() {
+            let (before, row) = rows[..(j + 1) * m].split_at_mut(j * m);
+            let span = spans[j];
+            // What is outside the span is zero: whole pairs may take part.
+            let pairs = span.0 / 2..span.1.div_ceil(2);
+            let (row, weighted) = (&row[pairs.clone()], &mut weighted[pairs.clone()]);
+            for ((to, value), weight) in weighted.iter_mut().zip(row).zip(&weights[pairs.clone()]) {
+                *to = [value[0] * weight[0], value[1] * weight[1]];
+            }
+            d[j] = dot_pairs(weighted, row);
+            let inverse = d[j].inverse();
+            let u = &mut u[j * stride..j * stride + j];
+            for ((other, u), other_span) in before.chunks_exact_mut(m).zip(u).zip(spans.iter_mut()) {
+                let other = &mut other[pairs.clone()];
+                let share = dot_pairs(weighted, other) * inverse;
+                *u = share;
+                subtract(share, row, other);
+                *other_span = (other_span.0.min(span.0), other_span.1.max(span.1));
+            }
+        }
+    }
+
+    /// Variances `h^T P h` of linear functions of the state, kept for [`update`](Self::update); `h`: (n).
+    pub fn project<S: Unrolled>(&mut self, h: &[Lanes]) -> Lanes {
+        self.arch.dispatch(Project { bank: self, h, sizes: PhantomData::<S> })
+    }
+
+    #[inline(always)]
+    fn project_in_lanes<S: Unrolled>(&mut self, h: &[Lanes]) -> Lanes {
+        match self.n {
+            n if n == S::SIZES.0 => self.project_sized(h, S::SIZES.0),
+            n => self.project_sized(h, n),
+        }
+    }
+
+    #[inline(always)]
+    fn project_sized(&mut self, h: &[Lanes], n: usize) -> Lanes {
+        let stride = stride(n);
+        let Self { u, d, f, .. } = self;
+        let mut sum = Lanes::ZERO;
+        for (j, ((u, &d), f)) in u.chunks_exact(stride).zip(&d[..n]).zip(f).enumerate() {
+            *f = dot(&h[..=j], &u[..=j]);
+            sum += *f * *f * d;
+        }
+        sum
+    }
+
+    /// Update by scalar measurements with the `h` of the last [`project`](Self::project) and noise of variances `r`, in
+    /// the lanes that are `used`. Writes the gains (n), zero in the other lanes, and returns the innovations' variances.
+    pub fn update<S: Unrolled>(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
+        self.arch.dispatch(Update { bank: self, r, used, gain, sizes: PhantomData::<S> })
+    }
+
+    #[inline(always)]
+    fn update_in_lanes<S: Unrolled>(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
+        match self.n {
+            n if n == S::SIZES.0 => self.update_sized(r, used, gain, S::SIZES.0),
+            n => self.update_sized(r, used, gain, n),
+        }
+    }
+
+    #[inline(always)]
+    fn update_sized(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes], n: usize) -> Lanes {
+        let stride = stride(n);
+        let gain = &mut gain[..n];
+        let mask = Lanes(used.map(|used| if used { 1.0 } else { 0.0 }));
+        let Self { u, d, f, factors, .. } = self;
+        let (u, d, f, factors) = (&mut u[..stride * n], &mut d[..n], &f[..n], &mut factors[..n]);
+        let mut s = r;
+        // Where no noise and no variance came before, it is zero, and so is the gain collected so far.
+        let mut inverse = r.inverse();
+        for ((d, &f), factors) in d.iter_mut().zip(f).zip(factors.iter_mut()) {
+            let f = f * mask;
+            let v = f * *d;
+            *factors = (-f * inverse, v);
+            let before = s;
+            s += f * v;
+            inverse = s.inverse();
+            *d = *d * s.choose(before * inverse, Lanes::splat(1.0));
+        }
+        let inverse = mask * inverse;
+        // Four rows at a time: their gain stays in registers. Below the diagonal of U all is zero, and the gain there too.
+        for (block, gain) in gain.chunks_mut(4).enumerate() {
+            let mut sum = [Lanes::ZERO; 4];
+            for (u, &(p, v)) in u.chunks_exact_mut(stride).zip(&*factors).skip(4 * block) {
+                if let Some(u) = u.as_chunks_mut::<4>().0.get_mut(block) {
+                    for (u, sum) in u.iter_mut().zip(&mut sum) {
+                        let old = *u;
+                        *u += *sum * p;
+                        *sum += old * v;
+                    }
+                }
+            }
+            gain.iter_mut().zip(sum).for_each(|(to, sum)| *to = sum * inverse);
+        }
+        s
+    }
+
+    /// Add variances to state `i`, its covariances unchanged.
+    pub fn inflate(&mut self, i: usize, variance: Lanes) {
+        self.f.fill(Lanes::ZERO);
+        self.f[i] = Lanes::splat(1.0);
+        self.add_leading(variance, i + 1);
+    }
+
+    /// Multiply state `i` by a positive factor in every lane: its variances by the square, its covariances by the factor.
+    pub fn scale(&mut self, i: usize, factor: f64) {
+        for (j, u) in self.u.chunks_exact_mut(stride(self.n)).enumerate().skip(i) {
+            if j == i {
+                u[..i].iter_mut().for_each(|above| *above = *above * factor.recip());
+            } else {
+                u[i] = u[i] * factor;
+            }
+        }
+        self.d[i] = self.d[i] * (factor * factor);
+    }
+
+    /// Make state `i` of a lane independent of all others, with the given variance: an event has reset it.
+    pub fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
+        for u in self.u.chunks_exact_mut(stride(self.n)).skip(i + 1) {
+            u[i].0[lane] = 0.0;
+        }
+        // What state i explained in the states before it remains theirs.
+        self.f.fill(Lanes::ZERO);
+        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * stride(self.n)..][..i]) {
+            f.0[lane] = std::mem::take(&mut above.0[lane]);
+        }
+        let mut left = Lanes::ZERO;
+        left.0[lane] = std::mem::replace(&mut self.d[i].0[lane], variance);
+        self.add_leading(left, i);
+    }
+
+    /// Rank-one update (Agee and Turner) of the leading block of `size` states by `c v v^T` with `v = f[..size]`.
+    fn add_leading(&mut self, mut c: Lanes, size: usize) {
+        for j in (0..size).rev() {
+            let (v, s) = self.f.split_at_mut(j);
+            let (s, old) = (s[0], self.d[j]);
+            let new = old + c * s * s;
+            let inverse = new.inverse();
+            let b = c * s * inverse;
+            for (u, v) in self.u[j * stride(self.n)..][..j].iter_mut().zip(v) {
+                *v -= s * *u;
+                *u += b * *v;
+            }
+            self.d[j] = new;
+            // Where nothing is left to add to, nothing was added.
+            c = c * new.choose(old * inverse, Lanes::splat(1.0));
+        }
+    }
+}
+
+/// The steps as what [`Arch::dispatch`] compiles for the vector registers of the machine: closures would not be inlined.
+struct Predict<'a, S> {
+    sizes: PhantomData<S>,
+    bank: &'a mut UdBank,
+    transition: &'a mut BankTransition,
+}
+
+struct Project<'a, S> {
+    sizes: PhantomData<S>,
+    bank: &'a mut UdBank,
+    h: &'a [Lanes],
+}
+
+struct Update<'a, S> {
+    sizes: PhantomData<S>,
+    bank: &'a mut UdBank,
+    r: Lanes,
+    used: [bool; 4],
+    gain: &'a mut [Lanes],
+}
+
+impl<U: Unrolled> WithSimd for Predict<'_, U> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.bank.predict_in_lanes::<U>(self.transition);
+    }
+}
+
+impl<U: Unrolled> WithSimd for Project<'_, U> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Lanes {
+        self.bank.project_in_lanes::<U>(self.h)
+    }
+}
+
+impl<U: Unrolled> WithSimd for Update<'_, U> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Lanes {
+        self.bank.update_in_lanes::<U>(self.r, self.used, self.gain)
+    }
+}
+
+/// Length of a column in memory.
+#[inline(always)]
+const fn stride(n: usize) -> usize {
+    n.next_multiple_of(4)
+}
+
+/// `sum a_i b_i`, in four sums that do not wait for each other.
+#[inline(always)]
+fn dot(a: &[Lanes], b: &[Lanes]) -> Lanes {
+    let ((a4, a1), (b4, b1)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sum = [Lanes::ZERO; 4];
+    for (a, b) in a4.iter().zip(b4) {
+        for ((sum, &a), &b) in sum.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    for ((sum, &a), &b) in sum.iter_mut().zip(a1).zip(b1) {
+        *sum += a * b;
+    }
+    (sum[0] + sum[2]) + (sum[1] + sum[3])
+}
+
+/// The same for whole pairs.
+#[inline(always)]
+fn dot_pairs(a: &[[Lanes; 2]], b: &[[Lanes; 2]]) -> Lanes {
+    let ((a4, a2), (b4, b2)) = (a.as_chunks::<2>(), b.as_chunks::<2>());
+    let mut sum = [[Lanes::ZERO; 2]; 2];
+    for (a, b) in a4.iter().zip(b4) {
+        for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+            sum[0] += a[0] * b[0];
+            sum[1] += a[1] * b[1];
+        }
+    }
+    if let ([a], [b]) = (a2, b2) {
+        sum[0][0] += a[0] * b[0];
+        sum[0][1] += a[1] * b[1];
+    }
+    (sum[0][0] + sum[1][0]) + (sum[0][1] + sum[1][1])
+}
+
+/// `y <- y - c x`.
+#[inline(always)]
+fn subtract(c: Lanes, x: &[[Lanes; 2]], y: &mut [[Lanes; 2]]) {
+    for (x, y) in x.iter().zip(y) {
+        y[0] -= c * x[0];
+        y[1] -= c * x[1];
+    }
+}
