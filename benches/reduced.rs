@@ -1,6 +1,6 @@
 //! Time of the reduced model's right-hand side: alone and with its exact Jacobian, N = 1, 2, 4, 8 wall nodes.
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use cylwatch_thermal::model::reduced::{ReducedModel, Unknowns};
+use cylwatch_thermal::reduced::{ReducedModel, Unknowns};
 use cylwatch_thermal::vessel::presets;
 use nalgebra::DMatrix;
 use std::hint::black_box;

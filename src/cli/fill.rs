@@ -3,8 +3,8 @@ use super::unit_options::{Choice, Choices, Given};
 use anyhow::{anyhow, bail};
 use clap::Args;
 use cylwatch::estimator::observer::{Commissioning, ObserverSettings};
-use cylwatch::thermal::scenario::Fill;
 use cylwatch::thermal::units::{Dimension, ZERO_CELSIUS_K};
+use cylwatch::thermal::vessel::Fill;
 use cylwatch::thermal::vessel::Vessel;
 
 /// Quantities that fix the mass.

@@ -7,7 +7,7 @@ use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::Learned;
 use cylwatch::log::{LogReader, Row};
 use cylwatch::report::Provenance;
-use cylwatch::thermal::scenario::Fill;
+use cylwatch::thermal::vessel::Fill;
 use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
 

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use cylwatch_evaluation::thermal::scenario::Fill;
+use cylwatch_evaluation::thermal::vessel::Fill;
 use cylwatch_evaluation::world::{Family, Overlay, Request, World, generate};
 
 const USAGE: &str = "FAMILY SEED HOURS FOLDER [OVERLAY as JSON]";

@@ -7,10 +7,9 @@ use anyhow::{Context, bail};
 use cylwatch::estimator::observer::ObserverSettings;
 use cylwatch::estimator::observer::cylinder::Cylinder;
 use cylwatch::estimator::sensor::{Parameter, ParameterKind};
-use cylwatch::thermal::scenario::{
-    AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Surroundings,
-};
+use cylwatch::thermal::scenario::{AxialVariation, Initial, OutsideFilm, Scenario, Series, Surroundings};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
+use cylwatch::thermal::vessel::Fill;
 use cylwatch::thermal::vessel::Vessel;
 
 /// Gaps up to so many usual intervals are bridged.

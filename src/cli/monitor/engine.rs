@@ -6,8 +6,8 @@ use cylwatch::detector::monitor::alarm::AlarmSettings;
 use cylwatch::detector::monitor::{Limits, Monitor, MonitorSettings};
 use cylwatch::detector::prognosis::{Contents, QUOTED_K, ReactionSettings};
 use cylwatch::estimator::log::Quantity;
-use cylwatch::thermal::scenario::Fill;
 use cylwatch::thermal::units::PASCAL_PER_BAR;
+use cylwatch::thermal::vessel::Fill;
 
 /// A monitor and what a run must know beside it.
 pub struct Engine {

@@ -1,7 +1,7 @@
 //! What each sensor is for.
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
-use crate::estimator::thermal::scenario::sensor::SensorKind;
+use crate::estimator::thermal::sensor::SensorKind;
 
 /// Indices of sensors by what they tell of the cylinder.
 #[derive(Clone, Debug, PartialEq)]

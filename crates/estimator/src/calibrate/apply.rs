@@ -2,7 +2,8 @@
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::FlowKind;
 use cylwatch_thermal::model::Model;
-use cylwatch_thermal::scenario::{Fill, Scenario};
+use cylwatch_thermal::scenario::Scenario;
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{InsideFilm, Vessel};
 
 use super::{CalibrateError, ParameterKind, ParameterSpec};

@@ -1,6 +1,6 @@
 //! A calibrated vessel as a file: the factors in the fields that they belong to.
 use cylwatch_thermal::ThermalError;
-use cylwatch_thermal::scenario::sensor::{KindChoice, SensorSpec};
+use cylwatch_thermal::sensor::{KindChoice, SensorSpec};
 use cylwatch_thermal::vessel::VesselSpec;
 use cylwatch_thermal::vessel::spec::{FittedSpec, LawChoice, PriorSpec};
 

@@ -9,7 +9,7 @@ use super::Observer;
 use super::clock::Clock;
 use super::cylinder::Cylinder;
 use crate::filter::Outline;
-use crate::thermal::model::reduced::WarmStart;
+use crate::thermal::reduced::WarmStart;
 
 /// The members of an observer as they were after a sample, rounded, without onsets of leaks.
 #[derive(Clone, Debug, Serialize, Deserialize)]

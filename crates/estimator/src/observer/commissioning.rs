@@ -6,7 +6,7 @@ use super::settings::ObserverSettings;
 use super::states::{StateKind, States};
 use crate::EstimatorError;
 use crate::sensor::{Sensor, SensorKind};
-use crate::thermal::scenario::Fill;
+use crate::thermal::vessel::Fill;
 use crate::thermal::vessel::Vessel;
 
 /// Temperature that is assumed where none is measured, K.

@@ -21,7 +21,7 @@ use super::states::States;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, Plant, StateSpace, parts};
 use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::model::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
+use crate::thermal::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 use noise::Parts;
 use structure::Structure;

@@ -68,7 +68,7 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::thermal::scenario::Fill;
+    use crate::thermal::vessel::Fill;
     use crate::thermal::vessel::presets;
     use approx::assert_relative_eq;
 

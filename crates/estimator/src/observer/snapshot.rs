@@ -7,7 +7,7 @@ use super::cylinder::Cylinder;
 use super::signature::Onsets;
 use crate::EstimatorError;
 use crate::filter::{Bank, StateSpace};
-use crate::thermal::model::reduced::WarmStart;
+use crate::thermal::reduced::WarmStart;
 
 /// The members as they were after a sample: what to go back to, and what a program that was stopped goes on from. With
 /// another engine than the extended filter it cannot be serialised. It holds numbers that are none, which JSON has no

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use crate::sensor::{ParameterKind, Sensor};
-use crate::thermal::model::reduced::ReducedModel;
+use crate::thermal::reduced::ReducedModel;
 
 use super::settings::{ObserverSettings, Walk};
 

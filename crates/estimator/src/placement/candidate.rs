@@ -10,7 +10,7 @@ use super::constraints::{Constraints, Group};
 use crate::EstimatorError;
 use crate::sensor::{Sensor, SensorKind, SensorSpec, SensorSuite, SensorsSpec, SurfacePlace};
 use crate::thermal::document::{self, check};
-use crate::thermal::scenario::PLACES;
+use crate::thermal::sensor::PLACES;
 use crate::thermal::vessel::Vessel;
 use crate::thermal::wall::mesh::Mesh;
 

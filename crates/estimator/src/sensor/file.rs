@@ -3,7 +3,7 @@ use super::typical::completed;
 use super::{Sensor, SensorSuite};
 use crate::EstimatorError;
 use cylwatch_thermal::document;
-use cylwatch_thermal::scenario::sensor::{SensorSpec, mounted};
+use cylwatch_thermal::sensor::{SensorSpec, mounted};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -27,7 +27,7 @@ mod stream;
 mod suite;
 mod typical;
 
-pub use cylwatch_thermal::scenario::sensor::{
+pub use cylwatch_thermal::sensor::{
     CorrelatedNoise, GasPlace, KindChoice, Law, PressureReference, Pt100Class, SensorKind, SensorSpec,
     SurfacePlace,
 };

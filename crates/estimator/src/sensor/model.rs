@@ -2,9 +2,7 @@
 use super::parameter::{MAX_PARAMETERS, Parameter, ParameterKind};
 use crate::EstimatorError;
 use crate::log::Quantity;
-use cylwatch_thermal::scenario::sensor::{
-    CorrelatedNoise, MountedSensor, PressureReference, SensorKind, SensorSpec,
-};
+use cylwatch_thermal::sensor::{CorrelatedNoise, MountedSensor, PressureReference, SensorKind, SensorSpec};
 use cylwatch_thermal::units::ATMOSPHERE_PA;
 
 /// Temperature of the electronics at which a pressure transmitter has no temperature error, K: 15 °C.

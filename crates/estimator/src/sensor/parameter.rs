@@ -1,5 +1,5 @@
 //! The numbers of a sensor that may be uncertain.
-use cylwatch_thermal::scenario::sensor::{Law, Stated};
+use cylwatch_thermal::sensor::{Law, Stated};
 
 /// Most parameters of a sensor.
 pub const MAX_PARAMETERS: usize = 3;

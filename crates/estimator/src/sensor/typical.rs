@@ -8,7 +8,7 @@
 //!   0 ± 0.1 % of it per 10 K, noise 10 mbar.
 use super::Sensor;
 use crate::EstimatorError;
-use cylwatch_thermal::scenario::sensor::{KindChoice, Pt100Class, SensorSpec};
+use cylwatch_thermal::sensor::{KindChoice, Pt100Class, SensorSpec};
 
 /// Full scale of the typical transmitter, Pa.
 const FULL_SCALE_PA: f64 = 250e5;

@@ -4,8 +4,8 @@ use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::states::StateKind;
 use cylwatch_estimator::sensor::{ParameterKind, Sensor};
-use cylwatch_estimator::thermal::model::reduced::{ReducedModel, Unknowns};
-use cylwatch_estimator::thermal::scenario::sensor::{PressureReference, SensorKind};
+use cylwatch_estimator::thermal::reduced::{ReducedModel, Unknowns};
+use cylwatch_estimator::thermal::sensor::{PressureReference, SensorKind};
 use cylwatch_estimator::thermal::vessel::presets;
 use nalgebra::{DMatrix, DVector};
 

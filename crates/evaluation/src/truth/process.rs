@@ -3,8 +3,9 @@
 //! A [`Process`] becomes flows of the scenario. Its quantities are stated as losses of the pressure at 15 °C, and turned into masses
 //! by the fill: `m = (rho(p, 15 °C) - rho(p - dp, 15 °C)) V`.
 use cylwatch_thermal::flow::{Flow, FlowKind};
-use cylwatch_thermal::scenario::{Fill, Scenario, Series};
+use cylwatch_thermal::scenario::{Scenario, Series};
 use cylwatch_thermal::trajectory::Trajectory;
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
 

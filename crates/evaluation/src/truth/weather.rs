@@ -5,9 +5,8 @@
 //! the air of the railway with a lag of 30 min, and the air of the chamber at once. The chamber's film is 16 W/(m² K) by
 //! convection, about 20 with radiation. All signals are linear between the same knots, 2 min apart or closer
 //! ([`super::TruthSettings::weather_spacing_s`] spaces them wider; the disturbances keep their variance).
-use cylwatch_thermal::scenario::{
-    AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings,
-};
+use cylwatch_thermal::scenario::{AxialVariation, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings};
+use cylwatch_thermal::vessel::Fill;
 
 use super::course::{Chamber, Course, TRANSFER_S};
 use super::railway::{APPROACH, Railway};

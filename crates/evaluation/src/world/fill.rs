@@ -4,7 +4,7 @@
 //! gas is 2.5 % less than stated on top. The told standard deviation of the mass, 1.2 %, is the root mean square of both. In one of four
 //! worlds the log begins in the middle of operation: the cylinder is not settled, and the candidate is told so.
 use cylwatch_estimator::observer::Commissioning;
-use cylwatch_thermal::scenario::Fill;
+use cylwatch_thermal::vessel::Fill;
 use serde::{Deserialize, Serialize};
 
 use crate::random::{Purpose, Random};

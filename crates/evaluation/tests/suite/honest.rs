@@ -8,8 +8,8 @@ use cylwatch_detector::monitor::{
 use cylwatch_detector::prognosis::Contents;
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::{Sensor, SensorSuite, sample};
-use cylwatch_estimator::thermal::scenario::Fill;
 use cylwatch_estimator::thermal::simulate::{SimulationSettings, simulate};
+use cylwatch_estimator::thermal::vessel::Fill;
 use cylwatch_estimator::thermal::{scenario, vessel};
 use cylwatch_evaluation::world::{Climate, Family, Overlay, Request, VesselKind, World, generate};
 

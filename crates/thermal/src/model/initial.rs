@@ -1,7 +1,8 @@
 //! The model's state at time 0, from what is known of the fill.
 use super::Model;
 use crate::ThermalError;
-use crate::scenario::{Fill, Initial};
+use crate::scenario::Initial;
+use crate::vessel::Fill;
 use crate::vessel::Vessel;
 
 impl Model {

@@ -39,7 +39,6 @@ use layout::Layout;
 use stratified::{Stratified, WallAction};
 use well_mixed::WellMixed;
 
-pub use crate::reduced;
 pub use jacobian::Assembly;
 pub use output::Output;
 

@@ -2,9 +2,10 @@
 use super::flows;
 use super::signal::{Files, Signal};
 use super::spec::{AmbientSpec, InitialSpec, ScenarioSpec};
-use super::{AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings, sensor};
+use super::{AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings};
 use crate::ThermalError;
 use crate::document::check;
+use crate::sensor;
 use crate::units::{Dimension, ZERO_CELSIUS_K};
 
 /// Longest duration, s: ten years.

@@ -10,13 +10,13 @@ pub mod series;
 mod signal;
 pub mod spec;
 
-pub use crate::sensor::{self, MountedSensor, PLACES, SensorKind, SensorSpec};
-pub use crate::vessel::Fill;
 pub use read::{read_scenario, schema};
 pub use series::Series;
 pub use spec::ScenarioSpec;
 
 use crate::flow::Flow;
+use crate::sensor::MountedSensor;
+use crate::vessel::Fill;
 
 /// A validated scenario. All values SI, time from 0.
 #[derive(Clone, Debug)]

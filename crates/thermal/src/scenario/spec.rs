@@ -4,8 +4,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-pub use super::sensor::SensorSpec;
 pub use super::signal::*;
+use crate::sensor::SensorSpec;
 
 /// Raw content of a scenario file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

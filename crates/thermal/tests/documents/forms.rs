@@ -1,6 +1,7 @@
 //! The forms in which a file can say the same thing, and what holds where it says nothing.
 use approx::assert_relative_eq;
-use cylwatch_thermal::scenario::{Fill, OutsideFilm};
+use cylwatch_thermal::scenario::OutsideFilm;
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{
     GasResolution, InsideFilm, Vessel, VesselSpec, presets, read_specification, read_vessel,
     spec::GeometrySpec,

@@ -2,7 +2,8 @@
 use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
-use cylwatch_thermal::scenario::{Fill, OutsideFilm};
+use cylwatch_thermal::scenario::OutsideFilm;
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::wall::geometry::{EndShape, Geometry};
 use cylwatch_thermal::wall::mesh::Mesh;
 use cylwatch_thermal::{flow::FlowKind, scenario, vessel};

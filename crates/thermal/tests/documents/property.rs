@@ -1,6 +1,7 @@
 //! No text makes the readers panic, and what they accept is physical.
 use cylwatch_thermal::flow::FlowKind;
-use cylwatch_thermal::scenario::{self, Fill, OutsideFilm, Scenario};
+use cylwatch_thermal::scenario::{self, OutsideFilm, Scenario};
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{self, InsideFilm, Vessel};
 use cylwatch_thermal::wall::geometry::EndShape;
 use proptest::prelude::*;

@@ -1,8 +1,6 @@
 //! What `[[sensor]]` tables become, and which cells stand for their places.
 use approx::assert_relative_eq;
-use cylwatch_thermal::scenario::sensor::{
-    GasPlace, Law, MountedSensor, PressureReference, SensorKind, SurfacePlace,
-};
+use cylwatch_thermal::sensor::{GasPlace, Law, MountedSensor, PressureReference, SensorKind, SurfacePlace};
 use cylwatch_thermal::vessel::{self, GasResolution, Stratification};
 use cylwatch_thermal::wall::geometry::Orientation;
 use cylwatch_thermal::wall::mesh::{Mesh, Section};

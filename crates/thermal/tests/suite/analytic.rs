@@ -3,9 +3,10 @@ use approx::assert_relative_eq;
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::{Equation, Fluid};
-use cylwatch_thermal::scenario::{Fill, OutsideFilm, Series, Sun};
+use cylwatch_thermal::scenario::{OutsideFilm, Series, Sun};
 use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::EventKind;
+use cylwatch_thermal::vessel::Fill;
 
 use crate::support::{closed_bottle, insulated, run, still};
 

@@ -1,10 +1,9 @@
 //! Vessels and scenarios that the tests build by hand.
 use cylwatch_thermal::fluid::Fluid;
-use cylwatch_thermal::scenario::{
-    AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Surroundings,
-};
+use cylwatch_thermal::scenario::{AxialVariation, Initial, OutsideFilm, Scenario, Series, Surroundings};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{GasResolution, InnerVolume, InsideFilm, Surface, Vessel};
 use cylwatch_thermal::wall::geometry::{End, EndShape, Geometry, Layer, Orientation};
 use cylwatch_thermal::wall::material::Material;

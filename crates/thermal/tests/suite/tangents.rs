@@ -1,9 +1,10 @@
 //! Sensitivities of a run against closed forms and against differences of whole runs.
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::{Equation, Fluid};
-use cylwatch_thermal::scenario::{self, Fill, OutsideFilm, Scenario};
+use cylwatch_thermal::scenario::{self, OutsideFilm, Scenario};
 use cylwatch_thermal::simulate::{Neighbours, SimulationSettings, simulate, simulate_with_neighbours};
 use cylwatch_thermal::trajectory::{EventKind, Trajectory};
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{self, InsideFilm, Vessel};
 
 use crate::support::{insulated, run, still};

@@ -11,7 +11,7 @@ use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Flow, Innovation, Quality};
 use crate::estimator::sensor::ParameterKind;
-use crate::estimator::thermal::scenario::sensor::SensorKind;
+use crate::estimator::thermal::sensor::SensorKind;
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
 use crate::monitor::gas::jump::{
     Before, Cause, Compared, Examination, Innovated, LONGEST_INTERVAL_S, NO_OFFSET, USUAL_LARGEST,

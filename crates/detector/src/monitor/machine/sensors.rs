@@ -3,7 +3,7 @@ use super::Monitor;
 use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Outcome};
-use crate::estimator::thermal::scenario::Fill;
+use crate::estimator::thermal::vessel::Fill;
 use crate::monitor::gas::bounds::FLOW_DEVIATIONS;
 use crate::monitor::intake::Row;
 use crate::monitor::readings::parity::Disturbance;

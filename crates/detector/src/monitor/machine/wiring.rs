@@ -4,7 +4,7 @@ use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Innovation, Observer, ObserverSettings};
 use crate::estimator::sensor::Sensor;
-use crate::estimator::thermal::scenario::Fill;
+use crate::estimator::thermal::vessel::Fill;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::Evidence;
 use crate::monitor::MonitorSettings;

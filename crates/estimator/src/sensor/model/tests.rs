@@ -1,6 +1,6 @@
 //! Readings by hand, derivatives by differences.
 use approx::assert_relative_eq;
-use cylwatch_thermal::scenario::sensor::SensorSpec;
+use cylwatch_thermal::sensor::SensorSpec;
 use proptest::prelude::*;
 
 use super::*;

@@ -1,7 +1,7 @@
 //! Sampled readings against closed forms.
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use cylwatch_thermal::scenario::sensor::SensorSpec;
 use cylwatch_thermal::scenario::{Series, presets, read_scenario};
+use cylwatch_thermal::sensor::SensorSpec;
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::vessel;
 

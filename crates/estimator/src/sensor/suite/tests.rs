@@ -1,5 +1,5 @@
 //! Specimens: distributions, limits, streams.
-use cylwatch_thermal::scenario::sensor::SensorSpec;
+use cylwatch_thermal::sensor::SensorSpec;
 use cylwatch_thermal::vessel;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -1,8 +1,8 @@
 //! Six properties 30 % off, found again from one log.
 use cylwatch_estimator::calibrate::{ParameterKind, ParameterSpec};
 use cylwatch_thermal::model::Model;
-use cylwatch_thermal::scenario::Fill;
 use cylwatch_thermal::vessel;
+use cylwatch_thermal::vessel::Fill;
 
 use super::study::{Case, kinds, preset, run};
 

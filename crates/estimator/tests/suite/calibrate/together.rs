@@ -3,7 +3,8 @@ use cylwatch_estimator::calibrate::{
     Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, ParameterSpec, PartOf,
 };
 use cylwatch_estimator::sensor::{SensorSuite, sample};
-use cylwatch_thermal::scenario::{Fill, OutsideFilm, Scenario};
+use cylwatch_thermal::scenario::{OutsideFilm, Scenario};
+use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{self, Vessel};
 
 use super::study::{Case, known, preset, run};

@@ -9,7 +9,7 @@ use crate::baseline::{ErrorCusum, Filling, PressureError, Reading, Threshold};
 use crate::detector::DetectorError;
 use crate::judge::JudgeError;
 use crate::judge::said::Said;
-use crate::thermal::scenario::Fill;
+use crate::thermal::vessel::Fill;
 use crate::world::Told;
 
 /// Temperature at which a filling is quoted, K.

@@ -2,7 +2,7 @@ use super::*;
 use crate::filter::Plant;
 use crate::observer::ObserverSettings;
 use crate::sensor::Sensor;
-use crate::thermal::scenario::sensor::SensorSpec;
+use crate::thermal::sensor::SensorSpec;
 use crate::thermal::vessel::presets;
 use approx::assert_relative_eq;
 
