@@ -8,8 +8,13 @@ fn root() -> &'static Path {
 
 /// The packages that a library is built from, itself among them.
 fn tree(package: &str, edges: &str) -> Vec<String> {
+    tree_with(package, edges, &[])
+}
+
+fn tree_with(package: &str, edges: &str, more: &[&str]) -> Vec<String> {
     let arguments = ["tree", "-p", package, "-e", edges, "--prefix", "none", "--offline", "--locked"];
-    let output = Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().unwrap();
+    let command = &mut Command::new(env!("CARGO"));
+    let output = command.args(arguments).args(more).current_dir(root()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let tree = String::from_utf8(output.stdout).unwrap();
     assert!(tree.starts_with(package), "{tree}");
@@ -32,6 +37,18 @@ fn what_runs_beside_a_sensor_does_without_what_judges_it_even_in_its_tests() {
         let tree = tree(package, "all");
         assert!(!tree.iter().any(|found| found == "cylwatch-evaluation"), "{package}");
     }
+}
+
+#[test]
+fn what_runs_beside_a_sensor_needs_no_solver_no_parser_no_threads_and_thirty_crates_of_others() {
+    let mut tree = tree_with("cylwatch-detector", "normal", &["--no-default-features"]);
+    for foreign in ["diffsol", "clarabel", "rayon", "toml", "csv", "schemars", "serde_json", "rand", "pulp"] {
+        assert!(!tree.iter().any(|found| found == foreign), "it depends on {foreign}");
+    }
+    tree.retain(|package| !package.starts_with("cylwatch-"));
+    tree.sort_unstable();
+    tree.dedup();
+    assert!(tree.len() <= 30, "{} crates: {tree:?}", tree.len());
 }
 
 #[test]

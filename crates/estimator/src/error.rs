@@ -151,6 +151,7 @@ pub enum EstimatorError {
         state: String,
     },
     /// A quantity that a layout of sensors should know is none that is estimated.
+    #[cfg(feature = "design")]
     #[error("the {quantity:?} is no state of this member of the bank: take one whose leak rate walks")]
     PlacementQuantity {
         /// The quantity.
@@ -317,9 +318,11 @@ pub enum EstimatorError {
     )]
     SnapshotForeign,
     /// Nothing could be identified.
+    #[cfg(feature = "design")]
     #[error(transparent)]
     Identify(#[from] crate::identify::IdentifyError),
     /// Nothing could be calibrated.
+    #[cfg(feature = "design")]
     #[error(transparent)]
     Calibrate(#[from] crate::calibrate::CalibrateError),
 }

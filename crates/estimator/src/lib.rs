@@ -12,6 +12,9 @@
 //! | [`placement`] | where sensors should sit, with a bound on what was missed |
 //! | [`consistency`], [`bound`] | how an estimator is judged |
 //!
+//! Without default features the crate is what runs beside a sensor: what a sensor reads, filters and observer. `design` is everything offline, `simd` uses the vector registers of the
+//! machine at hand.
+//!
 //! ```
 //! use cylwatch_estimator::observer::{Commissioning, Observer, ObserverSettings};
 //! use cylwatch_estimator::sensor::Sensor;
@@ -28,18 +31,26 @@
 //! # Ok(())
 //! # }
 //! ```
+#[cfg(feature = "design")]
 pub mod bound;
+#[cfg(feature = "design")]
 pub mod calibrate;
+#[cfg(feature = "design")]
 mod cone;
+#[cfg(feature = "design")]
 pub mod consistency;
 pub mod error;
 pub mod filter;
+#[cfg(feature = "design")]
 pub mod identify;
+#[cfg(feature = "design")]
 mod least_squares;
 pub mod log;
+#[cfg(feature = "design")]
 pub mod minimum;
 mod numbers;
 pub mod observer;
+#[cfg(feature = "design")]
 pub mod placement;
 pub mod sensor;
 

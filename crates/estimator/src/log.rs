@@ -46,6 +46,7 @@ impl Log {
 }
 
 /// Median interval between times, in their unit; `None` with fewer than two.
+#[cfg(feature = "design")]
 pub(crate) fn median_interval(times: &[f64]) -> Option<f64> {
     let mut intervals: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = intervals.len() / 2;

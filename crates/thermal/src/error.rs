@@ -80,12 +80,12 @@ pub enum ThermalError {
     },
     // --- fluid ---
     /// The fluid is not known.
-    #[error("fluid {name} is not known: did you mean {nearest}? known are {known}")]
+    #[error("fluid {name} is not known{nearest}; known are {known}")]
     UnknownFluid {
         /// Name given.
         name: String,
-        /// The nearest known name.
-        nearest: &'static str,
+        /// Suggestion, empty or `, did you mean ...?`.
+        nearest: String,
         /// All names.
         known: String,
     },

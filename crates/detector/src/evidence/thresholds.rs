@@ -10,7 +10,9 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use cylwatch_estimator::thermal::vessel::{Vessel, presets};
+use cylwatch_estimator::thermal::vessel::Vessel;
+#[cfg(feature = "presets")]
+use cylwatch_estimator::thermal::vessel::presets;
 
 use super::{Scale, Statistics, Tail, Tails};
 
@@ -20,9 +22,7 @@ pub const HIGH_PRESSURE_PA: f64 = 100e5;
 impl Tails {
     /// Those of a vessel that holds so much at 15 °C, Pa: its own if it is a built-in one that has been commissioned, filled as it was then; else the usual ones.
     pub fn of(vessel: &Vessel, full_pa: f64) -> Self {
-        let says = |of: &Vessel| format!("{of:?}");
-        let is_built_in = |name: &str| presets::load(name).is_ok_and(|known| says(&known) == says(vessel));
-        let own = OWN.iter().find(|own| own.full_pa.contains(&full_pa) && is_built_in(own.preset));
+        let own = OWN.iter().find(|own| own.full_pa.contains(&full_pa) && is_built_in(vessel, own.preset));
         own.map_or_else(|| Self::usual(full_pa), |own| own.tails)
     }
 
@@ -30,6 +30,17 @@ impl Tails {
     pub fn usual(full_pa: f64) -> Self {
         if full_pa < HIGH_PRESSURE_PA { TANK } else { CYLINDER }
     }
+}
+
+#[cfg(feature = "presets")]
+fn is_built_in(vessel: &Vessel, preset: &str) -> bool {
+    presets::load(preset).is_ok_and(|known| format!("{known:?}") == format!("{vessel:?}"))
+}
+
+/// None is built in.
+#[cfg(not(feature = "presets"))]
+fn is_built_in(_: &Vessel, _: &str) -> bool {
+    false
 }
 
 /// Tails of a built-in vessel.

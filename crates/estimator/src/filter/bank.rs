@@ -26,6 +26,7 @@ mod member;
 mod outline;
 mod pack;
 mod single;
+#[cfg_attr(not(feature = "design"), path = "bank/windowed/none.rs")]
 mod windowed;
 mod workspace;
 

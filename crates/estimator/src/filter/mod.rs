@@ -8,6 +8,7 @@ pub(crate) mod dense;
 mod factor;
 mod failure;
 mod gate;
+#[cfg(feature = "design")]
 pub mod horizon;
 mod kalman;
 pub(crate) mod kernel;
@@ -16,6 +17,7 @@ mod linear;
 mod plant;
 mod record;
 mod riccati;
+pub(crate) mod simd;
 mod smoother;
 pub mod state_space;
 mod stationary;
@@ -30,6 +32,7 @@ pub use belief::{Belief, Moments};
 pub use failure::StepError;
 pub use gate::{Gate, Innovation, Outcome};
 pub use kalman::ExtendedKalman;
+#[cfg(feature = "design")]
 pub(crate) use linear::LinearSystem;
 pub(crate) use plant::parts;
 pub use plant::{Plant, SlowProcess, StepTransition};

@@ -8,8 +8,8 @@
 //! knew the state exactly `2^i` steps ago. `X` only grows, and its diagonal bounds the rest.
 //!
 //! Source: Chu, Fan, Lin and Wang 2004 (Anderson 1978).
+use crate::filter::simd::{Arch, Simd, WithSimd};
 use nalgebra::{DMatrix, DVector};
-use pulp::{Arch, Simd, WithSimd};
 
 use super::dense::{factor_cholesky, factor_lu, solve_upper, solve_upper_transposed, symmetrise};
 use super::kernel::{column, column_mut, multiply_columns, padded, subtract_columns};

@@ -8,8 +8,8 @@
 //! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
 use std::marker::PhantomData;
 
+use crate::filter::simd::{Arch, Simd, WithSimd};
 use nalgebra::DMatrix;
-use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::lanes::{LANES, Lanes};

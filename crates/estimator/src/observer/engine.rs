@@ -14,9 +14,11 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use crate::EstimatorError;
+#[cfg(feature = "design")]
 use crate::filter::horizon::{HorizonSettings, Loss};
 
 /// Iterations of a window per sample at most. The next sample iterates the same trajectory again.
+#[cfg(feature = "design")]
 const ITERATIONS: usize = 2;
 
 /// Filter that the observer runs. [`str::parse`] takes `ekf`, `ukf`, `stationary`, `mhe` and the words of files: `extended`,
@@ -38,10 +40,12 @@ pub enum Engine {
     /// standard deviations. Start it with [`super::Learned`] constants, or those will be large.
     Stationary,
     /// Moving-horizon estimation on top of the extended Kalman filter.
+    #[cfg(feature = "design")]
     MovingHorizon(MovingHorizonSettings),
 }
 
 /// Window of [`Engine::MovingHorizon`].
+#[cfg(feature = "design")]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct MovingHorizonSettings {
@@ -55,12 +59,14 @@ pub struct MovingHorizonSettings {
     pub mass_not_rising: bool,
 }
 
+#[cfg(feature = "design")]
 impl Default for MovingHorizonSettings {
     fn default() -> Self {
         Self { samples: 20, huber: None, leak_not_negative: true, mass_not_rising: true }
     }
 }
 
+#[cfg(feature = "design")]
 impl MovingHorizonSettings {
     pub(super) fn horizon(&self) -> HorizonSettings {
         let loss = self.huber.map_or(Loss::Quadratic, |delta| Loss::Huber { delta });
@@ -76,6 +82,7 @@ impl MovingHorizonSettings {
 impl Engine {
     pub(super) fn validate(&self) -> Result<(), EstimatorError> {
         match self {
+            #[cfg(feature = "design")]
             Self::MovingHorizon(settings) => settings.horizon().validate(),
             Self::Extended | Self::Unscented | Self::Stationary => Ok(()),
         }
@@ -95,6 +102,7 @@ impl FromStr for Engine {
             "extended" | "ekf" => Ok(Self::Extended),
             "unscented" | "ukf" => Ok(Self::Unscented),
             "stationary" => Ok(Self::Stationary),
+            #[cfg(feature = "design")]
             "moving-horizon" | "mhe" => Ok(Self::MovingHorizon(MovingHorizonSettings::default())),
             _ => Err(EstimatorError::EngineUnknown { word: word.to_owned() }),
         }

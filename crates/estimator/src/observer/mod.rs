@@ -54,7 +54,9 @@ pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
 use cylinder::Cylinder;
-pub use engine::{Engine, MovingHorizonSettings};
+pub use engine::Engine;
+#[cfg(feature = "design")]
+pub use engine::MovingHorizonSettings;
 pub use estimate::{Estimate, Leak, Quality};
 pub use flow::Flow;
 pub use learned::Learned;

@@ -16,23 +16,35 @@
 //! [`Sensor::predict`] is the static reading with its derivatives, for a filter; [`sample`] turns a trajectory into a
 //! [`crate::log::Log`] with everything that follows. The numbers `b, kappa, c, s` are [`Parameter`]s: known, or with a
 //! prior from which [`Sensor::draw`] takes one specimen ([`SensorTruth`]).
+#[cfg(feature = "design")]
 mod exposure;
+#[cfg(feature = "design")]
 mod file;
+#[cfg(feature = "design")]
 pub mod lag;
 mod model;
+#[cfg(feature = "design")]
 pub mod noise;
 mod parameter;
+#[cfg(feature = "design")]
 mod sample;
+#[cfg(feature = "design")]
 mod stream;
+#[cfg(feature = "design")]
 mod suite;
+#[cfg(feature = "design")]
 mod typical;
 
 pub use cylwatch_thermal::sensor::{
-    CorrelatedNoise, GasPlace, KindChoice, Law, PressureReference, Pt100Class, SensorKind, SensorSpec,
-    SurfacePlace,
+    CorrelatedNoise, GasPlace, Law, PressureReference, SensorKind, SurfacePlace,
 };
+#[cfg(feature = "design")]
+pub use cylwatch_thermal::sensor::{KindChoice, Pt100Class, SensorSpec};
+#[cfg(feature = "design")]
 pub use file::{SensorsSpec, read_sensors, schema};
 pub use model::{ELECTRONICS_REFERENCE_K, Exposure, Prediction, Sensor};
 pub use parameter::{MAX_PARAMETERS, Parameter, ParameterKind};
+#[cfg(feature = "design")]
 pub use sample::{sample, sample_at};
+#[cfg(feature = "design")]
 pub use suite::{SensorSuite, SensorTruth, Specimen, SuiteTruth};

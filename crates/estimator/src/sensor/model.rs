@@ -1,8 +1,11 @@
 //! A sensor: its numbers, its static reading and the derivatives of that.
 use super::parameter::{MAX_PARAMETERS, Parameter, ParameterKind};
+#[cfg(feature = "design")]
 use crate::EstimatorError;
 use crate::log::Quantity;
-use cylwatch_thermal::sensor::{CorrelatedNoise, MountedSensor, PressureReference, SensorKind, SensorSpec};
+#[cfg(feature = "design")]
+use cylwatch_thermal::sensor::SensorSpec;
+use cylwatch_thermal::sensor::{CorrelatedNoise, MountedSensor, PressureReference, SensorKind};
 use cylwatch_thermal::units::ATMOSPHERE_PA;
 
 /// Temperature of the electronics at which a pressure transmitter has no temperature error, K: 15 °C.
@@ -91,6 +94,7 @@ impl From<&MountedSensor> for Sensor {
     }
 }
 
+#[cfg(feature = "design")]
 impl TryFrom<&SensorSpec> for Sensor {
     type Error = EstimatorError;
 

@@ -107,12 +107,13 @@ impl Fluid {
         let wanted = name.to_ascii_lowercase();
         let index = data::ALL.iter().position(|data| data.name == wanted);
         let (Some(index), Some(transport)) = (index, Transport::for_fluid(&wanted)) else {
-            let nearest = Self::names()
-                .iter()
-                .max_by(|a, b| strsim::jaro_winkler(a, &wanted).total_cmp(&strsim::jaro_winkler(b, &wanted)));
+            #[cfg(feature = "files")]
+            let nearest = crate::document::suggestion(&wanted, Self::names().iter().copied());
+            #[cfg(not(feature = "files"))]
+            let nearest = String::new();
             return Err(ThermalError::UnknownFluid {
                 name: name.to_owned(),
-                nearest: nearest.copied().unwrap_or_default(),
+                nearest,
                 known: Self::names().join(", "),
             });
         };

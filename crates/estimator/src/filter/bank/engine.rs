@@ -1,4 +1,5 @@
 //! Which filter the members of a bank run.
+#[cfg(feature = "design")]
 use crate::filter::horizon::{Constraint, HorizonSettings};
 
 /// Filter that the members of a bank run.
@@ -11,5 +12,6 @@ pub enum BankEngine {
     /// Gain of the steady state; constants are considered, not estimated.
     Stationary,
     /// Moving horizon on top of the extended filter, inside constraints.
+    #[cfg(feature = "design")]
     MovingHorizon(HorizonSettings, Vec<Constraint>),
 }

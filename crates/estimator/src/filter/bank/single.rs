@@ -24,6 +24,7 @@ pub(super) struct Single<P: Plant> {
 enum Engine<P: Plant> {
     Unscented,
     Stationary(Box<Stationary>),
+    #[cfg_attr(not(feature = "design"), expect(dead_code))]
     MovingHorizon(Box<Windowed<P>>),
 }
 
@@ -40,6 +41,7 @@ impl<P: Plant> Single<P> {
                 Engine::Unscented
             }
             BankEngine::Stationary => Engine::Stationary(Box::new(Stationary::new(plant, &mut p)?)),
+            #[cfg(feature = "design")]
             BankEngine::MovingHorizon(settings, constraints) => {
                 Engine::MovingHorizon(Box::new(Windowed::new(plant, settings, constraints)))
             }

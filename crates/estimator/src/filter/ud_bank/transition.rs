@@ -1,5 +1,5 @@
 //! Transitions of four filters and the noise that they add.
-use pulp::{Arch, Simd, WithSimd};
+use crate::filter::simd::{Arch, Simd, WithSimd};
 
 use super::pattern::{BLOCK_ROWS, Block, Pattern};
 use crate::filter::lanes::{LANES, Lanes};

@@ -1,10 +1,14 @@
 //! The engine of the bank, with what a cylinder cannot do as constraints of the moving horizon.
 use super::Cylinder;
 use crate::filter::BankEngine;
+#[cfg(feature = "design")]
 use crate::filter::horizon::Constraint;
-use crate::observer::engine::{Engine, MovingHorizonSettings};
+use crate::observer::engine::Engine;
+#[cfg(feature = "design")]
+use crate::observer::engine::MovingHorizonSettings;
 
 /// Least mass in a window, as a share of the highest.
+#[cfg(feature = "design")]
 const LEAST: f64 = 1e-6;
 
 impl Cylinder {
@@ -14,6 +18,7 @@ impl Cylinder {
             Engine::Extended => BankEngine::Extended,
             Engine::Unscented => BankEngine::Unscented,
             Engine::Stationary => BankEngine::Stationary,
+            #[cfg(feature = "design")]
             Engine::MovingHorizon(settings) => {
                 BankEngine::MovingHorizon(settings.horizon(), self.constraints(&settings))
             }
@@ -22,6 +27,7 @@ impl Cylinder {
 
     /// Leak rate not negative, mass not rising from sample to sample, wall, valve and gas within the temperatures of the fluid's equation of
     /// state, mass between nothing and its highest density.
+    #[cfg(feature = "design")]
     fn constraints(&self, settings: &MovingHorizonSettings) -> Vec<Constraint> {
         let highest_kg = self.model.highest_mass_kg();
         let domain = self.model.fluid().domain();

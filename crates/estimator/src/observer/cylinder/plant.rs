@@ -1,5 +1,5 @@
 //! The cylinder as a [`Plant`]: members of the bank differ in how they let gas leave.
-use pulp::{Arch, Simd, WithSimd};
+use crate::filter::simd::{Arch, Simd, WithSimd};
 
 use super::structure::Structure;
 use super::walks::slow_process;
