@@ -12,7 +12,7 @@ use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
 use nalgebra::{DMatrix, DVector};
 
-#[allow(dead_code, missing_docs, reason = "the example has a main function and ensembles of its own")]
+#[allow(dead_code, reason = "the example has a main function and ensembles of its own")]
 #[path = "../crates/estimator/examples/second_plant.rs"]
 mod second_plant;
 

@@ -5,9 +5,9 @@ use cylwatch_estimator::filter::{BankEngine, Workspace};
 
 #[allow(dead_code)]
 #[path = "../../examples/second_plant.rs"]
-mod second_plant;
+mod example;
 
-use second_plant::{SAMPLE_S, Tank, bank, ensembles, truth, watch};
+use example::{SAMPLE_S, Tank, bank, ensembles, truth, watch};
 
 const SEEDS: u64 = 200;
 

@@ -189,7 +189,7 @@ impl WindowProblem<'_> {
         let constraint = &self.constraints[spot.row];
         match constraint.span() {
             Span::State => spot.stage == 0 || !constraint.is_on_constants(self.sweep.leading()),
-            Span::Step => spot.stage > 0 && self.intervals[spot.stage - 1].steps_hold,
+            Span::Step => spot.stage > 0,
         }
     }
 

@@ -68,15 +68,20 @@ impl<M: StateSpace> MovingHorizon<M> {
     /// # Errors
     /// The sample is not one, or the process cannot be evaluated; the window is then as before.
     pub fn step(&mut self, dt_s: f64, z: &[f64]) -> Result<HorizonEstimate, HorizonError<M::Error>> {
-        self.take(dt_s, z, true)
-    }
-
-    /// As [`step`](Self::step), over an interval on which the constraints on steps do not hold.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step).
-    pub fn step_unbound(&mut self, dt_s: f64, z: &[f64]) -> Result<HorizonEstimate, HorizonError<M::Error>> {
-        self.take(dt_s, z, false)
+        self.check(dt_s, z)?;
+        if self.window.intervals.len() == self.settings.samples {
+            self.window.slide(&mut self.model, self.settings.loss)?;
+            self.slide_active();
+        }
+        let before = self.window.path.clone();
+        let interval = Interval::new(&self.model, dt_s, z);
+        let appended = self.window.append(&mut self.model, interval);
+        let estimate = appended.and_then(|()| self.optimise());
+        if estimate.is_err() {
+            self.window.intervals.truncate(before.omega.len());
+            self.window.path = before;
+        }
+        estimate
     }
 
     /// Add `variance` to state `i` at the window's start: a constant that walks so slowly that no interval has noise for it.
@@ -105,28 +110,6 @@ impl<M: StateSpace> MovingHorizon<M> {
     /// States along the window, from the sample before it to the newest one: each (n).
     pub fn trajectory(&self) -> &[DVector<f64>] {
         &self.window.path.x
-    }
-
-    fn take(
-        &mut self,
-        dt_s: f64,
-        z: &[f64],
-        steps_hold: bool,
-    ) -> Result<HorizonEstimate, HorizonError<M::Error>> {
-        self.check(dt_s, z)?;
-        if self.window.intervals.len() == self.settings.samples {
-            self.window.slide(&mut self.model, self.settings.loss)?;
-            self.slide_active();
-        }
-        let before = self.window.path.clone();
-        let interval = Interval::new(&self.model, dt_s, z, steps_hold);
-        let appended = self.window.append(&mut self.model, interval);
-        let estimate = appended.and_then(|()| self.optimise());
-        if estimate.is_err() {
-            self.window.intervals.truncate(before.omega.len());
-            self.window.path = before;
-        }
-        estimate
     }
 
     fn check(&self, dt_s: f64, z: &[f64]) -> Result<(), HorizonError<M::Error>> {

@@ -16,8 +16,6 @@ pub(super) struct Interval {
     pub dt_s: f64,
     /// Readings, NaN where there is none: (outputs).
     pub z: Vec<f64>,
-    /// Whether the rows on steps hold over this interval.
-    pub steps_hold: bool,
     /// Transition from the interval's start.
     pub linear: Linearisation,
     /// `G diag(sqrt(q))`: (leading, k).
@@ -44,12 +42,11 @@ pub(super) struct Reading {
 
 impl Interval {
     /// A sample still to be linearised.
-    pub fn new<M: StateSpace>(model: &M, dt_s: f64, z: &[f64], steps_hold: bool) -> Self {
+    pub fn new<M: StateSpace>(model: &M, dt_s: f64, z: &[f64]) -> Self {
         let (n, leading, k) = (model.states(), model.leading(), model.noises());
         Self {
             dt_s,
             z: z.to_vec(),
-            steps_hold,
             linear: Linearisation::zeros(n, leading, k),
             noise_input: DMatrix::zeros(leading, k),
             advanced: DVector::zeros(n),

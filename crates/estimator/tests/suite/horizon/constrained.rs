@@ -244,27 +244,3 @@ fn a_leak_that_cannot_be_negative_is_estimated_better_for_it() {
         assert!(with < 0.9 * without, "{samples} samples: {with} against {without}");
     }
 }
-
-#[test]
-fn a_refill_passes_where_the_rows_on_steps_are_lifted() {
-    let problem = leaking_mass(1e-6, 1e-8, 0.01);
-    let prior = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 1e-4]));
-    let never_rising = vec![Constraint::step(&[(0, 1.0)], 0.0)];
-    let start = DVector::from_vec(vec![10.0, 0.0]);
-    let mut refilled = problem.clone();
-    // Over the refill's interval the process itself knows of a large noise.
-    refilled.q[0] = 1e4;
-    let settings = HorizonSettings { samples: 6, ..HorizonSettings::default() };
-    let mut horizon =
-        MovingHorizon::try_new(refilled, &start, &prior, never_rising, settings).expect("sound problem");
-    for _ in 0..5 {
-        horizon.step(1.0, &[10.0]).expect("no edge");
-    }
-    let mut held = horizon.clone();
-    let denied = held.step(1.0, &[50.0]).expect("no edge");
-    assert!(denied.x[0] < 20.0 && !denied.active.is_empty(), "a rise is denied: {}", denied.x[0]);
-    let allowed = horizon.step_unbound(1.0, &[50.0]).expect("no edge");
-    assert!((allowed.x[0] - 50.0).abs() < 0.1, "a refill is not: {}", allowed.x[0]);
-    let after = horizon.step(1.0, &[60.0]).expect("no edge");
-    assert!(after.x[0] < 56.0 && !after.active.is_empty(), "the next rise is denied again");
-}
