@@ -321,8 +321,9 @@ impl PackMemory {
             let all = self.intensities.iter_mut().zip(&self.one_intensity);
             all.for_each(|(intensities, intensity)| intensities.0[lane] = *intensity);
         }
+        // Of known number: the sum over them is unrolled.
         let StepTransition { noise, by_source, .. } = &self.step;
-        let intensities = &self.intensities;
+        let (by_source, intensities) = (&by_source[..P::SOURCES], &self.intensities[..P::SOURCES]);
         self.transition.set_noise(group, |place| {
             let by_source = intensities.iter().zip(by_source);
             by_source.fold(Lanes::splat(noise[place]), |sum, (&intensity, by)| sum + intensity * by[place])
