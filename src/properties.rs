@@ -1,5 +1,5 @@
 //! Properties of a gas at a state that any two of temperature, pressure and density fix.
-use crate::report::{Story, Table, number};
+use crate::report::{Digits, Story, Table, number};
 use crate::thermal::ThermalError;
 use crate::thermal::fluid::{Fluid, State};
 
@@ -128,9 +128,9 @@ fn temperature_k(fluid: &Fluid, pressure_pa: f64, density_kg_m3: f64) -> Result<
 /// The states as columns.
 pub fn table(states: &[Properties]) -> Table {
     // All digits of a double: such tables are compared with references.
-    let mut table = Table::new(16);
+    let mut table = Table::new();
     for (name, _, _, value) in PROPERTIES {
-        table.push(name, states.iter().map(value));
+        table.push(name, Digits::Significant(16), states.iter().map(value));
     }
     table
 }
@@ -156,9 +156,9 @@ pub fn story(fluid: &str, properties: &Properties) -> Story {
 
 /// Many states for people.
 pub fn story_of_many(fluid: &str, states: &[Properties]) -> Story {
-    let header = PROPERTIES
-        .map(|(_, name, unit, _)| if unit.is_empty() { name.into() } else { format!("{name} in {unit}") });
-    let row =
-        |state: &Properties| PROPERTIES.iter().map(|(_, _, _, value)| number(value(state), 6)).collect();
-    Story::new(format!("Properties of {fluid}")).rows("", &header, states.iter().map(row).collect())
+    let mut table = Table::new();
+    for (_, name, unit, value) in PROPERTIES {
+        table.push_quantity(name, unit, Digits::Significant(6), states.iter().map(value));
+    }
+    Story::new(format!("Properties of {fluid}")).table("", table)
 }

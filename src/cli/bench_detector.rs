@@ -120,7 +120,7 @@ impl Options {
         let views = self.views.make(picture, with, Vec::new(), &provenance)?;
         let text = match self.format {
             None => words.clone(),
-            Some(Format::Csv) => report::csv(outcome, &provenance, &remarks(&words)),
+            Some(Format::Csv) => report::table(outcome).to_csv(&provenance, &remarks(&words)),
             Some(Format::Json) => {
                 serde_json::to_string_pretty(&report::document(outcome, &provenance))? + "\n"
             }

@@ -22,6 +22,7 @@ mod place;
 mod progress;
 mod properties;
 mod reproduce;
+mod row_stream;
 mod schema;
 mod selection;
 mod simulate;

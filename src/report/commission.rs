@@ -1,5 +1,5 @@
 //! The file of `cylwatch commission`: thresholds for one vessel, the worlds that they were found in, and how often they alarm without a leak.
-use super::{Provenance, Story, digest, number};
+use super::{DAY_S, Provenance, Story, digest, number};
 use crate::evaluation::performance::YEAR_S;
 use crate::evaluation::tails::{Campaign, Commissioned};
 use crate::evaluation::world::{Climate, GasKind, NominalVessel, RowPattern, SensorClass};
@@ -16,7 +16,6 @@ const VERSION: u64 = 1;
 const SAME_FILL: (f64, f64) = (0.85, 1.05);
 const TOO_OFTEN: &str =
     "false alarms are more frequent than asked for: simulate more cylinders, or ask for fewer";
-const DAY_S: f64 = 86_400.0;
 
 /// Thresholds for one vessel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -123,53 +123,12 @@ fn element(index: usize, block: &Block) -> Result<Markup, ReportError> {
                 }
             } } }
         },
-        Block::Rows { caption, header, rows } => table(caption, header, rows),
+        Block::Table { caption, table } => table.to_html(caption),
         Block::Picture { picture, caption } => figure(picture, caption)?,
         Block::Source { name, text } => html! {
             details { summary { (name) } pre { (text) } }
         },
     })
-}
-
-/// Whether a column holds numbers, each with a unit or an interval at most; they stand to the right.
-fn is_numeric(rows: &[Vec<String>], column: usize) -> bool {
-    let is_number = |cell: &String| {
-        let mut words = cell.split_whitespace();
-        let first = words.next().unwrap_or("").trim_start_matches(['<', '>', '\u{2264}', '±']);
-        let number = first.replace('\u{2212}', "-").parse::<f64>().is_ok() || first.is_empty();
-        number && words.next().is_none_or(|second| second.starts_with(['(', '[']) || words.next().is_none())
-    };
-    rows.iter().filter_map(|row| row.get(column)).all(|cell| cell.is_empty() || is_number(cell))
-}
-
-fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> Markup {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(header.len());
-    let class = |column: usize| is_numeric(rows, column).then_some("number");
-    // Beside the table, not in it: a caption inside is broken at the width of a narrow table.
-    let named = (!caption.is_empty()).then_some(caption);
-    html! {
-        @if let Some(caption) = named { p.caption { (caption) } }
-        div.wide {
-            table aria-label=[named] {
-                @if !header.is_empty() {
-                    thead { tr {
-                        @for (k, name) in header.iter().enumerate() { th scope="col" class=[class(k)] { (name) } }
-                    } }
-                }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            @for k in 0..columns {
-                                @let cell = row.get(k).map_or("", String::as_str);
-                                @if k == 0 { th scope="row" class=[class(k)] { (cell) } }
-                                @else { td class=[class(k)] { (cell) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
 }
 
 fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {

@@ -1,17 +1,13 @@
 //! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
 use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
-use super::table::{Table, number};
-use super::{Provenance, Readings, Story, readings};
+use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Story, Table, number, readings};
 use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
-const ZERO_CELSIUS_K: f64 = 273.15;
-const GRAM_PER_HOUR: f64 = 3.6e6;
-
 /// Significant digits of a simulated number: beyond what the solver's tolerance carries, short enough to read.
-const DIGITS: usize = 10;
+const DIGITS: Digits = Digits::Significant(10);
 
 fn celsius(values_k: &[f64]) -> impl Iterator<Item = f64> + '_ {
     values_k.iter().map(|t| t - ZERO_CELSIUS_K)
@@ -23,32 +19,32 @@ fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
 
 /// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
 pub fn table(run: &Trajectory, readings: &Readings) -> Table {
-    let mut table = Table::new(DIGITS);
-    table.push("time_s", run.time_s.iter().copied());
-    table.push("ambient_degc", celsius(&run.ambient_k));
-    table.push("gas_mean_degc", celsius(&run.gas_mean_k));
+    let mut table = Table::new();
+    table.push("time_s", DIGITS, run.time_s.iter().copied());
+    table.push("ambient_degc", DIGITS, celsius(&run.ambient_k));
+    table.push("gas_mean_degc", DIGITS, celsius(&run.gas_mean_k));
     let cells = run.gas_cells_k.first().map_or(0, Vec::len);
     for cell in 0..cells {
         let values = run.gas_cells_k.iter().map(|sample| sample[cell] - ZERO_CELSIUS_K);
-        table.push(format!("gas_{}_degc", cell + 1), values);
+        table.push(format!("gas_{}_degc", cell + 1), DIGITS, values);
     }
     for place in run.places.iter().filter(|place| place.name != "shoulder") {
         if let Some(surface) = run.surface_k(place.name) {
-            table.push(format!("wall_{}_degc", place.name), celsius(&surface));
+            table.push(format!("wall_{}_degc", place.name), DIGITS, celsius(&surface));
         }
     }
     for name in ["shoulder", "valve"] {
         if let Some(surface) = run.surface_k(name) {
-            table.push(format!("{name}_degc"), celsius(&surface));
+            table.push(format!("{name}_degc"), DIGITS, celsius(&surface));
         }
     }
-    table.push("pressure_bar", bar(&run.pressure_pa));
-    table.push("mass_kg", run.mass_kg.iter().copied());
-    table.push("outflow_g_h", run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
-    table.push("heat_to_gas_w", run.heat_to_gas_w.iter().copied());
+    table.push("pressure_bar", DIGITS, bar(&run.pressure_pa));
+    table.push("mass_kg", DIGITS, run.mass_kg.iter().copied());
+    table.push("outflow_g_h", DIGITS, run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
+    table.push("heat_to_gas_w", DIGITS, run.heat_to_gas_w.iter().copied());
     for (sensor, values) in readings.columns() {
         let (name, values) = readings::column(sensor, &values);
-        table.push(name, values);
+        table.push(name, DIGITS, values);
     }
     table
 }

@@ -1,7 +1,7 @@
 //! What a result says, in order: paragraphs, facts, tables, pictures. A terminal shows it as aligned text, a browser as a page
 //! ([`Page`](super::Page)): nothing is said twice.
 use super::figure::{Figure, Picture, Sheet};
-use super::terminal;
+use super::table::{Table, wrapped};
 
 /// A part of a story.
 #[derive(Clone, Debug)]
@@ -17,13 +17,11 @@ pub enum Block {
     /// Names with what is to be said of each; an empty name goes on with the one above.
     Facts(Vec<(String, String)>),
     /// A table.
-    Rows {
+    Table {
         /// What stands above it; empty: nothing.
         caption: String,
-        /// Names of its columns; none: no header.
-        header: Vec<String>,
-        /// Its rows; a shorter one has empty cells at its end.
-        rows: Vec<Vec<String>>,
+        /// The table.
+        table: Table,
     },
     /// A picture with what it shows; a terminal leaves it out.
     Picture {
@@ -93,17 +91,21 @@ impl Story {
     }
 
     /// With a table; one without rows is left out.
+    pub fn table(mut self, caption: impl Into<String>, table: Table) -> Self {
+        if table.rows() > 0 {
+            self.blocks.push(Block::Table { caption: caption.into(), table });
+        }
+        self
+    }
+
+    /// With a table of texts; one without rows is left out.
     pub fn rows<H: AsRef<str>>(
-        mut self,
+        self,
         caption: impl Into<String>,
         header: &[H],
         rows: Vec<Vec<String>>,
     ) -> Self {
-        if !rows.is_empty() {
-            let header = header.iter().map(|name| name.as_ref().to_owned()).collect();
-            self.blocks.push(Block::Rows { caption: caption.into(), header, rows });
-        }
-        self
+        self.table(caption, Table::of_texts(header, rows))
     }
 
     /// With a table and what explains it; without rows both are left out.
@@ -155,13 +157,10 @@ impl Story {
         for block in &self.blocks {
             let words = match block {
                 Block::Heading(_) | Block::Picture { .. } | Block::Source { .. } => continue,
-                Block::Text(words) | Block::Remark(words) => terminal::wrapped(words),
-                Block::Caution(words) => terminal::wrapped(&format!("caution: {words}")),
+                Block::Text(words) | Block::Remark(words) => wrapped(words),
+                Block::Caution(words) => wrapped(&format!("caution: {words}")),
                 Block::Facts(facts) => facts_text(facts),
-                Block::Rows { caption, header, rows } => {
-                    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-                    terminal::wrapped(caption) + &terminal::table(&header, rows)
-                }
+                Block::Table { caption, table } => wrapped(caption) + &table.to_text(),
             };
             if !is_first && !matches!(block, Block::Remark(_)) {
                 text.push('\n');

@@ -7,8 +7,11 @@ use super::watch::WHO;
 use super::{Reproduction, answers, rows};
 use crate::estimator::identify::Identified;
 use crate::report::figure::Picture;
-use crate::report::{Page, Provenance, ReportError, Table, simulation};
+use crate::report::{Page, Provenance, ReportError, Digits, Table, simulation};
 use serde_json::{Map, Value, json};
+
+/// Significant digits of the compared values.
+const DIGITS: Digits = Digits::Significant(7);
 
 /// A file to write: name and content.
 pub type File = (String, Vec<u8>);
@@ -39,10 +42,10 @@ impl Reproduction {
     fn comparison(&self) -> Table {
         let Blowdown { measured, carrier, fitted, .. } = &self.blowdown;
         let times: Vec<f64> = blowdown::times_s().collect();
-        let mut table = Table::new(7);
-        table.push("time_s", times.iter().copied());
+        let mut table = Table::new();
+        table.push("time_s", DIGITS, times.iter().copied());
         let mut push =
-            |name: &str, value: &dyn Fn(f64) -> f64| table.push(name, times.iter().map(|&t| value(t)));
+            |name: &str, value: &dyn Fn(f64) -> f64| table.push(name, DIGITS, times.iter().map(|&t| value(t)));
         push("measured_pressure_bar", &|t| measured.pressure_bar.at(t));
         push("measured_gas_low_degc", &|t| measured.gas_low_k.at(t) - 273.15);
         push("measured_gas_high_degc", &|t| measured.gas_high_k.at(t) - 273.15);

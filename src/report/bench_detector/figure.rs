@@ -1,6 +1,6 @@
 //! Delay against leak rate, all detectors in one figure.
-use super::{HOUR_S, bar_h};
 use crate::evaluation::performance::bench::{Judged, Outcome};
+use crate::report::{BAR_PER_HOUR, HOUR_S};
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
 
 /// Median delays with their 95 % intervals, and the shortest possible delay.
@@ -38,7 +38,7 @@ fn horizons(outcome: &Outcome) -> [Item; 3] {
 /// Leak rates, bar/h.
 fn rates(judged: Option<&Judged>) -> Vec<f64> {
     let at = judged.map_or(&[][..], |judged| &judged.performance.sensitivity);
-    at.iter().map(|at| bar_h(at.rate_pa_s)).collect()
+    at.iter().map(|at| at.rate_pa_s * BAR_PER_HOUR).collect()
 }
 
 /// Median delays of one detector, h; NaN where fewer than half were found.

@@ -1,11 +1,9 @@
 //! A bench in a few lines and two tables for people.
-use super::bar_h;
 use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
-use crate::report::{Story, number};
+use crate::report::{BAR_PER_HOUR, DAY_S, HOUR_S, Story, number};
+use crate::thermal::units::PASCAL_PER_BAR;
 
-const DAY_S: f64 = 86_400.0;
-const HOUR_S: f64 = 3600.0;
 /// Columns of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
@@ -72,7 +70,7 @@ fn reached(judged: &Judged) -> Vec<String> {
 fn threshold(judged: &Judged) -> String {
     let value = judged.level.threshold;
     match judged.unit.as_str() {
-        "Pa" => format!("{} bar", number(value / super::PASCAL_PER_BAR, 3)),
+        "Pa" => format!("{} bar", number(value / PASCAL_PER_BAR, 3)),
         "log10(years)" => format!("{} years", number(10_f64.powf(value), 2)),
         unit => format!("{} {unit}", number(value, 3)),
     }
@@ -81,7 +79,7 @@ fn threshold(judged: &Judged) -> String {
 /// A smallest leak with its interval, in bar/h.
 fn smallest(found: &SmallestLeak) -> String {
     let words = |reached: Reached| {
-        let rate = number(bar_h(reached.rate_pa_s()), 2);
+        let rate = number(reached.rate_pa_s() * BAR_PER_HOUR, 2);
         match reached {
             Reached::AtMost(_) => format!("<{rate}"),
             Reached::At(_) => rate,
@@ -118,7 +116,7 @@ fn delays(outcome: &Outcome, story: Story) -> Story {
     let names = outcome.judged.iter().map(|judged| judged.performance.detector.as_str());
     let header: Vec<&str> = ["leak / bar/h", "bound / h"].into_iter().chain(names).collect();
     let row = |(k, at): (usize, &Sensitivity)| {
-        let mut cells = vec![number(bar_h(at.rate_pa_s), 3)];
+        let mut cells = vec![number(at.rate_pa_s * BAR_PER_HOUR, 3)];
         cells.push(at.bound_s.map_or_else(String::new, |bound_s| number(bound_s / HOUR_S, 3)));
         cells.extend(outcome.judged.iter().map(|judged| delay(&judged.performance.sensitivity[k])));
         cells
@@ -144,7 +142,7 @@ fn bound(outcome: &Outcome) -> String {
     let noise = outcome.noise.map_or_else(String::new, |noise| {
         format!(
             "\nbound: shortest mean delay that an error of {} bar wandering over {} h allows",
-            number(noise.sd / super::PASCAL_PER_BAR, 2),
+            number(noise.sd / PASCAL_PER_BAR, 2),
             number(noise.correlation_time_s / HOUR_S, 2)
         )
     });

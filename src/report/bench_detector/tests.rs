@@ -1,5 +1,5 @@
 //! A bench that was never run.
-use super::{csv, figure, story};
+use super::{figure, story, table};
 use crate::evaluation::noise::Noise;
 use crate::evaluation::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
 use crate::evaluation::performance::{Performance, Run, TrueLeak};
@@ -54,7 +54,7 @@ fn words_say_what_stands_behind_the_numbers() {
 #[test]
 fn columns_have_a_row_for_each_detector_and_rate_and_leave_what_is_unknown_empty() {
     let provenance = Provenance { command: "c".into(), inputs: vec![], seed: Some(1) };
-    let csv = csv(&outcome(), &provenance, &["a remark".into()]);
+    let csv = table(&outcome()).to_csv(&provenance, &["a remark".into()]);
     let lines: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), 5);
     let columns = lines[0].split(',').count();

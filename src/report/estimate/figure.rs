@@ -3,10 +3,9 @@ use super::course::Course;
 use super::innovation::normalised;
 use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::Truth;
+use crate::report::GRAM_PER_HOUR;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
-
-const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// Curves before those of the innovations.
 const FIXED: usize = 14;

@@ -4,11 +4,9 @@ use super::row::EstimateRow;
 use super::score::{Score, Spread};
 use crate::estimator::consistency::{Finding, OutputReport};
 use crate::log::{Caution, Sampling};
-use crate::report::Story;
+use crate::report::{GRAM_PER_HOUR, Story};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
-
-const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// What is left of a run when its rows have gone.
 #[derive(Clone, Debug)]

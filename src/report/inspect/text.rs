@@ -4,7 +4,7 @@ use crate::log::Packing;
 use crate::log::inspect::{ColumnReport, Inspection, Role, Times, Use};
 use crate::report::estimate::duration;
 use crate::report::monitor::Clock;
-use crate::report::terminal::hanging;
+use crate::report::table::hanging;
 use crate::report::{Story, aligned, number, quoted};
 
 /// Longest name in a table, letters.

@@ -1,5 +1,6 @@
 //! Events: in words for people, and as lines of JSON for programs.
-use super::{BAR_PER_HOUR, Clock, GRAM, GRAM_PER_HOUR, short};
+use super::{Clock, short};
+use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
 use crate::detector::monitor::{Event, EventKind, Health, Interval, LeakFinding, Verdict};
 use crate::estimator::log::Quantity;
 use crate::report::estimate::duration;

@@ -1,6 +1,7 @@
 //! The figure of a monitored log: pressures, mass, leak rate, verdict.
 use super::marks::Marks;
-use super::{GRAM_PER_HOUR, VerdictStrip};
+use super::VerdictStrip;
+use crate::report::{GRAM_PER_HOUR};
 use crate::detector::monitor::Output;
 use crate::log::Truth;
 use crate::report::estimate::Course;

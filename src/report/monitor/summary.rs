@@ -1,10 +1,8 @@
 //! A monitored log in a few lines that a person can act on, and as JSON.
 use super::event::{finding, health_word, range, verdict};
 use super::prognosis::percent;
-use super::{
-    BAR_PER_HOUR, GRAM, GRAM_PER_HOUR, Naming, health_words, passage_words, reaction_reason, reaction_word,
-    reaction_words, short,
-};
+use super::{Naming, health_words, passage_words, reaction_reason, reaction_word, reaction_words, short};
+use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
 use crate::detector::monitor::alarm::AlarmPanel;
 use crate::detector::monitor::{Decision, Health, LeakFinding, Outcome, Outlook, Output, Verdict};
 use crate::detector::prognosis::Quantiles;

@@ -1,5 +1,6 @@
 //! A study in words: what was asked, then one table after the other.
-use super::{BAR, DAY_S, GRAM_PER_HOUR, HOUR, Placed};
+use super::{BAR, GRAM_PER_HOUR, HOUR, Placed};
+use crate::report::DAY_S;
 use crate::report::{Story, number};
 use crate::thermal::units::ZERO_CELSIUS_K;
 
