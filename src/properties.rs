@@ -1,5 +1,5 @@
 //! Properties of a gas at a state that any two of temperature, pressure and density fix.
-use crate::report::{Digits, Story, Table, number};
+use crate::report::{Digits, Report, Table, number};
 use crate::thermal::ThermalError;
 use crate::thermal::fluid::{Fluid, State};
 
@@ -136,7 +136,7 @@ pub fn table(states: &[Properties]) -> Table {
 }
 
 /// One state for people.
-pub fn story(fluid: &str, properties: &Properties) -> Story {
+pub fn summary(fluid: &str, properties: &Properties) -> Report {
     let degc = properties.state.temperature_k - 273.15;
     let bar = properties.state.pressure_pa / 1e5;
     let rows: Vec<Vec<String>> = PROPERTIES
@@ -151,14 +151,14 @@ pub fn story(fluid: &str, properties: &Properties) -> Story {
             vec![(*name).to_owned(), number(value(properties), 8), (*unit).to_owned(), also]
         })
         .collect();
-    Story::new(format!("Properties of {fluid}")).rows::<&str>("", &[], rows)
+    Report::new(format!("Properties of {fluid}")).rows::<&str>("", &[], rows)
 }
 
 /// Many states for people.
-pub fn story_of_many(fluid: &str, states: &[Properties]) -> Story {
+pub fn summary_of_many(fluid: &str, states: &[Properties]) -> Report {
     let mut table = Table::new();
     for (_, name, unit, value) in PROPERTIES {
         table.push_quantity(name, unit, Digits::Significant(6), states.iter().map(value));
     }
-    Story::new(format!("Properties of {fluid}")).table("", table)
+    Report::new(format!("Properties of {fluid}")).table("", table)
 }

@@ -47,7 +47,12 @@ impl<R> RowStream<R> {
 
     /// Writes what stands below the rows: in JSON these `members`, between the date of second 0 and the provenance; in CSV the hash of a
     /// log that was a pipe.
-    pub fn tail(&mut self, inputs: &Inputs, log: &LogInput, members: Map<String, Value>) -> anyhow::Result<()> {
+    pub fn tail(
+        &mut self,
+        inputs: &Inputs,
+        log: &LogInput,
+        members: Map<String, Value>,
+    ) -> anyhow::Result<()> {
         let hashed_late = inputs.record_log(log);
         let tail = match self.format {
             RowFormat::Csv => hashed_late.map_or(String::new(), |input| input.comment_line() + "\n"),

@@ -53,10 +53,10 @@ pub fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<
         .with_context(|| format!("{shown} is no file of --learned-out"))?;
     if learned.version != Learned::VERSION {
         let version = learned.version;
-        bail!("{shown} has version {version}, this program reads {}: learn anew", Learned::VERSION);
+        bail!("{shown} has version {version}, this program reads {}: learn again", Learned::VERSION);
     }
     if !learned.is_consistent() {
-        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn anew");
+        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn again");
     }
     if learned.vessel != vessel.name {
         bail!("{shown} was learnt on `{}`, and this is `{}`: learn on this one", learned.vessel, vessel.name);

@@ -1,10 +1,11 @@
 //! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal, pages for a browser. Pure functions; nothing here reads
 //! or writes.
 //!
-//! What a result says is a [`Story`]: a terminal and a page show the same one.
+//! The text of a result is a [`Report`]: a terminal and a page show the same one.
 pub mod bench_detector;
 pub mod calibrate;
 pub mod commission;
+mod content;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
@@ -15,13 +16,12 @@ pub mod place;
 mod provenance;
 mod readings;
 pub mod simulation;
-mod story;
 mod table;
 
+pub use content::{Block, Report};
 pub use page::Page;
 pub use provenance::{Fingerprint, Input, Provenance, digest, quoted};
 pub use readings::Readings;
-pub use story::{Block, Story};
 pub use table::{Cell, Column, Digits, Field, RowFormat, Rows, Table, Values, aligned, number, rounded};
 
 /// g in a kg.

@@ -1,6 +1,6 @@
 //! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
-use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
-use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Story, Table, number, readings};
+use super::figure::{Figure, Item, Mark, Panel, style};
+use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Report, Table, number, readings};
 use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
@@ -50,7 +50,7 @@ pub fn table(run: &Trajectory, readings: &Readings) -> Table {
 }
 
 /// An event in words.
-pub fn event_name(event: &Event) -> String {
+pub(crate) fn event_name(event: &Event) -> String {
     match &event.kind {
         EventKind::PressureLimit { limit_pa, falling } => {
             let side = if *falling { "below" } else { "above" };
@@ -89,17 +89,17 @@ pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
     let differences = differences(&bodies);
     let temperatures = air.into_iter().chain(bodies).collect();
     let mut panels = vec![
-        Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
-        Panel { quantity: "above gas mean in K".into(), items: differences, height: 0.7 },
-        Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
+        Panel::new("temperature in °C", 1.1, temperatures),
+        Panel::new("above gas mean in K", 0.7, differences),
+        Panel::new("pressure in bar", 0.8, pressure),
     ];
     let (least, most) = run.mass_kg.iter().fold((f64::INFINITY, 0.0), |r, &m| (m.min(r.0), m.max(r.1)));
     if most - least > 1e-6 * most {
         let mass = Item::line("gas mass", time, run.mass_kg.iter().copied(), style::PRESSURE);
-        panels.push(Panel { quantity: "gas mass in kg".into(), items: vec![mass], height: 0.55 });
+        panels.push(Panel::new("gas mass in kg", 0.55, vec![mass]));
     }
     let marks = run.events.iter().map(|event| Mark { at: event.time_s, name: event_name(event) }).collect();
-    Figure { title: title(run), horizontal: Horizontal::Time, panels, marks, below: None }
+    Figure::over_time(title(run), panels).with_marks(marks)
 }
 
 /// The air, and what sensors read of it.
@@ -239,10 +239,10 @@ pub const CAPTION: &str = "Temperatures; how wall, valve and sensors differ from
                            the gas mass where it changes. Lines named sensor are readings.";
 
 /// The run in a few lines for people.
-pub fn story(run: &Trajectory) -> Story {
-    let story = Story::new(title(run));
+pub fn summary(run: &Trajectory) -> Report {
+    let report = Report::new(title(run));
     let (Some(&first), Some(&last)) = (run.pressure_pa.first(), run.pressure_pa.last()) else {
-        return story;
+        return report;
     };
     let extremes =
         run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
@@ -274,5 +274,5 @@ pub fn story(run: &Trajectory) -> Story {
     ];
     let event = |event: &Event| (format!("event at {:.0} s", event.time_s), event_name(event));
     facts.extend(run.events.iter().map(event));
-    story.facts(facts)
+    report.facts(facts)
 }

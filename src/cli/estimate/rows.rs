@@ -6,7 +6,6 @@ use cylwatch::estimator::observer::cylinder::Cylinder;
 use cylwatch::estimator::observer::{Estimate, Innovation};
 use cylwatch::log::Truth;
 use cylwatch::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
-use cylwatch::report::figure::Picture;
 use serde_json::Map;
 
 /// Change of the mass, relative, after which the slope of the settled pressure is taken anew.
@@ -58,7 +57,7 @@ impl<'a> Rows<'a> {
             last: None,
             slope: (f64::NAN, f64::NAN),
             cylinder,
-            figure: options.views.are_wanted().then(|| FigureData::new(names)),
+            figure: options.views.is_any_requested().then(|| FigureData::new(names)),
         };
         Ok(Self { pass, selection, readings: Vec::new(), results })
     }
@@ -100,11 +99,11 @@ impl<'a> Rows<'a> {
         // Everything is made before any file appears.
         let views = match results.figure.take() {
             Some(data) => {
-                let picture = || Picture::Figure(report::figure(&summary.title, &data));
+                let picture = || report::figure(&summary.title, &data);
                 let with = |picture| {
                     let cautions =
                         summary.cautions.iter().map(ToString::to_string).chain(report::doubts(&summary));
-                    report::story(&summary).cautions(cautions).picture(picture, report::CAPTION)
+                    report::summary(&summary).cautions(cautions).picture(picture, report::CAPTION)
                 };
                 options.views.make(picture, with, inputs.sources(), &provenance)?
             }

@@ -1,6 +1,6 @@
 //! A bench as CSV, a row for each detector and rate, and as JSON with all that is known.
-use crate::evaluation::performance::{CONFIDENCE, Row};
 use crate::evaluation::performance::bench::{Judged, Outcome};
+use crate::evaluation::performance::{CONFIDENCE, Row};
 use crate::report::{BAR_PER_HOUR, Digits, HOUR_S, Provenance, Table};
 use crate::thermal::units::PASCAL_PER_BAR;
 use serde_json::{Value, json};

@@ -1,26 +1,26 @@
 //! A bench in a few lines and two tables for people.
 use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
-use crate::report::{BAR_PER_HOUR, DAY_S, HOUR_S, Story, number};
+use crate::report::{BAR_PER_HOUR, DAY_S, HOUR_S, Report, number};
 use crate::thermal::units::PASCAL_PER_BAR;
 
 /// Columns of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
 /// What stands behind the numbers, what each detector reaches, and its delays.
-pub fn story(outcome: &Outcome) -> Story {
+pub fn summary(outcome: &Outcome) -> Report {
     let reached = outcome.judged.iter().map(reached).collect();
-    let story = Story::new("Leak detectors side by side").text(behind(outcome)).explained_rows(
+    let report = Report::new("Leak detectors side by side").text(campaign_text(outcome)).explained_rows(
         "",
         &header(),
         reached,
         explained(outcome),
     );
-    delays(outcome, story).remark(bound(outcome))
+    delays(outcome, report).remark(bound(outcome))
 }
 
 /// How many cylinders for how long.
-fn behind(outcome: &Outcome) -> String {
+fn campaign_text(outcome: &Outcome) -> String {
     let plan = &outcome.plan;
     let (days, learnt) = (plan.watched_s / DAY_S, plan.learning_s / DAY_S);
     let years = |cylinders: u64| cylinders as f64 * plan.watched_s / YEAR_S;
@@ -111,8 +111,8 @@ fn explained(outcome: &Outcome) -> String {
 }
 
 /// Median delay of every detector at every rate, with the part that was found.
-fn delays(outcome: &Outcome, story: Story) -> Story {
-    let Some(first) = outcome.judged.first() else { return story };
+fn delays(outcome: &Outcome, report: Report) -> Report {
+    let Some(first) = outcome.judged.first() else { return report };
     let names = outcome.judged.iter().map(|judged| judged.performance.detector.as_str());
     let header: Vec<&str> = ["leak / bar/h", "bound / h"].into_iter().chain(names).collect();
     let row = |(k, at): (usize, &Sensitivity)| {
@@ -122,10 +122,10 @@ fn delays(outcome: &Outcome, story: Story) -> Story {
         cells
     };
     let rows: Vec<Vec<String>> = first.performance.sensitivity.iter().enumerate().map(row).collect();
-    story.rows("", &header, rows)
+    report.rows("", &header, rows)
 }
 
-/// Median delay in hours; what was found where it is not half.
+/// Median delay in hours; the number found where it is less than half.
 fn delay(at: &Sensitivity) -> String {
     let delay = at.delay;
     match (delay.median_s, delay.found == delay.leaks) {

@@ -55,7 +55,7 @@ pub fn table(study: &Study) -> Table {
     table
 }
 
-/// Everything as JSON; `options` says what was asked for.
+/// Everything as JSON; `options` is the request.
 pub fn document(study: &Study, options: &Value, provenance: &Provenance) -> Value {
     let signal = |signal: &super::Signal| json!({ "name": signal.name, "unit": signal.suffix });
     let comparable = study.fitted.published().is_some();
@@ -79,7 +79,7 @@ fn part(part: &Part, residuals: &Residuals) -> Value {
         .judged
         .iter()
         .map(|judged| {
-            json!({ "model": judged.model, "start": judged.start.words(), "comparison": judged.comparison })
+            json!({ "model": judged.model, "start": judged.start.text(), "comparison": judged.comparison })
         })
         .collect();
     json!({

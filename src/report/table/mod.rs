@@ -232,18 +232,16 @@ impl Column {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} in {}", self.name, self.unit) }
     }
 
-    /// Whether it stands to the right: numbers, and texts that are a number each, with a unit or an interval at most.
+    /// Whether it stands to the right: numbers, and short texts that begin with a number.
     fn is_numeric(&self) -> bool {
+        /// Letters of a text that is still read as a number with its unit or interval.
+        const SHORT: usize = 24;
         let Values::Texts(texts) = &self.values else { return true };
         let is_number = |cell: &String| {
-            let mut words = cell.split_whitespace();
-            let first = words.next().unwrap_or("").trim_start_matches(['<', '>', '\u{2264}', '±']);
-            let first = first.trim_end_matches('*');
-            let number = first.replace('\u{2212}', "-").parse::<f64>().is_ok() || first.is_empty();
-            number
-                && words
-                    .next()
-                    .is_none_or(|second| second.starts_with(['(', '[']) || words.next().is_none())
+            let first = cell.split_whitespace().next().unwrap_or_default();
+            let first = first.trim_start_matches(['<', '>', '\u{2264}', '±']).trim_end_matches(['*', ',']);
+            let is_number = first.is_empty() || first.replace('\u{2212}', "-").parse::<f64>().is_ok();
+            is_number && cell.chars().count() <= SHORT
         };
         texts.iter().all(is_number)
     }
@@ -265,12 +263,8 @@ impl Values {
             Self::Numbers(digits, values) => {
                 values.get(row).map_or(Cell::Missing, |&value| Cell::number(value, *digits))
             }
-            Self::Integers(values) => {
-                values.get(row).copied().flatten().map_or(Cell::Missing, Cell::Integer)
-            }
-            Self::Booleans(values) => {
-                values.get(row).copied().flatten().map_or(Cell::Missing, Cell::Boolean)
-            }
+            Self::Integers(values) => values.get(row).copied().flatten().map_or(Cell::Missing, Cell::Integer),
+            Self::Booleans(values) => values.get(row).copied().flatten().map_or(Cell::Missing, Cell::Boolean),
             Self::Texts(values) => values.get(row).map_or(Cell::Missing, |text| Cell::text(text)),
         }
     }

@@ -47,8 +47,7 @@ impl Table {
             cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
         };
         let columns = self.columns.iter().enumerate();
-        let layout: Vec<(usize, bool)> =
-            columns.map(|(k, column)| (width(k), column.is_numeric())).collect();
+        let layout: Vec<(usize, bool)> = columns.map(|(k, column)| (width(k), column.is_numeric())).collect();
         let line = |cells: &[String]| {
             let padded = layout.iter().zip(cells).map(|(&(width, right), cell)| {
                 let pad = " ".repeat(width - cell.chars().count());
@@ -148,8 +147,7 @@ mod tests {
     #[test]
     fn two_wide_columns_are_both_narrowed() {
         let words = "word ".repeat(20);
-        let wide =
-            Table::of_texts(&["a", "b", "c"], vec![vec!["x".into(), words.clone(), words]]).to_text();
+        let wide = Table::of_texts(&["a", "b", "c"], vec![vec!["x".into(), words.clone(), words]]).to_text();
         assert!(wide.lines().all(|line| line.chars().count() <= WIDTH), "{wide}");
         assert_eq!(wide.matches("word").count(), 40);
     }

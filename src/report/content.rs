@@ -1,9 +1,9 @@
 //! What a result says, in order: paragraphs, facts, tables, pictures. A terminal shows it as aligned text, a browser as a page
 //! ([`Page`](super::Page)): nothing is said twice.
-use super::figure::{Figure, Picture, Sheet};
+use super::figure::Picture;
 use super::table::{Table, wrapped};
 
-/// A part of a story.
+/// A part of a report.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A heading; a terminal leaves it out.
@@ -14,7 +14,7 @@ pub enum Block {
     Remark(String),
     /// Something to be careful about.
     Caution(String),
-    /// Names with what is to be said of each; an empty name goes on with the one above.
+    /// Names with values; an empty name continues the one above.
     Facts(Vec<(String, String)>),
     /// A table.
     Table {
@@ -41,14 +41,14 @@ pub enum Block {
 
 /// What a result says.
 #[derive(Clone, Debug, Default)]
-pub struct Story {
+pub struct Report {
     /// Title.
     pub title: String,
     /// In order.
     pub blocks: Vec<Block>,
 }
 
-impl Story {
+impl Report {
     /// Nothing but a title.
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), blocks: Vec::new() }
@@ -109,7 +109,7 @@ impl Story {
     }
 
     /// With a table and what explains it; without rows both are left out.
-    pub fn explained_rows<H: AsRef<str>>(
+    pub(crate) fn explained_rows<H: AsRef<str>>(
         self,
         caption: impl Into<String>,
         header: &[H],
@@ -122,19 +122,9 @@ impl Story {
         self.rows(caption, header, rows).remark(explanation)
     }
 
-    /// With a figure.
-    pub fn figure(self, figure: Figure, caption: impl Into<String>) -> Self {
-        self.picture(Picture::Figure(figure), caption)
-    }
-
-    /// With a sheet.
-    pub fn sheet(self, sheet: Sheet, caption: impl Into<String>) -> Self {
-        self.picture(Picture::Sheet(sheet), caption)
-    }
-
-    /// With any picture.
-    pub fn picture(mut self, picture: Picture, caption: impl Into<String>) -> Self {
-        self.blocks.push(Block::Picture { picture, caption: caption.into() });
+    /// With a picture.
+    pub fn picture(mut self, picture: impl Into<Picture>, caption: impl Into<String>) -> Self {
+        self.blocks.push(Block::Picture { picture: picture.into(), caption: caption.into() });
         self
     }
 
@@ -187,12 +177,12 @@ mod tests {
 
     #[test]
     fn a_terminal_shows_title_facts_and_tables_one_below_the_other() {
-        let story = Story::new("A run")
+        let report = Report::new("A run")
             .heading("not shown")
             .facts([("gas °C", "1".to_owned()), ("", "2".to_owned())])
             .text("")
             .rows("counts", &["what", "n"], vec![vec!["a".into(), "10".into()]])
             .rows("none", &["what"], Vec::new());
-        assert_eq!(story.to_text(), "A run\ngas °C  1\n        2\n\ncounts\nwhat   n\n----  --\na     10\n");
+        assert_eq!(report.to_text(), "A run\ngas °C  1\n        2\n\ncounts\nwhat   n\n----  --\na     10\n");
     }
 }
