@@ -9,7 +9,7 @@
 use cylwatch::detector::monitor::{EventKind, Limits, Monitor, MonitorSettings, Verdict};
 use cylwatch::estimator::observer::Commissioning;
 use cylwatch::estimator::sensor::{Sensor, SensorSuite, sample};
-use cylwatch::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use cylwatch::report::figure::{Figure, Item, Mark, Panel, Picture, style};
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
@@ -122,10 +122,9 @@ pub fn run() -> anyhow::Result<Night> {
 pub fn figure(night: &Night) -> Figure {
     let t = &night.time_s;
     let curve = |name: &str, values: &[f64], stroke| Item::line(name, t, values.iter().copied(), stroke);
-    let panel = |quantity: &str, height, items| Panel { quantity: quantity.into(), items, height };
     let [read, settled, cold] = &night.pressures_bar;
     let panels = vec![
-        panel(
+        Panel::new(
             "temperature in °C",
             0.8,
             vec![
@@ -133,7 +132,7 @@ pub fn figure(night: &Night) -> Figure {
                 curve("gas", &night.temperatures_degc[1], style::GAS_MEAN),
             ],
         ),
-        panel(
+        Panel::new(
             "pressure in bar",
             1.2,
             vec![
@@ -147,8 +146,8 @@ pub fn figure(night: &Night) -> Figure {
     let mut marks = Vec::new();
     marks.extend(night.warning.map(|(at, _)| Mark { at, name: "monitor: cold night".into() }));
     marks.extend(night.switch.map(|(at, _)| Mark { at, name: "switch alarms".into() }));
-    let title = "A cold night and a tight cylinder".into();
-    Figure { title, horizontal: Horizontal::Time, panels, marks, below: None }
+    let title = "A cold night and a tight cylinder";
+    Figure::over_time(title, panels).with_marks(marks)
 }
 
 fn main() -> anyhow::Result<()> {
@@ -157,9 +156,9 @@ fn main() -> anyhow::Result<()> {
     let night = run()?;
     let command = "cargo run --release --example cold_night".to_owned();
     let provenance = Provenance { command, inputs: Vec::new(), seed: Some(SEED) };
-    let figure = figure(&night);
-    std::fs::write(folder.join("cold-night.svg"), figure.to_svg(&provenance)?)?;
-    std::fs::write(folder.join("cold-night.png"), figure.to_png(&provenance)?)?;
+    let picture = Picture::from(figure(&night));
+    std::fs::write(folder.join("cold-night.svg"), picture.to_svg(&provenance)?)?;
+    std::fs::write(folder.join("cold-night.png"), picture.to_png(&provenance)?)?;
     let hours = |s: f64| format!("{:.1} h", s / 3600.0);
     let rows = [
         [

@@ -9,7 +9,7 @@
 use cylwatch::detector::monitor::{EventKind, LeakFinding, Monitor, MonitorSettings, Verdict};
 use cylwatch::estimator::observer::Commissioning;
 use cylwatch::estimator::sensor::{Sensor, SensorSuite, sample};
-use cylwatch::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use cylwatch::report::figure::{Figure, Item, Mark, Panel, Picture, style};
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
@@ -134,9 +134,8 @@ impl Masked {
 pub fn figure(masked: &Masked) -> Figure {
     let t = &masked.time_s;
     let curve = |name: &str, values: &[f64], stroke| Item::line(name, t, values.iter().copied(), stroke);
-    let panel = |quantity: &str, height, items| Panel { quantity: quantity.into(), items, height };
     let panels = vec![
-        panel(
+        Panel::new(
             "temperature in °C",
             0.8,
             vec![
@@ -144,7 +143,7 @@ pub fn figure(masked: &Masked) -> Figure {
                 curve("gas", &masked.temperatures_degc[1], style::GAS_MEAN),
             ],
         ),
-        panel(
+        Panel::new(
             "pressure in bar",
             1.0,
             vec![
@@ -152,12 +151,12 @@ pub fn figure(masked: &Masked) -> Figure {
                 curve("monitor, at 15 °C", &masked.pressures_bar[1], style::FIRST),
             ],
         ),
-        panel("lost in g", 0.6, vec![curve("lost", &masked.lost_g, style::GAS_MEAN)]),
+        Panel::new("lost in g", 0.6, vec![curve("lost", &masked.lost_g, style::GAS_MEAN)]),
     ];
     let mut marks = vec![Mark { at: LEAK_S, name: "leak begins".into() }];
     marks.extend(masked.found_s.map(|at| Mark { at, name: "monitor: leak".into() }));
-    let title = "A leak that the warming day hides from the gauge".into();
-    Figure { title, horizontal: Horizontal::Time, panels, marks, below: None }
+    let title = "A leak that the warming day hides from the gauge";
+    Figure::over_time(title, panels).with_marks(marks)
 }
 
 fn main() -> anyhow::Result<()> {
@@ -166,9 +165,9 @@ fn main() -> anyhow::Result<()> {
     let masked = run()?;
     let command = "cargo run --release --example leak_masked_by_warming".to_owned();
     let provenance = Provenance { command, inputs: Vec::new(), seed: Some(SEED) };
-    let figure = figure(&masked);
-    std::fs::write(folder.join("leak-masked-by-warming.svg"), figure.to_svg(&provenance)?)?;
-    std::fs::write(folder.join("leak-masked-by-warming.png"), figure.to_png(&provenance)?)?;
+    let picture = Picture::from(figure(&masked));
+    std::fs::write(folder.join("leak-masked-by-warming.svg"), picture.to_svg(&provenance)?)?;
+    std::fs::write(folder.join("leak-masked-by-warming.png"), picture.to_png(&provenance)?)?;
     let (spread_bar, lost_g) = masked.spread_and_loss();
     let hours = |s: f64| format!("{:.1} h after the onset", (s - LEAK_S) / 3600.0);
     let mut rows = vec![

@@ -11,7 +11,7 @@ use cylwatch::detector::monitor::intake::IntakeSettings;
 use cylwatch::detector::monitor::{EventKind, Monitor, MonitorSettings, Verdict};
 use cylwatch::estimator::observer::Commissioning;
 use cylwatch::estimator::sensor::{Sensor, SensorSuite, sample};
-use cylwatch::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use cylwatch::report::figure::{Figure, Item, Mark, Panel, Picture, style};
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
@@ -136,9 +136,8 @@ pub fn figure(refill: &Refill) -> Figure {
     let curve = |name: &str, values: &[f64], stroke| {
         Item::line(name, &t, values[from..until].iter().copied(), stroke)
     };
-    let panel = |quantity: &str, height, items| Panel { quantity: quantity.into(), items, height };
     let panels = vec![
-        panel(
+        Panel::new(
             "temperature in °C",
             0.8,
             vec![
@@ -146,7 +145,7 @@ pub fn figure(refill: &Refill) -> Figure {
                 curve("gas", &refill.temperatures_degc[1], style::GAS_MEAN),
             ],
         ),
-        panel(
+        Panel::new(
             "pressure in bar",
             1.2,
             vec![
@@ -161,8 +160,8 @@ pub fn figure(refill: &Refill) -> Figure {
     };
     let marks =
         refill.verdicts.iter().filter(|(at, _)| *at < refill.time_s[until - 1]).map(shifted).collect();
-    let title = "A refill: hot at first, and no leak when it cools".into();
-    Figure { title, horizontal: Horizontal::Time, panels, marks, below: None }
+    let title = "A refill: hot at first, and no leak when it cools";
+    Figure::over_time(title, panels).with_marks(marks)
 }
 
 fn main() -> anyhow::Result<()> {
@@ -171,9 +170,9 @@ fn main() -> anyhow::Result<()> {
     let refill = run()?;
     let command = "cargo run --release --example refill".to_owned();
     let provenance = Provenance { command, inputs: Vec::new(), seed: Some(SEED) };
-    let figure = figure(&refill);
-    std::fs::write(folder.join("refill.svg"), figure.to_svg(&provenance)?)?;
-    std::fs::write(folder.join("refill.png"), figure.to_png(&provenance)?)?;
+    let picture = Picture::from(figure(&refill));
+    std::fs::write(folder.join("refill.svg"), picture.to_svg(&provenance)?)?;
+    std::fs::write(folder.join("refill.png"), picture.to_png(&provenance)?)?;
     let (peak_bar, fall_bar) = refill.peak_and_fall();
     let minutes = |s: f64| format!("{:.0} min", (s - REFILL_S) / 60.0);
     let mut rows = vec![

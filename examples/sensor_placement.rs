@@ -132,10 +132,10 @@ fn main() -> anyhow::Result<()> {
     let provenance = Provenance { command, inputs: Vec::new(), seed: None };
     let mut rows = Vec::new();
     for attitude in &attitudes {
-        let sheet = attitude.placed().figure();
+        let picture = attitude.placed().figure();
         let file = format!("sensor-placement-{}", attitude.name);
-        std::fs::write(folder.join(format!("{file}.svg")), sheet.to_svg(&provenance)?)?;
-        std::fs::write(folder.join(format!("{file}.png")), sheet.to_png(&provenance)?)?;
+        std::fs::write(folder.join(format!("{file}.svg")), picture.to_svg(&provenance)?)?;
+        std::fs::write(folder.join(format!("{file}.png")), picture.to_png(&provenance)?)?;
         println!("{}: best beside the pressure: {}", attitude.name, attitude.best().join(", then "));
         for place in THERMOMETERS {
             let position = attitude.position(place);

@@ -37,7 +37,7 @@
 //! let vessel = vessel::presets::load("nitrogen-20l")?;
 //! let scenario = scenario::presets::load("leak-after-tunnel")?;
 //! let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_done| ())?;
-//! println!("{}", simulation::story(&run).to_text());
+//! println!("{}", simulation::summary(&run).to_text());
 //!
 //! // What two thermometers and a transmitter read, with the errors of drawn specimens.
 //! let sensors = vec![Sensor::typical("shoulder")?, Sensor::typical("valve")?, Sensor::typical("pressure")?];

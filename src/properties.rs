@@ -1,5 +1,5 @@
 //! Properties of a gas at a state that any two of temperature, pressure and density fix.
-use crate::report::{Story, Table, number};
+use crate::report::{Digits, Report, Table, number};
 use crate::thermal::ThermalError;
 use crate::thermal::fluid::{Fluid, State};
 
@@ -128,15 +128,15 @@ fn temperature_k(fluid: &Fluid, pressure_pa: f64, density_kg_m3: f64) -> Result<
 /// The states as columns.
 pub fn table(states: &[Properties]) -> Table {
     // All digits of a double: such tables are compared with references.
-    let mut table = Table::new(16);
+    let mut table = Table::new();
     for (name, _, _, value) in PROPERTIES {
-        table.push(name, states.iter().map(value));
+        table.push(name, Digits::Significant(16), states.iter().map(value));
     }
     table
 }
 
 /// One state for people.
-pub fn story(fluid: &str, properties: &Properties) -> Story {
+pub fn summary(fluid: &str, properties: &Properties) -> Report {
     let degc = properties.state.temperature_k - 273.15;
     let bar = properties.state.pressure_pa / 1e5;
     let rows: Vec<Vec<String>> = PROPERTIES
@@ -151,14 +151,14 @@ pub fn story(fluid: &str, properties: &Properties) -> Story {
             vec![(*name).to_owned(), number(value(properties), 8), (*unit).to_owned(), also]
         })
         .collect();
-    Story::new(format!("Properties of {fluid}")).rows::<&str>("", &[], rows)
+    Report::new(format!("Properties of {fluid}")).rows::<&str>("", &[], rows)
 }
 
 /// Many states for people.
-pub fn story_of_many(fluid: &str, states: &[Properties]) -> Story {
-    let header = PROPERTIES
-        .map(|(_, name, unit, _)| if unit.is_empty() { name.into() } else { format!("{name} in {unit}") });
-    let row =
-        |state: &Properties| PROPERTIES.iter().map(|(_, _, _, value)| number(value(state), 6)).collect();
-    Story::new(format!("Properties of {fluid}")).rows("", &header, states.iter().map(row).collect())
+pub fn summary_of_many(fluid: &str, states: &[Properties]) -> Report {
+    let mut table = Table::new();
+    for (_, name, unit, value) in PROPERTIES {
+        table.push_quantity(name, unit, Digits::Significant(6), states.iter().map(value));
+    }
+    Report::new(format!("Properties of {fluid}")).table("", table)
 }

@@ -7,10 +7,14 @@ use super::identify::IdentifyArguments;
 use super::inspect::InspectArguments;
 use super::man::ManArguments;
 use super::monitor::MonitorArguments;
+use super::number::{at_least, with_negative_numbers, within};
+use super::options::{
+    DataArguments, OUTPUT, ReportArguments, SolverArguments, ViewArguments, without_experts,
+};
 use super::place::PlaceArguments;
 use super::simulate::SimulationFormat;
 use super::states::GivenQuantities;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 
 /// Tells a leaking gas cylinder from a cold one: thermal model of a pressure cylinder.
@@ -20,9 +24,16 @@ pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
-    /// Say nothing but errors.
+    /// Print errors only.
     #[arg(long, short, global = true, display_order = 900)]
     pub quiet: bool,
+}
+
+impl Arguments {
+    /// The command line with what concerns all options.
+    pub fn prepared() -> clap::Command {
+        without_experts(with_negative_numbers(Self::command()))
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -91,12 +102,6 @@ impl Format {
         let ending = output.and_then(Path::extension);
         if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("json")) { Self::Json } else { Self::Csv }
     }
-
-    /// The format that is asked for by `--format`, `--json` or the output; `None`: words for people, on stdout.
-    pub fn asked(format: Option<Self>, json: bool, output: Option<&Path>) -> Option<Self> {
-        let named = if json { Some(Self::Json) } else { format };
-        named.or_else(|| output.map(|output| Self::of(Some(output))))
-    }
 }
 
 /// Arguments of `reproduce`.
@@ -106,17 +111,15 @@ pub struct ReproduceArguments {
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
     pub out: PathBuf,
     /// Seed of noise and drawn cylinders, a whole number of at least 0.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = at_least(0_u64))]
     pub seed: u64,
     /// Drawn cylinders of each case, 1 to 1000; the time goes with it.
-    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = within(1_u64, 1000))]
     pub cylinders: u64,
-    /// The report once more, under this name.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
-    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
-    #[arg(long, value_name = "NUMBER")]
-    pub relative_tolerance: Option<f64>,
+    #[command(flatten)]
+    pub report: ReportArguments,
+    #[command(flatten)]
+    pub solver: SolverArguments,
 }
 
 /// Arguments of `simulate`.
@@ -129,23 +132,18 @@ pub struct SimulateArguments {
     /// Scenario: a TOML file, the name of a built-in one, or - for stdin.
     #[arg(required_unless_present = "list")]
     pub scenario: Option<String>,
-    /// File for the data; - is stdout [default: stdout].
-    #[arg(long, short, value_name = "FILE")]
+    /// Write the data to FILE; - is stdout.
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
     pub output: Option<PathBuf>,
-    /// Figure of temperatures and pressure; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
     /// Format of the data [default: by the ending .json or .parquet of the file, else csv].
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = OUTPUT)]
     pub format: Option<SimulationFormat>,
-    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-6].
-    #[arg(long, value_name = "NUMBER")]
-    pub relative_tolerance: Option<f64>,
+    #[command(flatten)]
+    pub views: ViewArguments,
+    #[command(flatten)]
+    pub solver: SolverArguments,
     /// Seed of the sensors' specimens and noise, a whole number of at least 0.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = at_least(0_u64))]
     pub seed: u64,
     /// List the built-in vessels and scenarios and stop.
     #[arg(long)]
@@ -189,18 +187,15 @@ pub struct PropertiesArguments {
     /// Equation of state.
     #[arg(long, value_enum, default_value = "reference")]
     pub equation: EquationName,
-    /// Format [default: a table for people for one state on stdout, else json for a file that ends in .json, else csv].
-    #[arg(long, value_enum)]
-    pub format: Option<Format>,
-    /// Report with a table: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
-    /// File for the data; - is stdout [default: stdout].
-    #[arg(long, short, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub data: DataArguments,
+    #[command(flatten)]
+    pub report: ReportArguments,
 }
 
 const PROPERTIES_EXAMPLES: &str = "\
+Without --output and --format one state is a table for people.
+
 Examples:
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
   cylwatch properties nitrogen --density-kg-m3 223.2 --temperature-degc -25 --format json

@@ -1,17 +1,17 @@
 //! `cylwatch bench-detector`: leak detectors side by side on simulated cylinders.
 use super::arguments::Format;
-use super::command_line;
+use super::input::Inputs;
 use super::message::Messages;
+use super::number::{above, at_least};
+use super::options::{DataArguments, FalseAlarmArguments, OUTPUT, ViewArguments};
 use super::output::{Target, remarks};
 use super::progress::Progress;
-use super::unit_options::between_false_alarms_s;
-use super::views::{Views, Wanted};
-use anyhow::bail;
+use super::result::{Contents, Destination};
+use super::views::Views;
 use clap::Args;
 use cylwatch::evaluation::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
-use cylwatch::report::figure::Picture;
 use cylwatch::report::{Provenance, bench_detector as report};
-use std::path::PathBuf;
+use cylwatch::thermal::units::PASCAL_PER_BAR;
 use std::sync::Mutex;
 
 const DAY_S: f64 = 86_400.0;
@@ -22,44 +22,37 @@ const HOUR_S: f64 = 3600.0;
 #[command(after_help = HELP)]
 pub struct BenchDetectorArguments {
     /// Cylinders for training, as many for the test, and as many for each leak rate; at least 5.
-    #[arg(long, value_name = "NUMBER", default_value_t = 24)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 24, value_parser = at_least(5_u64))]
     pub seeds: u64,
-    /// How long each cylinder is watched, in d, after --learning-days; above 1.
-    #[arg(long, value_name = "NUMBER", default_value_t = 8.0)]
+    /// Time that each cylinder is watched after --learning-days, in d; above 1.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8.0, value_parser = above(1.0))]
     pub days: f64,
-    /// Operation that detectors learn from before anything counts, in d.
-    #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
+    /// Time that detectors learn before anything counts, in d.
+    #[arg(long, value_name = "NUMBER", default_value_t = 10.0, value_parser = above(0.0))]
     pub learning_days: f64,
     /// Leak rates in bar/h, loss of the pressure at 15 degC [default: 11 from 0.001 to 10].
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = above(0.0))]
     pub rates: Option<Vec<f64>>,
-    /// Mean time between false alarms that every threshold is set for, in years.
-    #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
-    pub false_alarm_years: f64,
+    #[command(flatten)]
+    pub false_alarms: FalseAlarmArguments,
     /// First seed of cylinders and weather, a whole number of at least 0.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = at_least(0_u64))]
     pub seed: u64,
     /// Simulate stratified gas, a finer wall and weather: about thirty times the time.
     #[arg(long)]
     pub stratified: bool,
-    /// File for a row of each detector and rate; - is stdout [default: tables for people on stdout].
-    #[arg(long, short, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Format of the data [default: json for a file that ends in .json, else csv].
-    #[arg(long, value_enum)]
-    pub format: Option<Format>,
+    #[command(flatten)]
+    pub data: DataArguments,
     /// The same as --format json.
-    #[arg(long, conflicts_with = "format")]
+    #[arg(long, conflicts_with = "format", help_heading = OUTPUT)]
     pub json: bool,
-    /// Figure of delay against leak rate; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub views: ViewArguments,
 }
 
 const HELP: &str = "\
+Without --output, --format and --json stdout gets tables for people.
+
 Every detector sees the same readings of the same cylinders, drawn with errors of wall, films and
 sensors, in winter weeks under a train with tunnels. Thresholds are set on the training cylinders
 for one rate of false alarms; the test cylinders have other seeds.
@@ -89,12 +82,10 @@ pub fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Re
 
 impl Options {
     fn checked(arguments: BenchDetectorArguments) -> anyhow::Result<Self> {
-        let data = Target::checked(arguments.output.as_deref(), &[])?;
-        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
-        let views = Views::checked(wanted, &[], &[&data])?;
-        let format = Format::asked(arguments.format, arguments.json, arguments.output.as_deref());
-        let plan = plan(&arguments)?;
-        Ok(Self { plan, data, format, views })
+        let data = Target::checked(arguments.data.output.as_deref(), &[])?;
+        let views = Views::checked(&arguments.views, &[], &[&data])?;
+        let format = arguments.data.format_or_tables(arguments.json);
+        Ok(Self { plan: plan(&arguments), data, format, views })
     }
 
     fn bench(&self, messages: &Messages) -> anyhow::Result<Outcome> {
@@ -111,26 +102,19 @@ impl Options {
     }
 
     fn write(&self, outcome: &Outcome, messages: &Messages) -> anyhow::Result<()> {
-        let provenance =
-            Provenance { command: command_line(), inputs: Vec::new(), seed: Some(self.plan.seed) };
-        let story = report::story(outcome);
-        let words = story.to_text();
-        let picture = || Picture::Figure(report::figure(outcome));
-        let with = |picture| story.picture(picture, report::CAPTION);
-        let views = self.views.make(picture, with, Vec::new(), &provenance)?;
-        let text = match self.format {
-            None => words.clone(),
-            Some(Format::Csv) => report::csv(outcome, &provenance, &remarks(&words)),
-            Some(Format::Json) => {
-                serde_json::to_string_pretty(&report::document(outcome, &provenance))? + "\n"
-            }
+        let inputs = Inputs::default();
+        let provenance = Provenance { seed: Some(self.plan.seed), ..inputs.provenance() };
+        let summary = report::summary(outcome);
+        let remarks = remarks(&summary.to_text());
+        let contents = Contents {
+            summary,
+            csv: &|provenance| report::table(outcome).to_csv(provenance, &remarks),
+            json: &|provenance| report::document(outcome, provenance),
+            picture: &|| report::figure(outcome).into(),
+            report: &|picture, summary| summary.picture(picture, report::CAPTION),
         };
-        self.data.write(text.as_bytes())?;
-        views.write()?;
-        if self.format.is_some() {
-            messages.say(&words);
-        }
-        Ok(())
+        let destination = Destination { data: &self.data, format: self.format, views: &self.views };
+        destination.write(contents, &inputs, &provenance, messages)
     }
 }
 
@@ -141,32 +125,22 @@ fn candidates(plan: &Plan) -> anyhow::Result<Vec<Candidate>> {
     Ok(candidates)
 }
 
-/// The plan, each option named if it is out of its bounds.
-fn plan(arguments: &BenchDetectorArguments) -> anyhow::Result<Plan> {
-    let positive = |option: &str, value: f64, above: f64| {
-        if !(value > above && value.is_finite()) {
-            bail!("--{option} {value}: it must be above {above} and finite");
-        }
-        Ok(value)
-    };
-    if arguments.seeds < 5 {
-        bail!("--seeds {}: at least 5 cylinders are needed to set a threshold", arguments.seeds);
-    }
+/// The plan of the bench.
+fn plan(arguments: &BenchDetectorArguments) -> Plan {
     let mut plan = Plan {
         training: arguments.seeds,
         tests: arguments.seeds,
         seed: arguments.seed,
-        learning_s: DAY_S * positive("learning-days", arguments.learning_days, 0.0)?,
-        watched_s: DAY_S * positive("days", arguments.days, 1.0)?,
-        between_alarms_s: between_false_alarms_s(arguments.false_alarm_years)?,
+        learning_s: DAY_S * arguments.learning_days,
+        watched_s: DAY_S * arguments.days,
+        between_alarms_s: arguments.false_alarms.mean_time_s(),
         fast: !arguments.stratified,
         ..Plan::default()
     };
     if let Some(rates) = &arguments.rates {
-        let of = |rate: &f64| Ok(positive("rates", *rate, 0.0)? * 1e5 / HOUR_S);
-        plan.rates_pa_s = rates.iter().map(of).collect::<anyhow::Result<_>>()?;
+        plan.rates_pa_s = rates.iter().map(|rate| rate * PASCAL_PER_BAR / HOUR_S).collect();
         plan.rates_pa_s.sort_by(f64::total_cmp);
         plan.rates_pa_s.dedup();
     }
-    Ok(plan)
+    plan
 }

@@ -1,12 +1,12 @@
 //! `cylwatch calibrate`: physical parameters of a vessel from logs, as a new vessel file.
 use super::fill::GivenFill;
 use super::input::{Inputs, shown};
-use super::log_options::LogArguments;
 use super::message::Messages;
+use super::options::LogArguments;
 use super::output::Target;
 use super::progress::Progress;
 use super::selection;
-use super::views::{self, Views};
+use super::views::Views;
 use anyhow::{Context, bail};
 use cylwatch::estimator::calibrate::{
     Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, SearchStep,
@@ -15,28 +15,27 @@ use cylwatch::estimator::sensor::SensorsSpec;
 use cylwatch::report::Input;
 use cylwatch::report::calibrate as report;
 use cylwatch::report::calibrate::Study;
-use cylwatch::report::figure::Picture;
 use cylwatch::thermal::vessel::{Vessel, VesselSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 mod air;
-mod amounts;
 mod arguments;
-mod circumstances;
+mod conditions;
 mod date;
 mod options;
+mod parameters;
+mod quantities;
 mod recording;
 mod vessel_file;
-mod wanted;
 
-use amounts::Amounts;
 pub use arguments::CalibrateArguments;
 use arguments::CalibrationFormat;
-use circumstances::{Circumstances, Exposure};
+use conditions::{Conditions, Exposure};
+use parameters::{ParameterArguments, ParameterChoice, Subject};
+use quantities::Quantities;
 use recording::{AMBIENT, Reading, Recording};
-use wanted::{Subject, Wanted, Words};
 
 /// A first step of the search from which on it is said how long all of them take.
 const SLOW: Duration = Duration::from_secs(1);
@@ -69,10 +68,10 @@ struct Options {
     vessels: BTreeMap<String, String>,
     reading: LogArguments,
     sensors: Option<PathBuf>,
-    wanted: Wanted,
+    parameters: ParameterChoice,
     validation: Option<Validation>,
     settings: CalibrationSettings,
-    amounts: Amounts,
+    quantities: Quantities,
     fill: GivenFill,
     date: String,
     vessel_file: Option<Target>,
@@ -108,7 +107,7 @@ struct Cases {
 struct Case {
     vessel: Option<Vessel>,
     recording: Recording,
-    circumstances: Circumstances,
+    conditions: Conditions,
 }
 
 /// Calibrates and writes.
@@ -131,46 +130,46 @@ impl Options {
         let read = self.sensors.as_deref().map(|path| selection::read_specification(inputs, path));
         let (specification, sensors) = read.transpose()?.unzip();
         let reading = Reading { inputs, reading: &self.reading, sensors: sensors.as_deref(), messages };
-        let exposure = Exposure { amounts: &self.amounts, fill: &self.fill, source: self.fill.source()? };
+        let exposure =
+            Exposure { quantities: &self.quantities, fill: &self.fill, source: self.fill.source()? };
         let case = |log: &String| -> anyhow::Result<Case> {
             let vessel = self.vessels.get(log).map(|name| inputs.vessel(name, messages)).transpose()?;
             let of_log = vessel.as_ref().unwrap_or(main);
             let recording = reading.read(log, of_log)?;
-            let (recording, circumstances) = match self.scenarios.get(log) {
+            let (recording, conditions) = match self.scenarios.get(log) {
                 Some(scenario) => {
-                    let circumstances =
-                        exposure.of_scenario(&recording, inputs.scenario(scenario)?, of_log)?;
-                    (recording, circumstances)
+                    let conditions = exposure.of_scenario(&recording, inputs.scenario(scenario)?, of_log)?;
+                    (recording, conditions)
                 }
                 None => {
                     let recording = recording.beginning_at_zero();
-                    let circumstances = exposure.of_log(&recording, of_log)?;
-                    (recording, circumstances)
+                    let conditions = exposure.of_log(&recording, of_log)?;
+                    (recording, conditions)
                 }
             };
-            messages.say(&circumstances.words);
-            circumstances.doubts.iter().for_each(|doubt| messages.caution(doubt));
-            Ok(Case { vessel, recording, circumstances })
+            messages.say(&conditions.words);
+            conditions.doubts.iter().for_each(|doubt| messages.caution(doubt));
+            Ok(Case { vessel, recording, conditions })
         };
         let cases = self.logs.iter().map(case).collect::<anyhow::Result<_>>()?;
         Ok(Cases { cases, sensors: specification })
     }
 
-    /// Fits, scores what was held out, and computes profiles.
+    /// Fits, scores the held-out data, and computes profiles.
     fn study(&self, start: &Start, cases: Vec<Case>, messages: &Messages) -> anyhow::Result<Study> {
         let subjects: Vec<Subject<'_>> = cases
             .iter()
             .map(|case| Subject {
                 vessel: case.vessel.as_ref().unwrap_or(&start.vessel),
                 recording: &case.recording,
-                circumstances: &case.circumstances,
+                conditions: &case.conditions,
                 is_main: case.vessel.is_none(),
             })
             .collect();
-        let parameters = self.wanted.parameters(&subjects)?;
-        let profiles = self.wanted.profiles(&parameters)?;
+        let parameters = self.parameters.parameters(&subjects)?;
+        let profiles = self.parameters.profiles(&parameters)?;
         let held_out = self.hold_out(&cases);
-        let circumstances = cases.iter().map(|case| case.circumstances.words.clone()).collect();
+        let conditions = cases.iter().map(|case| case.conditions.words.clone()).collect();
         let calibration = Calibration {
             vessel: start.vessel.clone(),
             experiments: cases.into_iter().map(Case::experiment).collect(),
@@ -200,7 +199,7 @@ impl Options {
         let mesh_shift_sd = calibrated.mesh_shift_sd().unwrap_or_default();
         drop(progress);
         let held_out = held_out.map(|(_, words)| words);
-        Ok(Study { calibration, calibrated, circumstances, scores, held_out, profiles, mesh_shift_sd })
+        Ok(Study { calibration, calibrated, conditions, scores, held_out, profiles, mesh_shift_sd })
     }
 
     fn hold_out(&self, cases: &[Case]) -> Option<(HoldOut, String)> {
@@ -230,15 +229,15 @@ impl Options {
         messages: &Messages,
     ) -> anyhow::Result<()> {
         let provenance = inputs.provenance();
-        let story = report::story(study);
-        let words = story.to_text();
+        let summary = report::summary(study);
+        let words = summary.to_text();
         // Everything is made before any file appears.
         let logs = self.logs.iter().map(|log| (shown(log), inputs.record_of(log)));
         let logs: Vec<(String, Input)> = logs.filter_map(|(name, input)| Some((name, input?))).collect();
         let record = vessel_file::record(study, &start.origin, &logs, &self.date);
         let vessel = vessel_file::text(study, &start.specification, record, &provenance)?;
-        let picture = || Picture::Figure(report::figure(study));
-        let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
+        let picture = || report::figure(study);
+        let with = |picture| summary.cautions(report::cautions(study)).picture(picture, report::CAPTION);
         let views = self.views.make(picture, with, inputs.sources(), &provenance)?;
         let of_sensors = self.sensors_file.as_ref().map(|target| {
             let sensors = sensors.unwrap_or_else(|| typical_sensors(study));
@@ -264,13 +263,13 @@ impl Options {
             }
         }
         if self.vessel_file.is_none() {
-            messages.say("no vessel file was asked for: -o NEW.toml writes one");
+            messages.say("no vessel file is written: -o NEW.toml writes one");
         }
         Ok(())
     }
 }
 
-/// Typical sensors on what was fitted, and on the air where the log has it.
+/// Typical sensors on the fitted channels, and on the air where the log has it.
 fn typical_sensors(study: &Study) -> SensorsSpec {
     let experiment = &study.calibration.experiments[study.main_experiment()];
     let is_of_air = |line: &report::Line<'_>| line.spec.kind == ParameterKind::AirOffset;
@@ -284,7 +283,7 @@ impl Case {
         Experiment {
             source: self.recording.name,
             vessel: self.vessel,
-            scenario: self.circumstances.scenario,
+            scenario: self.conditions.scenario,
             log: self.recording.log,
             channels: self.recording.sensors,
         }

@@ -43,9 +43,9 @@ pub fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow::Resul
     };
     let provenance = Provenance { seed: Some(options.campaign.seed), ..inputs.provenance() };
     let document = serde_json::to_string_pretty(&commissioned.document(&provenance)?)? + "\n";
-    let story = commissioned.story()?;
+    let summary = commissioned.summary()?;
     options.data.write(document.as_bytes())?;
-    messages.say(&story.to_text());
+    messages.say(&summary.to_text());
     messages.say(&format!("to use them: {}", usage(&options.vessel, &output)));
     Ok(())
 }

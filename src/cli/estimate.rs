@@ -2,14 +2,14 @@
 use super::arguments::Format;
 use super::fill::{self, FillSource, GivenFill};
 use super::input::{Inputs, LogInput};
-use super::log_options::LogArguments;
 use super::message::Messages;
-use super::output::Target;
+use super::options::LogArguments;
+use super::output::{Target, check_distinct};
 use super::progress::Progress;
 use super::selection::{self, Selection};
 use super::start;
-use super::views::{Views, Wanted};
-use anyhow::{Context, bail};
+use super::views::Views;
+use anyhow::Context;
 use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
@@ -17,7 +17,7 @@ use cylwatch::log::Row;
 use cylwatch::report::estimate as report;
 use cylwatch::thermal::vessel::Vessel;
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 mod arguments;
 mod pass;
@@ -63,38 +63,28 @@ pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<
     for doubt in report::doubts(&summary) {
         messages.caution(&doubt);
     }
-    messages.say(&report::story(&summary).to_text());
+    messages.say(&report::summary(&summary).to_text());
     Ok(())
 }
 
 impl Options {
     fn checked(arguments: EstimateArguments) -> anyhow::Result<Self> {
-        let EstimateArguments { vessel, log, fill, filter, smooth, reading, sensors, learned_in, .. } =
-            arguments;
-        if vessel == "-" && log == "-" {
-            bail!("stdin can be the vessel or the log, not both: give the other one as a file");
-        }
-        let files = [sensors.as_deref(), learned_in.as_deref()];
-        let mut inputs = vec![Path::new(&vessel), Path::new(&log)];
-        inputs.extend(files.into_iter().flatten());
-        let data = Target::checked(arguments.output.as_deref(), &inputs)?;
+        let EstimateArguments { inputs: places, fill, filter, smooth, reading, learned_in, .. } = arguments;
+        let sensors = arguments.sensors.sensors;
+        let mut inputs = places.paths()?;
+        inputs.extend([sensors.as_deref(), learned_in.as_deref()].into_iter().flatten());
+        let data = Target::checked(arguments.data.output.as_deref(), &inputs)?;
         let learned_out = arguments.learned_out.as_deref();
         let learned_out = learned_out.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
         let others: Vec<&Target> = [Some(&data), learned_out.as_ref()].into_iter().flatten().collect();
-        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
-        let views = Views::checked(wanted, &inputs, &others)?;
-        if let Some(target) = &learned_out
-            && (target.is_same_file(&data) || matches!((target, &data), (Target::Stdout, Target::Stdout)))
-        {
-            bail!("--learned-out and --output name the same place: choose two");
-        }
+        let views = Views::checked(&arguments.views, &inputs, &others)?;
+        check_distinct(&[("--output", Some(&data)), ("--learned-out", learned_out.as_ref())])?;
         let (source, engine) = (fill.source()?, filter.engine()?);
-        let format = arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref()));
         Ok(Self {
-            vessel,
-            log,
+            vessel: places.vessel,
+            log: places.log,
             data,
-            format,
+            format: arguments.data.format(),
             views,
             reading,
             sensors,

@@ -1,4 +1,6 @@
 //! Options that say what is known of the cylinder at the first row of a log.
+use super::number::above;
+use super::options::EXPERT;
 use super::unit_options::{Choice, Choices, Given};
 use anyhow::{anyhow, bail};
 use clap::Args;
@@ -9,19 +11,15 @@ use cylwatch::thermal::vessel::Vessel;
 
 /// Quantities that fix the mass.
 #[derive(Clone, Debug)]
-pub struct OfFill;
+pub struct FillQuantities;
 
-impl Choices for OfFill {
+impl Choices for FillQuantities {
     const CHOICES: &'static [Choice] = &[
-        (
-            "fill-pressure",
-            Dimension::Pressure,
-            "Pressure that the cylinder was filled to [default: the first pressure of the log]",
-        ),
+        ("fill-pressure", Dimension::Pressure, "Fill pressure [default: the first pressure of the log]"),
         (
             "fill-temperature",
             Dimension::Temperature,
-            "Temperature at which it had that pressure, at rest [default: that of the first row]",
+            "Temperature of the fill at rest [default: that of the first row]",
         ),
         ("fill-mass", Dimension::Mass, "Gas mass, instead of pressure and temperature"),
     ];
@@ -44,14 +42,14 @@ const READ_AGAIN: f64 = 3.0;
 #[derive(Clone, Debug, Args)]
 pub struct GivenFill {
     #[command(flatten)]
-    given: Given<OfFill>,
+    given: Given<FillQuantities>,
 
-    /// Standard deviation of the gas mass that the fill stands for, in % of it [default: 1, and what 5 K are where the
-    /// temperature is that of the first row; 1 K with --settled]
-    #[arg(long = "fill-sd-percent", value_name = "NUMBER")]
+    /// Standard deviation of the gas mass of the fill, in % [default: 1; where the temperature is that of the first row, the
+    /// effect of 5 K is added, of 1 K with --settled].
+    #[arg(long = "fill-sd-percent", value_name = "NUMBER", value_parser = above(0.0).at_most(100.0), help_heading = EXPERT)]
     mass_sd_percent: Option<f64>,
 
-    /// Gas, wall and air have one temperature at the first row, within 1 K [default: they may differ]
+    /// Gas, wall and air have one temperature at the first row, within 1 K.
     #[arg(long)]
     settled: bool,
 }
@@ -86,7 +84,7 @@ impl GivenFill {
     }
 
     /// The options as they were given, to tell another fill from the same; `None`: none was.
-    pub fn words(&self) -> Option<String> {
+    pub fn text(&self) -> Option<String> {
         let quantities = self.given.quantities.iter().map(|given| format!("{} {}", given.name, given.value));
         let percent = self.mass_sd_percent.map(|percent| format!("--fill-sd-percent {percent}"));
         let settled = self.settled.then(|| "--settled".to_owned());
@@ -104,9 +102,6 @@ impl GivenFill {
         read_sd_pa: f64,
     ) -> anyhow::Result<Commissioning> {
         let percent = self.mass_sd_percent.unwrap_or(MASS_SD_PERCENT);
-        if !(percent > 0.0 && percent <= 100.0) {
-            bail!("--fill-sd-percent = {percent} must be above 0 and at most 100");
-        }
         let one = Commissioning { fill, mass_sd: percent / 100.0, settled: self.settled };
         let mass_kg = one.mass_kg(vessel, first_k)?;
         let of_temperature_kg = match (fill, self.mass_sd_percent) {
@@ -134,7 +129,7 @@ impl GivenFill {
     }
 }
 
-/// Settings of an observer for a start that may be at rest: where nobody says so, the air may be anything.
+/// Settings of an observer for the start of a log: unless it is stated to be at rest, the air may have any temperature.
 pub fn settings(settings: ObserverSettings, settled: bool) -> ObserverSettings {
     let mut settings = settings;
     if !settled {

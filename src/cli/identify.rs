@@ -1,27 +1,27 @@
 //! `cylwatch identify`: a transfer function from one column of a log to another.
 use super::arguments::Format;
 use super::input::{Inputs, shown};
-use super::log_options::LogArguments;
 use super::message::Messages;
+use super::options::LogArguments;
 use super::output::{Target, remarks};
 use super::progress::Progress;
-use super::views::{Views, Wanted};
+use super::result::{Contents, Destination};
+use super::views::Views;
 use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{Data, Method, Settings, Structure, identify};
-use cylwatch::report::figure::Picture;
 use cylwatch::report::identify as report;
 use cylwatch::report::identify::{Signal, Study};
 use serde_json::{Value, json};
 use std::path::Path;
 
-mod amounts;
 mod arguments;
 mod choice;
+mod quantities;
 mod record;
 
-use amounts::Amounts;
 pub use arguments::IdentifyArguments;
 use choice::{Choice, Validation};
+use quantities::Quantities;
 use record::Record;
 
 /// Validated options.
@@ -29,7 +29,7 @@ struct Options {
     log: String,
     columns: Vec<String>,
     choice: Choice,
-    amounts: Amounts,
+    quantities: Quantities,
     structure: Structure,
     settings: Settings,
     validation: Option<Validation>,
@@ -44,11 +44,11 @@ pub fn run(arguments: IdentifyArguments, messages: &Messages) -> anyhow::Result<
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
     let record = options.read(&options.log, &inputs, messages)?;
-    let (study, asked) = options.study(record, &inputs, messages)?;
+    let (study, request) = options.study(record, &inputs, messages)?;
     for caution in report::cautions(&study) {
         messages.caution(&caution);
     }
-    options.write(&study, &asked, &inputs, messages)
+    options.write(&study, &request, &inputs, messages)
 }
 
 impl Options {
@@ -63,10 +63,9 @@ impl Options {
             inputs.push(Path::new(log));
         }
         let data = Target::checked(arguments.out.as_deref(), &inputs)?;
-        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
-        let views = Views::checked(wanted, &inputs, &[&data])?;
+        let views = Views::checked(&arguments.views, &inputs, &[&data])?;
         let for_people = arguments.format.is_none() && matches!(data, Target::Stdout);
-        let structure = arguments.structure(&arguments.amounts)?;
+        let structure = arguments.structure(&arguments.quantities)?;
         Ok(Self {
             columns: [&arguments.input, &arguments.output]
                 .into_iter()
@@ -74,11 +73,11 @@ impl Options {
                 .map(|name| record::base_name(name))
                 .collect(),
             structure,
-            settings: arguments.settings(&arguments.amounts)?,
+            settings: arguments.settings(&arguments.quantities)?,
             format: (!for_people)
                 .then(|| arguments.format.unwrap_or_else(|| Format::of(arguments.out.as_deref()))),
             log: arguments.log,
-            amounts: arguments.amounts,
+            quantities: arguments.quantities,
             reading: arguments.reading,
             choice,
             validation,
@@ -101,7 +100,7 @@ impl Options {
         read
     }
 
-    /// Identifies, and compares with the published model and on what was held out. Returns what was asked for, too.
+    /// Identifies, and compares with the published model and on what was held out. Also returns the request.
     fn study(&self, record: Record, inputs: &Inputs, messages: &Messages) -> anyhow::Result<(Study, Value)> {
         let name = shown(&self.log);
         let (record, held_out) = match &self.validation {
@@ -114,7 +113,7 @@ impl Options {
         };
         let held_out = held_out.map(|(name, other)| Ok::<_, anyhow::Error>((name, self.data(&other)?)));
         let held_out = held_out.transpose()?;
-        let method = self.choice.method(&record, &self.amounts)?;
+        let method = self.choice.method(&record, &self.quantities)?;
         let data = self.data(&record)?;
         let signals = self.signals(&record);
         let between = format!("from {} to {}", signals.0.name, signals.1.name);
@@ -122,11 +121,11 @@ impl Options {
         let identified = identify(&data, &self.structure, &method, &self.settings);
         drop(progress);
         let identified = identified.with_context(|| format!("{name}, {between}"))?;
-        let asked = self.asked(&method);
-        let words = self.choice.words(&self.structure);
+        let request = self.request(&method);
+        let words = self.choice.description(&self.structure);
         let study = Study::new(signals, words, identified, (name, data), held_out, self.settings.lags)
-            .context("what was held out")?;
-        Ok((study, asked))
+            .context("held-out data")?;
+        Ok((study, request))
     }
 
     fn data(&self, record: &Record) -> anyhow::Result<Data> {
@@ -138,8 +137,8 @@ impl Options {
         (record.columns[0].signal.clone(), record.columns[1].signal.clone())
     }
 
-    /// What was asked for, as JSON; a second sensor is named, not listed.
-    fn asked(&self, method: &Method) -> Value {
+    /// The request as JSON; a second sensor is named, its values are left out.
+    fn request(&self, method: &Method) -> Value {
         let method = match method {
             Method::SecondSensor { .. } => json!({ "second_sensor": { "input": self.columns.get(2) } }),
             method => json!(method),
@@ -155,30 +154,22 @@ impl Options {
     fn write(
         &self,
         study: &Study,
-        asked: &Value,
+        request: &Value,
         inputs: &Inputs,
         messages: &Messages,
     ) -> anyhow::Result<()> {
-        let provenance = inputs.provenance();
-        let story = report::story(study);
-        let words = story.to_text();
-        // Everything is made before any file appears.
-        let picture = || Picture::Figure(report::figure(study));
-        let with = |picture| story.cautions(report::cautions(study)).picture(picture, report::CAPTION);
-        let views = self.views.make(picture, with, inputs.sources(), &provenance)?;
-        let text = match self.format {
-            None => words.clone(),
-            Some(Format::Csv) => report::table(study).to_csv(&provenance, &remarks(&words)),
-            Some(Format::Json) => {
-                let document = report::document(study, asked, &provenance);
-                serde_json::to_string_pretty(&document)? + "\n"
-            }
+        let summary = report::summary(study);
+        let remarks = remarks(&summary.to_text());
+        let contents = Contents {
+            summary,
+            csv: &|provenance| report::table(study).to_csv(provenance, &remarks),
+            json: &|provenance| report::document(study, request, provenance),
+            picture: &|| report::figure(study),
+            report: &|picture, summary| {
+                summary.cautions(report::cautions(study)).picture(picture, report::CAPTION)
+            },
         };
-        self.data.write(text.as_bytes())?;
-        views.write()?;
-        if self.format.is_some() {
-            messages.say(&words);
-        }
-        Ok(())
+        let destination = Destination { data: &self.data, format: self.format, views: &self.views };
+        destination.write(contents, inputs, &inputs.provenance(), messages)
     }
 }

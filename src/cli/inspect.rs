@@ -1,10 +1,10 @@
 //! `cylwatch inspect`: what an unknown log holds, and what to do with it.
 use super::input::Inputs;
-use super::log_options::LogArguments;
 use super::message::Messages;
+use super::options::{LogArguments, ReportArguments};
 use super::output::Target;
 use super::progress::Progress;
-use super::views::{Views, Wanted};
+use super::views::Views;
 use clap::{Args, ValueEnum};
 use cylwatch::report::inspect as report;
 use std::path::{Path, PathBuf};
@@ -18,21 +18,19 @@ const ROWS: u64 = 1024;
 pub struct InspectArguments {
     /// Log: a CSV file, also packed with gzip, a Parquet file, or - for CSV on stdin.
     pub log: String,
-    /// Foreign names and zone of the log.
     #[command(flatten)]
     pub reading: LogArguments,
-    /// What comes out [default: json for a file that ends in .json, else text].
+    /// Format of the result [default: json for a file that ends in .json, else text].
     #[arg(long, value_enum)]
     pub format: Option<InspectionFormat>,
-    /// File for it; - is stdout [default: stdout].
+    /// Write the result to FILE; - is stdout.
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Report with the same tables: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub report: ReportArguments,
 }
 
-/// What comes out.
+/// Format of an inspection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum InspectionFormat {
     /// Words and tables for people.
@@ -55,8 +53,7 @@ Examples:
 /// Reads, counts and writes.
 pub fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<()> {
     let target = Target::checked(arguments.output.as_deref(), &[Path::new(&arguments.log)])?;
-    let wanted = Wanted { plot: None, report: arguments.report.as_deref() };
-    let views = Views::checked(wanted, &[Path::new(&arguments.log)], &[&target])?;
+    let views = Views::checked(&arguments.report.into(), &[Path::new(&arguments.log)], &[&target])?;
     let inputs = Inputs::default();
     let mut log = inputs.inspector(&arguments.log, &arguments.reading.options(Vec::new()))?;
     let progress = Progress::new(messages);
@@ -77,7 +74,7 @@ pub fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<(
         Some(InspectionFormat::Text) => false,
         None => is_json,
     };
-    let made = views.make_report(|| report::story(&inspection), inputs.sources(), &inputs.provenance())?;
+    let made = views.make_report(|| report::summary(&inspection), inputs.sources(), &inputs.provenance())?;
     let text = if text {
         serde_json::to_string_pretty(&report::document(&inspection, &inputs.provenance()))? + "\n"
     } else {

@@ -2,7 +2,7 @@
 use super::arguments::Arguments;
 use super::message::Messages;
 use super::output::{self, Target, write_file};
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use std::path::PathBuf;
 
 /// Arguments of `man`.
@@ -16,7 +16,7 @@ pub struct ManArguments {
 
 /// Writes the pages.
 pub fn run(arguments: ManArguments, messages: &Messages) -> anyhow::Result<()> {
-    let mut program = Arguments::command();
+    let mut program = Arguments::prepared();
     program.build();
     let Some(folder) = arguments.out else { return Target::Stdout.write(&page(&program)?) };
     output::make_folder(&folder)?;

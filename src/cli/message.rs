@@ -20,21 +20,21 @@ impl Messages {
         self.quiet
     }
 
-    /// Says something.
+    /// Prints a message.
     pub fn say(&self, words: &str) {
         if !self.quiet {
             self.write(words.trim_end());
         }
     }
 
-    /// Says what was done otherwise than one might think.
+    /// Prints a caution.
     pub fn caution(&self, words: &str) {
         if !self.quiet {
             self.write(&format!("{} {words}", self.label("caution:", "33")));
         }
     }
 
-    /// Says what went wrong, with its causes, in one line.
+    /// Prints an error with its causes, in one line.
     pub fn error(&self, error: &anyhow::Error) {
         self.write(&format!("{} {error:#}", self.label("error:", "31")));
     }
@@ -44,7 +44,7 @@ impl Messages {
     }
 
     fn write(&self, words: &str) {
-        // Nobody is left to be told that stderr is closed.
+        // A closed stderr cannot be reported.
         let _ = writeln!(std::io::stderr(), "{words}");
     }
 }

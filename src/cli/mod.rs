@@ -13,15 +13,18 @@ mod identify;
 mod init;
 mod input;
 mod inspect;
-mod log_options;
 mod man;
 mod message;
 mod monitor;
+mod number;
+mod options;
 mod output;
 mod place;
 mod progress;
 mod properties;
 mod reproduce;
+mod result;
+mod row_stream;
 mod schema;
 mod selection;
 mod simulate;
@@ -31,7 +34,7 @@ mod unit_options;
 mod views;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::FromArgMatches;
 use cylwatch::report::quoted;
 use message::Messages;
 use std::process::ExitCode;
@@ -41,7 +44,8 @@ const ERROR: u8 = 2;
 
 /// Reads the arguments, runs the command, and turns its outcome into an exit code.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let mut matches = Arguments::prepared().get_matches();
+    let arguments = Arguments::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
     let messages = Messages::new(arguments.quiet);
     match run(arguments.command, &messages) {
         Ok(code) => code,

@@ -7,7 +7,7 @@ use super::output::Target;
 use super::progress::Progress;
 use super::selection::{self, Selection};
 use super::start;
-use super::views::{Made, Views, Wanted};
+use super::views::{Made, Views};
 use anyhow::{Context, bail};
 use cylwatch::detector::monitor::Outcome;
 use cylwatch::log::{LogOptions, Row};
@@ -19,9 +19,9 @@ mod announced;
 mod arguments;
 mod engine;
 mod events;
-mod going_on;
 mod options;
 mod order;
+mod resume;
 mod rows;
 mod session;
 mod state;
@@ -30,16 +30,16 @@ use announced::Announced;
 pub use arguments::MonitorArguments;
 
 use engine::Engine;
-use going_on::Beginning;
 use options::Options;
 use order::Order;
-use session::{Kit, Session};
+use resume::RunStart;
+use session::{RunContext, Session};
 
 /// Monitors row by row and writes.
 pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let beginning = Beginning::find(&options, &inputs, messages)?;
+    let beginning = RunStart::find(&options, &inputs, messages)?;
     let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
     let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
     let log_options =
@@ -52,10 +52,10 @@ pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<E
         messages.caution(&caution.to_string());
     }
     let Some(summary) = outcome? else {
-        messages.say("nothing can be said yet: all rows wait in the state for late ones");
+        messages.say("no verdict yet: all rows wait in the state for late ones");
         return Ok(ExitCode::from(Outcome::Unknown.exit_code()));
     };
-    messages.say(&cylwatch::report::monitor::story(&summary).to_text());
+    messages.say(&cylwatch::report::monitor::summary(&summary).to_text());
     Ok(ExitCode::from(summary.outcome().exit_code()))
 }
 
@@ -64,7 +64,7 @@ pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<E
 fn monitor(
     options: &Options,
     inputs: &Inputs,
-    beginning: Beginning,
+    beginning: RunStart,
     selection: &Selection,
     log: &mut LogInput,
     messages: &Messages,
@@ -74,7 +74,7 @@ fn monitor(
         None => Engine::cold(options, inputs, &beginning, selection, log, messages)?,
         Some(state) => {
             let path = options.state.as_deref().unwrap_or(Path::new("the state"));
-            state.check(&identity).map_err(|reason| going_on::refused(path, &reason))?;
+            state.check(&identity).map_err(|reason| resume::refused(path, &reason))?;
             session::check_clock(options, state, log)?;
             identity = identity.after(&state.identity);
             Engine::restored(options, &beginning, selection, state)?
@@ -85,8 +85,8 @@ fn monitor(
     }
     let title = format!("{} \u{2013} {}", beginning.vessel.name, selection.names().join(", "));
     let first = engine.first.clone();
-    let kit = Kit { options, inputs, selection, messages, identity };
-    let mut session = Session::begin(kit, &beginning, engine, log)?;
+    let context = RunContext { options, inputs, selection, messages, identity };
+    let mut session = Session::begin(context, &beginning, engine, log)?;
     let progress = Progress::new(messages);
     session.acknowledge(&progress)?;
     if let Err(error) = read(&mut session, &first, options, log, &progress) {

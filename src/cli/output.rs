@@ -54,23 +54,22 @@ impl Target {
         matches!((self, other), (Self::File(a), Self::File(b)) if a == b)
     }
 
+    fn shown(&self) -> String {
+        match self {
+            Self::Stdout => "stdout".to_owned(),
+            Self::File(path) | Self::Device(path) => path.display().to_string(),
+        }
+    }
+
     /// Begins a result that is written piece by piece.
     pub fn open(&self) -> anyhow::Result<Stream> {
-        let (writer, shown) = match self {
-            Self::Stdout => (Writer::Plain(Box::new(std::io::stdout())), "stdout".to_owned()),
-            Self::File(path) => {
-                let shown = path.display().to_string();
-                let file =
-                    temporary(folder_of(path)).with_context(|| format!("{shown} cannot be written"))?;
-                (Writer::File(file, path.clone()), shown)
-            }
+        let shown = self.shown();
+        let failed = || format!("{shown} cannot be written");
+        let writer = match self {
+            Self::Stdout => Writer::Plain(Box::new(std::io::stdout())),
+            Self::File(path) => Writer::File(temporary(folder_of(path)).with_context(failed)?, path.clone()),
             Self::Device(path) => {
-                let shown = path.display().to_string();
-                let device = File::options().write(true).open(path);
-                (
-                    Writer::Plain(Box::new(device.with_context(|| format!("{shown} cannot be written"))?)),
-                    shown,
-                )
+                Writer::Plain(Box::new(File::options().write(true).open(path).with_context(failed)?))
             }
         };
         Ok(Stream { writer: BufWriter::with_capacity(BUFFER, writer), shown, flushed: Instant::now() })
@@ -109,6 +108,20 @@ impl Target {
             }
         }
     }
+}
+
+/// Refuses outputs that name one place; each with its option.
+pub fn check_distinct(outputs: &[(&str, Option<&Target>)]) -> anyhow::Result<()> {
+    for (k, (one, a)) in outputs.iter().enumerate() {
+        for (other, b) in &outputs[k + 1..] {
+            if let (Some(a), Some(b)) = (a, b)
+                && (a.is_same_file(b) || matches!((a, b), (Target::Stdout, Target::Stdout)))
+            {
+                bail!("{one} and {other} name the same place, {}: choose two", a.shown());
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A result whose lines are there as soon as they are written.

@@ -1,7 +1,7 @@
 //! `cylwatch place`: where sensors should sit.
-mod amounts;
 mod arguments;
 mod options;
+mod quantities;
 mod stop;
 
 pub use arguments::PlaceArguments;
@@ -11,15 +11,15 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
-use super::views::{Views, Wanted};
+use super::result::{Contents, Destination};
+use super::views::Views;
 use anyhow::bail;
 use cylwatch::estimator::placement::search::Watch;
 use cylwatch::estimator::placement::study::{Placement, Study, StudySettings};
 use cylwatch::estimator::placement::{Candidates, Status, read_candidates};
 use cylwatch::evaluation::placement::{ClosedLoop, ClosedLoopSettings, confirm_study};
-use cylwatch::report::figure::Picture;
 use cylwatch::report::place::{CAPTION, Placed, matrices};
-use cylwatch::report::{Provenance, Story};
+use cylwatch::report::{Provenance, Report};
 use cylwatch::thermal::scenario::Scenario;
 use cylwatch::thermal::vessel::Vessel;
 use std::process::ExitCode;
@@ -76,7 +76,7 @@ pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<Exi
     let provenance = Provenance { seed, ..inputs.provenance() };
     options.write(&placed, &placement, (&inputs, &provenance), messages)?;
     if placed.is_partial() {
-        messages.caution("the search was ended early: what was written is partial");
+        messages.caution("the search was ended early: the results are partial");
         return Ok(ExitCode::from(PARTIAL));
     }
     Ok(ExitCode::SUCCESS)
@@ -125,7 +125,6 @@ impl Options {
         Ok(candidates)
     }
 
-    /// Everything is made before anything is written.
     fn write(
         &self,
         placed: &Placed,
@@ -133,29 +132,20 @@ impl Options {
         (inputs, provenance): (&Inputs, &Provenance),
         messages: &Messages,
     ) -> anyhow::Result<()> {
-        let story = placed.story();
-        let words = story.to_text();
-        let text = match self.format {
-            None => words.clone(),
-            Some(Format::Csv) => placed.csv(provenance),
-            Some(Format::Json) => serde_json::to_string_pretty(&placed.document(provenance))? + "\n",
-        };
-        let of_matrices = match &self.matrices {
-            Some(target) => Some((target, serde_json::to_string(&matrices(placement, provenance))? + "\n")),
-            None => None,
-        };
         let title = format!("Where sensors should sit: {}", placed.vessel.name);
-        let with = |picture| Story::new(title).picture(picture, CAPTION).then(story);
-        let views =
-            self.views.make(|| Picture::Sheet(placed.figure()), with, inputs.sources(), provenance)?;
-        views.write()?;
-        if let Some((target, text)) = of_matrices {
-            target.write(text.as_bytes())?;
-        }
-        self.data.write(text.as_bytes())?;
-        if self.format.is_some() {
-            messages.say(&words);
-        }
-        Ok(())
+        let contents = Contents {
+            summary: placed.summary(),
+            csv: &|provenance| placed.csv(provenance),
+            json: &|provenance| placed.document(provenance),
+            picture: &|| placed.figure(),
+            report: &|picture, summary| Report::new(title.clone()).picture(picture, CAPTION).then(summary),
+        };
+        let matrices = self.matrices.as_ref().map(|target| {
+            anyhow::Ok((target, serde_json::to_string(&matrices(placement, provenance))? + "\n"))
+        });
+        let matrices = matrices.transpose()?;
+        let destination = Destination { data: &self.data, format: self.format, views: &self.views };
+        destination.write(contents, inputs, provenance, messages)?;
+        matrices.map_or(Ok(()), |(target, text)| target.write(text.as_bytes()))
     }
 }

@@ -4,19 +4,18 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::states;
-use super::views::{Views, Wanted};
+use super::views::Views;
 use anyhow::{Context, bail};
 use cylwatch::properties::{self, Properties};
-use cylwatch::report::{Provenance, Story};
+use cylwatch::report::{Provenance, Report};
 use cylwatch::thermal::fluid::{Equation, Fluid};
 use serde_json::json;
 
 /// Evaluates and writes.
 pub fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Result<()> {
     let inputs: Vec<&std::path::Path> = arguments.states.as_deref().into_iter().collect();
-    let target = Target::checked(arguments.output.as_deref(), &inputs)?;
-    let wanted = Wanted { plot: None, report: arguments.report.as_deref() };
-    let views = Views::checked(wanted, &inputs, &[&target])?;
+    let target = Target::checked(arguments.data.output.as_deref(), &inputs)?;
+    let views = Views::checked(&arguments.report.clone().into(), &inputs, &[&target])?;
     let equation = match arguments.equation {
         EquationName::Reference => Equation::Reference,
         EquationName::IdealGas => Equation::IdealGas,
@@ -30,19 +29,19 @@ pub fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Resul
         None => vec![properties::evaluate(&fluid, arguments.given.state()?)?],
     };
     let provenance = inputs.provenance();
-    let for_people = arguments.format.is_none() && !many && matches!(target, Target::Stdout);
-    let text = match arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref())) {
+    let for_people = arguments.data.format.is_none() && !many && matches!(target, Target::Stdout);
+    let text = match arguments.data.format() {
         _ if for_people => {
-            Story { title: String::new(), ..properties::story(&arguments.fluid, &states[0]) }.to_text()
+            Report { title: String::new(), ..properties::summary(&arguments.fluid, &states[0]) }.to_text()
         }
         Format::Csv => properties::table(&states).to_csv(&provenance, &[]),
         Format::Json => document(&arguments, &states, &provenance)?,
     };
-    let story = || match &states[..] {
-        [one] => properties::story(&arguments.fluid, one),
-        many => properties::story_of_many(&arguments.fluid, many),
+    let summary = || match &states[..] {
+        [one] => properties::summary(&arguments.fluid, one),
+        many => properties::summary_of_many(&arguments.fluid, many),
     };
-    views.make_report(story, Vec::new(), &provenance)?.write()?;
+    views.make_report(summary, Vec::new(), &provenance)?.write()?;
     target.write(text.as_bytes())
 }
 

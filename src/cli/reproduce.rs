@@ -4,20 +4,20 @@ use super::command_line;
 use super::message::Messages;
 use super::output::{self, Target};
 use super::progress::Progress;
-use super::views::{Views, Wanted};
+use super::views::Views;
 use cylwatch::report::Provenance;
-use cylwatch::reproduce::{self, Settings, rows};
+use cylwatch::reproduce::{self, Settings, checks};
 
 /// Computes, writes the files, prints the tables.
 pub fn run(arguments: ReproduceArguments, messages: &Messages) -> anyhow::Result<()> {
     let mut settings =
         Settings { seed: arguments.seed, cylinders: arguments.cylinders, ..Settings::default() };
-    if let Some(tolerance) = arguments.relative_tolerance {
+    if let Some(tolerance) = arguments.solver.relative_tolerance {
         settings.simulation.relative_tolerance = tolerance;
     }
     settings.simulation.validate()?;
     output::make_folder(&arguments.out)?;
-    let views = Views::checked(Wanted { plot: None, report: arguments.report.as_deref() }, &[], &[])?;
+    let views = Views::checked(&arguments.report.into(), &[], &[])?;
     let progress = Progress::new(messages);
     let results = reproduce::run(&settings, &mut |what, done| progress.show(what, done))?;
     let provenance =
@@ -28,8 +28,8 @@ pub fn run(arguments: ReproduceArguments, messages: &Messages) -> anyhow::Result
     for (name, bytes) in &files {
         output::write_file(&arguments.out.join(name), bytes)?;
     }
-    views.make_report(|| results.story(), Vec::new(), &provenance)?.write()?;
-    let missed = rows::rows(&results).iter().filter(|row| row.met() == Some(false)).count();
+    views.make_report(|| results.report(), Vec::new(), &provenance)?.write()?;
+    let missed = checks::checks(&results).iter().filter(|row| row.met() == Some(false)).count();
     Target::Stdout.write(results.text().as_bytes())?;
     let out = arguments.out.display();
     messages.say(&format!("\nwrote {} files to {out}: open {out}/report.html in a browser", files.len()));

@@ -4,11 +4,10 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
-use super::views::{Views, Wanted};
+use super::views::Views;
 use anyhow::bail;
 use clap::ValueEnum;
 use cylwatch::log::is_parquet;
-use cylwatch::report::figure::Picture;
 use cylwatch::report::{Provenance, Readings, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
@@ -70,13 +69,13 @@ pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<
     let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
     // Everything is made before anything is written.
     let data = data(&run, &readings, options.format, &provenance)?;
-    let story = simulation::story(&run);
-    let picture = || Picture::Figure(simulation::figure(&run, &readings));
-    let with = |picture| story.clone().picture(picture, simulation::CAPTION);
+    let summary = simulation::summary(&run);
+    let picture = || simulation::figure(&run, &readings);
+    let with = |picture| summary.clone().picture(picture, simulation::CAPTION);
     let views = options.views.make(picture, with, inputs.sources(), &provenance)?;
     views.write()?;
     options.data.write(&data)?;
-    messages.say(&story.to_text());
+    messages.say(&summary.to_text());
     Ok(())
 }
 
@@ -90,10 +89,9 @@ impl Options {
         }
         let inputs = [Path::new(&vessel), Path::new(&scenario)];
         let data = Target::checked(arguments.output.as_deref(), &inputs)?;
-        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
-        let views = Views::checked(wanted, &inputs, &[&data])?;
+        let views = Views::checked(&arguments.views, &inputs, &[&data])?;
         let mut settings = SimulationSettings::default();
-        if let Some(tolerance) = arguments.relative_tolerance {
+        if let Some(tolerance) = arguments.solver.relative_tolerance {
             settings.relative_tolerance = tolerance;
         }
         settings.validate()?;

@@ -1,12 +1,11 @@
 //! What a run over a log begins with: the first rows, the fill, what was learnt before.
 use super::fill::FillSource;
-use super::input::{Inputs, LogInput};
+use super::input::Inputs;
 use super::selection::Selection;
 use anyhow::{Context, bail};
 use cylwatch::estimator::log::Quantity;
 use cylwatch::estimator::observer::Learned;
 use cylwatch::log::{LogReader, Row};
-use cylwatch::report::Provenance;
 use cylwatch::thermal::vessel::Fill;
 use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
@@ -54,26 +53,13 @@ pub fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<
         .with_context(|| format!("{shown} is no file of --learned-out"))?;
     if learned.version != Learned::VERSION {
         let version = learned.version;
-        bail!("{shown} has version {version}, this program reads {}: learn anew", Learned::VERSION);
+        bail!("{shown} has version {version}, this program reads {}: learn again", Learned::VERSION);
     }
     if !learned.is_consistent() {
-        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn anew");
+        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn again");
     }
     if learned.vessel != vessel.name {
         bail!("{shown} was learnt on `{}`, and this is `{}`: learn on this one", learned.vessel, vessel.name);
     }
     Ok(learned)
-}
-
-/// Comments and header of a CSV file of rows.
-pub fn head(provenance: &Provenance, sensors: &[String], log: &LogInput, columns: &str) -> String {
-    let mut text = provenance.comment_lines();
-    if log.is_hashed_late() {
-        text.push_str("# input: the log's SHA-256 stands in the last line\n");
-    }
-    text.push_str(&format!("# sensors: {}\n", sensors.join(", ")));
-    if let Some(origin) = log.reader.origin() {
-        text.push_str(&format!("# time_s = 0 is {origin}\n"));
-    }
-    text + columns + "\n"
 }

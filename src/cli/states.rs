@@ -8,9 +8,9 @@ use cylwatch::thermal::units::{self, Dimension, Unit};
 
 /// Quantities that can be given.
 #[derive(Clone, Debug)]
-pub struct OfState;
+pub struct StateQuantities;
 
-impl Choices for OfState {
+impl Choices for StateQuantities {
     const CHOICES: &'static [Choice] = &[
         ("temperature", Dimension::Temperature, "Temperature"),
         ("pressure", Dimension::Pressure, "Pressure"),
@@ -23,7 +23,7 @@ impl Choices for OfState {
 }
 
 /// The quantities given as options.
-pub type GivenQuantities = GivenOptions<OfState>;
+pub type GivenQuantities = GivenOptions<StateQuantities>;
 
 impl GivenQuantities {
     /// The state that exactly two quantities fix.
@@ -111,7 +111,8 @@ fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyho
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
         let (base, unit) = units::split(name).map_or((name, None), |(base, unit)| (base, Some(unit)));
-        let Some(&(_, dimension, _)) = OfState::CHOICES.iter().find(|(quantity, _, _)| *quantity == base)
+        let Some(&(_, dimension, _)) =
+            StateQuantities::CHOICES.iter().find(|(quantity, _, _)| *quantity == base)
         else {
             ignored.push(name);
             continue;
@@ -123,7 +124,7 @@ fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyho
             )
         })?;
         if let Some(first) = known.iter().find(|column| column.dimension == dimension) {
-            bail!("column {name} says again what column {} says: keep one of them", first.name);
+            bail!("columns {} and {name} state the same quantity: keep one of them", first.name);
         }
         known.push(Known { index, name: name.to_owned(), unit, dimension });
     }

@@ -1,23 +1,13 @@
 //! Options that are a quantity with its unit, as `--pressure-bar 200`: one for every unit of the quantity.
 //!
-//! The help shows the customary unit and names the others.
+//! The help shows the customary unit; the long help names the others.
+use super::number::finite;
+use super::options::EXPERT;
 use anyhow::bail;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
-use cylwatch::evaluation::performance::YEAR_S;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use cylwatch::thermal::units::{self, Dimension, Unit};
 use std::marker::PhantomData;
-
-/// Longest time between false alarms that is taken, years: thresholds beyond it rest on no data.
-const LONGEST_YEARS: f64 = 1e5;
-
-/// The mean time between false alarms that `--false-alarm-years` states, s.
-pub fn between_false_alarms_s(years: f64) -> anyhow::Result<f64> {
-    if !(years > 0.0 && years <= LONGEST_YEARS) {
-        bail!("--false-alarm-years {years}: it must be above 0 and at most {LONGEST_YEARS}");
-    }
-    Ok(years * YEAR_S)
-}
 
 /// A quantity that can be given: name, what it measures, words of its help, with the unit if it is the only one.
 pub type Choice = (&'static str, Dimension, &'static str);
@@ -59,23 +49,35 @@ fn options(known: &'static [Choice]) -> impl Iterator<Item = (&'static Choice, S
     })
 }
 
-/// Adds the options to a command; `finish` may change each.
-fn augment(command: Command, known: &'static [Choice], finish: impl Fn(Arg) -> Arg) -> Command {
-    options(known).fold(command, |command, (&(quantity, dimension, words), name, unit, first)| {
+/// Adds the options to a command.
+fn augment<C: Choices>(command: Command) -> Command {
+    options(C::CHOICES).fold(command, |command, (&(quantity, dimension, words), name, unit, first)| {
         let others: Vec<&str> = units::units_of(dimension).skip(1).map(|unit| unit.suffix).collect();
         let absolute = if quantity.ends_with("pressure") { "absolute; " } else { "" };
-        let help = match others.len() {
-            0 => words.to_owned(),
-            _ => format!("{words} in {} ({absolute}other units: {})", unit.suffix, others.join(", ")),
+        let (words, default) = words.split_at(words.find(" [default").unwrap_or(words.len()));
+        let [help, long_help] = match others.len() {
+            0 => [format!("{words}{default}"), format!("{words}{default}")],
+            _ => [
+                format!("{words}, in {}{default}", unit.suffix),
+                format!(
+                    "{words}, in {} ({absolute}other units: {}){default}",
+                    unit.suffix,
+                    others.join(", ")
+                ),
+            ],
         };
         let arg = Arg::new(name.clone())
             .long(name)
             .value_name("NUMBER")
-            .value_parser(value_parser!(f64))
-            .allow_negative_numbers(true)
+            .value_parser(finite())
             .hide(!first)
-            .help(help);
-        command.arg(finish(arg))
+            .help(help)
+            .long_help(long_help);
+        let arg = match C::EXPERT.contains(&quantity) {
+            true => arg.help_heading(EXPERT),
+            false => arg,
+        };
+        command.arg(C::finish(arg))
     })
 }
 
@@ -95,6 +97,9 @@ fn given(matches: &ArgMatches, known: &'static [Choice]) -> Vec<Quantity> {
 pub trait Choices {
     /// Every quantity that can be given.
     const CHOICES: &'static [Choice];
+
+    /// Those that few need; the short help leaves them out.
+    const EXPERT: &'static [&'static str] = &[];
 
     /// May change each option.
     fn finish(option: Arg) -> Arg {
@@ -134,7 +139,7 @@ impl<C: Choices> Given<C> {
         let mut given = self.of(option, dimension);
         match (given.next(), given.next()) {
             (Some(first), Some(second)) => {
-                bail!("{} says again what {} says: keep one", second.name, first.name)
+                bail!("{} and {} state the same quantity: keep one", first.name, second.name)
             }
             (first, _) => Ok(first),
         }
@@ -143,7 +148,7 @@ impl<C: Choices> Given<C> {
 
 impl<C: Choices> Args for Given<C> {
     fn augment_args(command: Command) -> Command {
-        augment(command, C::CHOICES, C::finish)
+        augment::<C>(command)
     }
 
     fn augment_args_for_update(command: Command) -> Command {

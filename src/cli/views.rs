@@ -1,8 +1,9 @@
 //! What people look at: the figure (`--plot`) and the report (`--report`) of a run.
+use super::options::ViewArguments;
 use super::output::Target;
 use anyhow::bail;
 use cylwatch::report::figure::Picture;
-use cylwatch::report::{Page, Provenance, Story};
+use cylwatch::report::{Page, Provenance, Report};
 use std::path::Path;
 
 /// Checked places for a figure and a report.
@@ -19,18 +20,9 @@ enum Format {
     Png,
 }
 
-/// Where a figure and a report are wanted.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Wanted<'a> {
-    /// `--plot`; the ending of the file's name is the format.
-    pub plot: Option<&'a Path>,
-    /// `--report`.
-    pub report: Option<&'a Path>,
-}
-
 impl Views {
     /// Checks names and places; `others` are the other results of the run.
-    pub fn checked(wanted: Wanted<'_>, inputs: &[&Path], others: &[&Target]) -> anyhow::Result<Self> {
+    pub fn checked(arguments: &ViewArguments, inputs: &[&Path], others: &[&Target]) -> anyhow::Result<Self> {
         let place = |option: &str, path: &Path, others: &[&Target]| {
             let target = Target::checked(Some(path), inputs)?;
             if others.iter().any(|other| target.is_same_file(other)) {
@@ -38,14 +30,14 @@ impl Views {
             }
             Ok(target)
         };
-        let plot = wanted.plot.map(|path| -> anyhow::Result<(Target, Format)> {
+        let plot = arguments.plot.as_deref().map(|path| -> anyhow::Result<(Target, Format)> {
             let format = format(path)?;
             Ok((place("plot", path, others)?, format))
         });
         let plot = plot.transpose()?;
         let others: Vec<&Target> =
             others.iter().copied().chain(plot.iter().map(|(target, _)| target)).collect();
-        let report = wanted.report.map(|path| {
+        let report = arguments.report.report.as_deref().map(|path| {
             let ending = ending(path);
             if path != Path::new("-") && !matches!(ending.as_deref(), Some("html" | "htm")) {
                 bail!("--report {}: the ending must be .html", path.display());
@@ -56,24 +48,24 @@ impl Views {
     }
 
     /// Whether either is wanted: what a picture is made of has to be kept during the run.
-    pub fn are_wanted(&self) -> bool {
+    pub fn is_any_requested(&self) -> bool {
         self.plot.is_some() || self.report.is_some()
     }
 
-    /// Makes what is wanted, so that nothing is written if one fails. The story goes around the picture and gets `sources`, what was
+    /// Makes the requested files, so that nothing is written if one fails. The report contains the picture and gets `sources`, what was
     /// read, at its end.
-    pub fn make(
+    pub fn make<P: Into<Picture>>(
         &self,
-        picture: impl FnOnce() -> Picture,
-        story: impl FnOnce(Picture) -> Story,
+        picture: impl FnOnce() -> P,
+        report: impl FnOnce(Picture) -> Report,
         sources: Vec<(String, String)>,
         provenance: &Provenance,
     ) -> anyhow::Result<Made<'_>> {
         let mut made = Made::default();
-        if !self.are_wanted() {
+        if !self.is_any_requested() {
             return Ok(made);
         }
-        let picture = picture();
+        let picture = picture().into();
         if let Some((target, format)) = &self.plot {
             made.files.push((
                 target,
@@ -84,7 +76,7 @@ impl Views {
             ));
         }
         if let Some(target) = &self.report {
-            made.files.push((target, page(story(picture), sources, provenance)?));
+            made.files.push((target, page(report(picture), sources, provenance)?));
         }
         Ok(made)
     }
@@ -92,13 +84,13 @@ impl Views {
     /// Makes the report of a result without a picture.
     pub fn make_report(
         &self,
-        story: impl FnOnce() -> Story,
+        report: impl FnOnce() -> Report,
         sources: Vec<(String, String)>,
         provenance: &Provenance,
     ) -> anyhow::Result<Made<'_>> {
         let mut made = Made::default();
         if let Some(target) = &self.report {
-            made.files.push((target, page(story(), sources, provenance)?));
+            made.files.push((target, page(report(), sources, provenance)?));
         }
         Ok(made)
     }
@@ -117,10 +109,10 @@ impl Made<'_> {
     }
 }
 
-fn page(story: Story, sources: Vec<(String, String)>, provenance: &Provenance) -> anyhow::Result<Vec<u8>> {
-    let story = if sources.is_empty() { story } else { story.heading("What was read") };
-    let story = sources.into_iter().fold(story, |story, (name, text)| story.source(name, text));
-    Ok(Page { story: &story, provenance }.to_html()?.into_bytes())
+fn page(report: Report, sources: Vec<(String, String)>, provenance: &Provenance) -> anyhow::Result<Vec<u8>> {
+    let report = if sources.is_empty() { report } else { report.heading("What was read") };
+    let report = sources.into_iter().fold(report, |report, (name, text)| report.source(name, text));
+    Ok(Page { report: &report, provenance }.to_html()?.into_bytes())
 }
 
 fn ending(path: &Path) -> Option<String> {

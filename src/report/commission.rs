@@ -1,5 +1,5 @@
 //! The file of `cylwatch commission`: thresholds for one vessel, the worlds that they were found in, and how often they alarm without a leak.
-use super::{Provenance, Story, digest, number};
+use super::{DAY_S, Provenance, Report, digest, number};
 use crate::evaluation::performance::YEAR_S;
 use crate::evaluation::tails::{Campaign, Commissioned};
 use crate::evaluation::world::{Climate, GasKind, NominalVessel, RowPattern, SensorClass};
@@ -16,7 +16,6 @@ const VERSION: u64 = 1;
 const SAME_FILL: (f64, f64) = (0.85, 1.05);
 const TOO_OFTEN: &str =
     "false alarms are more frequent than asked for: simulate more cylinders, or ask for fewer";
-const DAY_S: f64 = 86_400.0;
 
 /// Thresholds for one vessel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -127,14 +126,14 @@ pub fn intention(nominal: &NominalVessel, campaign: &Campaign) -> String {
         bar(nominal.fill_pa.1),
         bar(nominal.full_scale_pa),
         campaign.seed,
-        words(&climates),
-        words(&gases),
-        words(&sensors),
-        words(&rows),
+        listed(&climates),
+        listed(&gases),
+        listed(&sensors),
+        listed(&rows),
     )
 }
 
-fn words<T: ToString>(kinds: &[T]) -> String {
+fn listed<T: ToString>(kinds: &[T]) -> String {
     kinds.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
 
@@ -199,7 +198,7 @@ impl CommissionedVessel {
     ///
     /// # Errors
     /// The mean time is not positive.
-    pub fn story(&self) -> Result<Story, cylwatch_detector::DetectorError> {
+    pub fn summary(&self) -> Result<Report, cylwatch_detector::DetectorError> {
         let usual = Tails::usual(PASCAL_PER_BAR * self.fill_pressure_bar)
             .thresholds(self.false_alarm_years * YEAR_S)?;
         let rows = self.found.scales.iter().map(|of| {
@@ -213,7 +212,7 @@ impl CommissionedVessel {
         let asked = 10.0 / self.false_alarm_years;
         let [per_ten, low_words, high_words, asked_words, years] =
             [rate.per_ten_years, low, high, asked, rate.cylinder_years].map(|value| number(value, 2));
-        let story = Story::new(self.vessel.name.clone())
+        let report = Report::new(self.vessel.name.clone())
             .rows("", &["scale", "threshold", "95 %", "usual"], rows.collect())
             .text(format!(
                 "False alarms in ten years, out of sample: {per_ten} (95 %: {low_words} to {high_words}); asked for: {asked_words}; \
@@ -221,7 +220,7 @@ impl CommissionedVessel {
                 rate.count, rate.simulations_with, rate.simulations
             ));
         let too_often = (low > asked).then(|| TOO_OFTEN.to_owned());
-        Ok(story.cautions(too_often))
+        Ok(report.cautions(too_often))
     }
 }
 
@@ -313,17 +312,17 @@ mod tests {
 
     #[test]
     fn thresholds_stand_beside_the_usual_ones_and_too_many_false_alarms_are_a_caution() {
-        let words = commissioned().story().unwrap().to_text();
+        let text = commissioned().summary().unwrap().to_text();
         let usual = Tails::usual(200e5).thresholds(10.0 * 365.25 * 86_400.0).unwrap().of(Scale::Hour);
-        assert!(words.contains("month") && words.contains("3 to 6"), "{words}");
-        assert!(words.contains(&number(usual, 3)), "{words} without {usual}");
+        assert!(text.contains("month") && text.contains("3 to 6"), "{text}");
+        assert!(text.contains(&number(usual, 3)), "{text} without {usual}");
         assert!(
-            words.contains("0.5 (95 %: 0.06 to 1.8); asked for: 1; 2 in 2 of 240")
-                && !words.contains("caution"),
-            "{words}"
+            text.contains("0.5 (95 %: 0.06 to 1.8); asked for: 1; 2 in 2 of 240")
+                && !text.contains("caution"),
+            "{text}"
         );
         let mut often = commissioned();
         often.found.false_alarms.by_simulation = (1.1, 4.0);
-        assert!(often.story().unwrap().to_text().contains("more frequent"));
+        assert!(often.summary().unwrap().to_text().contains("more frequent"));
     }
 }

@@ -1,31 +1,39 @@
 //! Results as text and bytes: CSV, JSON, SVG, PNG, tables for a terminal, pages for a browser. Pure functions; nothing here reads
 //! or writes.
 //!
-//! What a result says is a [`Story`]: a terminal and a page show the same one.
+//! The text of a result is a [`Report`]: a terminal and a page show the same one.
 pub mod bench_detector;
 pub mod calibrate;
 pub mod commission;
+mod content;
 pub mod estimate;
 pub mod figure;
 pub mod identify;
 pub mod inspect;
 pub mod monitor;
 mod page;
-#[cfg(feature = "parquet")]
-mod parquet;
 pub mod place;
 mod provenance;
 mod readings;
 pub mod simulation;
-mod story;
 mod table;
-mod terminal;
 
+pub use content::{Block, Report};
 pub use page::Page;
 pub use provenance::{Fingerprint, Input, Provenance, digest, quoted};
 pub use readings::Readings;
-pub use story::{Block, Story};
-pub use table::{Column, Table, aligned, number, rounded};
+pub use table::{Cell, Column, Digits, Field, RowFormat, Rows, Table, Values, aligned, number, rounded};
+
+/// g in a kg.
+pub(crate) const GRAM: f64 = 1e3;
+/// g/h in a kg/s.
+pub(crate) const GRAM_PER_HOUR: f64 = 3.6e6;
+/// s in an hour.
+pub(crate) const HOUR_S: f64 = 3600.0;
+/// s in a day.
+pub(crate) const DAY_S: f64 = 86_400.0;
+/// bar/h in a Pa/s.
+pub(crate) const BAR_PER_HOUR: f64 = HOUR_S / crate::thermal::units::PASCAL_PER_BAR;
 
 /// What can go wrong while results become text or pictures.
 #[derive(Debug, thiserror::Error)]

@@ -1,9 +1,9 @@
-//! A story as a page for a browser: one file that refers to nothing outside, with its pictures inside.
+//! A report as a page for a browser: one file that refers to nothing outside, with its pictures inside.
 //!
 //! The page is legible without scripts, on a phone (wide tables and pictures scroll in their own frames), in grey (curves differ in dash and
 //! width), and on paper. Every picture has its words for who cannot see it.
+use super::content::{Block, Report};
 use super::figure::Picture;
-use super::story::{Block, Story};
 use super::{Provenance, ReportError};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("page.css");
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
     /// What it says.
-    pub story: &'a Story,
+    pub report: &'a Report,
     /// Where it comes from.
     pub provenance: &'a Provenance,
 }
@@ -25,7 +25,7 @@ impl Page<'_> {
     /// # Errors
     /// A picture cannot be drawn.
     pub fn to_html(&self) -> Result<String, ReportError> {
-        let blocks = self.story.blocks.iter().enumerate().map(|(k, block)| element(k, block));
+        let blocks = self.report.blocks.iter().enumerate().map(|(k, block)| element(k, block));
         let blocks = blocks.collect::<Result<Vec<Markup>, ReportError>>()?;
         let page = html! {
             (DOCTYPE)
@@ -34,12 +34,12 @@ impl Page<'_> {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width, initial-scale=1";
                     meta name="generator" content={ "cylwatch " (Provenance::VERSION) };
-                    title { (self.story.title) }
+                    title { (self.report.title) }
                     style { (PreEscaped(STYLE)) }
                 }
                 body {
-                    header { p.program { "cylwatch " (Provenance::VERSION) } h1 { (self.story.title) } }
-                    (contents(&self.story.blocks))
+                    header { p.program { "cylwatch " (Provenance::VERSION) } h1 { (self.report.title) } }
+                    (contents(&self.report.blocks))
                     main { @for block in &blocks { (block) } }
                     (self.origin())
                 }
@@ -123,53 +123,12 @@ fn element(index: usize, block: &Block) -> Result<Markup, ReportError> {
                 }
             } } }
         },
-        Block::Rows { caption, header, rows } => table(caption, header, rows),
+        Block::Table { caption, table } => table.to_html(caption),
         Block::Picture { picture, caption } => figure(picture, caption)?,
         Block::Source { name, text } => html! {
             details { summary { (name) } pre { (text) } }
         },
     })
-}
-
-/// Whether a column holds numbers, each with a unit or an interval at most; they stand to the right.
-fn is_numeric(rows: &[Vec<String>], column: usize) -> bool {
-    let is_number = |cell: &String| {
-        let mut words = cell.split_whitespace();
-        let first = words.next().unwrap_or("").trim_start_matches(['<', '>', '\u{2264}', '±']);
-        let number = first.replace('\u{2212}', "-").parse::<f64>().is_ok() || first.is_empty();
-        number && words.next().is_none_or(|second| second.starts_with(['(', '[']) || words.next().is_none())
-    };
-    rows.iter().filter_map(|row| row.get(column)).all(|cell| cell.is_empty() || is_number(cell))
-}
-
-fn table(caption: &str, header: &[String], rows: &[Vec<String>]) -> Markup {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0).max(header.len());
-    let class = |column: usize| is_numeric(rows, column).then_some("number");
-    // Beside the table, not in it: a caption inside is broken at the width of a narrow table.
-    let named = (!caption.is_empty()).then_some(caption);
-    html! {
-        @if let Some(caption) = named { p.caption { (caption) } }
-        div.wide {
-            table aria-label=[named] {
-                @if !header.is_empty() {
-                    thead { tr {
-                        @for (k, name) in header.iter().enumerate() { th scope="col" class=[class(k)] { (name) } }
-                    } }
-                }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            @for k in 0..columns {
-                                @let cell = row.get(k).map_or("", String::as_str);
-                                @if k == 0 { th scope="row" class=[class(k)] { (cell) } }
-                                @else { td class=[class(k)] { (cell) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
 }
 
 fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {
@@ -187,19 +146,12 @@ fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {
 mod tests {
     use super::*;
     use crate::report::Input;
-    use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+    use crate::report::figure::{Figure, Item, Panel, style};
 
-    fn story() -> Story {
+    fn report() -> Report {
         let items = vec![Item::line("a < b & \"c\"", &[0.0, 60.0], [1.0, 2.0], style::GAS_MEAN)];
-        let panels = vec![Panel { quantity: "temperature in °C".into(), items, height: 1.0 }];
-        let figure = Figure {
-            title: "<run>".into(),
-            horizontal: Horizontal::Time,
-            panels,
-            marks: Vec::new(),
-            below: None,
-        };
-        Story::new("A <b>run</b>")
+        let figure = Figure::over_time("<run>", vec![Panel::new("temperature in °C", 1.0, items)]);
+        Report::new("A <b>run</b>")
             .heading("one")
             .text("5 < 6 & 7 > 3")
             .cautions(["<script>".to_owned()])
@@ -207,14 +159,14 @@ mod tests {
             .facts([("gas", "1 °C".to_owned())])
             .rows("c", &["what", "n"], vec![vec!["<i>".into(), "-10".into()], vec!["b".into()]])
             .heading("three")
-            .figure(figure, "what it shows")
+            .picture(figure, "what it shows")
             .source("vessel.toml", "name = \"<x>\"")
     }
 
     fn page() -> String {
         let inputs = vec![Input::of("a<b.toml", b"abc")];
         let provenance = Provenance { command: "cylwatch x '<y>'".into(), inputs, seed: None };
-        Page { story: &story(), provenance: &provenance }.to_html().unwrap()
+        Page { report: &report(), provenance: &provenance }.to_html().unwrap()
     }
 
     #[test]

@@ -1,17 +1,13 @@
 //! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
-use super::figure::{Figure, Horizontal, Item, Mark, Panel, style};
-use super::table::{Table, number};
-use super::{Provenance, Readings, Story, readings};
+use super::figure::{Figure, Item, Mark, Panel, style};
+use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Report, Table, number, readings};
 use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
-const ZERO_CELSIUS_K: f64 = 273.15;
-const GRAM_PER_HOUR: f64 = 3.6e6;
-
 /// Significant digits of a simulated number: beyond what the solver's tolerance carries, short enough to read.
-const DIGITS: usize = 10;
+const DIGITS: Digits = Digits::Significant(10);
 
 fn celsius(values_k: &[f64]) -> impl Iterator<Item = f64> + '_ {
     values_k.iter().map(|t| t - ZERO_CELSIUS_K)
@@ -23,38 +19,38 @@ fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
 
 /// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
 pub fn table(run: &Trajectory, readings: &Readings) -> Table {
-    let mut table = Table::new(DIGITS);
-    table.push("time_s", run.time_s.iter().copied());
-    table.push("ambient_degc", celsius(&run.ambient_k));
-    table.push("gas_mean_degc", celsius(&run.gas_mean_k));
+    let mut table = Table::new();
+    table.push("time_s", DIGITS, run.time_s.iter().copied());
+    table.push("ambient_degc", DIGITS, celsius(&run.ambient_k));
+    table.push("gas_mean_degc", DIGITS, celsius(&run.gas_mean_k));
     let cells = run.gas_cells_k.first().map_or(0, Vec::len);
     for cell in 0..cells {
         let values = run.gas_cells_k.iter().map(|sample| sample[cell] - ZERO_CELSIUS_K);
-        table.push(format!("gas_{}_degc", cell + 1), values);
+        table.push(format!("gas_{}_degc", cell + 1), DIGITS, values);
     }
     for place in run.places.iter().filter(|place| place.name != "shoulder") {
         if let Some(surface) = run.surface_k(place.name) {
-            table.push(format!("wall_{}_degc", place.name), celsius(&surface));
+            table.push(format!("wall_{}_degc", place.name), DIGITS, celsius(&surface));
         }
     }
     for name in ["shoulder", "valve"] {
         if let Some(surface) = run.surface_k(name) {
-            table.push(format!("{name}_degc"), celsius(&surface));
+            table.push(format!("{name}_degc"), DIGITS, celsius(&surface));
         }
     }
-    table.push("pressure_bar", bar(&run.pressure_pa));
-    table.push("mass_kg", run.mass_kg.iter().copied());
-    table.push("outflow_g_h", run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
-    table.push("heat_to_gas_w", run.heat_to_gas_w.iter().copied());
+    table.push("pressure_bar", DIGITS, bar(&run.pressure_pa));
+    table.push("mass_kg", DIGITS, run.mass_kg.iter().copied());
+    table.push("outflow_g_h", DIGITS, run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
+    table.push("heat_to_gas_w", DIGITS, run.heat_to_gas_w.iter().copied());
     for (sensor, values) in readings.columns() {
         let (name, values) = readings::column(sensor, &values);
-        table.push(name, values);
+        table.push(name, DIGITS, values);
     }
     table
 }
 
 /// An event in words.
-pub fn event_name(event: &Event) -> String {
+pub(crate) fn event_name(event: &Event) -> String {
     match &event.kind {
         EventKind::PressureLimit { limit_pa, falling } => {
             let side = if *falling { "below" } else { "above" };
@@ -93,17 +89,17 @@ pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
     let differences = differences(&bodies);
     let temperatures = air.into_iter().chain(bodies).collect();
     let mut panels = vec![
-        Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.1 },
-        Panel { quantity: "above gas mean in K".into(), items: differences, height: 0.7 },
-        Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
+        Panel::new("temperature in °C", 1.1, temperatures),
+        Panel::new("above gas mean in K", 0.7, differences),
+        Panel::new("pressure in bar", 0.8, pressure),
     ];
     let (least, most) = run.mass_kg.iter().fold((f64::INFINITY, 0.0), |r, &m| (m.min(r.0), m.max(r.1)));
     if most - least > 1e-6 * most {
         let mass = Item::line("gas mass", time, run.mass_kg.iter().copied(), style::PRESSURE);
-        panels.push(Panel { quantity: "gas mass in kg".into(), items: vec![mass], height: 0.55 });
+        panels.push(Panel::new("gas mass in kg", 0.55, vec![mass]));
     }
     let marks = run.events.iter().map(|event| Mark { at: event.time_s, name: event_name(event) }).collect();
-    Figure { title: title(run), horizontal: Horizontal::Time, panels, marks, below: None }
+    Figure::over_time(title(run), panels).with_marks(marks)
 }
 
 /// The air, and what sensors read of it.
@@ -243,10 +239,10 @@ pub const CAPTION: &str = "Temperatures; how wall, valve and sensors differ from
                            the gas mass where it changes. Lines named sensor are readings.";
 
 /// The run in a few lines for people.
-pub fn story(run: &Trajectory) -> Story {
-    let story = Story::new(title(run));
+pub fn summary(run: &Trajectory) -> Report {
+    let report = Report::new(title(run));
     let (Some(&first), Some(&last)) = (run.pressure_pa.first(), run.pressure_pa.last()) else {
-        return story;
+        return report;
     };
     let extremes =
         run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
@@ -278,5 +274,5 @@ pub fn story(run: &Trajectory) -> Story {
     ];
     let event = |event: &Event| (format!("event at {:.0} s", event.time_s), event_name(event));
     facts.extend(run.events.iter().map(event));
-    story.facts(facts)
+    report.facts(facts)
 }

@@ -181,7 +181,7 @@ pub fn with_coefficient(scenario: &Scenario, coefficient: f64) -> Scenario {
 }
 
 /// Inner wall temperature at mid height against time, K.
-pub fn wall_middle_k(run: &Trajectory) -> Vec<f64> {
+pub(crate) fn wall_middle_k(run: &Trajectory) -> Vec<f64> {
     let cell = run.places.iter().find(|place| place.name == "middle").map_or(0, |place| place.axial_cell);
     run.wall_inner_k.iter().map(|sample| sample[cell]).collect()
 }

@@ -15,17 +15,17 @@ pub const SCENARIOS: [&str; 4] = ["shock-cold", "tunnel-winter", "ramp-warm", "c
 pub const VESSEL: &str = "nitrogen-20l";
 
 /// Pressure of a full cylinder at 15 °C, Pa.
-pub const FILL_PRESSURE_PA: f64 = 200e5;
+pub(crate) const FILL_PRESSURE_PA: f64 = 200e5;
 /// Temperature at which the fill is stated, K.
-pub const FILL_TEMPERATURE_K: f64 = 288.15;
+pub(crate) const FILL_TEMPERATURE_K: f64 = 288.15;
 /// Volume of the cylinder, m³.
-pub const VOLUME_M3: f64 = 0.02;
+pub(crate) const VOLUME_M3: f64 = 0.02;
 
 /// Text of a built-in scenario.
 ///
 /// # Errors
 /// There is none of this name.
-pub fn text_of(name: &'static str) -> Result<&'static str, ReproduceError> {
+pub(crate) fn text_of(name: &'static str) -> Result<&'static str, ReproduceError> {
     scenario::presets::text(name).ok_or(ReproduceError::Scenario { name })
 }
 
@@ -84,7 +84,7 @@ pub struct TightCylinder {
 }
 
 /// Slope of pressure against temperature that the paper uses, bar/K.
-pub const SLOPE_OF_PAPER_BAR_K: f64 = 0.8457;
+pub(crate) const SLOPE_OF_PAPER_BAR_K: f64 = 0.8457;
 
 /// Evaluates the tight cylinder.
 ///

@@ -1,30 +1,22 @@
 //! Figures of the reproduction.
-use super::beside::ScenarioScore;
 use super::blowdown::{Blowdown, Variant, extreme, wall_middle_k};
 use super::cylinder::{FILL_TEMPERATURE_K, SLOPE_OF_PAPER_BAR_K, TightCylinder};
+use super::drawn_cylinders::ScenarioScore;
 use super::identification::{Identification, Validation};
 use super::measured::Curve;
+use super::methods::METHODS;
 use super::passage::{ENTRY_S, LEAK_G_H, ONSET_S, Passage};
 use super::scheme::{LOSS_BAR_H, SchemeRun, THRESHOLD_BAR};
-use super::watch::WHO;
 use crate::report::figure::style::Stroke;
-use crate::report::figure::{Figure, Horizontal, Item, Mark, Panel, style};
+use crate::report::figure::{Figure, Horizontal, Item, Mark, Panel, Picture, style};
 use crate::thermal::units::ZERO_CELSIUS_K;
 use std::collections::BTreeSet;
 
-/// Strokes of those who watch, in their order.
+/// Strokes of the methods, in their order.
 const STROKES: [Stroke; 3] = [style::FIRST, style::THIRD, style::GAS_MEAN];
 
 fn line(name: &str, x: &[f64], y: &[f64], stroke: Stroke) -> Item {
     Item::line(name, x, y.iter().copied(), stroke)
-}
-
-fn panel(quantity: &str, height: f64, items: Vec<Item>) -> Panel {
-    Panel { quantity: quantity.into(), items, height }
-}
-
-fn over_time(title: &str, panels: Vec<Panel>, marks: Vec<Mark>) -> Figure {
-    Figure { title: title.into(), horizontal: Horizontal::Time, panels, marks, below: None }
 }
 
 fn mark(at: f64, name: &str) -> Mark {
@@ -50,12 +42,13 @@ pub fn figure_2(study: &Identification) -> Figure {
         line("published,\nstart at 0 °C", t, &differences(published, gas), style::SECOND),
         line("identified here", t, &differences(identified, gas), style::THIRD),
     ];
-    let panels = vec![panel("temperature in °C", 1.1, temperatures), panel("error in K", 0.8, errors)];
-    over_time("Figure 2: scenarios 1 and 2, one after the other", panels, Vec::new())
+    let panels =
+        vec![Panel::new("temperature in °C", 1.1, temperatures), Panel::new("error in K", 0.8, errors)];
+    Figure::over_time("Figure 2: scenarios 1 and 2, one after the other", panels)
 }
 
 /// Figure 3: the models on scenarios that they do not come from.
-pub fn figure_3(study: &Identification) -> Figure {
+pub fn figure_3(study: &Identification) -> Picture {
     let of = |validation: &Validation| {
         let (record, t) = (&validation.record, validation.record.time_s());
         let gas = record.gas_degc();
@@ -72,12 +65,11 @@ pub fn figure_3(study: &Identification) -> Figure {
             line("published, start\nat the gas", t, &differences(first, gas), style::SECOND),
             line("identified here", t, &differences(identified, gas), style::THIRD),
         ];
-        let panels = vec![panel("temperature in °C", 0.9, temperatures), panel("error in K", 0.7, errors)];
-        over_time(&format!("Figure 3: scenario {}", validation.scenario), panels, Vec::new())
+        let panels =
+            vec![Panel::new("temperature in °C", 0.9, temperatures), Panel::new("error in K", 0.7, errors)];
+        Figure::over_time(format!("Figure 3: scenario {}", validation.scenario), panels)
     };
-    let mut parts = study.validations.iter().map(of);
-    let first = parts.next().unwrap_or_else(|| over_time("Figure 3", Vec::new(), Vec::new()));
-    Figure { below: parts.next().map(Box::new), ..first }
+    Picture::stacked(study.validations.iter().map(of).collect())
 }
 
 /// Errors of a start at zero, K, without those that would flatten all others.
@@ -87,11 +79,11 @@ fn clipped(errors: &[f64]) -> Vec<f64> {
 }
 
 /// Figure 6: the tunnel, by the paper's scheme, and on a simulated cylinder.
-pub fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Figure {
+pub fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Picture {
     let until = scheme.time_s.partition_point(|&t| t <= 10_800.0);
     let x = &scheme.time_s[..until];
     let own = vec![
-        panel(
+        Panel::new(
             "temperature in °C",
             0.7,
             vec![
@@ -99,21 +91,20 @@ pub fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Figure {
                 line("gas, published\ntransfer function", x, &scheme.gas_degc[..until], style::GAS_MEAN),
             ],
         ),
-        panel(
+        Panel::new(
             "pressure in bar",
             0.6,
             vec![line("expected", x, &scheme.expected_bar[..until], style::PRESSURE)],
         ),
     ];
     let marks = || vec![mark(ENTRY_S, "t1: tunnel")];
-    let mut below = watched("a simulated tight cylinder in the same passage", passage, Vec::new());
-    below.marks = marks();
-    let first = over_time("Figure 6: the paper's scheme, where model and cylinder are one", own, marks());
-    Figure { below: Some(Box::new(below)), ..first }
+    let first = Figure::over_time("Figure 6: the paper's scheme, where model and cylinder are one", own);
+    let second = method_run("a simulated tight cylinder in the same passage", passage, Vec::new());
+    Picture::stacked(vec![first.with_marks(marks()), second.with_marks(marks())])
 }
 
-/// Figure 8: a leak after the tunnel, by the paper's scheme, and on a simulated cylinder, with the alarms, s, of those who watch.
-pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3]) -> Figure {
+/// Figure 8: a leak after the tunnel, by the paper's scheme, and on a simulated cylinder, with the alarms, s, of the methods.
+pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3]) -> Picture {
     let t = &scheme.time_s;
     let mut errors = vec![
         Item::Limit { name: "threshold".into(), value: THRESHOLD_BAR },
@@ -121,7 +112,7 @@ pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3
     ];
     errors.extend(alarm("alarm", t, &scheme.error_bar, scheme.alarm_s, style::PRESSURE));
     let own = vec![
-        panel(
+        Panel::new(
             "temperature in °C",
             0.6,
             vec![
@@ -129,7 +120,7 @@ pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3
                 line("gas, published\ntransfer function", t, &scheme.gas_degc, style::GAS_MEAN),
             ],
         ),
-        panel(
+        Panel::new(
             "pressure in bar",
             0.7,
             vec![
@@ -137,54 +128,54 @@ pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3
                 line("actual, p_a", t, &scheme.actual_bar, style::PRESSURE),
             ],
         ),
-        panel("error in bar", 0.7, errors),
+        Panel::new("error in bar", 0.7, errors),
     ];
-    let watched_t = &passage.watched.time_s;
-    let points = alarms_s.iter().enumerate().filter_map(|(who, alarm_s)| {
-        let name = if who == 2 { "alarms" } else { "" };
-        alarm(name, watched_t, &passage.watched.missing_bar[who], *alarm_s, STROKES[who])
+    let watched_t = &passage.method_run.time_s;
+    let points = alarms_s.iter().enumerate().filter_map(|(method, alarm_s)| {
+        let name = if method == 2 { "alarms" } else { "" };
+        alarm(name, watched_t, &passage.method_run.missing_bar[method], *alarm_s, STROKES[method])
     });
     let marks = || vec![mark(ENTRY_S, "t1: tunnel"), mark(ONSET_S, "t2: leak")];
     let title = format!("a simulated cylinder that loses {LEAK_G_H} g/h");
-    let mut below = watched(&title, passage, points.collect());
-    below.marks = marks();
+    let second = method_run(&title, passage, points.collect());
     let title = format!("Figure 8: the paper's scheme (figure 7) with a loss of {LOSS_BAR_H} bar/h");
-    Figure { below: Some(Box::new(below)), ..over_time(&title, own, marks()) }
+    Picture::stacked(vec![Figure::over_time(title, own).with_marks(marks()), second.with_marks(marks())])
 }
 
 /// Temperatures, pressures and what seems to be missing.
-fn watched(title: &str, passage: &Passage, points: Vec<Item>) -> Figure {
-    let watched = &passage.watched;
-    let t = &watched.time_s;
-    let mut missing: Vec<Item> =
-        (0..3).map(|who| line(WHO[who], t, &watched.missing_bar[who], STROKES[who])).collect();
+fn method_run(title: &str, passage: &Passage, points: Vec<Item>) -> Figure {
+    let method_run = &passage.method_run;
+    let t = &method_run.time_s;
+    let mut missing: Vec<Item> = (0..3)
+        .map(|method| line(METHODS[method], t, &method_run.missing_bar[method], STROKES[method]))
+        .collect();
     missing.extend(points);
-    let expected: Vec<f64> = watched.missing_bar[0]
+    let expected: Vec<f64> = method_run.missing_bar[0]
         .iter()
-        .zip(&watched.pressure_bar)
+        .zip(&method_run.pressure_bar)
         .map(|(missing, read)| missing + read)
         .collect();
     let panels = vec![
-        panel(
+        Panel::new(
             "temperature in °C",
             0.8,
             vec![
                 line("air", t, &passage.air_degc, style::AIR),
-                line("shoulder as read", t, &watched.shoulder_degc, style::SHOULDER),
+                line("shoulder as read", t, &method_run.shoulder_degc, style::SHOULDER),
                 line("gas", t, &passage.gas_degc, style::GAS_MEAN),
             ],
         ),
-        panel(
+        Panel::new(
             "pressure in bar",
             0.8,
             vec![
                 line("expected,\npublished", t, &expected, style::FIRST),
-                line("as read", t, &watched.pressure_bar, style::PRESSURE),
+                line("as read", t, &method_run.pressure_bar, style::PRESSURE),
             ],
         ),
-        panel("missing in bar", 0.9, missing),
+        Panel::new("missing in bar", 0.9, missing),
     ];
-    over_time(title, panels, Vec::new())
+    Figure::over_time(title, panels)
 }
 
 fn alarm(name: &str, t: &[f64], values: &[f64], alarm_s: Option<f64>, stroke: Stroke) -> Option<Item> {
@@ -194,27 +185,29 @@ fn alarm(name: &str, t: &[f64], values: &[f64], alarm_s: Option<f64>, stroke: St
 }
 
 /// A scenario on the first of the drawn cylinders.
-pub fn beside(score: &ScenarioScore) -> Figure {
-    let (truth, watched) = (&score.shown.truth, &score.shown.watched);
+pub fn drawn_cylinder(score: &ScenarioScore) -> Figure {
+    let (truth, method_run) = (&score.shown.truth, &score.shown.method_run);
     let t = &truth.time_s;
     let celsius = |k: &[f64]| k.iter().map(|k| k - ZERO_CELSIUS_K).collect::<Vec<f64>>();
-    let high: Vec<f64> = watched.gas_sd_k.iter().map(|sd| 2.0 * sd).collect();
+    let high: Vec<f64> = method_run.gas_sd_k.iter().map(|sd| 2.0 * sd).collect();
     let low = high.iter().map(|high| -high).collect();
     let band = Item::Band { name: "observer's\n± 2 sd".into(), x: t.clone(), low, high };
-    let errors = (0..3).map(|who| line(WHO[who], t, &score.shown.gas_error_k(who), STROKES[who]));
-    let missing = (0..3).map(|who| line(WHO[who], t, &watched.missing_bar[who], STROKES[who]));
+    let errors =
+        (0..3).map(|method| line(METHODS[method], t, &score.shown.gas_error_k(method), STROKES[method]));
+    let missing =
+        (0..3).map(|method| line(METHODS[method], t, &method_run.missing_bar[method], STROKES[method]));
     let temperatures = vec![
         line("air", t, &celsius(&truth.ambient_k), style::AIR),
-        line("shoulder as read", t, &watched.shoulder_degc, style::SHOULDER),
+        line("shoulder as read", t, &method_run.shoulder_degc, style::SHOULDER),
         line("gas", t, &celsius(&truth.gas_mean_k), style::GAS_MEAN),
     ];
     let panels = vec![
-        panel("temperature in °C", 0.8, temperatures),
-        panel("gas error in K", 0.8, std::iter::once(band).chain(errors).collect()),
-        panel("missing in bar", 0.8, missing.collect()),
+        Panel::new("temperature in °C", 0.8, temperatures),
+        Panel::new("gas error in K", 0.8, std::iter::once(band).chain(errors).collect()),
+        Panel::new("missing in bar", 0.8, missing.collect()),
     ];
     let marks = vec![mark(truth.course.change_s(), "the air changes")];
-    over_time(&format!("{}, one drawn cylinder", score.title), panels, marks)
+    Figure::over_time(format!("{}, one drawn cylinder", score.title), panels).with_marks(marks)
 }
 
 /// Pressure of a tight full cylinder against its gas temperature.
@@ -228,13 +221,11 @@ pub fn tight(tight: &TightCylinder) -> Figure {
         Item::line("paper's slope,\n0.8457 bar/°C", t, paper, style::FIRST),
         Item::line("real gas", t, tight.real_bar.iter().copied(), style::SECOND),
     ];
-    Figure {
-        title: "A tight cylinder, 200 bar at 15 °C".into(),
-        horizontal: Horizontal::Quantity("gas temperature in °C".into()),
-        panels: vec![Panel { quantity: "pressure in bar".into(), items, height: 1.3 }],
-        marks: Vec::new(),
-        below: None,
-    }
+    Figure::new(
+        "A tight cylinder, 200 bar at 15 °C",
+        Horizontal::Quantity("gas temperature in °C".into()),
+        vec![Panel::new("pressure in bar", 1.3, items)],
+    )
 }
 
 /// The measured blowdown beside the model.
@@ -266,17 +257,12 @@ pub fn blowdown(study: &Blowdown) -> Figure {
     }
     let mut wall_items = band("measured, lowest\nto highest", &measured.wall_low_k, &measured.wall_high_k);
     wall_items.extend(models(study, "mid height, ", &wall));
-    Figure {
-        title: "Nitrogen blowdown I1 (Haque et al. 1992) and the model".into(),
-        horizontal: Horizontal::Time,
-        panels: vec![
-            Panel { quantity: "pressure in bar".into(), items: pressure_items, height: 0.9 },
-            Panel { quantity: "gas in °C".into(), items: gas_items, height: 0.9 },
-            Panel { quantity: "inner wall in °C".into(), items: wall_items, height: 0.9 },
-        ],
-        marks: Vec::new(),
-        below: None,
-    }
+    let panels = vec![
+        Panel::new("pressure in bar", 0.9, pressure_items),
+        Panel::new("gas in °C", 0.9, gas_items),
+        Panel::new("inner wall in °C", 0.9, wall_items),
+    ];
+    Figure::over_time("Nitrogen blowdown I1 (Haque et al. 1992) and the model", panels)
 }
 
 fn models(study: &Blowdown, what: &str, values: &dyn Fn(&Variant) -> Vec<f64>) -> Vec<Item> {

@@ -90,7 +90,7 @@ impl Identification {
     }
 
     /// Pole of the refitted model, 1/s.
-    pub fn refitted_pole_per_s(&self) -> f64 {
+    pub(crate) fn refitted_pole_per_s(&self) -> f64 {
         self.refitted.model.den[1]
     }
 }

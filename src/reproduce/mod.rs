@@ -6,29 +6,29 @@
 //! | [`cylinder`] | scenarios 1 to 4 (figure 1), the pressure line of a tight cylinder |
 //! | [`table_1`], [`identification`] | table 1, figures 2 and 3 |
 //! | [`scheme`] | figures 4, 5, 7 as graphs that run; figures 6 and 8 by them |
-//! | [`mod@watch`], [`mod@passage`] | figures 6 and 8 on a simulated cylinder |
-//! | [`beside`] | published, refitted, observer and bound on drawn cylinders |
+//! | [`methods`], [`mod@passage`] | figures 6 and 8 on a simulated cylinder |
+//! | [`drawn_cylinders`] | published, refitted, observer and bound on drawn cylinders |
 //! | [`blowdown`], [`measured`] | the model beside a measured blowdown |
-//! | [`rows`], [`answers`] | numbers beside their references; paper, here, why |
+//! | [`mod@checks`], [`comparison`] | numbers and their references; paper, here, why they differ |
 //!
-//! [`run`] computes, [`Reproduction::story`] tells it, [`Reproduction::files`] gives the files to write.
-pub mod answers;
-pub mod beside;
+//! [`run`] computes, [`Reproduction::report`] is the report, [`Reproduction::files`] gives the files to write.
 pub mod blowdown;
+pub mod checks;
+pub mod comparison;
 pub mod cylinder;
-mod document;
+pub mod drawn_cylinders;
 mod figures;
+mod files;
 pub mod identification;
 pub mod measured;
+pub mod methods;
+mod paragraphs;
 pub mod passage;
-pub mod rows;
+mod report;
 pub mod scheme;
 pub mod section_2;
 pub mod table_1;
 mod tables;
-mod told;
-pub mod watch;
-mod words;
 
 use crate::detector::DetectorError;
 use crate::estimator::EstimatorError;
@@ -38,9 +38,9 @@ use crate::report::{Input, ReportError};
 use crate::thermal::ThermalError;
 use crate::thermal::simulate::SimulationSettings;
 use crate::thermal::{scenario, vessel};
-use beside::{LEAKS_G_H, LeakScore, ScenarioScore};
 use blowdown::Blowdown;
 use cylinder::{SCENARIOS, ScenarioRun, TightCylinder, VESSEL};
+use drawn_cylinders::{LEAKS_G_H, LeakScore, ScenarioScore};
 use identification::Identification;
 use passage::{Case, Passage, passage};
 use scheme::SchemeRun;
@@ -62,7 +62,7 @@ pub enum ReproduceError {
     /// A detector.
     #[error(transparent)]
     Detector(#[from] DetectorError),
-    /// The cylinders that nobody who watches knows.
+    /// The drawn cylinders.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
     /// A figure.
@@ -125,7 +125,7 @@ pub struct Reproduction {
     /// Figure 8 on a simulated cylinder without its leak, for thresholds, and with it.
     pub leak: [Passage; 2],
     /// Scenarios 1 to 4 on drawn cylinders.
-    pub beside: Vec<ScenarioScore>,
+    pub drawn_cylinders: Vec<ScenarioScore>,
     /// Leaks after a tunnel on drawn cylinders.
     pub leaks: Vec<LeakScore>,
     /// Cylinders of each case.
@@ -162,12 +162,12 @@ impl Work<'_> {
 const QUICK: f64 = 1.0;
 const DRAWN: f64 = 12.0;
 
-/// Computes everything; `progress` is told what is being done and which share is done.
+/// Computes everything; `progress` gets the current step and the share that is done.
 ///
 /// # Errors
 /// A simulation, an identification or a detector fails.
 pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<Reproduction, ReproduceError> {
-    let all = 12.0 * QUICK + DRAWN * (beside::SCENARIOS.len() + 1 + LEAKS_G_H.len()) as f64;
+    let all = 12.0 * QUICK + DRAWN * (drawn_cylinders::SCENARIOS.len() + 1 + LEAKS_G_H.len()) as f64;
     let mut work = Work { done: 0.0, all, progress };
     let simulation = &settings.simulation;
     let tight = cylinder::tight()?;
@@ -191,8 +191,8 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
         passed("figure 8", Case::TightLong, seed.wrapping_add(1))?,
         passed("figure 8", Case::Leaking, seed.wrapping_add(2))?,
     ];
-    let drawn = beside::Settings { cylinders: settings.cylinders, seed, pole_per_s };
-    let beside = (0..beside::SCENARIOS.len())
+    let drawn = drawn_cylinders::Settings { cylinders: settings.cylinders, seed, pole_per_s };
+    let drawn_cylinders = (0..drawn_cylinders::SCENARIOS.len())
         .map(|k| {
             let what = format!("scenario {} on drawn cylinders", k + 1);
             work.step(&what, DRAWN, |_| drawn.scenario(k, tight.slope_bar_k))
@@ -213,7 +213,7 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
         identification,
         tunnel,
         leak,
-        beside,
+        drawn_cylinders,
         leaks,
         seed,
     })

@@ -1,10 +1,10 @@
 //! Figures 6 and 8 of the paper on a simulated cylinder: a tunnel passage, tight and with a leak.
 //!
-//! The cylinder is the built-in one with a real gas, a wall and sensors; nobody who watches it knows more than the readings. Figure 6 is
+//! The cylinder is the built-in one with a real gas, a wall and sensors; the methods get its readings alone. Figure 6 is
 //! the passage from -10 to 35 °C alone, figure 8 the same with 60 g/h from an hour on. The paper does not state its leak.
 use super::ReproduceError;
 use super::cylinder::VESSEL;
-use super::watch::{Plan, Watched, watch};
+use super::methods::{MethodRun, Plan, run_methods};
 use crate::estimator::sensor::SensorSuite;
 use crate::report::Readings;
 use crate::thermal::simulate::{SimulationSettings, simulate};
@@ -12,7 +12,7 @@ use crate::thermal::units::ZERO_CELSIUS_K;
 use crate::thermal::{scenario, vessel};
 
 /// Entry into the tunnel (t1), s.
-pub const ENTRY_S: f64 = 600.0;
+pub(crate) const ENTRY_S: f64 = 600.0;
 /// Onset of the leak (t2), s.
 pub const ONSET_S: f64 = 3600.0;
 /// The leak, g/h.
@@ -36,14 +36,14 @@ pub struct Passage {
     pub air_degc: Vec<f64>,
     /// True mean gas temperature, °C.
     pub gas_degc: Vec<f64>,
-    /// What those who watch made of it.
-    pub watched: Watched,
+    /// Results of the methods.
+    pub method_run: MethodRun,
 }
 
 /// Simulates a passage and lets all watch; `pole_per_s` is that of the refitted transfer function.
 ///
 /// # Errors
-/// The simulation's or a watcher's.
+/// The simulation's or a method's.
 pub fn passage(case: Case, pole_per_s: f64, seed: u64) -> Result<Passage, ReproduceError> {
     let vessel = vessel::presets::load(VESSEL)?;
     let name = if case == Case::Tight { "tunnel-step" } else { "leak-after-tunnel" };
@@ -55,7 +55,7 @@ pub fn passage(case: Case, pole_per_s: f64, seed: u64) -> Result<Passage, Reprod
     let log = Readings::sampled(&run, seed)?.log;
     let suite = SensorSuite::from(&scenario);
     let plan = Plan { nominal: &vessel, sensors: suite.sensors(), pole_per_s, rest_s: ENTRY_S };
-    let watched = watch(&plan, &log)?;
+    let method_run = run_methods(&plan, &log)?;
     let celsius = |values_k: &[f64]| values_k.iter().map(|k| k - ZERO_CELSIUS_K).collect();
-    Ok(Passage { air_degc: celsius(&run.ambient_k), gas_degc: celsius(&run.gas_mean_k), watched })
+    Ok(Passage { air_degc: celsius(&run.ambient_k), gas_degc: celsius(&run.gas_mean_k), method_run })
 }

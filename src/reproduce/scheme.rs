@@ -8,8 +8,8 @@
 //! | 4 | shoulder, transfer function, gas temperature, pressure law, expected pressure |
 //! | 5 | the same, less the pressure that is read: the error, held for 10 min against a threshold, and its slope |
 //! | 7 | the same with a simulated actual pressure: the expected one with noise of 10 mbar, less what a constant flow takes |
+use super::methods::{FULL, LIMIT_PA};
 use super::passage::{ENTRY_S, ONSET_S};
-use super::watch::{FULL, LIMIT_PA};
 use crate::evaluation::baseline::{Expectation, GasTemperature, HOLD_S, Sustained, Trend};
 use crate::report::figure::{Arrow, Diagram, Form, Node};
 use crate::thermal::units::ZERO_CELSIUS_K;
@@ -26,9 +26,9 @@ const DURATION_S: f64 = 14_400.0;
 /// Noise of the pressure, Pa: 10 mbar.
 const NOISE_PA: f64 = 1e3;
 /// Loss, bar/h; the paper does not state it.
-pub const LOSS_BAR_H: f64 = 3.0;
+pub(crate) const LOSS_BAR_H: f64 = 3.0;
 /// Threshold of the error, bar: ten times the noise; the paper states none.
-pub const THRESHOLD_BAR: f64 = 0.1;
+pub(crate) const THRESHOLD_BAR: f64 = 0.1;
 /// Shoulder before and in the tunnel, °C.
 const SHOULDER_DEGC: (f64, f64) = (-10.0, 35.0);
 

@@ -7,9 +7,9 @@ use super::cylinder::{FILL_PRESSURE_PA, FILL_TEMPERATURE_K, VOLUME_M3};
 use crate::thermal::fluid::Fluid;
 
 /// The paper's figures: empty mass of the steel cylinder, kg.
-pub const STEEL_KG: f64 = 22.4;
+pub(crate) const STEEL_KG: f64 = 22.4;
 /// Its heat capacity, J/(kg K).
-pub const STEEL_J_KG_K: f64 = 460.0;
+pub(crate) const STEEL_J_KG_K: f64 = 460.0;
 /// Volume that the gas expands to at 1 bar, m³.
 const EXPANDED_M3: f64 = 4.0;
 /// Density at 20 °C and 1 bar, kg/m³.

@@ -1,15 +1,15 @@
 //! The tables of the report: numbers of the paper beside those from here.
 use super::Reproduction;
-use super::beside::{LeakScore, ScenarioScore, Spread};
+use super::drawn_cylinders::{LeakScore, ScenarioScore, Spread};
+use super::methods::METHODS;
+use super::paragraphs::{DRAWN, DRAWN_LEAKS, FIGURE_3, FIGURE_8, SECTION_2, TABLE};
 use super::passage::{LEAK_G_H, ONSET_S};
 use super::table_1::TABLE_1;
-use super::watch::WHO;
-use super::words::{DRAWN, DRAWN_LEAKS, FIGURE_3, FIGURE_8, SECTION_2, TABLE};
 use crate::estimator::identify::{Identified, published};
-use crate::report::{Story, number};
+use crate::report::{Report, number};
 
 impl Reproduction {
-    pub(super) fn gas(&self, story: Story) -> Story {
+    pub(super) fn gas(&self, report: Report) -> Report {
         let s = &self.section_2;
         let t = &self.tight;
         let row = |what: &str, paper: String, here: String| vec![what.to_owned(), paper, here];
@@ -43,14 +43,14 @@ impl Reproduction {
                 format!("{:.1} bar", t.pressure_cold_bar),
             ),
         ];
-        story.heading("Section 2: how much gas, how much heat").text(SECTION_2).rows(
+        report.heading("Section 2: how much gas, how much heat").text(SECTION_2).rows(
             "",
             &["", "paper", "real gas"],
             rows,
         )
     }
 
-    pub(super) fn table_1(&self, story: Story) -> Story {
+    pub(super) fn table_1(&self, report: Report) -> Report {
         let study = &self.identification;
         let mut rows = Vec::new();
         for (paper, found) in TABLE_1.iter().zip(&study.rows) {
@@ -70,14 +70,14 @@ impl Reproduction {
         }
         rows.push(identified("shoulder", "refitted, gain 1", &study.refitted));
         let header = ["from", "", "pole in 1/s", "gain", "fit in %", "FPE in K²", "MSE in K²"];
-        story.heading("Table 1 and figure 2: identification").text(TABLE).rows(
+        report.heading("Table 1 and figure 2: identification").text(TABLE).rows(
             "Table 1: scenarios 1 and 2, thermometer to mean gas temperature",
             &header,
             rows,
         )
     }
 
-    pub(super) fn figure_3(&self, story: Story) -> Story {
+    pub(super) fn figure_3(&self, report: Report) -> Report {
         let study = &self.identification;
         let mut rows = Vec::new();
         for validation in &study.validations {
@@ -90,14 +90,14 @@ impl Reproduction {
             }
         }
         let header = ["", "model", "start fitted", "start at the gas", "start at zero"];
-        story.heading("Figure 3: validation").text(FIGURE_3).rows(
+        report.heading("Figure 3: validation").text(FIGURE_3).rows(
             "Root mean square errors in K",
             &header,
             rows,
         )
     }
 
-    pub(super) fn figure_8(&self, story: Story) -> Story {
+    pub(super) fn figure_8(&self, report: Report) -> Report {
         let or_never =
             |value: Option<f64>, digits: usize| value.map_or("never".into(), |value| number(value, digits));
         let mut rows = vec![vec![
@@ -107,9 +107,9 @@ impl Reproduction {
             number(self.scheme.rate_bar_h, 3),
             number(self.scheme.left_h, 3),
         ]];
-        rows.extend(self.figure_8_said().iter().map(|said| {
+        rows.extend(self.figure_8_statements().iter().map(|said| {
             vec![
-                format!("{}, cylinder", said.who),
+                format!("{}, cylinder", said.method),
                 said.threshold_bar.map_or_else(|| "its own".into(), |bar| number(bar, 2)),
                 or_never(said.delay_min, 3),
                 or_never(said.rate_bar_h, 3),
@@ -117,7 +117,7 @@ impl Reproduction {
             ]
         }));
         let header = ["who", "threshold in bar", "delay in min", "loss in bar/h", "to 160 bar in h"];
-        story
+        report
             .heading("Figure 8: a leak after the tunnel")
             .text(format!(
                 "{FIGURE_8} The cylinder loses {LEAK_G_H} g/h, {:.2} bar/h at 15 °C.",
@@ -126,7 +126,7 @@ impl Reproduction {
             .rows("Figure 8: what is said of the leak", &header, rows)
     }
 
-    pub(super) fn drawn(&self, story: Story) -> Story {
+    pub(super) fn drawn(&self, report: Report) -> Report {
         let spread = |spread: &Spread, digits: usize| {
             format!(
                 "{} ({} to {})",
@@ -141,26 +141,29 @@ impl Reproduction {
             cells.push(number(bound, 2));
             cells
         };
-        let gas = self.beside.iter().map(|score| row(score, &score.gas_k, score.bound_k)).collect();
-        let missing =
-            self.beside.iter().map(|score| row(score, &score.missing_bar, score.bound_bar)).collect();
+        let gas = self.drawn_cylinders.iter().map(|score| row(score, &score.gas_k, score.bound_k)).collect();
+        let missing = self
+            .drawn_cylinders
+            .iter()
+            .map(|score| row(score, &score.missing_bar, score.bound_bar))
+            .collect();
         let mut header = vec![""];
-        header.extend(WHO);
+        header.extend(METHODS);
         header.push("bound");
-        let covered = self.beside.iter().map(|score| 100.0 * score.covered).sum::<f64>()
-            / self.beside.len().max(1) as f64;
-        story
+        let covered = self.drawn_cylinders.iter().map(|score| 100.0 * score.covered).sum::<f64>()
+            / self.drawn_cylinders.len().max(1) as f64;
+        report
             .heading("The same scenarios on cylinders unknown to the observer")
             .text(format!("{DRAWN} {} cylinders for each. {covered:.0} % of the true temperatures lie within two of the observer\u{2019}s standard deviations.", self.cylinders))
             .rows("Error of the mean gas temperature in K, root mean square (least to largest of a cylinder)", &header, gas)
             .rows("Pressure that seems to be missing in bar, root mean square (least to largest of a cylinder)", &header, missing)
     }
 
-    pub(super) fn drawn_leaks(&self, story: Story) -> Story {
+    pub(super) fn drawn_leaks(&self, report: Report) -> Report {
         let mut rows = Vec::new();
         for leak in &self.leaks {
-            for who in 0..3 {
-                rows.push(leak_row(leak, who));
+            for method in 0..3 {
+                rows.push(leak_row(leak, method));
             }
             let bound = leak.bound_min.map_or("never".into(), |minutes| number(minutes, 2));
             let rate = format!("sd {}", number(leak.bound_bar_h, 2));
@@ -171,7 +174,7 @@ impl Reproduction {
             ["leak", "who", "threshold in bar", "before it", "found", "median delay in min", "loss in bar/h"];
         let caption =
             "Leaks 50 min after the tunnel\u{2019}s mouth, watched for 2 h 10 min (losses: least to largest)";
-        story
+        report
             .heading("Leaks after the tunnel on cylinders unknown to the observer")
             .text(DRAWN_LEAKS)
             .rows(caption, &header, rows)
@@ -191,22 +194,25 @@ fn identified(place: &str, name: &str, found: &Identified) -> Vec<String> {
     ]
 }
 
-fn leak_row(leak: &LeakScore, who: usize) -> Vec<String> {
-    let name =
-        if who == 0 { format!("{} g/h, {:.2} bar/h", leak.leak_g_h, leak.leak_bar_h) } else { String::new() };
-    let threshold = leak.threshold_bar.get(who).map_or_else(|| "its own".into(), |bar| number(*bar, 2));
+fn leak_row(leak: &LeakScore, method: usize) -> Vec<String> {
+    let name = if method == 0 {
+        format!("{} g/h, {:.2} bar/h", leak.leak_g_h, leak.leak_bar_h)
+    } else {
+        String::new()
+    };
+    let threshold = leak.threshold_bar.get(method).map_or_else(|| "its own".into(), |bar| number(*bar, 2));
     let of_all = |count: usize| format!("{count} of {}", leak.cylinders);
-    let (early, found) = (of_all(leak.false_alarms[who]), of_all(leak.delay_min[who].len()));
-    let mut delays = leak.delay_min[who].clone();
+    let (early, found) = (of_all(leak.false_alarms[method]), of_all(leak.delay_min[method].len()));
+    let mut delays = leak.delay_min[method].clone();
     delays.sort_by(f64::total_cmp);
     let delay = median(&delays).map_or("never".into(), |median| format!("{median:.0}"));
-    let mut rates = leak.rate_bar_h[who].clone();
+    let mut rates = leak.rate_bar_h[method].clone();
     rates.sort_by(f64::total_cmp);
     let rate = match (rates.first(), median(&rates), rates.last()) {
         (Some(low), Some(middle), Some(high)) => format!("{middle:.2} ({low:.2} to {high:.2})"),
         _ => "none said".into(),
     };
-    vec![name, WHO[who].into(), threshold, early, found, delay, rate]
+    vec![name, METHODS[method].into(), threshold, early, found, delay, rate]
 }
 
 /// Middle of sorted values.

@@ -165,7 +165,7 @@ fn what_cannot_be_commissioned_is_refused_before_anything_is_simulated() {
     };
     refuses(&["--cylinders", "100"], &["--cylinders 100", "102 are needed", "62 d"]);
     refuses(&["--days", "30"], &["--days 30", "30.04 d and longer"]);
-    refuses(&["--days", "nan"], &["--days NaN"]);
+    refuses(&["--days", "nan"], &["--days nan: it must be a number above 0"]);
     refuses(&["--days", "500"], &["--days", "between"]);
     refuses(&["--row-interval", "1s"], &["--row-interval", "samples"]);
     refuses(&["--climate", "winter"], &["winter", "railway"]);

@@ -77,6 +77,39 @@ fn every_command_has_help_and_the_shells_their_completions() {
 }
 
 #[test]
+fn a_short_help_fits_one_screen_and_the_long_one_has_the_expert_options() {
+    let folder = tempdir().unwrap();
+    for command in ["estimate", "monitor", "identify", "calibrate", "place"] {
+        let [short, long] = ["-h", "--help"].map(|help| run(folder.path(), &[command, help]).stdout);
+        assert!(short.lines().count() <= 40, "{command}: {} lines", short.lines().count());
+        assert!(!short.contains("Expert options") && long.contains("Expert options"), "{command}");
+    }
+}
+
+#[test]
+fn a_negative_number_is_refused_by_its_bounds_whatever_the_option() {
+    let folder = tempdir().unwrap();
+    let cases: [&[&str]; 5] = [
+        &["simulate", "nitrogen-20l", "shock-cold", "--seed"],
+        &["reproduce", "--cylinders"],
+        &["place", "nitrogen-20l", "--sensors"],
+        &["calibrate", "nitrogen-20l", "log.csv", "--iterations"],
+        &["bench-detector", "--days"],
+    ];
+    for arguments in cases {
+        let outcome = run(folder.path(), &[arguments, &["-3"]].concat());
+        assert_eq!(outcome.code, Some(2));
+        let option = arguments.last().unwrap();
+        assert!(
+            outcome.stderr.starts_with(&format!("error: {option} -3: it must be a ")),
+            "{}",
+            outcome.stderr
+        );
+        assert_eq!(outcome.stderr.lines().count(), 1, "{}", outcome.stderr);
+    }
+}
+
+#[test]
 fn there_is_a_manual_page_for_every_command_and_the_main_one_goes_to_stdout() {
     let folder = tempdir().unwrap();
     let outcome = run(folder.path(), &["man"]);

@@ -1,14 +1,12 @@
 //! Figures and tables as files.
 use cylwatch::report::Provenance;
-use cylwatch::report::figure::{
-    Arrow, Diagram, Figure, Form, Horizontal, Item, Mark, Node, Panel, Part, Sheet, style,
-};
+use cylwatch::report::figure::{Arrow, Diagram, Figure, Form, Item, Mark, Node, Panel, Part, Picture, style};
 
 fn provenance() -> Provenance {
     Provenance { command: "cylwatch simulate 'a & b' --plot x.svg".into(), inputs: vec![], seed: None }
 }
 
-fn example() -> Figure {
+fn example() -> Picture {
     let x: Vec<f64> = (0..=600).map(|k| f64::from(k) * 18.0).collect();
     let toward = |from: f64, to: f64, tau: f64| {
         x.iter().map(move |t| to + (from - to) * (-t / tau).exp()).collect::<Vec<f64>>()
@@ -25,19 +23,15 @@ fn example() -> Figure {
         Item::line("pressure", &x, toward(206.0, 160.09, 2300.0), style::PRESSURE),
         Item::Limit { name: "limit 160 bar".into(), value: 160.0 },
     ];
-    Figure {
-        title: "shock-cold on nitrogen-20l".into(),
-        horizontal: Horizontal::Time,
-        panels: vec![
-            Panel { quantity: "temperature in °C".into(), items: temperatures, height: 1.2 },
-            Panel { quantity: "pressure in bar".into(), items: pressure, height: 0.8 },
-        ],
-        marks: vec![
-            Mark { at: 3600.0, name: "leak opens".into() },
-            Mark { at: 9000.0, name: "below 160 bar".into() },
-        ],
-        below: None,
-    }
+    let panels = vec![
+        Panel::new("temperature in °C", 1.2, temperatures),
+        Panel::new("pressure in bar", 0.8, pressure),
+    ];
+    let marks = vec![
+        Mark { at: 3600.0, name: "leak opens".into() },
+        Mark { at: 9000.0, name: "below 160 bar".into() },
+    ];
+    Figure::over_time("shock-cold on nitrogen-20l", panels).with_marks(marks).into()
 }
 
 #[test]
@@ -81,15 +75,8 @@ fn a_limit_is_named_at_the_end_where_no_curve_passes() {
             Item::line("top", &x, x.iter().map(|_| 220.0), style::GAS_MEAN),
             Item::Limit { name: "the limit".into(), value: 160.0 },
         ];
-        let panels = vec![Panel { quantity: "pressure in bar".into(), items, height: 1.0 }];
-        let figure = Figure {
-            title: "t".into(),
-            horizontal: Horizontal::Time,
-            panels,
-            marks: Vec::new(),
-            below: None,
-        };
-        figure.to_svg(&provenance()).unwrap()
+        let figure = Figure::over_time("t", vec![Panel::new("pressure in bar", 1.0, items)]);
+        Picture::from(figure).to_svg(&provenance()).unwrap()
     };
     // A curve that covers both places above and below the line on its half.
     let (right, left) = (named(110.0, 165.0), named(165.0, 110.0));
@@ -107,7 +94,7 @@ fn an_arrow_of_a_diagram_points_to_the_block_that_it_goes_to() {
             nodes: vec![node("here", (0.0, 0.0)), node("right", (1.0, 0.0)), node("below", (0.0, 1.0))],
             arrows: vec![arrow],
         };
-        Sheet { title: "t".into(), parts: vec![Part::Diagram(diagram)] }.to_svg(&provenance()).unwrap()
+        Picture { title: "t".into(), parts: vec![Part::Diagram(diagram)] }.to_svg(&provenance()).unwrap()
     };
     // Tip first, then the other two corners.
     let head = |svg: &str| -> Vec<[f64; 2]> {

@@ -1,6 +1,6 @@
 //! `cylwatch reproduce`.
 use crate::support::{column, files, refused, reproduced};
-use cylwatch::report::figure::{Figure, Item, Part, Picture};
+use cylwatch::report::figure::{Figure, Item, Part};
 use cylwatch::reproduce::{self, Reproduction, Settings};
 use std::sync::OnceLock;
 use tempfile::tempdir;
@@ -67,32 +67,36 @@ fn an_output_folder_that_cannot_be_made_is_found_before_the_run() {
         &["file/deeper", "cannot be made", "--out"],
     );
     refused(folder.path(), &["reproduce", "--report", "report.txt"], &["report.txt", ".html"]);
-    refused(folder.path(), &["reproduce", "--cylinders", "0"], &["--cylinders", "1..=1000"]);
+    refused(
+        folder.path(),
+        &["reproduce", "--cylinders", "0"],
+        &["--cylinders 0: it must be a whole number of at least 1 and at most 1000"],
+    );
 }
 
 #[test]
 fn the_published_expectation_misses_a_simulated_tight_cylinder_by_bars_and_the_observer_does_not() {
-    let missing = &rebuilt().tunnel.watched.missing_bar;
+    let missing = &rebuilt().tunnel.method_run.missing_bar;
     let largest = |who: usize| missing[who].iter().fold(0.0, |most: f64, e| most.max(e.abs()));
     assert!(largest(0) > 3.0 && largest(1) < 2.0 && largest(2) < 0.5, "{:?}", [0, 1, 2].map(largest));
 }
 
 #[test]
 fn the_papers_detector_finds_the_leak_of_a_cylinder_long_after_the_others() {
-    let [published, refitted, monitor] = rebuilt().figure_8_said();
+    let [published, refitted, monitor] = rebuilt().figure_8_statements();
     let delay = |delay_min: Option<f64>| delay_min.unwrap_or(f64::INFINITY);
     for said in [refitted, monitor] {
-        assert!(delay(said.delay_min) > 0.0, "{}", said.who);
-        assert!(delay(said.delay_min) + 30.0 < delay(published.delay_min), "{}", said.who);
+        assert!(delay(said.delay_min) > 0.0, "{}", said.method);
+        assert!(delay(said.delay_min) + 30.0 < delay(published.delay_min), "{}", said.method);
     }
     // 60 g/h are 3.13 bar/h at 15 degC (19.18 g/bar).
     assert!((monitor.rate_bar_h.unwrap() - 3.13).abs() < 0.15, "{monitor:?}");
-    assert!(rebuilt().leak[0].watched.found_s.is_none(), "a leak in a tight cylinder");
+    assert!(rebuilt().leak[0].method_run.found_s.is_none(), "a leak in a tight cylinder");
 }
 
 #[test]
 fn on_drawn_cylinders_the_observer_is_nearer_than_the_published_function_and_knows_how_near() {
-    for score in &rebuilt().beside {
+    for score in &rebuilt().drawn_cylinders {
         let [published, _, observer] = score.gas_k;
         assert!(observer.value < 0.7 && observer.value < 0.6 * published.value, "{}", score.title);
         assert!(score.missing_bar[2].value < score.missing_bar[0].value, "{}", score.title);
@@ -116,7 +120,7 @@ fn a_leak_after_a_tunnel_is_found_on_a_drawn_cylinder_without_an_alarm_on_tight_
 
 #[test]
 fn every_answer_says_paper_here_and_why() {
-    let answers = reproduce::answers::answers(rebuilt());
+    let answers = reproduce::comparison::comparisons(rebuilt());
     assert!(answers.len() >= 12);
     for answer in answers {
         assert!(!answer.paper.is_empty() && !answer.here.is_empty() && !answer.why.is_empty(), "{answer:?}");
@@ -124,21 +128,17 @@ fn every_answer_says_paper_here_and_why() {
     }
 }
 
-/// All figures of a story.
-fn figures(story: &cylwatch::report::Story) -> Vec<Figure> {
+/// All figures of a report.
+fn figures(report: &cylwatch::report::Report) -> Vec<Figure> {
     let mut all = Vec::new();
-    for block in &story.blocks {
+    for block in &report.blocks {
         let cylwatch::report::Block::Picture { picture, .. } = block else { continue };
-        match picture {
-            Picture::Figure(figure) => all.push(figure.clone()),
-            Picture::Sheet(sheet) => all.extend(sheet.parts.iter().filter_map(|part| match part {
-                Part::Figure(figure) => Some(figure.clone()),
-                _ => None,
-            })),
-        }
+        all.extend(picture.parts.iter().filter_map(|part| match part {
+            Part::Figure(figure) => Some(figure.clone()),
+            _ => None,
+        }));
     }
-    let below: Vec<Figure> = all.iter().filter_map(|figure| figure.below.as_deref().cloned()).collect();
-    all.into_iter().chain(below).collect()
+    all
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn curves_of_a_panel_are_told_apart_in_grey_and_every_axis_has_a_unit() {
     let luminance = |rgb: cylwatch::report::figure::style::Rgb| {
         (0.299 * f64::from(rgb.0) + 0.587 * f64::from(rgb.1) + 0.114 * f64::from(rgb.2)) / 255.0
     };
-    let figures = figures(&rebuilt().story());
+    let figures = figures(&rebuilt().report());
     assert!(figures.len() >= 14, "{}", figures.len());
     for figure in figures {
         for panel in &figure.panels {

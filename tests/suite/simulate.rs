@@ -278,7 +278,7 @@ fn a_tolerance_out_of_range_is_refused_with_its_bounds() {
         refused(
             folder.path(),
             &["simulate", "nitrogen-20l", "shock-cold", &argument],
-            &["tolerance", "between"],
+            &["tolerance", "of at least 1e-13 and at most 0.01"],
         );
     }
     refused(

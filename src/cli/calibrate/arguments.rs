@@ -1,89 +1,84 @@
 //! The raw arguments of `calibrate`.
-use super::amounts::Amounts;
+use super::quantities::Quantities;
 use crate::cli::fill::GivenFill;
-use crate::cli::log_options::LogArguments;
+use crate::cli::number::at_least;
+use crate::cli::options::{
+    EXPERT, LogArguments, MORE, OUTPUT, SensorArguments, SolverArguments, ViewArguments,
+};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `calibrate`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = MORE, after_long_help = EXAMPLES)]
 pub struct CalibrateArguments {
     /// Vessel to begin with: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
     /// Logs of the same vessel: CSV or Parquet files, or - for CSV on stdin.
     #[arg(required = true)]
     pub logs: Vec<String>,
-    /// File for the calibrated vessel, .toml; - is stdout [default: none, a summary on stdout].
-    #[arg(long, short, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// What stdout gets.
-    #[arg(long, value_enum, default_value = "text")]
-    pub format: CalibrationFormat,
-    /// Figure of readings, model, residuals and their autocorrelation; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
-    /// What happened while the log was recorded: a TOML file or a built-in scenario, whose time is that of the log; of several
-    /// logs say LOG=SCENARIO for each [default: the log's column ambient is the air].
+    /// Scenario of the log: a TOML file or a built-in one [default: the log's column ambient is the air].
+    ///
+    /// Its time is that of the log; for several logs give LOG=SCENARIO each.
     #[arg(long = "scenario", value_name = "SCENARIO")]
     pub scenarios: Vec<String>,
-    /// Another vessel that a log belongs to; factors are shared by all vessels; may be given again.
-    #[arg(long = "vessel-of", value_name = "LOG=VESSEL")]
-    pub vessels: Vec<String>,
-    /// Foreign names and zone of the log.
-    #[command(flatten)]
-    pub reading: LogArguments,
-    /// TOML file of the sensors with their errors [default: on the columns shoulder, valve, wall_<place> Pt100 of class
-    /// B, on pressure a transmitter of 250 bar and 0.25 %].
-    #[arg(long, value_name = "FILE")]
-    pub sensors: Option<PathBuf>,
-    /// File for what was found of the sensors, .toml, to be given to monitor or estimate as --sensors with rows that were not
-    /// fitted.
-    #[arg(long, value_name = "FILE")]
-    pub sensors_out: Option<PathBuf>,
-    /// What is unknown, separated by commas [default: outside-film; inside-film where there is a pressure; valve-contact with
-    /// the prior 1,0.5 where there is a thermometer on a valve].
+    /// Parameters to fit, separated by commas [default: those that the sensors can determine].
+    ///
+    /// By default outside-film; inside-film where there is a pressure; valve-contact with the prior 1,0.5 where there is a thermometer
+    /// on a valve.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub fit: Vec<String>,
-    /// What is fitted beside it by default and shall not be: offset:shoulder, initial-temperature, ...
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub hold: Vec<String>,
-    /// What is known of a parameter, in its unit; may be given again [default: nothing of a factor; the data sheet of a sensor].
-    #[arg(long = "prior", value_name = "NAME=MEAN,SD")]
-    pub priors: Vec<String>,
-    /// Lowest and highest value of a parameter, in its unit; may be given again [default: 0.05 and 20 for factors].
-    #[arg(long, value_name = "NAME=LOW,HIGH")]
-    pub bounds: Vec<String>,
-    /// Where the search begins, in the parameter's unit; may be given again [default: as vessel and sensors say].
-    #[arg(long = "start", value_name = "NAME=VALUE")]
-    pub starts: Vec<String>,
-    /// Score the fit on readings it was not fitted to: the last part of the log, as a fraction between 0 and 1, or another log.
+    /// Score the fit on other readings: the last part of the log, as a fraction between 0 and 1, or another log.
     #[arg(long, value_name = "FRACTION|LOG")]
     pub validate: Option<String>,
-    /// Interval of a parameter by its profile likelihood, too; takes a fit for each of some ten points; may be given again.
-    #[arg(long = "profile", value_name = "NAME")]
-    pub profiles: Vec<String>,
-    /// Most steps of the search.
-    #[arg(long, value_name = "NUMBER", default_value_t = 40)]
-    pub iterations: usize,
-    /// Relative tolerance of the solver, without unit, 1e-13 to 1e-2 [default: 1e-9].
-    #[arg(long, value_name = "NUMBER")]
-    pub relative_tolerance: Option<f64>,
-    /// Date that the vessel file records, in the form of RFC 3339 [default: SOURCE_DATE_EPOCH if it is set, else now].
-    #[arg(long, value_name = "DATE")]
-    pub date: Option<String>,
-    /// Surroundings.
+    /// Write the calibrated vessel to FILE, .toml; - is stdout [default: none, a summary on stdout].
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
+    pub output: Option<PathBuf>,
+    /// Content of stdout.
+    #[arg(long, value_enum, default_value = "text", help_heading = OUTPUT)]
+    pub format: CalibrationFormat,
     #[command(flatten)]
-    pub amounts: Amounts,
-    /// What is known at the first row.
+    pub views: ViewArguments,
+    /// Write the fitted sensors to FILE, .toml, for --sensors of monitor or estimate on rows that were not fitted.
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT, hide_short_help = true)]
+    pub sensors_out: Option<PathBuf>,
+    #[command(flatten)]
+    pub reading: LogArguments,
+    #[command(flatten)]
+    pub sensors: SensorArguments,
     #[command(flatten)]
     pub fill: GivenFill,
+    #[command(flatten)]
+    pub quantities: Quantities,
+    /// Another vessel that a log belongs to; factors are shared by all vessels; may be given again.
+    #[arg(long = "vessel-of", value_name = "LOG=VESSEL", help_heading = EXPERT)]
+    pub vessels: Vec<String>,
+    /// Parameters that are fitted by default and shall not be: offset:shoulder, initial-temperature, ...
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = EXPERT)]
+    pub hold: Vec<String>,
+    /// Prior of a parameter, in its unit; may be given again [default: none for a factor; the data sheet of a sensor].
+    #[arg(long = "prior", value_name = "NAME=MEAN,SD", help_heading = EXPERT)]
+    pub priors: Vec<String>,
+    /// Lowest and highest value of a parameter, in its unit; may be given again [default: 0.05 and 20 for factors].
+    #[arg(long, value_name = "NAME=LOW,HIGH", help_heading = EXPERT)]
+    pub bounds: Vec<String>,
+    /// First value of a parameter, in its unit; may be given again [default: that of vessel and sensors].
+    #[arg(long = "start", value_name = "NAME=VALUE", help_heading = EXPERT)]
+    pub starts: Vec<String>,
+    /// Interval of a parameter by its profile likelihood, which takes some ten fits; may be given again.
+    #[arg(long = "profile", value_name = "NAME", help_heading = EXPERT)]
+    pub profiles: Vec<String>,
+    /// Most steps of the search.
+    #[arg(long, value_name = "NUMBER", default_value_t = 40, value_parser = at_least(1_usize), help_heading = EXPERT)]
+    pub iterations: usize,
+    #[command(flatten)]
+    pub solver: SolverArguments,
+    /// Date in the vessel file, in the form of RFC 3339 [default: SOURCE_DATE_EPOCH if it is set, else now].
+    #[arg(long, value_name = "DATE", help_heading = EXPERT)]
+    pub date: Option<String>,
 }
 
-/// What stdout gets.
+/// Content of stdout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum CalibrationFormat {
     /// Tables for people.

@@ -1,5 +1,6 @@
 //! Options that fit each other.
 use super::*;
+use crate::cli::output::check_distinct;
 
 impl Options {
     /// Checks everything that can be checked before a file is read.
@@ -12,21 +13,16 @@ impl Options {
         let mut inputs: Vec<&Path> = vec![Path::new(&arguments.vessel)];
         inputs.extend(logs.iter().map(Path::new));
         inputs.extend(scenarios.values().chain(vessels.values()).map(Path::new));
-        inputs.extend(arguments.sensors.as_deref());
+        inputs.extend(arguments.sensors.sensors.as_deref());
         let vessel_file = document("-o", arguments.output.as_deref(), &inputs)?;
         let sensors_file = document("--sensors-out", arguments.sensors_out.as_deref(), &inputs)?;
         if matches!(vessel_file, Some(Target::Stdout)) && arguments.format == CalibrationFormat::Json {
             bail!("-o - and --format json both want stdout: name a file for the vessel");
         }
-        if let (Some(vessel), Some(sensors)) = (&vessel_file, &sensors_file)
-            && sensors.is_same_file(vessel)
-        {
-            bail!("-o and --sensors-out name the same file: choose two");
-        }
+        check_distinct(&[("-o", vessel_file.as_ref()), ("--sensors-out", sensors_file.as_ref())])?;
         let others: Vec<&Target> = vessel_file.iter().chain(&sensors_file).collect();
-        let wanted = views::Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
-        let views = Views::checked(wanted, &inputs, &others)?;
-        let words = Words {
+        let views = Views::checked(&arguments.views, &inputs, &others)?;
+        let words = ParameterArguments {
             fit: &arguments.fit,
             hold: &arguments.hold,
             priors: &arguments.priors,
@@ -36,21 +32,21 @@ impl Options {
         };
         let mut settings =
             CalibrationSettings { iterations: arguments.iterations, ..CalibrationSettings::default() };
-        if let Some(tolerance) = arguments.relative_tolerance {
+        if let Some(tolerance) = arguments.solver.relative_tolerance {
             settings.simulation.relative_tolerance = tolerance;
         }
         settings.validate()?;
         Ok(Self {
-            wanted: Wanted::checked(&words)?,
+            parameters: ParameterChoice::checked(&words)?,
             scenarios,
             vessels,
             vessel: arguments.vessel,
             logs,
             reading: arguments.reading,
-            sensors: arguments.sensors,
+            sensors: arguments.sensors.sensors,
             validation,
             settings,
-            amounts: arguments.amounts,
+            quantities: arguments.quantities,
             fill: arguments.fill,
             date: date::date(arguments.date.as_deref())?,
             vessel_file,
@@ -86,7 +82,7 @@ fn validation(text: Option<&str>, logs: &mut Vec<String>) -> anyhow::Result<Opti
 fn check_logs(vessel: &str, logs: &[String]) -> anyhow::Result<()> {
     for (k, log) in logs.iter().enumerate() {
         if logs[..k].contains(log) {
-            bail!("the log {log} is there twice: name each log once");
+            bail!("the log {log} is given twice: give each log once");
         }
     }
     if vessel == "-" && logs.iter().any(|log| log == "-") {
@@ -126,7 +122,7 @@ fn of_logs(option: &str, texts: &[String], logs: &[String]) -> anyhow::Result<BT
         let thing = text.split_once('=').map_or(text.as_str(), |(_, thing)| thing);
         for log in these {
             if found.insert(log.clone(), thing.to_owned()).is_some() {
-                bail!("--{option} {text}: {log} has one already: say it once");
+                bail!("--{option} {text}: {log} has one already: give one for each log");
             }
         }
     }

@@ -1,7 +1,7 @@
 //! A log in memory: the readings of its sensors, and the air.
 use crate::cli::input::{Inputs, shown};
-use crate::cli::log_options::LogArguments;
 use crate::cli::message::Messages;
+use crate::cli::options::LogArguments;
 use crate::cli::progress::Progress;
 use crate::cli::selection::Selection;
 use cylwatch::estimator::log::{Channel, Log, Quantity};

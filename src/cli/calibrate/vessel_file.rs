@@ -5,7 +5,7 @@ use cylwatch::report::{Input, Provenance, number, rounded};
 use cylwatch::thermal::vessel::VesselSpec;
 use cylwatch::thermal::vessel::spec::{CalibrationSpec, FittedSpec, OriginSpec, PriorSpec};
 
-/// Significant digits of what was fitted.
+/// Significant digits of fitted values.
 const DIGITS: usize = 6;
 /// Those of a number that was converted to SI.
 const CONVERTED_DIGITS: usize = 12;
@@ -19,7 +19,7 @@ pub fn record(study: &Study, vessel: &Input, logs: &[(String, Input)], date: &st
     CalibrationSpec {
         date: date.to_owned(),
         program: format!("cylwatch {}", Provenance::VERSION),
-        settings: study.settings_in_words(),
+        settings: study.settings_text(),
         confidence: study.calibration.settings.confidence,
         vessel: origin(&vessel.name, vessel),
         log: logs.iter().filter(took_part).map(|(name, input)| origin(name, input)).collect(),
@@ -40,7 +40,7 @@ pub fn text(
     Ok(file(&specification.to_toml()?, CONVERTED_DIGITS, provenance))
 }
 
-/// The file of sensors with what was found of them.
+/// The file of the fitted sensors.
 pub fn sensors(study: &Study, sensors: &SensorsSpec, provenance: &Provenance) -> anyhow::Result<String> {
     let sensors = study.calibrated.applied_to_sensors(study.main_experiment(), sensors);
     sensors.build()?;

@@ -1,4 +1,6 @@
 //! The raw arguments of `commission`.
+use crate::cli::number::{above, at_least};
+use crate::cli::options::FalseAlarmArguments;
 use crate::cli::unit_options::{Choice, Choices, Given};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -10,9 +12,9 @@ use std::str::FromStr;
 
 /// Pressures of the cylinder and its transmitter.
 #[derive(Clone, Debug)]
-pub struct OfCommission;
+pub struct CommissionQuantities;
 
-impl Choices for OfCommission {
+impl Choices for CommissionQuantities {
     const CHOICES: &'static [Choice] = &[
         (
             "fill-pressure",
@@ -38,7 +40,7 @@ pub struct CommissionArguments {
     pub output: PathBuf,
     /// Pressures.
     #[command(flatten)]
-    pub pressures: Given<OfCommission>,
+    pub pressures: Given<CommissionQuantities>,
     /// Climates, gone through in turn as all lists; a kind that is named twice comes twice as often.
     #[arg(long = "climate", value_name = "LIST", value_delimiter = ',', value_parser = kinds(Climate::ALL, Climate::key),
         default_value = listed(&Campaign::default().climates))]
@@ -56,16 +58,15 @@ pub struct CommissionArguments {
         value_parser = kinds(RowPattern::ALL, RowPattern::key), default_value = listed(&Campaign::default().rows))]
     pub rows: Vec<RowPattern>,
     /// Number of cylinders; the time goes with it.
-    #[arg(long, value_name = "NUMBER", default_value_t = Campaign::default().cylinders)]
+    #[arg(long, value_name = "NUMBER", default_value_t = Campaign::default().cylinders, value_parser = at_least(1_usize))]
     pub cylinders: usize,
     /// Length of each log, in d; the slowest statistic makes use of whole months of it.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = Campaign::default().length_s / super::DAY_S)]
+    #[arg(long, value_name = "NUMBER", default_value_t = Campaign::default().length_s / super::DAY_S, value_parser = above(0.0))]
     pub days: f64,
-    /// Mean time between false alarms that the thresholds are for, in years.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 10.0)]
-    pub false_alarm_years: f64,
+    #[command(flatten)]
+    pub false_alarms: FalseAlarmArguments,
     /// Seed of cylinders and weather, a whole number of at least 0.
-    #[arg(long, value_name = "NUMBER", default_value_t = Campaign::default().seed)]
+    #[arg(long, value_name = "NUMBER", default_value_t = Campaign::default().seed, value_parser = at_least(0_u64))]
     pub seed: u64,
     /// Shorten the stretches that largest values are taken of to an hour, to try the command out: the thresholds are of no use.
     #[arg(long, hide = true)]

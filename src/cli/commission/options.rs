@@ -1,6 +1,5 @@
 //! Options of `commission` that fit each other.
 use super::*;
-use crate::cli::unit_options::between_false_alarms_s;
 use cylwatch::detector::prognosis::QUOTED_K;
 use cylwatch::thermal::units::Dimension;
 use cylwatch::thermal::vessel::Vessel;
@@ -25,8 +24,8 @@ impl Options {
     pub fn checked(arguments: CommissionArguments) -> anyhow::Result<Self> {
         let CommissionArguments { vessel, output, pressures, climates, gases, sensors, rows, .. } = arguments;
         let data = Target::checked(Some(&output), &[Path::new(&vessel)])?;
-        let CommissionArguments { cylinders, days, false_alarm_years: years, seed, .. } = arguments;
-        let mean_time_s = between_false_alarms_s(years)?;
+        let CommissionArguments { cylinders, days, seed, .. } = arguments;
+        let mean_time_s = arguments.false_alarms.mean_time_s();
         let stretch = if arguments.rehearsal { REHEARSED } else { 1.0 };
         let length_s = days * DAY_S;
         let campaign = Campaign { climates, gases, sensors, rows, cylinders, length_s, seed };
@@ -62,9 +61,6 @@ impl Options {
 /// Refuses too short logs, too few cylinders, and what cannot be simulated.
 fn check(campaign: &Campaign, stretch: f64) -> anyhow::Result<()> {
     let (days, cylinders) = (campaign.length_s / DAY_S, campaign.cylinders);
-    if !days.is_finite() {
-        bail!("--days {days}: it must be a number");
-    }
     let Some(needed) = campaign.needed(stretch) else {
         let shortest = Campaign::shortest_s(stretch) / DAY_S;
         bail!("--days {days}: the slowest statistic needs logs of {shortest:.2} d and longer");

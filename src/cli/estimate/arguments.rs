@@ -1,7 +1,8 @@
 //! The raw arguments of `estimate`.
-use crate::cli::arguments::Format;
 use crate::cli::fill::GivenFill;
-use crate::cli::log_options::LogArguments;
+use crate::cli::options::{
+    DataArguments, EXPERT, LogArguments, MORE, SensorArguments, VesselAndLog, ViewArguments,
+};
 use clap::{Args, ValueEnum};
 use cylwatch::estimator::EstimatorError;
 use cylwatch::estimator::observer::Engine;
@@ -10,45 +11,31 @@ use std::path::PathBuf;
 
 /// Arguments of `estimate`.
 #[derive(Debug, Args)]
-#[command(after_help = estimate_help())]
+#[command(after_help = MORE, after_long_help = estimate_help())]
 pub struct EstimateArguments {
-    /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
-    pub vessel: String,
-    /// Log: a CSV or Parquet file, or - for CSV on stdin.
-    pub log: String,
-    /// File for the estimates; - is stdout [default: stdout].
-    #[arg(long, short, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Format of the estimates [default: json for a file that ends in .json, else csv].
-    #[arg(long, value_enum)]
-    pub format: Option<Format>,
-    /// Figure of estimates and innovations; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
-    /// Foreign names and zone of the log.
+    #[command(flatten)]
+    pub inputs: VesselAndLog,
+    #[command(flatten)]
+    pub data: DataArguments,
+    #[command(flatten)]
+    pub views: ViewArguments,
     #[command(flatten)]
     pub reading: LogArguments,
-    /// Filter of the observer.
-    #[arg(long, value_enum, default_value = "ekf")]
-    pub filter: Filter,
-    /// Use later readings, too: rows come out half a day later, and are nearer to the truth; ekf and ukf only.
-    #[arg(long)]
-    pub smooth: bool,
-    /// TOML file of the sensors with their errors [default: on the columns shoulder, valve, wall_<place> Pt100 of class
-    /// B, on pressure a transmitter of 250 bar and 0.25 %].
-    #[arg(long, value_name = "FILE")]
-    pub sensors: Option<PathBuf>,
-    /// What is known at the first row.
+    #[command(flatten)]
+    pub sensors: SensorArguments,
     #[command(flatten)]
     pub fill: GivenFill,
-    /// JSON file with what an earlier run has learnt of cylinder and sensors.
-    #[arg(long, value_name = "FILE")]
+    /// Filter of the observer.
+    #[arg(long, value_enum, default_value = "ekf", help_heading = EXPERT)]
+    pub filter: Filter,
+    /// Smooth with later readings: rows come out half a day later, with smaller errors; ekf and ukf only.
+    #[arg(long, help_heading = EXPERT)]
+    pub smooth: bool,
+    /// JSON file of --learned-out: what an earlier run has learnt of cylinder and sensors.
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
     pub learned_in: Option<PathBuf>,
-    /// File for what this run has learnt, as JSON.
-    #[arg(long, value_name = "FILE")]
+    /// Write what this run has learnt to FILE, as JSON.
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
     pub learned_out: Option<PathBuf>,
 }
 
@@ -57,11 +44,11 @@ pub struct EstimateArguments {
 pub enum Filter {
     /// Extended Kalman filter.
     Ekf,
-    /// Unscented Kalman filter; about forty times the time.
+    /// Unscented Kalman filter; many times slower than ekf.
     Ukf,
-    /// Extended Kalman filter with the constant gain of the steady state; it learns no constants.
+    /// Extended Kalman filter with the constant gain of the steady state; learns no constants of the sensors.
     Stationary,
-    /// Moving-horizon estimation inside physical bounds; some hundred times the time.
+    /// Moving-horizon estimation inside physical bounds; by far the slowest.
     Mhe,
 }
 

@@ -1,13 +1,12 @@
 //! The loop's body: a row in, an estimate out, everything else counted.
 use super::*;
-use crate::cli::output::Stream;
+use crate::cli::row_stream::RowStream;
 use crate::cli::views::Made;
 use cylwatch::estimator::observer::cylinder::Cylinder;
 use cylwatch::estimator::observer::{Estimate, Innovation};
 use cylwatch::log::Truth;
 use cylwatch::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
-use cylwatch::report::figure::Picture;
-use cylwatch::report::{Input, Provenance};
+use serde_json::Map;
 
 /// Change of the mass, relative, after which the slope of the settled pressure is taken anew.
 const SLOPE_AGES: f64 = 1e-3;
@@ -26,9 +25,7 @@ pub struct Rows<'a> {
 
 /// Where estimates go.
 struct Results {
-    stream: Stream,
-    format: Format,
-    text: String,
+    stream: RowStream<EstimateRow>,
     figure: Option<FigureData>,
     innovations: Innovations,
     score: Score,
@@ -51,25 +48,16 @@ impl<'a> Rows<'a> {
         let names = selection.names();
         let cylinder = observer.cylinder().clone();
         let pass = Pass::new(observer, options.smooth)?;
-        let mut stream = options.data.open()?;
-        match options.format {
-            Format::Csv => {
-                stream.write(&start::head(&inputs.provenance(), &names, log, &report::csv_header()))?
-            }
-            Format::Json => {
-                stream.write(&format!("{{\"columns\":{},\"data\":[", json!(report::COLUMNS)))?;
-            }
-        }
+        let fields = report::fields().into();
+        let stream = RowStream::begin(&options.data, options.format, fields, inputs, &names, log)?;
         let results = Results {
             stream,
-            format: options.format,
-            text: String::new(),
             innovations: Innovations::new(&names),
             score: Score::default(),
             last: None,
             slope: (f64::NAN, f64::NAN),
             cylinder,
-            figure: options.views.are_wanted().then(|| FigureData::new(names)),
+            figure: options.views.is_any_requested().then(|| FigureData::new(names)),
         };
         Ok(Self { pass, selection, readings: Vec::new(), results })
     }
@@ -105,23 +93,23 @@ impl<'a> Rows<'a> {
             score: results.score,
             restarts: observer.restarts(),
         };
-        let late = inputs.record_log(log);
+        let summary_json = Map::from_iter([("summary".to_owned(), report::document(&summary))]);
+        results.stream.tail(inputs, log, summary_json)?;
         let provenance = inputs.provenance();
         // Everything is made before any file appears.
         let views = match results.figure.take() {
             Some(data) => {
-                let picture = || Picture::Figure(report::figure(&summary.title, &data));
+                let picture = || report::figure(&summary.title, &data);
                 let with = |picture| {
                     let cautions =
                         summary.cautions.iter().map(ToString::to_string).chain(report::doubts(&summary));
-                    report::story(&summary).cautions(cautions).picture(picture, report::CAPTION)
+                    report::summary(&summary).cautions(cautions).picture(picture, report::CAPTION)
                 };
                 options.views.make(picture, with, inputs.sources(), &provenance)?
             }
             None => Made::default(),
         };
         let learned = options.learned_out.as_ref().zip(observer.learned());
-        results.stream.write(&tail(results.format, &summary, &provenance, late, log))?;
         views.write()?;
         if let Some((target, learned)) = learned {
             let document = json!({ "provenance": provenance.to_json(), "learned": learned });
@@ -136,22 +124,14 @@ impl Results {
     /// Writes an estimate and counts it.
     fn take(&mut self, estimate: Estimate, truth: &Truth, innovations: &[Innovation]) -> anyhow::Result<()> {
         let leak_pa_s = estimate.leak_kg_s * self.slope_pa_kg(&estimate)?;
-        let line = EstimateRow { estimate, leak_pa_s };
-        self.text.clear();
-        match self.format {
-            Format::Csv => report::csv_row(&line, &mut self.text),
-            Format::Json => {
-                self.text.push_str(if self.last.is_some() { ",\n" } else { "\n" });
-                report::json_row(&line, &mut self.text);
-            }
-        }
-        self.stream.write(&self.text)?;
+        let row = EstimateRow { estimate, leak_pa_s, verdict: "" };
+        self.stream.push(&row)?;
         self.innovations.push(innovations);
         self.score.push(&estimate, truth);
         if let Some(figure) = &mut self.figure {
             figure.push(&estimate, truth, innovations);
         }
-        self.last = Some(line);
+        self.last = Some(row);
         Ok(())
     }
 
@@ -166,23 +146,5 @@ impl Results {
             self.slope = (mass_kg, (above - below) / (2.0 * SLOPE_STEP * mass_kg));
         }
         Ok(self.slope.1)
-    }
-}
-
-/// What stands below the rows.
-fn tail(
-    format: Format,
-    summary: &Summary,
-    provenance: &Provenance,
-    late: Option<Input>,
-    log: &LogInput,
-) -> String {
-    match format {
-        Format::Csv => late.map_or(String::new(), |input| input.comment_line() + "\n"),
-        Format::Json => {
-            let (origin, provenance) = (json!(log.reader.origin()), provenance.to_json());
-            let summary = report::document(summary);
-            format!("\n],\"origin\":{origin},\"summary\":{summary},\"provenance\":{provenance}}}\n")
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! The raw arguments of `identify`.
-use super::amounts::Amounts;
+use super::quantities::Quantities;
 use crate::cli::arguments::Format;
-use crate::cli::log_options::LogArguments;
+use crate::cli::number::{at_least, within};
+use crate::cli::options::{EXPERT, LogArguments, MORE, OUTPUT, ViewArguments};
 use clap::{Args, ValueEnum};
 use cylwatch::estimator::identify::{
     DeadTime, ErrorModel, Gain, InitialState, InputCourse, Settings, StartMethod, Structure,
@@ -10,7 +11,7 @@ use std::path::PathBuf;
 
 /// Arguments of `identify`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = MORE, after_long_help = EXAMPLES)]
 pub struct IdentifyArguments {
     /// Log: a CSV or Parquet file, or - for CSV on stdin.
     pub log: String,
@@ -20,69 +21,65 @@ pub struct IdentifyArguments {
     /// Column of the output, with or without its unit.
     #[arg(long, value_name = "COLUMN")]
     pub output: String,
-    /// Foreign names and zone of the log.
-    #[command(flatten)]
-    pub reading: LogArguments,
-    /// Method.
-    #[arg(long, value_enum, default_value = "output-error")]
-    pub method: MethodName,
     /// Number of poles, 1 to 3.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = within(1_usize, 3))]
     pub order: usize,
-    /// Number of zeros, below the order [default: one less than the order].
-    #[arg(long, value_name = "NUMBER")]
-    pub zeros: Option<usize>,
-    /// How the input runs between its samples.
-    #[arg(long, value_enum, default_value = "first")]
-    pub hold: HoldName,
-    /// State at the start: estimated, zero, settled, or the free response there and its derivatives per s, separated by commas
-    /// (for order 1 the output less the offset), in the output's unit.
-    #[arg(long, value_name = "STATE", default_value = "estimated", allow_hyphen_values = true, value_parser = initial)]
-    pub initial: InitialState,
     /// Steady-state gain: free, or a number to hold it at.
     #[arg(long, value_name = "GAIN", default_value = "free", allow_hyphen_values = true, value_parser = gain)]
     pub gain: Gain,
-    /// Add a constant to the output, to be estimated.
-    #[arg(long)]
-    pub offset: bool,
-    /// Column of another sensor of the input, for the method second-sensor.
-    #[arg(long, value_name = "COLUMN")]
-    pub second: Option<String>,
-    /// Times and noises.
-    #[command(flatten)]
-    pub amounts: Amounts,
-    /// How the true input wanders, for the method maximum-likelihood.
-    #[arg(long, value_enum, default_value = "random-walk")]
-    pub course: CourseName,
-    /// What the intervals of output-error and refined-instruments suppose of the errors.
-    #[arg(long, value_enum, default_value = "judged")]
-    pub errors: ErrorsName,
-    /// First model of the iterations.
-    #[arg(long, value_enum, default_value = "instrumental-variables")]
-    pub start: StartName,
-    /// Most iterations.
-    #[arg(long, value_name = "NUMBER", default_value_t = Settings::default().iterations)]
-    pub iterations: usize,
-    /// Largest lag of the errors' correlations, samples.
-    #[arg(long, value_name = "NUMBER", default_value_t = Settings::default().lags)]
-    pub lags: usize,
-    /// Judge the model on data it was not identified from: the last part of the log, as a fraction between 0 and 1, or another
-    /// log with the same columns.
+    /// Judge the model on other data: the last part of the log, as a fraction between 0 and 1, or another log.
     #[arg(long, value_name = "FRACTION|LOG2")]
     pub validate: Option<String>,
-    /// File for the result: all of it as JSON, or data, model and errors row by row as CSV; - is stdout [default: a summary on
+    /// Write the result to FILE: as JSON, or as CSV with data, model and errors row by row; - is stdout [default: a summary on
     /// stdout].
-    #[arg(long, short, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
     pub out: Option<PathBuf>,
     /// Format of the result [default: json for a file that ends in .json, else csv].
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = OUTPUT)]
     pub format: Option<Format>,
-    /// Figure of data, model, errors and their correlations; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub views: ViewArguments,
+    #[command(flatten)]
+    pub reading: LogArguments,
+    /// Method.
+    #[arg(long, value_enum, default_value = "output-error", help_heading = EXPERT)]
+    pub method: MethodName,
+    /// Number of zeros, below the order [default: one less than the order].
+    #[arg(long, value_name = "NUMBER", value_parser = within(0_usize, 2), help_heading = EXPERT)]
+    pub zeros: Option<usize>,
+    /// Input between its samples.
+    #[arg(long, value_enum, default_value = "first", help_heading = EXPERT)]
+    pub hold: HoldName,
+    /// State at the start: estimated, zero, settled, or the free response there and its derivatives per s, separated by commas
+    /// (for order 1 the output less the offset), in the output's unit.
+    #[arg(long, value_name = "STATE", default_value = "estimated", allow_hyphen_values = true, value_parser = initial,
+        help_heading = EXPERT)]
+    pub initial: InitialState,
+    /// Estimate a constant that is added to the output.
+    #[arg(long, help_heading = EXPERT)]
+    pub offset: bool,
+    /// Column of another sensor of the input, for the method second-sensor.
+    #[arg(long, value_name = "COLUMN", help_heading = EXPERT)]
+    pub second: Option<String>,
+    #[command(flatten)]
+    pub quantities: Quantities,
+    /// Model of the true input, for the method maximum-likelihood.
+    #[arg(long, value_enum, default_value = "random-walk", help_heading = EXPERT)]
+    pub course: CourseName,
+    /// Error model behind the intervals of output-error and refined-instruments.
+    #[arg(long, value_enum, default_value = "judged", help_heading = EXPERT)]
+    pub errors: ErrorsName,
+    /// First model of the iterations.
+    #[arg(long, value_enum, default_value = "instrumental-variables", help_heading = EXPERT)]
+    pub start: StartName,
+    /// Most iterations.
+    #[arg(long, value_name = "NUMBER", default_value_t = Settings::default().iterations, value_parser = at_least(1_usize),
+        help_heading = EXPERT)]
+    pub iterations: usize,
+    /// Largest lag of the errors' correlations, samples.
+    #[arg(long, value_name = "NUMBER", default_value_t = Settings::default().lags, value_parser = at_least(1_usize),
+        help_heading = EXPERT)]
+    pub lags: usize,
 }
 
 const EXAMPLES: &str = "\
@@ -169,11 +166,11 @@ pub enum StartName {
 
 impl IdentifyArguments {
     /// Structure of the model.
-    pub fn structure(&self, amounts: &Amounts) -> anyhow::Result<Structure> {
+    pub fn structure(&self, quantities: &Quantities) -> anyhow::Result<Structure> {
         Ok(Structure {
             order: self.order,
             zeros: self.zeros.unwrap_or(self.order.saturating_sub(1)),
-            dead_time: match amounts.dead_time()? {
+            dead_time: match quantities.dead_time()? {
                 (None, None) => DeadTime::None,
                 (Some(fixed_s), None) => DeadTime::Fixed(fixed_s),
                 (None, Some(longest_s)) => DeadTime::Free(longest_s),
@@ -186,7 +183,7 @@ impl IdentifyArguments {
     }
 
     /// Settings of the search.
-    pub fn settings(&self, amounts: &Amounts) -> anyhow::Result<Settings> {
+    pub fn settings(&self, quantities: &Quantities) -> anyhow::Result<Settings> {
         Ok(Settings {
             iterations: self.iterations,
             start: match self.start {
@@ -198,7 +195,7 @@ impl IdentifyArguments {
                 ErrorsName::White => ErrorModel::White,
                 ErrorsName::Coloured => ErrorModel::Coloured,
             },
-            longest_gap_s: amounts.longest_gap_s()?,
+            longest_gap_s: quantities.longest_gap_s()?,
             lags: self.lags,
             ..Settings::default()
         })

@@ -1,7 +1,7 @@
 //! Method, and what is held out, as checked options.
 use super::arguments::{HoldName, IdentifyArguments, MethodName};
 use super::record::base_name;
-use super::{Amounts, Record};
+use super::{Quantities, Record};
 use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputCourse, Method, Structure};
 
@@ -35,7 +35,7 @@ impl Choice {
             method,
             MethodName::BiasCompensated | MethodName::CompensatedInstruments | MethodName::MaximumLikelihood
         );
-        if arguments.amounts.has_noise() && !knows_noise {
+        if arguments.quantities.has_noise() && !knows_noise {
             bail!(
                 "--input-sd and --output-sd are for the methods bias-compensated, compensated-instruments and \
                  maximum-likelihood: choose one by --method"
@@ -49,9 +49,9 @@ impl Choice {
     }
 
     /// The method for a record.
-    pub fn method(&self, record: &Record, amounts: &Amounts) -> anyhow::Result<Method> {
-        let input = || amounts.variance("input-sd", &record.columns[0].signal);
-        let output = || amounts.variance("output-sd", &record.columns[1].signal);
+    pub fn method(&self, record: &Record, quantities: &Quantities) -> anyhow::Result<Method> {
+        let input = || quantities.variance("input-sd", &record.columns[0].signal);
+        let output = || quantities.variance("output-sd", &record.columns[1].signal);
         Ok(match self.method {
             MethodName::OutputError => Method::OutputError,
             MethodName::RefinedInstruments => Method::RefinedInstruments,
@@ -76,7 +76,7 @@ impl Choice {
     }
 
     /// Method and structure in words.
-    pub fn words(&self, structure: &Structure) -> String {
+    pub fn description(&self, structure: &Structure) -> String {
         let method = match self.method {
             MethodName::OutputError => "output error",
             MethodName::RefinedInstruments => "refined instrumental variables",

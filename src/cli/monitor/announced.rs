@@ -2,7 +2,7 @@
 use anyhow::{Context, bail};
 use jiff::Timestamp;
 
-/// An exchange of gas that somebody ordered.
+/// An exchange of gas that was ordered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Announced {
     from: Moment,

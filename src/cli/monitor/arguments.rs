@@ -1,7 +1,9 @@
 //! The raw arguments of `monitor`.
-use crate::cli::arguments::Format;
 use crate::cli::fill::GivenFill;
-use crate::cli::log_options::LogArguments;
+use crate::cli::options::{
+    DataArguments, EXPERT, FalseAlarmArguments, LogArguments, MORE, OUTPUT, SensorArguments, VesselAndLog,
+    ViewArguments,
+};
 use crate::cli::unit_options::{Choice, Choices, Given};
 use clap::Args;
 use cylwatch::report::monitor;
@@ -10,96 +12,67 @@ use std::path::PathBuf;
 
 /// What the verdict is held against, and times.
 #[derive(Clone, Debug)]
-pub struct OfMonitor;
+pub struct MonitorQuantities;
 
-impl Choices for OfMonitor {
+impl Choices for MonitorQuantities {
     const CHOICES: &'static [Choice] = &[
-        (
-            "limit",
-            Dimension::Pressure,
-            "Pressure below which the cylinder is not operational [default: 160 bar]",
-        ),
-        (
-            "coldest",
-            Dimension::Temperature,
-            "Coldest temperature to expect, for the cold-night forecast [default: -25 degC]",
-        ),
+        ("limit", Dimension::Pressure, "Lowest operational pressure [default: 160 bar]"),
+        ("coldest", Dimension::Temperature, "Coldest temperature expected [default: -25 degc]"),
         ("next-service", Dimension::Time, "Time until the next service [default: 30 d]"),
-        (
-            "lateness",
-            Dimension::Time,
-            "How late a row may come: rows are held back so long and sorted [default: 0, none is held back]",
-        ),
+        ("lateness", Dimension::Time, "Hold rows back so long and sort them [default: 0]"),
         (
             "step",
             Dimension::Time,
-            "Rows that lie closer together are made one, their median; 0: each by itself [default: 1 min]",
+            "Replace rows that are closer together by their median; 0: never [default: 1 min]",
         ),
-        (
-            "save-every",
-            Dimension::Time,
-            "How often the state is saved during a run, by the wall clock [default: 10 min]",
-        ),
+        ("save-every", Dimension::Time, "Interval of saving the state during a run [default: 10 min]"),
     ];
+    const EXPERT: &'static [&'static str] = &["lateness", "step", "save-every"];
 }
 
 /// Arguments of `monitor`.
 #[derive(Debug, Args)]
-#[command(after_help = help())]
+#[command(after_help = MORE, after_long_help = help())]
 pub struct MonitorArguments {
-    /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
-    pub vessel: String,
-    /// Log: a CSV or Parquet file, or - for CSV on stdin.
-    pub log: String,
-    /// File for the rows; - is stdout [default: stdout].
-    #[arg(long, short, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Format of the rows [default: json for a file that ends in .json, else csv].
-    #[arg(long, value_enum)]
-    pub format: Option<Format>,
-    /// Figure of pressures, mass, leak rate and verdict; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
-    /// Foreign names and zone of the log.
     #[command(flatten)]
-    pub reading: LogArguments,
-    /// TOML file of the sensors with their errors [default: typical ones, as for `estimate`].
-    #[arg(long, value_name = "FILE")]
-    pub sensors: Option<PathBuf>,
-    /// What is known at the first row.
+    pub inputs: VesselAndLog,
     #[command(flatten)]
-    pub fill: GivenFill,
-    /// Limits and times.
+    pub given: Given<MonitorQuantities>,
     #[command(flatten)]
-    pub given: Given<OfMonitor>,
-    /// Mean time between false alarms, years.
-    #[arg(long, value_name = "YEARS", default_value_t = 10.0)]
-    pub false_alarm_years: f64,
-    /// File for events and alarms, one JSON object a line, written as they happen; goes on where a state goes on
-    /// [default: in words on stderr].
-    #[arg(long, value_name = "FILE")]
-    pub events: Option<PathBuf>,
-    /// File to go on from, if it is there, and to save to.
+    pub false_alarms: FalseAlarmArguments,
+    /// Continue from FILE if it exists, and save the state to it.
     #[arg(long, value_name = "FILE")]
     pub state: Option<PathBuf>,
-    /// Begin anew although there is a state, and say so.
-    #[arg(long, requires = "state")]
+    #[command(flatten)]
+    pub data: DataArguments,
+    /// Write events and alarms to FILE as JSON lines [default: text on stderr].
+    ///
+    /// Lines are written as the events happen; a run that continues a state appends.
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
+    pub events: Option<PathBuf>,
+    #[command(flatten)]
+    pub views: ViewArguments,
+    #[command(flatten)]
+    pub reading: LogArguments,
+    #[command(flatten)]
+    pub sensors: SensorArguments,
+    #[command(flatten)]
+    pub fill: GivenFill,
+    /// Ignore an existing state and start fresh; reported as an event.
+    #[arg(long, requires = "state", help_heading = EXPERT)]
     pub cold_start: bool,
-    /// Acknowledge and confirm all alarms of the state, and reset those that are back to normal, with a comment.
-    #[arg(long, value_name = "COMMENT", requires = "state", conflicts_with = "cold_start")]
+    /// Acknowledge and confirm all alarms of the state with a comment, and reset those that are back to normal.
+    #[arg(long, value_name = "COMMENT", requires = "state", conflicts_with = "cold_start", help_heading = EXPERT)]
     pub acknowledge: Option<String>,
-    /// Exchange of gas that was ordered, such as a test of the system, so that it is no loss: times in seconds of the log or dates.
-    /// May be given more than once.
-    #[arg(long, value_name = "FROM..UNTIL")]
+    /// Time of an ordered exchange of gas, such as a test of the system, which is no loss: in seconds of the log or as dates; may be
+    /// given again.
+    #[arg(long, value_name = "FROM..UNTIL", help_heading = EXPERT)]
     pub announced: Vec<String>,
-    /// JSON file of `commission` with thresholds for this vessel [default: the usual ones, common to seven vessels].
-    #[arg(long, value_name = "FILE")]
+    /// JSON file of `commission`: thresholds for this vessel [default: those common to seven vessels].
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
     pub commissioned: Option<PathBuf>,
-    /// JSON file with what `estimate --learned-out` has learnt of cylinder and sensors.
-    #[arg(long, value_name = "FILE")]
+    /// JSON file of `estimate --learned-out`: what it has learnt of cylinder and sensors.
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
     pub learned_in: Option<PathBuf>,
 }
 

@@ -1,5 +1,5 @@
 //! The monitor of a run: made from the first rows, or restored from a state.
-use super::going_on::refused;
+use super::resume::refused;
 use super::state::{Refusal, State};
 use super::*;
 use cylwatch::detector::monitor::alarm::AlarmSettings;
@@ -22,35 +22,31 @@ pub struct Engine {
 }
 
 /// Settings of the monitor of a cylinder that was at rest at its first row, or was not.
-fn settings(options: &Options, beginning: &Beginning, settled: bool) -> anyhow::Result<MonitorSettings> {
+fn settings(options: &Options, beginning: &RunStart, settled: bool) -> anyhow::Result<MonitorSettings> {
     let defaults = MonitorSettings::default();
-    let circumstances = options.circumstances;
+    let limits = options.limits;
     let own = beginning.commissioned.as_ref().map(|commissioned| commissioned.found.tails()).transpose()?;
     Ok(MonitorSettings {
         tails: own,
         observer: fill::settings(defaults.observer, settled),
         false_alarm_interval_s: options.between_false_alarms_s,
-        limits: Limits {
-            operational_pa: circumstances.limit_pa,
-            coldest_k: circumstances.coldest_k,
-            ..defaults.limits
-        },
+        limits: Limits { operational_pa: limits.limit_pa, coldest_k: limits.coldest_k, ..defaults.limits },
         intake: cylwatch::detector::monitor::intake::IntakeSettings {
             lateness_s: options.lateness_s,
             step_s: options.step_s,
             ..defaults.intake
         },
-        reaction: ReactionSettings { next_service_s: circumstances.next_service_s, ..defaults.reaction },
-        alarms: AlarmSettings::with_limit(circumstances.limit_pa),
+        reaction: ReactionSettings { next_service_s: limits.next_service_s, ..defaults.reaction },
+        alarms: AlarmSettings::with_limit(limits.limit_pa),
         ..defaults
     })
 }
 
 impl Engine {
-    /// A monitor that goes on.
+    /// A monitor that continues from a state.
     pub fn restored(
         options: &Options,
-        beginning: &Beginning,
+        beginning: &RunStart,
         selection: &Selection,
         state: &State,
     ) -> anyhow::Result<Self> {
@@ -65,7 +61,7 @@ impl Engine {
     pub fn cold(
         options: &Options,
         inputs: &Inputs,
-        beginning: &Beginning,
+        beginning: &RunStart,
         selection: &Selection,
         log: &mut LogInput,
         messages: &Messages,
@@ -103,7 +99,7 @@ impl Engine {
             monitor = monitor.with_learned(learned);
         }
         let full_pa = contents.pressure_pa(mass_kg, QUOTED_K)?;
-        let limit_pa = options.circumstances.limit_pa;
+        let limit_pa = options.limits.limit_pa;
         if full_pa < limit_pa && !options.states_limit {
             let [full, limit] = [full_pa, limit_pa].map(|pressure_pa| pressure_pa / PASCAL_PER_BAR);
             messages.caution(&format!(

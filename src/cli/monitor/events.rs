@@ -4,7 +4,7 @@ use crate::cli::output::{Appended, Target};
 use crate::cli::progress::Progress;
 use cylwatch::detector::monitor::Event;
 use cylwatch::detector::monitor::alarm::AlarmEvent;
-use cylwatch::report::monitor::{Naming, alarm_line, alarm_words, event_line, event_words};
+use cylwatch::report::monitor::{Naming, alarm_line, alarm_text, event_line, event_text};
 use serde_json::json;
 
 /// A sink of events.
@@ -24,23 +24,23 @@ impl EventSink {
         })
     }
 
-    /// Tells an event.
-    pub fn event(&mut self, event: &Event, naming: &Naming, say: &Say) -> anyhow::Result<()> {
+    /// Reports an event.
+    pub fn event(&mut self, event: &Event, naming: &Naming, console: &Console) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&event_line(event, naming)),
-            Self::Stderr => say.words(&event_words(event, naming)),
+            Self::Stderr => console.print(&event_text(event, naming)),
         }
     }
 
-    /// Tells a change of an alarm.
-    pub fn alarm(&mut self, alarm: &AlarmEvent, naming: &Naming, say: &Say) -> anyhow::Result<()> {
+    /// Reports a change of an alarm.
+    pub fn alarm(&mut self, alarm: &AlarmEvent, naming: &Naming, console: &Console) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&alarm_line(alarm, &naming.clock)),
-            Self::Stderr => say.words(&alarm_words(alarm, &naming.clock)),
+            Self::Stderr => console.print(&alarm_text(alarm, &naming.clock)),
         }
     }
 
-    /// Tells that a state was not gone on from; the words for people are a caution.
+    /// Reports a cold start; people get a caution instead.
     pub fn cold_start(&mut self, reason: &str) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&json!({ "event": "cold-start", "reason": reason }).to_string()),
@@ -50,15 +50,15 @@ impl EventSink {
 }
 
 /// Words beside a progress bar.
-pub struct Say<'a> {
+pub struct Console<'a> {
     /// Words on stderr.
     pub messages: &'a Messages,
     /// The bar that must not be written over.
     pub progress: &'a Progress,
 }
 
-impl Say<'_> {
-    fn words(&self, words: &str) -> anyhow::Result<()> {
+impl Console<'_> {
+    fn print(&self, words: &str) -> anyhow::Result<()> {
         self.progress.suspended(|| self.messages.say(words));
         Ok(())
     }

@@ -1,10 +1,11 @@
 //! Validated options of `monitor`.
 use super::arguments::MonitorArguments;
 use super::*;
-use crate::cli::log_options::LogArguments;
-use crate::cli::unit_options::{Given, between_false_alarms_s};
+use crate::cli::options::LogArguments;
+use crate::cli::output::check_distinct;
+use crate::cli::unit_options::Given;
 use cylwatch::detector::monitor::intake::IntakeSettings;
-use cylwatch::report::monitor::Circumstances;
+use cylwatch::report::monitor::OperatingLimits;
 use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -24,7 +25,7 @@ pub struct Options {
     pub source: FillSource,
     pub learned_in: Option<PathBuf>,
     pub commissioned: Option<PathBuf>,
-    pub circumstances: Circumstances,
+    pub limits: OperatingLimits,
     pub states_limit: bool,
     pub between_false_alarms_s: f64,
     pub lateness_s: f64,
@@ -40,37 +41,37 @@ pub struct Options {
 impl Options {
     /// Checks places and numbers.
     pub fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
-        let MonitorArguments { vessel, log, fill, given, reading, sensors, learned_in, .. } = arguments;
-        let commissioned = arguments.commissioned;
-        if vessel == "-" && log == "-" {
-            bail!("stdin can be the vessel or the log, not both: give the other one as a file");
-        }
-        let mut inputs = vec![Path::new(&vessel), Path::new(&log)];
+        let MonitorArguments { inputs: places, fill, given, reading, learned_in, commissioned, .. } =
+            arguments;
+        let sensors = arguments.sensors.sensors;
+        let mut inputs = places.paths()?;
         let others = [sensors.as_deref(), learned_in.as_deref(), commissioned.as_deref()];
         inputs.extend(others.into_iter().flatten());
-        let data = Target::checked(arguments.output.as_deref(), &inputs)?;
+        let data = Target::checked(arguments.data.output.as_deref(), &inputs)?;
         let events = arguments.events.as_deref();
         let events = events.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
         let state = arguments.state.as_deref();
         let state = state.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
-        apart(&[("--output", Some(&data)), ("--events", events.as_ref()), ("--state", state.as_ref())])?;
+        check_distinct(&[
+            ("--output", Some(&data)),
+            ("--events", events.as_ref()),
+            ("--state", state.as_ref()),
+        ])?;
         let state = state.map(state_file).transpose()?;
         let others: Vec<&Target> = std::iter::once(&data).chain(&events).collect();
-        let wanted = Wanted { plot: arguments.plot.as_deref(), report: arguments.report.as_deref() };
-        let views = Views::checked(wanted, &inputs, &others)?;
-        let between_false_alarms_s = between_false_alarms_s(arguments.false_alarm_years)?;
+        let views = Views::checked(&arguments.views, &inputs, &others)?;
         let time = |option: &str| given.si(option, Dimension::Time);
         let from_zero = |option: &str| given.si_from_zero(option, Dimension::Time);
         let save_every_s = time("save-every")?.unwrap_or(600.0).min(365.0 * DAY_S);
         Ok(Self {
             source: fill.source()?,
-            format: arguments.format.unwrap_or_else(|| Format::of(arguments.output.as_deref())),
-            circumstances: circumstances(&given)?,
+            format: arguments.data.format(),
+            limits: limits(&given)?,
             states_limit: given.si("limit", Dimension::Pressure)?.is_some(),
             lateness_s: from_zero("lateness")?.unwrap_or(0.0),
             step_s: from_zero("step")?.unwrap_or_else(|| IntakeSettings::default().step_s),
             save_every: Duration::from_secs_f64(save_every_s),
-            between_false_alarms_s,
+            between_false_alarms_s: arguments.false_alarms.mean_time_s(),
             cold_start: arguments.cold_start,
             acknowledge: arguments.acknowledge,
             announced: arguments
@@ -78,8 +79,8 @@ impl Options {
                 .iter()
                 .map(|text| Announced::parse(text))
                 .collect::<anyhow::Result<_>>()?,
-            vessel,
-            log,
+            vessel: places.vessel,
+            log: places.log,
             data,
             views,
             reading,
@@ -92,32 +93,18 @@ impl Options {
         })
     }
 
-    /// Whether rows come one by one and somebody waits for them.
+    /// Whether rows come one by one through a pipe, so that each result must go out at once.
     pub fn is_live(&self) -> bool {
         self.log == "-"
     }
 }
 
-fn circumstances(given: &Given<super::arguments::OfMonitor>) -> anyhow::Result<Circumstances> {
-    Ok(Circumstances {
+fn limits(given: &Given<super::arguments::MonitorQuantities>) -> anyhow::Result<OperatingLimits> {
+    Ok(OperatingLimits {
         limit_pa: given.si("limit", Dimension::Pressure)?.unwrap_or(160.0 * PASCAL_PER_BAR),
         coldest_k: given.si("coldest", Dimension::Temperature)?.unwrap_or(ZERO_CELSIUS_K - 25.0),
         next_service_s: given.si("next-service", Dimension::Time)?.unwrap_or(30.0 * DAY_S),
     })
-}
-
-/// Refuses results that name one place.
-fn apart(targets: &[(&str, Option<&Target>)]) -> anyhow::Result<()> {
-    for (k, (one, a)) in targets.iter().enumerate() {
-        for (other, b) in &targets[k + 1..] {
-            if let (Some(a), Some(b)) = (a, b)
-                && (a.is_same_file(b) || matches!((a, b), (Target::Stdout, Target::Stdout)))
-            {
-                bail!("{one} and {other} name the same place: choose two");
-            }
-        }
-    }
-    Ok(())
 }
 
 fn state_file(target: Target) -> anyhow::Result<PathBuf> {

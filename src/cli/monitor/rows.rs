@@ -1,11 +1,11 @@
 //! Outputs as rows of the data.
 use super::*;
-use crate::cli::output::Stream;
+use crate::cli::row_stream::RowStream;
 use cylwatch::detector::monitor::Output;
 use cylwatch::detector::prognosis::{Contents, QUOTED_K};
 use cylwatch::report::monitor::{self as report, MonitorRow, Summary};
 use cylwatch::thermal::vessel::Vessel;
-use serde_json::json;
+use serde_json::{Map, json};
 
 /// Relative width of the classes of mass that share a slope of the settled pressure.
 const CLASS: f64 = 1e-3;
@@ -14,10 +14,7 @@ const STEP: f64 = 1e-4;
 
 /// Rows that are being written.
 pub struct Rows {
-    stream: Stream,
-    format: Format,
-    any: bool,
-    text: String,
+    stream: RowStream<MonitorRow>,
     slope: Slope,
 }
 
@@ -38,35 +35,17 @@ impl Rows {
         log: &LogInput,
         vessel: &Vessel,
     ) -> anyhow::Result<Self> {
-        let mut stream = options.data.open()?;
-        match options.format {
-            Format::Csv => {
-                let header = report::csv_header();
-                stream.write(&start::head(&inputs.provenance(), &selection.names(), log, &header))?;
-            }
-            Format::Json => {
-                stream.write(&format!("{{\"columns\":{},\"data\":[", json!(report::COLUMNS)))?;
-            }
-        }
+        let (fields, names) = (report::fields(), selection.names());
+        let stream = RowStream::begin(&options.data, options.format, fields, inputs, &names, log)?;
         let slope = Slope { contents: Contents::of(vessel), class: None, pa_kg: f64::NAN };
-        Ok(Self { stream, format: options.format, any: false, text: String::new(), slope })
+        Ok(Self { stream, slope })
     }
 
     /// Writes an output.
     pub fn push(&mut self, output: &Output) -> anyhow::Result<()> {
         let estimate = &output.estimate;
         let leak_pa_s = estimate.leak_kg_s * self.slope.at(estimate.mass_kg)?;
-        let row = MonitorRow { output, leak_pa_s };
-        self.text.clear();
-        match self.format {
-            Format::Csv => report::csv_row(&row, &mut self.text),
-            Format::Json => {
-                self.text.push_str(if self.any { ",\n" } else { "\n" });
-                report::json_row(&row, &mut self.text);
-            }
-        }
-        self.any = true;
-        self.stream.write(&self.text)
+        self.stream.push(&MonitorRow::new(output, leak_pa_s))
     }
 
     /// Hands on what waits.
@@ -82,19 +61,9 @@ impl Rows {
         summary: Option<&Summary>,
         error: Option<&str>,
     ) -> anyhow::Result<()> {
-        let late = inputs.record_log(log);
-        let tail = match self.format {
-            Format::Csv => late.map_or(String::new(), |input| input.comment_line() + "\n"),
-            Format::Json => {
-                let (origin, provenance) = (json!(log.reader.origin()), inputs.provenance().to_json());
-                let summary = json!(summary.map(report::document));
-                let error = json!(error);
-                format!(
-                    "\n],\"origin\":{origin},\"summary\":{summary},\"error\":{error},\"provenance\":{provenance}}}\n"
-                )
-            }
-        };
-        self.stream.write(&tail)?;
+        let members = [("summary", json!(summary.map(report::document))), ("error", json!(error))];
+        let members = members.map(|(name, value)| (name.to_owned(), value));
+        self.stream.tail(inputs, log, Map::from_iter(members))?;
         self.stream.finish()
     }
 }

@@ -1,14 +1,13 @@
 //! A run: rows in, outputs out, the state saved now and then.
-use super::events::{EventSink, Say};
-use super::going_on::refused;
+use super::events::{Console, EventSink};
+use super::resume::refused;
 use super::rows::Rows;
 use super::state::{Identity, Refusal, State};
 use super::*;
 use cylwatch::detector::monitor::intake::Counts;
 use cylwatch::detector::monitor::{Monitor, Outcome, Output};
 use cylwatch::log::Truth;
-use cylwatch::report::figure::Picture;
-use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowFates, Summary};
+use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowCounts, Summary};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -16,7 +15,7 @@ use std::time::Instant;
 const MOST_LOGS: usize = 64;
 
 /// What a run uses.
-pub struct Kit<'a> {
+pub struct RunContext<'a> {
     pub options: &'a Options,
     pub inputs: &'a Inputs,
     pub selection: &'a Selection,
@@ -26,7 +25,7 @@ pub struct Kit<'a> {
 
 /// A run that is under way.
 pub struct Session<'a> {
-    kit: Kit<'a>,
+    context: RunContext<'a>,
     monitor: Monitor,
     full_pa: f64,
     settled: bool,
@@ -56,22 +55,22 @@ pub struct Session<'a> {
 impl<'a> Session<'a> {
     /// Goes on from a state, or begins cold.
     pub fn begin(
-        kit: Kit<'a>,
-        beginning: &Beginning,
+        context: RunContext<'a>,
+        start: &RunStart,
         engine: Engine,
         log: &LogInput,
     ) -> anyhow::Result<Self> {
-        let state = beginning.state.as_ref();
-        let options = kit.options;
-        let circumstances = options.circumstances;
-        let sensors = kit.selection.sensors.iter();
+        let state = start.state.as_ref();
+        let options = context.options;
+        let limits = options.limits;
+        let sensors = context.selection.sensors.iter();
         let naming = Naming {
             clock: Clock::new(log.reader.origin_instant()),
             sensors: sensors.map(|sensor| (sensor.name.clone(), sensor.quantity())).collect(),
         };
         let last_stamp_s = state.map_or(f64::NAN, |state| state.last_stamp_s);
         let mut sink = EventSink::open(options.events.as_ref(), state.is_some())?;
-        if let Some(reason) = &beginning.cold_start {
+        if let Some(reason) = &start.cold_start {
             sink.cold_start(reason)?;
         }
         let counts_before = *engine.monitor.intake().counts();
@@ -86,11 +85,11 @@ impl<'a> Session<'a> {
             settled: engine.settled,
             naming,
             sink,
-            rows: Rows::begin(options, kit.inputs, kit.selection, log, &beginning.vessel)?,
+            rows: Rows::begin(options, context.inputs, context.selection, log, &start.vessel)?,
             figure: options
                 .views
-                .are_wanted()
-                .then(|| FigureData::new(circumstances.limit_pa, engine.full_pa)),
+                .is_any_requested()
+                .then(|| FigureData::new(limits.limit_pa, engine.full_pa)),
             readings: Vec::new(),
             truths: VecDeque::new(),
             last: state.and_then(|state| state.last.clone()),
@@ -103,16 +102,16 @@ impl<'a> Session<'a> {
             continued: state.is_some(),
             broken: false,
             saved: Instant::now(),
-            kit,
+            context,
         })
     }
 
     /// Acknowledges the alarms of the state, if that is wanted.
     pub fn acknowledge(&mut self, progress: &Progress) -> anyhow::Result<()> {
-        let Some(comment) = &self.kit.options.acknowledge else { return Ok(()) };
-        let say = Say { messages: self.kit.messages, progress };
+        let Some(comment) = &self.context.options.acknowledge else { return Ok(()) };
+        let console = Console { messages: self.context.messages, progress };
         for alarm in self.monitor.acknowledge(comment) {
-            self.sink.alarm(&alarm, &self.naming, &say)?;
+            self.sink.alarm(&alarm, &self.naming, &console)?;
         }
         Ok(())
     }
@@ -125,7 +124,7 @@ impl<'a> Session<'a> {
         }
         self.naming.clock = self.naming.clock.with_origin(log.reader.origin_instant());
         self.readings.clear();
-        self.readings.extend(self.kit.selection.readings(row));
+        self.readings.extend(self.context.selection.readings(row));
         self.broken = true;
         let outputs = self.monitor.step(row.time_s, &self.readings).with_context(|| log.reader.place(row))?;
         self.last_stamp_s = row.time_s;
@@ -137,11 +136,11 @@ impl<'a> Session<'a> {
         for output in outputs {
             self.take(output, progress)?;
         }
-        if self.kit.options.is_live() {
+        if self.context.options.is_live() {
             self.rows.flush()?;
         }
         self.broken = false;
-        if self.saved.elapsed() >= self.kit.options.save_every {
+        if self.saved.elapsed() >= self.context.options.save_every {
             self.rows.flush()?;
             self.save(log)?;
         }
@@ -158,7 +157,7 @@ impl<'a> Session<'a> {
                 let surplus = self.log_starts_s.len().saturating_sub(MOST_LOGS);
                 self.log_starts_s.drain(..surplus);
             }
-            let Kit { options, .. } = self.kit;
+            let RunContext { options, .. } = self.context;
             if again || !options.is_live() { self.last_stamp_s - options.lateness_s } else { f64::NAN }
         });
         let known = row.time_s <= until_s;
@@ -177,13 +176,13 @@ impl<'a> Session<'a> {
     fn take(&mut self, output: Output, progress: &Progress) -> anyhow::Result<()> {
         let clock = self.naming.clock.with_offset(output.stamp_s - output.estimate.time_s);
         self.naming.clock = clock;
-        let say = Say { messages: self.kit.messages, progress };
+        let console = Console { messages: self.context.messages, progress };
         for event in &output.events {
-            self.sink.event(event, &self.naming, &say)?;
+            self.sink.event(event, &self.naming, &console)?;
         }
         self.loss_found |= output.decision.outcome == Outcome::Loss;
         for alarm in &output.alarms {
-            self.sink.alarm(alarm, &self.naming, &say)?;
+            self.sink.alarm(alarm, &self.naming, &console)?;
         }
         self.rows.push(&output)?;
         let truth = self.truth_of(output.stamp_s);
@@ -197,9 +196,9 @@ impl<'a> Session<'a> {
     /// Saves the state, if one is wanted.
     fn save(&mut self, log: &LogInput) -> anyhow::Result<()> {
         self.saved = Instant::now();
-        let Some(path) = &self.kit.options.state else { return Ok(()) };
+        let Some(path) = &self.context.options.state else { return Ok(()) };
         let state = State {
-            identity: self.kit.identity.clone(),
+            identity: self.context.identity.clone(),
             origin: log.reader.origin(),
             last_stamp_s: self.last_stamp_s,
             log_starts_s: self.log_starts_s.clone(),
@@ -213,7 +212,7 @@ impl<'a> Session<'a> {
 
     /// Ends a run whose log failed: with a state, what was done up to there stays.
     pub fn abandon(mut self, inputs: &Inputs, log: &LogInput, error: &anyhow::Error) -> anyhow::Result<()> {
-        if self.broken || self.kit.options.state.is_none() {
+        if self.broken || self.context.options.state.is_none() {
             return Ok(());
         }
         self.save(log)?;
@@ -227,9 +226,9 @@ impl<'a> Session<'a> {
         log: &LogInput,
         progress: &Progress,
     ) -> anyhow::Result<Option<Summary>> {
-        let Kit { options, inputs, messages, .. } = self.kit;
+        let RunContext { options, inputs, messages, .. } = self.context;
         if self.known_rows > 0 && self.known_rows == log.reader.sampling().rows() {
-            let until = self.naming.clock.words(self.last_stamp_s);
+            let until = self.naming.clock.text(self.last_stamp_s);
             messages.caution(&format!("nothing new: the state has seen all rows up to {until}"));
         }
         if options.state.is_none() {
@@ -245,10 +244,10 @@ impl<'a> Session<'a> {
             naming: self.naming.clone(),
             last,
             alarms: self.monitor.alarms().clone(),
-            circumstances: options.circumstances,
+            limits: options.limits,
             known_rows: self.known_rows,
             held_rows: self.monitor.intake().held() as u64,
-            fates: fates(self.monitor.intake().counts(), &self.counts_before),
+            row_counts: row_counts(self.monitor.intake().counts(), &self.counts_before),
             loss_found: self.loss_found,
             continued: self.continued,
         });
@@ -257,10 +256,10 @@ impl<'a> Session<'a> {
         // Everything is made before any file appears.
         let views = match self.figure.take().zip(summary.as_ref()) {
             Some((data, summary)) => {
-                let picture = || Picture::Figure(report::figure(&summary.title, &data));
+                let picture = || report::figure(&summary.title, &data);
                 let with = |picture| {
                     let cautions = summary.cautions.iter().map(ToString::to_string);
-                    report::story(summary).cautions(cautions).picture(picture, report::CAPTION)
+                    report::summary(summary).cautions(cautions).picture(picture, report::CAPTION)
                 };
                 options.views.make(picture, with, inputs.sources(), &provenance)?
             }
@@ -274,8 +273,8 @@ impl<'a> Session<'a> {
 }
 
 /// What became of rows that were not simply used, of this run alone.
-fn fates(now: &Counts, before: &Counts) -> RowFates {
-    RowFates {
+fn row_counts(now: &Counts, before: &Counts) -> RowCounts {
+    RowCounts {
         duplicates: now.duplicates - before.duplicates,
         contradictions: now.contradictions - before.contradictions,
         too_late: now.too_late - before.too_late,

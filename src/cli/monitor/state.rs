@@ -52,7 +52,7 @@ impl Identity {
     }
 }
 
-/// Why a state cannot be gone on from.
+/// Why a state is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum Refusal {
     /// The file cannot be read.
@@ -75,7 +75,7 @@ pub enum Refusal {
         /// Bytes there should be.
         expected: usize,
     },
-    /// Its content is not what was written.
+    /// Its content does not fit its checksum.
     #[error("it is damaged: its content does not fit its checksum")]
     Damaged,
     /// It belongs to something else.

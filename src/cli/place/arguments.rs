@@ -1,6 +1,7 @@
 //! The raw arguments of `place`.
-use super::amounts::Amounts;
-use crate::cli::arguments::Format;
+use super::quantities::Quantities;
+use crate::cli::number::at_least;
+use crate::cli::options::{DataArguments, EXPERT, FalseAlarmArguments, MORE, OUTPUT, ViewArguments};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use cylwatch::estimator::placement::Criterion;
@@ -9,70 +10,59 @@ use std::path::PathBuf;
 
 /// Arguments of `place`.
 #[derive(Debug, Args)]
-#[command(after_help = HELP)]
+#[command(after_help = MORE, after_long_help = HELP)]
 pub struct PlaceArguments {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
-    /// Scenario that layouts go along, too: a TOML file or the name of a built-in one; may be given again; none: at rest
-    /// only [default: tunnel-winter].
+    /// Scenario to judge layouts along: a TOML file, a built-in one, or none; may be given again [default: tunnel-winter].
     #[arg(long = "scenario", value_name = "SCENARIO")]
     pub scenarios: Vec<String>,
-    /// Most sensors of a layout, those that it must have among them.
-    #[arg(long, value_name = "NUMBER", default_value_t = 4)]
+    /// Most sensors of a layout, required ones included.
+    #[arg(long, value_name = "NUMBER", default_value_t = 4, value_parser = at_least(1_usize))]
     pub sensors: usize,
-    /// What layouts are searched by; the best by every other number is judged beside it.
+    /// Number that layouts are searched by; each layout is judged by all others, too.
     #[arg(long, value_name = "NAME", default_value = "leak-rate", value_parser = criterion())]
     pub criterion: Criterion,
-    /// Largest cost of a layout, in the unit of the costs, 1 for each sensor unless --candidates says otherwise [default: any].
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
-    pub budget: Option<f64>,
-    /// TOML file of what could sit where, at what cost, and what goes together [default: every place of the vessel].
+    /// TOML file of the candidates: places, costs, rules [default: every place of the vessel].
     #[arg(long, value_name = "FILE")]
     pub candidates: Option<PathBuf>,
-    /// How layouts are searched [default: every one up to 20 000 of a number of sensors, along a scenario up to 400, else
-    /// greedy with swaps].
-    #[arg(long, value_enum)]
+    /// Largest cost of a layout; a sensor costs 1 unless --candidates says otherwise [default: any].
+    #[arg(long, value_name = "NUMBER", value_parser = at_least(0.0))]
+    pub budget: Option<f64>,
+    #[command(flatten)]
+    pub quantities: Quantities,
+    #[command(flatten)]
+    pub false_alarms: FalseAlarmArguments,
+    #[command(flatten)]
+    pub data: DataArguments,
+    /// The same as --format json.
+    #[arg(long, conflicts_with = "format", help_heading = OUTPUT)]
+    pub json: bool,
+    #[command(flatten)]
+    pub views: ViewArguments,
+    /// Write the matrices that layouts are judged by to FILE, as JSON: states, transition, process noise, readings.
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT, hide_short_help = true)]
+    pub matrices: Option<PathBuf>,
+    /// Search [default: every layout up to 20 000 of a number of sensors, along a scenario up to 400, else greedy with swaps].
+    #[arg(long, value_enum, help_heading = EXPERT)]
     pub method: Option<SearchMethod>,
-    /// Layouts are listed up to so much worse than the best, in %.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 2.0)]
+    /// List layouts that are worse than the best by at most this, in %.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2.0, value_parser = at_least(0.0), help_heading = EXPERT)]
     pub within_percent: f64,
-    /// Mean time between false alarms that the threshold is set for, in years.
-    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true, default_value_t = 10.0)]
-    pub false_alarm_years: f64,
-    /// Nodes of the wall along the axis that the observer has: places between two of them count as one [default: 6].
-    #[arg(long, value_name = "NUMBER")]
+    /// Nodes of the observer's wall along the axis: places between two of them count as one [default: 6].
+    #[arg(long, value_name = "NUMBER", value_parser = at_least(1_usize), help_heading = EXPERT)]
     pub wall_nodes: Option<usize>,
     /// Monte Carlo runs of the best layouts in the observer's own world, and a fifth as many in drawn cylinders; 100 take some
     /// minutes [default: none].
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, hide_default_value = true)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, hide_default_value = true, value_parser = at_least(0_u64),
+        help_heading = EXPERT)]
     pub confirm: u64,
     /// First seed of drawn sensors and of Monte Carlo runs, a whole number of at least 0.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = at_least(0_u64), help_heading = EXPERT)]
     pub seed: u64,
-    /// What has a unit.
-    #[command(flatten)]
-    pub amounts: Amounts,
-    /// File for the data; - is stdout [default: tables for people on stdout].
-    #[arg(long, short, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-    /// Format of the data, CSV with a row for each judged layout [default: json for a file that ends in .json, else csv].
-    #[arg(long, value_enum)]
-    pub format: Option<Format>,
-    /// The same as --format json.
-    #[arg(long, conflicts_with = "format")]
-    pub json: bool,
-    /// Figure of places, cost and failures; the ending .svg or .png decides the format.
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
-    /// Report with tables, figure and inputs: one HTML file that needs nothing else.
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
-    /// JSON file for all matrices that layouts are judged by: states, transition, process noise, readings.
-    #[arg(long, value_name = "FILE")]
-    pub matrices: Option<PathBuf>,
 }
 
-/// How layouts are searched.
+/// Search of layouts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SearchMethod {
     /// Every layout that is allowed.
@@ -133,6 +123,9 @@ thermocouple in the gas, forbidden: a reference). A file changes that; all of it
   members = [\"valve\", \"neck\"]
   at_least = 0
   at_most = 1
+
+Without --output, --format and --json stdout gets tables for people; CSV has a row for each judged
+layout.
 
 Ctrl-C or --time-limit-min end the search with what it has; exit code 3 then.
 

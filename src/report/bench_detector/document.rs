@@ -1,96 +1,71 @@
 //! A bench as CSV, a row for each detector and rate, and as JSON with all that is known.
-use super::{HOUR_S, PASCAL_PER_BAR, bar_h};
-use crate::evaluation::performance::Row;
 use crate::evaluation::performance::bench::{Judged, Outcome};
-use crate::report::{Provenance, number};
+use crate::evaluation::performance::{CONFIDENCE, Row};
+use crate::report::{BAR_PER_HOUR, Digits, HOUR_S, Provenance, Table};
+use crate::thermal::units::PASCAL_PER_BAR;
 use serde_json::{Value, json};
 
 /// Significant digits of the numbers.
-const DIGITS: usize = 8;
+const DIGITS: Digits = Digits::Significant(8);
 
-/// Names of the columns.
-const COLUMNS: [&str; 27] = [
-    "detector",
-    "threshold_unit",
-    "threshold",
-    "false_alarms",
-    "at_risk_years",
-    "false_alarms_per_year",
-    "false_alarms_per_year_high",
-    "leak_bar_h",
-    "leaks",
-    "found",
-    "found_1h",
-    "found_24h",
-    "found_24h_low",
-    "found_24h_high",
-    "found_7d",
-    "found_30d",
-    "delay_median_h",
-    "delay_median_low_h",
-    "delay_median_high_h",
-    "delay_p95_h",
-    "delay_mean_found_h",
-    "delay_bound_h",
-    "efficiency",
-    "rate_rms",
-    "rate_covered",
-    "onset_rms_h",
-    "onset_covered",
+/// A detector at a rate of loss.
+struct Reached<'a> {
+    judged: &'a Judged,
+    row: Row,
+}
+
+/// A row for each detector and rate; an empty cell is not known.
+pub fn table(outcome: &Outcome) -> Table {
+    let reached: Vec<Reached<'_>> = outcome
+        .judged
+        .iter()
+        .flat_map(|judged| judged.performance.rows().into_iter().map(move |row| Reached { judged, row }))
+        .collect();
+    let mut table = Table::new();
+    table.push_texts("detector", reached.iter().map(|one| one.row.detector.clone()));
+    table.push_texts("threshold_unit", reached.iter().map(|one| one.judged.unit.clone()));
+    for (name, value) in NUMBERS {
+        table.push(name, DIGITS, reached.iter().map(|one| value(one).unwrap_or(f64::NAN)));
+    }
+    table
+}
+
+/// A column of numbers: its name, and its value of a detector at a rate.
+type Number = (&'static str, fn(&Reached<'_>) -> Option<f64>);
+
+/// The columns behind the detector's name and the unit of its threshold.
+const NUMBERS: [Number; 25] = [
+    ("threshold", |one| Some(one.judged.level.threshold)),
+    ("false_alarms", |one| Some(one.judged.performance.reliability.alarms as f64)),
+    ("at_risk_years", |one| Some(one.judged.performance.reliability.cylinder_years())),
+    ("false_alarms_per_year", |one| Some(one.judged.performance.reliability.per_year())),
+    ("false_alarms_per_year_high", |one| {
+        Some(one.judged.performance.reliability.per_year_interval(CONFIDENCE).1)
+    }),
+    ("leak_bar_h", |one| Some(one.row.rate_pa_s * BAR_PER_HOUR)),
+    ("leaks", |one| Some(one.row.leaks as f64)),
+    ("found", |one| Some(one.row.found as f64)),
+    ("found_1h", |one| one.row.found_1h),
+    ("found_24h", |one| one.row.found_24h),
+    ("found_24h_low", |one| one.row.found_24h_low),
+    ("found_24h_high", |one| one.row.found_24h_high),
+    ("found_7d", |one| one.row.found_7d),
+    ("found_30d", |one| one.row.found_30d),
+    ("delay_median_h", |one| hours(one.row.median_s)),
+    ("delay_median_low_h", |one| hours(one.row.median_low_s)),
+    ("delay_median_high_h", |one| hours(one.row.median_high_s)),
+    ("delay_p95_h", |one| hours(one.row.p95_s)),
+    ("delay_mean_found_h", |one| hours(one.row.mean_found_s)),
+    ("delay_bound_h", |one| hours(one.row.bound_s)),
+    ("efficiency", |one| one.row.efficiency),
+    ("rate_rms", |one| one.row.rate_rms),
+    ("rate_covered", |one| one.row.rate_covered),
+    ("onset_rms_h", |one| hours(one.row.onset_rms_s)),
+    ("onset_covered", |one| one.row.onset_covered),
 ];
 
-/// As CSV; an empty cell is not known. `remarks` are further comment lines, without their `#`.
-pub fn csv(outcome: &Outcome, provenance: &Provenance, remarks: &[String]) -> String {
-    let mut text = provenance.comment_lines();
-    remarks.iter().for_each(|remark| text.push_str(&format!("# {remark}\n")));
-    text.push_str(&COLUMNS.join(","));
-    text.push('\n');
-    for judged in &outcome.judged {
-        for row in judged.performance.rows() {
-            let cells =
-                numbers(judged, &row).map(|cell| cell.map_or_else(String::new, |x| number(x, DIGITS)));
-            text.push_str(&format!("{},{},{}\n", quoted(&row.detector), judged.unit, cells.join(",")));
-        }
-    }
-    text
-}
-
-/// The cells behind the detector's name and the unit of its threshold.
-fn numbers(judged: &Judged, row: &Row) -> [Option<f64>; 25] {
-    let reliability = judged.performance.reliability;
-    let hours = |seconds: Option<f64>| seconds.map(|seconds| seconds / HOUR_S);
-    [
-        Some(judged.level.threshold),
-        Some(reliability.alarms as f64),
-        Some(reliability.cylinder_years()),
-        Some(reliability.per_year()),
-        Some(reliability.per_year_interval(crate::evaluation::performance::CONFIDENCE).1),
-        Some(bar_h(row.rate_pa_s)),
-        Some(row.leaks as f64),
-        Some(row.found as f64),
-        row.found_1h,
-        row.found_24h,
-        row.found_24h_low,
-        row.found_24h_high,
-        row.found_7d,
-        row.found_30d,
-        hours(row.median_s),
-        hours(row.median_low_s),
-        hours(row.median_high_s),
-        hours(row.p95_s),
-        hours(row.mean_found_s),
-        hours(row.bound_s),
-        row.efficiency,
-        row.rate_rms,
-        row.rate_covered,
-        hours(row.onset_rms_s),
-        row.onset_covered,
-    ]
-}
-
-/// A cell that may hold a comma.
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+fn hours(seconds: Option<f64>) -> Option<f64> {
+    seconds.map(|seconds| seconds / HOUR_S)
 }
 
 /// As JSON: plan, thresholds, measures of each detector, and every run.

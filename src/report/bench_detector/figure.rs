@@ -1,7 +1,7 @@
 //! Delay against leak rate, all detectors in one figure.
-use super::{HOUR_S, bar_h};
 use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+use crate::report::{BAR_PER_HOUR, HOUR_S};
 
 /// Median delays with their 95 % intervals, and the shortest possible delay.
 pub fn figure(outcome: &Outcome) -> Figure {
@@ -11,13 +11,8 @@ pub fn figure(outcome: &Outcome) -> Figure {
     items.extend(horizons(outcome));
     // From the last to the first, so that the first lies on top.
     items.extend(outcome.judged.iter().enumerate().rev().flat_map(|(n, judged)| points(n, judged)));
-    Figure {
-        title: "How soon is a leak found?".into(),
-        horizontal: Horizontal::LogLog("leak rate in bar/h".into()),
-        panels: vec![Panel { quantity: "median delay in h".into(), items, height: 1.9 }],
-        marks: Vec::new(),
-        below: None,
-    }
+    let horizontal = Horizontal::LogLog("leak rate in bar/h".into());
+    Figure::new("How soon is a leak found?", horizontal, vec![Panel::new("median delay in h", 1.9, items)])
 }
 
 fn bound(outcome: &Outcome) -> Item {
@@ -38,7 +33,7 @@ fn horizons(outcome: &Outcome) -> [Item; 3] {
 /// Leak rates, bar/h.
 fn rates(judged: Option<&Judged>) -> Vec<f64> {
     let at = judged.map_or(&[][..], |judged| &judged.performance.sensitivity);
-    at.iter().map(|at| bar_h(at.rate_pa_s)).collect()
+    at.iter().map(|at| at.rate_pa_s * BAR_PER_HOUR).collect()
 }
 
 /// Median delays of one detector, h; NaN where fewer than half were found.

@@ -1,28 +1,26 @@
 //! A bench in a few lines and two tables for people.
-use super::bar_h;
 use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
-use crate::report::{Story, number};
+use crate::report::{BAR_PER_HOUR, DAY_S, HOUR_S, Report, number};
+use crate::thermal::units::PASCAL_PER_BAR;
 
-const DAY_S: f64 = 86_400.0;
-const HOUR_S: f64 = 3600.0;
 /// Columns of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
 /// What stands behind the numbers, what each detector reaches, and its delays.
-pub fn story(outcome: &Outcome) -> Story {
+pub fn summary(outcome: &Outcome) -> Report {
     let reached = outcome.judged.iter().map(reached).collect();
-    let story = Story::new("Leak detectors side by side").text(behind(outcome)).explained_rows(
+    let report = Report::new("Leak detectors side by side").text(campaign_text(outcome)).explained_rows(
         "",
         &header(),
         reached,
         explained(outcome),
     );
-    delays(outcome, story).remark(bound(outcome))
+    delays(outcome, report).remark(bound(outcome))
 }
 
 /// How many cylinders for how long.
-fn behind(outcome: &Outcome) -> String {
+fn campaign_text(outcome: &Outcome) -> String {
     let plan = &outcome.plan;
     let (days, learnt) = (plan.watched_s / DAY_S, plan.learning_s / DAY_S);
     let years = |cylinders: u64| cylinders as f64 * plan.watched_s / YEAR_S;
@@ -72,7 +70,7 @@ fn reached(judged: &Judged) -> Vec<String> {
 fn threshold(judged: &Judged) -> String {
     let value = judged.level.threshold;
     match judged.unit.as_str() {
-        "Pa" => format!("{} bar", number(value / super::PASCAL_PER_BAR, 3)),
+        "Pa" => format!("{} bar", number(value / PASCAL_PER_BAR, 3)),
         "log10(years)" => format!("{} years", number(10_f64.powf(value), 2)),
         unit => format!("{} {unit}", number(value, 3)),
     }
@@ -81,7 +79,7 @@ fn threshold(judged: &Judged) -> String {
 /// A smallest leak with its interval, in bar/h.
 fn smallest(found: &SmallestLeak) -> String {
     let words = |reached: Reached| {
-        let rate = number(bar_h(reached.rate_pa_s()), 2);
+        let rate = number(reached.rate_pa_s() * BAR_PER_HOUR, 2);
         match reached {
             Reached::AtMost(_) => format!("<{rate}"),
             Reached::At(_) => rate,
@@ -113,21 +111,21 @@ fn explained(outcome: &Outcome) -> String {
 }
 
 /// Median delay of every detector at every rate, with the part that was found.
-fn delays(outcome: &Outcome, story: Story) -> Story {
-    let Some(first) = outcome.judged.first() else { return story };
+fn delays(outcome: &Outcome, report: Report) -> Report {
+    let Some(first) = outcome.judged.first() else { return report };
     let names = outcome.judged.iter().map(|judged| judged.performance.detector.as_str());
     let header: Vec<&str> = ["leak / bar/h", "bound / h"].into_iter().chain(names).collect();
     let row = |(k, at): (usize, &Sensitivity)| {
-        let mut cells = vec![number(bar_h(at.rate_pa_s), 3)];
+        let mut cells = vec![number(at.rate_pa_s * BAR_PER_HOUR, 3)];
         cells.push(at.bound_s.map_or_else(String::new, |bound_s| number(bound_s / HOUR_S, 3)));
         cells.extend(outcome.judged.iter().map(|judged| delay(&judged.performance.sensitivity[k])));
         cells
     };
     let rows: Vec<Vec<String>> = first.performance.sensitivity.iter().enumerate().map(row).collect();
-    story.rows("", &header, rows)
+    report.rows("", &header, rows)
 }
 
-/// Median delay in hours; what was found where it is not half.
+/// Median delay in hours; the number found where it is less than half.
 fn delay(at: &Sensitivity) -> String {
     let delay = at.delay;
     match (delay.median_s, delay.found == delay.leaks) {
@@ -144,7 +142,7 @@ fn bound(outcome: &Outcome) -> String {
     let noise = outcome.noise.map_or_else(String::new, |noise| {
         format!(
             "\nbound: shortest mean delay that an error of {} bar wandering over {} h allows",
-            number(noise.sd / super::PASCAL_PER_BAR, 2),
+            number(noise.sd / PASCAL_PER_BAR, 2),
             number(noise.correlation_time_s / HOUR_S, 2)
         )
     });

@@ -1,10 +1,10 @@
 //! A bench that was never run.
-use super::{csv, figure, story};
+use super::{figure, summary, table};
 use crate::evaluation::noise::Noise;
 use crate::evaluation::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
 use crate::evaluation::performance::{Performance, Run, TrueLeak};
 use crate::report::Provenance;
-use crate::report::figure::Item;
+use crate::report::figure::{Item, Picture};
 
 const DAY_S: f64 = 86_400.0;
 /// 0.1 bar/h.
@@ -34,7 +34,7 @@ fn outcome() -> Outcome {
 
 #[test]
 fn words_say_what_stands_behind_the_numbers() {
-    let words = story(&outcome()).to_text();
+    let words = summary(&outcome()).to_text();
     for expected in [
         "40 simulated cylinders (well-mixed gas)",
         "10 tight ones, 0.219 cylinder-years",
@@ -54,7 +54,7 @@ fn words_say_what_stands_behind_the_numbers() {
 #[test]
 fn columns_have_a_row_for_each_detector_and_rate_and_leave_what_is_unknown_empty() {
     let provenance = Provenance { command: "c".into(), inputs: vec![], seed: Some(1) };
-    let csv = csv(&outcome(), &provenance, &["a remark".into()]);
+    let csv = table(&outcome()).to_csv(&provenance, &["a remark".into()]);
     let lines: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), 5);
     let columns = lines[0].split(',').count();
@@ -83,5 +83,5 @@ fn the_figure_shows_every_detector_and_the_bound_and_no_delay_where_fewer_than_h
     assert!(theirs[0].is_nan() && theirs[1] == 1.0, "{theirs:?}");
     assert_eq!(line("shortest possible"), Some(vec![0.5, 0.5]));
     let provenance = Provenance { command: "c".into(), inputs: vec![], seed: Some(1) };
-    assert!(figure.to_svg(&provenance).unwrap().contains("leak rate in bar/h"));
+    assert!(Picture::from(figure).to_svg(&provenance).unwrap().contains("leak rate in bar/h"));
 }

@@ -6,7 +6,7 @@ use crate::estimator::calibrate::{Combination, ParameterKind};
 const MISSES: f64 = 2.0;
 /// Movement by a finer wall, in standard deviations, with which an estimate leaves its interval of 95 %.
 const COARSE_SD: f64 = 1.96;
-/// The same as a part of what such parameters are usually off: below it nobody would notice.
+/// The same as a part of what such parameters are usually off: smaller deviations do not matter.
 const COARSE_PART: f64 = 0.1;
 /// Share of the prior's variance from which on the logs say nothing of a parameter.
 const UNLEARNT: f64 = 0.9;
@@ -25,7 +25,7 @@ pub fn cautions(study: &Study) -> Vec<String> {
     }
     for score in study.scores.iter().filter(|score| score.rms_after > score.rms_before) {
         cautions.push(format!(
-            "{} of {} is predicted worse than before: what was fitted does not hold for what was held out",
+            "{} of {} is predicted worse than before: the fit does not hold for the held-out data",
             score.channel, score.experiment
         ));
     }

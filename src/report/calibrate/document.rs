@@ -16,7 +16,7 @@ pub fn document(study: &Study, date: &str, provenance: &Provenance) -> Value {
         "date": date,
         "vessel": study.calibration.vessel.name,
         "logs": study.fitted_sources(),
-        "circumstances": study.circumstances,
+        "circumstances": study.conditions,
         "settings": {
             "confidence": settings.confidence,
             "iterations": settings.iterations,

@@ -2,30 +2,20 @@
 use super::Study;
 use super::summary::unit;
 use crate::estimator::calibrate::ChannelResiduals;
-use crate::report::figure::{Figure, Horizontal, Item, Panel, correlation, style};
+use crate::report::figure::{Figure, Horizontal, Item, Panel, Picture, correlation, style};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 
 /// Two-sided normal quantile of 99 %.
 const QUANTILE_99: f64 = 2.576;
 
 /// All logs, one below the other.
-pub fn figure(study: &Study) -> Figure {
-    let mut parts: Vec<Figure> = Vec::new();
-    for log in study.fitted_sources() {
+pub fn figure(study: &Study) -> Picture {
+    let figures = study.fitted_sources().into_iter().flat_map(|log| {
         let of_log = |one: &&ChannelResiduals| one.experiment == log;
         let channels: Vec<&ChannelResiduals> = study.calibrated.channels.iter().filter(of_log).collect();
-        parts.push(over_time(study, log, &channels));
-        parts.push(correlations(log, &channels));
-    }
-    let stacked =
-        parts.into_iter().rev().reduce(|below, above| Figure { below: Some(Box::new(below)), ..above });
-    stacked.unwrap_or_else(|| Figure {
-        title: String::new(),
-        horizontal: Horizontal::Time,
-        panels: Vec::new(),
-        marks: Vec::new(),
-        below: None,
-    })
+        [over_time(study, log, &channels), correlations(log, &channels)]
+    });
+    Picture::stacked(figures.collect())
 }
 
 /// Readings with the model, and residuals; temperatures, then pressures.
@@ -57,16 +47,10 @@ fn over_time(study: &Study, log: &str, channels: &[&ChannelResiduals]) -> Figure
         }
         data.extend(models);
         let symbol = unit(study, log, &these[0].channel).0;
-        panels.push(Panel { quantity: quantity.into(), items: data, height: 1.0 });
-        panels.push(Panel { quantity: format!("residual in {symbol}"), items: residuals, height: 0.6 });
+        panels.push(Panel::new(quantity, 1.0, data));
+        panels.push(Panel::new(format!("residual in {symbol}"), 0.6, residuals));
     }
-    Figure {
-        title: format!("{}: readings and calibrated model", log),
-        horizontal: Horizontal::Time,
-        panels,
-        marks: Vec::new(),
-        below: None,
-    }
+    Figure::over_time(format!("{log}: readings and calibrated model"), panels)
 }
 
 fn correlations(log: &str, channels: &[&ChannelResiduals]) -> Figure {
@@ -75,11 +59,6 @@ fn correlations(log: &str, channels: &[&ChannelResiduals]) -> Figure {
         let bound = QUANTILE_99 / (one.residuals.len() as f64).sqrt();
         correlation(&format!("residuals of\n{}", one.channel), &lags, &one.autocorrelation, bound)
     };
-    Figure {
-        title: format!("{log}: what is left in the residuals"),
-        horizontal: Horizontal::Quantity("lag in samples".into()),
-        panels: channels.iter().map(panel).collect(),
-        marks: Vec::new(),
-        below: None,
-    }
+    let title = format!("{log}: what is left in the residuals");
+    Figure::new(title, Horizontal::Quantity("lag in samples".into()), channels.iter().map(panel).collect())
 }

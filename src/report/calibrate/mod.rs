@@ -9,7 +9,7 @@ pub use caution::cautions;
 pub use document::document;
 pub use figure::figure;
 pub use study::{Line, Study, shown_unit};
-pub use summary::story;
+pub use summary::summary;
 
 /// What the figure shows.
 pub const CAPTION: &str =

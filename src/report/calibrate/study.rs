@@ -17,8 +17,8 @@ pub struct Study {
     /// What was found.
     pub calibrated: Calibrated,
     /// What was taken from where, a line for each log.
-    pub circumstances: Vec<String>,
-    /// How what was held out is predicted.
+    pub conditions: Vec<String>,
+    /// Prediction scores of the held-out data.
     pub scores: Vec<ChannelScore>,
     /// What was held out.
     pub held_out: Option<String>,
@@ -116,10 +116,10 @@ impl Study {
     }
 
     /// How it was fitted.
-    pub fn settings_in_words(&self) -> String {
+    pub fn settings_text(&self) -> String {
         let fitted = self.fitted_sources();
         let of_fitted = |words: &&String| fitted.iter().any(|name| words.starts_with(&format!("{name}:")));
-        let mut words: Vec<String> = self.circumstances.iter().filter(of_fitted).cloned().collect();
+        let mut words: Vec<String> = self.conditions.iter().filter(of_fitted).cloned().collect();
         let held: Vec<String> = self
             .calibration
             .parameters

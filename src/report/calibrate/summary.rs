@@ -1,20 +1,20 @@
 //! A calibration in tables for people.
 use super::{Line, Study};
 use crate::estimator::calibrate::{ChannelResiduals, ChannelScore};
-use crate::report::{Story, number};
+use crate::report::{Report, number};
 use crate::thermal::units::PASCAL_PER_BAR;
 
 /// Digits of values that people compare.
 const DIGITS: usize = 4;
 
 /// The study in words and tables.
-pub fn story(study: &Study) -> Story {
+pub fn summary(study: &Study) -> Report {
     let calibrated = &study.calibrated;
     let percent = format!("{} % low", 100.0 * study.calibration.settings.confidence);
     let high = percent.replace("low", "high");
     let header = ["parameter", "start", "estimate", &percent, &high, "unit", "from the logs"];
     let rows: Vec<Vec<String>> = study.lines().iter().map(|line| parameter(study, line)).collect();
-    let story = Story::new(format!(
+    let report = Report::new(format!(
         "{}: {} parameters from {} readings of {}, {} steps",
         study.calibration.vessel.name,
         study.lines().len(),
@@ -25,8 +25,8 @@ pub fn story(study: &Study) -> Story {
     let header_of_residuals =
         ["log", "channel", "readings", "rms", "unit", "rms / noise", "correlation", "white with", "widened"];
     let of_channels = calibrated.channels.iter().map(|channel| residuals(study, channel)).collect();
-    let story = story.rows("", &header, rows);
-    held_out(study, profiles(study, story).rows("", &header_of_residuals, of_channels))
+    let report = report.rows("", &header, rows);
+    held_out(study, profiles(study, report).rows("", &header_of_residuals, of_channels))
 }
 
 fn parameter(study: &Study, line: &Line<'_>) -> Vec<String> {
@@ -44,7 +44,7 @@ fn rounded(value: f64) -> String {
     if value.abs() < 10.0 { format!("{:.4}", value + 0.0) } else { number(value, DIGITS + 1) }
 }
 
-fn profiles(study: &Study, story: Story) -> Story {
+fn profiles(study: &Study, report: Report) -> Report {
     let lines = study.lines();
     let row = |profile: &crate::estimator::calibrate::Profile| {
         let line = lines.iter().find(|line| line.place == profile.parameter)?;
@@ -59,7 +59,7 @@ fn profiles(study: &Study, story: Story) -> Story {
         Some(cells)
     };
     let rows: Vec<Vec<String>> = study.profiles.iter().filter_map(row).collect();
-    story.rows("", &["profile likelihood of", "low", "high", "unit"], rows)
+    report.rows("", &["profile likelihood of", "low", "high", "unit"], rows)
 }
 
 fn residuals(study: &Study, channel: &ChannelResiduals) -> Vec<String> {
@@ -82,8 +82,8 @@ fn probability(value: f64) -> String {
     if value < 0.001 { "0.000".to_owned() } else { format!("{value:.3}") }
 }
 
-fn held_out(study: &Study, story: Story) -> Story {
-    let Some(what) = &study.held_out else { return story };
+fn held_out(study: &Study, report: Report) -> Report {
+    let Some(what) = &study.held_out else { return report };
     let row = |score: &ChannelScore| {
         let (unit, factor) = unit(study, &score.experiment, &score.channel);
         let mut cells = vec![score.channel.clone()];
@@ -94,7 +94,7 @@ fn held_out(study: &Study, story: Story) -> Story {
     };
     let rows: Vec<Vec<String>> = study.scores.iter().map(row).collect();
     let header = ["held out", "rms before", "rms after", "noise", "unit", "better by"];
-    story.explained_rows("", &header, rows, format!("held out: {what}"))
+    report.explained_rows("", &header, rows, format!("held out: {what}"))
 }
 
 /// Unit of a channel's differences for people, and what it is in SI.

@@ -1,12 +1,11 @@
 //! The figure of a run: temperature, mass and leak with their bands, pressure, innovations.
-use super::course::Course;
+use super::decimation::DecimatedCurves;
 use super::innovation::normalised;
 use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::Truth;
-use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+use crate::report::GRAM_PER_HOUR;
+use crate::report::figure::{Figure, Item, Panel, style};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
-
-const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// Curves before those of the innovations.
 const FIXED: usize = 14;
@@ -22,14 +21,14 @@ const DIFFERENCE: usize = 13;
 /// What a figure needs, collected row by row.
 #[derive(Clone, Debug)]
 pub struct FigureData {
-    course: Course,
+    curves: DecimatedCurves,
     sensors: Vec<String>,
 }
 
 impl FigureData {
     /// For an observer with these sensors.
     pub fn new(sensors: Vec<String>) -> Self {
-        Self { course: Course::new(FIXED + sensors.len()), sensors }
+        Self { curves: DecimatedCurves::new(FIXED + sensors.len()), sensors }
     }
 
     /// Adds a row.
@@ -43,57 +42,37 @@ impl FigureData {
         let difference_pa = estimate.pressure_pa - estimate.pressure_expected_pa;
         let pressure = [estimate.pressure_pa, difference_pa].map(|p| p / PASCAL_PER_BAR);
         let fixed = [gas, mass, leak].into_iter().flatten().chain(pressure);
-        self.course.push(estimate.time_s, fixed.chain(innovations.iter().map(normalised)));
-    }
-
-    /// Shift of the time axis, s: a log whose clock began long ago is drawn from its first row.
-    fn origin_s(&self) -> f64 {
-        match self.course.span_s() {
-            Some((from_s, to_s)) if from_s < 0.0 || from_s > to_s - from_s => from_s,
-            _ => 0.0,
-        }
-    }
-
-    fn line(&self, name: &str, curve: usize, stroke: style::Stroke) -> Option<Item> {
-        let (mut x, y) = self.course.line(curve);
-        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
-        self.course.has(curve).then(|| Item::Line { name: name.to_owned(), x, y, stroke })
-    }
-
-    /// Band of an estimate; the wide one of the first rows does not set the scale.
-    fn band(&self, curves: [usize; 4]) -> Option<Item> {
-        let (mut x, low, high) = self.course.band_beside(curves[1], curves[2], &[curves[0], curves[3]])?;
-        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
-        Some(Item::Band { name: "± 2 sd".to_owned(), x, low, high })
+        self.curves.push(estimate.time_s, fixed.chain(innovations.iter().map(normalised)));
     }
 
     /// A panel of an estimate with its band and, if the log knows it, the truth.
     fn estimate(&self, quantity: &str, curves: [usize; 4], height: f64) -> Option<Panel> {
         let items: Vec<Item> = [
-            self.band(curves),
-            self.line("estimate", curves[0], style::GAS_MEAN),
-            self.line("truth", curves[3], style::FIRST),
+            self.curves.band_item("± 2 sd", curves),
+            self.curves.item("estimate", curves[0], style::GAS_MEAN),
+            self.curves.item("truth", curves[3], style::FIRST),
         ]
         .into_iter()
         .flatten()
         .collect();
-        self.course.has(curves[0]).then(|| Panel { quantity: quantity.to_owned(), items, height })
+        self.curves.has(curves[0]).then(|| Panel::new(quantity, height, items))
     }
 
     /// A panel of one curve.
     fn curve(&self, quantity: &str, name: &str, curve: usize) -> Option<Panel> {
-        let line = self.line(name, curve, style::SECOND)?;
-        Some(Panel { quantity: quantity.to_owned(), items: vec![line], height: 0.55 })
+        let line = self.curves.item(name, curve, style::SECOND)?;
+        Some(Panel::new(quantity, 0.55, vec![line]))
     }
 
     fn innovations(&self) -> Panel {
-        let (from_s, to_s) = self.course.span_s().unwrap_or_default();
-        let x = [from_s, to_s].map(|time_s| time_s - self.origin_s()).to_vec();
+        let (from_s, to_s) = self.curves.span_s().unwrap_or_default();
+        let x = [from_s, to_s].map(|time_s| time_s - self.curves.origin_s()).to_vec();
         let band = Item::Band { name: "95 % if white".into(), x, low: vec![-1.96; 2], high: vec![1.96; 2] };
-        let curve =
-            |(index, name): (usize, &String)| self.line(name, FIXED + index, style::innovation(name, index));
+        let curve = |(index, name): (usize, &String)| {
+            self.curves.item(name, FIXED + index, style::innovation(name, index))
+        };
         let items = std::iter::once(band).chain(self.sensors.iter().enumerate().filter_map(curve)).collect();
-        Panel { quantity: "innovation in sd".into(), items, height: 0.8 }
+        Panel::new("innovation in sd", 0.8, items)
     }
 }
 
@@ -107,13 +86,7 @@ pub fn figure(title: &str, data: &FigureData) -> Figure {
         data.curve("difference in bar", "read \u{2212} expected", DIFFERENCE),
         Some(data.innovations()),
     ];
-    Figure {
-        title: title.to_owned(),
-        horizontal: Horizontal::Time,
-        panels: panels.into_iter().flatten().collect(),
-        marks: Vec::new(),
-        below: None,
-    }
+    Figure::over_time(title, panels.into_iter().flatten().collect())
 }
 
 #[cfg(test)]
@@ -140,7 +113,9 @@ mod tests {
             };
             data.push(&estimate, &Truth::UNKNOWN, &[]);
         }
-        let Some(Item::Band { low, high, .. }) = data.band(GAS) else { panic!("there is a band") };
+        let Some(Item::Band { low, high, .. }) = data.curves.band_item("± 2 sd", GAS) else {
+            panic!("there is a band")
+        };
         // Three times 2 sd of 0.25 K beside 15 °C, and 2 sd where that is less.
         assert!((low[0] - 13.5).abs() < 1e-9 && (high[0] - 16.5).abs() < 1e-9, "{} {}", low[0], high[0]);
         assert!((low[50] - 14.5).abs() < 1e-9 && (high[50] - 15.5).abs() < 1e-9);

@@ -1,23 +1,22 @@
 //! Estimates as rows of a file, as a figure, as a score, as a few lines for the terminal.
 //!
 //! Everything here takes one estimate after the other and keeps what fits in bounded memory, whatever the length of
-//! the log: rows leave at once, curves are kept as extremes of time buckets ([`Course`]), statistics as sums
+//! the log: rows leave at once, curves are kept as extremes of time buckets (`decimation`), statistics as sums
 //! ([`Score`], [`Innovations`]).
-mod course;
+mod decimation;
 mod figure;
 mod innovation;
 mod row;
 mod score;
 mod summary;
 
-pub use course::Course;
+pub(crate) use decimation::DecimatedCurves;
 pub use figure::{FigureData, figure};
 pub use innovation::{Counts, Innovations};
-pub use row::{COLUMNS, DOCUMENTATION, EstimateRow, csv_header, csv_row, json_row};
-pub(in crate::report) use row::{csv_cells, json_cells, push_number};
+pub use row::{DOCUMENTATION, EstimateRow, fields};
 pub use score::{Score, Spread};
-pub use summary::{Summary, document, doubts, story};
-pub(in crate::report) use summary::{duration, log as sampling_words};
+pub use summary::{Summary, document, doubts, summary};
+pub(in crate::report) use summary::{duration, log as sampling_text};
 
 /// What the figure of a run shows.
 pub const CAPTION: &str = "Gas temperature, mass and leak rate with bands of two standard deviations, truth where the log has it, and the \

@@ -4,11 +4,9 @@ use super::row::EstimateRow;
 use super::score::{Score, Spread};
 use crate::estimator::consistency::{Finding, OutputReport};
 use crate::log::{Caution, Sampling};
-use crate::report::Story;
+use crate::report::{GRAM_PER_HOUR, Report};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
-
-const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// What is left of a run when its rows have gone.
 #[derive(Clone, Debug)]
@@ -32,7 +30,7 @@ pub struct Summary {
 }
 
 /// The run in a few lines, and its sensors.
-pub fn story(summary: &Summary) -> Story {
+pub fn summary(summary: &Summary) -> Report {
     let mut facts = vec![("log", log(&summary.sampling))];
     facts.extend(end(summary));
     match summary.restarts {
@@ -42,7 +40,7 @@ pub fn story(summary: &Summary) -> Story {
     }
     facts.extend(score(&summary.score));
     let (header, rows) = sensors(&summary.innovations);
-    Story::new(&summary.title).facts(facts).rows("", &header, rows)
+    Report::new(&summary.title).facts(facts).rows("", &header, rows)
 }
 
 /// What speaks against the model: sensors whose readings it refused so often that it does not describe them.

@@ -18,11 +18,7 @@ pub fn correlation(name: &str, lags: &[f64], values: &[f64], bound: f64) -> Pane
     };
     let points =
         Item::Points { name: name.into(), x: lags.to_vec(), y: percent.clone(), stroke: style::MEASURED };
-    Panel {
-        quantity: "correlation in %".into(),
-        items: vec![band, stems(lags, &percent), points],
-        height: 0.6,
-    }
+    Panel::new("correlation in %", 0.6, vec![band, stems(lags, &percent), points])
 }
 
 /// A line from zero to each value.

@@ -1,5 +1,5 @@
 //! A picture in words, for who cannot see it: axes, and of every curve where it starts, ends, and how far it goes.
-use super::{Elevation, Figure, Grid, Horizontal, Item, Panel, Part, Sheet};
+use super::{Elevation, Figure, Grid, Horizontal, Item, Panel, Part, Picture};
 use crate::report::number;
 
 /// Digits of the values: what could be read off the picture.
@@ -7,7 +7,7 @@ const DIGITS: usize = 3;
 
 impl Figure {
     /// The figure in words.
-    pub fn described(&self) -> String {
+    fn described(&self) -> String {
         let mut parts = vec![format!("{}.", self.title)];
         parts.push(format!("Horizontal: {}.", horizontal(self)));
         parts.extend(self.panels.iter().map(panel));
@@ -16,13 +16,12 @@ impl Figure {
                 self.marks.iter().map(|mark| format!("{} at {}", mark.name, at(&self.horizontal, mark.at)));
             parts.push(format!("Marked: {}.", names.collect::<Vec<_>>().join(", ")));
         }
-        parts.extend(self.below.iter().map(|below| below.described()));
         parts.join(" ")
     }
 }
 
-impl Sheet {
-    /// The sheet in words.
+impl Picture {
+    /// The picture in words.
     pub fn described(&self) -> String {
         let of = |part: &Part| match part {
             Part::Figure(figure) => figure.described(),
@@ -126,13 +125,8 @@ mod tests {
             Item::line("gas", &[0.0, 60.0, 7200.0], [20.0, f64::NAN, -24.96], style::GAS_MEAN),
             Item::Limit { name: "160 bar".into(), value: 160.0 },
         ];
-        let figure = Figure {
-            title: "A run".into(),
-            horizontal: Horizontal::Time,
-            panels: vec![Panel { quantity: "temperature in °C".into(), items, height: 1.0 }],
-            marks: vec![Mark { at: 3600.0, name: "leak".into() }],
-            below: None,
-        };
+        let figure = Figure::over_time("A run", vec![Panel::new("temperature in °C", 1.0, items)])
+            .with_marks(vec![Mark { at: 3600.0, name: "leak".into() }]);
         assert_eq!(
             figure.described(),
             "A run. Horizontal: time, 0 s to 2 h. temperature in °C: gas from 20 to -25, between -25 and 20; limit 160 bar at 160. \

@@ -2,7 +2,6 @@
 //!
 //! An arrow leaves its block to the right, or downwards and upwards where the next block is in the same column, and bends at most once.
 use super::canvas::{Canvas, Side, Text};
-use super::output::Drawn;
 use super::panel::PLAIN;
 use super::path::Point;
 use super::style::{self, Rgb, Stroke};
@@ -154,7 +153,7 @@ impl Diagram {
     }
 
     /// The signals in words.
-    pub fn described(&self) -> String {
+    pub(super) fn described(&self) -> String {
         let name = |node: usize| match self.nodes[node].words.replace('\n', " ") {
             empty if empty.is_empty() => "a sum".to_owned(),
             words => format!("\u{201c}{words}\u{201d}"),
@@ -169,18 +168,4 @@ fn head<DB: DrawingBackend>(canvas: &Canvas<DB>, tip: Point, along: (f64, f64)) 
     let side = (0.45 * HEAD * along.1, 0.45 * HEAD * along.0);
     let back = (tip.0 - HEAD * along.0, tip.1 - HEAD * along.1);
     canvas.polygon(&[tip, (back.0 + side.0, back.1 + side.1), (back.0 - side.0, back.1 - side.1)], Rgb::BLACK)
-}
-
-impl Drawn for Diagram {
-    fn title(&self) -> &str {
-        &self.title
-    }
-
-    fn height(&self) -> f64 {
-        self.height()
-    }
-
-    fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), ReportError> {
-        self.draw(canvas, 0.0)
-    }
 }

@@ -1,8 +1,9 @@
 //! Figures: panels above one another that share the horizontal axis, drawn as SVG or PNG.
 //!
-//! A [`Figure`] is plain data; [`Figure::to_svg`] and [`Figure::to_png`] draw it. A [`Sheet`] puts figures below one another with parts of other
-//! kinds: a body drawn to scale ([`Elevation`]), a table ([`Grid`]). plotters is named in this folder only.
-//! Looks are decided in [`style`] alone.
+//! A [`Figure`] is plain data. A [`Picture`] puts figures below one another with parts of other kinds: a body drawn to scale
+//! ([`Elevation`]), a table ([`Grid`]), blocks with signals ([`Diagram`]). plotters is named in this folder only; it draws lines, fills and
+//! text. Its chart layer is not used: it has no axis shared by panels, no time axis in round minutes, hours and days, no legend beside the
+//! panel, and one dash length for a series, where curves here must differ in grey. Looks are decided in [`style`] alone.
 mod axis;
 mod canvas;
 mod correlation;
@@ -13,7 +14,7 @@ mod grid;
 mod output;
 mod panel;
 mod path;
-mod sheet;
+mod picture;
 mod strip;
 pub mod style;
 mod ticks;
@@ -22,8 +23,7 @@ pub use correlation::correlation;
 pub use diagram::{Arrow, Diagram, Form, Node};
 pub use elevation::{Column, Elevation, Place, Profile, Shape};
 pub use grid::{Cell, Grid};
-pub use output::Picture;
-pub use sheet::{Part, Sheet};
+pub use picture::{Part, Picture};
 use style::Stroke;
 
 /// A figure of panels above one another.
@@ -37,8 +37,6 @@ pub struct Figure {
     pub panels: Vec<Panel>,
     /// Instants (or values of the horizontal axis) marked in all panels, named in the first.
     pub marks: Vec<Mark>,
-    /// Another figure below, with a title and a horizontal axis of its own.
-    pub below: Option<Box<Figure>>,
 }
 
 /// The horizontal axis.
@@ -147,6 +145,36 @@ pub struct Mark {
     pub at: f64,
     /// Name.
     pub name: String,
+}
+
+impl Figure {
+    /// Panels against time.
+    pub fn over_time(title: impl Into<String>, panels: Vec<Panel>) -> Self {
+        Self::new(title, Horizontal::Time, panels)
+    }
+
+    /// Panels against a horizontal axis.
+    pub fn new(title: impl Into<String>, horizontal: Horizontal, panels: Vec<Panel>) -> Self {
+        Self { title: title.into(), horizontal, panels, marks: Vec::new() }
+    }
+
+    /// With marked instants.
+    pub fn with_marks(self, marks: Vec<Mark>) -> Self {
+        Self { marks, ..self }
+    }
+
+    /// Height of title, panels and axis in figure units.
+    fn height(&self) -> f64 {
+        let panels: f64 = self.panels.iter().map(|panel| panel.height * style::PANEL_HEIGHT).sum();
+        style::TOP + panels + style::GAP * (self.panels.len().max(1) - 1) as f64 + style::BOTTOM
+    }
+}
+
+impl Panel {
+    /// A panel of this height.
+    pub fn new(quantity: impl Into<String>, height: f64, items: Vec<Item>) -> Self {
+        Self { quantity: quantity.into(), items, height }
+    }
 }
 
 impl Item {

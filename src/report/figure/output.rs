@@ -1,6 +1,6 @@
-//! A figure as SVG text or PNG bytes.
+//! A picture as SVG text or PNG bytes.
 use super::canvas::{Canvas, FINE, FONT};
-use super::{Figure, Sheet, panel, style};
+use super::{Part, Picture, style};
 use crate::report::{Provenance, ReportError};
 use maud::html;
 use plotters::backend::{BitMapBackend, SVGBackend};
@@ -25,193 +25,83 @@ fn fonts() -> Result<(), ReportError> {
     if *good { Ok(()) } else { Err(ReportError::Font) }
 }
 
-impl Figure {
-    /// Height in figure units, with all that stands below.
-    pub(super) fn height(&self) -> f64 {
-        self.own_height() + self.below.as_ref().map_or(0.0, |below| below.height())
-    }
-
-    /// Height of title, panels and axis in figure units.
-    pub(super) fn own_height(&self) -> f64 {
-        let panels: f64 = self.panels.iter().map(|panel| panel.height * style::PANEL_HEIGHT).sum();
-        style::TOP + panels + style::GAP * (self.panels.len().max(1) - 1) as f64 + style::BOTTOM
-    }
-
-    /// The figure as the text of an SVG file.
+impl Picture {
+    /// The picture as the text of an SVG file.
     ///
     /// # Errors
     /// The embedded font cannot be used, or the drawing library fails.
     pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
-        svg(self, provenance)
+        let (text, fine) = self.drawing()?;
+        let size = self.fine_size();
+        // The fine grid stays in the view box; the picture opens at its natural size.
+        let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
+        let about = format!(
+            ">\n<title>{}</title>\n<desc>{}</desc>",
+            escaped(&self.title),
+            escaped(&provenance.lines())
+        );
+        Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
     }
 
-    /// The figure as the bytes of a PNG file.
+    /// The picture as the bytes of a PNG file.
     ///
     /// # Errors
     /// The embedded font cannot be used, or the drawing library or the encoder fails.
     pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
-        png(self, provenance)
+        fonts()?;
+        let over = FINE as usize / PNG_PER_UNIT;
+        let (width, height) = self.fine_size();
+        let mut fine = vec![255; width as usize * height as usize * 3];
+        {
+            let area = BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area();
+            let canvas = Canvas::raster(&area);
+            canvas.paper()?;
+            self.draw(&canvas)?;
+            area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
+        }
+        let (columns, rows) = (width as usize / over, height as usize / over);
+        let pixels = shrink(&fine, width as usize, (columns, rows), over);
+        encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
     }
-}
 
-impl Sheet {
-    /// The sheet as the text of an SVG file.
+    /// The picture as an element of a page, as wide as its place, with its description for screen readers.
     ///
     /// # Errors
-    /// As [`Figure::to_svg`].
-    pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
-        svg(self, provenance)
+    /// As [`Picture::to_svg`].
+    pub(crate) fn to_element(&self) -> Result<String, ReportError> {
+        let (text, fine) = self.drawing()?;
+        let named = format!("role=\"img\" aria-label=\"{}\"", escaped(&self.described()));
+        Ok(text.replacen(&fine, &named, 1))
     }
 
-    /// The sheet as the bytes of a PNG file.
-    ///
-    /// # Errors
-    /// As [`Figure::to_png`].
-    pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
-        png(self, provenance)
+    fn fine_size(&self) -> (u32, u32) {
+        let height: f64 = self.parts.iter().map(Part::height).sum();
+        ((style::WIDTH * FINE) as u32, (height * FINE).ceil() as u32)
     }
-}
 
-/// Anything that can be drawn.
-#[derive(Clone, Debug)]
-pub enum Picture {
-    /// Panels.
-    Figure(Figure),
-    /// Parts below one another.
-    Sheet(Sheet),
-}
-
-impl Picture {
-    /// Title.
-    pub fn title(&self) -> &str {
-        match self {
-            Self::Figure(figure) => &figure.title,
-            Self::Sheet(sheet) => &sheet.title,
+    /// What plotters writes, and the attributes of its size on the fine grid.
+    fn drawing(&self) -> Result<(String, String), ReportError> {
+        fonts()?;
+        let size = self.fine_size();
+        let mut text = String::new();
+        {
+            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+            let canvas = Canvas::vector(&area);
+            canvas.paper()?;
+            self.draw(&canvas)?;
+            area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
         }
-    }
-
-    /// The picture in words.
-    pub fn described(&self) -> String {
-        match self {
-            Self::Figure(figure) => figure.described(),
-            Self::Sheet(sheet) => sheet.described(),
-        }
-    }
-
-    /// As the text of an SVG file.
-    ///
-    /// # Errors
-    /// As [`Figure::to_svg`].
-    pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
-        match self {
-            Self::Figure(figure) => svg(figure, provenance),
-            Self::Sheet(sheet) => svg(sheet, provenance),
-        }
-    }
-
-    /// As the bytes of a PNG file.
-    ///
-    /// # Errors
-    /// As [`Figure::to_png`].
-    pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
-        match self {
-            Self::Figure(figure) => png(figure, provenance),
-            Self::Sheet(sheet) => png(sheet, provenance),
-        }
-    }
-
-    /// As an element of a page, as wide as its place, with its words for who cannot see it.
-    ///
-    /// # Errors
-    /// As [`Figure::to_svg`].
-    pub fn to_element(&self) -> Result<String, ReportError> {
-        let words = self.described();
-        match self {
-            Self::Figure(figure) => element(figure, &words),
-            Self::Sheet(sheet) => element(sheet, &words),
-        }
-    }
-}
-
-/// What fills a paper of the usual width.
-pub(super) trait Drawn {
-    /// Title.
-    fn title(&self) -> &str;
-
-    /// Height in figure units.
-    fn height(&self) -> f64;
-
-    /// Draws it on white paper.
-    fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), ReportError>;
-}
-
-impl Drawn for Figure {
-    fn title(&self) -> &str {
-        &self.title
-    }
-
-    fn height(&self) -> f64 {
-        self.height()
+        Ok((text, format!("width=\"{}\" height=\"{}\"", size.0, size.1)))
     }
 
     fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), ReportError> {
-        panel::draw(self, canvas, 0.0)
+        let mut from = 0.0;
+        for part in &self.parts {
+            part.draw(canvas, from)?;
+            from += part.height();
+        }
+        Ok(())
     }
-}
-
-fn fine_size(picture: &impl Drawn) -> (u32, u32) {
-    ((style::WIDTH * FINE) as u32, (picture.height() * FINE).ceil() as u32)
-}
-
-/// What plotters writes, and the attributes of its size on the fine grid.
-fn drawing(picture: &impl Drawn) -> Result<(String, String), ReportError> {
-    fonts()?;
-    let size = fine_size(picture);
-    let mut text = String::new();
-    {
-        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        let canvas = Canvas::vector(&area);
-        canvas.paper()?;
-        picture.draw(&canvas)?;
-        area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
-    }
-    Ok((text, format!("width=\"{}\" height=\"{}\"", size.0, size.1)))
-}
-
-fn element(picture: &impl Drawn, words: &str) -> Result<String, ReportError> {
-    let (text, fine) = drawing(picture)?;
-    let named = format!("role=\"img\" aria-label=\"{}\"", escaped(words));
-    Ok(text.replacen(&fine, &named, 1))
-}
-
-fn svg(picture: &impl Drawn, provenance: &Provenance) -> Result<String, ReportError> {
-    let (text, fine) = drawing(picture)?;
-    let size = fine_size(picture);
-    // The fine grid stays in the view box; the picture opens at its natural size.
-    let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
-    let about = format!(
-        ">\n<title>{}</title>\n<desc>{}</desc>",
-        escaped(picture.title()),
-        escaped(&provenance.lines())
-    );
-    Ok(text.replacen(&fine, &shown, 1).replacen('>', &about, 1))
-}
-
-fn png(picture: &impl Drawn, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
-    fonts()?;
-    let over = FINE as usize / PNG_PER_UNIT;
-    let (width, height) = fine_size(picture);
-    let mut fine = vec![255; width as usize * height as usize * 3];
-    {
-        let area = BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area();
-        let canvas = Canvas::raster(&area);
-        canvas.paper()?;
-        picture.draw(&canvas)?;
-        area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
-    }
-    let (columns, rows) = (width as usize / over, height as usize / over);
-    let pixels = shrink(&fine, width as usize, (columns, rows), over);
-    encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
 }
 
 /// A text as content or quoted attribute of an element.

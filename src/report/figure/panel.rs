@@ -16,22 +16,12 @@ struct Frame<'a> {
     y: Scale,
 }
 
-/// Draws the whole figure with what stands below it, from a place downwards.
+/// Draws title, panels and axis of a figure from a place downwards.
 pub(super) fn draw<DB: DrawingBackend>(
     figure: &Figure,
     canvas: &Canvas<DB>,
     from: f64,
 ) -> Result<(), ReportError> {
-    let mut at = Some((figure, from));
-    while let Some((part, from)) = at {
-        draw_part(part, canvas, from)?;
-        at = part.below.as_deref().map(|below| (below, from + part.own_height()));
-    }
-    Ok(())
-}
-
-/// Draws title, panels and axis of one figure from a place downwards.
-fn draw_part<DB: DrawingBackend>(figure: &Figure, canvas: &Canvas<DB>, from: f64) -> Result<(), ReportError> {
     let title = Text { size: style::LARGE, bold: true, ..PLAIN };
     canvas.text(&figure.title, (style::LEFT, from + 0.5 * style::TOP), title)?;
     let x = abscissa(figure);

@@ -50,9 +50,9 @@ const fn stroke(color: Rgb, width: f64, dash: &'static [f64]) -> Stroke {
 /// Mean gas temperature: the quantity that everything is about.
 pub const GAS_MEAN: Stroke = stroke(Rgb::BLACK, 2.4, &[]);
 /// Topmost gas cell.
-pub const GAS_TOP: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 2.5]);
+pub(crate) const GAS_TOP: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 2.5]);
 /// Lowest gas cell.
-pub const GAS_BOTTOM: Stroke = stroke(Rgb::BLACK, 1.2, &[1.5, 2.5]);
+pub(crate) const GAS_BOTTOM: Stroke = stroke(Rgb::BLACK, 1.2, &[1.5, 2.5]);
 /// Air around the cylinder.
 pub const AIR: Stroke = stroke(Rgb::SKY, 1.3, &[]);
 /// Shoulder.
@@ -68,7 +68,7 @@ pub const PRESSURE: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
 /// A limit.
 pub const LIMIT: Stroke = stroke(Rgb::VERMILLION, 1.3, &[6.0, 3.0]);
 /// An event.
-pub const EVENT: Stroke = stroke(Rgb::GREY, 1.0, &[2.0, 2.0]);
+pub(crate) const EVENT: Stroke = stroke(Rgb::GREY, 1.0, &[2.0, 2.0]);
 /// First curve of a comparison.
 pub const FIRST: Stroke = stroke(Rgb::ORANGE, 2.2, &[7.0, 3.0]);
 /// Second curve of a comparison.
@@ -78,31 +78,31 @@ pub const THIRD: Stroke = stroke(Rgb::GREEN, 1.8, &[2.0, 2.2]);
 /// Fourth curve of a comparison.
 pub const FOURTH: Stroke = stroke(Rgb::PURPLE, 1.8, &[8.0, 2.5, 1.8, 2.5]);
 /// Middle of a measured band.
-pub const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
+pub(crate) const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
 /// A model over readings.
 pub const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
 /// Measured points.
 pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
 /// A number at rest against the place.
-pub const AT_REST: Stroke = stroke(Rgb::BLUE, 1.8, &[]);
+pub(crate) const AT_REST: Stroke = stroke(Rgb::BLUE, 1.8, &[]);
 /// The same with model error.
-pub const ROBUST: Stroke = stroke(Rgb::VERMILLION, 1.8, &[8.0, 3.0]);
+pub(crate) const ROBUST: Stroke = stroke(Rgb::VERMILLION, 1.8, &[8.0, 3.0]);
 /// What a reference that no vehicle has would give.
 pub const REFERENCE: Stroke = stroke(Rgb::GREY, 1.6, &[1.5, 3.0]);
 /// A place that was chosen.
-pub const CHOSEN: Stroke = stroke(Rgb::VERMILLION, 2.0, &[]);
+pub(crate) const CHOSEN: Stroke = stroke(Rgb::VERMILLION, 2.0, &[]);
 /// Layouts that others are better than.
-pub const BEATEN: Stroke = stroke(Rgb::GREY, 1.0, &[]);
+pub(crate) const BEATEN: Stroke = stroke(Rgb::GREY, 1.0, &[]);
 /// Layouts that none is better than.
-pub const FRONT: Stroke = stroke(Rgb::BLUE, 2.0, &[]);
+pub(crate) const FRONT: Stroke = stroke(Rgb::BLUE, 2.0, &[]);
 /// Steel of a drawn vessel.
-pub const STEEL: Rgb = Rgb(150, 150, 150);
+pub(crate) const STEEL: Rgb = Rgb(150, 150, 150);
 /// Brass of its valve.
-pub const BRASS: Rgb = Rgb(222, 196, 120);
+pub(crate) const BRASS: Rgb = Rgb(222, 196, 120);
 
 /// What cannot be passed.
-pub const BOUND: Stroke = stroke(Rgb::GREY, 2.6, &[1.5, 3.0]);
+pub(crate) const BOUND: Stroke = stroke(Rgb::GREY, 2.6, &[1.5, 3.0]);
 
 /// Stroke of a detector in a comparison, the one that is proposed first.
 pub fn detector(number: usize) -> Stroke {
@@ -144,40 +144,40 @@ pub fn innovation(name: &str, number: usize) -> Stroke {
 }
 
 /// The same stroke for a curve with noise, which would blur dashes: thin and full.
-pub fn noisy(stroke: Stroke) -> Stroke {
+pub(crate) fn noisy(stroke: Stroke) -> Stroke {
     Stroke { width: 1.1, dash: &[], ..stroke }
 }
 
 /// The same stroke for readings that a model is drawn over: broad, so that they show on both sides of it.
-pub fn below_model(stroke: Stroke) -> Stroke {
+pub(crate) fn below_model(stroke: Stroke) -> Stroke {
     Stroke { width: 3.4, ..stroke }
 }
 
 /// Width of a figure; an SVG opens at this many pixels.
 pub const WIDTH: f64 = 860.0;
 /// Height of a panel of weight 1.
-pub const PANEL_HEIGHT: f64 = 250.0;
+pub(crate) const PANEL_HEIGHT: f64 = 250.0;
 /// Room beside what has no axis.
-pub const MARGIN: f64 = 24.0;
+pub(crate) const MARGIN: f64 = 24.0;
 /// Where the name of a vertical axis stands.
-pub const AXIS_NAME: f64 = 14.0;
+pub(crate) const AXIS_NAME: f64 = 14.0;
 /// Room on the left for tick labels and the axis name.
-pub const LEFT: f64 = 84.0;
+pub(crate) const LEFT: f64 = 84.0;
 /// Room on the right for the legend.
-pub const RIGHT: f64 = 182.0;
+pub(crate) const RIGHT: f64 = 182.0;
 /// Room above the first panel for the title.
-pub const TOP: f64 = 42.0;
+pub(crate) const TOP: f64 = 42.0;
 /// Room below the last panel for tick labels and the axis name.
-pub const BOTTOM: f64 = 50.0;
+pub(crate) const BOTTOM: f64 = 50.0;
 /// Distance between panels.
-pub const GAP: f64 = 20.0;
+pub(crate) const GAP: f64 = 20.0;
 /// Size of tick labels, legends and remarks.
 pub const SMALL: f64 = 12.0;
 /// Size of axis names.
-pub const NORMAL: f64 = 13.0;
+pub(crate) const NORMAL: f64 = 13.0;
 /// Size of the title.
-pub const LARGE: f64 = 15.0;
+pub(crate) const LARGE: f64 = 15.0;
 /// Height of a legend line.
-pub const LEGEND_LINE: f64 = 19.0;
+pub(crate) const LEGEND_LINE: f64 = 19.0;
 /// Length of the sample in a legend.
-pub const LEGEND_SAMPLE: f64 = 34.0;
+pub(crate) const LEGEND_SAMPLE: f64 = 34.0;

@@ -5,10 +5,10 @@ use crate::estimator::identify::Caution;
 
 /// Cautions of an identification as sentences.
 pub fn cautions(study: &Study) -> Vec<String> {
-    study.identified.cautions.iter().map(|caution| words(study, caution)).collect()
+    study.identified.cautions.iter().map(|caution| sentence(study, caution)).collect()
 }
 
-fn words(study: &Study, caution: &Caution) -> String {
+fn sentence(study: &Study, caution: &Caution) -> String {
     let (input, output) = (&study.input.name, &study.output.name);
     match *caution {
         Caution::ColouredErrors { whiteness } => format!(

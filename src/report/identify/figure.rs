@@ -1,21 +1,17 @@
 //! The figure of an identification: data and model, errors, what is left in the errors.
 use super::{Part, Study};
 use crate::estimator::identify::Residuals;
-use crate::report::figure::{Figure, Horizontal, Item, Panel, correlation, style};
+use crate::report::figure::{Figure, Horizontal, Item, Panel, Picture, correlation, style};
 
-/// Data, model and errors against time; below, the errors' correlations against the lag.
-pub fn figure(study: &Study) -> Figure {
-    let fitted = over_time(study, &study.fitted, &study.identified.residuals, study.title());
-    let correlations = correlations(&study.identified.residuals, &study.input.name);
-    let held_out = study.held_out.as_ref().and_then(|part| {
+/// Data, model and errors against time, also of the held-out data; below, the errors' correlations against the lag.
+pub fn figure(study: &Study) -> Picture {
+    let mut figures = vec![over_time(study, &study.fitted, &study.identified.residuals, study.title())];
+    figures.extend(study.held_out.as_ref().and_then(|part| {
         let title = format!("held out: {}", part.name);
         Some(over_time(study, part, &part.identified()?.residuals, title))
-    });
-    let below = match held_out {
-        Some(held_out) => Figure { below: Some(Box::new(correlations)), ..held_out },
-        None => correlations,
-    };
-    Figure { below: Some(Box::new(below)), ..fitted }
+    }));
+    figures.push(correlations(&study.identified.residuals, &study.input.name));
+    Picture::stacked(figures)
 }
 
 /// Data with the models, and their errors.
@@ -46,15 +42,11 @@ fn over_time(study: &Study, part: &Part, residuals: &Residuals, title: String) -
     if study.input.unit != study.output.unit {
         let input = Item::line(&study.input.name, &all, part.data.input().iter().copied(), style::SHOULDER);
         let quantity = format!("input in {}", study.input.unit);
-        panels.push(Panel { quantity, items: vec![input], height: 0.7 });
+        panels.push(Panel::new(quantity, 0.7, vec![input]));
     }
-    panels.push(Panel { quantity: format!("data in {}", study.output.unit), items: values, height: 1.0 });
-    panels.push(Panel {
-        quantity: format!("error in {}", study.output.difference),
-        items: errors,
-        height: 0.7,
-    });
-    Figure { title, horizontal: Horizontal::Time, panels, marks: Vec::new(), below: None }
+    panels.push(Panel::new(format!("data in {}", study.output.unit), 1.0, values));
+    panels.push(Panel::new(format!("error in {}", study.output.difference), 0.7, errors));
+    Figure::over_time(title, panels)
 }
 
 /// Where a part's time axis begins, s: at the clock's zero, or, if that was long ago, at the first row. What was held out of a
@@ -76,24 +68,11 @@ fn correlations(residuals: &Residuals, input: &str) -> Figure {
     let lags = residuals.autocorrelation.len() as i64 - 1;
     let both: Vec<f64> = (-lags..=lags).map(|lag| lag as f64).collect();
     let after: Vec<f64> = (0..=lags).map(|lag| lag as f64).collect();
-    Figure {
-        title: "What is left in the errors".into(),
-        horizontal: Horizontal::Quantity("lag in samples".into()),
-        panels: vec![
-            correlation(
-                "errors with\nthemselves",
-                &after,
-                &residuals.autocorrelation,
-                residuals.autocorrelation_bound,
-            ),
-            correlation(
-                &format!("errors with\n{input}, lag\nsamples before"),
-                &both,
-                &residuals.input_correlation,
-                residuals.input_correlation_bound,
-            ),
-        ],
-        marks: Vec::new(),
-        below: None,
-    }
+    let bounds = [residuals.autocorrelation_bound, residuals.input_correlation_bound];
+    let of_input = format!("errors with\n{input}, lag\nsamples before");
+    let panels = vec![
+        correlation("errors with\nthemselves", &after, &residuals.autocorrelation, bounds[0]),
+        correlation(&of_input, &both, &residuals.input_correlation, bounds[1]),
+    ];
+    Figure::new("What is left in the errors", Horizontal::Quantity("lag in samples".into()), panels)
 }

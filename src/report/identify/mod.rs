@@ -9,7 +9,7 @@ pub use caution::cautions;
 pub use figure::figure;
 pub use series::{document, table};
 pub use study::{Judged, Part, Signal, Start, Study};
-pub use summary::story;
+pub use summary::summary;
 
 /// What the figure shows.
 pub const CAPTION: &str = "Input, output, identified and published model; their errors; autocorrelation of the errors and their correlation with the \

@@ -1,11 +1,11 @@
 //! An identification as columns and as JSON.
 use super::{Part, Study};
 use crate::estimator::identify::{Residuals, published};
-use crate::report::{Provenance, Table};
+use crate::report::{Digits, Provenance, Table};
 use serde_json::{Value, json};
 
 /// Significant digits of the columns.
-const DIGITS: usize = 10;
+const DIGITS: Digits = Digits::Significant(10);
 
 /// Data, model and errors row by row, the held-out ones after the fitted ones.
 pub fn table(study: &Study) -> Table {
@@ -45,17 +45,17 @@ pub fn table(study: &Study) -> Table {
         format!("published_{suffix}"),
         "held_out".to_owned(),
     ];
-    let mut table = Table::new(DIGITS);
+    let mut table = Table::new();
     let without_published = study.fitted.published().is_none();
     for (name, column) in names.into_iter().zip(columns) {
         if !(without_published && name.starts_with("published_")) {
-            table.push(name, column);
+            table.push(name, DIGITS, column);
         }
     }
     table
 }
 
-/// Everything as JSON; `options` says what was asked for.
+/// Everything as JSON; `options` is the request.
 pub fn document(study: &Study, options: &Value, provenance: &Provenance) -> Value {
     let signal = |signal: &super::Signal| json!({ "name": signal.name, "unit": signal.suffix });
     let comparable = study.fitted.published().is_some();
@@ -79,7 +79,7 @@ fn part(part: &Part, residuals: &Residuals) -> Value {
         .judged
         .iter()
         .map(|judged| {
-            json!({ "model": judged.model, "start": judged.start.words(), "comparison": judged.comparison })
+            json!({ "model": judged.model, "start": judged.start.text(), "comparison": judged.comparison })
         })
         .collect();
     json!({

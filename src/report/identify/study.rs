@@ -54,7 +54,7 @@ impl Start {
     }
 
     /// In a few words.
-    pub fn words(self) -> &'static str {
+    pub fn text(self) -> &'static str {
         match self {
             Self::Fitted => "fitted",
             Self::FirstOutput => "first output",
@@ -119,7 +119,7 @@ pub struct Study {
 }
 
 impl Study {
-    /// Compares what was found with the published model on the same data, and on others.
+    /// Compares the identified with the published model on the same data, and on others.
     ///
     /// # Errors
     /// The other data hold nothing to compare with.

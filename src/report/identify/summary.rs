@@ -1,20 +1,20 @@
 //! An identification in a few lines for people.
 use super::{Part, Study};
 use crate::estimator::identify::{Interval, Parameter, Pole, Residuals, Statistics};
-use crate::report::{Story, number};
+use crate::report::{Report, number};
 
 /// Digits of values that people compare.
 const DIGITS: usize = 5;
 
 /// The study in words and tables.
-pub fn story(study: &Study) -> Story {
+pub fn summary(study: &Study) -> Report {
     let header = ["", "value", "95 % low", "95 % high", "unit"];
-    let story = Story::new(study.title()).text(format!("{}\n{}", log(&study.fitted), study.method)).rows(
+    let report = Report::new(study.title()).text(format!("{}\n{}", log(&study.fitted), study.method)).rows(
         "",
         &header,
         parameters(study),
     );
-    merits(study, story).text(errors(&study.identified.residuals))
+    merits(study, report).text(errors(&study.identified.residuals))
 }
 
 fn log(part: &Part) -> String {
@@ -84,7 +84,7 @@ fn row(name: &str, interval: &Interval, unit: &str) -> Vec<String> {
 }
 
 /// Figures of merit of all models on all data.
-fn merits(study: &Study, story: Story) -> Story {
+fn merits(study: &Study, report: Report) -> Report {
     let squared = format!("MSE / {}^2", study.output.difference);
     let rms = format!("rms / {}", study.output.difference);
     let header =
@@ -102,7 +102,7 @@ fn merits(study: &Study, story: Story) -> Story {
     let parts = [("the log", Some(&study.fitted)), ("held out", study.held_out.as_ref())];
     for (data, part) in parts {
         for judged in part.iter().flat_map(|part| &part.judged) {
-            rows.push(line(judged.model, data, judged.start.words(), &judged.comparison.statistics));
+            rows.push(line(judged.model, data, judged.start.text(), &judged.comparison.statistics));
         }
     }
     let held_out =
@@ -111,7 +111,7 @@ fn merits(study: &Study, story: Story) -> Story {
         Some(_) => "published: G(s) = 0.003121/(s + 0.003021), shoulder to gas in °C, gain 1.0331\n",
         None => "",
     };
-    story.explained_rows("", &header, rows, held_out + published)
+    report.explained_rows("", &header, rows, held_out + published)
 }
 
 /// What is left in the errors.

@@ -3,4 +3,4 @@ mod document;
 mod text;
 
 pub use document::document;
-pub use text::{story, text};
+pub use text::{summary, text};

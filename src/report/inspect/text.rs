@@ -1,11 +1,11 @@
-//! An inspection in words and tables for a terminal, and as a story for a page: the same parts, but command lines are
+//! An inspection in words and tables for a terminal, and as a report for a page: the same parts, but command lines are
 //! not broken in a terminal, where they are copied from.
 use crate::log::Packing;
 use crate::log::inspect::{ColumnReport, Inspection, Role, Times, Use};
 use crate::report::estimate::duration;
 use crate::report::monitor::Clock;
-use crate::report::terminal::hanging;
-use crate::report::{Story, aligned, number, quoted};
+use crate::report::table::hanging;
+use crate::report::{Report, aligned, number, quoted};
 
 /// Longest name in a table, letters.
 const NAME: usize = 26;
@@ -38,16 +38,15 @@ pub fn text(inspection: &Inspection) -> String {
 const VESSEL: &str = "In place of nitrogen-20l write your own vessel file, see `cylwatch init`.";
 
 /// The same for a page.
-pub fn story(inspection: &Inspection) -> Story {
+pub fn summary(inspection: &Inspection) -> Report {
     let facts = std::iter::once(("form", form(inspection))).chain(times(&inspection.times));
-    let mut story = Story::new(format!("The log {}", inspection.name)).facts(facts).heading("Columns").rows(
-        "",
-        &COLUMNS,
-        columns(&inspection.columns),
-    );
+    let mut report = Report::new(format!("The log {}", inspection.name))
+        .facts(facts)
+        .heading("Columns")
+        .rows("", &COLUMNS, columns(&inspection.columns));
     for (title, items) in lists(inspection).into_iter().filter(|(_, items)| !items.is_empty()) {
         let rows = items.into_iter().map(|item| vec![item]).collect();
-        story = story.rows::<&str>(title, &[], rows);
+        report = report.rows::<&str>(title, &[], rows);
     }
     let row = |one: &Use| {
         let line: Vec<String> = one.line.iter().map(|word| quoted(word)).collect();
@@ -59,7 +58,7 @@ pub fn story(inspection: &Inspection) -> Story {
         vec![one.command.to_owned(), can, if one.lacks.is_empty() { line.join(" ") } else { String::new() }]
     };
     let uses = inspection.uses.iter().map(row).collect();
-    story.heading("What can be done with it").explained_rows(
+    report.heading("What can be done with it").explained_rows(
         "",
         &["command", "possible", "line"],
         uses,
@@ -122,7 +121,7 @@ fn times(times: &Times) -> Vec<(&'static str, String)> {
     }
     if times.rows > 0 && times.column.is_some() {
         let (from, to) = times.span_s;
-        say("from, to", format!("{}, {}", clock.words(from), clock.words(to)));
+        say("from, to", format!("{}, {}", clock.text(from), clock.text(to)));
         say("length", format!("{}, {} rows", duration(to - from), times.rows));
     } else {
         say("length", format!("{} rows", times.rows));
@@ -131,7 +130,7 @@ fn times(times: &Times) -> Vec<(&'static str, String)> {
         let (usual, jitter) = (duration(times.interval_s), duration(times.jitter_s));
         say("interval", format!("median {usual}, 90 of 100 within {jitter} of each other"));
         let gap = |gap: &crate::log::inspect::Interval| {
-            format!("{} from {} on (line {})", duration(gap.length_s), clock.words(gap.begin_s), gap.line)
+            format!("{} from {} on (line {})", duration(gap.length_s), clock.text(gap.begin_s), gap.line)
         };
         let gaps: Vec<String> = times.gaps.iter().take(LISTED).map(gap).collect();
         say("gaps", if gaps.is_empty() { "none".to_owned() } else { gaps.join("\n") });

@@ -4,7 +4,7 @@ use crate::detector::monitor::alarm::{AlarmEvent, AlarmName, Change, Condition};
 use serde_json::json;
 
 /// A change of an alarm in words.
-pub fn alarm_words(event: &AlarmEvent, clock: &Clock) -> String {
+pub fn alarm_text(event: &AlarmEvent, clock: &Clock) -> String {
     let transition = &event.transition;
     let condition = &transition.condition;
     let limit = condition.limit.map_or(String::new(), |limit| format!(" at {}", limit.as_str()));
@@ -22,7 +22,7 @@ pub fn alarm_words(event: &AlarmEvent, clock: &Clock) -> String {
         Change::Enabled => "enabled".to_owned(),
         Change::Disabled => "disabled".to_owned(),
     };
-    format!("{}: alarm {} {what}", clock.words(transition.time_s), event.alarm.as_str())
+    format!("{}: alarm {} {what}", clock.text(transition.time_s), event.alarm.as_str())
 }
 
 fn commented(what: &str, condition: &Condition) -> String {
@@ -58,7 +58,7 @@ pub fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
 /// An alarm that is worth showing, for a summary.
 pub(super) fn standing(name: AlarmName, condition: &Condition, clock: &Clock) -> String {
     let limit = condition.limit.map_or(String::new(), |limit| format!(" {}", limit.as_str()));
-    let since = condition.active_since_s.map_or(String::new(), |time_s| clock.words(time_s));
+    let since = condition.active_since_s.map_or(String::new(), |time_s| clock.text(time_s));
     let mut words = if condition.active {
         format!("{}{limit}: active since {since}", name.as_str())
     } else {
@@ -107,7 +107,7 @@ mod tests {
         assert!(standing(name, panel.condition(name), &clock).ends_with(", to be reset"));
         let (_, reset) = panel.acknowledge_all(&settings, 4000.0, "");
         let said: Vec<String> =
-            first.iter().chain(&end).chain(&reset).map(|event| alarm_words(event, &clock)).collect();
+            first.iter().chain(&end).chain(&reset).map(|event| alarm_text(event, &clock)).collect();
         assert_eq!(
             said,
             [

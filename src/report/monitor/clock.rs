@@ -34,7 +34,7 @@ impl Clock {
     }
 
     /// The time in words: a date, or the time of the log in the unit that people would say.
-    pub fn words(&self, time_s: f64) -> String {
+    pub fn text(&self, time_s: f64) -> String {
         self.date(time_s).unwrap_or_else(|| {
             let time_s = time_s + self.offset_s;
             let (size, unit) = match time_s.abs() {
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn a_time_is_a_date_in_whole_seconds_where_the_log_has_dates() {
         let clock = Clock::new(Some("2026-01-31T23:59:59.6Z".parse().unwrap()));
-        assert_eq!(clock.words(0.1), "2026-02-01T00:00:00Z");
+        assert_eq!(clock.text(0.1), "2026-02-01T00:00:00Z");
         assert_eq!(clock.date(86_400.4).as_deref(), Some("2026-02-02T00:00:00Z"));
         assert_eq!((clock.date(1e300), clock.date(f64::NAN).is_some()), (None, true));
     }
@@ -63,8 +63,8 @@ mod tests {
     fn without_dates_a_time_has_a_unit_that_suits_it() {
         let clock = Clock::default();
         assert_eq!(clock.date(5.0), None);
-        let words = [90.0, 10_800.0, 864_000.0].map(|time_s| clock.words(time_s));
+        let words = [90.0, 10_800.0, 864_000.0].map(|time_s| clock.text(time_s));
         assert_eq!(words, ["t = 90 s", "t = 3 h", "t = 10 d"]);
-        assert_eq!(clock.with_offset(-60.0).words(90.0), "t = 30 s");
+        assert_eq!(clock.with_offset(-60.0).text(90.0), "t = 30 s");
     }
 }

@@ -1,8 +1,9 @@
 //! Events: in words for people, and as lines of JSON for programs.
-use super::{BAR_PER_HOUR, Clock, GRAM, GRAM_PER_HOUR, short};
+use super::{Clock, short};
 use crate::detector::monitor::{Event, EventKind, Health, Interval, LeakFinding, Verdict};
 use crate::estimator::log::Quantity;
 use crate::report::estimate::duration;
+use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::PASCAL_PER_BAR;
 use serde_json::{Value, json};
 
@@ -26,47 +27,47 @@ impl Naming {
 }
 
 /// An event in words.
-pub fn event_words(event: &Event, naming: &Naming) -> String {
-    format!("{}: {}", naming.clock.words(event.time_s), happening(event, naming))
+pub fn event_text(event: &Event, naming: &Naming) -> String {
+    format!("{}: {}", naming.clock.text(event.time_s), event_kind_text(event, naming))
 }
 
-fn happening(event: &Event, naming: &Naming) -> String {
-    let since = || naming.clock.words(event.onset_s);
+fn event_kind_text(event: &Event, naming: &Naming) -> String {
+    let since = || naming.clock.text(event.onset_s);
     match &event.kind {
         EventKind::Verdict { from, to } => format!("verdict {to}, before {from}"),
         EventKind::LeakFound(leak) => format!(
             "leak found: {} g/h, since {}",
             range(leak.rate_kg_s.scaled(GRAM_PER_HOUR)),
-            naming.clock.words(leak.onset_s.value)
+            naming.clock.text(leak.onset_s.value)
         ),
-        EventKind::LeakEnded => "the leak is over, or was none".to_owned(),
+        EventKind::LeakEnded => "the leak has ended, or there was none".to_owned(),
         EventKind::Discharge(mass_kg) => format!("discharge of {} g at {}", short(mass_kg * GRAM), since()),
         EventKind::Refill(mass_kg) => format!("refill of {} g at {}", short(mass_kg * GRAM), since()),
         EventKind::Sensor { sensor, health } => {
-            format!("{} {}", naming.sensor(*sensor), health_words(*health, naming.quantity(*sensor)))
+            format!("{} {}", naming.sensor(*sensor), health_text(*health, naming.quantity(*sensor)))
         }
         EventKind::ColdNight(pressure_pa) => format!(
             "the coldest night will bring the pressure to {:.1} bar without any leak: refill before it",
             pressure_pa / PASCAL_PER_BAR
         ),
         EventKind::FillingDoubted { mass_kg, filled_kg } => format!(
-            "the readings stand for {} of gas, the filling that was stated for {}: look at the units of the log, and state the filling as it is",
-            mass_words(*mass_kg),
-            mass_words(*filled_kg)
+            "the readings correspond to {} of gas, the stated filling to {}: check the units of the log and the filling",
+            mass_text(*mass_kg),
+            mass_text(*filled_kg)
         ),
         EventKind::Swapped([first, second]) => format!(
-            "{} and {} are in each other's place, which is taken into account from now on: learning again",
+            "{} and {} are swapped; corrected from now on: learning again",
             naming.sensor(*first),
             naming.sensor(*second)
         ),
         EventKind::Late { sensor, by_s } => format!(
-            "{} is late by {:.0} s, which is taken into account from now on: learning again",
+            "{} is late by {:.0} s; corrected from now on: learning again",
             naming.sensor(*sensor),
             by_s
         ),
         EventKind::Disturbed { sensors: [first, second], off_k } => format!(
-            "{} less {} is off its usual difference by {:+.1} K: one end is warmed or cooled by itself, or one of them has shifted; \
-             small leaks are not seen meanwhile",
+            "{} less {} is off its usual difference by {:+.1} K: one end is warmed or cooled locally, or one of them has shifted; \
+             small leaks are not detected meanwhile",
             naming.sensor(*first),
             naming.sensor(*second),
             off_k
@@ -77,21 +78,21 @@ fn happening(event: &Event, naming: &Naming) -> String {
         }
         EventKind::Gap(gap_s) => format!("no rows for {}", duration(*gap_s)),
         EventKind::TooLate => format!("a row of {} came too late and was left out", since()),
-        EventKind::Restarted => "the estimate began again from its prior".to_owned(),
+        EventKind::Restarted => "the estimate restarted from its prior".to_owned(),
     }
 }
 
 /// A mass in kilograms or, a small one, in grams.
-fn mass_words(mass_kg: f64) -> String {
+fn mass_text(mass_kg: f64) -> String {
     if mass_kg < 1.0 { format!("{} g", short(mass_kg * GRAM)) } else { format!("{} kg", short(mass_kg)) }
 }
 
 /// How a sensor is doing, in words.
-pub fn health_words(health: Health, quantity: Quantity) -> String {
+pub(crate) fn health_text(health: Health, quantity: Quantity) -> String {
     match health {
         Health::Good => "good".to_owned(),
         Health::Missing => "gives no readings".to_owned(),
-        Health::Implausible => "gives readings outside what it can read: look at its wire".to_owned(),
+        Health::Implausible => "gives readings outside its range: check its wire".to_owned(),
         Health::Stuck => "stands still".to_owned(),
         Health::Spikes => "has single readings far off".to_owned(),
         Health::Shifted(by) => {
@@ -99,11 +100,11 @@ pub fn health_words(health: Health, quantity: Quantity) -> String {
                 Quantity::Temperature => (by, "K"),
                 Quantity::Pressure => (by / PASCAL_PER_BAR, "bar"),
             };
-            format!("is shifted by {} {unit}, which is taken into account", short(by))
+            format!("is shifted by {} {unit}; corrected", short(by))
         }
         Health::Deviates(by) => {
             format!(
-                "is off by {} K, as the other thermometer and the pressure say: warmed by itself or shifted",
+                "is off by {} K, according to the other thermometer and the pressure: warmed locally or shifted",
                 short(by)
             )
         }
@@ -232,26 +233,26 @@ mod tests {
     fn words_say_when_and_what_in_units_that_people_use() {
         let said: Vec<String> = kinds()
             .into_iter()
-            .map(|kind| event_words(&Event::new(7200.0, 3600.0, kind), &naming()))
+            .map(|kind| event_text(&Event::new(7200.0, 3600.0, kind), &naming()))
             .collect();
         assert!(said.iter().all(|words| words.starts_with("2026-01-01T02:00:00Z: ")), "{said:?}");
         for (words, part) in said.iter().zip([
             "verdict tight, before unknown: still learning the sensors",
             "leak found: 3.6 (2.88 to 4.68) g/h, since 2026-01-01T01:00:00Z",
-            "over, or was none",
+            "ended, or there was none",
             "discharge of 120 g at 2026-01-01T01:00:00Z",
             "refill of 1500 g",
             "pressure is shifted by -0.4 bar",
-            "shoulder is off by 1.2 K, as the other thermometer and the pressure say",
+            "shoulder is off by 1.2 K, according to the other thermometer and the pressure",
             "158.2 bar without any leak",
-            "4.1 kg of gas, the filling that was stated for 4.48 kg",
-            "shoulder and pressure are in each other's place",
+            "4.1 kg of gas, the stated filling to 4.48 kg",
+            "shoulder and pressure are swapped",
             "shoulder is late by 87 s",
             "off its usual difference by -1.2 K",
             "jumped back by 60 min",
             "no rows for 2 h",
             "a row of 2026-01-01T01:00:00Z came too late",
-            "began again",
+            "restarted from its prior",
         ]) {
             assert!(words.contains(part), "`{part}` is missing in {words}");
         }

@@ -1,10 +1,11 @@
 //! The figure of a monitored log: pressures, mass, leak rate, verdict.
+use super::VerdictStrip;
 use super::marks::Marks;
-use super::{GRAM_PER_HOUR, VerdictStrip};
 use crate::detector::monitor::Output;
 use crate::log::Truth;
-use crate::report::estimate::Course;
-use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
+use crate::report::GRAM_PER_HOUR;
+use crate::report::estimate::DecimatedCurves;
+use crate::report::figure::{Figure, Item, Panel, style};
 use crate::thermal::units::PASCAL_PER_BAR;
 
 /// Curves: places in the course.
@@ -21,7 +22,7 @@ const CURVES: usize = 12;
 /// What a figure needs, collected output by output.
 #[derive(Clone, Debug)]
 pub struct FigureData {
-    course: Course,
+    curves: DecimatedCurves,
     strip: VerdictStrip,
     marks: Marks,
     limit_pa: f64,
@@ -32,7 +33,7 @@ impl FigureData {
     /// With the operational limit and the pressure of the full cylinder at 15 °C, Pa.
     pub fn new(limit_pa: f64, full_pa: f64) -> Self {
         Self {
-            course: Course::new(CURVES),
+            curves: DecimatedCurves::new(CURVES),
             strip: VerdictStrip::default(),
             marks: Marks::default(),
             limit_pa,
@@ -50,31 +51,10 @@ impl FigureData {
             [rate.value, rate.low, rate.high]
         });
         let others = [truth.outflow_kg_s, e.leak_kg_s].map(|rate| rate * GRAM_PER_HOUR);
-        self.course.push(e.time_s, pressures.into_iter().chain(mass).chain(found).chain(others));
+        self.curves.push(e.time_s, pressures.into_iter().chain(mass).chain(found).chain(others));
         self.strip.push(e.time_s, output.decision.verdict);
         output.events.iter().for_each(|event| self.marks.event(event));
         output.alarms.iter().for_each(|alarm| self.marks.alarm(alarm));
-    }
-
-    /// Shift of the time axis, s: a log whose clock began long ago is drawn from its first row.
-    fn origin_s(&self) -> f64 {
-        match self.course.span_s() {
-            Some((from_s, to_s)) if from_s < 0.0 || from_s > to_s - from_s => from_s,
-            _ => 0.0,
-        }
-    }
-
-    fn line(&self, name: &str, curve: usize, stroke: style::Stroke) -> Option<Item> {
-        let (mut x, y) = self.course.line(curve);
-        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
-        self.course.has(curve).then(|| Item::Line { name: name.to_owned(), x, y, stroke })
-    }
-
-    /// A band about a curve; where it is wide, as while gas is exchanged, it does not set the scale.
-    fn band(&self, name: &str, curves: [usize; 4]) -> Option<Item> {
-        let (mut x, low, high) = self.course.band_beside(curves[1], curves[2], &[curves[0], curves[3]])?;
-        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
-        Some(Item::Band { name: name.to_owned(), x, low, high })
     }
 
     fn pressures(&self) -> Panel {
@@ -84,9 +64,9 @@ impl FigureData {
         };
         let limit_bar = self.limit_pa / PASCAL_PER_BAR;
         let items = [
-            self.line("as read", RAW, style::noisy(style::PRESSURE)),
-            self.line("expected if tight", EXPECTED, style::MODEL),
-            self.line("at 15 °C", P15, style::GAS_MEAN),
+            self.curves.item("as read", RAW, style::noisy(style::PRESSURE)),
+            self.curves.item("expected if tight", EXPECTED, style::MODEL),
+            self.curves.item("at 15 °C", P15, style::GAS_MEAN),
             limit(format!("limit {} bar", super::short(limit_bar)), self.limit_pa),
             limit(
                 "maintenance".to_owned(),
@@ -98,51 +78,47 @@ impl FigureData {
 
     fn mass(&self) -> Panel {
         let items = [
-            self.band("± 2 sd", MASS),
-            self.line("estimate", MASS[0], style::GAS_MEAN),
-            self.line("truth", MASS[3], style::FIRST),
+            self.curves.band_item("± 2 sd", MASS),
+            self.curves.item("estimate", MASS[0], style::GAS_MEAN),
+            self.curves.item("truth", MASS[3], style::FIRST),
         ];
         panel("gas mass in kg", items, 0.8)
     }
 
     fn leak(&self) -> Option<Panel> {
-        let found = self.course.has(LEAK[0]);
+        let found = self.curves.has(LEAK[0]);
         let items = [
-            self.band("95 %", LEAK),
-            self.line("leak found", LEAK[0], style::GAS_MEAN),
+            self.curves.band_item("95 %", LEAK),
+            self.curves.item("leak found", LEAK[0], style::GAS_MEAN),
             // Before a leak is found there is nothing but what the observer thinks.
-            self.line("observer", OBSERVED, style::MIDDLE),
-            self.line("truth", LEAK[3], style::FIRST),
+            self.curves.item("observer", OBSERVED, style::MIDDLE),
+            self.curves.item("truth", LEAK[3], style::FIRST),
         ];
-        (found || self.course.has(OBSERVED)).then(|| panel("leak rate in g/h", items, 0.7))
+        (found || self.curves.has(OBSERVED)).then(|| panel("leak rate in g/h", items, 0.7))
     }
 
     fn verdict(&self) -> Panel {
-        let stretches = self.strip.stretches(self.origin_s());
-        Panel { quantity: "verdict".into(), items: vec![Item::Strip { stretches }], height: 0.16 }
+        let stretches = self.strip.stretches(self.curves.origin_s());
+        Panel::new("verdict", 0.16, vec![Item::Strip { stretches }])
     }
 }
 
 fn panel<const N: usize>(quantity: &str, items: [Option<Item>; N], height: f64) -> Panel {
-    Panel { quantity: quantity.to_owned(), items: items.into_iter().flatten().collect(), height }
+    Panel::new(quantity, height, items.into_iter().flatten().collect())
 }
 
 /// The figure of a run.
 pub fn figure(title: &str, data: &FigureData) -> Figure {
     let panels = [Some(data.pressures()), Some(data.mass()), data.leak(), Some(data.verdict())];
-    Figure {
-        title: title.to_owned(),
-        horizontal: Horizontal::Time,
-        panels: panels.into_iter().flatten().collect(),
-        marks: data.marks.shifted(data.origin_s()),
-        below: None,
-    }
+    Figure::over_time(title, panels.into_iter().flatten().collect())
+        .with_marks(data.marks.shifted(data.curves.origin_s()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::Provenance;
+    use crate::report::figure::Picture;
     use crate::report::monitor::row::tests::{leaking, unknown};
 
     #[test]
@@ -161,12 +137,13 @@ mod tests {
         let figure = figure("a cylinder", &data);
         assert_eq!(figure.marks[0].at, 1200.0);
         let provenance = Provenance { command: "cylwatch".into(), inputs: Vec::new(), seed: None };
-        let svg = figure.to_svg(&provenance).unwrap();
+        let picture = Picture::from(figure);
+        let svg = picture.to_svg(&provenance).unwrap();
         for words in
             ["limit 160 bar", "maintenance", "leak found", "verdict", "unknown", "leak", "95 %", "at 15 °C"]
         {
             assert!(svg.contains(words), "`{words}` is missing");
         }
-        assert!(figure.to_png(&provenance).is_ok());
+        assert!(picture.to_png(&provenance).is_ok());
     }
 }

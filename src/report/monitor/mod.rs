@@ -11,25 +11,19 @@ mod row;
 mod strip;
 mod summary;
 
-pub use alarm::{alarm_line, alarm_words};
+pub use alarm::{alarm_line, alarm_text};
 pub use clock::Clock;
-pub use event::{Naming, event_line, event_words, health_words};
+pub(crate) use event::health_text;
+pub use event::{Naming, event_line, event_text};
 pub use figure::{FigureData, figure};
-pub use prognosis::{passage_words, reaction_reason, reaction_word, reaction_words};
-pub use row::{COLUMNS, DOCUMENTATION, MonitorRow, csv_header, csv_row, json_row};
-pub use strip::VerdictStrip;
-pub use summary::{Circumstances, RowFates, Summary, document, story};
-
-use crate::thermal::units::PASCAL_PER_BAR;
+pub(crate) use prognosis::{passage_text, reaction_reason, reaction_text, reaction_word};
+pub use row::{DOCUMENTATION, MonitorRow, fields};
+pub(crate) use strip::VerdictStrip;
+pub use summary::{OperatingLimits, RowCounts, Summary, document, summary};
 
 /// What the figure of a run shows.
 pub const CAPTION: &str = "Pressure at 15 °C and as read with the limit, mass and leak rate with their intervals, verdicts as colours, events \
                            and alarms as marks.";
-
-const GRAM_PER_HOUR: f64 = 3.6e6;
-const GRAM: f64 = 1e3;
-/// Pa/s in bar/h.
-const BAR_PER_HOUR: f64 = 3600.0 / PASCAL_PER_BAR;
 
 /// A number for people: so many digits that count, none that do not.
 fn short(value: f64) -> String {

@@ -4,7 +4,7 @@ use crate::detector::prognosis::{Advice, Passage, Reaction};
 use crate::report::estimate::duration;
 
 /// When a limit is reached, in words.
-pub fn passage_words(passage: Passage, horizon_s: f64) -> String {
+pub(crate) fn passage_text(passage: Passage, horizon_s: f64) -> String {
     match passage {
         Passage::Reached => "reached".to_owned(),
         Passage::In(time_s) => long(time_s),
@@ -25,7 +25,7 @@ fn long(duration_s: f64) -> String {
 }
 
 /// A reaction as one word for a table.
-pub fn reaction_word(reaction: Reaction) -> &'static str {
+pub(crate) fn reaction_word(reaction: Reaction) -> &'static str {
     match reaction {
         Reaction::None => "none",
         Reaction::NextInterval => "next-interval",
@@ -35,7 +35,7 @@ pub fn reaction_word(reaction: Reaction) -> &'static str {
 }
 
 /// What to do.
-pub fn reaction_words(reaction: Reaction) -> &'static str {
+pub(crate) fn reaction_text(reaction: Reaction) -> &'static str {
     match reaction {
         Reaction::None => "none",
         Reaction::NextInterval => "refill or replace at the next service",
@@ -45,7 +45,7 @@ pub fn reaction_words(reaction: Reaction) -> &'static str {
 }
 
 /// Why it is due.
-pub fn reaction_reason(advice: &Advice, next_service_s: f64) -> String {
+pub(crate) fn reaction_reason(advice: &Advice, next_service_s: f64) -> String {
     let service = duration(next_service_s);
     match advice.reaction {
         Reaction::None => format!(
@@ -86,11 +86,11 @@ mod tests {
     #[test]
     fn what_lies_beyond_the_horizon_is_not_a_number_of_days() {
         let year_s = 365.0 * 86_400.0;
-        assert_eq!(passage_words(Passage::BeyondHorizon, year_s), "beyond a year");
-        assert_eq!(passage_words(Passage::BeyondHorizon, 10.0 * year_s), "beyond 10 years");
-        assert_eq!(passage_words(Passage::BeyondHorizon, 10.0 * 86_400.0), "beyond 10 d");
-        assert_eq!(passage_words(Passage::Reached, year_s), "reached");
-        assert_eq!(passage_words(Passage::In(5.5 * 86_400.0), year_s), "5.5 d");
+        assert_eq!(passage_text(Passage::BeyondHorizon, year_s), "beyond a year");
+        assert_eq!(passage_text(Passage::BeyondHorizon, 10.0 * year_s), "beyond 10 years");
+        assert_eq!(passage_text(Passage::BeyondHorizon, 10.0 * 86_400.0), "beyond 10 d");
+        assert_eq!(passage_text(Passage::Reached, year_s), "reached");
+        assert_eq!(passage_text(Passage::In(5.5 * 86_400.0), year_s), "5.5 d");
     }
 
     #[test]

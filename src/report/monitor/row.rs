@@ -1,36 +1,12 @@
-//! One output of the monitor as a row of a CSV file or of a JSON array.
-use super::{GRAM, GRAM_PER_HOUR, reaction_word};
+//! The columns of an output of the monitor: those of an estimate, then the decision.
+use super::reaction_word;
 use crate::detector::monitor::Output;
-use crate::report::estimate::{self, EstimateRow, push_number};
+use crate::report::estimate::{self, EstimateRow};
+use crate::report::{Digits, Field, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::PASCAL_PER_BAR;
 
 /// Standard deviations between the bounds of a 95 % interval.
 const INTERVAL_SD: f64 = 2.0 * 1.959_963_984_540_054;
-
-/// Columns of an output: those of an estimate, then the decision.
-pub const COLUMNS: [&str; 21] = {
-    let mut columns = [""; 21];
-    let mut at = 0;
-    while at < estimate::COLUMNS.len() {
-        columns[at] = estimate::COLUMNS[at];
-        at += 1;
-    }
-    let own = [
-        "leak_probability",
-        "leak_low_g_h",
-        "leak_high_g_h",
-        "onset_s",
-        "lost_g",
-        "cold_pressure_bar",
-        "reaction",
-        "reason",
-    ];
-    while at < columns.len() {
-        columns[at] = own[at - estimate::COLUMNS.len()];
-        at += 1;
-    }
-    columns
-};
 
 /// What the columns mean, for a help page.
 pub const DOCUMENTATION: &str = "\
@@ -49,88 +25,73 @@ Columns (those of `estimate`, then):
   reaction               none, next-interval, as-soon-as-possible or shutdown; empty: not known yet
   reason                 why the verdict is unknown";
 
-/// An output with what a file says beside it.
-#[derive(Clone, Copy, Debug)]
-pub struct MonitorRow<'a> {
-    /// What the monitor said.
-    pub output: &'a Output,
-    /// The observer's leak rate as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown.
-    pub leak_pa_s: f64,
+/// An output as a file has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonitorRow {
+    estimate: EstimateRow,
+    leak_probability: f64,
+    leak_low_kg_s: f64,
+    leak_high_kg_s: f64,
+    onset_s: f64,
+    lost_kg: f64,
+    cold_pressure_pa: f64,
+    reaction: &'static str,
+    reason: &'static str,
 }
 
-impl MonitorRow<'_> {
-    /// The estimate; a leak that is found stands in place of the observer's rate.
-    fn estimate(&self) -> EstimateRow {
-        let mut row = EstimateRow { estimate: self.output.estimate, leak_pa_s: self.leak_pa_s };
-        row.estimate.time_s = self.output.stamp_s;
+impl AsRef<EstimateRow> for MonitorRow {
+    fn as_ref(&self) -> &EstimateRow {
+        &self.estimate
+    }
+}
+
+impl MonitorRow {
+    /// Of an output; `leak_pa_s` is the observer's leak rate as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown. A leak that is
+    /// found stands in place of the observer's rate.
+    pub fn new(output: &Output, leak_pa_s: f64) -> Self {
+        let Output { decision, leak_rate_kg_s, leak, .. } = output;
+        let verdict = decision.verdict.as_str();
+        let mut row = EstimateRow { estimate: output.estimate, leak_pa_s, verdict };
+        row.estimate.time_s = output.stamp_s;
         // Until a leak is found its rate is as uncertain as the masses leave it, not as one member of the bank supposes.
-        let uncertain_kg_s = self.output.leak_rate_kg_s.high / (0.5 * INTERVAL_SD);
+        let uncertain_kg_s = leak_rate_kg_s.high / (0.5 * INTERVAL_SD);
         row.estimate.leak_sd_kg_s = row.estimate.leak_sd_kg_s.max(uncertain_kg_s);
-        if let Some(leak) = &self.output.leak {
+        let (mut onset_s, mut lost_kg) = (f64::NAN, f64::NAN);
+        if let Some(leak) = leak {
             row.estimate.leak_kg_s = leak.rate_kg_s.value;
             row.estimate.leak_sd_kg_s = (leak.rate_kg_s.high - leak.rate_kg_s.low) / INTERVAL_SD;
             row.leak_pa_s = leak.rate_pa_s.value;
+            onset_s = leak.onset_s.value + output.stamp_s - output.estimate.time_s;
+            lost_kg = leak.lost_kg.value;
         }
-        row
-    }
-
-    /// Numbers after the estimate in the order of [`COLUMNS`], with the decimals that are worth writing.
-    fn numbers(&self) -> [(f64, usize); 6] {
-        let rate = self.output.leak_rate_kg_s.scaled(GRAM_PER_HOUR);
-        let found = self.output.leak.map_or([f64::NAN; 2], |leak| {
-            let onset_s = leak.onset_s.value + self.output.stamp_s - self.output.estimate.time_s;
-            [onset_s, leak.lost_kg.value * GRAM]
-        });
-        [
-            (self.output.decision.leak_probability.unwrap_or(f64::NAN), 6),
-            (rate.low, 6),
-            (rate.high, 6),
-            (found[0], 1),
-            (found[1], 3),
-            (self.output.cold_pressure_pa / PASCAL_PER_BAR, 4),
-        ]
-    }
-
-    fn words(&self) -> [Option<&'static str>; 2] {
-        let reaction = self.output.decision.reaction;
-        [reaction.map(reaction_word), self.output.decision.verdict.reason().map(|reason| reason.as_str())]
-    }
-}
-
-/// Names of the columns as a line, without its end.
-pub fn csv_header() -> String {
-    COLUMNS.join(",")
-}
-
-/// Appends a row with its line feed.
-pub fn csv_row(row: &MonitorRow, text: &mut String) {
-    estimate::csv_cells(&row.estimate(), row.output.decision.verdict.as_str(), text);
-    for number in row.numbers() {
-        text.push(',');
-        push_number(number, "", text);
-    }
-    for word in row.words() {
-        text.push(',');
-        text.push_str(word.unwrap_or_default());
-    }
-    text.push('\n');
-}
-
-/// Appends a row as a JSON array.
-pub fn json_row(row: &MonitorRow, text: &mut String) {
-    text.push('[');
-    estimate::json_cells(&row.estimate(), Some(row.output.decision.verdict.as_str()), text);
-    for number in row.numbers() {
-        text.push(',');
-        push_number(number, "null", text);
-    }
-    for word in row.words() {
-        match word {
-            Some(word) => text.push_str(&format!(",\"{word}\"")),
-            None => text.push_str(",null"),
+        Self {
+            estimate: row,
+            leak_probability: decision.leak_probability.unwrap_or(f64::NAN),
+            leak_low_kg_s: leak_rate_kg_s.low,
+            leak_high_kg_s: leak_rate_kg_s.high,
+            onset_s,
+            lost_kg,
+            cold_pressure_pa: output.cold_pressure_pa,
+            reaction: decision.reaction.map_or("", reaction_word),
+            reason: decision.verdict.reason().map_or("", |reason| reason.as_str()),
         }
     }
-    text.push(']');
+}
+
+/// Columns of an output, with the decimals that are worth writing.
+pub fn fields() -> Vec<Field<MonitorRow>> {
+    use Digits::Decimals;
+    let decision = [
+        Field::number("leak_probability", Decimals(6), |row: &MonitorRow| row.leak_probability),
+        Field::number("leak_low_g_h", Decimals(6), |row| row.leak_low_kg_s * GRAM_PER_HOUR),
+        Field::number("leak_high_g_h", Decimals(6), |row| row.leak_high_kg_s * GRAM_PER_HOUR),
+        Field::number("onset_s", Decimals(1), |row| row.onset_s),
+        Field::number("lost_g", Decimals(3), |row| row.lost_kg * GRAM),
+        Field::number("cold_pressure_bar", Decimals(4), |row| row.cold_pressure_pa / PASCAL_PER_BAR),
+        Field::text("reaction", |row| row.reaction),
+        Field::text("reason", |row| row.reason),
+    ];
+    estimate::fields().into_iter().chain(decision).collect()
 }
 
 #[cfg(test)]
@@ -141,6 +102,7 @@ pub(super) mod tests {
     };
     use crate::detector::prognosis::{Advice, Passage, Quantiles, Reaction};
     use crate::estimator::observer::{Estimate, Quality};
+    use crate::report::{RowFormat, Rows};
 
     /// A leak of 3.6 g/h in the third row of a log, and what else an output has.
     pub fn leaking() -> Output {
@@ -207,26 +169,22 @@ pub(super) mod tests {
         Output { decision, leak_rate_kg_s, leak: None, outlook: None, ..leaking() }
     }
 
+    fn csv(output: &Output, leak_pa_s: f64) -> String {
+        Rows::new(fields(), RowFormat::Csv).row(&MonitorRow::new(output, leak_pa_s)).to_owned()
+    }
+
     #[test]
     fn a_leak_that_is_found_stands_in_the_columns_of_the_leak_in_their_units() {
-        let output = leaking();
-        let row = MonitorRow { output: &output, leak_pa_s: 2.0 };
-        let mut text = String::new();
-        csv_row(&row, &mut text);
         // 1e-6 kg/s are 3.6 g/h; 0.5e-6 kg/s wide, which is 3.92 standard deviations; 4.5 Pa/s are 0.162 bar/h.
         let expected = "7200,15.0000,0.2500,4.400000,2.0000,3.600000,0.459192,0.16200000,,199.00000,196.00000,leak,degraded,\
                         0.999000,2.880000,4.680000,3600.0,3.600,158.0000,as-soon-as-possible,\n";
-        assert_eq!(text, expected);
-        assert_eq!(text.matches(',').count() + 1, COLUMNS.len());
-        assert_eq!(csv_header().split(',').count(), COLUMNS.len());
+        assert_eq!(csv(&leaking(), 2.0), expected);
+        assert_eq!(expected.matches(',').count() + 1, fields().len());
     }
 
     #[test]
     fn without_a_finding_the_cells_are_empty_and_unknown_has_its_reason() {
-        let output = unknown();
-        let row = MonitorRow { output: &output, leak_pa_s: 2.0 };
-        let mut text = String::new();
-        csv_row(&row, &mut text);
+        let text = csv(&unknown(), 2.0);
         let cells: Vec<&str> = text.trim_end().split(',').collect();
         // Nothing is found: up to 3.6 g/h, which is 1.96 standard deviations.
         assert_eq!(cells[5..8], ["1.800000", "1.836768", "0.07200000"]);
@@ -239,19 +197,17 @@ pub(super) mod tests {
     #[test]
     fn a_json_row_is_the_csv_row_with_null_for_what_is_missing() {
         for output in [leaking(), unknown()] {
-            let row = MonitorRow { output: &output, leak_pa_s: f64::NAN };
-            let (mut csv, mut json) = (String::new(), String::new());
-            csv_row(&row, &mut csv);
-            json_row(&row, &mut json);
-            let values: Vec<serde_json::Value> = serde_json::from_str(&json).unwrap();
-            for (cell, value) in csv.trim_end().split(',').zip(&values) {
+            let mut rows = Rows::new(fields(), RowFormat::Json);
+            let json = rows.row(&MonitorRow::new(&output, f64::NAN));
+            let values: Vec<serde_json::Value> = serde_json::from_str(json).unwrap();
+            for (cell, value) in csv(&output, f64::NAN).trim_end().split(',').zip(&values) {
                 match value {
                     serde_json::Value::Null => assert_eq!(cell, ""),
                     serde_json::Value::String(word) => assert_eq!(cell, word),
                     number => assert_eq!(cell.parse().ok(), number.as_f64()),
                 }
             }
-            assert_eq!(values.len(), COLUMNS.len());
+            assert_eq!(values.len(), fields().len());
         }
     }
 }

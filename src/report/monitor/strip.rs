@@ -9,7 +9,7 @@ const MOST: usize = 2048;
 /// Verdicts one after the other. When there are too many stretches, those shorter than a column are joined with the one before, and
 /// the worse verdict of the two stands: a leak is never too short to be seen.
 #[derive(Clone, Debug, Default)]
-pub struct VerdictStrip {
+pub(crate) struct VerdictStrip {
     /// Begin, end, s, and verdict.
     stretches: Vec<(f64, f64, Verdict)>,
 }
@@ -25,7 +25,7 @@ impl VerdictStrip {
             return;
         }
         last.1 = time_s;
-        if look(last.2) != look(verdict) {
+        if appearance(last.2) != appearance(verdict) {
             self.stretches.push((time_s, time_s, verdict));
         }
         if self.stretches.len() > MOST {
@@ -39,10 +39,10 @@ impl VerdictStrip {
         let (start_s, width_s) = (first.0, (last.1 - first.0) / (MOST / 2) as f64);
         let column = |time_s: f64| ((time_s - start_s) / width_s) as u64;
         self.stretches.dedup_by(|next, kept| {
-            let joined = look(next.2) == look(kept.2) || column(next.0) == column(kept.0);
+            let joined = appearance(next.2) == appearance(kept.2) || column(next.0) == column(kept.0);
             if joined {
                 kept.1 = next.1;
-                kept.2 = if rank(next.2) > rank(kept.2) { next.2 } else { kept.2 };
+                kept.2 = if priority(next.2) > priority(kept.2) { next.2 } else { kept.2 };
             }
             joined
         });
@@ -51,7 +51,7 @@ impl VerdictStrip {
     /// The strip, shifted by an origin, s.
     pub fn stretches(&self, origin_s: f64) -> Vec<Stretch> {
         let stretch = |&(from, to, verdict): &(f64, f64, Verdict)| {
-            let (name, color) = look(verdict);
+            let (name, color) = appearance(verdict);
             Stretch { from: from - origin_s, to: to - origin_s, name: name.to_owned(), color }
         };
         self.stretches.iter().map(stretch).collect()
@@ -59,7 +59,7 @@ impl VerdictStrip {
 }
 
 /// Name and colour. All reasons not to know look alike.
-fn look(verdict: Verdict) -> (&'static str, Rgb) {
+fn appearance(verdict: Verdict) -> (&'static str, Rgb) {
     let color = match verdict {
         Verdict::Tight => Rgb::GREEN,
         Verdict::Leak => Rgb::VERMILLION,
@@ -72,7 +72,7 @@ fn look(verdict: Verdict) -> (&'static str, Rgb) {
 }
 
 /// What must not be hidden by what.
-fn rank(verdict: Verdict) -> u8 {
+fn priority(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Tight => 0,
         Verdict::Refill => 1,

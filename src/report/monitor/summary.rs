@@ -1,22 +1,20 @@
 //! A monitored log in a few lines that a person can act on, and as JSON.
 use super::event::{finding, health_word, range, verdict};
 use super::prognosis::percent;
-use super::{
-    BAR_PER_HOUR, GRAM, GRAM_PER_HOUR, Naming, health_words, passage_words, reaction_reason, reaction_word,
-    reaction_words, short,
-};
+use super::{Naming, health_text, passage_text, reaction_reason, reaction_text, reaction_word, short};
 use crate::detector::monitor::alarm::AlarmPanel;
 use crate::detector::monitor::{Decision, Health, LeakFinding, Outcome, Outlook, Output, Verdict};
 use crate::detector::prognosis::Quantiles;
 use crate::log::{Caution, Sampling};
-use crate::report::Story;
-use crate::report::estimate::sampling_words;
+use crate::report::Report;
+use crate::report::estimate::sampling_text;
+use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
 /// What the verdict is held against.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circumstances {
+pub struct OperatingLimits {
     /// Operational limit, Pa.
     pub limit_pa: f64,
     /// Coldest temperature expected, K.
@@ -27,7 +25,7 @@ pub struct Circumstances {
 
 /// Rows that were not simply used, and jumps of the clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RowFates {
+pub struct RowCounts {
     /// With nothing new.
     pub duplicates: u64,
     /// With another value than a row of the same time.
@@ -56,39 +54,39 @@ pub struct Summary {
     /// Alarms as they are.
     pub alarms: AlarmPanel,
     /// What the verdict is held against.
-    pub circumstances: Circumstances,
+    pub limits: OperatingLimits,
     /// Rows that an earlier run has seen already.
     pub known_rows: u64,
     /// Rows that wait for those that may come late.
     pub held_rows: u64,
     /// What became of rows that were not simply used.
-    pub fates: RowFates,
+    pub row_counts: RowCounts,
     /// Whether gas was lost in any of these rows.
     pub loss_found: bool,
-    /// Whether the state goes on from an earlier run.
+    /// Whether the run continues an earlier one.
     pub continued: bool,
 }
 
 /// The run in a few lines.
-pub fn story(summary: &Summary) -> Story {
+pub fn summary(summary: &Summary) -> Report {
     let decision = &summary.last.decision;
-    let mut facts = vec![("verdict", decision_words(decision))];
+    let mut facts = vec![("verdict", decision_text(decision))];
     facts.extend(summary.last.leak.iter().flat_map(|leak| leak_rows(leak, &summary.naming)));
     if summary.last.leak.is_none() {
-        facts.push(("leak", no_leak_words(&summary.last)));
+        facts.push(("leak", no_leak_text(&summary.last)));
     }
     facts.extend(pressure_rows(summary));
     if let Some(outlook) = &summary.last.outlook {
-        facts.extend(outlook_rows(outlook, decision, summary.circumstances.next_service_s));
+        facts.extend(outlook_rows(outlook, decision, summary.limits.next_service_s));
     }
     facts.extend(alarm_rows(summary));
     facts.push(("sensors", sensors(&summary.last.health, &summary.naming)));
     facts.push(("log", log(summary)));
-    Story::new(&summary.title).facts(facts)
+    Report::new(&summary.title).facts(facts)
 }
 
 /// The verdict, with what it means where the word alone does not say it.
-fn decision_words(decision: &Decision) -> String {
+fn decision_text(decision: &Decision) -> String {
     let announced = match (decision.verdict, decision.outcome) {
         (Verdict::Discharge, Outcome::Loss) => ", not announced: gas is lost",
         (Verdict::Discharge, _) => ", announced",
@@ -98,11 +96,11 @@ fn decision_words(decision: &Decision) -> String {
 }
 
 /// What is known of a leak where none is found.
-fn no_leak_words(last: &Output) -> String {
+fn no_leak_text(last: &Output) -> String {
     let largest = format!("{} g/h", short(last.leak_rate_kg_s.high * GRAM_PER_HOUR));
     match (last.decision.outcome, last.decision.leak_probability) {
         (Outcome::Loss, _) => "gas went out fast: see the events".to_owned(),
-        (_, None) => format!("not known yet; the readings leave room for up to {largest}"),
+        (_, None) => format!("not known yet; the readings allow up to {largest}"),
         (_, Some(probability)) => {
             format!("none found; probability of a leak: {}, at most {largest}", percent(probability))
         }
@@ -112,7 +110,7 @@ fn no_leak_words(last: &Output) -> String {
 fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3] {
     let clock = &naming.clock;
     let [onset, from, to] =
-        [leak.onset_s.value, leak.onset_s.low, leak.onset_s.high].map(|time_s| clock.words(time_s));
+        [leak.onset_s.value, leak.onset_s.low, leak.onset_s.high].map(|time_s| clock.text(time_s));
     [
         (
             "leak rate",
@@ -128,7 +126,7 @@ fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3]
 }
 
 fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
-    let Circumstances { limit_pa, coldest_k, .. } = summary.circumstances;
+    let OperatingLimits { limit_pa, coldest_k, .. } = summary.limits;
     let held = |pressure_pa: f64| {
         let limit = short(limit_pa / PASCAL_PER_BAR);
         match pressure_pa {
@@ -151,7 +149,7 @@ fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
 fn outlook_rows(outlook: &Outlook, decision: &Decision, next_service_s: f64) -> Vec<(&'static str, String)> {
     let left = |quantiles: &Quantiles| {
         let [p5, p50, p95] = [quantiles.p5, quantiles.p50, quantiles.p95]
-            .map(|passage| passage_words(passage, quantiles.horizon_s));
+            .map(|passage| passage_text(passage, quantiles.horizon_s));
         if p5 == p95 { p5 } else { format!("{p5} (5 %), {p50} (50 %), {p95} (95 %)") }
     };
     let advice = &outlook.advice;
@@ -164,9 +162,9 @@ fn outlook_rows(outlook: &Outlook, decision: &Decision, next_service_s: f64) -> 
             match decision.reaction {
                 None => "not known yet".to_owned(),
                 Some(reaction) if reaction == advice.reaction => {
-                    format!("{}: {}", reaction_words(reaction), reaction_reason(advice, next_service_s))
+                    format!("{}: {}", reaction_text(reaction), reaction_reason(advice, next_service_s))
                 }
-                Some(reaction) => format!("{}: gas is being lost", reaction_words(reaction)),
+                Some(reaction) => format!("{}: gas is being lost", reaction_text(reaction)),
             },
         ),
     ]
@@ -182,22 +180,22 @@ fn alarm_rows(summary: &Summary) -> Vec<(&'static str, String)> {
 
 fn sensors(health: &[Health], naming: &Naming) -> String {
     let bad = |(health, (name, quantity)): (&Health, &(String, _))| {
-        (*health != Health::Good).then(|| format!("{name} {}", health_words(*health, *quantity)))
+        (*health != Health::Good).then(|| format!("{name} {}", health_text(*health, *quantity)))
     };
     let bad: Vec<String> = health.iter().zip(&naming.sensors).filter_map(bad).collect();
     if bad.is_empty() { "all good".to_owned() } else { bad.join(", ") }
 }
 
 fn log(summary: &Summary) -> String {
-    let mut text = sampling_words(&summary.sampling);
-    let fates = &summary.fates;
+    let mut text = sampling_text(&summary.sampling);
+    let row_counts = &summary.row_counts;
     for (count, one, many) in [
         (summary.known_rows, "known to the state", "known to the state"),
         (summary.held_rows, "waits for late ones", "wait for late ones"),
-        (fates.duplicates, "came twice", "came twice"),
-        (fates.contradictions, "contradicts another", "contradict others"),
-        (fates.too_late, "came too late", "came too late"),
-        (fates.wild, "has a time that cannot be", "have times that cannot be"),
+        (row_counts.duplicates, "came twice", "came twice"),
+        (row_counts.contradictions, "contradicts another", "contradict others"),
+        (row_counts.too_late, "came too late", "came too late"),
+        (row_counts.wild, "has a time that cannot be", "have times that cannot be"),
     ] {
         match count {
             0 => {}
@@ -205,7 +203,7 @@ fn log(summary: &Summary) -> String {
             count => text.push_str(&format!("; {count} {many}")),
         }
     }
-    match fates.jumps {
+    match row_counts.jumps {
         0 => {}
         1 => text.push_str("; the clock jumped once"),
         jumps => text.push_str(&format!("; the clock jumped {jumps} times")),
@@ -238,11 +236,11 @@ pub fn document(summary: &Summary) -> Value {
         "rows": summary.sampling.rows(),
         "known_rows": summary.known_rows,
         "held_rows": summary.held_rows,
-        "duplicates": summary.fates.duplicates,
-        "contradictions": summary.fates.contradictions,
-        "too_late": summary.fates.too_late,
-        "wild_times": summary.fates.wild,
-        "clock_jumps": summary.fates.jumps,
+        "duplicates": summary.row_counts.duplicates,
+        "contradictions": summary.row_counts.contradictions,
+        "too_late": summary.row_counts.too_late,
+        "wild_times": summary.row_counts.wild,
+        "clock_jumps": summary.row_counts.jumps,
         "duration_s": summary.sampling.duration_s(),
         "continued": summary.continued,
         "time_s": summary.last.estimate.time_s,
@@ -256,8 +254,8 @@ pub fn document(summary: &Summary) -> Value {
         "reaction": summary.last.decision.reaction.map(reaction_word),
         "p15_bar": summary.last.estimate.p15_pa / PASCAL_PER_BAR,
         "cold_pressure_bar": summary.last.cold_pressure_pa / PASCAL_PER_BAR,
-        "limit_bar": summary.circumstances.limit_pa / PASCAL_PER_BAR,
-        "coldest_degc": summary.circumstances.coldest_k - ZERO_CELSIUS_K,
+        "limit_bar": summary.limits.limit_pa / PASCAL_PER_BAR,
+        "coldest_degc": summary.limits.coldest_k - ZERO_CELSIUS_K,
         "outlook": summary.last.outlook.as_ref().map(outlook),
         "alarms": alarms,
         "sensors": sensors,

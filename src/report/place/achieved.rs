@@ -1,23 +1,23 @@
 //! What the best layouts achieve in Monte Carlo runs, beside what is predicted.
 use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit};
 use crate::evaluation::placement::{Achieved, Confirmed, Detected};
-use crate::report::Story;
+use crate::report::Report;
 
 impl Placed<'_> {
     /// Errors and smallest leaks in the observer's own world, then in drawn ones.
-    pub(super) fn achieved(&self) -> Story {
-        let Some(closed_loop) = self.closed_loop else { return Story::default() };
+    pub(super) fn achieved(&self) -> Report {
+        let Some(closed_loop) = self.closed_loop else { return Report::default() };
         let parts = [
             self.errors("In the observer's own world, a calm one", &closed_loop.matched),
             self.leaks("Smallest leak there", &closed_loop.matched_leaks),
             self.errors("In drawn cylinders in railway weather", &closed_loop.mismatched),
             self.leaks("Smallest leak there", &closed_loop.mismatched_leaks),
         ];
-        parts.into_iter().fold(Story::default(), Story::then)
+        parts.into_iter().fold(Report::default(), Report::then)
     }
 
-    fn errors(&self, title: &str, of: &[Confirmed]) -> Story {
-        let Some(first) = of.first() else { return Story::default() };
+    fn errors(&self, title: &str, of: &[Confirmed]) -> Report {
+        let Some(first) = of.first() else { return Report::default() };
         let header = [
             "layout",
             "gas K: predicted",
@@ -37,11 +37,11 @@ impl Placed<'_> {
             cells
         };
         let title = format!("{title}: errors over {} runs", first.seeds);
-        Story::default().rows(title, &header, of.iter().map(row).collect())
+        Report::default().rows(title, &header, of.iter().map(row).collect())
     }
 
-    fn leaks(&self, title: &str, of: &[Detected]) -> Story {
-        let Some(first) = of.first() else { return Story::default() };
+    fn leaks(&self, title: &str, of: &[Detected]) -> Report {
+        let Some(first) = of.first() else { return Report::default() };
         let leak = GRAM_PER_HOUR.with_symbol(first.leak_kg_s);
         let found = format!("{leak} found");
         let header = ["layout", "predicted g/h", "achieved g/h", "sd", "mean", "answer", &found, "predicted"];
@@ -60,7 +60,7 @@ impl Placed<'_> {
         let explained = "sd, mean: of the best statistic without a leak, predicted 1 and 0; answer: what the leak moves it by, in \
                          parts of the predicted; achieved: the smallest leak with these";
         let title = format!("{title}, over {} runs with and without", first.seeds);
-        Story::default().explained_rows(title, &header, of.iter().map(row).collect(), explained)
+        Report::default().explained_rows(title, &header, of.iter().map(row).collect(), explained)
     }
 }
 

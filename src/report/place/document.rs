@@ -1,52 +1,48 @@
 //! A study as CSV, a row for each judged layout, and as JSON with all that is known; the matrices behind it.
-use super::{GRAMS, GRAMS_PER_HOUR, HOUR_S, Placed, Unit};
+use super::{Placed, Unit};
 use crate::estimator::placement::study::{Judged, Numbered, Placement};
 use crate::estimator::placement::{CandidateOutput, CourseNumber, SitedCylinder};
-use crate::report::{Provenance, number};
+use crate::report::{Digits, GRAM, GRAM_PER_HOUR, HOUR_S, Provenance, Table};
 use serde_json::{Map, Value, json};
 
 /// Significant digits of the numbers.
-const DIGITS: usize = 8;
+const DIGITS: Digits = Digits::Significant(8);
 
 impl Placed<'_> {
-    /// As CSV with a row for each judged layout; an empty cell is a leak that is never found.
-    pub fn csv(&self, provenance: &Provenance) -> String {
-        let mut text = provenance.comment_lines();
-        self.text()
-            .lines()
-            .filter(|line| !line.is_empty())
-            .for_each(|line| text.push_str(&format!("# {line}\n")));
-        text.push_str("sensors,layout,cost,gas_sd_k,mass_sd_g,leak_sd_g_h,smallest_leak_g_h,delay_h");
-        for scenario in 1..=self.study.scenarios.len() {
-            for name in ["course_mean_k", "course_worst_k", "robust_mean_k", "robust_worst_k"] {
-                text.push_str(&format!(",{name}_{scenario}"));
+    /// A row for each judged layout; an empty cell is a leak that is never found.
+    pub fn table(&self) -> Table {
+        let judged = &self.study.judged;
+        let mut table = Table::new();
+        table.push_integers("sensors", judged.iter().map(|one| one.sensors.len()));
+        table.push_texts("layout", judged.iter().map(|one| self.names(&one.sensors)));
+        let mut push = |name: &str, value: &dyn Fn(&Judged) -> f64| {
+            table.push(name, DIGITS, judged.iter().map(value));
+        };
+        push("cost", &|one| one.cost);
+        push("gas_sd_k", &|one| one.certainty.gas_sd_k);
+        push("mass_sd_g", &|one| GRAM * one.certainty.mass_sd_kg);
+        push("leak_sd_g_h", &|one| GRAM_PER_HOUR * one.certainty.leak_sd_kg_s);
+        push("smallest_leak_g_h", &|one| GRAM_PER_HOUR * one.certainty.smallest_leak_kg_s);
+        push("delay_h", &|one| one.delay_s.map_or(f64::NAN, |delay_s| delay_s / HOUR_S));
+        for scenario in 0..self.study.scenarios.len() {
+            for (name, number) in [
+                ("course_mean_k", CourseNumber::Mean),
+                ("course_worst_k", CourseNumber::Worst),
+                ("robust_mean_k", CourseNumber::Schmidt),
+                ("robust_worst_k", CourseNumber::WorstCase),
+            ] {
+                let value = |one: &Judged| one.along.get(scenario).map_or(f64::NAN, |along| number.of(along));
+                push(&format!("{name}_{}", scenario + 1), &value);
             }
         }
-        text.push('\n');
-        for judged in &self.study.judged {
-            text.push_str(&self.csv_row(judged));
-        }
-        text
+        table
     }
 
-    fn csv_row(&self, judged: &Judged) -> String {
-        let certainty = &judged.certainty;
-        let mut values = vec![
-            Some(judged.cost),
-            Some(certainty.gas_sd_k),
-            Some(GRAMS * certainty.mass_sd_kg),
-            Some(GRAMS_PER_HOUR * certainty.leak_sd_kg_s),
-            Some(GRAMS_PER_HOUR * certainty.smallest_leak_kg_s),
-            judged.delay_s.map(|delay_s| delay_s / HOUR_S),
-        ];
-        const NUMBERS: [CourseNumber; 4] =
-            [CourseNumber::Mean, CourseNumber::Worst, CourseNumber::Schmidt, CourseNumber::WorstCase];
-        for along in &judged.along {
-            values.extend(NUMBERS.map(|of| Some(of.of(along))));
-        }
-        let cell = |value: Option<f64>| value.map_or_else(String::new, |value| number(value, DIGITS));
-        let cells: Vec<String> = values.into_iter().map(cell).collect();
-        format!("{},{},{}\n", judged.sensors.len(), quoted(&self.names(&judged.sensors)), cells.join(","))
+    /// As CSV, the tables for people as remarks above it.
+    pub fn csv(&self, provenance: &Provenance) -> String {
+        let remarks: Vec<String> =
+            self.text().lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+        self.table().to_csv(provenance, &remarks)
     }
 
     /// As JSON: the best layouts by name in units that people think in, then the whole study in SI, sensors by their
@@ -113,9 +109,4 @@ fn member(of: &SitedCylinder) -> Value {
         "process_noise": process_noise,
         "outputs": of.outputs().iter().map(output).collect::<Vec<_>>(),
     })
-}
-
-/// A cell that may hold a comma.
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
 }

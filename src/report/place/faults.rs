@@ -1,7 +1,7 @@
 //! Sensors that are lost or wrong, and unknown errors.
 use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit, WATT};
 use crate::estimator::placement::study::{Bias, BiasSource, Failure};
-use crate::report::Story;
+use crate::report::Report;
 
 impl Placed<'_> {
     /// The layout that failures are of.
@@ -11,10 +11,10 @@ impl Placed<'_> {
     }
 
     /// What is left without each sensor.
-    pub(super) fn losses(&self) -> Story {
+    pub(super) fn losses(&self) -> Report {
         let header = ["lost", "gas sd / K", "mass / g", "leak / g/h", "smallest leak / g/h"];
         let rows: Vec<Vec<String>> = self.study.failures.iter().map(|failure| self.loss(failure)).collect();
-        Story::default().rows(format!("A sensor lost, of {}", self.of_layout()), &header, rows)
+        Report::default().rows(format!("A sensor lost, of {}", self.of_layout()), &header, rows)
     }
 
     fn loss(&self, failure: &Failure) -> Vec<String> {
@@ -33,7 +33,7 @@ impl Placed<'_> {
     }
 
     /// A constant error of each sensor.
-    pub(super) fn faults(&self) -> Story {
+    pub(super) fn faults(&self) -> Report {
         let header = [
             "at fault",
             "found from",
@@ -64,7 +64,7 @@ impl Placed<'_> {
         let rows: Vec<Vec<String>> = self.study.failures.iter().map(row).collect();
         let explained = "smallest constant error that is found in time, and that is also told from a leak and from every other sensor's; \
                          gas, mass: error that 1 K or 1 bar makes in a day";
-        Story::default().explained_rows(
+        Report::default().explained_rows(
             format!("A sensor at fault, of {}", self.of_layout()),
             &header,
             rows,
@@ -73,13 +73,13 @@ impl Placed<'_> {
     }
 
     /// What a standard deviation of something unknown does in an hour, a day and a week.
-    pub(super) fn biases(&self) -> Story {
+    pub(super) fn biases(&self) -> Report {
         let header =
             ["unknown", "one sd", "K: 1 h", "1 d", "7 d", "g: 1 h", "1 d", "7 d", "g/h: 1 h", "1 d", "7 d"];
         let rows: Vec<Vec<String>> = self.study.biases.iter().map(|bias| self.bias(bias)).collect();
         let explained = "error of the estimates after so long, from an unknown error of one sd that sets in; coupling: with 10 K between \
                          air and wall";
-        Story::default().explained_rows(
+        Report::default().explained_rows(
             "Unknown errors in the estimates: gas temperature in K, mass in g, leak rate in g/h",
             &header,
             rows,

@@ -6,13 +6,13 @@ use crate::estimator::placement::study::{Failure, Front, Judged, Position};
 use crate::estimator::sensor::SensorKind;
 use crate::report::figure::style::{self, Stroke};
 use crate::report::figure::{
-    Cell, Column, Elevation, Figure, Grid, Horizontal, Item, Mark, Panel, Part, Place, Profile, Sheet,
+    Cell, Column, Elevation, Figure, Grid, Horizontal, Item, Mark, Panel, Part, Picture, Place, Profile,
 };
 use crate::thermal::wall::geometry::Orientation;
 
 impl Placed<'_> {
     /// Places beside the cylinder, cost, failures; parts that a partial study lacks are left out.
-    pub fn figure(&self) -> Sheet {
+    pub fn figure(&self) -> Picture {
         let mut parts = vec![Part::Elevation(self.map())];
         if !self.study.judged.is_empty() {
             parts.push(Part::Figure(self.costs()));
@@ -20,7 +20,7 @@ impl Placed<'_> {
         if !self.study.failures.is_empty() {
             parts.push(Part::Grid(self.failures()));
         }
-        Sheet { title: format!("Where sensors should sit on: {}", self.study.vessel), parts }
+        Picture { title: format!("Where sensors should sit on: {}", self.study.vessel), parts }
     }
 
     /// The cylinder with the best layout on it, and numbers against the height.
@@ -144,7 +144,7 @@ impl Placed<'_> {
             }),
         ];
         let horizontal = Horizontal::Quantity("cost of a layout".into());
-        Figure { title: "What accuracy costs".into(), horizontal, panels, marks: Vec::new(), below: None }
+        Figure::new("What accuracy costs", horizontal, panels)
     }
 
     fn cost_panel(
@@ -174,7 +174,7 @@ impl Placed<'_> {
             Item::Line { name: String::new(), x, y, stroke: style::FRONT },
             of_points(name, points, style::FRONT),
         ];
-        Panel { quantity: quantity.into(), items, height: 0.72 }
+        Panel::new(quantity, 0.72, items)
     }
 
     /// What is left without each sensor, and whether its fault is told.

@@ -34,11 +34,6 @@ use crate::thermal::vessel::Vessel;
 pub const CAPTION: &str = "The cylinder to scale with its candidates and what a thermometer at each height is worth; cost against accuracy; what the best \
                            layouts reach.";
 
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
-const GRAMS: f64 = 1e3;
-/// g/h in a kg/s.
-const GRAMS_PER_HOUR: f64 = GRAMS * HOUR_S;
 const MILLIMETRES: f64 = 1e3;
 /// Significant digits of the tables.
 const DIGITS: usize = 3;
@@ -69,9 +64,9 @@ struct Unit {
 const KELVIN: Unit = Unit { symbol: "K", per_si: 1.0 };
 const BAR: Unit = Unit { symbol: "bar", per_si: 1e-5 };
 const WATT: Unit = Unit { symbol: "W", per_si: 1.0 };
-const GRAM: Unit = Unit { symbol: "g", per_si: GRAMS };
-const GRAM_PER_HOUR: Unit = Unit { symbol: "g/h", per_si: GRAMS_PER_HOUR };
-const HOUR: Unit = Unit { symbol: "h", per_si: 1.0 / HOUR_S };
+const GRAM: Unit = Unit { symbol: "g", per_si: crate::report::GRAM };
+const GRAM_PER_HOUR: Unit = Unit { symbol: "g/h", per_si: crate::report::GRAM_PER_HOUR };
+const HOUR: Unit = Unit { symbol: "h", per_si: 1.0 / crate::report::HOUR_S };
 
 impl Unit {
     fn of(criterion: Criterion) -> Self {

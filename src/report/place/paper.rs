@@ -2,12 +2,12 @@
 use super::{GRAM_PER_HOUR, KELVIN, Placed};
 use crate::estimator::placement::study::ByPaper;
 use crate::estimator::placement::{PublishedRecord, PublishedScore, Spread};
-use crate::report::{Story, number};
+use crate::report::{Report, number};
 
 impl Placed<'_> {
     /// Each thermometer by the fit of a first-order model, and by what the observer knows with it.
-    pub(super) fn by_paper(&self) -> Story {
-        let Some(by_paper) = &self.study.published else { return Story::default() };
+    pub(super) fn by_paper(&self) -> Report {
+        let Some(by_paper) = &self.study.published else { return Report::default() };
         let (identified, validated) = (PublishedRecord::Identification, PublishedRecord::Validation);
         let header = [
             "place",
@@ -56,7 +56,7 @@ impl Placed<'_> {
                          scenarios 1 and 2 and validated on 3 and 4, over drawn specimens of the sensor; rank: by the \
                          validation's MSE. Right: the observer with the place alone beside what is required; rank: by the \
                          smallest leak that it finds";
-        Story::default()
+        Report::default()
             .explained_rows("Places by the paper's measure and by the observer's", &header, rows, explained)
             .remark(self.question(by_paper))
     }

@@ -2,11 +2,11 @@
 use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
 use crate::estimator::placement::Status;
 use crate::estimator::placement::study::{Front, Position};
-use crate::report::{Story, number};
+use crate::report::{Report, number};
 
 impl Placed<'_> {
     /// Layouts that none is better than at their cost.
-    pub(super) fn fronts(&self) -> Story {
+    pub(super) fn fronts(&self) -> Report {
         let study = self.study;
         let leak = GRAM_PER_HOUR.with_symbol(study.settings.leak_kg_s);
         let gas =
@@ -16,18 +16,18 @@ impl Placed<'_> {
         gas.then(delay)
     }
 
-    fn front(&self, title: &str, value: &str, unit: Unit, front: &Front) -> Story {
+    fn front(&self, title: &str, value: &str, unit: Unit, front: &Front) -> Report {
         let row = |point: &crate::estimator::placement::study::Point| {
             vec![number(point.cost, 4), unit.number(point.value), self.chosen(&point.sensors)]
         };
         let rows: Vec<Vec<String>> = front.points.iter().map(row).collect();
         let compared = if front.complete { "all layouts" } else { "not all layouts, only judged ones" };
         let title = format!("{title} ({compared}: {})", front.compared);
-        Story::default().rows(title, &["cost", value, "layout"], rows)
+        Report::default().rows(title, &["cost", value, "layout"], rows)
     }
 
     /// One thermometer beside what is required, from the top down.
-    pub(super) fn positions(&self) -> Story {
+    pub(super) fn positions(&self) -> Report {
         let mut positions: Vec<&Position> = self.study.positions.iter().collect();
         positions.sort_by(|a, b| self.top_m(b).total_cmp(&self.top_m(a)));
         let mut header = vec![
@@ -49,7 +49,7 @@ impl Placed<'_> {
         let beside = self.required().map_or(String::new(), |names| format!(" beside {names}"));
         let title = format!("One sensor{beside}, anywhere");
         let explained = "< shoulder and valve; ref: may not be chosen, a reference; blind: sees not every state; smallest leak in g/h";
-        Story::default().explained_rows(title, &header, rows, explained)
+        Report::default().explained_rows(title, &header, rows, explained)
     }
 
     fn position(&self, position: &Position) -> Vec<String> {

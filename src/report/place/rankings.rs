@@ -3,7 +3,7 @@ use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
 use crate::estimator::placement::CourseNumber;
 use crate::estimator::placement::search::Method;
 use crate::estimator::placement::study::{Judged, Numbered, Proof, Refused};
-use crate::report::{Story, number};
+use crate::report::{Report, number};
 
 /// Layouts near the best that are named.
 const NAMED: usize = 3;
@@ -30,7 +30,7 @@ const ROBUST: [Measure; 2] = [
 
 impl Placed<'_> {
     /// For each number of sensors the best by the criterion, and what it cannot fall below.
-    pub(super) fn best_layouts(&self) -> Story {
+    pub(super) fn best_layouts(&self) -> Report {
         let criterion = self.study.settings.criterion;
         let unit = Unit::of(criterion);
         let value = format!("value / {}", unit.symbol);
@@ -55,7 +55,7 @@ impl Placed<'_> {
         let title = format!("Best layouts by the {}", criterion.words());
         let explained = "gap: of the best to what the search or the relaxation proves; relaxed: to the convex relaxation \
                          alone; change: against one sensor less";
-        Story::default().explained_rows(title, &header, rows, explained).remark(self.near_best())
+        Report::default().explained_rows(title, &header, rows, explained).remark(self.near_best())
     }
 
     /// The first few that are as good as the best.
@@ -75,13 +75,13 @@ impl Placed<'_> {
     }
 
     /// Numbers of sensors without a layout.
-    pub(super) fn refused(&self) -> Story {
+    pub(super) fn refused(&self) -> Report {
         let line = |of: &Refused| format!("no layout of {}: {}\n", of.sensors, of.reason);
-        Story::default().text(self.study.refused.iter().map(line).collect::<String>())
+        Report::default().text(self.study.refused.iter().map(line).collect::<String>())
     }
 
     /// Layouts by every number, the best of each number of sensors marked.
-    pub(super) fn judged_layouts(&self) -> Story {
+    pub(super) fn judged_layouts(&self) -> Report {
         let study = self.study;
         let mut measures: Vec<Measure> = STATED.to_vec();
         measures.extend([SMALLEST, DELAY]);
@@ -112,7 +112,7 @@ impl Placed<'_> {
         let explained = format!(
             "* best of so many sensors; sd of gas temperature, mass and leak rate at rest; finds: smallest leak found in time{robust}"
         );
-        Story::default().explained_rows("Layouts by every number", &header, rows, explained)
+        Report::default().explained_rows("Layouts by every number", &header, rows, explained)
     }
 
     /// Best of so many sensors by a number.
@@ -123,7 +123,7 @@ impl Placed<'_> {
     }
 
     /// Where certainty and the smallest leak ask for different layouts: a small covariance alone finds no leak.
-    pub(super) fn differences(&self) -> Story {
+    pub(super) fn differences(&self) -> Report {
         let line = |number: &Numbered| {
             let (_, unit, smallest) = SMALLEST;
             let finds = self.best_of(number.sensors, smallest)?;
@@ -150,14 +150,14 @@ impl Placed<'_> {
         };
         let lines: Vec<String> = self.study.numbers.iter().filter_map(line).collect();
         if lines.is_empty() {
-            return Story::default();
+            return Report::default();
         }
         let title = "Posterior covariance against the smallest leak, by number of sensors";
-        Story::default().text(format!("{title}\n{}", lines.concat()))
+        Report::default().text(format!("{title}\n{}", lines.concat()))
     }
 
     /// The best layouts along every scenario, with what they suffer from most.
-    pub(super) fn along_scenarios(&self) -> Story {
+    pub(super) fn along_scenarios(&self) -> Report {
         let header =
             ["scenario", "n", "sd mean", "sd worst", "robust mean", "worst case", "largest error by", "K"];
         let bests = self.study.numbers.iter().filter_map(|number| {
@@ -184,7 +184,7 @@ impl Placed<'_> {
                 ]);
             }
         }
-        Story::default().rows("The best layouts along scenarios: gas temperature, K", &header, rows)
+        Report::default().rows("The best layouts along scenarios: gas temperature, K", &header, rows)
     }
 }
 

@@ -1,14 +1,15 @@
-//! A study in words: what was asked, then one table after the other.
-use super::{BAR, DAY_S, GRAM_PER_HOUR, HOUR, Placed};
-use crate::report::{Story, number};
+//! A study as a report: its settings, then one table after the other.
+use super::{BAR, GRAM_PER_HOUR, HOUR, Placed};
+use crate::report::DAY_S;
+use crate::report::{Report, number};
 use crate::thermal::units::ZERO_CELSIUS_K;
 
 impl Placed<'_> {
-    /// What was asked, then one table after the other.
-    pub fn story(&self) -> Story {
-        let mut story = Story::new("").text(self.asked());
+    /// The settings, then one table after the other.
+    pub fn summary(&self) -> Report {
+        let mut report = Report::new("").text(self.settings_text());
         if self.study.numbers.is_empty() {
-            story = story.text("No layout was looked at before the end.");
+            report = report.text("No layout was looked at before the end.");
         }
         let parts = [
             self.best_layouts(),
@@ -24,16 +25,16 @@ impl Placed<'_> {
             self.by_paper(),
             self.achieved(),
         ];
-        parts.into_iter().fold(story, Story::then)
+        parts.into_iter().fold(report, Report::then)
     }
 
     /// Tables for people, at most 110 characters wide.
     pub fn text(&self) -> String {
-        self.story().to_text()
+        self.summary().to_text()
     }
 
-    /// What was asked, and under which conditions.
-    fn asked(&self) -> String {
+    /// Question and conditions of the study.
+    fn settings_text(&self) -> String {
         let study = self.study;
         let settings = &study.settings;
         let (conditions, detection) = (&settings.site.conditions, &settings.site.detection);

@@ -63,7 +63,7 @@ fn what_was_found_of_the_sensors_is_a_file_that_others_take() {
     let same = [&["log.csv", "-o", "same.toml", "--sensors-out", "same.toml"], &QUICK[..]].concat();
     let outcome = run(folder.path(), &[&["calibrate", "nitrogen-20l"], &same[..]].concat());
     assert_eq!(outcome.code, Some(2));
-    assert!(outcome.stderr.contains("name the same file"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("-o and --sensors-out name the same place"), "{}", outcome.stderr);
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn too_few_samples_are_refused_with_how_many_would_do() {
     refused(&lagged(7), &["--order", "3"], &["9 parameters", "at least 11"]);
     // What is left after the held-out part counts.
     refused(&lagged(40), &["--validate", "0.95"], &["usable output samples"]);
-    refused(&lagged(100), &["--validate", "0.015"], &["held out", "usable output samples"]);
+    refused(&lagged(100), &["--validate", "0.015"], &["held-out data", "usable output samples"]);
 }
 
 #[test]
@@ -80,11 +80,12 @@ fn a_pole_or_a_dead_time_at_a_bound_is_refused_with_the_bound() {
 #[test]
 fn structures_settings_and_columns_that_cannot_be_are_refused_with_what_would_be_right() {
     let rows = lagged(50);
-    refused(&rows, &["--order", "4"], &["`order` = 4 must be 1, 2 or 3"]);
+    refused(&rows, &["--order", "4"], &["--order 4: it must be a whole number of at least 1 and at most 3"]);
+    refused(&rows, &["--zeros", "-1"], &["--zeros -1: it must be a whole number of at least 0"]);
     refused(&rows, &["--zeros", "1"], &["`zeros` = 1 must be below the order"]);
     refused(&rows, &["--gain", "0"], &["`gain` = 0 must be a number other than zero"]);
     refused(&rows, &["--initial", "1,2"], &["`initial` = 2 must be one value per order"]);
-    refused(&rows, &["--lags", "0"], &["`lags` = 0 must be at least 1"]);
+    refused(&rows, &["--lags", "0"], &["--lags 0: it must be a whole number of at least 1"]);
     refused(
         &rows,
         &["--method", "bias-compensated", "--input-sd-k", "0.1"],

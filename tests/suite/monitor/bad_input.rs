@@ -12,8 +12,12 @@ fn refused(log: &str, options: &[&str], words: &[&str]) {
 #[test]
 fn numbers_out_of_their_bounds_are_refused_with_the_bound() {
     let text = log(0..3, TIGHT);
-    refused(&text, &["--false-alarm-years", "0"], &["--false-alarm-years 0: it must be above 0"]);
-    refused(&text, &["--false-alarm-years", "nan"], &["--false-alarm-years NaN"]);
+    refused(&text, &["--false-alarm-years", "0"], &["--false-alarm-years 0: it must be a number above 0"]);
+    refused(&text, &["--false-alarm-years", "nan"], &["--false-alarm-years nan"]);
+    let bounds =
+        "error: --false-alarm-years -3: it must be a number above 0 and at most 100000; the default is 10\n";
+    refused(&text, &["--false-alarm-years", "-3"], &[bounds]);
+    refused(&text, &["--fill-sd-percent", "-1"], &["--fill-sd-percent -1", "above 0 and at most 100"]);
     refused(&text, &["--limit-bar", "-1"], &["--limit-bar = -1 must be above 0"]);
     refused(&text, &["--coldest-degc", "-300"], &["--coldest-degc = -300 must be above -273.15"]);
     refused(&text, &["--lateness-s", "inf"], &["--lateness-s", "finite"]);

@@ -139,7 +139,7 @@ fn a_state_that_is_cut_short_damaged_or_of_another_kind_is_refused_with_the_way_
         std::fs::write(&path, bytes).unwrap();
         let outcome = monitor(folder.path(), &log(120..130, TIGHT), STATE);
         let words: Vec<&str> =
-            words.iter().chain(&["c.state cannot be gone on from", "--cold-start"]).copied().collect();
+            words.iter().chain(&["cannot continue from ", "c.state: ", "--cold-start"]).copied().collect();
         refusal(outcome, &words);
         // What was there stays for whoever wants to look at it.
         assert_eq!(std::fs::read(&path).unwrap(), bytes);
@@ -158,7 +158,7 @@ fn a_state_that_is_cut_short_damaged_or_of_another_kind_is_refused_with_the_way_
     let outcome = monitor(folder.path(), &log(120..240, TIGHT), &cold);
     assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
     let [caution] = cautions(&outcome)[..] else { panic!("{}", outcome.stderr) };
-    assert!(caution.starts_with("cold start instead of going on from "), "{caution}");
+    assert!(caution.starts_with("cold start instead of continuing from "), "{caution}");
     assert!(caution.ends_with("c.state: it has version 2, this program reads 1"), "{caution}");
     let events = events(folder.path(), "e.jsonl");
     assert_eq!(events[0]["event"], "cold-start");

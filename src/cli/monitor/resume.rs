@@ -9,28 +9,28 @@ use cylwatch::thermal::vessel::Vessel;
 use jiff::Timestamp;
 
 /// A vessel and what is known of its past.
-pub struct Beginning {
+pub struct RunStart {
     /// The vessel.
     pub vessel: Vessel,
     /// What tells this vessel from another.
     mark: VesselMark,
     /// Thresholds of its own, if there are some.
     pub commissioned: Option<CommissionedVessel>,
-    /// The state to go on from.
+    /// The state that the run continues.
     pub state: Option<State>,
     /// Why there is none although there could be.
     pub cold_start: Option<String>,
 }
 
-impl Beginning {
+impl RunStart {
     /// Reads the vessel and the state.
     pub fn find(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Self> {
         let (specification, vessel, _) = inputs.vessel_specification(&options.vessel, messages)?;
         let mark = VesselMark::of(&specification, &vessel)?;
         let commissioned = options.commissioned.as_deref();
         let commissioned = commissioned.map(|path| commissioned_for(inputs, path, &mark)).transpose()?;
-        let mut beginning = Self { vessel, mark, commissioned, state: None, cold_start: None };
-        let Some(path) = &options.state else { return Ok(beginning) };
+        let mut start = Self { vessel, mark, commissioned, state: None, cold_start: None };
+        let Some(path) = &options.state else { return Ok(start) };
         match (State::read(path), options.cold_start) {
             (Ok(None), _) => {
                 if options.acknowledge.is_some() {
@@ -39,19 +39,19 @@ impl Beginning {
             }
             (Ok(Some(state)), false) => {
                 if options.learned_in.is_some() {
-                    messages.caution("--learned-in is not used: the state knows what was learnt");
+                    messages.caution("--learned-in is not used: the state contains what was learnt");
                 }
                 inputs.record(Input::of(path.display().to_string(), &std::fs::read(path)?));
-                beginning.state = Some(state);
+                start.state = Some(state);
             }
-            (Ok(Some(_)), true) => beginning.cold_start = Some("as asked by --cold-start".to_owned()),
-            (Err(reason), true) => beginning.cold_start = Some(reason.to_string()),
+            (Ok(Some(_)), true) => start.cold_start = Some("requested by --cold-start".to_owned()),
+            (Err(reason), true) => start.cold_start = Some(reason.to_string()),
             (Err(reason), false) => return Err(refused(path, &reason)),
         }
-        if let Some(reason) = &beginning.cold_start {
-            messages.caution(&format!("cold start instead of going on from {}: {reason}", path.display()));
+        if let Some(reason) = &start.cold_start {
+            messages.caution(&format!("cold start instead of continuing from {}: {reason}", path.display()));
         }
-        Ok(beginning)
+        Ok(start)
     }
 
     /// Date of second 0 of the state.
@@ -70,7 +70,7 @@ impl Beginning {
             ("a lateness of", format!("{} s", value(options.lateness_s))),
             ("a step of", format!("{} s", value(options.step_s))),
         ];
-        if let Some(words) = options.fill.words() {
+        if let Some(words) = options.fill.text() {
             entries.push(("the fill", words));
         }
         Identity(entries.into_iter().map(|(what, value)| (what.to_owned(), value)).collect())
@@ -79,7 +79,7 @@ impl Beginning {
 
 /// The refusal of a state, with what to do.
 pub fn refused(path: &Path, reason: &Refusal) -> anyhow::Error {
-    anyhow!("{} cannot be gone on from: {reason}; --cold-start begins anew and replaces it", path.display())
+    anyhow!("cannot continue from {}: {reason}; --cold-start starts fresh and replaces it", path.display())
 }
 
 /// The thresholds of a file, which must be for this vessel.

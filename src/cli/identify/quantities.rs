@@ -6,9 +6,11 @@ use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR};
 
 /// What can be given.
 #[derive(Clone, Debug)]
-pub struct Known;
+pub struct QuantityOptions;
 
-impl Choices for Known {
+impl Choices for QuantityOptions {
+    const EXPERT: &'static [&'static str] =
+        &["dead-time", "longest-dead-time", "longest-gap", "input-sd", "output-sd"];
     const CHOICES: &'static [Choice] = &[
         ("dead-time", Dimension::Time, "Known dead time [default: none]"),
         ("longest-dead-time", Dimension::Time, "Estimate a dead time up to this one"),
@@ -41,9 +43,9 @@ impl Choices for Known {
 }
 
 /// Quantities as given.
-pub type Amounts = Given<Known>;
+pub type Quantities = Given<QuantityOptions>;
 
-impl Amounts {
+impl Quantities {
     /// Known and longest dead time, s.
     pub fn dead_time(&self) -> anyhow::Result<(Option<f64>, Option<f64>)> {
         Ok((self.si("dead-time", Dimension::Time)?, self.si("longest-dead-time", Dimension::Time)?))

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// One question.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Answer {
+pub struct Comparison {
     /// Of what.
     pub what: &'static str,
     /// What the paper says.
@@ -20,7 +20,7 @@ pub struct Answer {
     pub why: String,
 }
 
-impl Answer {
+impl Comparison {
     /// As JSON.
     pub fn to_json(&self) -> Value {
         json!({ "what": self.what, "paper": self.paper, "here": self.here, "why": self.why })
@@ -40,17 +40,17 @@ fn n(value: f64, digits: usize) -> String {
 }
 
 /// All answers, in the order of the paper.
-pub fn answers(results: &Reproduction) -> Vec<Answer> {
+pub fn comparisons(results: &Reproduction) -> Vec<Comparison> {
     let mut all = of_the_gas(results);
     all.extend(of_the_model(results));
     all.extend(of_the_monitor(results));
     all
 }
 
-fn of_the_gas(results: &Reproduction) -> Vec<Answer> {
+fn of_the_gas(results: &Reproduction) -> Vec<Comparison> {
     let (section, tight) = (&results.section_2, &results.tight);
     vec![
-        Answer {
+        Comparison {
             what: "gas mass",
             paper: format!("{} kg", n(section.paper_kg, 3)),
             here: format!("{} kg", n(section.real_kg, 4)),
@@ -59,7 +59,7 @@ fn of_the_gas(results: &Reproduction) -> Vec<Answer> {
                 n(section.compressibility, 5)
             ),
         },
-        Answer {
+        Comparison {
             what: "heat capacity, steel to gas",
             paper: "about 2 to 1".into(),
             here: format!("{} to 1", n(section.real_ratio(), 3)),
@@ -68,7 +68,7 @@ fn of_the_gas(results: &Reproduction) -> Vec<Answer> {
                 n(section.real_cv_j_kg_k, 3)
             ),
         },
-        Answer {
+        Comparison {
             what: "slope of the pressure",
             paper: format!("{SLOPE_OF_PAPER_BAR_K} bar/°C"),
             here: format!("{} bar/K", n(tight.slope_bar_k, 3)),
@@ -79,7 +79,7 @@ fn of_the_gas(results: &Reproduction) -> Vec<Answer> {
                 n(tight.fill_of_paper_bar, 4)
             ),
         },
-        Answer {
+        Comparison {
             what: "tight, full, at \u{2212}25 °C",
             paper: "alarm below 160 bar".into(),
             here: format!("reads {} bar", n(tight.pressure_cold_bar, 5)),
@@ -88,7 +88,7 @@ fn of_the_gas(results: &Reproduction) -> Vec<Answer> {
     ]
 }
 
-fn of_the_model(results: &Reproduction) -> Vec<Answer> {
+fn of_the_model(results: &Reproduction) -> Vec<Comparison> {
     let study = &results.identification;
     let [shoulder, valve] = &study.rows;
     let pole = |found: &crate::estimator::identify::Identified| found.model.den[1];
@@ -101,7 +101,7 @@ fn of_the_model(results: &Reproduction) -> Vec<Answer> {
         study.validations.iter().map(|validation| rms(validation)[start]).fold(0.0, f64::max)
     };
     vec![
-        Answer {
+        Comparison {
             what: "pole, shoulder to gas",
             paper: format!("{} 1/s ({:.0} s)", published::POLE_PER_S, 1.0 / published::POLE_PER_S),
             here: format!("{} 1/s ({:.0} s)", n(pole(shoulder), 4), 1.0 / pole(shoulder)),
@@ -111,7 +111,7 @@ fn of_the_model(results: &Reproduction) -> Vec<Answer> {
                 100.0 * (pole(shoulder) / published::POLE_PER_S - 1.0)
             ),
         },
-        Answer {
+        Comparison {
             what: "steady-state gain",
             paper: n(published::model().gain(), 5),
             here: n(shoulder.model.gain(), 4),
@@ -121,25 +121,25 @@ fn of_the_model(results: &Reproduction) -> Vec<Answer> {
                 100.0 * study.share_of_gain
             ),
         },
-        Answer {
+        Comparison {
             what: "table 1, shoulder: fit, MSE",
             paper: format!("{} %, {} K²", paper_shoulder.fit_percent, paper_shoulder.mse_k2),
             here: format!("{:.2} %, {} K²", s.fit_percent, n(s.mse, 3)),
             why: "the simulated chamber has no noise, and what made the gain is not in it".into(),
         },
-        Answer {
+        Comparison {
             what: "table 1, valve: fit, MSE",
             paper: format!("{} %, {} K²", paper_valve.fit_percent, paper_valve.mse_k2),
             here: format!("{:.2} %, {} K²", valve.statistics.fit_percent, n(valve.statistics.mse, 3)),
             why: "with equal mounting the shoulder is ahead here; which of the two is, mounting decides, not the place".into(),
         },
-        Answer {
+        Comparison {
             what: "samples, spread of the gas",
             paper: format!("{:.0}, {:.1} K (from FPE, MSE and fit)", paper_shoulder.samples(2.0), paper_shoulder.output_sd_k()),
             here: format!("{}, {:.1} K", s.samples, study.record.gas_sd_k()),
             why: "agree: the scenarios were a sample a minute for 6.45 h".into(),
         },
-        Answer {
+        Comparison {
             what: "figure 3, start at the gas",
             paper: "\u{201c}a good result\u{201d}, no number".into(),
             here: format!(
@@ -149,7 +149,7 @@ fn of_the_model(results: &Reproduction) -> Vec<Answer> {
             ),
             why: "the published gain leaves 0.8 K at \u{2212}25 °C and 1.3 K at 40 °C at rest".into(),
         },
-        Answer {
+        Comparison {
             what: "figure 3, start at zero",
             paper: "a transient".into(),
             here: format!("published {} K rms at worst", n(worst(|v| v.published_rms_k, 2), 3)),
@@ -158,18 +158,18 @@ fn of_the_model(results: &Reproduction) -> Vec<Answer> {
     ]
 }
 
-fn of_the_monitor(results: &Reproduction) -> Vec<Answer> {
-    let missing = &results.tunnel.watched.missing_bar;
-    let largest = |who: usize| missing[who].iter().fold(0.0, |most: f64, e| most.max(e.abs()));
-    let said = results.figure_8_said();
+fn of_the_monitor(results: &Reproduction) -> Vec<Comparison> {
+    let missing = &results.tunnel.method_run.missing_bar;
+    let largest = |method: usize| missing[method].iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    let said = results.figure_8_statements();
     let minutes = |delay: Option<f64>| delay.map_or("never".into(), |delay| format!("{delay:.0} min"));
-    let rate = results.leak[1].watched.finding.map(|finding| finding.rate_pa_s);
+    let rate = results.leak[1].method_run.finding.map(|finding| finding.rate_pa_s);
     let rate = rate.map_or_else(String::new, |rate| {
         let [value, low, high] = [rate.value, rate.low, rate.high].map(|pa_s| pa_s * 3600.0 / PASCAL_PER_BAR);
         format!("; {value:.2} bar/h ({low:.2} to {high:.2})")
     });
     vec![
-        Answer {
+        Comparison {
             what: "figure 6, tight in the tunnel",
             paper: "expected and actual pressure are one".into(),
             here: format!(
@@ -180,7 +180,7 @@ fn of_the_monitor(results: &Reproduction) -> Vec<Answer> {
             ),
             why: "there the cylinder is the model itself; here it has a wall and a real gas".into(),
         },
-        Answer {
+        Comparison {
             what: "figure 8, its own scheme",
             paper: "the error rises from t2 on".into(),
             here: format!(
@@ -190,7 +190,7 @@ fn of_the_monitor(results: &Reproduction) -> Vec<Answer> {
             ),
             why: "agree; threshold (0.1 bar), holding time (10 min) and loss (3 bar/h) are not stated and chosen here".into(),
         },
-        Answer {
+        Comparison {
             what: "figure 8, a cylinder losing 60 g/h",
             paper: "not shown".into(),
             here: format!(

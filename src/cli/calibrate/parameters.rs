@@ -1,5 +1,5 @@
 //! What is fitted: names, starts, priors and bounds of the command line as parameters.
-use super::circumstances::Circumstances;
+use super::conditions::Conditions;
 use super::recording::Recording;
 use anyhow::{Context, bail};
 use cylwatch::estimator::calibrate::{ParameterKind, ParameterNameError, ParameterSpec, Prior};
@@ -8,12 +8,12 @@ use cylwatch::estimator::sensor::{Parameter, Sensor, SensorKind, SurfacePlace};
 use cylwatch::report::calibrate::shown_unit;
 use cylwatch::thermal::vessel::Vessel;
 
-/// What is known of the valve's contact where nobody asks for it: 5 to 15 W/K, and no sensor sees it well.
+/// Prior of the valve's contact where --fit does not name it: 5 to 15 W/K, and no sensor sees it well.
 const CONTACT_SD: f64 = 0.5;
 
 /// Options that are not yet compared with logs.
 #[derive(Debug)]
-pub struct Wanted {
+pub struct ParameterChoice {
     fit: Vec<ParameterKind>,
     hold: Vec<ParameterKind>,
     priors: Vec<(ParameterKind, [f64; 2])>,
@@ -26,13 +26,13 @@ pub struct Wanted {
 pub struct Subject<'a> {
     pub vessel: &'a Vessel,
     pub recording: &'a Recording,
-    pub circumstances: &'a Circumstances,
+    pub conditions: &'a Conditions,
     /// Whether it is on the vessel that the calibration is about: its sensors are shared with all such logs.
     pub is_main: bool,
 }
 
 /// Words of the command line.
-pub struct Words<'a> {
+pub struct ParameterArguments<'a> {
     pub fit: &'a [String],
     pub hold: &'a [String],
     pub priors: &'a [String],
@@ -41,9 +41,9 @@ pub struct Words<'a> {
     pub profiles: &'a [String],
 }
 
-impl Wanted {
+impl ParameterChoice {
     /// Reads the words.
-    pub fn checked(words: &Words<'_>) -> anyhow::Result<Self> {
+    pub fn checked(words: &ParameterArguments<'_>) -> anyhow::Result<Self> {
         let names = |option: &str, names: &[String]| -> anyhow::Result<Vec<ParameterKind>> {
             names.iter().map(|name| kind(option, name.trim())).collect()
         };
@@ -157,7 +157,7 @@ fn free(kind: &ParameterKind, subjects: &[Subject<'_>]) -> anyhow::Result<Parame
         let acts = |subject: &Subject<'_>| match kind {
             ParameterKind::ValveCapacity | ParameterKind::ValveContact => subject.vessel.valve.is_some(),
             ParameterKind::DischargeCoefficient { flow } => {
-                subject.circumstances.scenario.flows.iter().any(|known| known.name == *flow)
+                subject.conditions.scenario.flows.iter().any(|known| known.name == *flow)
             }
             _ => true,
         };
@@ -186,7 +186,7 @@ fn free(kind: &ParameterKind, subjects: &[Subject<'_>]) -> anyhow::Result<Parame
 fn nuisances(subjects: &[Subject<'_>]) -> Vec<ParameterSpec> {
     let mut specs = Vec::new();
     for (index, subject) in subjects.iter().enumerate() {
-        let Circumstances { temperature_sd_k, mass_sd, air_offset, .. } = subject.circumstances;
+        let Conditions { temperature_sd_k, mass_sd, air_offset, .. } = subject.conditions;
         let own = |kind, start, sd| ParameterSpec::new(kind, start).with_prior(start, sd).only(vec![index]);
         specs.push(own(ParameterKind::InitialTemperature, 0.0, *temperature_sd_k));
         specs.push(own(ParameterKind::FillMass, 1.0, *mass_sd));

@@ -1,9 +1,9 @@
 //! What a result says, in order: paragraphs, facts, tables, pictures. A terminal shows it as aligned text, a browser as a page
 //! ([`Page`](super::Page)): nothing is said twice.
-use super::figure::{Figure, Picture, Sheet};
-use super::terminal;
+use super::figure::Picture;
+use super::table::{Table, wrapped};
 
-/// A part of a story.
+/// A part of a report.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A heading; a terminal leaves it out.
@@ -14,16 +14,14 @@ pub enum Block {
     Remark(String),
     /// Something to be careful about.
     Caution(String),
-    /// Names with what is to be said of each; an empty name goes on with the one above.
+    /// Names with values; an empty name continues the one above.
     Facts(Vec<(String, String)>),
     /// A table.
-    Rows {
+    Table {
         /// What stands above it; empty: nothing.
         caption: String,
-        /// Names of its columns; none: no header.
-        header: Vec<String>,
-        /// Its rows; a shorter one has empty cells at its end.
-        rows: Vec<Vec<String>>,
+        /// The table.
+        table: Table,
     },
     /// A picture with what it shows; a terminal leaves it out.
     Picture {
@@ -43,14 +41,14 @@ pub enum Block {
 
 /// What a result says.
 #[derive(Clone, Debug, Default)]
-pub struct Story {
+pub struct Report {
     /// Title.
     pub title: String,
     /// In order.
     pub blocks: Vec<Block>,
 }
 
-impl Story {
+impl Report {
     /// Nothing but a title.
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), blocks: Vec::new() }
@@ -93,21 +91,25 @@ impl Story {
     }
 
     /// With a table; one without rows is left out.
-    pub fn rows<H: AsRef<str>>(
-        mut self,
-        caption: impl Into<String>,
-        header: &[H],
-        rows: Vec<Vec<String>>,
-    ) -> Self {
-        if !rows.is_empty() {
-            let header = header.iter().map(|name| name.as_ref().to_owned()).collect();
-            self.blocks.push(Block::Rows { caption: caption.into(), header, rows });
+    pub fn table(mut self, caption: impl Into<String>, table: Table) -> Self {
+        if table.rows() > 0 {
+            self.blocks.push(Block::Table { caption: caption.into(), table });
         }
         self
     }
 
+    /// With a table of texts; one without rows is left out.
+    pub fn rows<H: AsRef<str>>(
+        self,
+        caption: impl Into<String>,
+        header: &[H],
+        rows: Vec<Vec<String>>,
+    ) -> Self {
+        self.table(caption, Table::of_texts(header, rows))
+    }
+
     /// With a table and what explains it; without rows both are left out.
-    pub fn explained_rows<H: AsRef<str>>(
+    pub(crate) fn explained_rows<H: AsRef<str>>(
         self,
         caption: impl Into<String>,
         header: &[H],
@@ -120,19 +122,9 @@ impl Story {
         self.rows(caption, header, rows).remark(explanation)
     }
 
-    /// With a figure.
-    pub fn figure(self, figure: Figure, caption: impl Into<String>) -> Self {
-        self.picture(Picture::Figure(figure), caption)
-    }
-
-    /// With a sheet.
-    pub fn sheet(self, sheet: Sheet, caption: impl Into<String>) -> Self {
-        self.picture(Picture::Sheet(sheet), caption)
-    }
-
-    /// With any picture.
-    pub fn picture(mut self, picture: Picture, caption: impl Into<String>) -> Self {
-        self.blocks.push(Block::Picture { picture, caption: caption.into() });
+    /// With a picture.
+    pub fn picture(mut self, picture: impl Into<Picture>, caption: impl Into<String>) -> Self {
+        self.blocks.push(Block::Picture { picture: picture.into(), caption: caption.into() });
         self
     }
 
@@ -155,13 +147,10 @@ impl Story {
         for block in &self.blocks {
             let words = match block {
                 Block::Heading(_) | Block::Picture { .. } | Block::Source { .. } => continue,
-                Block::Text(words) | Block::Remark(words) => terminal::wrapped(words),
-                Block::Caution(words) => terminal::wrapped(&format!("caution: {words}")),
+                Block::Text(words) | Block::Remark(words) => wrapped(words),
+                Block::Caution(words) => wrapped(&format!("caution: {words}")),
                 Block::Facts(facts) => facts_text(facts),
-                Block::Rows { caption, header, rows } => {
-                    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-                    terminal::wrapped(caption) + &terminal::table(&header, rows)
-                }
+                Block::Table { caption, table } => wrapped(caption) + &table.to_text(),
             };
             if !is_first && !matches!(block, Block::Remark(_)) {
                 text.push('\n');
@@ -188,12 +177,12 @@ mod tests {
 
     #[test]
     fn a_terminal_shows_title_facts_and_tables_one_below_the_other() {
-        let story = Story::new("A run")
+        let report = Report::new("A run")
             .heading("not shown")
             .facts([("gas °C", "1".to_owned()), ("", "2".to_owned())])
             .text("")
             .rows("counts", &["what", "n"], vec![vec!["a".into(), "10".into()]])
             .rows("none", &["what"], Vec::new());
-        assert_eq!(story.to_text(), "A run\ngas °C  1\n        2\n\ncounts\nwhat   n\n----  --\na     10\n");
+        assert_eq!(report.to_text(), "A run\ngas °C  1\n        2\n\ncounts\nwhat   n\n----  --\na     10\n");
     }
 }

@@ -1,14 +1,17 @@
 //! The files of a reproduction: the report, every figure, every run as columns, all numbers as JSON.
-use super::beside::{LeakScore, ScenarioScore, Spread};
 use super::blowdown::{self, Blowdown};
 use super::cylinder::ScenarioRun;
+use super::drawn_cylinders::{LeakScore, ScenarioScore, Spread};
 use super::measured::interpolated;
-use super::watch::WHO;
-use super::{Reproduction, answers, rows};
+use super::methods::METHODS;
+use super::{Reproduction, checks, comparison};
 use crate::estimator::identify::Identified;
 use crate::report::figure::Picture;
-use crate::report::{Page, Provenance, ReportError, Table, simulation};
+use crate::report::{Digits, Page, Provenance, ReportError, Table, simulation};
 use serde_json::{Map, Value, json};
+
+/// Significant digits of the compared values.
+const DIGITS: Digits = Digits::Significant(7);
 
 /// A file to write: name and content.
 pub type File = (String, Vec<u8>);
@@ -30,8 +33,8 @@ impl Reproduction {
         }
         files.push(("blowdown-i1.csv".into(), self.comparison().to_csv(provenance, &[]).into_bytes()));
         files.push(("results.json".into(), self.document(provenance).into_bytes()));
-        let story = self.story_with(&pictures);
-        files.push(("report.html".into(), Page { story: &story, provenance }.to_html()?.into_bytes()));
+        let report = self.report_with(&pictures);
+        files.push(("report.html".into(), Page { report: &report, provenance }.to_html()?.into_bytes()));
         Ok(files)
     }
 
@@ -39,10 +42,11 @@ impl Reproduction {
     fn comparison(&self) -> Table {
         let Blowdown { measured, carrier, fitted, .. } = &self.blowdown;
         let times: Vec<f64> = blowdown::times_s().collect();
-        let mut table = Table::new(7);
-        table.push("time_s", times.iter().copied());
-        let mut push =
-            |name: &str, value: &dyn Fn(f64) -> f64| table.push(name, times.iter().map(|&t| value(t)));
+        let mut table = Table::new();
+        table.push("time_s", DIGITS, times.iter().copied());
+        let mut push = |name: &str, value: &dyn Fn(f64) -> f64| {
+            table.push(name, DIGITS, times.iter().map(|&t| value(t)))
+        };
         push("measured_pressure_bar", &|t| measured.pressure_bar.at(t));
         push("measured_gas_low_degc", &|t| measured.gas_low_k.at(t) - 273.15);
         push("measured_gas_high_degc", &|t| measured.gas_high_k.at(t) - 273.15);
@@ -85,22 +89,22 @@ impl Reproduction {
             .collect();
         let document = json!({
             "provenance": provenance.to_json(),
-            "results": rows::rows(self).iter().map(rows::Row::to_json).collect::<Vec<_>>(),
-            "answers": answers::answers(self).iter().map(answers::Answer::to_json).collect::<Vec<_>>(),
+            "results": checks::checks(self).iter().map(checks::Check::to_json).collect::<Vec<_>>(),
+            "answers": comparison::comparisons(self).iter().map(comparison::Comparison::to_json).collect::<Vec<_>>(),
             "table_1": {
                 "shoulder": identified(shoulder), "valve": identified(valve), "refitted": identified(&study.refitted),
                 "validation": validations,
             },
             "figure_8": {
                 "scheme": { "alarm_s": self.scheme.alarm_s, "rate_bar_h": self.scheme.rate_bar_h, "left_h": self.scheme.left_h },
-                "cylinder": self.figure_8_said().iter().map(|said| json!({
-                    "who": said.who, "threshold_bar": said.threshold_bar, "delay_min": said.delay_min,
+                "cylinder": self.figure_8_statements().iter().map(|said| json!({
+                    "who": said.method, "threshold_bar": said.threshold_bar, "delay_min": said.delay_min,
                     "rate_bar_h": said.rate_bar_h, "left_h": said.left_h,
                 })).collect::<Vec<_>>(),
             },
             "drawn_cylinders": {
                 "cylinders": self.cylinders,
-                "scenarios": self.beside.iter().map(beside).collect::<Vec<_>>(),
+                "scenarios": self.drawn_cylinders.iter().map(drawn_cylinder).collect::<Vec<_>>(),
                 "leaks": self.leaks.iter().map(leak).collect::<Vec<_>>(),
             },
             "scenarios": self.scenarios.iter().chain([&self.closed]).map(scenario).collect::<Vec<_>>(),
@@ -117,10 +121,14 @@ fn identified(found: &Identified) -> Value {
     })
 }
 
-/// An object with a value for each of those who watch.
-fn by_who(value: impl Fn(usize) -> Value) -> Value {
+/// An object with a value for each method.
+fn by_method(value: impl Fn(usize) -> Value) -> Value {
     Value::Object(
-        WHO.iter().enumerate().map(|(who, name)| ((*name).to_owned(), value(who))).collect::<Map<_, _>>(),
+        METHODS
+            .iter()
+            .enumerate()
+            .map(|(method, name)| ((*name).to_owned(), value(method)))
+            .collect::<Map<_, _>>(),
     )
 }
 
@@ -128,11 +136,11 @@ fn spread(spread: &Spread) -> Value {
     json!({ "value": spread.value, "least": spread.low, "largest": spread.high })
 }
 
-fn beside(score: &ScenarioScore) -> Value {
+fn drawn_cylinder(score: &ScenarioScore) -> Value {
     json!({
         "scenario": score.title,
-        "gas_rms_k": by_who(|who| spread(&score.gas_k[who])),
-        "missing_rms_bar": by_who(|who| spread(&score.missing_bar[who])),
+        "gas_rms_k": by_method(|method| spread(&score.gas_k[method])),
+        "missing_rms_bar": by_method(|method| spread(&score.missing_bar[method])),
         "bound_k": score.bound_k,
         "bound_bar": score.bound_bar,
         "within_2_sd": score.covered,
@@ -145,10 +153,10 @@ fn leak(score: &LeakScore) -> Value {
         "leak_bar_h": score.leak_bar_h,
         "cylinders": score.cylinders,
         "threshold_bar": { "published": score.threshold_bar[0], "refitted": score.threshold_bar[1] },
-        "alarms_before_the_leak": by_who(|who| json!(score.false_alarms[who])),
-        "alarms_on_tight_cylinders": by_who(|who| json!(score.tight_alarms[who])),
-        "delay_min": by_who(|who| json!(score.delay_min[who])),
-        "rate_bar_h": by_who(|who| json!(score.rate_bar_h[who])),
+        "alarms_before_the_leak": by_method(|method| json!(score.false_alarms[method])),
+        "alarms_on_tight_cylinders": by_method(|method| json!(score.tight_alarms[method])),
+        "delay_min": by_method(|method| json!(score.delay_min[method])),
+        "rate_bar_h": by_method(|method| json!(score.rate_bar_h[method])),
         "bound_min": score.bound_min,
         "bound_bar_h": score.bound_bar_h,
     })

@@ -1,6 +1,6 @@
 //! What happened to the cylinder while a log was recorded: a scenario, or the log's own air.
 use super::air::drawn;
-use super::amounts::Amounts;
+use super::quantities::Quantities;
 use super::recording::{AMBIENT, Recording};
 use crate::cli::fill::{self, FillSource, GivenFill};
 use anyhow::{Context, bail};
@@ -25,7 +25,7 @@ const SETTLED_SD_K: f64 = 1.0;
 const UNSETTLED_SD_K: f64 = 5.0;
 
 /// What happened, and how well its start is known.
-pub struct Circumstances {
+pub struct Conditions {
     pub scenario: Scenario,
     /// Standard deviation of the temperature of wall and gas at the start, K.
     pub temperature_sd_k: f64,
@@ -41,14 +41,14 @@ pub struct Circumstances {
 
 /// How circumstances are made.
 pub struct Exposure<'a> {
-    pub amounts: &'a Amounts,
+    pub quantities: &'a Quantities,
     pub fill: &'a GivenFill,
     pub source: FillSource,
 }
 
 impl Exposure<'_> {
     /// Those of a log whose air was measured; its time is 0 in the first row.
-    pub fn of_log(&self, recording: &Recording, vessel: &Vessel) -> anyhow::Result<Circumstances> {
+    pub fn of_log(&self, recording: &Recording, vessel: &Vessel) -> anyhow::Result<Conditions> {
         let first_k = recording.first_k();
         let given = match (self.source, recording.first_pa()) {
             (FillSource::Given(fill), _) => fill,
@@ -82,7 +82,7 @@ impl Exposure<'_> {
         let words = format!(
             "{}: air from the column {AMBIENT}, {of_film}; {}, wall and gas at the {:.2} °C that the first readings say",
             recording.name,
-            said(given, mass_kg),
+            mass_source(given, mass_kg),
             first_k - ZERO_CELSIUS_K
         );
         let scenario = Scenario {
@@ -105,7 +105,7 @@ impl Exposure<'_> {
             duration_s: recording.end_s().max(1.0),
             sample_time_s: 60.0,
         };
-        Ok(Circumstances {
+        Ok(Conditions {
             scenario,
             temperature_sd_k: if commissioning.settled { SETTLED_SD_K } else { UNSETTLED_SD_K },
             mass_sd: commissioning.mass_sd,
@@ -121,8 +121,8 @@ impl Exposure<'_> {
         recording: &Recording,
         mut scenario: Scenario,
         vessel: &Vessel,
-    ) -> anyhow::Result<Circumstances> {
-        if self.amounts.film_w_m2_k()?.is_some() || self.amounts.wind_m_s()?.is_some() {
+    ) -> anyhow::Result<Conditions> {
+        if self.quantities.film_w_m2_k()?.is_some() || self.quantities.wind_m_s()?.is_some() {
             bail!(
                 "--film and --wind are for logs without a scenario: leave them out, or leave out --scenario"
             );
@@ -135,7 +135,7 @@ impl Exposure<'_> {
         let mass_kg = match self.source {
             FillSource::Given(fill) => {
                 let mass_kg = mass_of(fill)?;
-                of_fill = said(fill, mass_kg);
+                of_fill = mass_source(fill, mass_kg);
                 scenario.initial.fill = Fill::Mass { mass_kg };
                 mass_kg
             }
@@ -152,20 +152,13 @@ impl Exposure<'_> {
         }
         let words = format!("{}: scenario `{}` with {of_fill}", recording.name, scenario.name);
         let mass_sd = commissioning.mass_sd;
-        Ok(Circumstances {
-            scenario,
-            temperature_sd_k: SETTLED_SD_K,
-            mass_sd,
-            air_offset: None,
-            words,
-            doubts,
-        })
+        Ok(Conditions { scenario, temperature_sd_k: SETTLED_SD_K, mass_sd, air_offset: None, words, doubts })
     }
 
     fn film(&self) -> anyhow::Result<(OutsideFilm, String)> {
         let wind =
             |wind_m_s: f64| OutsideFilm::Convection { wind_m_s: Series::constant(wind_m_s), multiplier: 1.0 };
-        Ok(match (self.amounts.film_w_m2_k()?, self.amounts.wind_m_s()?) {
+        Ok(match (self.quantities.film_w_m2_k()?, self.quantities.wind_m_s()?) {
             (Some(_), Some(_)) => bail!("--film and --wind both say the outside film: keep one"),
             (Some(film), None) => (
                 OutsideFilm::Coefficient { film_w_m2_k: Series::constant(film) },
@@ -188,7 +181,7 @@ impl Exposure<'_> {
             );
         };
         let usual_s = BRIDGED_INTERVALS * recording.interval_s;
-        let longest_s = self.amounts.longest_gap_s()?.unwrap_or(usual_s);
+        let longest_s = self.quantities.longest_gap_s()?.unwrap_or(usual_s);
         let ends = [(0.0, first_s), (last_s, recording.end_s())];
         let between = readings.windows(2).map(|pair| (pair[0].0, pair[1].0));
         if let Some((from_s, to_s)) = between.chain(ends).find(|(from_s, to_s)| to_s - from_s > longest_s) {
@@ -216,7 +209,7 @@ fn jump(recording: &Recording) -> Option<String> {
 }
 
 /// Where the gas mass comes from.
-fn said(fill: Fill, mass_kg: f64) -> String {
+fn mass_source(fill: Fill, mass_kg: f64) -> String {
     match fill {
         Fill::Mass { .. } => format!("{mass_kg:.3} kg of gas as given"),
         Fill::Settled { .. } => format!("{mass_kg:.3} kg of gas by the fill as given"),

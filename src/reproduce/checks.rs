@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 /// A number that was computed, with what it is held against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct Check {
     /// What it is.
     pub what: String,
     /// The number.
@@ -33,7 +33,7 @@ pub enum Bar {
     Shown,
 }
 
-impl Row {
+impl Check {
     /// Whether the bar is met; `None` where there is none.
     pub fn met(&self) -> Option<bool> {
         match (self.bar, self.reference) {
@@ -110,7 +110,7 @@ pub fn scenarios(results: &Reproduction) -> ([&'static str; 8], Vec<Vec<String>>
 }
 
 /// All rows of a reproduction.
-pub fn rows(results: &Reproduction) -> Vec<Row> {
+pub fn checks(results: &Reproduction) -> Vec<Check> {
     let mut rows = tight_rows(results);
     rows.extend(closed_rows(results));
     rows.extend(variant_rows(
@@ -118,7 +118,7 @@ pub fn rows(results: &Reproduction) -> Vec<Row> {
         "Cd 0.8",
         &VariantBars { gas_k: 4.7, pressure_bar: 3.0 },
     ));
-    rows.push(Row {
+    rows.push(Check {
         what: "I1, Cd fitted to the pressure".into(),
         here: results.blowdown.fitted.coefficient,
         unit: "",
@@ -135,10 +135,10 @@ pub fn rows(results: &Reproduction) -> Vec<Row> {
     rows
 }
 
-fn tight_rows(results: &Reproduction) -> Vec<Row> {
+fn tight_rows(results: &Reproduction) -> Vec<Check> {
     const CHECKED: &str = "CoolProp 8.0";
     let tight = &results.tight;
-    let row = |what: &str, here, unit, reference, source, bar| Row {
+    let row = |what: &str, here, unit, reference, source, bar| Check {
         what: what.into(),
         here,
         unit,
@@ -172,14 +172,14 @@ fn tight_rows(results: &Reproduction) -> Vec<Row> {
     ]
 }
 
-fn closed_rows(results: &Reproduction) -> Vec<Row> {
+fn closed_rows(results: &Reproduction) -> Vec<Check> {
     const HYDDOWN: &str = "HydDown 0.50";
     let run = &results.closed.run;
     let air_k = run.ambient_k.last().copied().unwrap_or(f64::NAN);
     let worst = |residual: fn(&crate::thermal::trajectory::Ledger) -> f64| {
         results.scenarios.iter().map(|scenario| residual(&scenario.run.ledger).abs()).fold(0.0, f64::max)
     };
-    let row = |what: &str, here, unit, reference, source, bar| Row {
+    let row = |what: &str, here, unit, reference, source, bar| Check {
         what: what.into(),
         here,
         unit,
@@ -220,8 +220,8 @@ struct VariantBars {
 /// HydDown 0.50 on the same points.
 const HYDDOWN_SCORES: &str = "HydDown";
 
-fn variant_rows(variant: &Variant, name: &str, bars: &VariantBars) -> Vec<Row> {
-    let row = |what: &str, here, unit, reference, bar| Row {
+fn variant_rows(variant: &Variant, name: &str, bars: &VariantBars) -> Vec<Check> {
+    let row = |what: &str, here, unit, reference, bar| Check {
         what: format!("I1, {what}, {name}"),
         here,
         unit,
@@ -239,8 +239,8 @@ fn variant_rows(variant: &Variant, name: &str, bars: &VariantBars) -> Vec<Row> {
 }
 
 /// The stratified gas: its constants were fitted to this run, no peer predicts either edge.
-fn stacked_rows(stacked: &Stacked) -> Vec<Row> {
-    let row = |what: &str, score: &Score| Row {
+fn stacked_rows(stacked: &Stacked) -> Vec<Check> {
+    let row = |what: &str, score: &Score| Check {
         what: format!("I1, {what} rms, {} gas cells (fitted)", stacked.cells),
         here: score.rms,
         unit: "K",

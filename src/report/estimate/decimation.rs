@@ -4,12 +4,15 @@
 //! many buckets, neighbours are joined and the buckets become twice as wide. Up to the limit every row is a bucket of
 //! its own, and nothing is lost.
 
+use crate::report::figure::Item;
+use crate::report::figure::style::Stroke;
+
 /// Most buckets: more than a figure has columns of pixels.
 const MOST: usize = 4096;
 
 /// Several curves against one time.
 #[derive(Clone, Debug)]
-pub struct Course {
+pub(crate) struct DecimatedCurves {
     curves: usize,
     /// Width of a bucket, s; 0: a bucket per row.
     width_s: f64,
@@ -42,7 +45,7 @@ impl Extremes {
     }
 }
 
-impl Course {
+impl DecimatedCurves {
     /// So many curves without points.
     pub fn new(curves: usize) -> Self {
         Self { curves, width_s: 0.0, start_s: 0.0, spans: Vec::new(), extremes: Vec::new() }
@@ -105,6 +108,28 @@ impl Course {
         Some((self.spans.first()?.0, self.spans.last()?.1))
     }
 
+    /// Shift of the time axis of a figure, s: a log whose clock began long ago is drawn from its first row.
+    pub fn origin_s(&self) -> f64 {
+        match self.span_s() {
+            Some((from_s, to_s)) if from_s < 0.0 || from_s > to_s - from_s => from_s,
+            _ => 0.0,
+        }
+    }
+
+    /// A curve of a figure; `None` without points.
+    pub fn item(&self, name: &str, curve: usize, stroke: Stroke) -> Option<Item> {
+        let (mut x, y) = self.line(curve);
+        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
+        self.has(curve).then(|| Item::Line { name: name.to_owned(), x, y, stroke })
+    }
+
+    /// A band of a figure about a curve and a truth: `[curve, lower, upper, truth]`. Where it is wide it does not set the scale.
+    pub fn band_item(&self, name: &str, [curve, lower, upper, truth]: [usize; 4]) -> Option<Item> {
+        let (mut x, low, high) = self.band_clipped(lower, upper, &[curve, truth])?;
+        x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
+        Some(Item::Band { name: name.to_owned(), x, low, high })
+    }
+
     /// Whether a curve has any point.
     pub fn has(&self, curve: usize) -> bool {
         self.column(curve).any(|extremes| !extremes.low.1.is_nan())
@@ -145,7 +170,7 @@ impl Course {
     }
 
     /// The band, cut off three usual half widths beside curves, so that where it is wide it does not set the scale.
-    pub fn band_beside(
+    fn band_clipped(
         &self,
         lower: usize,
         upper: usize,
@@ -181,40 +206,40 @@ mod tests {
 
     #[test]
     fn up_to_the_limit_every_point_is_there() {
-        let mut course = Course::new(2);
+        let mut curves = DecimatedCurves::new(2);
         for k in 0..MOST {
-            course.push(k as f64, [(k % 3) as f64, f64::NAN]);
+            curves.push(k as f64, [(k % 3) as f64, f64::NAN]);
         }
-        let (time_s, values) = course.line(0);
+        let (time_s, values) = curves.line(0);
         assert_eq!((time_s.len(), time_s[100], values[100]), (MOST, 100.0, 1.0));
-        assert!(course.has(0) && !course.has(1));
+        assert!(curves.has(0) && !curves.has(1));
     }
 
     #[test]
     fn a_year_keeps_its_extremes_in_bounded_memory() {
-        let mut course = Course::new(1);
+        let mut curves = DecimatedCurves::new(1);
         for k in 0..3_000_000_u32 {
             let spike = if k == 1_234_567 { 99.0 } else { 0.0 };
-            course.push(1e9 + 10.0 * f64::from(k), [spike + f64::from(k % 2)]);
+            curves.push(1e9 + 10.0 * f64::from(k), [spike + f64::from(k % 2)]);
         }
-        assert!(course.spans.len() <= MOST && course.extremes.len() <= MOST);
-        let (time_s, values) = course.line(0);
+        assert!(curves.spans.len() <= MOST && curves.extremes.len() <= MOST);
+        let (time_s, values) = curves.line(0);
         assert!(time_s.windows(2).all(|pair| pair[0] < pair[1]));
         let spike = values.iter().position(|&value| value == 100.0).unwrap();
         assert_eq!(time_s[spike], 1e9 + 12_345_670.0);
-        assert_eq!(course.span_s(), Some((1e9, 1e9 + 29_999_990.0)));
+        assert_eq!(curves.span_s(), Some((1e9, 1e9 + 29_999_990.0)));
         // Memory is used: not fewer buckets than a figure has columns.
-        assert!(course.spans.len() > MOST / 4);
+        assert!(curves.spans.len() > MOST / 4);
     }
 
     #[test]
     fn a_band_contains_every_point_of_its_curves() {
-        let mut course = Course::new(2);
+        let mut curves = DecimatedCurves::new(2);
         let wave = |k: u32| (f64::from(k) * 1e-3).sin();
         for k in 0..50_000 {
-            course.push(f64::from(k), [wave(k) - 1.0, wave(k) + 1.0]);
+            curves.push(f64::from(k), [wave(k) - 1.0, wave(k) + 1.0]);
         }
-        let (time_s, low, high) = course.band(0, 1);
+        let (time_s, low, high) = curves.band(0, 1);
         for k in (0..50_000).step_by(101) {
             let after = time_s.partition_point(|&time| time < f64::from(k)).min(time_s.len() - 1);
             let (bottom, top) = (
@@ -227,12 +252,12 @@ mod tests {
 
     #[test]
     fn a_gap_in_one_curve_is_a_gap_of_that_curve_alone() {
-        let mut course = Course::new(2);
+        let mut curves = DecimatedCurves::new(2);
         for k in 0..10 {
-            course.push(f64::from(k), [1.0, if k == 5 { f64::NAN } else { 2.0 }]);
+            curves.push(f64::from(k), [1.0, if k == 5 { f64::NAN } else { 2.0 }]);
         }
-        assert!(course.line(0).1.iter().all(|value| value.is_finite()));
-        assert_eq!(course.line(1).1.iter().filter(|value| value.is_nan()).count(), 1);
-        assert_eq!(course.band(0, 1).0.len(), 9);
+        assert!(curves.line(0).1.iter().all(|value| value.is_finite()));
+        assert_eq!(curves.line(1).1.iter().filter(|value| value.is_nan()).count(), 1);
+        assert_eq!(curves.band(0, 1).0.len(), 9);
     }
 }

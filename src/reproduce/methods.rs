@@ -20,12 +20,12 @@ use crate::evaluation::baseline::{
 use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Vessel;
 
-/// A full cylinder, as every watcher believes.
+/// A full cylinder, as every method assumes it.
 pub const FULL: Filling = Filling { pressure_pa: 200e5, temperature_k: ZERO_CELSIUS_K + 15.0 };
 /// Pressure at which the system is no longer operational, Pa.
-pub const LIMIT_PA: f64 = 160e5;
-/// Those who watch, in the order of all arrays.
-pub const WHO: [&str; 3] = ["published", "refitted", "observer"];
+pub(crate) const LIMIT_PA: f64 = 160e5;
+/// The methods, in the order of all arrays.
+pub const METHODS: [&str; 3] = ["published", "refitted", "observer"];
 
 /// Who watches, and since when.
 #[derive(Clone, Debug)]
@@ -42,14 +42,14 @@ pub struct Plan<'a> {
 
 /// What all of them made of a log. Every vector has the length of `time_s`.
 #[derive(Clone, Debug, Default)]
-pub struct Watched {
+pub struct MethodRun {
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Shoulder as read, °C.
     pub shoulder_degc: Vec<f64>,
     /// Pressure as read, bar.
     pub pressure_bar: Vec<f64>,
-    /// Mean gas temperature by each of [`WHO`], °C.
+    /// Mean gas temperature by each of [`METHODS`], °C.
     pub gas_degc: [Vec<f64>; 3],
     /// Standard deviation that the observer states of it, K.
     pub gas_sd_k: Vec<f64>,
@@ -65,22 +65,22 @@ pub struct Watched {
     pub finding: Option<LeakFinding>,
 }
 
-impl Watched {
+impl MethodRun {
     /// When an error of the first two has lasted at a threshold, bar, for the first time after a time, s.
-    pub fn alarm_s(&self, who: usize, threshold_bar: f64, after_s: f64) -> Option<f64> {
-        let mut rows = self.time_s.iter().zip(&self.lasting_bar[who]);
+    pub fn alarm_s(&self, method: usize, threshold_bar: f64, after_s: f64) -> Option<f64> {
+        let mut rows = self.time_s.iter().zip(&self.lasting_bar[method]);
         rows.find(|(time_s, lasting)| **time_s >= after_s && **lasting >= threshold_bar)
             .map(|(time_s, _)| *time_s)
     }
 
     /// Largest error that has lasted, bar.
-    pub fn largest_lasting_bar(&self, who: usize) -> f64 {
-        self.lasting_bar[who].iter().copied().fold(0.0, f64::max)
+    pub(crate) fn largest_lasting_bar(&self, method: usize) -> f64 {
+        self.lasting_bar[method].iter().copied().fold(0.0, f64::max)
     }
 }
 
-/// Those who watch, at work.
-struct Watch {
+/// All methods on one stream of readings.
+struct Methods {
     shoulder: usize,
     pressure: usize,
     gas: [GasTemperature; 2],
@@ -90,7 +90,7 @@ struct Watch {
     settled_bar: Vec<f64>,
 }
 
-impl Watch {
+impl Methods {
     fn new(plan: &Plan<'_>) -> Result<Self, ReproduceError> {
         let of = |name: &'static str| {
             let found = plan.sensors.iter().position(|sensor| sensor.name == name);
@@ -113,27 +113,27 @@ impl Watch {
         })
     }
 
-    fn step(&mut self, time_s: f64, row: &[f64], watched: &mut Watched) -> Result<(), ReproduceError> {
+    fn step(&mut self, time_s: f64, row: &[f64], method_run: &mut MethodRun) -> Result<(), ReproduceError> {
         let (shoulder_k, pressure_pa) = (row[self.shoulder], row[self.pressure]);
         let reading = Reading { time_s, shoulder_k, pressure_pa };
         for k in 0..2 {
             let gas_k = self.gas[k].step(time_s, shoulder_k).unwrap_or(f64::NAN);
-            watched.gas_degc[k].push(gas_k - ZERO_CELSIUS_K);
-            watched.missing_bar[k]
+            method_run.gas_degc[k].push(gas_k - ZERO_CELSIUS_K);
+            method_run.missing_bar[k]
                 .push(self.errors[k].step(reading).map_or(f64::NAN, |e| e / PASCAL_PER_BAR));
-            watched.lasting_bar[k].push(self.thresholds[k].update(reading) / PASCAL_PER_BAR);
+            method_run.lasting_bar[k].push(self.thresholds[k].update(reading) / PASCAL_PER_BAR);
         }
         for output in self.monitor.step(time_s, row)? {
             let estimate = &output.estimate;
-            watched.gas_degc[2].push(estimate.gas_mean_k - ZERO_CELSIUS_K);
-            watched.gas_sd_k.push(estimate.gas_mean_sd_k);
+            method_run.gas_degc[2].push(estimate.gas_mean_k - ZERO_CELSIUS_K);
+            method_run.gas_sd_k.push(estimate.gas_mean_sd_k);
             self.settled_bar.push(estimate.p15_pa / PASCAL_PER_BAR);
-            watched.finding = output.leak;
-            watched.found_s = watched.found_s.or(output.leak.map(|_| time_s));
+            method_run.finding = output.leak;
+            method_run.found_s = method_run.found_s.or(output.leak.map(|_| time_s));
         }
-        watched.time_s.push(time_s);
-        watched.shoulder_degc.push(shoulder_k - ZERO_CELSIUS_K);
-        watched.pressure_bar.push(pressure_pa / PASCAL_PER_BAR);
+        method_run.time_s.push(time_s);
+        method_run.shoulder_degc.push(shoulder_k - ZERO_CELSIUS_K);
+        method_run.pressure_bar.push(pressure_pa / PASCAL_PER_BAR);
         Ok(())
     }
 }
@@ -142,7 +142,7 @@ impl Watch {
 ///
 /// # Errors
 /// A sensor is missing, or one of them cannot go on.
-pub fn watch(plan: &Plan<'_>, log: &Log) -> Result<Watched, ReproduceError> {
+pub fn run_methods(plan: &Plan<'_>, log: &Log) -> Result<MethodRun, ReproduceError> {
     let columns: Vec<usize> = plan
         .sensors
         .iter()
@@ -151,18 +151,18 @@ pub fn watch(plan: &Plan<'_>, log: &Log) -> Result<Watched, ReproduceError> {
     if columns.len() != plan.sensors.len() {
         return Err(ReproduceError::Sensor { name: "of the plan" });
     }
-    let (mut watch, mut watched) = (Watch::new(plan)?, Watched::default());
+    let (mut watch, mut method_run) = (Methods::new(plan)?, MethodRun::default());
     for (time_s, row) in log.rows() {
         let readings: Vec<f64> = columns.iter().map(|&column| row[column]).collect();
-        watch.step(time_s, &readings, &mut watched)?;
+        watch.step(time_s, &readings, &mut method_run)?;
     }
-    let rest = watched.time_s.partition_point(|&time_s| time_s < plan.rest_s).max(1);
-    let zero_bar = watched.missing_bar[1][..rest].iter().sum::<f64>() / rest as f64;
-    watched.missing_bar[1].iter_mut().for_each(|missing| *missing -= zero_bar);
+    let rest = method_run.time_s.partition_point(|&time_s| time_s < plan.rest_s).max(1);
+    let zero_bar = method_run.missing_bar[1][..rest].iter().sum::<f64>() / rest as f64;
+    method_run.missing_bar[1].iter_mut().for_each(|missing| *missing -= zero_bar);
     let full_bar = watch.settled_bar[rest - 1];
-    watched.missing_bar[2] = watch.settled_bar.iter().map(|settled| full_bar - settled).collect();
-    for (loss, threshold) in watched.losses.iter_mut().zip(&watch.thresholds) {
+    method_run.missing_bar[2] = watch.settled_bar.iter().map(|settled| full_bar - settled).collect();
+    for (loss, threshold) in method_run.losses.iter_mut().zip(&watch.thresholds) {
         *loss = threshold.loss(LIMIT_PA);
     }
-    Ok(watched)
+    Ok(method_run)
 }

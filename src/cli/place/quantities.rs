@@ -6,15 +6,17 @@ use std::time::Duration;
 
 /// What can be given.
 #[derive(Clone, Debug)]
-pub struct Known;
+pub struct QuantityOptions;
 
-impl Choices for Known {
+impl Choices for QuantityOptions {
+    const EXPERT: &'static [&'static str] =
+        &["leak", "within", "fill-temperature", "body-temperature", "air-temperature", "time-limit"];
     const CHOICES: &'static [Choice] = &[
-        ("leak", Dimension::MassFlow, "Leak whose delay is told [default: 10 g/h]"),
+        ("leak", Dimension::MassFlow, "Leak whose delay is stated [default: 10 g/h]"),
         (
             "within",
             Dimension::Time,
-            "Time that the smallest leak and a fault are to be found in [default: 1 d]",
+            "Time within which the smallest leak and a fault must be found [default: 1 d]",
         ),
         ("sample-time", Dimension::Time, "Interval of the readings [default: 1 min]"),
         ("fill-pressure", Dimension::Pressure, "Pressure that the cylinder was filled to [default: 200 bar]"),
@@ -38,9 +40,9 @@ impl Choices for Known {
 }
 
 /// Quantities as given.
-pub type Amounts = Given<Known>;
+pub type Quantities = Given<QuantityOptions>;
 
-impl Amounts {
+impl Quantities {
     /// Where the cylinder rests and how often it is read.
     pub fn conditions(&self) -> anyhow::Result<Conditions> {
         let usual = Conditions::default();
@@ -59,7 +61,7 @@ impl Amounts {
         })
     }
 
-    /// Leak whose delay is told, kg/s.
+    /// Leak whose delay is stated, kg/s.
     pub fn leak_kg_s(&self) -> anyhow::Result<Option<f64>> {
         self.si("leak", Dimension::MassFlow)
     }

@@ -4,16 +4,17 @@ use cylwatch::thermal::units::Dimension;
 
 /// What can be given.
 #[derive(Clone, Debug)]
-pub struct Known;
+pub struct QuantityOptions;
 
-impl Choices for Known {
+impl Choices for QuantityOptions {
+    const EXPERT: &'static [&'static str] = &["film", "wind", "longest-gap"];
     const CHOICES: &'static [Choice] = &[
         (
             "film",
             Dimension::Film,
-            "Film coefficient outside with radiation, in w_m2_k, where the log is the scenario [default: still air and radiation]",
+            "Film coefficient outside with radiation, in w_m2_k, without --scenario [default: still air and radiation]",
         ),
-        ("wind", Dimension::Speed, "Wind across the axis, where the log is the scenario [default: none]"),
+        ("wind", Dimension::Speed, "Wind across the axis, without --scenario [default: none]"),
         (
             "longest-gap",
             Dimension::Time,
@@ -23,9 +24,9 @@ impl Choices for Known {
 }
 
 /// Quantities as given.
-pub type Amounts = Given<Known>;
+pub type Quantities = Given<QuantityOptions>;
 
-impl Amounts {
+impl Quantities {
     /// Film coefficient, W/(m² K).
     pub fn film_w_m2_k(&self) -> anyhow::Result<Option<f64>> {
         self.si("film", Dimension::Film)

@@ -1,4 +1,4 @@
-//! The paper's cases on cylinders that nobody who watches knows: as published, refitted, by the observer, and what is possible.
+//! The paper's cases on cylinders that are unknown to all methods: as published, refitted, by the observer, and the bound.
 //!
 //! **Cylinders** are drawn from seeds around the built-in one ([`crate::evaluation::truth`]): films, capacities, mounting, sensor errors and gusts
 //! differ, the gas is stratified. Each rests for an hour before its air changes.
@@ -12,7 +12,7 @@
 //! cylinders of other seeds, and a tenth more. The monitor has its own, for one false alarm in ten years.
 use super::ReproduceError;
 use super::cylinder::VESSEL;
-use super::watch::{Plan, Watched, watch};
+use super::methods::{MethodRun, Plan, run_methods};
 use crate::estimator::observer::ObserverSettings;
 use crate::estimator::placement::{Disturbance, Site, SiteSettings};
 use crate::estimator::sensor::Sensor;
@@ -34,7 +34,7 @@ const PATHS: u64 = 20;
 /// From the entry into the tunnel to the onset of the leak, s, as in the paper's figure 8.
 const ONSET_AFTER_S: f64 = 3000.0;
 /// Leaks, g/h: that of figure 8, and a tenth of it.
-pub const LEAKS_G_H: [f64; 2] = [60.0, 6.0];
+pub(crate) const LEAKS_G_H: [f64; 2] = [60.0, 6.0];
 /// Seeds of the tight cylinders that thresholds come from lie so far above those of the others.
 const TRAINING: u64 = 100_000;
 
@@ -73,20 +73,20 @@ impl Spread {
     }
 }
 
-/// A drawn cylinder in a scenario with all who watch.
+/// A drawn cylinder in a scenario with the results of all methods.
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// What really happened.
     pub truth: Truth,
-    /// What they made of it.
-    pub watched: Watched,
+    /// Results of the methods.
+    pub method_run: MethodRun,
 }
 
 impl Drawn {
-    /// Error of the mean gas temperature, K, of one of [`WHO`](super::watch::WHO).
-    pub fn gas_error_k(&self, who: usize) -> Vec<f64> {
+    /// Error of the mean gas temperature, K, of one of [`METHODS`](super::methods::METHODS).
+    pub fn gas_error_k(&self, method: usize) -> Vec<f64> {
         let truth = self.truth.gas_mean_k.iter().map(|k| k - ZERO_CELSIUS_K);
-        self.watched.gas_degc[who].iter().zip(truth).map(|(said, truth)| said - truth).collect()
+        self.method_run.gas_degc[method].iter().zip(truth).map(|(said, truth)| said - truth).collect()
     }
 
     /// First sample after the air begins to change.
@@ -106,7 +106,7 @@ impl Drawn {
 pub struct ScenarioScore {
     /// Its number and title.
     pub title: String,
-    /// Root mean square error of the gas temperature from the change of the air on, K, of each of [`WHO`](super::watch::WHO).
+    /// Root mean square error of the gas temperature from the change of the air on, K, of each of [`METHODS`](super::methods::METHODS).
     pub gas_k: [Spread; 3],
     /// The same of the pressure that seems to be missing, bar.
     pub missing_bar: [Spread; 3],
@@ -131,7 +131,7 @@ pub struct LeakScore {
     pub cylinders: usize,
     /// Threshold of the first two, bar.
     pub threshold_bar: [f64; 2],
-    /// Cylinders on which each of [`WHO`](super::watch::WHO) alarmed before the leak.
+    /// Cylinders on which each of [`METHODS`](super::methods::METHODS) alarmed before the leak.
     pub false_alarms: [usize; 3],
     /// Delays of the alarms after the onset, min.
     pub delay_min: [Vec<f64>; 3],
@@ -141,7 +141,7 @@ pub struct LeakScore {
     pub bound_min: Option<f64>,
     /// Bound of the standard deviation of the rate at the end, bar/h.
     pub bound_bar_h: f64,
-    /// Tight cylinders on which each of [`WHO`](super::watch::WHO) alarms at these thresholds; the first two by construction on none.
+    /// Tight cylinders on which each of [`METHODS`](super::methods::METHODS) alarms at these thresholds; the first two by construction on none.
     pub tight_alarms: [usize; 3],
 }
 
@@ -173,8 +173,8 @@ impl Settings {
         let sensors = SENSORS.into_iter().map(Sensor::typical).collect::<Result<Vec<_>, _>>()?;
         let plan =
             Plan { nominal, sensors: &sensors, pole_per_s: self.pole_per_s, rest_s: truth.course.change_s() };
-        let watched = watch(&plan, &truth.log)?;
-        Ok(Drawn { truth, watched })
+        let method_run = run_methods(&plan, &truth.log)?;
+        Ok(Drawn { truth, method_run })
     }
 
     fn all(
@@ -190,13 +190,14 @@ impl Settings {
     /// A scenario, by its number from 0; `slope_bar_k` turns the bound of the temperature into one of the pressure.
     ///
     /// # Errors
-    /// A simulation's or a watcher's.
+    /// A simulation's or a method's.
     pub fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
         let (course, title) = &SCENARIOS[number];
         let all = self.all(course, None, self.seeds())?;
         let over = |value: &dyn Fn(&Drawn) -> f64| Spread::pooled(&all.iter().map(value).collect::<Vec<_>>());
-        let gas_k = [0, 1, 2].map(|who| over(&|drawn| drawn.rms(&drawn.gas_error_k(who))));
-        let missing_bar = [0, 1, 2].map(|who| over(&|drawn| drawn.rms(&drawn.watched.missing_bar[who])));
+        let gas_k = [0, 1, 2].map(|method| over(&|drawn| drawn.rms(&drawn.gas_error_k(method))));
+        let missing_bar =
+            [0, 1, 2].map(|method| over(&|drawn| drawn.rms(&drawn.method_run.missing_bar[method])));
         let bound = least_errors(Chamber::scenarios()[number], &settings(mass_member()), PATHS, self.seed)?;
         Ok(ScenarioScore {
             title: format!("scenario {}: {title}", number + 1),
@@ -212,41 +213,42 @@ impl Settings {
     /// Tight cylinders in the tunnel, that thresholds come from.
     ///
     /// # Errors
-    /// A simulation's or a watcher's.
+    /// A simulation's or a method's.
     pub fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
         let seeds = self.seeds();
         self.all(&Course::Tunnel, None, seeds.start + TRAINING..seeds.end + TRAINING)
     }
 
-    /// A leak in the tunnel, by its number in [`LEAKS_G_H`].
+    /// A leak in the tunnel, by its number: 60 or 6 g/h.
     ///
     /// # Errors
-    /// A simulation's or a watcher's.
+    /// A simulation's or a method's.
     pub fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
         let leak_g_h = LEAKS_G_H[number];
         let onset_s = Course::Tunnel.change_s() + ONSET_AFTER_S;
         let leak = TruthLeak { rate_kg_s: leak_g_h * GRAM_PER_HOUR, start_s: onset_s };
         let all = self.all(&Course::Tunnel, Some(leak), self.seeds())?;
-        let threshold_bar = [0, 1].map(|who| {
-            1.1 * tight.iter().map(|drawn| drawn.watched.largest_lasting_bar(who)).fold(0.0, f64::max)
+        let threshold_bar = [0, 1].map(|method| {
+            1.1 * tight.iter().map(|drawn| drawn.method_run.largest_lasting_bar(method)).fold(0.0, f64::max)
         });
-        let alarm_s = |drawn: &Drawn, who: usize| match who {
-            2 => drawn.watched.found_s,
-            _ => drawn.watched.alarm_s(who, threshold_bar[who], 0.0),
+        let alarm_s = |drawn: &Drawn, method: usize| match method {
+            2 => drawn.method_run.found_s,
+            _ => drawn.method_run.alarm_s(method, threshold_bar[method], 0.0),
         };
-        let delays = |who: usize| {
-            let alarms = all.iter().filter_map(|drawn| alarm_s(drawn, who));
+        let delays = |method: usize| {
+            let alarms = all.iter().filter_map(|drawn| alarm_s(drawn, method));
             alarms.filter(|&alarm_s| alarm_s >= onset_s).map(|alarm_s| (alarm_s - onset_s) / 60.0).collect()
         };
-        let rate = |drawn: &Drawn, who: usize| match who {
-            2 => drawn.watched.finding.map(|finding| finding.rate_pa_s.value),
-            _ => drawn.watched.losses[who].map(|loss| loss.rate_pa_s),
+        let rate = |drawn: &Drawn, method: usize| match method {
+            2 => drawn.method_run.finding.map(|finding| finding.rate_pa_s.value),
+            _ => drawn.method_run.losses[method].map(|loss| loss.rate_pa_s),
         };
-        let rates = |who: usize| {
-            let rates = all.iter().filter_map(|drawn| rate(drawn, who));
+        let rates = |method: usize| {
+            let rates = all.iter().filter_map(|drawn| rate(drawn, method));
             rates.map(|rate_pa_s| rate_pa_s * HOUR_S / PASCAL_PER_BAR).collect()
         };
-        let early = |drawn: &&Drawn, who: usize| alarm_s(drawn, who).is_some_and(|alarm_s| alarm_s < onset_s);
+        let early =
+            |drawn: &&Drawn, method: usize| alarm_s(drawn, method).is_some_and(|alarm_s| alarm_s < onset_s);
         let nominal = presets::load(VESSEL)?;
         let bar_per_kg = bar_per_kg(&nominal)?;
         let watched_s =
@@ -257,13 +259,13 @@ impl Settings {
             leak_bar_h: leak_g_h * 1e-3 * bar_per_kg,
             cylinders: all.len(),
             threshold_bar,
-            false_alarms: [0, 1, 2].map(|who| all.iter().filter(|drawn| early(drawn, who)).count()),
+            false_alarms: [0, 1, 2].map(|method| all.iter().filter(|drawn| early(drawn, method)).count()),
             delay_min: [0, 1, 2].map(delays),
             rate_bar_h: [0, 1, 2].map(rates),
             bound_min,
             bound_bar_h: sd_kg_s * HOUR_S * bar_per_kg,
             tight_alarms: [0, 1, 2]
-                .map(|who| tight.iter().filter(|drawn| alarm_s(drawn, who).is_some()).count()),
+                .map(|method| tight.iter().filter(|drawn| alarm_s(drawn, method).is_some()).count()),
         })
     }
 }
@@ -271,15 +273,15 @@ impl Settings {
 /// Share of the samples with the true temperature within two standard deviations.
 fn covered(drawn: &Drawn) -> f64 {
     let errors = drawn.gas_error_k(2);
-    let judged = errors.iter().zip(&drawn.watched.gas_sd_k).skip(drawn.change());
+    let judged = errors.iter().zip(&drawn.method_run.gas_sd_k).skip(drawn.change());
     let inside: Vec<f64> = judged.map(|(error, sd)| f64::from(u8::from(error.abs() <= 2.0 * sd))).collect();
     inside.iter().sum::<f64>() / inside.len() as f64
 }
 
 /// Pressure at 15 °C that a kg more makes, bar.
 fn bar_per_kg(nominal: &Vessel) -> Result<f64, ReproduceError> {
-    let (pressure_pa, step_pa) = (super::watch::FULL.pressure_pa, 1e4);
-    let t = super::watch::FULL.temperature_k;
+    let (pressure_pa, step_pa) = (super::methods::FULL.pressure_pa, 1e4);
+    let t = super::methods::FULL.temperature_k;
     let volume = nominal.volume.volume_m3(t, pressure_pa);
     let density = |p| nominal.fluid.density_from_pressure_temperature(p, t);
     let kg = volume * (density(pressure_pa + step_pa)? - density(pressure_pa - step_pa)?);

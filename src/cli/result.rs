@@ -1,0 +1,52 @@
+//! A result that is there as a whole: data, figure, report, and its summary for people.
+use super::arguments::Format;
+use super::input::Inputs;
+use super::message::Messages;
+use super::output::Target;
+use super::views::Views;
+use cylwatch::report::figure::Picture;
+use cylwatch::report::{Provenance, Report};
+use serde_json::Value;
+
+/// Where a result goes, and in which format; `None`: the summary goes to stdout.
+pub struct Destination<'a> {
+    pub data: &'a Target,
+    pub format: Option<Format>,
+    pub views: &'a Views,
+}
+
+/// What a result consists of; only what is asked for is made.
+pub struct Contents<'a> {
+    pub summary: Report,
+    pub csv: &'a dyn Fn(&Provenance) -> String,
+    pub json: &'a dyn Fn(&Provenance) -> Value,
+    pub picture: &'a dyn Fn() -> Picture,
+    /// The report around the picture and the summary.
+    pub report: &'a dyn Fn(Picture, Report) -> Report,
+}
+
+impl Destination<'_> {
+    /// Writes the result. Everything is made before any file appears.
+    pub fn write(
+        &self,
+        contents: Contents<'_>,
+        inputs: &Inputs,
+        provenance: &Provenance,
+        messages: &Messages,
+    ) -> anyhow::Result<()> {
+        let words = contents.summary.to_text();
+        let text = match self.format {
+            None => words.clone(),
+            Some(Format::Csv) => (contents.csv)(provenance),
+            Some(Format::Json) => serde_json::to_string_pretty(&(contents.json)(provenance))? + "\n",
+        };
+        let report = |picture| (contents.report)(picture, contents.summary);
+        let views = self.views.make(contents.picture, report, inputs.sources(), provenance)?;
+        self.data.write(text.as_bytes())?;
+        views.write()?;
+        if self.format.is_some() {
+            messages.say(&words);
+        }
+        Ok(())
+    }
+}
