@@ -1,5 +1,5 @@
 //! `cylwatch bench-detector`: leak detectors side by side on simulated cylinders.
-use super::arguments::Format;
+use super::format::Format;
 use super::input::Inputs;
 use super::message::Messages;
 use super::number::{above, at_least};

@@ -1,10 +1,18 @@
 //! `cylwatch completions`: a completion script for a shell.
-use super::arguments::{Arguments, CompletionsArguments};
 use super::output::Target;
+use clap::{Args, Command};
+
+/// Arguments of `completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// Shell.
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
 
 /// Writes the script to stdout.
-pub fn run(arguments: CompletionsArguments) -> anyhow::Result<()> {
+pub fn run(arguments: CompletionsArguments, mut program: Command) -> anyhow::Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Arguments::prepared(), "cylwatch", &mut script);
+    clap_complete::generate(arguments.shell, &mut program, "cylwatch", &mut script);
     Target::Stdout.write(&script)
 }

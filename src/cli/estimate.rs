@@ -1,6 +1,6 @@
 //! `cylwatch estimate`: the observer on a log, row by row.
-use super::arguments::Format;
 use super::fill::{self, FillSource, GivenFill};
+use super::format::Format;
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::options::LogArguments;

@@ -1,5 +1,5 @@
 //! `cylwatch identify`: a transfer function from one column of a log to another.
-use super::arguments::Format;
+use super::format::Format;
 use super::input::{Inputs, shown};
 use super::message::Messages;
 use super::options::LogArguments;

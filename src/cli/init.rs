@@ -1,11 +1,26 @@
 //! `cylwatch init`: start files to edit.
-use super::arguments::InitArguments;
 use super::message::Messages;
 use super::output;
 use anyhow::bail;
+use clap::Args;
 use cylwatch::thermal::{scenario, vessel};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Arguments of `init`.
+#[derive(Debug, Args)]
+pub struct InitArguments {
+    /// Folder for the files; it is made if it is not there. Files that are there are not overwritten.
+    #[arg(value_name = "DIR", default_value = ".")]
+    pub folder: PathBuf,
+    /// Built-in vessel to start from.
+    #[arg(long, default_value = "nitrogen-20l")]
+    pub vessel: String,
+    /// Built-in scenario to start from.
+    #[arg(long, default_value = "shock-cold")]
+    pub scenario: String,
+}
 
 /// Writes `vessel.toml`, `scenario.toml` and the tables it names; files that are there stay as they are.
 pub fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> {

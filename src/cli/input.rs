@@ -1,6 +1,6 @@
 //! What a run reads: files, stdin, built-in vessels and scenarios. Everything read is recorded with its SHA-256.
-use super::command_line;
 use super::message::Messages;
+use super::output::command_line;
 use anyhow::{Context, bail};
 use cylwatch::log::inspect::Inspector;
 use cylwatch::log::{LogError, LogOptions, LogReader, is_parquet};

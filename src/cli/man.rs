@@ -1,5 +1,4 @@
 //! `cylwatch man`: manual pages, made from the same words as `--help`.
-use super::arguments::Arguments;
 use super::message::Messages;
 use super::output::{self, Target, write_file};
 use clap::{Args, Command};
@@ -15,8 +14,7 @@ pub struct ManArguments {
 }
 
 /// Writes the pages.
-pub fn run(arguments: ManArguments, messages: &Messages) -> anyhow::Result<()> {
-    let mut program = Arguments::prepared();
+pub fn run(arguments: ManArguments, mut program: Command, messages: &Messages) -> anyhow::Result<()> {
     program.build();
     let Some(folder) = arguments.out else { return Target::Stdout.write(&page(&program)?) };
     output::make_folder(&folder)?;

@@ -9,6 +9,7 @@ mod commission;
 mod completions;
 mod estimate;
 mod fill;
+mod format;
 mod identify;
 mod init;
 mod input;
@@ -35,7 +36,6 @@ mod views;
 
 use arguments::{Arguments, Command};
 use clap::FromArgMatches;
-use cylwatch::report::quoted;
 use message::Messages;
 use std::process::ExitCode;
 
@@ -72,8 +72,8 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),
-        Command::Man(arguments) => man::run(arguments, messages),
-        Command::Completions(arguments) => completions::run(arguments),
+        Command::Man(arguments) => man::run(arguments, Arguments::prepared(), messages),
+        Command::Completions(arguments) => completions::run(arguments, Arguments::prepared()),
     };
     done.map(|()| ExitCode::SUCCESS)
 }
@@ -84,13 +84,4 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .chain()
         .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
         .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe)
-}
-
-/// The command line as it was typed, quoted so that a shell runs it again.
-fn command_line() -> String {
-    let words = std::env::args_os().enumerate().map(|(k, word)| {
-        let word = word.to_string_lossy().into_owned();
-        if k == 0 { "cylwatch".to_owned() } else { quoted(&word) }
-    });
-    words.collect::<Vec<_>>().join(" ")
 }

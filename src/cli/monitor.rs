@@ -1,6 +1,6 @@
 //! `cylwatch monitor`: the monitor on a log, row by row: verdict, events, alarms, a state to go on from.
-use super::arguments::Format;
 use super::fill::{self, FillSource, GivenFill};
+use super::format::Format;
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::output::Target;

@@ -1,5 +1,5 @@
 //! Groups of options that commands share, each with one help text.
-use super::arguments::Format;
+use super::format::Format;
 use super::number::{above, within};
 use clap::{Arg, Args, Command};
 use cylwatch::evaluation::performance::YEAR_S;

@@ -3,6 +3,7 @@
 //! A [`Target`] is checked before the run. A file is written beside its place under another name and then renamed,
 //! so that a reader never meets half of it and an older file stays until the new one is there.
 use anyhow::{Context, anyhow, bail};
+use cylwatch::report::quoted;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -268,4 +269,13 @@ fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
     }
     #[cfg(not(unix))]
     builder.tempfile_in(folder)
+}
+
+/// The command line as it was typed, quoted so that a shell runs it again.
+pub fn command_line() -> String {
+    let words = std::env::args_os().enumerate().map(|(k, word)| {
+        let word = word.to_string_lossy().into_owned();
+        if k == 0 { "cylwatch".to_owned() } else { quoted(&word) }
+    });
+    words.collect::<Vec<_>>().join(" ")
 }

@@ -6,7 +6,7 @@ mod stop;
 
 pub use arguments::PlaceArguments;
 
-use super::arguments::Format;
+use super::format::Format;
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;

@@ -1,15 +1,59 @@
 //! `cylwatch properties`: a gas at one state, or at every state of a file.
-use super::arguments::{EquationName, Format, PropertiesArguments};
+use super::format::Format;
 use super::input::Inputs;
 use super::message::Messages;
+use super::options::{DataArguments, ReportArguments};
 use super::output::Target;
 use super::states;
+use super::states::GivenQuantities;
 use super::views::Views;
 use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
 use cylwatch::properties::{self, Properties};
 use cylwatch::report::{Provenance, Report};
 use cylwatch::thermal::fluid::{Equation, Fluid};
 use serde_json::json;
+use std::path::PathBuf;
+
+/// Equation of state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EquationName {
+    /// Reference equation of the gas (nitrogen: Span et al. 2000).
+    Reference,
+    /// Ideal gas with the reference equation's heat capacity.
+    IdealGas,
+    /// Cubic equation of Peng and Robinson.
+    PengRobinson,
+}
+
+/// Arguments of `properties`.
+#[derive(Debug, Args)]
+#[command(after_help = PROPERTIES_EXAMPLES)]
+pub struct PropertiesArguments {
+    /// Gas, e.g. nitrogen.
+    pub fluid: String,
+    /// The two quantities that fix the state.
+    #[command(flatten)]
+    pub given: GivenQuantities,
+    /// CSV file with a state a row, or - for stdin: any two of temperature, pressure, density with unit suffixes.
+    #[arg(long, value_name = "FILE")]
+    pub states: Option<PathBuf>,
+    /// Equation of state.
+    #[arg(long, value_enum, default_value = "reference")]
+    pub equation: EquationName,
+    #[command(flatten)]
+    pub data: DataArguments,
+    #[command(flatten)]
+    pub report: ReportArguments,
+}
+
+const PROPERTIES_EXAMPLES: &str = "\
+Without --output and --format one state is a table for people.
+
+Examples:
+  cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
+  cylwatch properties nitrogen --density-kg-m3 223.2 --temperature-degc -25 --format json
+  printf 'temperature_degc,pressure_barg\\n15,199\\n' | cylwatch properties nitrogen --states -";
 
 /// Evaluates and writes.
 pub fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Result<()> {

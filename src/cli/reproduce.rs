@@ -1,12 +1,33 @@
 //! `cylwatch reproduce`: the paper rebuilt, as a report, as files and as tables.
-use super::arguments::ReproduceArguments;
-use super::command_line;
 use super::message::Messages;
+use super::number::{at_least, within};
+use super::options::{ReportArguments, SolverArguments};
+use super::output::command_line;
 use super::output::{self, Target};
 use super::progress::Progress;
 use super::views::Views;
+use clap::Args;
 use cylwatch::report::Provenance;
 use cylwatch::reproduce::{self, Settings, checks};
+use std::path::PathBuf;
+
+/// Arguments of `reproduce`.
+#[derive(Debug, Args)]
+pub struct ReproduceArguments {
+    /// Folder for report.html, figures (SVG and PNG), CSV files and results.json; it is made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
+    pub out: PathBuf,
+    /// Seed of noise and drawn cylinders, a whole number of at least 0.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = at_least(0_u64))]
+    pub seed: u64,
+    /// Drawn cylinders of each case, 1 to 1000; the time goes with it.
+    #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = within(1_u64, 1000))]
+    pub cylinders: u64,
+    #[command(flatten)]
+    pub report: ReportArguments,
+    #[command(flatten)]
+    pub solver: SolverArguments,
+}
 
 /// Computes, writes the files, prints the tables.
 pub fn run(arguments: ReproduceArguments, messages: &Messages) -> anyhow::Result<()> {

@@ -1,5 +1,5 @@
 //! A result that is there as a whole: data, figure, report, and its summary for people.
-use super::arguments::Format;
+use super::format::Format;
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;

@@ -1,5 +1,5 @@
 //! Rows that are written while a log is read (`estimate`, `monitor`): head, rows, tail.
-use super::arguments::Format;
+use super::format::Format;
 use super::input::{Inputs, LogInput};
 use super::output::{Stream, Target};
 use cylwatch::report::{Field, RowFormat, Rows};

@@ -1,9 +1,28 @@
 //! `cylwatch schema`: JSON schemas of the files that the program reads.
-use super::arguments::{Document, SchemaArguments};
 use super::output::Target;
+use clap::{Args, ValueEnum};
 use cylwatch::estimator::placement::candidates_schema;
 use cylwatch::thermal::{scenario, vessel};
 use serde_json::json;
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Document {
+    /// Vessel files.
+    Vessel,
+    /// Scenario files.
+    Scenario,
+    /// Files of `place --candidates`.
+    Candidates,
+}
+
+/// Arguments of `schema`.
+#[derive(Debug, Args)]
+pub struct SchemaArguments {
+    /// Which schema [default: all, as one object].
+    #[arg(value_enum)]
+    pub document: Option<Document>,
+}
 
 /// Writes one schema, or all as an object, to stdout.
 pub fn run(arguments: SchemaArguments) -> anyhow::Result<()> {

@@ -1,18 +1,59 @@
 //! `cylwatch simulate`: a vessel in a scenario.
-use super::arguments::{Format, SimulateArguments};
+use super::format::Format;
 use super::input::Inputs;
 use super::message::Messages;
+use super::number::at_least;
+use super::options::{OUTPUT, SolverArguments, ViewArguments};
 use super::output::Target;
 use super::progress::Progress;
 use super::views::Views;
 use anyhow::bail;
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use cylwatch::log::is_parquet;
 use cylwatch::report::{Provenance, Readings, aligned, simulation};
 use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `simulate`.
+#[derive(Debug, Args)]
+#[command(after_help = SIMULATE_EXAMPLES)]
+pub struct SimulateArguments {
+    /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
+    #[arg(required_unless_present = "list")]
+    pub vessel: Option<String>,
+    /// Scenario: a TOML file, the name of a built-in one, or - for stdin.
+    #[arg(required_unless_present = "list")]
+    pub scenario: Option<String>,
+    /// Write the data to FILE; - is stdout.
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
+    pub output: Option<PathBuf>,
+    /// Format of the data [default: by the ending .json or .parquet of the file, else csv].
+    #[arg(long, value_enum, help_heading = OUTPUT)]
+    pub format: Option<SimulationFormat>,
+    #[command(flatten)]
+    pub views: ViewArguments,
+    #[command(flatten)]
+    pub solver: SolverArguments,
+    /// Seed of the sensors' specimens and noise, a whole number of at least 0.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = at_least(0_u64))]
+    pub seed: u64,
+    /// List the built-in vessels and scenarios and stop.
+    #[arg(long)]
+    pub list: bool,
+}
+
+const SIMULATE_EXAMPLES: &str = "\
+Columns: time_s, ambient_degc, gas_mean_degc, gas_<k>_degc (k = 1 at the bottom),
+wall_<name>_degc, shoulder_degc, valve_degc, pressure_bar (absolute), mass_kg, outflow_g_h,
+heat_to_gas_w, and what the scenario's sensors read: measured_<sensor>_degc, _bar or _barg; an
+empty cell is a lost reading.
+
+Examples:
+  cylwatch simulate --list
+  cylwatch simulate nitrogen-20l shock-cold --plot shock.svg -o shock.csv
+  cylwatch simulate vessel.toml scenario.toml --format json | jq .events";
 
 /// Format of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,6 @@
 //! The raw arguments of `identify`.
 use super::quantities::Quantities;
-use crate::cli::arguments::Format;
+use crate::cli::format::Format;
 use crate::cli::number::{at_least, within};
 use crate::cli::options::{EXPERT, LogArguments, MORE, OUTPUT, ViewArguments};
 use clap::{Args, ValueEnum};

@@ -1,6 +1,6 @@
 //! Paper to draw on: figure units in, plotters' integer pixels out.
 use super::path::{Point, dashes, smooth_pieces};
-use super::style::{Rgb, Stroke};
+use super::style::{Rgb, SMALL, Stroke};
 use crate::report::ReportError;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -32,6 +32,10 @@ pub(super) struct Text {
     pub upwards: bool,
     pub color: Rgb,
 }
+
+/// Small text from the point on.
+pub(super) const PLAIN: Text =
+    Text { size: SMALL, side: Side::Left, bold: false, upwards: false, color: Rgb::BLACK };
 
 /// A drawing area with lengths in figure units.
 pub(super) struct Canvas<'a, DB: DrawingBackend> {

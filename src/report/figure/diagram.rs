@@ -1,8 +1,8 @@
 //! Diagrams: blocks on a grid and the signals between them.
 //!
 //! An arrow leaves its block to the right, or downwards and upwards where the next block is in the same column, and bends at most once.
+use super::canvas::PLAIN;
 use super::canvas::{Canvas, Side, Text};
-use super::panel::PLAIN;
 use super::path::Point;
 use super::style::{self, Rgb, Stroke};
 use crate::report::ReportError;

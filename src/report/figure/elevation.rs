@@ -1,8 +1,8 @@
 //! A body of revolution drawn to scale, and beside it numbers against its height, on one axis.
 use super::Mark;
 use super::axis::Scale;
+use super::canvas::PLAIN;
 use super::canvas::{Canvas, Side, Text};
-use super::panel::PLAIN;
 use super::path::{Point, simplified, unbroken};
 use super::style::{self, Rgb, Stroke};
 use super::ticks::ticks;

@@ -1,6 +1,6 @@
 //! Tables in a picture.
+use super::canvas::PLAIN;
 use super::canvas::{Canvas, Text};
-use super::panel::PLAIN;
 use super::style::{self, Rgb, Stroke};
 use crate::report::ReportError;
 use plotters::prelude::DrawingBackend;

@@ -1,14 +1,11 @@
 //! Draws the panels of a figure: axes, curves, limits, marks, legend.
 use super::axis::{Abscissa, Scale, abscissa, ordinate};
-use super::canvas::{Canvas, Side, Text};
+use super::canvas::{Canvas, PLAIN, Side, Text};
 use super::path::{Point, simplified, unbroken};
 use super::style::{self, Rgb, Stroke};
 use super::{Figure, Item, Mark, Panel, strip};
 use crate::report::ReportError;
 use plotters::prelude::DrawingBackend;
-
-pub(super) const PLAIN: Text =
-    Text { size: style::SMALL, side: Side::Left, bold: false, upwards: false, color: Rgb::BLACK };
 
 /// The frame of a panel on paper.
 struct Frame<'a> {

@@ -1,7 +1,7 @@
 //! Strips: what was when, as colours.
 use super::Stretch;
 use super::canvas::Canvas;
-use super::panel::PLAIN;
+use super::canvas::PLAIN;
 use super::path::Point;
 use crate::report::ReportError;
 use plotters::prelude::DrawingBackend;
