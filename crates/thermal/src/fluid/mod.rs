@@ -106,15 +106,15 @@ impl Fluid {
     pub fn named(name: &str) -> Result<Self, ThermalError> {
         let wanted = name.to_ascii_lowercase();
         let index = data::ALL.iter().position(|data| data.name == wanted);
-        let (Some(index), Some(transport)) = (index, Transport::for_fluid(&wanted)) else {
+        let Some(index) = index else {
             #[cfg(feature = "files")]
-            let nearest = crate::document::suggestion(&wanted, Self::names().iter().copied());
+            let nearest = crate::document::suggestion(&wanted, Self::names());
             #[cfg(not(feature = "files"))]
             let nearest = String::new();
             return Err(ThermalError::UnknownFluid {
                 name: name.to_owned(),
                 nearest,
-                known: Self::names().join(", "),
+                known: Self::names().collect::<Vec<_>>().join(", "),
             });
         };
         let prepared = &PREPARED[index];
@@ -122,13 +122,13 @@ impl Fluid {
             data: data::ALL[index],
             prepared,
             description: Description::Reference(prepared),
-            transport,
+            transport: data::ALL[index].transport,
         })
     }
 
     /// Names that [`Fluid::named`] knows.
-    pub fn names() -> &'static [&'static str] {
-        &["nitrogen", "argon", "air", "hydrogen", "helium"]
+    pub fn names() -> impl ExactSizeIterator<Item = &'static str> {
+        data::ALL.iter().map(|data| data.name)
     }
 
     /// The same gas with another equation.

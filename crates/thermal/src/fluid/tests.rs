@@ -1,6 +1,6 @@
 //! Nitrogen with CoolProp's reducing density, so that its table must be met to rounding.
 use super::data::{self, FluidData};
-use super::{Description, Fluid, Multiparameter, Transport};
+use super::{Description, Fluid, Multiparameter};
 
 /// CoolProp 8.0.0 reduces nitrogen with this density, mol/m³; Span et al. (2000) print 11183.9.
 const COOLPROP_REDUCING_DENSITY_MOL_M3: f64 = 11_183.901_464_580_624;
@@ -10,7 +10,7 @@ fn nitrogen_as_coolprop() -> Fluid {
     let copy = FluidData { reducing_density_mol_m3: COOLPROP_REDUCING_DENSITY_MOL_M3, ..*original };
     let data: &'static FluidData = Box::leak(Box::new(copy));
     let prepared: &'static Multiparameter = Box::leak(Box::new(Multiparameter::new(data)));
-    let transport = Transport::for_fluid("nitrogen").unwrap();
+    let transport = original.transport;
     Fluid { data, prepared, description: Description::Reference(prepared), transport }
 }
 

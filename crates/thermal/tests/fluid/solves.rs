@@ -13,7 +13,7 @@ use crate::support::{EQUATIONS, all};
 
 fn fluids() -> impl Strategy<Value = Fluid> {
     (0..Fluid::names().len(), 0..EQUATIONS.len()).prop_map(|(name, equation)| {
-        Fluid::named(Fluid::names()[name]).unwrap().with_equation(EQUATIONS[equation])
+        Fluid::named(Fluid::names().nth(name).unwrap()).unwrap().with_equation(EQUATIONS[equation])
     })
 }
 

@@ -6,7 +6,7 @@ pub const EQUATIONS: [Equation; 3] = [Equation::Reference, Equation::IdealGas, E
 
 /// Every fluid with every equation.
 pub fn all() -> Vec<Fluid> {
-    let named = Fluid::names().iter().map(|name| Fluid::named(name).unwrap());
+    let named = Fluid::names().map(|name| Fluid::named(name).unwrap());
     named.flat_map(|fluid| EQUATIONS.map(|equation| fluid.clone().with_equation(equation))).collect()
 }
 

@@ -3,8 +3,10 @@
 //! Equation of state: E. W. Lemmon, R. T Jacobsen, S. G. Penoncello, D. G. Friend, "Thermodynamic properties of air and
 //! mixtures of nitrogen, argon, and oxygen from 60 to 2000 K at pressures to 2000 MPa", J. Phys. Chem. Ref. Data 29
 //! (2000) 331, doi:10.1063/1.1285884: dry air as a pseudo-pure fluid, reduced at its maxcondentherm.
-//! Transport: see [`crate::fluid::transport`].
+//! Transport: E. W. Lemmon, R. T. Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi:10.1023/B:IJOT.0000022327.04529.f3, in the digits of CoolProp 8.0.0;
+//! µPa s, mW/(m K), nm, g/mol.
 use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
+use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Dry air.
 pub static AIR: FluidData = FluidData {
@@ -58,4 +60,36 @@ pub static AIR: FluidData = FluidData {
     ],
     ideal_einstein: &[(0.791309509, 25.36365), (0.212236768, 16.90741)],
     ideal_general: &[(-0.197938904, 87.31279, 0.6666666666666666, 1.0)],
+    transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
+        molar_mass_g_mol: 28.9586,
+        epsilon_over_k_k: 103.3,
+        sigma_nm: 0.36,
+        reducing_temperature_k: 132.6312,
+        reducing_density_kg_m3: 10447.7 * 0.02896546,
+        viscosity: &[
+            T::new(10.72, 0.2, 1, 0),
+            T::new(1.122, 0.05, 4, 0),
+            T::new(0.002019, 2.4, 9, 0),
+            T::new(-8.876, 0.6, 1, 1),
+            T::new(-0.02916, 3.6, 8, 1),
+        ],
+        dilute_from_viscosity: 1.308,
+        dilute: &[[1.405, -1.1], [-1.036, -0.3]],
+        conductivity: &[
+            T::new(8.743, 0.1, 1, 0),
+            T::new(14.76, 0.0, 2, 0),
+            T::new(-16.62, 0.5, 3, 2),
+            T::new(3.793, 2.7, 7, 2),
+            T::new(-6.142, 0.3, 7, 2),
+            T::new(-0.3778, 1.3, 11, 2),
+        ],
+        critical: OlchowySengers {
+            xi_0_m: 1.1e-10,
+            amplitude: 0.055,
+            cutoff_per_m: 1.0 / 0.310000000001e-9,
+            reference_temperature_k: 265.262,
+            critical_pressure_pa: 3785020.0,
+            critical_density_kg_m3: 10447.7 * 0.02896546,
+        },
+    }),
 };

@@ -3,8 +3,10 @@
 //! Equation of state: C. Tegeler, R. Span, W. Wagner, "A new equation of state for argon covering the fluid region for
 //! temperatures from the melting line to 700 K at pressures up to 1000 MPa", J. Phys. Chem. Ref. Data 28 (1999) 779,
 //! doi:10.1063/1.556037. Reducing density 535.6 kg/m³.
-//! Transport: see [`crate::fluid::transport`].
+//! Transport: E. W. Lemmon, R. T. Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi:10.1023/B:IJOT.0000022327.04529.f3, in the digits of CoolProp 8.0.0;
+//! µPa s, mW/(m K), nm, g/mol.
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Argon.
 pub static ARGON: FluidData = FluidData {
@@ -78,4 +80,38 @@ pub static ARGON: FluidData = FluidData {
     ideal_power: &[],
     ideal_einstein: &[],
     ideal_general: &[],
+    transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
+        molar_mass_g_mol: 39.948,
+        epsilon_over_k_k: 143.2,
+        sigma_nm: 0.335,
+        reducing_temperature_k: 150.687,
+        reducing_density_kg_m3: 13407.43 * 0.039948,
+        viscosity: &[
+            T::new(12.19, 0.42, 1, 0),
+            T::new(13.99, 0.0, 2, 0),
+            T::new(0.005027, 0.95, 10, 0),
+            T::new(-18.93, 0.5, 5, 2),
+            T::new(-6.698, 0.9, 1, 4),
+            T::new(-3.827, 0.8, 2, 4),
+        ],
+        dilute_from_viscosity: 0.8158,
+        dilute: &[[-0.432, -0.77]],
+        conductivity: &[
+            T::new(13.73, 0.0, 1, 0),
+            T::new(10.07, 0.0, 2, 0),
+            T::new(0.7375, 0.0, 4, 0),
+            T::new(-33.96, 0.8, 5, 2),
+            T::new(20.47, 1.2, 6, 2),
+            T::new(-2.274, 0.8, 9, 2),
+            T::new(-3.973, 0.5, 1, 4),
+        ],
+        critical: OlchowySengers {
+            xi_0_m: 1.3e-10,
+            amplitude: 0.055,
+            cutoff_per_m: 1.0 / 0.32e-9,
+            reference_temperature_k: 301.374,
+            critical_pressure_pa: 4863000.0,
+            critical_density_kg_m3: 13407.43 * 0.039948,
+        },
+    }),
 };

@@ -5,6 +5,7 @@
 //! J. Phys. Chem. Ref. Data 49 (2020) 033105 (project coefficients: CoolProp 8.0.0).
 //! Transport: see [`crate::fluid::transport`].
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::transport::Transport;
 
 /// Helium.
 pub static HELIUM: FluidData = FluidData {
@@ -56,4 +57,5 @@ pub static HELIUM: FluidData = FluidData {
     ideal_power: &[],
     ideal_einstein: &[],
     ideal_general: &[],
+    transport: Transport::Helium,
 };

@@ -4,6 +4,7 @@
 //! parahydrogen, normal hydrogen, and orthohydrogen", J. Phys. Chem. Ref. Data 38 (2009) 721, doi:10.1063/1.3160306: normal hydrogen.
 //! Transport: see [`crate::fluid::transport`].
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::transport::Transport;
 
 /// Hydrogen.
 pub static HYDROGEN: FluidData = FluidData {
@@ -52,4 +53,5 @@ pub static HYDROGEN: FluidData = FluidData {
         (1.217, 206.93920651682),
     ],
     ideal_general: &[],
+    transport: Transport::Hydrogen,
 };

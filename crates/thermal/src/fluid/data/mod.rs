@@ -5,9 +5,11 @@ mod helium;
 mod hydrogen;
 mod nitrogen;
 
+use super::transport::Transport;
+
 /// All fluids.
-pub static ALL: [&FluidData; 5] =
-    [&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM];
+pub static ALL: &[&FluidData] =
+    &[&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM];
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
 #[derive(Clone, Copy, Debug)]
@@ -107,4 +109,6 @@ pub struct FluidData {
     pub ideal_einstein: &'static [(f64, f64)],
     /// Terms `n ln(c + d exp(t tau))` of the ideal part as (n, t, c, d).
     pub ideal_general: &'static [(f64, f64, f64, f64)],
+    /// Viscosity and thermal conductivity.
+    pub transport: Transport,
 }

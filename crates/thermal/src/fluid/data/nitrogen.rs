@@ -3,8 +3,10 @@
 //! Equation of state: R. Span, E. W. Lemmon, R. T Jacobsen, W. Wagner, A. Yokozeki, "A reference equation of state for the
 //! thermodynamic properties of nitrogen for temperatures from 63.151 to 1000 K and pressures to 2200 MPa",
 //! J. Phys. Chem. Ref. Data 29 (2000) 1361, doi:10.1063/1.1349047. Reducing density as published, 11.1839 mol/dm³.
-//! Transport: see [`crate::fluid::transport`].
+//! Transport: E. W. Lemmon, R. T. Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi:10.1023/B:IJOT.0000022327.04529.f3, in the digits of CoolProp 8.0.0;
+//! µPa s, mW/(m K), nm, g/mol.
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Nitrogen.
 pub static NITROGEN: FluidData = FluidData {
@@ -69,4 +71,36 @@ pub static NITROGEN: FluidData = FluidData {
     ideal_power: &[(-0.0001934819, -1.0), (-1.247742e-05, -2.0), (6.678326e-08, -3.0)],
     ideal_einstein: &[(1.012941, 26.657878470901483)],
     ideal_general: &[],
+    transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
+        molar_mass_g_mol: 28.01348,
+        epsilon_over_k_k: 98.94,
+        sigma_nm: 0.3656,
+        reducing_temperature_k: 126.192,
+        reducing_density_kg_m3: 11183.9 * 0.02801348,
+        viscosity: &[
+            T::new(10.72, 0.1, 2, 0),
+            T::new(0.03989, 0.25, 10, 1),
+            T::new(0.001208, 3.2, 12, 1),
+            T::new(-7.402, 0.9, 2, 2),
+            T::new(4.62, 0.3, 1, 3),
+        ],
+        dilute_from_viscosity: 1.511,
+        dilute: &[[2.117, -1.0], [-3.332, -0.7]],
+        conductivity: &[
+            T::new(8.862, 0.0, 1, 0),
+            T::new(31.11, 0.03, 2, 0),
+            T::new(-73.13, 0.2, 3, 1),
+            T::new(20.03, 0.8, 4, 2),
+            T::new(-0.7096, 0.6, 8, 2),
+            T::new(0.2672, 1.9, 10, 2),
+        ],
+        critical: OlchowySengers {
+            xi_0_m: 1.7e-10,
+            amplitude: 0.055,
+            cutoff_per_m: 1.0 / 0.4e-9,
+            reference_temperature_k: 252.384,
+            critical_pressure_pa: 3395800.0,
+            critical_density_kg_m3: 11183.9 * 0.02801348,
+        },
+    }),
 };

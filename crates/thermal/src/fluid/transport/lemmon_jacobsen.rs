@@ -1,4 +1,4 @@
-//! Viscosity and thermal conductivity of nitrogen, argon and air after Lemmon and Jacobsen (2004).
+//! Viscosity and thermal conductivity in the form of Lemmon and Jacobsen (2004); the coefficients stand with those of the fluid's equation of state.
 //!
 //! With `tau = Tc/T`, `delta = rho/rhoc`, `T* = T k/epsilon`:
 //!
@@ -18,7 +18,7 @@
 use super::OlchowySengers;
 use crate::fluid::Real;
 
-/// Coefficients `b_i` of the collision integral, shared by the three fluids.
+/// Coefficients `b_i` of the collision integral, shared by all fluids.
 const COLLISION: [f64; 5] = [0.431, -0.4623, 0.08406, 0.005341, -0.00331];
 /// Chapman-Enskog constant, µPa s nm² / sqrt(K kg/kmol).
 const CHAPMAN_ENSKOG: f64 = 0.026_695_8;
@@ -34,6 +34,13 @@ pub struct Term {
     pub d: u32,
     /// Exponent of `delta` within the exponential, at most 4; zero for none.
     pub l: usize,
+}
+
+impl Term {
+    /// A term in the order of the source's tables.
+    pub const fn new(n: f64, t: f64, d: u32, l: usize) -> Self {
+        Self { n, t, d, l }
+    }
 }
 
 /// Constants and coefficients of one fluid, in the units of the source.

@@ -13,7 +13,6 @@
 //! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
 //! CoolProp 8.0.0; each module names its range of validity and the deviations.
 mod critical;
-mod data;
 mod helium;
 mod hydrogen;
 mod lemmon_jacobsen;
@@ -43,7 +42,7 @@ pub struct TransportState<D> {
 /// Transport correlations of one fluid.
 #[derive(Clone, Copy, Debug)]
 pub enum Transport {
-    /// Lemmon and Jacobsen 2004: nitrogen, argon, air.
+    /// The form of Lemmon and Jacobsen 2004.
     LemmonJacobsen(&'static LemmonJacobsenData),
     /// Normal hydrogen: Muzny et al. 2013, Assael et al. 2011.
     Hydrogen,
@@ -52,18 +51,6 @@ pub enum Transport {
 }
 
 impl Transport {
-    /// Correlations of a fluid by its lower-case name; `None` if there are none for it.
-    pub fn for_fluid(name: &str) -> Option<Transport> {
-        match name {
-            "nitrogen" => Some(Transport::LemmonJacobsen(&data::NITROGEN)),
-            "argon" => Some(Transport::LemmonJacobsen(&data::ARGON)),
-            "air" => Some(Transport::LemmonJacobsen(&data::AIR)),
-            "hydrogen" => Some(Transport::Hydrogen),
-            "helium" => Some(Transport::Helium),
-            _ => None,
-        }
-    }
-
     /// Viscosity, Pa s. The critical enhancement of the viscosity, below 1 % except within 1 % of the
     /// critical temperature, is left out, as in the sources.
     pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {

@@ -5,12 +5,12 @@ use num_dual::Dual64;
 use proptest::prelude::*;
 
 use super::*;
+use crate::fluid::Fluid;
+use crate::fluid::data::{ALL, FluidData};
 use coolprop::Row;
 
-const NAMES: [&str; 5] = ["nitrogen", "argon", "air", "hydrogen", "helium"];
-
 fn named(name: &str) -> Transport {
-    Transport::for_fluid(name).unwrap()
+    ALL.iter().find(|data| data.name == name).unwrap().transport
 }
 
 fn state(row: &Row) -> TransportState<f64> {
@@ -120,7 +120,9 @@ mod analytic {
 
     #[test]
     fn zero_density_is_the_dilute_gas() {
-        for (name, expected) in NAMES.into_iter().zip(DILUTE_300_K) {
+        for (name, expected) in
+            ["nitrogen", "argon", "air", "hydrogen", "helium"].into_iter().zip(DILUTE_300_K)
+        {
             let values = [
                 named(name).viscosity_pa_s(0.0, 300.0),
                 named(name).background_conductivity_w_m_k(0.0, 300.0),
@@ -133,7 +135,7 @@ mod analytic {
 
     #[test]
     fn derivatives_exist_at_zero_density() {
-        for name in NAMES {
+        for name in Fluid::names() {
             let rho = Dual64::from(0.0).derivative();
             let viscosity = named(name).viscosity_pa_s(rho, Dual64::from(300.0));
             let conductivity = named(name).background_conductivity_w_m_k(rho, Dual64::from(300.0));
@@ -153,7 +155,7 @@ mod analytic {
 
     #[test]
     fn enhancement_vanishes_from_the_reference_temperature_on() {
-        for name in NAMES {
+        for name in Fluid::names() {
             let fluid = named(name);
             let t = fluid.reference_temperature_k().unwrap_or(12.0);
             let state = TransportState {
@@ -176,25 +178,14 @@ mod analytic {
             assert!((below / above - 1.0).abs() < 1e-9, "{t} K: {below:e} and {above:e}");
         }
     }
-
-    #[test]
-    fn unknown_fluids_have_no_correlations() {
-        assert!(Transport::for_fluid("xenon").is_none());
-    }
 }
 
 mod property {
     use super::*;
 
-    /// Largest density of the domain, kg/m³: that of 500 bar at 200 K, rounded up.
-    fn largest_density(name: &str) -> f64 {
-        match name {
-            "nitrogen" => 620.0,
-            "argon" => 1050.0,
-            "air" => 650.0,
-            "hydrogen" => 45.0,
-            _ => 90.0,
-        }
+    /// Density of 500 bar at 200 K, kg/m³.
+    fn largest_density(data: &FluidData) -> f64 {
+        Fluid::named(data.name).unwrap().density_from_pressure_temperature(5e7, 200.0).unwrap()
     }
 
     /// Equality to 1e-6 of the value per relative change of the argument.
@@ -204,21 +195,21 @@ mod property {
 
     proptest! {
         #[test]
-        fn values_are_positive(index in 0..NAMES.len(), part in 0.0..1.0_f64, t in 200.0..400.0_f64) {
-            let fluid = named(NAMES[index]);
-            let rho = part * largest_density(NAMES[index]);
+        fn values_are_positive(index in 0..ALL.len(), part in 0.0..1.0_f64, t in 200.0..400.0_f64) {
+            let fluid = ALL[index].transport;
+            let rho = part * largest_density(ALL[index]);
             prop_assert!(fluid.viscosity_pa_s(rho, t) > 1e-6);
             prop_assert!(fluid.background_conductivity_w_m_k(rho, t) > 1e-3);
         }
 
         #[test]
         fn dual_derivatives_are_central_differences(
-            index in 0..NAMES.len(), part in 0.01..1.0_f64, t in 200.0..400.0_f64,
+            index in 0..ALL.len(), part in 0.01..1.0_f64, t in 200.0..400.0_f64,
         ) {
             // helium's correlation has a corner in temperature at 300 K
             prop_assume!((t - 300.0).abs() > 0.1);
-            let fluid = named(NAMES[index]);
-            let rho = part * largest_density(NAMES[index]);
+            let fluid = ALL[index].transport;
+            let rho = part * largest_density(ALL[index]);
             let (h_rho, h_t) = (1e-5 * rho, 1e-5 * t);
             let along_rho = Dual64::from(rho).derivative();
             let along_t = Dual64::from(t).derivative();
@@ -256,10 +247,15 @@ mod property {
 
     #[test]
     fn dual_derivative_of_the_enhancement_is_the_central_difference() {
-        let tables: [&[Row]; 5] =
-            [&coolprop::NITROGEN, &coolprop::ARGON, &coolprop::AIR, &coolprop::HYDROGEN, &coolprop::HELIUM];
+        let tables: [(&str, &[Row]); 5] = [
+            ("nitrogen", &coolprop::NITROGEN),
+            ("argon", &coolprop::ARGON),
+            ("air", &coolprop::AIR),
+            ("hydrogen", &coolprop::HYDROGEN),
+            ("helium", &coolprop::HELIUM),
+        ];
         let mut compared = 0;
-        for (name, table) in NAMES.into_iter().zip(tables) {
+        for (name, table) in tables {
             for row in table {
                 let value = enhancement_along(named(name), row, 0.0);
                 // towards zero enhancement the slope grows without bound
