@@ -109,7 +109,7 @@ impl Fluid {
     /// The phase is not checked.
     ///
     /// # Errors
-    /// The density is outside the domain, or no temperature between half the lowest and twice the highest of the domain has this energy.
+    /// The density is outside the domain, or no temperature between nine tenths of the lowest and twice the highest of the domain has this energy.
     pub fn temperature_from_density_energy(
         &self,
         density_kg_m3: f64,
@@ -117,7 +117,7 @@ impl Fluid {
         guess_k: Option<f64>,
     ) -> Result<f64, ThermalError> {
         let domain = self.domain();
-        let (low, high) = (0.5 * domain.lowest_temperature_k, 2.0 * domain.highest_temperature_k);
+        let (low, high) = (0.9 * domain.lowest_temperature_k, 2.0 * domain.highest_temperature_k);
         let none = ThermalError::NoTemperature { fluid: self.name(), density_kg_m3, energy_j_kg };
         self.check_density(density_kg_m3)?;
         if !energy_j_kg.is_finite() {
