@@ -4,12 +4,13 @@ mod argon;
 mod helium;
 mod hydrogen;
 mod nitrogen;
+mod oxygen;
 
 use super::transport::Transport;
 
 /// All fluids.
 pub static ALL: &[&FluidData] =
-    &[&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM];
+    &[&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM, &oxygen::OXYGEN];
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
 #[derive(Clone, Copy, Debug)]
