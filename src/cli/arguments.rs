@@ -21,7 +21,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 /// Tells a leaking gas cylinder from a cold one: thermal model of a pressure cylinder.
 #[derive(Debug, Parser)]
 #[command(name = "cylwatch", version, max_term_width = 110, after_help = EXAMPLES)]
-pub struct Arguments {
+pub(super) struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -32,7 +32,7 @@ pub struct Arguments {
 
 impl Arguments {
     /// The command line with what concerns all options.
-    pub fn prepared() -> clap::Command {
+    pub(super) fn prepared() -> clap::Command {
         without_experts(with_negative_numbers(Self::command()))
     }
 }
@@ -55,7 +55,7 @@ Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive 
 
 /// The commands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(super) enum Command {
     /// Rebuild every figure and table of the paper beside its own numbers, in one report; under a minute.
     Reproduce(ReproduceArguments),
     /// Simulate a vessel in a scenario: temperatures, pressure, mass and sensor readings against time.

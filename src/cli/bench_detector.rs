@@ -20,7 +20,7 @@ const HOUR_S: f64 = 3600.0;
 /// Arguments of `bench-detector`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct BenchDetectorArguments {
+pub(super) struct BenchDetectorArguments {
     /// Cylinders for training, as many for the test, and as many for each leak rate; at least 5.
     #[arg(long, value_name = "NUMBER", default_value_t = 24, value_parser = at_least(5_u64))]
     pub seeds: u64,
@@ -74,7 +74,7 @@ struct Options {
 }
 
 /// Simulates, judges, writes.
-pub fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let outcome = options.bench(messages)?;
     options.write(&outcome, messages)

@@ -30,7 +30,7 @@ mod quantities;
 mod recording;
 mod vessel_file;
 
-pub use arguments::CalibrateArguments;
+pub(super) use arguments::CalibrateArguments;
 use arguments::CalibrationFormat;
 use conditions::{Conditions, Exposure};
 use parameters::{ParameterArguments, ParameterChoice, Subject};
@@ -111,7 +111,7 @@ struct Case {
 }
 
 /// Calibrates and writes.
-pub fn run(arguments: CalibrateArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: CalibrateArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
     let (specification, vessel, origin) = inputs.vessel_specification(&options.vessel, messages)?;

@@ -2,7 +2,7 @@
 mod arguments;
 mod options;
 
-pub use arguments::CommissionArguments;
+pub(super) use arguments::CommissionArguments;
 
 use super::input::Inputs;
 use super::message::Messages;
@@ -22,7 +22,7 @@ use std::path::Path;
 const DAY_S: f64 = 86_400.0;
 
 /// Simulates, fits, writes. A file appears at the end or not at all.
-pub fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow::Result<()> {
     let output = arguments.output.clone();
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();

@@ -4,14 +4,14 @@ use clap::{Args, Command};
 
 /// Arguments of `completions`.
 #[derive(Debug, Args)]
-pub struct CompletionsArguments {
+pub(super) struct CompletionsArguments {
     /// Shell.
     #[arg(value_enum)]
     pub shell: clap_complete::Shell,
 }
 
 /// Writes the script to stdout.
-pub fn run(arguments: CompletionsArguments, mut program: Command) -> anyhow::Result<()> {
+pub(super) fn run(arguments: CompletionsArguments, mut program: Command) -> anyhow::Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut program, "cylwatch", &mut script);
     Target::Stdout.write(&script)

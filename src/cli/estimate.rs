@@ -23,7 +23,7 @@ mod arguments;
 mod pass;
 mod rows;
 
-pub use arguments::EstimateArguments;
+pub(super) use arguments::EstimateArguments;
 use pass::Pass;
 use rows::Rows;
 
@@ -45,7 +45,7 @@ struct Options {
 }
 
 /// Estimates row by row and writes.
-pub fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
     let vessel = inputs.vessel(&options.vessel, messages)?;

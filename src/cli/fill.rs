@@ -11,7 +11,7 @@ use cylwatch::thermal::vessel::Vessel;
 
 /// Quantities that fix the mass.
 #[derive(Clone, Debug)]
-pub struct FillQuantities;
+pub(super) struct FillQuantities;
 
 impl Choices for FillQuantities {
     const CHOICES: &'static [Choice] = &[
@@ -40,7 +40,7 @@ const READ_AGAIN: f64 = 3.0;
 
 /// Fill as given.
 #[derive(Clone, Debug, Args)]
-pub struct GivenFill {
+pub(super) struct GivenFill {
     #[command(flatten)]
     given: Given<FillQuantities>,
 
@@ -56,7 +56,7 @@ pub struct GivenFill {
 
 /// What fixes the mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FillSource {
+pub(super) enum FillSource {
     /// The options alone.
     Given(Fill),
     /// The first pressure of the log.
@@ -65,7 +65,7 @@ pub enum FillSource {
 
 impl GivenFill {
     /// What fixes the mass.
-    pub fn source(&self) -> anyhow::Result<FillSource> {
+    pub(super) fn source(&self) -> anyhow::Result<FillSource> {
         let pressure_pa = self.given.si("fill-pressure", Dimension::Pressure)?;
         let temperature_k = self.given.si("fill-temperature", Dimension::Temperature)?;
         let mass_kg = self.given.si("fill-mass", Dimension::Mass)?;
@@ -84,7 +84,7 @@ impl GivenFill {
     }
 
     /// The options as they were given, to tell another fill from the same; `None`: none was.
-    pub fn text(&self) -> Option<String> {
+    pub(super) fn text(&self) -> Option<String> {
         let quantities = self.given.quantities.iter().map(|given| format!("{} {}", given.name, given.value));
         let percent = self.mass_sd_percent.map(|percent| format!("--fill-sd-percent {percent}"));
         let settled = self.settled.then(|| "--settled".to_owned());
@@ -94,7 +94,7 @@ impl GivenFill {
 
     /// What is known at the first row. `first_k` is the temperature that stands for one that is not given, K.
     /// `read_sd_pa` is the standard deviation of what a transmitter is off by all the time, Pa, where the fill is what it read first.
-    pub fn commissioning(
+    pub(super) fn commissioning(
         &self,
         fill: Fill,
         vessel: &Vessel,
@@ -124,13 +124,13 @@ impl GivenFill {
     }
 
     /// Whether all is said to be at rest at the first row.
-    pub fn is_settled(&self) -> bool {
+    pub(super) fn is_settled(&self) -> bool {
         self.settled
     }
 }
 
 /// Settings of an observer for the start of a log: unless it is stated to be at rest, the air may have any temperature.
-pub fn settings(settings: ObserverSettings, settled: bool) -> ObserverSettings {
+pub(super) fn settings(settings: ObserverSettings, settled: bool) -> ObserverSettings {
     let mut settings = settings;
     if !settled {
         settings.air.prior_sd = UNSETTLED_AIR_SD_K;
@@ -140,7 +140,7 @@ pub fn settings(settings: ObserverSettings, settled: bool) -> ObserverSettings {
 
 /// How a fill contradicts the first pressure of the log (`read_pa`, Pa; NaN: none): an error where they are a factor of
 /// three apart, words for a caution from a quarter on. `fill_pa` is the pressure of `mass_kg` at `temperature_k`.
-pub fn misfit(
+pub(super) fn misfit(
     mass_kg: f64,
     temperature_k: f64,
     fill_pa: f64,

@@ -19,7 +19,7 @@ mod choice;
 mod quantities;
 mod record;
 
-pub use arguments::IdentifyArguments;
+pub(super) use arguments::IdentifyArguments;
 use choice::{Choice, Validation};
 use quantities::Quantities;
 use record::Record;
@@ -40,7 +40,7 @@ struct Options {
 }
 
 /// Identifies and writes.
-pub fn run(arguments: IdentifyArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: IdentifyArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
     let record = options.read(&options.log, &inputs, messages)?;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Arguments of `init`.
 #[derive(Debug, Args)]
-pub struct InitArguments {
+pub(super) struct InitArguments {
     /// Folder for the files; it is made if it is not there. Files that are there are not overwritten.
     #[arg(value_name = "DIR", default_value = ".")]
     pub folder: PathBuf,
@@ -23,7 +23,7 @@ pub struct InitArguments {
 }
 
 /// Writes `vessel.toml`, `scenario.toml` and the tables it names; files that are there stay as they are.
-pub fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> {
     let folder = &arguments.folder;
     // Loading says which name is unknown, and which would be right.
     vessel::presets::load(&arguments.vessel)?;

@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 /// The inputs of a run.
 #[derive(Debug, Default)]
-pub struct Inputs {
+pub(super) struct Inputs {
     records: RefCell<Vec<Input>>,
     /// Texts of the documents, which a report shows: names and texts.
     sources: RefCell<Vec<(String, String)>>,
@@ -31,12 +31,12 @@ struct Document {
 
 impl Inputs {
     /// Where the outputs of this run come from.
-    pub fn provenance(&self) -> Provenance {
+    pub(super) fn provenance(&self) -> Provenance {
         Provenance { command: command_line(), inputs: self.records.borrow().clone(), seed: None }
     }
 
     /// Reads a file, or stdin for `-`.
-    pub fn read(&self, name: &str) -> anyhow::Result<String> {
+    pub(super) fn read(&self, name: &str) -> anyhow::Result<String> {
         let bytes = if name == "-" {
             if self.stdin_taken.replace(true) {
                 bail!("stdin can be read once: give the other input as a file");
@@ -55,22 +55,22 @@ impl Inputs {
     }
 
     /// Texts that were read, with their names; logs are not among them.
-    pub fn sources(&self) -> Vec<(String, String)> {
+    pub(super) fn sources(&self) -> Vec<(String, String)> {
         self.sources.borrow().clone()
     }
 
     /// Records something that was read elsewhere.
-    pub fn record(&self, input: Input) {
+    pub(super) fn record(&self, input: Input) {
         self.records.borrow_mut().push(input);
     }
 
     /// A vessel by file name, by built-in name, or from stdin.
-    pub fn vessel(&self, name: &str, messages: &Messages) -> anyhow::Result<Vessel> {
+    pub(super) fn vessel(&self, name: &str, messages: &Messages) -> anyhow::Result<Vessel> {
         Ok(self.vessel_specification(name, messages)?.1)
     }
 
     /// A vessel as of [`Inputs::vessel`] with the content of its file, and where it comes from.
-    pub fn vessel_specification(
+    pub(super) fn vessel_specification(
         &self,
         name: &str,
         messages: &Messages,
@@ -84,12 +84,12 @@ impl Inputs {
     }
 
     /// The record of something that was read by its name.
-    pub fn record_of(&self, name: &str) -> Option<Input> {
+    pub(super) fn record_of(&self, name: &str) -> Option<Input> {
         self.records.borrow().iter().find(|record| record.name == name).cloned()
     }
 
     /// A scenario by file name, by built-in name, or from stdin; the tables it names lie beside it.
-    pub fn scenario(&self, name: &str) -> anyhow::Result<Scenario> {
+    pub(super) fn scenario(&self, name: &str) -> anyhow::Result<Scenario> {
         let document =
             self.document("scenario", name, scenario::presets::text, scenario::presets::names().collect())?;
         if document.built_in {
@@ -113,7 +113,7 @@ impl Inputs {
     }
 
     /// Opens a log for reading row by row; - is stdin.
-    pub fn log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
+    pub(super) fn log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
         self.opened(name, |content, shown| match content {
             Content::Text(text) => LogReader::from_text(text, shown, options),
             Content::Parquet(file) => LogReader::from_parquet(file, shown, options),
@@ -121,7 +121,7 @@ impl Inputs {
     }
 
     /// Opens a log for inspection; - is stdin.
-    pub fn inspector(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput<Inspector>> {
+    pub(super) fn inspector(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput<Inspector>> {
         self.opened(name, |content, shown| match content {
             Content::Text(text) => Inspector::new(text, shown, options),
             Content::Parquet(file) => Inspector::of_parquet(file, shown, options),
@@ -172,7 +172,7 @@ impl Inputs {
     }
 
     /// Records a log that was hashed on the way, when it has been read; `None` if it was recorded before.
-    pub fn record_log<R>(&self, log: &LogInput<R>) -> Option<Input> {
+    pub(super) fn record_log<R>(&self, log: &LogInput<R>) -> Option<Input> {
         if !log.is_hashed_late() {
             return None;
         }
@@ -207,7 +207,7 @@ enum Content {
 }
 
 /// A log that is being read.
-pub struct LogInput<R = LogReader> {
+pub(super) struct LogInput<R = LogReader> {
     /// Its rows.
     pub reader: R,
     name: String,
@@ -218,19 +218,19 @@ pub struct LogInput<R = LogReader> {
 
 impl<R> LogInput<R> {
     /// Whether its hash is known at its end only.
-    pub fn is_hashed_late(&self) -> bool {
+    pub(super) fn is_hashed_late(&self) -> bool {
         self.length.is_none()
     }
 
     /// Share of the bytes that has been read, as they are in the file; 0 where the total is unknown.
-    pub fn fraction_of_bytes(&self) -> f64 {
+    pub(super) fn fraction_of_bytes(&self) -> f64 {
         self.length.map_or(0.0, |length| self.passed.bytes.get() as f64 / length.max(1) as f64)
     }
 }
 
 impl LogInput {
     /// Share that has been read.
-    pub fn fraction(&self) -> f64 {
+    pub(super) fn fraction(&self) -> f64 {
         self.reader.fraction().unwrap_or_else(|| self.fraction_of_bytes())
     }
 }
@@ -278,7 +278,7 @@ fn hashed(file: &mut File, name: &str) -> std::io::Result<(Input, u64)> {
 }
 
 /// What a message calls an input.
-pub fn shown(name: &str) -> String {
+pub(super) fn shown(name: &str) -> String {
     if name == "-" { "stdin".to_owned() } else { name.to_owned() }
 }
 

@@ -15,7 +15,7 @@ const ROWS: u64 = 1024;
 /// Arguments of `inspect`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub struct InspectArguments {
+pub(super) struct InspectArguments {
     /// Log: a CSV file, also packed with gzip, a Parquet file, or - for CSV on stdin.
     pub log: String,
     #[command(flatten)]
@@ -32,7 +32,7 @@ pub struct InspectArguments {
 
 /// Format of an inspection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum InspectionFormat {
+pub(super) enum InspectionFormat {
     /// Words and tables for people.
     Text,
     /// One JSON document with a provenance object.
@@ -51,7 +51,7 @@ Examples:
   cylwatch inspect logger.csv --format json | jq .columns";
 
 /// Reads, counts and writes.
-pub fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: InspectArguments, messages: &Messages) -> anyhow::Result<()> {
     let target = Target::checked(arguments.output.as_deref(), &[Path::new(&arguments.log)])?;
     let views = Views::checked(&arguments.report.into(), &[Path::new(&arguments.log)], &[&target])?;
     let inputs = Inputs::default();

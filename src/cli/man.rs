@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// Arguments of `man`.
 #[derive(Debug, Args)]
-pub struct ManArguments {
+pub(super) struct ManArguments {
     /// Folder for one page a command, cylwatch.1, cylwatch-estimate.1, ...; it is made if it is not there [default: the
     /// main page on stdout].
     #[arg(long, value_name = "DIR")]
@@ -14,7 +14,7 @@ pub struct ManArguments {
 }
 
 /// Writes the pages.
-pub fn run(arguments: ManArguments, mut program: Command, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: ManArguments, mut program: Command, messages: &Messages) -> anyhow::Result<()> {
     program.build();
     let Some(folder) = arguments.out else { return Target::Stdout.write(&page(&program)?) };
     output::make_folder(&folder)?;

@@ -3,39 +3,39 @@ use std::io::{IsTerminal, Write};
 
 /// Where words go.
 #[derive(Clone, Copy, Debug)]
-pub struct Messages {
+pub(super) struct Messages {
     quiet: bool,
     color: bool,
 }
 
 impl Messages {
     /// Words on stderr; `quiet` keeps all but errors to itself. Colour on a terminal without `NO_COLOR`.
-    pub fn new(quiet: bool) -> Self {
+    pub(super) fn new(quiet: bool) -> Self {
         let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         Self { quiet, color: std::io::stderr().is_terminal() && !forbidden }
     }
 
     /// Whether only errors are wanted.
-    pub fn quiet(&self) -> bool {
+    pub(super) fn quiet(&self) -> bool {
         self.quiet
     }
 
     /// Prints a message.
-    pub fn say(&self, words: &str) {
+    pub(super) fn say(&self, words: &str) {
         if !self.quiet {
             self.write(words.trim_end());
         }
     }
 
     /// Prints a caution.
-    pub fn caution(&self, words: &str) {
+    pub(super) fn caution(&self, words: &str) {
         if !self.quiet {
             self.write(&format!("{} {words}", self.label("caution:", "33")));
         }
     }
 
     /// Prints an error with its causes, in one line.
-    pub fn error(&self, error: &anyhow::Error) {
+    pub(super) fn error(&self, error: &anyhow::Error) {
         self.write(&format!("{} {error:#}", self.label("error:", "31")));
     }
 

@@ -43,7 +43,7 @@ use std::process::ExitCode;
 const ERROR: u8 = 2;
 
 /// Reads the arguments, runs the command, and turns its outcome into an exit code.
-pub fn main() -> ExitCode {
+pub(crate) fn main() -> ExitCode {
     let mut matches = Arguments::prepared().get_matches();
     let arguments = Arguments::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
     let messages = Messages::new(arguments.quiet);

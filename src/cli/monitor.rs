@@ -27,7 +27,7 @@ mod session;
 mod state;
 
 use announced::Announced;
-pub use arguments::MonitorArguments;
+pub(super) use arguments::MonitorArguments;
 
 use engine::Engine;
 use options::Options;
@@ -36,7 +36,7 @@ use resume::RunStart;
 use session::{RunContext, Session};
 
 /// Monitors row by row and writes.
-pub fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
+pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
     let beginning = RunStart::find(&options, &inputs, messages)?;

@@ -10,34 +10,34 @@ use std::str::FromStr;
 
 /// A number inside bounds; of a float at least finite.
 #[derive(Clone, Debug)]
-pub struct Within<T> {
+pub(super) struct Within<T> {
     low: Bound<T>,
     high: Bound<T>,
 }
 
 /// A number from one end to the other, both included.
-pub const fn within<T>(low: T, high: T) -> Within<T> {
+pub(super) const fn within<T>(low: T, high: T) -> Within<T> {
     Within { low: Bound::Included(low), high: Bound::Included(high) }
 }
 
 /// A number of at least this.
-pub const fn at_least<T>(low: T) -> Within<T> {
+pub(super) const fn at_least<T>(low: T) -> Within<T> {
     Within { low: Bound::Included(low), high: Bound::Unbounded }
 }
 
 /// A number above this.
-pub const fn above(low: f64) -> Within<f64> {
+pub(super) const fn above(low: f64) -> Within<f64> {
     Within { low: Bound::Excluded(low), high: Bound::Included(f64::MAX) }
 }
 
 /// Any finite number.
-pub const fn finite() -> Within<f64> {
+pub(super) const fn finite() -> Within<f64> {
     Within { low: Bound::Included(f64::MIN), high: Bound::Included(f64::MAX) }
 }
 
 impl<T> Within<T> {
     /// The same, at most this.
-    pub fn at_most(self, high: T) -> Self {
+    pub(super) fn at_most(self, high: T) -> Self {
         Self { high: Bound::Included(high), ..self }
     }
 }
@@ -109,7 +109,7 @@ where
 }
 
 /// Lets every numeric option of a command and its subcommands take a negative number, so that the bounds are what refuses it.
-pub fn with_negative_numbers(command: Command) -> Command {
+pub(super) fn with_negative_numbers(command: Command) -> Command {
     let numeric = [TypeId::of::<f64>(), TypeId::of::<u64>(), TypeId::of::<usize>()];
     let is_numeric = move |arg: &Arg| numeric.iter().any(|of| arg.get_value_parser().type_id() == *of);
     command

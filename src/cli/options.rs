@@ -7,16 +7,16 @@ use cylwatch::log::{LogOptions, Mapping, Zone};
 use std::path::{Path, PathBuf};
 
 /// Heading of options that few need; the short help leaves them out, see [`without_experts`].
-pub const EXPERT: &str = "Expert options";
+pub(super) const EXPERT: &str = "Expert options";
 /// Heading of what goes in beside the log.
-pub const INPUT: &str = "Input";
+pub(super) const INPUT: &str = "Input";
 /// Heading of what comes out.
-pub const OUTPUT: &str = "Output";
+pub(super) const OUTPUT: &str = "Output";
 /// Last line of a short help.
-pub const MORE: &str = "All options, columns and examples: --help";
+pub(super) const MORE: &str = "All options, columns and examples: --help";
 
 /// Leaves expert options out of the short help of a command and its subcommands.
-pub fn without_experts(command: Command) -> Command {
+pub(super) fn without_experts(command: Command) -> Command {
     let is_expert = |arg: &Arg| arg.get_help_heading() == Some(EXPERT);
     command
         .mut_args(|arg| if is_expert(&arg) { arg.hide_short_help(true) } else { arg })
@@ -29,7 +29,7 @@ const LONGEST_YEARS: f64 = 1e5;
 /// Data of a run.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = OUTPUT)]
-pub struct DataArguments {
+pub(super) struct DataArguments {
     /// Write the data to FILE; - is stdout.
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -40,12 +40,12 @@ pub struct DataArguments {
 
 impl DataArguments {
     /// The format that is asked for, else the one of the file's name.
-    pub fn format(&self) -> Format {
+    pub(super) fn format(&self) -> Format {
         self.format.unwrap_or_else(|| Format::of(self.output.as_deref()))
     }
 
     /// The format of data; `None`: tables for people, on stdout.
-    pub fn format_or_tables(&self, json: bool) -> Option<Format> {
+    pub(super) fn format_or_tables(&self, json: bool) -> Option<Format> {
         let named = if json { Some(Format::Json) } else { self.format };
         named.or_else(|| self.output.as_deref().map(|output| Format::of(Some(output))))
     }
@@ -54,7 +54,7 @@ impl DataArguments {
 /// Report of a run.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = OUTPUT)]
-pub struct ReportArguments {
+pub(super) struct ReportArguments {
     /// Write a report with tables, figure and inputs to FILE, self-contained HTML.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
@@ -63,7 +63,7 @@ pub struct ReportArguments {
 /// Figure and report of a run.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = OUTPUT)]
-pub struct ViewArguments {
+pub(super) struct ViewArguments {
     /// Write the figure to FILE; its ending, .svg or .png, is the format.
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
@@ -79,7 +79,7 @@ impl From<ReportArguments> for ViewArguments {
 
 /// A vessel and a log of it.
 #[derive(Clone, Debug, Args)]
-pub struct VesselAndLog {
+pub(super) struct VesselAndLog {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
     /// Log: a CSV or Parquet file, or - for CSV on stdin.
@@ -88,7 +88,7 @@ pub struct VesselAndLog {
 
 impl VesselAndLog {
     /// The inputs as paths; stdin can be one of them.
-    pub fn paths(&self) -> anyhow::Result<Vec<&Path>> {
+    pub(super) fn paths(&self) -> anyhow::Result<Vec<&Path>> {
         if self.vessel == "-" && self.log == "-" {
             anyhow::bail!("stdin can be the vessel or the log, not both: give the other one as a file");
         }
@@ -99,7 +99,7 @@ impl VesselAndLog {
 /// How a log is read: foreign names and zone.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = INPUT)]
-pub struct LogArguments {
+pub(super) struct LogArguments {
     /// Name a column, as shoulder_degc=T1; may be given again.
     ///
     /// Two columns make a time: time=Date+Clock.
@@ -112,7 +112,7 @@ pub struct LogArguments {
 
 impl LogArguments {
     /// As options of a reader that knows these sensors, too.
-    pub fn options(&self, sensors: Vec<String>) -> LogOptions {
+    pub(super) fn options(&self, sensors: Vec<String>) -> LogOptions {
         LogOptions { mappings: self.mappings.clone(), zone: self.zone, sensors, ..LogOptions::default() }
     }
 }
@@ -120,7 +120,7 @@ impl LogArguments {
 /// Sensors of a log.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = INPUT)]
-pub struct SensorArguments {
+pub(super) struct SensorArguments {
     /// TOML file of the sensors with their errors [default: typical].
     ///
     /// Typical are Pt100 of class B on the columns shoulder, valve and wall_<place>, and a transmitter of 250 bar and 0.25 % on pressure.
@@ -130,7 +130,7 @@ pub struct SensorArguments {
 
 /// Rate of false alarms.
 #[derive(Clone, Debug, Args)]
-pub struct FalseAlarmArguments {
+pub(super) struct FalseAlarmArguments {
     /// Mean time between false alarms that thresholds are set for, in years.
     #[arg(long, value_name = "YEARS", default_value_t = 10.0, value_parser = above(0.0).at_most(LONGEST_YEARS))]
     pub false_alarm_years: f64,
@@ -138,14 +138,14 @@ pub struct FalseAlarmArguments {
 
 impl FalseAlarmArguments {
     /// The same in s.
-    pub fn mean_time_s(&self) -> f64 {
+    pub(super) fn mean_time_s(&self) -> f64 {
         self.false_alarm_years * YEAR_S
     }
 }
 
 /// Tolerance of a simulation.
 #[derive(Clone, Debug, Args)]
-pub struct SolverArguments {
+pub(super) struct SolverArguments {
     /// Relative tolerance of the solver, 1e-13 to 1e-2 [default: 1e-6, of calibrate 1e-9].
     #[arg(long, value_name = "NUMBER", value_parser = within(1e-13, 1e-2), help_heading = EXPERT)]
     pub relative_tolerance: Option<f64>,

@@ -12,7 +12,7 @@ use tempfile::NamedTempFile;
 
 /// A checked place for one result.
 #[derive(Debug)]
-pub enum Target {
+pub(super) enum Target {
     /// Standard output.
     Stdout,
     /// A file that is or will be a regular one.
@@ -23,7 +23,7 @@ pub enum Target {
 
 impl Target {
     /// Checks that a result can be written to `path`; none or `-` is stdout. `inputs` must not be overwritten.
-    pub fn checked(path: Option<&Path>, inputs: &[&Path]) -> anyhow::Result<Self> {
+    pub(super) fn checked(path: Option<&Path>, inputs: &[&Path]) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else { return Ok(Self::Stdout) };
         let shown = path.display();
         if path.as_os_str().is_empty() {
@@ -51,7 +51,7 @@ impl Target {
     }
 
     /// Whether both are one regular file.
-    pub fn is_same_file(&self, other: &Self) -> bool {
+    pub(super) fn is_same_file(&self, other: &Self) -> bool {
         matches!((self, other), (Self::File(a), Self::File(b)) if a == b)
     }
 
@@ -63,7 +63,7 @@ impl Target {
     }
 
     /// Begins a result that is written piece by piece.
-    pub fn open(&self) -> anyhow::Result<Stream> {
+    pub(super) fn open(&self) -> anyhow::Result<Stream> {
         let shown = self.shown();
         let failed = || format!("{shown} cannot be written");
         let writer = match self {
@@ -77,7 +77,7 @@ impl Target {
     }
 
     /// Begins a result whose lines are there as soon as they are written; `goes_on` keeps those of an earlier run.
-    pub fn append(&self, goes_on: bool) -> anyhow::Result<Appended> {
+    pub(super) fn append(&self, goes_on: bool) -> anyhow::Result<Appended> {
         let (writer, shown): (Box<dyn Write>, String) = match self {
             Self::Stdout => (Box::new(std::io::stdout()), "stdout".to_owned()),
             Self::File(path) | Self::Device(path) => {
@@ -96,7 +96,7 @@ impl Target {
     }
 
     /// Writes the result.
-    pub fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
+    pub(super) fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
         match self {
             Self::Stdout => {
                 let mut stdout = std::io::stdout().lock();
@@ -112,7 +112,7 @@ impl Target {
 }
 
 /// Refuses outputs that name one place; each with its option.
-pub fn check_distinct(outputs: &[(&str, Option<&Target>)]) -> anyhow::Result<()> {
+pub(super) fn check_distinct(outputs: &[(&str, Option<&Target>)]) -> anyhow::Result<()> {
     for (k, (one, a)) in outputs.iter().enumerate() {
         for (other, b) in &outputs[k + 1..] {
             if let (Some(a), Some(b)) = (a, b)
@@ -126,14 +126,14 @@ pub fn check_distinct(outputs: &[(&str, Option<&Target>)]) -> anyhow::Result<()>
 }
 
 /// A result whose lines are there as soon as they are written.
-pub struct Appended {
+pub(super) struct Appended {
     writer: Box<dyn Write>,
     shown: String,
 }
 
 impl Appended {
     /// Writes a line.
-    pub fn line(&mut self, line: &str) -> anyhow::Result<()> {
+    pub(super) fn line(&mut self, line: &str) -> anyhow::Result<()> {
         let written =
             self.writer.write_all(format!("{line}\n").as_bytes()).and_then(|()| self.writer.flush());
         written.with_context(|| format!("{} cannot be written", self.shown))
@@ -146,7 +146,7 @@ const BUFFER: usize = 1 << 16;
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// A result that is written piece by piece. A file appears with [`Stream::finish`]; dropped before, it leaves nothing.
-pub struct Stream {
+pub(super) struct Stream {
     writer: BufWriter<Writer>,
     shown: String,
     flushed: Instant,
@@ -177,7 +177,7 @@ impl Write for Writer {
 
 impl Stream {
     /// Writes a piece.
-    pub fn write(&mut self, text: &str) -> anyhow::Result<()> {
+    pub(super) fn write(&mut self, text: &str) -> anyhow::Result<()> {
         let failed = || format!("{} cannot be written", self.shown);
         self.writer.write_all(text.as_bytes()).with_context(failed)?;
         if self.flushed.elapsed() > PATIENCE {
@@ -188,13 +188,13 @@ impl Stream {
     }
 
     /// Hands on what waits in the buffer.
-    pub fn flush(&mut self) -> anyhow::Result<()> {
+    pub(super) fn flush(&mut self) -> anyhow::Result<()> {
         self.flushed = Instant::now();
         self.writer.flush().with_context(|| format!("{} cannot be written", self.shown))
     }
 
     /// Ends the result: all of it is there.
-    pub fn finish(self) -> anyhow::Result<()> {
+    pub(super) fn finish(self) -> anyhow::Result<()> {
         let failed = || format!("{} cannot be written", self.shown);
         let writer = self.writer.into_inner().map_err(|error| error.into_error()).with_context(failed)?;
         match writer {
@@ -209,19 +209,19 @@ impl Stream {
 }
 
 /// Lines of a summary as remarks at the top of a CSV.
-pub fn remarks(summary: &str) -> Vec<String> {
+pub(super) fn remarks(summary: &str) -> Vec<String> {
     summary.lines().filter(|line| !line.is_empty()).map(str::to_owned).collect()
 }
 
 /// Writes a file so that it appears complete or not at all.
-pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+pub(super) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let failed = || format!("{} cannot be written", path.display());
     complete(path, bytes).with_context(failed)?.persist(path).map_err(|e| e.error).with_context(failed)?;
     Ok(())
 }
 
 /// Writes a file that is not there yet, complete or not at all.
-pub fn write_new_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+pub(super) fn write_new_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let failed = || format!("{} cannot be written", path.display());
     complete(path, bytes)
         .with_context(failed)?
@@ -232,7 +232,7 @@ pub fn write_new_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 }
 
 /// Makes a folder for results and finds out whether it can be written.
-pub fn make_folder(folder: &Path) -> anyhow::Result<()> {
+pub(super) fn make_folder(folder: &Path) -> anyhow::Result<()> {
     let shown = folder.display();
     if folder.exists() && !folder.is_dir() {
         bail!("{shown} is a file where the output folder should be: choose another folder");
@@ -272,7 +272,7 @@ fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
 }
 
 /// The command line as it was typed, quoted so that a shell runs it again.
-pub fn command_line() -> String {
+pub(super) fn command_line() -> String {
     let words = std::env::args_os().enumerate().map(|(k, word)| {
         let word = word.to_string_lossy().into_owned();
         if k == 0 { "cylwatch".to_owned() } else { quoted(&word) }

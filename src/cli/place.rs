@@ -4,7 +4,7 @@ mod options;
 mod quantities;
 mod stop;
 
-pub use arguments::PlaceArguments;
+pub(super) use arguments::PlaceArguments;
 
 use super::format::Format;
 use super::input::Inputs;
@@ -45,7 +45,7 @@ struct Options {
 }
 
 /// Searches, judges, writes; exit code 3 if it was ended early.
-pub fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
+pub(super) fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let begun = Instant::now();
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();

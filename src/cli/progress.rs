@@ -8,13 +8,13 @@ const PARTS: u64 = 1000;
 const TICK: Duration = Duration::from_millis(120);
 
 /// A bar that is cleared when it is dropped.
-pub struct Progress {
+pub(super) struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
     /// A bar on stderr; nothing where stderr is no terminal or nothing is to be said.
-    pub fn new(messages: &Messages) -> Self {
+    pub(super) fn new(messages: &Messages) -> Self {
         let target =
             if messages.quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(PARTS), target);
@@ -25,7 +25,7 @@ impl Progress {
     }
 
     /// The same for work of unknown length: what is being done, and for how long.
-    pub fn open_ended(messages: &Messages, what: &str) -> Self {
+    pub(super) fn open_ended(messages: &Messages, what: &str) -> Self {
         let progress = Self::new(messages);
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
             progress.bar.set_style(style);
@@ -36,17 +36,17 @@ impl Progress {
     }
 
     /// Says what is being done.
-    pub fn say(&self, what: &str) {
+    pub(super) fn say(&self, what: &str) {
         self.bar.set_message(what.to_owned());
     }
 
     /// Does something that writes to the terminal, with the bar out of the way.
-    pub fn suspended(&self, act: impl FnOnce()) {
+    pub(super) fn suspended(&self, act: impl FnOnce()) {
         self.bar.suspend(act);
     }
 
     /// Shows what is being done and which share of it is done.
-    pub fn show(&self, what: &str, fraction: f64) {
+    pub(super) fn show(&self, what: &str, fraction: f64) {
         if self.bar.message() != what {
             self.bar.set_message(what.to_owned());
         }

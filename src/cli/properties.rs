@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 /// Equation of state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum EquationName {
+pub(super) enum EquationName {
     /// Reference equation of the gas (nitrogen: Span et al. 2000).
     Reference,
     /// Ideal gas with the reference equation's heat capacity.
@@ -29,7 +29,7 @@ pub enum EquationName {
 /// Arguments of `properties`.
 #[derive(Debug, Args)]
 #[command(after_help = PROPERTIES_EXAMPLES)]
-pub struct PropertiesArguments {
+pub(super) struct PropertiesArguments {
     /// Gas, e.g. nitrogen.
     pub fluid: String,
     /// The two quantities that fix the state.
@@ -56,7 +56,7 @@ Examples:
   printf 'temperature_degc,pressure_barg\\n15,199\\n' | cylwatch properties nitrogen --states -";
 
 /// Evaluates and writes.
-pub fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow::Result<()> {
     let inputs: Vec<&std::path::Path> = arguments.states.as_deref().into_iter().collect();
     let target = Target::checked(arguments.data.output.as_deref(), &inputs)?;
     let views = Views::checked(&arguments.report.clone().into(), &inputs, &[&target])?;

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
-pub struct ReproduceArguments {
+pub(super) struct ReproduceArguments {
     /// Folder for report.html, figures (SVG and PNG), CSV files and results.json; it is made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
     pub out: PathBuf,
@@ -30,7 +30,7 @@ pub struct ReproduceArguments {
 }
 
 /// Computes, writes the files, prints the tables.
-pub fn run(arguments: ReproduceArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: ReproduceArguments, messages: &Messages) -> anyhow::Result<()> {
     let mut settings =
         Settings { seed: arguments.seed, cylinders: arguments.cylinders, ..Settings::default() };
     if let Some(tolerance) = arguments.solver.relative_tolerance {

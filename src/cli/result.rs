@@ -9,14 +9,14 @@ use cylwatch::report::{Provenance, Report};
 use serde_json::Value;
 
 /// Where a result goes, and in which format; `None`: the summary goes to stdout.
-pub struct Destination<'a> {
+pub(super) struct Destination<'a> {
     pub data: &'a Target,
     pub format: Option<Format>,
     pub views: &'a Views,
 }
 
 /// What a result consists of; only what is asked for is made.
-pub struct Contents<'a> {
+pub(super) struct Contents<'a> {
     pub summary: Report,
     pub csv: &'a dyn Fn(&Provenance) -> String,
     pub json: &'a dyn Fn(&Provenance) -> Value,
@@ -27,7 +27,7 @@ pub struct Contents<'a> {
 
 impl Destination<'_> {
     /// Writes the result. Everything is made before any file appears.
-    pub fn write(
+    pub(super) fn write(
         &self,
         contents: Contents<'_>,
         inputs: &Inputs,

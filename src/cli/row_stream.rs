@@ -6,7 +6,7 @@ use cylwatch::report::{Field, RowFormat, Rows};
 use serde_json::{Map, Value, json};
 
 /// A stream of records with declared columns.
-pub struct RowStream<R> {
+pub(super) struct RowStream<R> {
     stream: Stream,
     format: RowFormat,
     rows: Rows<R>,
@@ -14,7 +14,7 @@ pub struct RowStream<R> {
 
 impl<R> RowStream<R> {
     /// Opens the output and writes what stands above the rows.
-    pub fn begin(
+    pub(super) fn begin(
         target: &Target,
         format: Format,
         fields: Vec<Field<R>>,
@@ -36,18 +36,18 @@ impl<R> RowStream<R> {
     }
 
     /// Writes a record.
-    pub fn push(&mut self, record: &R) -> anyhow::Result<()> {
+    pub(super) fn push(&mut self, record: &R) -> anyhow::Result<()> {
         self.stream.write(self.rows.row(record))
     }
 
     /// Hands on what waits.
-    pub fn flush(&mut self) -> anyhow::Result<()> {
+    pub(super) fn flush(&mut self) -> anyhow::Result<()> {
         self.stream.flush()
     }
 
     /// Writes what stands below the rows: in JSON these `members`, between the date of second 0 and the provenance; in CSV the hash of a
     /// log that was a pipe.
-    pub fn tail(
+    pub(super) fn tail(
         &mut self,
         inputs: &Inputs,
         log: &LogInput,
@@ -67,7 +67,7 @@ impl<R> RowStream<R> {
     }
 
     /// Ends the output: a file appears here.
-    pub fn finish(self) -> anyhow::Result<()> {
+    pub(super) fn finish(self) -> anyhow::Result<()> {
         self.stream.finish()
     }
 }

@@ -7,7 +7,7 @@ use serde_json::json;
 
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Document {
+pub(super) enum Document {
     /// Vessel files.
     Vessel,
     /// Scenario files.
@@ -18,14 +18,14 @@ pub enum Document {
 
 /// Arguments of `schema`.
 #[derive(Debug, Args)]
-pub struct SchemaArguments {
+pub(super) struct SchemaArguments {
     /// Which schema [default: all, as one object].
     #[arg(value_enum)]
     pub document: Option<Document>,
 }
 
 /// Writes one schema, or all as an object, to stdout.
-pub fn run(arguments: SchemaArguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: SchemaArguments) -> anyhow::Result<()> {
     let schema = match arguments.document {
         Some(Document::Vessel) => json!(vessel::schema()),
         Some(Document::Scenario) => json!(scenario::schema()),

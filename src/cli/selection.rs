@@ -9,7 +9,7 @@ use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
 
 /// Sensors with their channels in the log.
-pub struct Selection {
+pub(super) struct Selection {
     /// Sensors in the order in which they are used.
     pub sensors: Vec<Sensor>,
     /// Channel of each.
@@ -19,7 +19,7 @@ pub struct Selection {
 impl Selection {
     /// The sensors of a file, or typical ones on all columns outside of the gas; narrows what the log takes as a reading
     /// to what the sensors can read. Columns that are `known` serve another purpose: no sensor, no caution.
-    pub fn new(
+    pub(super) fn new(
         reader: &mut LogReader,
         sensors: Option<Vec<Sensor>>,
         vessel: &Vessel,
@@ -115,30 +115,30 @@ impl Selection {
     }
 
     /// Names of the sensors.
-    pub fn names(&self) -> Vec<String> {
+    pub(super) fn names(&self) -> Vec<String> {
         self.sensors.iter().map(|sensor| sensor.name.clone()).collect()
     }
 
     /// Readings of a row in the order of the sensors.
-    pub fn readings<'a>(&'a self, row: &'a Row) -> impl Iterator<Item = f64> + 'a {
+    pub(super) fn readings<'a>(&'a self, row: &'a Row) -> impl Iterator<Item = f64> + 'a {
         self.channels.iter().map(|&channel| row.readings[channel])
     }
 
     /// Channel of the first sensor of a quantity.
-    pub fn first_of(&self, quantity: Quantity) -> Option<usize> {
+    pub(super) fn first_of(&self, quantity: Quantity) -> Option<usize> {
         let index = self.sensors.iter().position(|sensor| sensor.quantity() == quantity)?;
         Some(self.channels[index])
     }
 
     /// Standard deviation of what the first transmitter is off by all the time, Pa; 0 without one.
-    pub fn pressure_offset_sd_pa(&self) -> f64 {
+    pub(super) fn pressure_offset_sd_pa(&self) -> f64 {
         let transmitter = self.sensors.iter().find(|sensor| sensor.quantity() == Quantity::Pressure);
         let offsets = transmitter.into_iter().flat_map(Sensor::parameters);
         offsets.filter(|of| of.kind == ParameterKind::Offset).map(|of| of.sd).sum()
     }
 
     /// Mean of a row's temperatures, K; 15 °C where it has none.
-    pub fn mean_temperature_k(&self, row: Option<&Row>) -> f64 {
+    pub(super) fn mean_temperature_k(&self, row: Option<&Row>) -> f64 {
         let Some(row) = row else { return 288.15 };
         let readings = self.sensors.iter().zip(self.readings(row));
         let known: Vec<f64> = readings
@@ -170,12 +170,12 @@ fn typical(channel: &Channel, vessel: &Vessel, outside: bool) -> Result<Sensor, 
 }
 
 /// Reads a file of sensors.
-pub fn read(inputs: &Inputs, path: &Path) -> anyhow::Result<Vec<Sensor>> {
+pub(super) fn read(inputs: &Inputs, path: &Path) -> anyhow::Result<Vec<Sensor>> {
     Ok(read_specification(inputs, path)?.1)
 }
 
 /// Reads a file of sensors as it is written, too.
-pub fn read_specification(inputs: &Inputs, path: &Path) -> anyhow::Result<(SensorsSpec, Vec<Sensor>)> {
+pub(super) fn read_specification(inputs: &Inputs, path: &Path) -> anyhow::Result<(SensorsSpec, Vec<Sensor>)> {
     let name = path.to_string_lossy();
     let (specification, suite) = read_sensors(&inputs.read(&name)?, &name)?;
     Ok((specification, suite.sensors().to_vec()))

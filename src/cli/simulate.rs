@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `simulate`.
 #[derive(Debug, Args)]
 #[command(after_help = SIMULATE_EXAMPLES)]
-pub struct SimulateArguments {
+pub(super) struct SimulateArguments {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     #[arg(required_unless_present = "list")]
     pub vessel: Option<String>,
@@ -57,7 +57,7 @@ Examples:
 
 /// Format of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SimulationFormat {
+pub(super) enum SimulationFormat {
     /// Comma-separated columns; lines that begin with # say where they come from.
     Csv,
     /// A column of doubles each, with the provenance as metadata; in a program that was built with the feature parquet.
@@ -89,7 +89,7 @@ struct Options {
 }
 
 /// Simulates and writes, or lists the built-in vessels and scenarios.
-pub fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<()> {
+pub(super) fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::Result<()> {
     if arguments.list {
         return Target::Stdout.write(list()?.as_bytes());
     }

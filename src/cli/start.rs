@@ -14,7 +14,7 @@ use std::path::Path;
 const LONGEST_WAIT: usize = 10_000;
 
 /// Reads rows until the fill is known: one row, or all up to the first pressure.
-pub fn first_rows(
+pub(super) fn first_rows(
     reader: &mut LogReader,
     selection: &Selection,
     source: FillSource,
@@ -44,7 +44,7 @@ pub fn first_rows(
 }
 
 /// What an earlier run has learnt of the same vessel.
-pub fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<Learned> {
+pub(super) fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::Result<Learned> {
     let shown = path.display();
     let text = inputs.read(&path.to_string_lossy())?;
     let document: serde_json::Value =

@@ -8,7 +8,7 @@ use cylwatch::thermal::units::{self, Dimension, Unit};
 
 /// Quantities that can be given.
 #[derive(Clone, Debug)]
-pub struct StateQuantities;
+pub(super) struct StateQuantities;
 
 impl Choices for StateQuantities {
     const CHOICES: &'static [Choice] = &[
@@ -23,11 +23,11 @@ impl Choices for StateQuantities {
 }
 
 /// The quantities given as options.
-pub type GivenQuantities = GivenOptions<StateQuantities>;
+pub(super) type GivenQuantities = GivenOptions<StateQuantities>;
 
 impl GivenQuantities {
     /// The state that exactly two quantities fix.
-    pub fn state(&self) -> anyhow::Result<Given> {
+    pub(super) fn state(&self) -> anyhow::Result<Given> {
         let names: Vec<&str> = self.quantities.iter().map(|q| q.name.as_str()).collect();
         if self.quantities.len() != 2 || self.quantities[0].dimension == self.quantities[1].dimension {
             let found = if names.is_empty() { "none".to_owned() } else { names.join(" and ") };
@@ -54,7 +54,7 @@ fn from_quantities(given: &[Quantity]) -> anyhow::Result<Option<Given>> {
 
 /// A state of a file with the line it stands in.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub(super) struct Row {
     /// Line, from 1.
     pub line: u64,
     /// What it says.
@@ -73,7 +73,7 @@ struct Known {
 ///
 /// # Errors
 /// Names the file, the line, the value, the bound and the remedy.
-pub fn read(text: &str, file: &str, messages: &Messages) -> anyhow::Result<Vec<Row>> {
+pub(super) fn read(text: &str, file: &str, messages: &Messages) -> anyhow::Result<Vec<Row>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());

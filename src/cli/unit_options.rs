@@ -10,11 +10,11 @@ use cylwatch::thermal::units::{self, Dimension, Unit};
 use std::marker::PhantomData;
 
 /// A quantity that can be given: name, what it measures, words of its help, with the unit if it is the only one.
-pub type Choice = (&'static str, Dimension, &'static str);
+pub(super) type Choice = (&'static str, Dimension, &'static str);
 
 /// A quantity with the name it was given by.
 #[derive(Clone, Debug)]
-pub struct Quantity {
+pub(super) struct Quantity {
     /// Option or column.
     pub name: String,
     /// Unit of the value.
@@ -27,7 +27,7 @@ pub struct Quantity {
 
 impl Quantity {
     /// SI value; above zero, as an absolute temperature, pressure or density is.
-    pub fn si(&self) -> anyhow::Result<f64> {
+    pub(super) fn si(&self) -> anyhow::Result<f64> {
         let (name, value, unit) = (&self.name, self.value, self.unit);
         if !value.is_finite() {
             bail!("{name} = {value} must be a finite number");
@@ -94,7 +94,7 @@ fn given(matches: &ArgMatches, known: &'static [Choice]) -> Vec<Quantity> {
 }
 
 /// The quantities of a command.
-pub trait Choices {
+pub(super) trait Choices {
     /// Every quantity that can be given.
     const CHOICES: &'static [Choice];
 
@@ -109,7 +109,7 @@ pub trait Choices {
 
 /// Quantities given as options, each in any unit of its dimension.
 #[derive(Clone, Debug)]
-pub struct Given<C> {
+pub(super) struct Given<C> {
     /// In the order of the choices.
     pub quantities: Vec<Quantity>,
     choices: PhantomData<C>,
@@ -117,7 +117,7 @@ pub struct Given<C> {
 
 impl<C: Choices> Given<C> {
     /// Quantities of an option's name that measure something of this kind.
-    pub fn of<'a>(&'a self, option: &str, dimension: Dimension) -> impl Iterator<Item = &'a Quantity> {
+    pub(super) fn of<'a>(&'a self, option: &str, dimension: Dimension) -> impl Iterator<Item = &'a Quantity> {
         let start = format!("--{option}-");
         self.quantities
             .iter()
@@ -125,12 +125,12 @@ impl<C: Choices> Given<C> {
     }
 
     /// SI value of an option; given twice, in two units, it is refused.
-    pub fn si(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
+    pub(super) fn si(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
         self.once(option, dimension)?.map(Quantity::si).transpose()
     }
 
     /// The same of a quantity that may be 0.
-    pub fn si_from_zero(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
+    pub(super) fn si_from_zero(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
         let given = self.once(option, dimension)?;
         given.map(|given| if given.value == 0.0 { Ok(0.0) } else { given.si() }).transpose()
     }

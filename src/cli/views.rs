@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Checked places for a figure and a report.
 #[derive(Debug, Default)]
-pub struct Views {
+pub(super) struct Views {
     plot: Option<(Target, Format)>,
     report: Option<Target>,
 }
@@ -22,7 +22,11 @@ enum Format {
 
 impl Views {
     /// Checks names and places; `others` are the other results of the run.
-    pub fn checked(arguments: &ViewArguments, inputs: &[&Path], others: &[&Target]) -> anyhow::Result<Self> {
+    pub(super) fn checked(
+        arguments: &ViewArguments,
+        inputs: &[&Path],
+        others: &[&Target],
+    ) -> anyhow::Result<Self> {
         let place = |option: &str, path: &Path, others: &[&Target]| {
             let target = Target::checked(Some(path), inputs)?;
             if others.iter().any(|other| target.is_same_file(other)) {
@@ -48,13 +52,13 @@ impl Views {
     }
 
     /// Whether either is wanted: what a picture is made of has to be kept during the run.
-    pub fn is_any_requested(&self) -> bool {
+    pub(super) fn is_any_requested(&self) -> bool {
         self.plot.is_some() || self.report.is_some()
     }
 
     /// Makes the requested files, so that nothing is written if one fails. The report contains the picture and gets `sources`, what was
     /// read, at its end.
-    pub fn make<P: Into<Picture>>(
+    pub(super) fn make<P: Into<Picture>>(
         &self,
         picture: impl FnOnce() -> P,
         report: impl FnOnce(Picture) -> Report,
@@ -82,7 +86,7 @@ impl Views {
     }
 
     /// Makes the report of a result without a picture.
-    pub fn make_report(
+    pub(super) fn make_report(
         &self,
         report: impl FnOnce() -> Report,
         sources: Vec<(String, String)>,
@@ -98,13 +102,13 @@ impl Views {
 
 /// Views that are made and wait to be written.
 #[derive(Debug, Default)]
-pub struct Made<'a> {
+pub(super) struct Made<'a> {
     files: Vec<(&'a Target, Vec<u8>)>,
 }
 
 impl Made<'_> {
     /// Writes them.
-    pub fn write(&self) -> anyhow::Result<()> {
+    pub(super) fn write(&self) -> anyhow::Result<()> {
         self.files.iter().try_for_each(|(target, bytes)| target.write(bytes))
     }
 }

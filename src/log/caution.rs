@@ -117,7 +117,7 @@ pub(super) struct Cautions {
 
 impl Cautions {
     /// Counts an occurrence; place and detail are made for the first one only.
-    pub fn count(&mut self, kind: Kind, column: &str, first: impl FnOnce() -> (String, String)) {
+    pub(super) fn count(&mut self, kind: Kind, column: &str, first: impl FnOnce() -> (String, String)) {
         if let Some(known) = self.list.iter_mut().find(|c| c.kind == kind && c.column == column) {
             known.count += 1;
             return;
@@ -126,7 +126,7 @@ impl Cautions {
         self.list.push(Caution { kind, column: column.to_owned(), count: 1, first, detail });
     }
 
-    pub fn list(&self) -> &[Caution] {
+    pub(super) fn list(&self) -> &[Caution] {
         &self.list
     }
 }

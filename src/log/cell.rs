@@ -21,7 +21,7 @@ const MISSING: [&str; 6] = ["nan", "na", "n/a", "#n/a", "null", "none"];
 
 impl Cell {
     /// Reads a cell; `decimal_comma` allows `12,5` for 12.5.
-    pub fn read(bytes: &[u8], decimal_comma: bool) -> Self {
+    pub(super) fn read(bytes: &[u8], decimal_comma: bool) -> Self {
         let bytes = bytes.trim_ascii();
         if bytes.is_empty() {
             return Self::Missing;

@@ -33,7 +33,7 @@ pub(super) struct CsvSource {
 
 impl CsvSource {
     /// Reads comments and header, and finds the columns.
-    pub fn open(
+    pub(super) fn open(
         input: Box<dyn Read>,
         file: &str,
         options: &LogOptions,
@@ -49,7 +49,7 @@ impl CsvSource {
     }
 
     /// As [`CsvSource::open`] for a log that is inspected: what a run would refuse is told, not refused.
-    pub fn inspect(
+    pub(super) fn inspect(
         input: Box<dyn Read>,
         file: &str,
         options: &LogOptions,
@@ -68,7 +68,7 @@ impl CsvSource {
     }
 
     /// What counted the cells of a log that is inspected.
-    pub fn tap(&self) -> Option<&Tap> {
+    pub(super) fn tap(&self) -> Option<&Tap> {
         self.tap.as_deref()
     }
 
@@ -89,7 +89,7 @@ impl CsvSource {
     }
 
     /// Reads the next row that has a time; `false` at the end.
-    pub fn next(&mut self, row: &mut RawRow, cautions: &mut Cautions) -> Result<bool, LogError> {
+    pub(super) fn next(&mut self, row: &mut RawRow, cautions: &mut Cautions) -> Result<bool, LogError> {
         while self.records.advance()? {
             if self.is_empty() || self.is_header(cautions) {
                 continue;
@@ -125,7 +125,7 @@ impl CsvSource {
     }
 
     /// What is wrong with a packed stream, which is read to its end for that; an inspection reads on anyway.
-    pub fn damage(&mut self) -> Option<LogError> {
+    pub(super) fn damage(&mut self) -> Option<LogError> {
         if self.tap.is_some() || self.records.packing() == Packing::Plain {
             return None;
         }
@@ -139,11 +139,11 @@ impl CsvSource {
     }
 
     /// Date of second 0, if the log has dates.
-    pub fn origin(&self) -> Option<jiff::Timestamp> {
+    pub(super) fn origin(&self) -> Option<jiff::Timestamp> {
         self.time.origin()
     }
 
-    pub fn place(&self, line: u64) -> String {
+    pub(super) fn place(&self, line: u64) -> String {
         format!("{}:{line}", self.file)
     }
 

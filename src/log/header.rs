@@ -35,7 +35,7 @@ pub(super) struct Header {
 
 impl Header {
     /// Finds and reads the header; `None`: there is no line.
-    pub fn read(records: &mut Records, options: &LogOptions) -> Result<Option<Self>, LogError> {
+    pub(super) fn read(records: &mut Records, options: &LogOptions) -> Result<Option<Self>, LogError> {
         let (skipped, passed) = find(records, options)?;
         records.skip(skipped);
         if !records.advance()? {

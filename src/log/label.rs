@@ -82,7 +82,7 @@ pub(in crate::log) fn suffixes(word: &str) -> Option<&'static [&'static str]> {
 
 impl<'a> Label<'a> {
     /// Cuts a header.
-    pub fn of(header: &'a str) -> Self {
+    pub(super) fn of(header: &'a str) -> Self {
         let header = header.trim();
         if let Some((base, inside)) = bracketed(header) {
             return Self { base: tidy(base), unit: Some(inside.trim()) };
@@ -99,12 +99,12 @@ impl<'a> Label<'a> {
     }
 
     /// Suffixes that agree with the unit; `None`: there is no unit, or a word that is none.
-    pub fn suffixes(&self) -> Option<&'static [&'static str]> {
+    pub(super) fn suffixes(&self) -> Option<&'static [&'static str]> {
         suffixes(self.unit?)
     }
 
     /// Name and unit as we write them, in small letters.
-    pub fn own(&self) -> String {
+    pub(super) fn own(&self) -> String {
         let base = self.base.to_lowercase();
         match self.suffixes().and_then(|suffixes| suffixes.first()) {
             Some(suffix) => format!("{base}_{suffix}"),

@@ -31,7 +31,7 @@ pub(super) struct Records {
 
 impl Records {
     /// The records of a text that may be packed.
-    pub fn new(input: Box<dyn Read>, file: &str) -> Result<Self, LogError> {
+    pub(super) fn new(input: Box<dyn Read>, file: &str) -> Result<Self, LogError> {
         let (input, packing) = unpacked(input, file)?;
         Ok(Self {
             file: file.to_owned(),
@@ -48,12 +48,12 @@ impl Records {
     }
 
     /// How the text is packed.
-    pub fn packing(&self) -> Packing {
+    pub(super) fn packing(&self) -> Packing {
         self.packing
     }
 
     /// A line that comes, 0 the next, with its end; `None`: the text ends before it.
-    pub fn ahead(&mut self, index: usize) -> Result<Option<&[u8]>, LogError> {
+    pub(super) fn ahead(&mut self, index: usize) -> Result<Option<&[u8]>, LogError> {
         while self.ahead.len() <= index {
             let mut line = Vec::new();
             if read_line(&mut self.input, &mut line).map_err(|error| self.failed(error))? == 0 {
@@ -65,12 +65,12 @@ impl Records {
     }
 
     /// Leaves out lines that were looked at.
-    pub fn skip(&mut self, lines: usize) {
+    pub(super) fn skip(&mut self, lines: usize) {
         self.lines += self.ahead.drain(..lines.min(self.ahead.len())).len() as u64;
     }
 
     /// Reads the next record; `false` at the end.
-    pub fn advance(&mut self) -> Result<bool, LogError> {
+    pub(super) fn advance(&mut self) -> Result<bool, LogError> {
         loop {
             self.bytes.clear();
             self.line = self.lines + 1;
@@ -101,40 +101,40 @@ impl Records {
     }
 
     /// Cuts the record that is there, and all further ones, at this separator.
-    pub fn separate(&mut self, separator: u8) {
+    pub(super) fn separate(&mut self, separator: u8) {
         self.separator = Some(separator);
         if self.bytes.contains(&b'"') { self.cut_quoted() } else { self.cut() }
     }
 
     /// The record as it was read, without its end of line.
-    pub fn text(&self) -> &[u8] {
+    pub(super) fn text(&self) -> &[u8] {
         self.bytes.trim_ascii_end()
     }
 
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.cells.len()
     }
 
-    pub fn cell(&self, index: usize) -> &[u8] {
+    pub(super) fn cell(&self, index: usize) -> &[u8] {
         let (from, to) = self.cells[index];
         &self.bytes[from..to]
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = &[u8]> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u8]> {
         self.cells.iter().map(|&(from, to)| &self.bytes[from..to])
     }
 
     /// Place of the record.
-    pub fn place(&self) -> String {
+    pub(super) fn place(&self) -> String {
         format!("{}:{}", self.file, self.line)
     }
 
-    pub fn line(&self) -> u64 {
+    pub(super) fn line(&self) -> u64 {
         self.line
     }
 
     /// Whether the file ends in the middle of this record's line.
-    pub fn is_cut(&self) -> bool {
+    pub(super) fn is_cut(&self) -> bool {
         !self.is_ended
     }
 

@@ -31,7 +31,7 @@ struct Run {
 }
 
 impl StuckWatch {
-    pub fn new(quantities: impl Iterator<Item = Quantity>) -> Self {
+    pub(super) fn new(quantities: impl Iterator<Item = Quantity>) -> Self {
         let is_temperature: Vec<bool> = quantities.map(|q| q == Quantity::Temperature).collect();
         let run = Run { value: f64::NAN, since_s: 0.0, rows: 0, others: Vec::new(), stuck: false };
         let runs = vec![run; is_temperature.len()];
@@ -39,7 +39,7 @@ impl StuckWatch {
     }
 
     /// Looks at a row; `on_stuck` gets every column whose reading stands still while others move.
-    pub fn push(&mut self, time_s: f64, readings: &[f64], mut on_stuck: impl FnMut(usize)) {
+    pub(super) fn push(&mut self, time_s: f64, readings: &[f64], mut on_stuck: impl FnMut(usize)) {
         for (column, &value) in readings.iter().enumerate() {
             let run = &mut self.runs[column];
             // An exact comparison on purpose: the last digit counts.

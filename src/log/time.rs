@@ -22,7 +22,7 @@ pub(super) struct TimeReader {
 
 impl TimeReader {
     /// A reader of this column; a date of second 0 that is known beforehand is of no use to a log without dates.
-    pub fn new(column: &str, form: TimeForm, decimal_comma: bool, options: &LogOptions) -> Self {
+    pub(super) fn new(column: &str, form: TimeForm, decimal_comma: bool, options: &LogOptions) -> Self {
         let origin = options.origin.filter(|_| form == TimeForm::Date);
         Self {
             column: column.to_owned(),
@@ -36,12 +36,12 @@ impl TimeReader {
     }
 
     /// Date of second 0, if the log has dates.
-    pub fn origin(&self) -> Option<Timestamp> {
+    pub(super) fn origin(&self) -> Option<Timestamp> {
         self.origin
     }
 
     /// Reads a cell, s; `None` is an empty one.
-    pub fn read(
+    pub(super) fn read(
         &mut self,
         cell: &[u8],
         at: impl Fn() -> String,
@@ -68,14 +68,14 @@ impl TimeReader {
     }
 
     /// Counts a date without zone where nobody has said which one it has.
-    pub fn without_zone(&self, shown: impl FnOnce() -> (String, String), cautions: &mut Cautions) {
+    pub(super) fn without_zone(&self, shown: impl FnOnce() -> (String, String), cautions: &mut Cautions) {
         if self.zone.is_none() {
             cautions.count(Kind::WithoutZone, &self.column, shown);
         }
     }
 
     /// The instant of a local time.
-    pub fn instant(&self, local: DateTime) -> Option<Timestamp> {
+    pub(super) fn instant(&self, local: DateTime) -> Option<Timestamp> {
         self.zone.unwrap_or(Zone::UTC).offset().to_timestamp(local).ok()
     }
 
@@ -116,7 +116,7 @@ impl TimeReader {
     }
 
     /// Seconds from the first instant, which becomes the origin.
-    pub fn since_origin(&mut self, instant: Timestamp) -> f64 {
+    pub(super) fn since_origin(&mut self, instant: Timestamp) -> f64 {
         let origin = *self.origin.get_or_insert(instant);
         (instant.as_nanosecond() - origin.as_nanosecond()) as f64 / 1e9
     }

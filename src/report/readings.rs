@@ -54,7 +54,7 @@ impl Readings {
 }
 
 /// Name of a sensor's column and its readings in that column's unit: °C, bar, or bar above the atmosphere.
-pub fn column(sensor: &Sensor, values: &[f64]) -> (String, Vec<f64>) {
+pub(super) fn column(sensor: &Sensor, values: &[f64]) -> (String, Vec<f64>) {
     let (unit, zero, factor) = match sensor.kind {
         SensorKind::Pressure { reference: PressureReference::Absolute, .. } => ("bar", 0.0, PASCAL_PER_BAR),
         SensorKind::Pressure { reference: PressureReference::Gauge { .. }, .. } => {

@@ -28,7 +28,7 @@ fn differences(values: &[f64], truth: &[f64]) -> Vec<f64> {
 }
 
 /// Figure 2: what the models make of the shoulder on the data that they come from.
-pub fn figure_2(study: &Identification) -> Figure {
+pub(super) fn figure_2(study: &Identification) -> Figure {
     let (record, t) = (&study.record, study.record.time_s());
     let [identified, published] = &study.simulated_degc;
     let gas = record.gas_degc();
@@ -48,7 +48,7 @@ pub fn figure_2(study: &Identification) -> Figure {
 }
 
 /// Figure 3: the models on scenarios that they do not come from.
-pub fn figure_3(study: &Identification) -> Picture {
+pub(super) fn figure_3(study: &Identification) -> Picture {
     let of = |validation: &Validation| {
         let (record, t) = (&validation.record, validation.record.time_s());
         let gas = record.gas_degc();
@@ -79,7 +79,7 @@ fn clipped(errors: &[f64]) -> Vec<f64> {
 }
 
 /// Figure 6: the tunnel, by the paper's scheme, and on a simulated cylinder.
-pub fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Picture {
+pub(super) fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Picture {
     let until = scheme.time_s.partition_point(|&t| t <= 10_800.0);
     let x = &scheme.time_s[..until];
     let own = vec![
@@ -104,7 +104,7 @@ pub fn figure_6(scheme: &SchemeRun, passage: &Passage) -> Picture {
 }
 
 /// Figure 8: a leak after the tunnel, by the paper's scheme, and on a simulated cylinder, with the alarms, s, of the methods.
-pub fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3]) -> Picture {
+pub(super) fn figure_8(scheme: &SchemeRun, passage: &Passage, alarms_s: [Option<f64>; 3]) -> Picture {
     let t = &scheme.time_s;
     let mut errors = vec![
         Item::Limit { name: "threshold".into(), value: THRESHOLD_BAR },
@@ -185,7 +185,7 @@ fn alarm(name: &str, t: &[f64], values: &[f64], alarm_s: Option<f64>, stroke: St
 }
 
 /// A scenario on the first of the drawn cylinders.
-pub fn drawn_cylinder(score: &ScenarioScore) -> Figure {
+pub(super) fn drawn_cylinder(score: &ScenarioScore) -> Figure {
     let (truth, method_run) = (&score.shown.truth, &score.shown.method_run);
     let t = &truth.time_s;
     let celsius = |k: &[f64]| k.iter().map(|k| k - ZERO_CELSIUS_K).collect::<Vec<f64>>();
@@ -211,7 +211,7 @@ pub fn drawn_cylinder(score: &ScenarioScore) -> Figure {
 }
 
 /// Pressure of a tight full cylinder against its gas temperature.
-pub fn tight(tight: &TightCylinder) -> Figure {
+pub(super) fn tight(tight: &TightCylinder) -> Figure {
     let t = &tight.temperature_degc;
     let fill_degc = FILL_TEMPERATURE_K - 273.15;
     let paper = t.iter().map(|t| 200.0 + SLOPE_OF_PAPER_BAR_K * (t - fill_degc));
@@ -229,7 +229,7 @@ pub fn tight(tight: &TightCylinder) -> Figure {
 }
 
 /// The measured blowdown beside the model.
-pub fn blowdown(study: &Blowdown) -> Figure {
+pub(super) fn blowdown(study: &Blowdown) -> Figure {
     let measured = &study.measured;
     let pressure = |variant: &Variant| variant.run.pressure_pa.iter().map(|p| p / 1e5).collect();
     let gas = |variant: &Variant| variant.run.gas_mean_k.iter().map(|t| t - 273.15).collect();

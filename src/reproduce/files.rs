@@ -14,7 +14,7 @@ use serde_json::{Map, Value, json};
 const DIGITS: Digits = Digits::Significant(7);
 
 /// A file to write: name and content.
-pub type File = (String, Vec<u8>);
+pub(super) type File = (String, Vec<u8>);
 
 impl Reproduction {
     /// All files: the report, every figure as SVG and PNG, every run as CSV, the results as JSON.

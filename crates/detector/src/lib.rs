@@ -24,6 +24,7 @@
 //! # Ok(())
 //! # }
 //! ```
+#![warn(unreachable_pub)]
 pub mod error;
 pub mod evidence;
 pub mod monitor;

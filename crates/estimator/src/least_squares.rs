@@ -16,41 +16,41 @@ pub(crate) struct Damping {
 }
 
 impl Damping {
-    pub fn first() -> Self {
+    pub(crate) fn first() -> Self {
         Self::starting_at(FIRST)
     }
 
     /// Another first damping.
-    pub fn starting_at(share: f64) -> Self {
+    pub(crate) fn starting_at(share: f64) -> Self {
         Self { share, last: HOPELESS * share.max(FIRST) }
     }
 
-    pub fn share(self) -> f64 {
+    pub(crate) fn share(self) -> f64 {
         self.share
     }
 
     /// After a step that helped.
-    pub fn relax(&mut self) {
+    pub(crate) fn relax(&mut self) {
         self.share = if self.share < NONE { 0.0 } else { 0.1 * self.share };
     }
 
     /// After a step that did not.
-    pub fn tighten(&mut self) {
+    pub(crate) fn tighten(&mut self) {
         self.share = (10.0 * self.share).max(FIRST);
     }
 
-    pub fn is_hopeless(self) -> bool {
+    pub(crate) fn is_hopeless(self) -> bool {
         self.share > self.last
     }
 
     /// Step `(A + damping diag A)^-1 g`, Marquardt's, which is free of the parameters' units; `None` if there is no finite one.
-    pub fn step(self, matrix: &DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
+    pub(crate) fn step(self, matrix: &DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
         self.scaled_step(matrix, rhs, &matrix.diagonal())
     }
 
     /// Step `(A + damping diag d)^-1 g`, Levenberg's: where parameters have widths of their own, `d` are those to the
     /// power -2, and a badly determined combination moves by no more than its width.
-    pub fn scaled_step(
+    pub(crate) fn scaled_step(
         self,
         matrix: &DMatrix<f64>,
         rhs: &DVector<f64>,

@@ -31,6 +31,7 @@
 //! # Ok(())
 //! # }
 //! ```
+#![warn(unreachable_pub)]
 #[cfg(feature = "design")]
 pub mod bound;
 #[cfg(feature = "design")]

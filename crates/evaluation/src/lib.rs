@@ -13,6 +13,7 @@
 //! | [`performance`] | what detectors are worth, side by side on the same cylinders |
 //! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
+#![warn(unreachable_pub)]
 pub mod baseline;
 pub mod error;
 pub mod fault;

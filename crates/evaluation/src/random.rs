@@ -50,40 +50,40 @@ pub(crate) enum Purpose {
 pub(crate) struct Random(ChaCha8Rng);
 
 impl Random {
-    pub fn new(seed: u64, purpose: Purpose) -> Self {
+    pub(crate) fn new(seed: u64, purpose: Purpose) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(purpose as u64);
         Self(generator)
     }
 
     /// Uniform between two bounds.
-    pub fn uniform(&mut self, (low, high): (f64, f64)) -> f64 {
+    pub(crate) fn uniform(&mut self, (low, high): (f64, f64)) -> f64 {
         low + (high - low) * self.0.random::<f64>()
     }
 
     /// A whole number, both bounds included.
-    pub fn whole(&mut self, (low, high): (usize, usize)) -> usize {
+    pub(crate) fn whole(&mut self, (low, high): (usize, usize)) -> usize {
         self.0.random_range(low..=high)
     }
 
     /// A magnitude between two bounds, of either sign.
-    pub fn either_sign(&mut self, magnitude: (f64, f64)) -> f64 {
+    pub(crate) fn either_sign(&mut self, magnitude: (f64, f64)) -> f64 {
         let sign = if self.0.random::<bool>() { 1.0 } else { -1.0 };
         sign * self.uniform(magnitude)
     }
 
     /// Evenly by the logarithm between two positive bounds.
-    pub fn by_logarithm(&mut self, (low, high): (f64, f64)) -> f64 {
+    pub(crate) fn by_logarithm(&mut self, (low, high): (f64, f64)) -> f64 {
         low * (high / low).powf(self.0.random::<f64>())
     }
 
     /// True with a probability.
-    pub fn happens(&mut self, probability: f64) -> bool {
+    pub(crate) fn happens(&mut self, probability: f64) -> bool {
         self.0.random::<f64>() < probability
     }
 
     /// Standard normal.
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         self.0.sample(StandardNormal)
     }
 }
@@ -98,7 +98,12 @@ pub(crate) struct OrnsteinUhlenbeck {
 }
 
 impl OrnsteinUhlenbeck {
-    pub fn draw(random: &mut Random, correlation_time_s: f64, spacing_s: f64, duration_s: f64) -> Self {
+    pub(crate) fn draw(
+        random: &mut Random,
+        correlation_time_s: f64,
+        spacing_s: f64,
+        duration_s: f64,
+    ) -> Self {
         let r = (-spacing_s / correlation_time_s).exp();
         let stretch = (3.0 / (2.0 + r)).sqrt();
         let steps = (duration_s / spacing_s).ceil() as usize + 1;
@@ -114,7 +119,7 @@ impl OrnsteinUhlenbeck {
     }
 
     /// Value at a time, s, of the drawn duration.
-    pub fn at(&self, t_s: f64) -> f64 {
+    pub(crate) fn at(&self, t_s: f64) -> f64 {
         let place = t_s / self.spacing_s;
         let knot = (place.floor() as usize).min(self.value.len() - 2);
         let weight = place - knot as f64;

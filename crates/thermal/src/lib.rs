@@ -30,6 +30,7 @@
 //! # Ok(())
 //! # }
 //! ```
+#![warn(unreachable_pub)]
 #[cfg(feature = "files")]
 pub mod document;
 pub mod error;

@@ -8,7 +8,7 @@ const CUT: f64 = 30.0;
 
 /// Knots of the pieces' lines: each point belongs to one piece, whose ends are the first and the last of its points.
 /// `least_sd` is the least noise, as of readings that are rounded.
-pub fn drawn(points: &[(f64, f64)], least_sd: f64) -> Vec<(f64, f64)> {
+pub(super) fn drawn(points: &[(f64, f64)], least_sd: f64) -> Vec<(f64, f64)> {
     let sums = Sums::new(points);
     let variance = noise(points).max(least_sd).powi(2);
     let mut knots = Vec::new();

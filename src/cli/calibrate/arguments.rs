@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Arguments of `calibrate`.
 #[derive(Debug, Args)]
 #[command(after_help = MORE, after_long_help = EXAMPLES)]
-pub struct CalibrateArguments {
+pub(crate) struct CalibrateArguments {
     /// Vessel to begin with: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
     /// Logs of the same vessel: CSV or Parquet files, or - for CSV on stdin.
@@ -80,7 +80,7 @@ pub struct CalibrateArguments {
 
 /// Content of stdout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum CalibrationFormat {
+pub(crate) enum CalibrationFormat {
     /// Tables for people.
     Text,
     /// One JSON document with everything; the tables go to stderr.

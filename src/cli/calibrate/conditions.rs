@@ -25,7 +25,7 @@ const SETTLED_SD_K: f64 = 1.0;
 const UNSETTLED_SD_K: f64 = 5.0;
 
 /// What happened, and how well its start is known.
-pub struct Conditions {
+pub(super) struct Conditions {
     pub scenario: Scenario,
     /// Standard deviation of the temperature of wall and gas at the start, K.
     pub temperature_sd_k: f64,
@@ -40,7 +40,7 @@ pub struct Conditions {
 }
 
 /// How circumstances are made.
-pub struct Exposure<'a> {
+pub(super) struct Exposure<'a> {
     pub quantities: &'a Quantities,
     pub fill: &'a GivenFill,
     pub source: FillSource,
@@ -48,7 +48,7 @@ pub struct Exposure<'a> {
 
 impl Exposure<'_> {
     /// Those of a log whose air was measured; its time is 0 in the first row.
-    pub fn of_log(&self, recording: &Recording, vessel: &Vessel) -> anyhow::Result<Conditions> {
+    pub(super) fn of_log(&self, recording: &Recording, vessel: &Vessel) -> anyhow::Result<Conditions> {
         let first_k = recording.first_k();
         let given = match (self.source, recording.first_pa()) {
             (FillSource::Given(fill), _) => fill,
@@ -116,7 +116,7 @@ impl Exposure<'_> {
     }
 
     /// Those of a scenario; a fill that was given goes before the scenario's.
-    pub fn of_scenario(
+    pub(super) fn of_scenario(
         &self,
         recording: &Recording,
         mut scenario: Scenario,

@@ -6,7 +6,7 @@ use jiff::Timestamp;
 const EPOCH: &str = "SOURCE_DATE_EPOCH";
 
 /// What was given, else what the environment says, else now; in UTC.
-pub fn date(given: Option<&str>) -> anyhow::Result<String> {
+pub(super) fn date(given: Option<&str>) -> anyhow::Result<String> {
     let of_text = |text: &str| {
         text.parse::<Timestamp>()
             .ok()

@@ -4,7 +4,7 @@ use crate::cli::output::check_distinct;
 
 impl Options {
     /// Checks everything that can be checked before a file is read.
-    pub fn checked(arguments: CalibrateArguments) -> anyhow::Result<Self> {
+    pub(super) fn checked(arguments: CalibrateArguments) -> anyhow::Result<Self> {
         let mut logs = arguments.logs;
         let validation = validation(arguments.validate.as_deref(), &mut logs)?;
         check_logs(&arguments.vessel, &logs)?;

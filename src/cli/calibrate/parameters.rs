@@ -13,7 +13,7 @@ const CONTACT_SD: f64 = 0.5;
 
 /// Options that are not yet compared with logs.
 #[derive(Debug)]
-pub struct ParameterChoice {
+pub(super) struct ParameterChoice {
     fit: Vec<ParameterKind>,
     hold: Vec<ParameterKind>,
     priors: Vec<(ParameterKind, [f64; 2])>,
@@ -23,7 +23,7 @@ pub struct ParameterChoice {
 }
 
 /// An experiment that parameters are made for.
-pub struct Subject<'a> {
+pub(super) struct Subject<'a> {
     pub vessel: &'a Vessel,
     pub recording: &'a Recording,
     pub conditions: &'a Conditions,
@@ -32,7 +32,7 @@ pub struct Subject<'a> {
 }
 
 /// Words of the command line.
-pub struct ParameterArguments<'a> {
+pub(super) struct ParameterArguments<'a> {
     pub fit: &'a [String],
     pub hold: &'a [String],
     pub priors: &'a [String],
@@ -43,7 +43,7 @@ pub struct ParameterArguments<'a> {
 
 impl ParameterChoice {
     /// Reads the words.
-    pub fn checked(words: &ParameterArguments<'_>) -> anyhow::Result<Self> {
+    pub(super) fn checked(words: &ParameterArguments<'_>) -> anyhow::Result<Self> {
         let names = |option: &str, names: &[String]| -> anyhow::Result<Vec<ParameterKind>> {
             names.iter().map(|name| kind(option, name.trim())).collect()
         };
@@ -58,7 +58,7 @@ impl ParameterChoice {
     }
 
     /// Parameters for all subjects, those of the vessel first.
-    pub fn parameters(&self, subjects: &[Subject<'_>]) -> anyhow::Result<Vec<ParameterSpec>> {
+    pub(super) fn parameters(&self, subjects: &[Subject<'_>]) -> anyhow::Result<Vec<ParameterSpec>> {
         let wanted = if self.fit.is_empty() { usual(subjects) } else { self.fit.clone() };
         let mut specs: Vec<ParameterSpec> = Vec::new();
         for kind in wanted.iter().filter(|kind| !kind.is_of_experiment()) {
@@ -81,7 +81,7 @@ impl ParameterChoice {
     }
 
     /// Places of the parameters whose profile is asked for.
-    pub fn profiles(&self, specs: &[ParameterSpec]) -> anyhow::Result<Vec<usize>> {
+    pub(super) fn profiles(&self, specs: &[ParameterSpec]) -> anyhow::Result<Vec<usize>> {
         let place = |kind: &ParameterKind| {
             specs
                 .iter()

@@ -4,7 +4,7 @@ use cylwatch::thermal::units::Dimension;
 
 /// What can be given.
 #[derive(Clone, Debug)]
-pub struct QuantityOptions;
+pub(crate) struct QuantityOptions;
 
 impl Choices for QuantityOptions {
     const EXPERT: &'static [&'static str] = &["film", "wind", "longest-gap"];
@@ -24,21 +24,21 @@ impl Choices for QuantityOptions {
 }
 
 /// Quantities as given.
-pub type Quantities = Given<QuantityOptions>;
+pub(super) type Quantities = Given<QuantityOptions>;
 
 impl Quantities {
     /// Film coefficient, W/(m² K).
-    pub fn film_w_m2_k(&self) -> anyhow::Result<Option<f64>> {
+    pub(crate) fn film_w_m2_k(&self) -> anyhow::Result<Option<f64>> {
         self.si("film", Dimension::Film)
     }
 
     /// Wind, m/s.
-    pub fn wind_m_s(&self) -> anyhow::Result<Option<f64>> {
+    pub(crate) fn wind_m_s(&self) -> anyhow::Result<Option<f64>> {
         self.si("wind", Dimension::Speed)
     }
 
     /// Longest gap that is bridged, s.
-    pub fn longest_gap_s(&self) -> anyhow::Result<Option<f64>> {
+    pub(crate) fn longest_gap_s(&self) -> anyhow::Result<Option<f64>> {
         self.si("longest-gap", Dimension::Time)
     }
 }

@@ -10,10 +10,10 @@ use cylwatch::thermal::units::ZERO_CELSIUS_K;
 use cylwatch::thermal::vessel::Vessel;
 
 /// Column of the air.
-pub const AMBIENT: &str = "ambient";
+pub(super) const AMBIENT: &str = "ambient";
 
 /// How logs are read.
-pub struct Reading<'a> {
+pub(super) struct Reading<'a> {
     pub inputs: &'a Inputs,
     pub reading: &'a LogArguments,
     /// Sensors of a file; none: typical ones.
@@ -22,7 +22,7 @@ pub struct Reading<'a> {
 }
 
 /// A log.
-pub struct Recording {
+pub(super) struct Recording {
     /// What messages call it.
     pub name: String,
     /// Readings of the sensors.
@@ -39,7 +39,7 @@ pub struct Recording {
 
 impl Reading<'_> {
     /// Reads a log.
-    pub fn read(&self, name: &str, vessel: &Vessel) -> anyhow::Result<Recording> {
+    pub(super) fn read(&self, name: &str, vessel: &Vessel) -> anyhow::Result<Recording> {
         let of_air = |sensor: &&Sensor| sensor.kind == SensorKind::Ambient;
         let air_sensor = match self.sensors.and_then(|sensors| sensors.iter().find(of_air)) {
             Some(sensor) => sensor.clone(),
@@ -95,7 +95,7 @@ impl Recording {
     }
 
     /// The same with the first row at time 0.
-    pub fn beginning_at_zero(mut self) -> Self {
+    pub(super) fn beginning_at_zero(mut self) -> Self {
         let first_s = self.log.time_s.first().copied().unwrap_or(0.0);
         self.log.time_s.iter_mut().for_each(|time_s| *time_s -= first_s);
         self.air.iter_mut().for_each(|(time_s, _)| *time_s -= first_s);
@@ -103,19 +103,19 @@ impl Recording {
     }
 
     /// Last time, s.
-    pub fn end_s(&self) -> f64 {
+    pub(super) fn end_s(&self) -> f64 {
         self.log.time_s.last().copied().unwrap_or(0.0)
     }
 
     /// Mean of the first reading of each thermometer, K; the air's, or 15 °C, where there is none.
-    pub fn first_k(&self) -> f64 {
+    pub(super) fn first_k(&self) -> f64 {
         let firsts: Vec<f64> = self.of(Quantity::Temperature).filter_map(|at| self.first(at)).collect();
         let otherwise = self.air.first().map_or(ZERO_CELSIUS_K + 15.0, |(_, air_k)| *air_k);
         if firsts.is_empty() { otherwise } else { firsts.iter().sum::<f64>() / firsts.len() as f64 }
     }
 
     /// First reading of a pressure, Pa.
-    pub fn first_pa(&self) -> Option<f64> {
+    pub(super) fn first_pa(&self) -> Option<f64> {
         self.of(Quantity::Pressure).find_map(|at| self.first(at))
     }
 

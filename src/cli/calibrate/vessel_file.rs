@@ -11,7 +11,7 @@ const DIGITS: usize = 6;
 const CONVERTED_DIGITS: usize = 12;
 
 /// Where the fitted values come from.
-pub fn record(study: &Study, vessel: &Input, logs: &[(String, Input)], date: &str) -> CalibrationSpec {
+pub(super) fn record(study: &Study, vessel: &Input, logs: &[(String, Input)], date: &str) -> CalibrationSpec {
     let origin =
         |name: &str, input: &Input| OriginSpec { name: name.to_owned(), sha256: input.sha256.clone() };
     let fitted: Vec<&str> = study.fitted_sources();
@@ -28,7 +28,7 @@ pub fn record(study: &Study, vessel: &Input, logs: &[(String, Input)], date: &st
 }
 
 /// The file.
-pub fn text(
+pub(super) fn text(
     study: &Study,
     specification: &VesselSpec,
     record: CalibrationSpec,
@@ -41,7 +41,11 @@ pub fn text(
 }
 
 /// The file of the fitted sensors.
-pub fn sensors(study: &Study, sensors: &SensorsSpec, provenance: &Provenance) -> anyhow::Result<String> {
+pub(super) fn sensors(
+    study: &Study,
+    sensors: &SensorsSpec,
+    provenance: &Provenance,
+) -> anyhow::Result<String> {
     let sensors = study.calibrated.applied_to_sensors(study.main_experiment(), sensors);
     sensors.build()?;
     Ok(file(&sensors.to_toml()?, DIGITS, provenance))

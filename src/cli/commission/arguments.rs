@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 /// Pressures of the cylinder and its transmitter.
 #[derive(Clone, Debug)]
-pub struct CommissionQuantities;
+pub(crate) struct CommissionQuantities;
 
 impl Choices for CommissionQuantities {
     const CHOICES: &'static [Choice] = &[
@@ -32,7 +32,7 @@ impl Choices for CommissionQuantities {
 /// Arguments of `commission`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct CommissionArguments {
+pub(crate) struct CommissionArguments {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
     /// JSON file for the thresholds; - is stdout.

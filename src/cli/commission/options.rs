@@ -10,7 +10,7 @@ const FILL_PA: f64 = 200.0 * PASCAL_PER_BAR;
 const REHEARSED: f64 = 1e-3;
 
 /// Options that passed all checks that need no vessel.
-pub struct Options {
+pub(super) struct Options {
     pub vessel: String,
     pub data: Target,
     pub campaign: Campaign,
@@ -21,7 +21,7 @@ pub struct Options {
 
 impl Options {
     /// Checks places and numbers.
-    pub fn checked(arguments: CommissionArguments) -> anyhow::Result<Self> {
+    pub(super) fn checked(arguments: CommissionArguments) -> anyhow::Result<Self> {
         let CommissionArguments { vessel, output, pressures, climates, gases, sensors, rows, .. } = arguments;
         let data = Target::checked(Some(&output), &[Path::new(&vessel)])?;
         let CommissionArguments { cylinders, days, seed, .. } = arguments;
@@ -42,7 +42,7 @@ impl Options {
     }
 
     /// The vessel that cylinders are drawn around.
-    pub fn nominal(&self, vessel: Vessel) -> anyhow::Result<NominalVessel> {
+    pub(super) fn nominal(&self, vessel: Vessel) -> anyhow::Result<NominalVessel> {
         let bar = |pressure_pa: f64| pressure_pa / PASCAL_PER_BAR;
         let state = vessel.fluid.density_from_pressure_temperature(self.fill_pa, QUOTED_K);
         state.with_context(|| {

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Arguments of `estimate`.
 #[derive(Debug, Args)]
 #[command(after_help = MORE, after_long_help = estimate_help())]
-pub struct EstimateArguments {
+pub(crate) struct EstimateArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,
     #[command(flatten)]
@@ -41,7 +41,7 @@ pub struct EstimateArguments {
 
 /// Filter of the observer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Filter {
+pub(crate) enum Filter {
     /// Extended Kalman filter.
     Ekf,
     /// Unscented Kalman filter; many times slower than ekf.
@@ -54,7 +54,7 @@ pub enum Filter {
 
 impl Filter {
     /// The observer's engine.
-    pub fn engine(self) -> Result<Engine, EstimatorError> {
+    pub(crate) fn engine(self) -> Result<Engine, EstimatorError> {
         let word = match self {
             Self::Ekf => "ekf",
             Self::Ukf => "ukf",

@@ -5,7 +5,7 @@ use cylwatch::log::{Row, Truth};
 use std::collections::VecDeque;
 
 /// A pass of an observer.
-pub enum Pass {
+pub(super) enum Pass {
     /// Every row at once.
     Forward(Box<Observer>),
     /// A smoother, and what goes with the rows that it holds back.
@@ -14,7 +14,7 @@ pub enum Pass {
 
 impl Pass {
     /// A pass of an observer that has not begun.
-    pub fn new(observer: Observer, smooth: bool) -> anyhow::Result<Self> {
+    pub(super) fn new(observer: Observer, smooth: bool) -> anyhow::Result<Self> {
         Ok(if smooth {
             Self::Smoothed(Box::new(Smoother::new(observer)?), VecDeque::new())
         } else {
@@ -24,7 +24,7 @@ impl Pass {
 
     /// Takes in a row and hands out the estimates that are final, in the order of their rows, each with the truth and
     /// the innovations of its row.
-    pub fn push(
+    pub(super) fn push(
         &mut self,
         row: &Row,
         readings: &[f64],
@@ -44,7 +44,7 @@ impl Pass {
     }
 
     /// Hands out what is left, and the observer as it is after the last row.
-    pub fn finish(
+    pub(super) fn finish(
         self,
         take: impl FnMut(Estimate, &Truth, &[Innovation]) -> anyhow::Result<()>,
     ) -> anyhow::Result<Observer> {

@@ -16,7 +16,7 @@ const SLOPE_STEP: f64 = 1e-4;
 const SETTLED_K: f64 = 288.15;
 
 /// A run that is under way.
-pub struct Rows<'a> {
+pub(super) struct Rows<'a> {
     pass: Pass,
     selection: &'a Selection,
     readings: Vec<f64>,
@@ -38,7 +38,7 @@ struct Results {
 
 impl<'a> Rows<'a> {
     /// Opens the output and writes what stands above the rows.
-    pub fn begin(
+    pub(super) fn begin(
         mut observer: Observer,
         selection: &'a Selection,
         options: &Options,
@@ -63,7 +63,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Takes in a row and writes the estimates that are final.
-    pub fn push(&mut self, row: &Row) -> anyhow::Result<()> {
+    pub(super) fn push(&mut self, row: &Row) -> anyhow::Result<()> {
         self.readings.clear();
         self.readings.extend(self.selection.readings(row));
         let results = &mut self.results;
@@ -73,7 +73,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Ends the output; files appear here.
-    pub fn finish(
+    pub(super) fn finish(
         self,
         title: String,
         inputs: &Inputs,

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Arguments of `identify`.
 #[derive(Debug, Args)]
 #[command(after_help = MORE, after_long_help = EXAMPLES)]
-pub struct IdentifyArguments {
+pub(crate) struct IdentifyArguments {
     /// Log: a CSV or Parquet file, or - for CSV on stdin.
     pub log: String,
     /// Column of the input, with or without its unit.
@@ -102,7 +102,7 @@ Examples:
 
 /// Method of identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MethodName {
+pub(crate) enum MethodName {
     /// Least squares of the simulation's errors, as MATLAB's tfest.
     OutputError,
     /// Simplified refined instrumental variables (SRIVC).
@@ -119,7 +119,7 @@ pub enum MethodName {
 
 /// Course of the input between its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum HoldName {
+pub(crate) enum HoldName {
     /// Straight from sample to sample.
     First,
     /// Constant from a sample to the next one.
@@ -146,7 +146,7 @@ impl From<CourseName> for InputCourse {
 
 /// What is supposed of the errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ErrorsName {
+pub(crate) enum ErrorsName {
     /// White unless a test at 1 % rejects it.
     Judged,
     /// White.
@@ -157,7 +157,7 @@ pub enum ErrorsName {
 
 /// First model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StartName {
+pub(crate) enum StartName {
     /// State-variable filter, then instruments as far as they help.
     InstrumentalVariables,
     /// State-variable filter alone.
@@ -166,7 +166,7 @@ pub enum StartName {
 
 impl IdentifyArguments {
     /// Structure of the model.
-    pub fn structure(&self, quantities: &Quantities) -> anyhow::Result<Structure> {
+    pub(crate) fn structure(&self, quantities: &Quantities) -> anyhow::Result<Structure> {
         Ok(Structure {
             order: self.order,
             zeros: self.zeros.unwrap_or(self.order.saturating_sub(1)),
@@ -183,7 +183,7 @@ impl IdentifyArguments {
     }
 
     /// Settings of the search.
-    pub fn settings(&self, quantities: &Quantities) -> anyhow::Result<Settings> {
+    pub(crate) fn settings(&self, quantities: &Quantities) -> anyhow::Result<Settings> {
         Ok(Settings {
             iterations: self.iterations,
             start: match self.start {

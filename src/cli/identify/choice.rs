@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use cylwatch::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputCourse, Method, Structure};
 
 /// A method that has what it needs, apart from the data.
-pub struct Choice {
+pub(super) struct Choice {
     method: MethodName,
     course: InputCourse,
     /// How the input runs between its samples.
@@ -15,7 +15,7 @@ pub struct Choice {
 
 impl Choice {
     /// Checks that the options fit each other.
-    pub fn checked(arguments: &IdentifyArguments) -> anyhow::Result<Self> {
+    pub(super) fn checked(arguments: &IdentifyArguments) -> anyhow::Result<Self> {
         let IdentifyArguments { input, output, second, method, .. } = arguments;
         let same = |a: &str, b: &str| base_name(a) == base_name(b);
         if same(input, output) {
@@ -49,7 +49,7 @@ impl Choice {
     }
 
     /// The method for a record.
-    pub fn method(&self, record: &Record, quantities: &Quantities) -> anyhow::Result<Method> {
+    pub(super) fn method(&self, record: &Record, quantities: &Quantities) -> anyhow::Result<Method> {
         let input = || quantities.variance("input-sd", &record.columns[0].signal);
         let output = || quantities.variance("output-sd", &record.columns[1].signal);
         Ok(match self.method {
@@ -76,7 +76,7 @@ impl Choice {
     }
 
     /// Method and structure in words.
-    pub fn description(&self, structure: &Structure) -> String {
+    pub(super) fn description(&self, structure: &Structure) -> String {
         let method = match self.method {
             MethodName::OutputError => "output error",
             MethodName::RefinedInstruments => "refined instrumental variables",
@@ -110,7 +110,7 @@ impl Choice {
 }
 
 /// Data that the model is not identified from.
-pub enum Validation {
+pub(super) enum Validation {
     /// The last part of the log, between 0 and 1.
     Fraction(f64),
     /// Another log.
@@ -119,7 +119,7 @@ pub enum Validation {
 
 impl Validation {
     /// A fraction where the text is a number, else a log.
-    pub fn checked(text: &str) -> anyhow::Result<Self> {
+    pub(super) fn checked(text: &str) -> anyhow::Result<Self> {
         match text.parse::<f64>() {
             Ok(fraction) if fraction > 0.0 && fraction < 1.0 => Ok(Self::Fraction(fraction)),
             Ok(_) => bail!("--validate {text} must lie between 0 and 1, or name a log"),

@@ -6,7 +6,7 @@ use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR};
 
 /// What can be given.
 #[derive(Clone, Debug)]
-pub struct QuantityOptions;
+pub(crate) struct QuantityOptions;
 
 impl Choices for QuantityOptions {
     const EXPERT: &'static [&'static str] =
@@ -43,21 +43,21 @@ impl Choices for QuantityOptions {
 }
 
 /// Quantities as given.
-pub type Quantities = Given<QuantityOptions>;
+pub(super) type Quantities = Given<QuantityOptions>;
 
 impl Quantities {
     /// Known and longest dead time, s.
-    pub fn dead_time(&self) -> anyhow::Result<(Option<f64>, Option<f64>)> {
+    pub(crate) fn dead_time(&self) -> anyhow::Result<(Option<f64>, Option<f64>)> {
         Ok((self.si("dead-time", Dimension::Time)?, self.si("longest-dead-time", Dimension::Time)?))
     }
 
     /// Longest gap that is bridged, s.
-    pub fn longest_gap_s(&self) -> anyhow::Result<Option<f64>> {
+    pub(crate) fn longest_gap_s(&self) -> anyhow::Result<Option<f64>> {
         self.si("longest-gap", Dimension::Time)
     }
 
     /// Variance of a column's noise in its unit squared; `option` is `input-sd` or `output-sd`.
-    pub fn variance(&self, option: &str, signal: &Signal) -> anyhow::Result<f64> {
+    pub(crate) fn variance(&self, option: &str, signal: &Signal) -> anyhow::Result<f64> {
         let (asked, other) = (Dimension::TemperatureDifference, Dimension::PressureDifference);
         let (asked, other, unit) =
             if signal.is_temperature() { (asked, other, 1.0) } else { (other, asked, PASCAL_PER_BAR) };
@@ -75,7 +75,7 @@ impl Quantities {
     }
 
     /// Whether any noise was given.
-    pub fn has_noise(&self) -> bool {
+    pub(crate) fn has_noise(&self) -> bool {
         self.quantities.iter().any(|quantity| quantity.dimension != Dimension::Time)
     }
 }

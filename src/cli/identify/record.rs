@@ -11,7 +11,7 @@ use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K, units_
 const GAS_MEAN: &str = "gas_mean";
 
 /// Columns of a log, at the same times.
-pub struct Record {
+pub(super) struct Record {
     /// Times, s.
     pub time_s: Vec<f64>,
     /// Columns in the order in which they were asked for.
@@ -19,7 +19,7 @@ pub struct Record {
 }
 
 /// A column with its values, °C or bar; NaN is a missing value.
-pub struct NamedColumn {
+pub(super) struct NamedColumn {
     /// What it is.
     pub signal: Signal,
     /// Its values.
@@ -34,7 +34,7 @@ enum Source {
 }
 
 /// Name of a column as it was asked for, without its unit and in small letters.
-pub fn base_name(asked: &str) -> String {
+pub(super) fn base_name(asked: &str) -> String {
     let name = asked.to_ascii_lowercase();
     let name = name.strip_prefix("measured_").unwrap_or(&name);
     let units = units_of(Dimension::Temperature).chain(units_of(Dimension::Pressure));
@@ -78,7 +78,7 @@ impl Source {
 
 impl Record {
     /// Reads the named columns; `progress` is told the share that has been read.
-    pub fn read(log: &mut LogInput, names: &[String], progress: impl Fn(f64)) -> anyhow::Result<Self> {
+    pub(super) fn read(log: &mut LogInput, names: &[String], progress: impl Fn(f64)) -> anyhow::Result<Self> {
         let sources = names.iter().map(|name| Source::find(&log.reader, name));
         let sources = sources.collect::<anyhow::Result<Vec<_>>>()?;
         let column = |source: &Source| NamedColumn { signal: source.signal(&log.reader), values: Vec::new() };
@@ -96,7 +96,7 @@ impl Record {
     }
 
     /// The record before and in its last part, a fraction of its length in time.
-    pub fn split(self, fraction: f64) -> anyhow::Result<(Self, Self)> {
+    pub(super) fn split(self, fraction: f64) -> anyhow::Result<(Self, Self)> {
         let ends = self.time_s.first().zip(self.time_s.last()).context("the log has no rows")?;
         let at_s = ends.1 - fraction * (ends.1 - ends.0);
         let at = self.time_s.partition_point(|&time_s| time_s < at_s);

@@ -4,7 +4,7 @@ use jiff::Timestamp;
 
 /// An exchange of gas that was ordered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Announced {
+pub(super) struct Announced {
     from: Moment,
     until: Moment,
 }
@@ -19,7 +19,7 @@ enum Moment {
 
 impl Announced {
     /// Reads `FROM..UNTIL`.
-    pub fn parse(text: &str) -> anyhow::Result<Self> {
+    pub(super) fn parse(text: &str) -> anyhow::Result<Self> {
         const FORM: &str =
             "write FROM..UNTIL, each in seconds of the log or as a date like 2026-01-31T14:00:00Z";
         let Some((from, until)) = text.split_once("..") else {
@@ -38,7 +38,7 @@ impl Announced {
     }
 
     /// Both times in seconds of a log whose second 0 is an instant; `None`: it has no dates.
-    pub fn seconds(&self, origin: Option<Timestamp>) -> anyhow::Result<(f64, f64)> {
+    pub(super) fn seconds(&self, origin: Option<Timestamp>) -> anyhow::Result<(f64, f64)> {
         Ok((self.from.second(origin)?, self.until.second(origin)?))
     }
 }

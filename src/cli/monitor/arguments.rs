@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 /// What the verdict is held against, and times.
 #[derive(Clone, Debug)]
-pub struct MonitorQuantities;
+pub(crate) struct MonitorQuantities;
 
 impl Choices for MonitorQuantities {
     const CHOICES: &'static [Choice] = &[
@@ -33,7 +33,7 @@ impl Choices for MonitorQuantities {
 /// Arguments of `monitor`.
 #[derive(Debug, Args)]
 #[command(after_help = MORE, after_long_help = help())]
-pub struct MonitorArguments {
+pub(crate) struct MonitorArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,
     #[command(flatten)]

@@ -10,7 +10,7 @@ use cylwatch::thermal::units::PASCAL_PER_BAR;
 use cylwatch::thermal::vessel::Fill;
 
 /// A monitor and what a run must know beside it.
-pub struct Engine {
+pub(super) struct Engine {
     /// The monitor.
     pub monitor: Monitor,
     /// Pressure of the full cylinder at 15 °C, Pa.
@@ -44,7 +44,7 @@ fn settings(options: &Options, beginning: &RunStart, settled: bool) -> anyhow::R
 
 impl Engine {
     /// A monitor that continues from a state.
-    pub fn restored(
+    pub(super) fn restored(
         options: &Options,
         beginning: &RunStart,
         selection: &Selection,
@@ -58,7 +58,7 @@ impl Engine {
     }
 
     /// A monitor that begins with the first rows.
-    pub fn cold(
+    pub(super) fn cold(
         options: &Options,
         inputs: &Inputs,
         beginning: &RunStart,

@@ -8,7 +8,7 @@ use cylwatch::report::monitor::{Naming, alarm_line, alarm_text, event_line, even
 use serde_json::json;
 
 /// A sink of events.
-pub enum EventSink {
+pub(super) enum EventSink {
     /// Lines of JSON.
     File(Appended),
     /// Words.
@@ -17,7 +17,7 @@ pub enum EventSink {
 
 impl EventSink {
     /// Opens the file, if one is wanted; `goes_on` keeps what it has.
-    pub fn open(target: Option<&Target>, goes_on: bool) -> anyhow::Result<Self> {
+    pub(super) fn open(target: Option<&Target>, goes_on: bool) -> anyhow::Result<Self> {
         Ok(match target {
             Some(target) => Self::File(target.append(goes_on)?),
             None => Self::Stderr,
@@ -25,7 +25,7 @@ impl EventSink {
     }
 
     /// Reports an event.
-    pub fn event(&mut self, event: &Event, naming: &Naming, console: &Console) -> anyhow::Result<()> {
+    pub(super) fn event(&mut self, event: &Event, naming: &Naming, console: &Console) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&event_line(event, naming)),
             Self::Stderr => console.print(&event_text(event, naming)),
@@ -33,7 +33,12 @@ impl EventSink {
     }
 
     /// Reports a change of an alarm.
-    pub fn alarm(&mut self, alarm: &AlarmEvent, naming: &Naming, console: &Console) -> anyhow::Result<()> {
+    pub(super) fn alarm(
+        &mut self,
+        alarm: &AlarmEvent,
+        naming: &Naming,
+        console: &Console,
+    ) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&alarm_line(alarm, &naming.clock)),
             Self::Stderr => console.print(&alarm_text(alarm, &naming.clock)),
@@ -41,7 +46,7 @@ impl EventSink {
     }
 
     /// Reports a cold start; people get a caution instead.
-    pub fn cold_start(&mut self, reason: &str) -> anyhow::Result<()> {
+    pub(super) fn cold_start(&mut self, reason: &str) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&json!({ "event": "cold-start", "reason": reason }).to_string()),
             Self::Stderr => Ok(()),
@@ -50,7 +55,7 @@ impl EventSink {
 }
 
 /// Words beside a progress bar.
-pub struct Console<'a> {
+pub(super) struct Console<'a> {
     /// Words on stderr.
     pub messages: &'a Messages,
     /// The bar that must not be written over.

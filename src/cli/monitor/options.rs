@@ -13,7 +13,7 @@ use std::time::Duration;
 const DAY_S: f64 = 86_400.0;
 
 /// Options that passed all checks that need no file to be read.
-pub struct Options {
+pub(super) struct Options {
     pub vessel: String,
     pub log: String,
     pub data: Target,
@@ -40,7 +40,7 @@ pub struct Options {
 
 impl Options {
     /// Checks places and numbers.
-    pub fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
+    pub(super) fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
         let MonitorArguments { inputs: places, fill, given, reading, learned_in, commissioned, .. } =
             arguments;
         let sensors = arguments.sensors.sensors;
@@ -94,7 +94,7 @@ impl Options {
     }
 
     /// Whether rows come one by one through a pipe, so that each result must go out at once.
-    pub fn is_live(&self) -> bool {
+    pub(super) fn is_live(&self) -> bool {
         self.log == "-"
     }
 }

@@ -9,7 +9,7 @@ const FEWEST: u64 = 20;
 const PART: u64 = 10;
 
 /// Counts rows that step back in time.
-pub struct Order {
+pub(super) struct Order {
     lateness_s: f64,
     last_s: f64,
     rows: u64,
@@ -18,12 +18,12 @@ pub struct Order {
 
 impl Order {
     /// No row has come.
-    pub fn new(lateness_s: f64) -> Self {
+    pub(super) fn new(lateness_s: f64) -> Self {
         Self { lateness_s, last_s: f64::NEG_INFINITY, rows: 0, back: 0 }
     }
 
     /// Takes the time of a row that stands at `place`.
-    pub fn check(&mut self, time_s: f64, place: String) -> anyhow::Result<()> {
+    pub(super) fn check(&mut self, time_s: f64, place: String) -> anyhow::Result<()> {
         self.rows += 1;
         self.back += u64::from(time_s < self.last_s - self.lateness_s);
         self.last_s = time_s;

@@ -9,7 +9,7 @@ use cylwatch::thermal::vessel::Vessel;
 use jiff::Timestamp;
 
 /// A vessel and what is known of its past.
-pub struct RunStart {
+pub(super) struct RunStart {
     /// The vessel.
     pub vessel: Vessel,
     /// What tells this vessel from another.
@@ -24,7 +24,7 @@ pub struct RunStart {
 
 impl RunStart {
     /// Reads the vessel and the state.
-    pub fn find(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Self> {
+    pub(super) fn find(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Self> {
         let (specification, vessel, _) = inputs.vessel_specification(&options.vessel, messages)?;
         let mark = VesselMark::of(&specification, &vessel)?;
         let commissioned = options.commissioned.as_deref();
@@ -55,13 +55,13 @@ impl RunStart {
     }
 
     /// Date of second 0 of the state.
-    pub fn origin(&self) -> anyhow::Result<Option<Timestamp>> {
+    pub(super) fn origin(&self) -> anyhow::Result<Option<Timestamp>> {
         let origin = self.state.as_ref().and_then(|state| state.origin.as_deref());
         origin.map(str::parse).transpose().context("the state has no date of RFC 3339")
     }
 
     /// What a state of this run belongs to. Limits, the coldest night, how rare a false alarm is to be and thresholds of its own are taken over as they are now.
-    pub fn identity(&self, options: &Options, sensors: &[Sensor]) -> Identity {
+    pub(super) fn identity(&self, options: &Options, sensors: &[Sensor]) -> Identity {
         let names: Vec<&str> = sensors.iter().map(|sensor| sensor.name.as_str()).collect();
         let value = |value: f64| cylwatch::report::number(value, 9);
         let mut entries = vec![
@@ -78,7 +78,7 @@ impl RunStart {
 }
 
 /// The refusal of a state, with what to do.
-pub fn refused(path: &Path, reason: &Refusal) -> anyhow::Error {
+pub(super) fn refused(path: &Path, reason: &Refusal) -> anyhow::Error {
     anyhow!("cannot continue from {}: {reason}; --cold-start starts fresh and replaces it", path.display())
 }
 

@@ -13,7 +13,7 @@ const CLASS: f64 = 1e-3;
 const STEP: f64 = 1e-4;
 
 /// Rows that are being written.
-pub struct Rows {
+pub(super) struct Rows {
     stream: RowStream<MonitorRow>,
     slope: Slope,
 }
@@ -28,7 +28,7 @@ struct Slope {
 
 impl Rows {
     /// Opens the output and writes what stands above the rows.
-    pub fn begin(
+    pub(super) fn begin(
         options: &Options,
         inputs: &Inputs,
         selection: &Selection,
@@ -42,19 +42,19 @@ impl Rows {
     }
 
     /// Writes an output.
-    pub fn push(&mut self, output: &Output) -> anyhow::Result<()> {
+    pub(super) fn push(&mut self, output: &Output) -> anyhow::Result<()> {
         let estimate = &output.estimate;
         let leak_pa_s = estimate.leak_kg_s * self.slope.at(estimate.mass_kg)?;
         self.stream.push(&MonitorRow::new(output, leak_pa_s))
     }
 
     /// Hands on what waits.
-    pub fn flush(&mut self) -> anyhow::Result<()> {
+    pub(super) fn flush(&mut self) -> anyhow::Result<()> {
         self.stream.flush()
     }
 
     /// Writes what stands below the rows and ends the output; `error`: why there is no summary.
-    pub fn finish(
+    pub(super) fn finish(
         mut self,
         inputs: &Inputs,
         log: &LogInput,

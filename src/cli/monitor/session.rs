@@ -15,7 +15,7 @@ use std::time::Instant;
 const MOST_LOGS: usize = 64;
 
 /// What a run uses.
-pub struct RunContext<'a> {
+pub(super) struct RunContext<'a> {
     pub options: &'a Options,
     pub inputs: &'a Inputs,
     pub selection: &'a Selection,
@@ -24,7 +24,7 @@ pub struct RunContext<'a> {
 }
 
 /// A run that is under way.
-pub struct Session<'a> {
+pub(super) struct Session<'a> {
     context: RunContext<'a>,
     monitor: Monitor,
     full_pa: f64,
@@ -54,7 +54,7 @@ pub struct Session<'a> {
 
 impl<'a> Session<'a> {
     /// Goes on from a state, or begins cold.
-    pub fn begin(
+    pub(super) fn begin(
         context: RunContext<'a>,
         start: &RunStart,
         engine: Engine,
@@ -107,7 +107,7 @@ impl<'a> Session<'a> {
     }
 
     /// Acknowledges the alarms of the state, if that is wanted.
-    pub fn acknowledge(&mut self, progress: &Progress) -> anyhow::Result<()> {
+    pub(super) fn acknowledge(&mut self, progress: &Progress) -> anyhow::Result<()> {
         let Some(comment) = &self.context.options.acknowledge else { return Ok(()) };
         let console = Console { messages: self.context.messages, progress };
         for alarm in self.monitor.acknowledge(comment) {
@@ -117,7 +117,7 @@ impl<'a> Session<'a> {
     }
 
     /// Takes in a row.
-    pub fn push(&mut self, row: &Row, log: &LogInput, progress: &Progress) -> anyhow::Result<()> {
+    pub(super) fn push(&mut self, row: &Row, log: &LogInput, progress: &Progress) -> anyhow::Result<()> {
         if self.is_known(row) {
             self.known_rows += 1;
             return Ok(());
@@ -211,7 +211,12 @@ impl<'a> Session<'a> {
     }
 
     /// Ends a run whose log failed: with a state, what was done up to there stays.
-    pub fn abandon(mut self, inputs: &Inputs, log: &LogInput, error: &anyhow::Error) -> anyhow::Result<()> {
+    pub(super) fn abandon(
+        mut self,
+        inputs: &Inputs,
+        log: &LogInput,
+        error: &anyhow::Error,
+    ) -> anyhow::Result<()> {
         if self.broken || self.context.options.state.is_none() {
             return Ok(());
         }
@@ -220,7 +225,7 @@ impl<'a> Session<'a> {
     }
 
     /// Ends the run; files appear here. `None`: no row has come out yet.
-    pub fn finish(
+    pub(super) fn finish(
         mut self,
         title: String,
         log: &LogInput,
@@ -284,7 +289,7 @@ fn row_counts(now: &Counts, before: &Counts) -> RowCounts {
 }
 
 /// Refuses a state that counts time in another way than the log.
-pub fn check_clock(options: &Options, state: &State, log: &LogInput) -> anyhow::Result<()> {
+pub(super) fn check_clock(options: &Options, state: &State, log: &LogInput) -> anyhow::Result<()> {
     const DATES: &str = "has dates";
     const SECONDS: &str = "has times without dates";
     let (then, now) = (state.origin.is_some(), log.reader.has_dates());

@@ -17,7 +17,7 @@ const MARK: &str = "cylwatch-monitor-state";
 
 /// What is saved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
+pub(super) struct State {
     /// What the state belongs to.
     pub identity: Identity,
     /// Date of second 0 in RFC 3339; `None`: the log has no dates.
@@ -38,11 +38,11 @@ pub struct State {
 
 /// What a state belongs to: names and values; a state is of use only to the same.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Identity(pub Vec<(String, String)>);
+pub(super) struct Identity(pub Vec<(String, String)>);
 
 impl Identity {
     /// With what an earlier one says and this one does not, as a fill that is not stated again.
-    pub fn after(mut self, earlier: &Self) -> Self {
+    pub(super) fn after(mut self, earlier: &Self) -> Self {
         for entry in &earlier.0 {
             if !self.0.iter().any(|(what, _)| *what == entry.0) {
                 self.0.push(entry.clone());
@@ -54,7 +54,7 @@ impl Identity {
 
 /// Why a state is refused.
 #[derive(Debug, thiserror::Error)]
-pub enum Refusal {
+pub(super) enum Refusal {
     /// The file cannot be read.
     #[error("it cannot be read: {0}")]
     Unreadable(std::io::Error),
@@ -103,14 +103,14 @@ pub enum Refusal {
 
 impl State {
     /// The bytes of a file.
-    pub fn to_bytes(&self) -> anyhow::Result<Vec<u8>> {
+    pub(super) fn to_bytes(&self) -> anyhow::Result<Vec<u8>> {
         let content = postcard::to_stdvec(self).context("the state cannot be put into bytes")?;
         let head = head(VERSION, &content);
         Ok([head.as_bytes(), &content].concat())
     }
 
     /// Of the bytes of a file.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Refusal> {
+    pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, Refusal> {
         let end = bytes.iter().position(|&byte| byte == b'\n').ok_or(Refusal::Foreign)?;
         let line = std::str::from_utf8(&bytes[..end]).map_err(|_| Refusal::Foreign)?;
         let words: Vec<&str> = line.split(' ').collect();
@@ -131,7 +131,7 @@ impl State {
     }
 
     /// Reads a file; `None` where there is none.
-    pub fn read(path: &Path) -> Result<Option<Self>, Refusal> {
+    pub(super) fn read(path: &Path) -> Result<Option<Self>, Refusal> {
         match std::fs::read(path) {
             Ok(bytes) => Self::from_bytes(&bytes).map(Some),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -140,12 +140,12 @@ impl State {
     }
 
     /// Writes the file, whole or not at all.
-    pub fn write(&self, path: &Path) -> anyhow::Result<()> {
+    pub(super) fn write(&self, path: &Path) -> anyhow::Result<()> {
         write_file(path, &self.to_bytes()?)
     }
 
     /// Refuses the state if it belongs to something else.
-    pub fn check(&self, now: &Identity) -> Result<(), Refusal> {
+    pub(super) fn check(&self, now: &Identity) -> Result<(), Refusal> {
         for (what, value) in &now.0 {
             let same = self.identity.0.iter().find(|(name, _)| name == what);
             let was = same.map_or("none", |(_, value)| value.as_str());

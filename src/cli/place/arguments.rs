@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Arguments of `place`.
 #[derive(Debug, Args)]
 #[command(after_help = MORE, after_long_help = HELP)]
-pub struct PlaceArguments {
+pub(crate) struct PlaceArguments {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
     /// Scenario to judge layouts along: a TOML file, a built-in one, or none; may be given again [default: tunnel-winter].

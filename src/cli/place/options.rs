@@ -15,7 +15,7 @@ const NO_SCENARIO: &str = "none";
 
 impl Options {
     /// Checks everything that can be checked before a file is read.
-    pub fn checked(arguments: PlaceArguments) -> anyhow::Result<Self> {
+    pub(super) fn checked(arguments: PlaceArguments) -> anyhow::Result<Self> {
         let scenarios = scenarios(&arguments.scenarios)?;
         let settings = settings(&arguments, scenarios.is_empty())?;
         let runs = runs(&arguments);

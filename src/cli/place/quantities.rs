@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// What can be given.
 #[derive(Clone, Debug)]
-pub struct QuantityOptions;
+pub(crate) struct QuantityOptions;
 
 impl Choices for QuantityOptions {
     const EXPERT: &'static [&'static str] =
@@ -40,11 +40,11 @@ impl Choices for QuantityOptions {
 }
 
 /// Quantities as given.
-pub type Quantities = Given<QuantityOptions>;
+pub(super) type Quantities = Given<QuantityOptions>;
 
 impl Quantities {
     /// Where the cylinder rests and how often it is read.
-    pub fn conditions(&self) -> anyhow::Result<Conditions> {
+    pub(crate) fn conditions(&self) -> anyhow::Result<Conditions> {
         let usual = Conditions::default();
         let temperature = |name| self.si(name, Dimension::Temperature);
         let (pressure_pa, temperature_k) = usual.filling;
@@ -62,17 +62,17 @@ impl Quantities {
     }
 
     /// Leak whose delay is stated, kg/s.
-    pub fn leak_kg_s(&self) -> anyhow::Result<Option<f64>> {
+    pub(crate) fn leak_kg_s(&self) -> anyhow::Result<Option<f64>> {
         self.si("leak", Dimension::MassFlow)
     }
 
     /// Time that a leak is to be found in, s.
-    pub fn within_s(&self) -> anyhow::Result<Option<f64>> {
+    pub(crate) fn within_s(&self) -> anyhow::Result<Option<f64>> {
         self.si("within", Dimension::Time)
     }
 
     /// How long is searched.
-    pub fn time_limit(&self) -> anyhow::Result<Option<Duration>> {
+    pub(crate) fn time_limit(&self) -> anyhow::Result<Option<Duration>> {
         let limit_s = self.si("time-limit", Dimension::Time)?;
         // A limit beyond what a duration holds is none.
         Ok(limit_s.and_then(|limit_s| Duration::try_from_secs_f64(limit_s).ok()))

@@ -13,7 +13,7 @@ const INTERRUPTED_CODE: i32 = 130;
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Lets Ctrl-C end the search; a second one ends the program.
-pub fn listen() -> anyhow::Result<()> {
+pub(super) fn listen() -> anyhow::Result<()> {
     let interrupt = || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(INTERRUPTED_CODE);
@@ -23,12 +23,12 @@ pub fn listen() -> anyhow::Result<()> {
 }
 
 /// Whether the user or the time has ended the search.
-pub fn is_due(deadline: Option<Instant>) -> bool {
+pub(super) fn is_due(deadline: Option<Instant>) -> bool {
     INTERRUPTED.load(Ordering::Relaxed) || deadline.is_some_and(|deadline| Instant::now() >= deadline)
 }
 
 /// Shows what has been looked at, and stops the search when it is due, until the other end of the channel is gone.
-pub fn attend(
+pub(super) fn attend(
     watch: &Watch,
     deadline: Option<Instant>,
     (progress, expected): (&Progress, Option<f64>),

@@ -30,7 +30,7 @@ pub(super) struct Clock {
 
 impl Clock {
     /// Takes in the time of a row.
-    pub fn push(&mut self, time_s: f64, line: u64) {
+    pub(super) fn push(&mut self, time_s: f64, line: u64) {
         if let Some(begin_s) = self.last_s.replace(time_s) {
             let interval = Interval { begin_s, length_s: time_s - begin_s, line };
             if interval.length_s < 0.0 {
@@ -44,12 +44,12 @@ impl Clock {
     }
 
     /// The interval, s, that this share of all does not exceed; NaN without any.
-    pub fn quantile(&self, share: f64) -> f64 {
+    pub(super) fn quantile(&self, share: f64) -> f64 {
         self.intervals.quantile(share)
     }
 
     /// The longest intervals above a length, in the order of time.
-    pub fn above(&self, length_s: f64) -> Vec<Interval> {
+    pub(super) fn above(&self, length_s: f64) -> Vec<Interval> {
         let mut gaps: Vec<Interval> =
             self.longest.iter().filter(|interval| interval.length_s > length_s).copied().collect();
         gaps.sort_by(|a, b| a.begin_s.total_cmp(&b.begin_s));

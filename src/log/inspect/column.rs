@@ -68,7 +68,7 @@ pub(super) struct Column {
 
 impl Column {
     /// Takes in a cell.
-    pub fn push(&mut self, bytes: &[u8], decimal_comma: bool, line: u64, time_s: f64) {
+    pub(super) fn push(&mut self, bytes: &[u8], decimal_comma: bool, line: u64, time_s: f64) {
         self.rows += 1;
         let cell = Cell::read(bytes, decimal_comma);
         match cell {
@@ -86,17 +86,17 @@ impl Column {
     }
 
     /// Median of the values.
-    pub fn median(&self) -> f64 {
+    pub(super) fn median(&self) -> f64 {
         self.values.quantile(0.5)
     }
 
     /// Step of the digits, or else the smallest change; infinite where nothing changes.
-    pub fn step(&self) -> f64 {
+    pub(super) fn step(&self) -> f64 {
         self.resolution.step().unwrap_or(self.smallest)
     }
 
     /// Jumps in the order of their lines.
-    pub fn jumps(&self) -> Vec<Jump> {
+    pub(super) fn jumps(&self) -> Vec<Jump> {
         if self.numbers < FEW {
             return Vec::new();
         }

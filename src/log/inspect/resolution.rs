@@ -15,7 +15,7 @@ pub(super) struct Resolution {
 
 impl Resolution {
     /// Takes in a cell with a number.
-    pub fn push(&mut self, cell: &[u8]) {
+    pub(super) fn push(&mut self, cell: &[u8]) {
         let Some((value, decimals)) = digits(cell).filter(|_| !self.is_unknown) else {
             self.is_unknown = true;
             return;
@@ -35,7 +35,7 @@ impl Resolution {
     }
 
     /// The step in the unit of the file; `None`: the digits do not say, or nothing has changed.
-    pub fn step(&self) -> Option<f64> {
+    pub(super) fn step(&self) -> Option<f64> {
         let is_known = !self.is_unknown && self.divisor > 0;
         is_known.then(|| self.divisor as f64 / 10_f64.powi(self.decimals as i32))
     }

@@ -20,7 +20,7 @@ impl Default for Sketch {
 
 impl Sketch {
     /// Takes in a value.
-    pub fn push(&mut self, value: f64) {
+    pub(super) fn push(&mut self, value: f64) {
         if self.seen.is_multiple_of(self.stride) {
             if self.values.len() == KEPT {
                 let mut number = 0;
@@ -38,7 +38,7 @@ impl Sketch {
     }
 
     /// The value below which this share lies; NaN without values.
-    pub fn quantile(&self, share: f64) -> f64 {
+    pub(super) fn quantile(&self, share: f64) -> f64 {
         let mut sorted = self.values.clone();
         sorted.sort_by(f64::total_cmp);
         let last = sorted.len().saturating_sub(1);

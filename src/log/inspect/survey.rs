@@ -25,7 +25,7 @@ pub(in crate::log) struct Survey {
 
 impl Survey {
     /// Finds out what the columns mean; `first` is the first row.
-    pub fn new(
+    pub(crate) fn new(
         header: &Header,
         first: &[String],
         packing: Packing,
@@ -70,12 +70,12 @@ pub(in crate::log) struct Tap {
 
 impl Tap {
     /// For so many columns.
-    pub fn new(columns: usize) -> Self {
+    pub(crate) fn new(columns: usize) -> Self {
         Self { columns: vec![Column::default(); columns], clock: Clock::default() }
     }
 
     /// Takes in a row.
-    pub fn push(&mut self, records: &Records, decimal_comma: bool, time_s: f64) {
+    pub(crate) fn push(&mut self, records: &Records, decimal_comma: bool, time_s: f64) {
         self.clock.push(time_s, records.line());
         for (column, cell) in self.columns.iter_mut().zip(records.iter()) {
             column.push(cell, decimal_comma, records.line(), time_s);

@@ -47,12 +47,12 @@ impl Extremes {
 
 impl DecimatedCurves {
     /// So many curves without points.
-    pub fn new(curves: usize) -> Self {
+    pub(crate) fn new(curves: usize) -> Self {
         Self { curves, width_s: 0.0, start_s: 0.0, spans: Vec::new(), extremes: Vec::new() }
     }
 
     /// Adds a point to every curve, at a time not before the last one; NaN is a missing value.
-    pub fn push(&mut self, time_s: f64, values: impl IntoIterator<Item = f64>) {
+    pub(crate) fn push(&mut self, time_s: f64, values: impl IntoIterator<Item = f64>) {
         if self.spans.is_empty() {
             self.start_s = time_s;
         }
@@ -104,12 +104,12 @@ impl DecimatedCurves {
     }
 
     /// First and last time, s; `None` without points.
-    pub fn span_s(&self) -> Option<(f64, f64)> {
+    pub(crate) fn span_s(&self) -> Option<(f64, f64)> {
         Some((self.spans.first()?.0, self.spans.last()?.1))
     }
 
     /// Shift of the time axis of a figure, s: a log whose clock began long ago is drawn from its first row.
-    pub fn origin_s(&self) -> f64 {
+    pub(crate) fn origin_s(&self) -> f64 {
         match self.span_s() {
             Some((from_s, to_s)) if from_s < 0.0 || from_s > to_s - from_s => from_s,
             _ => 0.0,
@@ -117,26 +117,26 @@ impl DecimatedCurves {
     }
 
     /// A curve of a figure; `None` without points.
-    pub fn item(&self, name: &str, curve: usize, stroke: Stroke) -> Option<Item> {
+    pub(crate) fn item(&self, name: &str, curve: usize, stroke: Stroke) -> Option<Item> {
         let (mut x, y) = self.line(curve);
         x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
         self.has(curve).then(|| Item::Line { name: name.to_owned(), x, y, stroke })
     }
 
     /// A band of a figure about a curve and a truth: `[curve, lower, upper, truth]`. Where it is wide it does not set the scale.
-    pub fn band_item(&self, name: &str, [curve, lower, upper, truth]: [usize; 4]) -> Option<Item> {
+    pub(crate) fn band_item(&self, name: &str, [curve, lower, upper, truth]: [usize; 4]) -> Option<Item> {
         let (mut x, low, high) = self.band_clipped(lower, upper, &[curve, truth])?;
         x.iter_mut().for_each(|time_s| *time_s -= self.origin_s());
         Some(Item::Band { name: name.to_owned(), x, low, high })
     }
 
     /// Whether a curve has any point.
-    pub fn has(&self, curve: usize) -> bool {
+    pub(crate) fn has(&self, curve: usize) -> bool {
         self.column(curve).any(|extremes| !extremes.low.1.is_nan())
     }
 
     /// A curve as times, s, and values: the extremes of its buckets in the order of time; NaN where it has a gap.
-    pub fn line(&self, curve: usize) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn line(&self, curve: usize) -> (Vec<f64>, Vec<f64>) {
         let mut points = Vec::with_capacity(2 * self.spans.len());
         for extremes in self.column(curve) {
             let (mut first, mut second) = (extremes.low, extremes.high);
@@ -153,7 +153,7 @@ impl DecimatedCurves {
 
     /// Times, s, and edges of the band that contains two curves: the lower one's lowest, the upper one's highest value of
     /// every bucket. Buckets without both are left out.
-    pub fn band(&self, lower: usize, upper: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    pub(crate) fn band(&self, lower: usize, upper: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let (mut time_s, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
         for ((span, lower), upper) in self.spans.iter().zip(self.column(lower)).zip(self.column(upper)) {
             let (bottom, top) = (lower.low.1, upper.high.1);

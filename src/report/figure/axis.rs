@@ -39,27 +39,27 @@ impl Kind {
 
 impl Scale {
     /// A linear map from ends to paper.
-    pub fn linear(ends: (f64, f64), paper: (f64, f64)) -> Self {
+    pub(super) fn linear(ends: (f64, f64), paper: (f64, f64)) -> Self {
         Self { kind: Kind::Linear, ends, paper }
     }
 
     /// A linear map that has all values with a margin.
-    pub fn around(values: impl Iterator<Item = f64>, paper: (f64, f64)) -> Self {
+    pub(super) fn around(values: impl Iterator<Item = f64>, paper: (f64, f64)) -> Self {
         Self::linear(widened(range(values), 0.06), paper)
     }
 
-    pub fn at(&self, value: f64) -> f64 {
+    pub(super) fn at(&self, value: f64) -> f64 {
         let share = (self.kind.of(value) - self.ends.0) / (self.ends.1 - self.ends.0);
         self.paper.0 + share * (self.paper.1 - self.paper.0)
     }
 
     /// First and last value.
-    pub fn values(&self) -> (f64, f64) {
+    pub(super) fn values(&self) -> (f64, f64) {
         (self.kind.value(self.ends.0), self.kind.value(self.ends.1))
     }
 
     /// Ticks of a vertical axis.
-    pub fn ticks(&self) -> Ticks {
+    pub(super) fn ticks(&self) -> Ticks {
         let (bottom, top) = self.paper;
         let (low, high) = self.values();
         match self.kind {

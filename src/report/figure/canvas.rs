@@ -54,12 +54,12 @@ fn pixel(point: Point) -> (i32, i32) {
 
 impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
     /// Paper of a vector picture, where the viewer sets the text.
-    pub fn vector(area: &'a DrawingArea<DB, Shift>) -> Self {
+    pub(super) fn vector(area: &'a DrawingArea<DB, Shift>) -> Self {
         Self { area, raster: false }
     }
 
     /// Paper of pixels.
-    pub fn raster(area: &'a DrawingArea<DB, Shift>) -> Self {
+    pub(super) fn raster(area: &'a DrawingArea<DB, Shift>) -> Self {
         Self { area, raster: true }
     }
 
@@ -71,12 +71,12 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
         self.area.draw(element).map_err(|error| ReportError::Drawing { reason: error.to_string() })
     }
 
-    pub fn paper(&self) -> Result<(), ReportError> {
+    pub(super) fn paper(&self) -> Result<(), ReportError> {
         self.area.fill(&WHITE).map_err(|error| ReportError::Drawing { reason: error.to_string() })
     }
 
     /// A polyline, dashed as its stroke says.
-    pub fn line(&self, points: &[Point], stroke: &Stroke) -> Result<(), ReportError> {
+    pub(super) fn line(&self, points: &[Point], stroke: &Stroke) -> Result<(), ReportError> {
         let style = color(stroke.color).stroke_width((stroke.width * FINE).round() as u32);
         for dash in dashes(points, stroke.dash) {
             // plotters' pixels run out into long spikes at sharp corners: there a new piece begins, under a dot.
@@ -97,25 +97,25 @@ impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
     }
 
     /// A filled polygon.
-    pub fn polygon(&self, points: &[Point], fill: Rgb) -> Result<(), ReportError> {
+    pub(super) fn polygon(&self, points: &[Point], fill: Rgb) -> Result<(), ReportError> {
         let pixels: Vec<(i32, i32)> = points.iter().copied().map(pixel).collect();
         self.draw(&Polygon::new(pixels, color(fill).filled()))
     }
 
     /// A rectangle between two corners.
-    pub fn rectangle(&self, a: Point, b: Point, fill: Rgb) -> Result<(), ReportError> {
+    pub(super) fn rectangle(&self, a: Point, b: Point, fill: Rgb) -> Result<(), ReportError> {
         self.draw(&Rectangle::new([pixel(a), pixel(b)], color(fill).filled()))
     }
 
     /// A ring with white inside, the mark of a measured point.
-    pub fn ring(&self, at: Point, radius: f64, stroke: &Stroke) -> Result<(), ReportError> {
+    pub(super) fn ring(&self, at: Point, radius: f64, stroke: &Stroke) -> Result<(), ReportError> {
         let (outer, inner) = (radius * FINE, (radius - stroke.width) * FINE);
         self.draw(&Circle::new(pixel(at), outer as i32, color(stroke.color).filled()))?;
         self.draw(&Circle::new(pixel(at), inner as i32, WHITE.filled()))
     }
 
     /// A text whose vertical middle is at the point.
-    pub fn text(&self, words: &str, at: Point, text: Text) -> Result<(), ReportError> {
+    pub(super) fn text(&self, words: &str, at: Point, text: Text) -> Result<(), ReportError> {
         let h_pos = match text.side {
             Side::Left => HPos::Left,
             Side::Center => HPos::Center,

@@ -12,7 +12,7 @@ pub(super) struct Marks(Vec<Mark>);
 
 impl Marks {
     /// Marks an event if a figure should show it.
-    pub fn event(&mut self, event: &Event) {
+    pub(super) fn event(&mut self, event: &Event) {
         let (at, name) = match &event.kind {
             EventKind::LeakFound(_) => (event.time_s, "leak found"),
             EventKind::LeakEnded => (event.time_s, "leak over"),
@@ -34,7 +34,7 @@ impl Marks {
     }
 
     /// Marks an alarm of a limit that is raised.
-    pub fn alarm(&mut self, event: &AlarmEvent) {
+    pub(super) fn alarm(&mut self, event: &AlarmEvent) {
         let is_raised = matches!(event.transition.change, Change::Active | Change::LimitChanged);
         let name = match event.alarm {
             AlarmName::OperationalLimit => "operational limit",
@@ -54,7 +54,7 @@ impl Marks {
     }
 
     /// The marks, shifted by an origin, s.
-    pub fn shifted(&self, origin_s: f64) -> Vec<Mark> {
+    pub(super) fn shifted(&self, origin_s: f64) -> Vec<Mark> {
         self.0.iter().map(|mark| Mark { at: mark.at - origin_s, name: mark.name.clone() }).collect()
     }
 }

@@ -105,7 +105,7 @@ pub(super) mod tests {
     use crate::report::{RowFormat, Rows};
 
     /// A leak of 3.6 g/h in the third row of a log, and what else an output has.
-    pub fn leaking() -> Output {
+    pub(crate) fn leaking() -> Output {
         let interval = |value: f64, low: f64, high: f64| Interval { value, low, high };
         Output {
             estimate: Estimate {
@@ -158,7 +158,7 @@ pub(super) mod tests {
     }
 
     /// The same where nothing can be told.
-    pub fn unknown() -> Output {
+    pub(crate) fn unknown() -> Output {
         let decision = Decision {
             verdict: Verdict::Unknown(Reason::NoPressure),
             outcome: Outcome::Unknown,

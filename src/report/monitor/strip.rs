@@ -16,7 +16,7 @@ pub(crate) struct VerdictStrip {
 
 impl VerdictStrip {
     /// Adds a verdict that holds from a time on, s. A time before the last one has no place.
-    pub fn push(&mut self, time_s: f64, verdict: Verdict) {
+    pub(crate) fn push(&mut self, time_s: f64, verdict: Verdict) {
         let Some(last) = self.stretches.last_mut() else {
             self.stretches.push((time_s, time_s, verdict));
             return;
@@ -49,7 +49,7 @@ impl VerdictStrip {
     }
 
     /// The strip, shifted by an origin, s.
-    pub fn stretches(&self, origin_s: f64) -> Vec<Stretch> {
+    pub(crate) fn stretches(&self, origin_s: f64) -> Vec<Stretch> {
         let stretch = |&(from, to, verdict): &(f64, f64, Verdict)| {
             let (name, color) = appearance(verdict);
             Stretch { from: from - origin_s, to: to - origin_s, name: name.to_owned(), color }

@@ -10,7 +10,7 @@ const CORNERS: usize = 160;
 const VALVE: (f64, f64) = (0.8, 3.0);
 
 /// A vessel with what sits above its wall.
-pub struct Outline<'a> {
+pub(super) struct Outline<'a> {
     vessel: &'a Vessel,
     /// Height of the wall, mm.
     wall_mm: f64,
@@ -19,7 +19,7 @@ pub struct Outline<'a> {
 }
 
 impl<'a> Outline<'a> {
-    pub fn of(vessel: &'a Vessel) -> Self {
+    pub(super) fn of(vessel: &'a Vessel) -> Self {
         let valve = vessel.valve.as_ref().map(|valve| {
             let diameter_m = valve.diameter_m;
             // A cylinder with two flat ends of the same area.
@@ -31,27 +31,27 @@ impl<'a> Outline<'a> {
     }
 
     /// Middle of the valve, or the top of the wall, mm.
-    pub fn valve_mm(&self) -> f64 {
+    pub(super) fn valve_mm(&self) -> f64 {
         self.wall_mm + self.valve.map_or(0.0, |(_, length_mm)| 0.5 * length_mm)
     }
 
     /// Highest point, mm.
-    pub fn top_mm(&self) -> f64 {
+    pub(super) fn top_mm(&self) -> f64 {
         self.wall_mm + self.valve.map_or(0.0, |(_, length_mm)| length_mm)
     }
 
     /// Radius of the valve, mm.
-    pub fn valve_radius_mm(&self) -> f64 {
+    pub(super) fn valve_radius_mm(&self) -> f64 {
         self.valve.map_or(0.0, |(radius_mm, _)| radius_mm)
     }
 
     /// Outer radius at a height of the wall, mm.
-    pub fn radius_mm(&self, height_mm: f64) -> f64 {
+    pub(super) fn radius_mm(&self, height_mm: f64) -> f64 {
         MILLIMETRES * outer_radius_m(&self.vessel.geometry, height_mm / MILLIMETRES)
     }
 
     /// Wall, gas, valve, from the back to the front.
-    pub fn shapes(&self) -> Vec<Shape> {
+    pub(super) fn shapes(&self) -> Vec<Shape> {
         let geometry = &self.vessel.geometry;
         let bottom_mm = MILLIMETRES * geometry.bottom.thickness_m;
         let inner_mm = MILLIMETRES * geometry.inner_height_m();

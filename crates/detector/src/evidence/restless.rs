@@ -26,19 +26,19 @@ pub(crate) struct Restless {
 
 impl Restless {
     /// So large, until its own is known.
-    pub fn with_prior(sd: f64) -> Self {
+    pub(crate) fn with_prior(sd: f64) -> Self {
         Self { square: sd * sd, always: ALWAYS * sd * sd, seen_s: 0.0 }
     }
 
     /// Take the square of a deviation that lasted so long, s.
-    pub fn update(&mut self, interval_s: f64, square: f64) {
+    pub(crate) fn update(&mut self, interval_s: f64, square: f64) {
         self.seen_s = (self.seen_s + interval_s).min(MEMORY_S);
         let gain = -(-interval_s / (self.seen_s + PRIOR_S).min(MEMORY_S)).exp_m1();
         self.square += gain * (square.min(MOST * MOST * self.square) - self.square);
     }
 
     /// Standard deviation.
-    pub fn sd(&self) -> f64 {
+    pub(crate) fn sd(&self) -> f64 {
         (self.square + self.always).sqrt()
     }
 }

@@ -15,7 +15,7 @@ pub(super) struct Roles {
 }
 
 impl Roles {
-    pub fn of(sensors: &[Sensor]) -> Self {
+    pub(super) fn of(sensors: &[Sensor]) -> Self {
         let all = || sensors.iter().enumerate();
         let surface = all().filter(|(_, sensor)| matches!(sensor.kind, SensorKind::Surface { .. }));
         let surface: Vec<usize> = surface.map(|(index, _)| index).collect();

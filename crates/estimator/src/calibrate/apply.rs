@@ -20,7 +20,7 @@ pub(super) struct Setup {
 
 impl Setup {
     /// The same with the parameters of an experiment at given values.
-    pub fn with(
+    pub(super) fn with(
         &self,
         specs: &[ParameterSpec],
         values: &[f64],
@@ -42,7 +42,12 @@ impl Setup {
     }
 
     /// The sensors with the parameters of an experiment at given values.
-    pub fn sensors_with(&self, specs: &[ParameterSpec], values: &[f64], experiment: usize) -> Vec<Sensor> {
+    pub(super) fn sensors_with(
+        &self,
+        specs: &[ParameterSpec],
+        values: &[f64],
+        experiment: usize,
+    ) -> Vec<Sensor> {
         let mut sensors = self.sensors.clone();
         for (spec, &value) in specs.iter().zip(values).filter(|(spec, _)| spec.scope.contains(experiment)) {
             apply_to_sensor(&mut sensors, &spec.kind, value);
@@ -51,7 +56,7 @@ impl Setup {
     }
 
     /// Whether a parameter is a number of a pressure sensor.
-    pub fn is_of_pressure(&self, kind: &ParameterKind) -> bool {
+    pub(super) fn is_of_pressure(&self, kind: &ParameterKind) -> bool {
         let of_pressure = |sensor: &Sensor| {
             Some(sensor.name.as_str()) == kind.sensor() && sensor.quantity() == Quantity::Pressure
         };
@@ -104,7 +109,7 @@ impl Setup {
     }
 
     /// Whether a parameter has something to act on.
-    pub fn check(&self, kind: &ParameterKind, source: &str) -> Result<(), CalibrateError> {
+    pub(super) fn check(&self, kind: &ParameterKind, source: &str) -> Result<(), CalibrateError> {
         let fail = |missing: &'static str, remedy: &'static str| {
             let (parameter, experiment) = (kind.to_string(), source.to_owned());
             Err(CalibrateError::ParameterMisfit { parameter, experiment, missing, remedy })

@@ -37,7 +37,7 @@ pub(super) struct Column {
 
 impl Column {
     /// Mean and standard deviation.
-    pub fn moments(&self) -> (f64, f64) {
+    pub(super) fn moments(&self) -> (f64, f64) {
         let n = self.values.len() as f64;
         let mean = self.values.iter().sum::<f64>() / n;
         (mean, (self.values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt())

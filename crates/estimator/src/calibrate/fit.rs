@@ -65,7 +65,7 @@ pub(super) struct Evaluation {
 }
 
 impl Fit {
-    pub fn new(calibration: &Calibration, selection: &Selection) -> Result<Self, CalibrateError> {
+    pub(super) fn new(calibration: &Calibration, selection: &Selection) -> Result<Self, CalibrateError> {
         let fit = Self::for_scoring(calibration, selection)?;
         let (samples, parameters) = (fit.samples(), fit.specs.len());
         if fit.cases.is_empty() {
@@ -79,7 +79,10 @@ impl Fit {
     }
 
     /// Readings that need not suffice for a fit.
-    pub fn for_scoring(calibration: &Calibration, selection: &Selection) -> Result<Self, CalibrateError> {
+    pub(super) fn for_scoring(
+        calibration: &Calibration,
+        selection: &Selection,
+    ) -> Result<Self, CalibrateError> {
         calibration.settings.validate()?;
         if calibration.experiments.is_empty() {
             return Err(CalibrateError::Empty { missing: "experiment" });
@@ -95,23 +98,23 @@ impl Fit {
     }
 
     /// Number of readings.
-    pub fn samples(&self) -> usize {
+    pub(super) fn samples(&self) -> usize {
         self.cases.iter().map(Case::samples).sum()
     }
 
     /// Parameters that no case has: they stay where they begin.
-    pub fn absent(&self) -> Vec<bool> {
+    pub(super) fn absent(&self) -> Vec<bool> {
         let absent =
             |spec: &ParameterSpec| !self.cases.iter().any(|case| spec.scope.contains(case.experiment));
         self.specs.iter().map(absent).collect()
     }
 
     /// Parameters from the search's coordinates.
-    pub fn values(&self, z: &[f64]) -> Vec<f64> {
+    pub(super) fn values(&self, z: &[f64]) -> Vec<f64> {
         self.specs.iter().zip(z).map(|(spec, &z)| spec.value(z)).collect()
     }
 
-    pub fn evaluate(&self, z: &[f64]) -> Result<Evaluation, CalibrateError> {
+    pub(super) fn evaluate(&self, z: &[f64]) -> Result<Evaluation, CalibrateError> {
         let values = self.values(z);
         let mut evaluation =
             Evaluation { courses: Vec::new(), residuals: Vec::with_capacity(self.samples()) };
@@ -125,7 +128,7 @@ impl Fit {
     }
 
     /// Simulated course of a case.
-    pub fn course(&self, case: &Case, values: &[f64]) -> Result<Trajectory, CalibrateError> {
+    pub(super) fn course(&self, case: &Case, values: &[f64]) -> Result<Trajectory, CalibrateError> {
         let run = || -> Result<Trajectory, EstimatorError> {
             let setup = case.base.with(&self.specs, values, case.experiment)?;
             Ok(simulate(&setup.vessel, &setup.scenario, &self.settings.simulation, &mut |_| {})?)
@@ -134,7 +137,7 @@ impl Fit {
     }
 
     /// The sensors' readings of a course over the standard deviations of their noise, sensor by sensor.
-    pub fn readings(
+    pub(super) fn readings(
         &self,
         case: &Case,
         values: &[f64],
@@ -181,16 +184,16 @@ impl Case {
         }))
     }
 
-    pub fn samples(&self) -> usize {
+    pub(super) fn samples(&self) -> usize {
         self.columns.iter().map(|column| column.values.len()).sum()
     }
 
     /// Measured readings over the standard deviations of their noise, sensor by sensor.
-    pub fn weighted_values(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn weighted_values(&self) -> impl Iterator<Item = f64> + '_ {
         self.columns.iter().flat_map(|column| column.values.iter().map(|value| value / column.sigma))
     }
 
-    pub fn cannot_simulate(&self, source: EstimatorError) -> CalibrateError {
+    pub(super) fn cannot_simulate(&self, source: EstimatorError) -> CalibrateError {
         CalibrateError::Simulation { experiment: self.source.clone(), source: Box::new(source) }
     }
 }

@@ -20,7 +20,7 @@ pub(super) struct Solution {
 
 impl Solution {
     /// A start, without derivatives.
-    pub fn at(fit: &Fit, z: Vec<f64>, held: &[bool]) -> Result<Self, CalibrateError> {
+    pub(super) fn at(fit: &Fit, z: Vec<f64>, held: &[bool]) -> Result<Self, CalibrateError> {
         let evaluation = fit.evaluate(&z)?;
         let cost = cost(fit, &z, &evaluation);
         let jacobian = DMatrix::zeros(fit.samples(), z.len());

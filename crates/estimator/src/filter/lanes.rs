@@ -3,33 +3,33 @@ use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Number of lanes.
-pub const LANES: usize = 4;
+pub(super) const LANES: usize = 4;
 
 /// A number for each of four lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C, align(32))]
-pub struct Lanes(pub [f64; LANES]);
+pub(crate) struct Lanes(pub [f64; LANES]);
 
 impl Lanes {
     /// Zeros.
-    pub const ZERO: Self = Self([0.0; LANES]);
+    pub(crate) const ZERO: Self = Self([0.0; LANES]);
 
     /// The same in all lanes.
     #[inline(always)]
-    pub const fn splat(value: f64) -> Self {
+    pub(crate) const fn splat(value: f64) -> Self {
         Self([value; LANES])
     }
 
     /// Whether all lanes are zero.
     #[cfg(test)]
     #[inline(always)]
-    pub fn is_zero(self) -> bool {
+    pub(crate) fn is_zero(self) -> bool {
         self.0 == [0.0; LANES]
     }
 
     /// Let some lanes be as in `from`.
     #[inline(always)]
-    pub fn put(&mut self, lanes: [bool; LANES], from: Self) {
+    pub(crate) fn put(&mut self, lanes: [bool; LANES], from: Self) {
         if lanes == [true; LANES] {
             *self = from;
         } else {
@@ -39,7 +39,7 @@ impl Lanes {
 
     /// Zero in the lanes that are at most as in `least`.
     #[inline(always)]
-    pub fn above(mut self, least: Self) -> Self {
+    pub(crate) fn above(mut self, least: Self) -> Self {
         for (own, least) in self.0.iter_mut().zip(least.0) {
             *own = if *own <= least { 0.0 } else { *own };
         }
@@ -48,7 +48,7 @@ impl Lanes {
 
     /// `normal` in the lanes where this is a normal positive number, else `otherwise`.
     #[inline(always)]
-    pub fn choose(self, mut normal: Self, otherwise: Self) -> Self {
+    pub(crate) fn choose(self, mut normal: Self, otherwise: Self) -> Self {
         for ((normal, own), otherwise) in normal.0.iter_mut().zip(self.0).zip(otherwise.0) {
             *normal = if own >= f64::MIN_POSITIVE { *normal } else { otherwise };
         }
@@ -57,7 +57,7 @@ impl Lanes {
 
     /// `1 / self` in the lanes where this is a normal positive number, else 0.
     #[inline(always)]
-    pub fn inverse(self) -> Self {
+    pub(crate) fn inverse(self) -> Self {
         self.choose(Self::splat(1.0) / self, Self::ZERO)
     }
 }

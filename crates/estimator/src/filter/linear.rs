@@ -22,7 +22,7 @@ impl LinearSystem {
     ///
     /// # Errors
     /// The process refuses the state.
-    pub fn at<P: Plant>(plant: &mut P, point: &[f64], interval_s: f64) -> Result<Self, P::Error> {
+    pub(crate) fn at<P: Plant>(plant: &mut P, point: &[f64], interval_s: f64) -> Result<Self, P::Error> {
         let (n, outputs) = (plant.states(), plant.outputs());
         let mut linear = Linearisation::zeros(n, plant.leading(), plant.noises());
         plant.propagate(&mut point.to_vec(), interval_s, Some(&mut linear))?;

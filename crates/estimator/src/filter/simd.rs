@@ -1,33 +1,33 @@
 //! Dispatch to the vector registers of the machine, or none without the feature `simd`.
 #[cfg(feature = "simd")]
-pub use pulp::{Arch, Simd, WithSimd};
+pub(crate) use pulp::{Arch, Simd, WithSimd};
 
 #[cfg(not(feature = "simd"))]
-pub use plain::{Arch, Simd, WithSimd};
+pub(crate) use plain::{Arch, Simd, WithSimd};
 
 #[cfg(not(feature = "simd"))]
 mod plain {
     /// The registers that the compiler was told of.
     #[derive(Clone, Copy, Debug, Default)]
-    pub struct Arch;
+    pub(crate) struct Arch;
 
     impl Arch {
-        pub fn new() -> Self {
+        pub(crate) fn new() -> Self {
             Self
         }
 
-        pub fn dispatch<O: WithSimd>(self, operation: O) -> O::Output {
+        pub(crate) fn dispatch<O: WithSimd>(self, operation: O) -> O::Output {
             operation.with_simd(Self)
         }
     }
 
     /// Registers.
-    pub trait Simd {}
+    pub(crate) trait Simd {}
 
     impl Simd for Arch {}
 
     /// An operation on them.
-    pub trait WithSimd {
+    pub(crate) trait WithSimd {
         type Output;
 
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output;

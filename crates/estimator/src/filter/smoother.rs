@@ -56,7 +56,7 @@ pub(crate) struct Backward {
 }
 
 impl Backward {
-    pub fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         Self {
             adjoint: vec![0.0; n],
             information: vec![0.0; n * n],
@@ -67,13 +67,13 @@ impl Backward {
     }
 
     /// No samples.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.adjoint.fill(0.0);
         self.information.fill(0.0);
     }
 
     /// Smoothed state after the update of `step`.
-    pub fn estimate(&mut self, step: &StepRecord, smoothed: &mut Smoothed) {
+    pub(crate) fn estimate(&mut self, step: &StepRecord, smoothed: &mut Smoothed) {
         let (n, p) = (step.x.len(), step.p.as_slice());
         smoothed.x.copy_from(&step.x);
         add_product(smoothed.x.as_mut_slice(), -1.0, p, &self.adjoint, n);
@@ -85,7 +85,7 @@ impl Backward {
     }
 
     /// From after a step to after the step before it.
-    pub fn pass_step(&mut self, step: &StepRecord) {
+    pub(crate) fn pass_step(&mut self, step: &StepRecord) {
         if step.replaced {
             self.clear();
             return;

@@ -80,7 +80,7 @@ impl Stationary {
     ///
     /// # Errors
     /// What is left is no covariance.
-    pub fn new<P: Plant>(plant: &P, p: &mut UdFactors) -> Result<Self, EstimatorError> {
+    pub(super) fn new<P: Plant>(plant: &P, p: &mut UdFactors) -> Result<Self, EstimatorError> {
         let (n, leading) = (plant.states(), plant.leading());
         let count = n - leading;
         let mut covariance = p.covariance();
@@ -105,7 +105,7 @@ impl Stationary {
     }
 
     /// A sample comes `dt_s`, s, after the last one.
-    pub fn begin(&mut self, p: &mut UdFactors, dt_s: f64) {
+    pub(super) fn begin(&mut self, p: &mut UdFactors, dt_s: f64) {
         let run = if is_same(dt_s, self.latest.0) { self.latest.1.saturating_add(1) } else { 1 };
         self.latest = (dt_s, run);
         if run == USUAL && !is_same(dt_s, self.usual_s) {
@@ -121,7 +121,7 @@ impl Stationary {
     }
 
     /// Move on by a part of the interval.
-    pub fn predict(&mut self, linear: &Linearisation, p: &mut UdFactors) {
+    pub(super) fn predict(&mut self, linear: &Linearisation, p: &mut UdFactors) {
         self.move_sensitivity(&linear.phi);
         if self.phase == Phase::Moving {
             p.predict(linear);
@@ -138,7 +138,7 @@ impl Stationary {
     }
 
     /// Variance of an innovation with the gradient `h` (n) and noise `r`, with all that is uncertain.
-    pub fn innovation_variance(&mut self, p: &UdFactors, output: usize, h: &[f64], r: f64) -> f64 {
+    pub(super) fn innovation_variance(&mut self, p: &UdFactors, output: usize, h: &[f64], r: f64) -> f64 {
         self.find_row(h);
         let given = match (&self.steady, self.phase) {
             (Some(steady), Phase::Within(_)) => steady.known[output],
@@ -167,7 +167,7 @@ impl Stationary {
     }
 
     /// Gain of a reading with noise of variance `r`; moves the covariance where it is not that of the steady state.
-    pub fn update(&mut self, p: &mut UdFactors, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
+    pub(super) fn update(&mut self, p: &mut UdFactors, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
         let usual = |steady: &Steady| r <= steady.r[output] && r >= QUIET * steady.r[output];
         let within = self.phase == Phase::Within(output);
         match &self.steady {
@@ -197,12 +197,12 @@ impl Stationary {
     }
 
     /// Whether the covariance is that of the steady state, after a sample.
-    pub fn is_settled(&self) -> bool {
+    pub(super) fn is_settled(&self) -> bool {
         self.phase == Phase::Settled
     }
 
     /// Leave the steady state: its covariance goes to `p`.
-    pub fn unsettle(&mut self, p: &mut UdFactors) {
+    pub(super) fn unsettle(&mut self, p: &mut UdFactors) {
         let Some(steady) = &self.steady else { return };
         match self.phase {
             Phase::Moving => return,
@@ -219,13 +219,13 @@ impl Stationary {
     }
 
     /// A reading is missing or was rejected.
-    pub fn miss(&mut self, p: &mut UdFactors) {
+    pub(super) fn miss(&mut self, p: &mut UdFactors) {
         self.regular = false;
         self.unsettle(p);
     }
 
     /// Return to the steady state if the covariance has; seek it anew at the state `x` if it has not for long.
-    pub fn settle<P: Plant>(&mut self, plant: &mut P, x: &[f64], p: &UdFactors) {
+    pub(super) fn settle<P: Plant>(&mut self, plant: &mut P, x: &[f64], p: &UdFactors) {
         if self.phase != Phase::Moving || !self.regular {
             return;
         }
@@ -240,14 +240,26 @@ impl Stationary {
         }
     }
 
-    /// A moving state has nothing to do with the constants any more.
-    pub fn forget(&mut self, p: &mut UdFactors, state: usize) {
+    /// Make a state independent of all others, with the given variance. What a constant's error has made of moving states stays theirs.
+    pub(super) fn decorrelate_and_set(&mut self, p: &mut UdFactors, state: usize, variance: f64) {
         self.unsettle(p);
-        self.sensitivity.row_mut(state).fill(0.0);
+        let Some(constant) = state.checked_sub(self.sensitivity.nrows()) else {
+            self.sensitivity.row_mut(state).fill(0.0);
+            p.decorrelate_and_set(state, variance);
+            return;
+        };
+        let before = self.constants[(constant, constant)];
+        for (moving, &by) in self.sensitivity.column(constant).iter().enumerate() {
+            p.inflate(moving, by * by * before);
+        }
+        self.sensitivity.column_mut(constant).fill(0.0);
+        self.constants.row_mut(constant).fill(0.0);
+        self.constants.column_mut(constant).fill(0.0);
+        self.constants[(constant, constant)] = variance;
     }
 
     /// A constant's error has become smaller by a factor; the error that it made has not.
-    pub fn relax(&mut self, state: usize, factor: f64) {
+    pub(super) fn relax(&mut self, state: usize, factor: f64) {
         let constant = state - self.sensitivity.nrows();
         self.constants.row_mut(constant).iter_mut().for_each(|b| *b *= factor);
         self.constants.column_mut(constant).iter_mut().for_each(|b| *b *= factor);
@@ -255,13 +267,13 @@ impl Stationary {
     }
 
     /// Add `variance` to a constant.
-    pub fn inflate(&mut self, state: usize, variance: f64) {
+    pub(super) fn inflate(&mut self, state: usize, variance: f64) {
         let constant = state - self.sensitivity.nrows();
         self.constants[(constant, constant)] += variance;
     }
 
     /// Variance of a state, with all that is uncertain.
-    pub fn variance(&self, p: &UdFactors, state: usize) -> f64 {
+    pub(super) fn variance(&self, p: &UdFactors, state: usize) -> f64 {
         let m = self.sensitivity.nrows();
         if state >= m {
             return self.constants[(state - m, state - m)];
@@ -274,7 +286,7 @@ impl Stationary {
     }
 
     /// Covariance of a state with all states, with all that is uncertain: (n).
-    pub fn write_column(&self, p: &UdFactors, state: usize, column: &mut [f64]) {
+    pub(super) fn write_column(&self, p: &UdFactors, state: usize, column: &mut [f64]) {
         let (m, count) = self.sensitivity.shape();
         match (&self.steady, self.phase) {
             (Some(steady), Phase::Settled | Phase::Within(_)) => {
@@ -296,7 +308,7 @@ impl Stationary {
     }
 
     /// Covariance of all states, with all that is uncertain: (n, n).
-    pub fn covariance(&self, p: &UdFactors) -> DMatrix<f64> {
+    pub(super) fn covariance(&self, p: &UdFactors) -> DMatrix<f64> {
         let (m, count) = self.sensitivity.shape();
         let mut covariance = match (&self.steady, self.phase) {
             (Some(steady), Phase::Settled | Phase::Within(_)) => steady.covariance.clone(),

@@ -137,7 +137,7 @@ impl UdFactors {
         self.work.run(linear, self.u.as_mut_slice(), self.d.as_mut_slice());
     }
 
-    /// Variance `h^T P h` of a linear function of the state, kept for [`update_projected`](Self::update_projected); `h`: (n).
+    /// Variance `h^T P h` of a linear function of the state, kept for `update_projected`; `h`: (n).
     pub fn project(&mut self, h: &[f64]) -> f64 {
         let n = self.states();
         let (u, f) = (self.u.as_slice(), self.f.as_mut_slice());

@@ -23,7 +23,7 @@ mod transition;
 
 use factors::Factors;
 pub use pattern::Pattern;
-pub use transition::BankTransition;
+pub(crate) use transition::BankTransition;
 
 /// Numbers of states and of moving states for which loops are unrolled.
 pub(crate) trait Unrolled {
@@ -33,7 +33,7 @@ pub(crate) trait Unrolled {
 /// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(into = "Factors", try_from = "Factors")]
-pub struct UdBank {
+pub(crate) struct UdBank {
     n: usize,
     /// Filters that are kept when it is saved, from the first lane on.
     filters: usize,
@@ -58,7 +58,7 @@ pub struct UdBank {
 
 impl UdBank {
     /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
-    pub fn new(n: usize, leading: usize) -> Self {
+    pub(crate) fn new(n: usize, leading: usize) -> Self {
         let stride = stride(n);
         let mut u = vec![Lanes::ZERO; stride * n];
         u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
@@ -79,17 +79,17 @@ impl UdBank {
     }
 
     /// Only the first lanes are filters, so many of them: the others do what they do, and are not saved.
-    pub fn with_filters(self, filters: usize) -> Self {
+    pub(crate) fn with_filters(self, filters: usize) -> Self {
         Self { filters: filters.clamp(1, LANES), ..self }
     }
 
     /// Number of states.
-    pub fn states(&self) -> usize {
+    pub(crate) fn states(&self) -> usize {
         self.n
     }
 
     /// Let a lane have the covariance of `factors`, of as many states.
-    pub fn set(&mut self, lane: usize, factors: &UdFactors) {
+    pub(crate) fn set(&mut self, lane: usize, factors: &UdFactors) {
         for (to, from) in self.u.chunks_exact_mut(stride(self.n)).zip(factors.unit_upper().column_iter()) {
             to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
         }
@@ -97,7 +97,7 @@ impl UdBank {
     }
 
     /// Become as another bank of as many states is, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(crate) fn copy_from(&mut self, other: &Self) {
         self.u.copy_from_slice(&other.u);
         self.d.copy_from_slice(&other.d);
     }
@@ -110,14 +110,14 @@ impl UdBank {
     }
 
     /// Let a lane have the covariance of another one.
-    pub fn copy_lane(&mut self, from: usize, to: usize) {
+    pub(crate) fn copy_lane(&mut self, from: usize, to: usize) {
         for value in self.u.iter_mut().chain(&mut self.d) {
             value.0[to] = value.0[from];
         }
     }
 
     /// Let a lane have the covariance of a lane of another bank, of as many states.
-    pub fn copy_lane_of(&mut self, other: &Self, from: usize, to: usize) {
+    pub(crate) fn copy_lane_of(&mut self, other: &Self, from: usize, to: usize) {
         for (value, other) in self.u.iter_mut().chain(&mut self.d).zip(other.u.iter().chain(&other.d)) {
             value.0[to] = other.0[from];
         }
@@ -125,14 +125,14 @@ impl UdBank {
 
     /// Covariance of a lane: (n, n).
     #[cfg(test)]
-    pub fn covariance(&self, lane: usize) -> DMatrix<f64> {
+    pub(crate) fn covariance(&self, lane: usize) -> DMatrix<f64> {
         let mut p = DMatrix::zeros(self.n, self.n);
         self.covariance_into(lane, &mut p);
         p
     }
 
     /// Write the covariance of a lane: (n, n).
-    pub fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
+    pub(crate) fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
         p.fill(0.0);
         for (l, (u, d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate() {
             for j in 0..=l {
@@ -146,12 +146,12 @@ impl UdBank {
     }
 
     /// Variance of state `i` of a lane.
-    pub fn variance(&self, lane: usize, i: usize) -> f64 {
+    pub(crate) fn variance(&self, lane: usize, i: usize) -> f64 {
         self.covariance_of(lane, i, i)
     }
 
     /// Covariance of states `i` and `j` of a lane.
-    pub fn covariance_of(&self, lane: usize, i: usize, j: usize) -> f64 {
+    pub(crate) fn covariance_of(&self, lane: usize, i: usize, j: usize) -> f64 {
         let mut sum = 0.0;
         for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(j.max(i)) {
             sum += d.0[lane] * u[i].0[lane] * u[j].0[lane];
@@ -160,7 +160,7 @@ impl UdBank {
     }
 
     /// Variance of state `i` of every lane.
-    pub fn variances(&self, i: usize) -> Lanes {
+    pub(crate) fn variances(&self, i: usize) -> Lanes {
         let mut sum = [Lanes::ZERO; 2];
         for (j, (u, &d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate().skip(i) {
             sum[j % 2] += d * u[i] * u[i];
@@ -169,12 +169,12 @@ impl UdBank {
     }
 
     /// Whether every variance is a number.
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.d.iter().fold(Lanes::ZERO, |sum, &d| sum + d).0.iter().all(|sum| sum.is_finite())
     }
 
     /// Time update of every lane.
-    pub fn predict<S: Unrolled>(&mut self, transition: &mut BankTransition) {
+    pub(crate) fn predict<S: Unrolled>(&mut self, transition: &mut BankTransition) {
         self.arch.dispatch(Predict { bank: self, transition, sizes: PhantomData::<S> });
     }
 
@@ -251,7 +251,7 @@ impl UdBank {
     }
 
     /// Variances `h^T P h` of linear functions of the state, kept for [`update`](Self::update); `h`: (n).
-    pub fn project<S: Unrolled>(&mut self, h: &[Lanes]) -> Lanes {
+    pub(crate) fn project<S: Unrolled>(&mut self, h: &[Lanes]) -> Lanes {
         self.arch.dispatch(Project { bank: self, h, sizes: PhantomData::<S> })
     }
 
@@ -277,7 +277,7 @@ impl UdBank {
 
     /// Update by scalar measurements with the `h` of the last [`project`](Self::project) and noise of variances `r`, in
     /// the lanes that are `used`. Writes the gains (n), zero in the other lanes, and returns the innovations' variances.
-    pub fn update<S: Unrolled>(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
+    pub(crate) fn update<S: Unrolled>(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
         self.arch.dispatch(Update { bank: self, r, used, gain, sizes: PhantomData::<S> })
     }
 
@@ -327,14 +327,14 @@ impl UdBank {
     }
 
     /// Add variances to state `i`, its covariances unchanged.
-    pub fn inflate(&mut self, i: usize, variance: Lanes) {
+    pub(crate) fn inflate(&mut self, i: usize, variance: Lanes) {
         self.f.fill(Lanes::ZERO);
         self.f[i] = Lanes::splat(1.0);
         self.add_leading(variance, i + 1);
     }
 
     /// Multiply state `i` by a positive factor in every lane: its variances by the square, its covariances by the factor.
-    pub fn scale(&mut self, i: usize, factor: f64) {
+    pub(crate) fn scale(&mut self, i: usize, factor: f64) {
         for (j, u) in self.u.chunks_exact_mut(stride(self.n)).enumerate().skip(i) {
             if j == i {
                 u[..i].iter_mut().for_each(|above| *above = *above * factor.recip());
@@ -346,7 +346,7 @@ impl UdBank {
     }
 
     /// Make state `i` of a lane independent of all others, with the given variance: an event has reset it.
-    pub fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
+    pub(crate) fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
         for u in self.u.chunks_exact_mut(stride(self.n)).skip(i + 1) {
             u[i].0[lane] = 0.0;
         }

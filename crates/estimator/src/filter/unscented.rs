@@ -37,11 +37,11 @@ pub(crate) struct SigmaPoints {
 }
 
 impl SigmaPoints {
-    pub fn noises<M: StateSpace>(model: &M) -> usize {
+    pub(crate) fn noises<M: StateSpace>(model: &M) -> usize {
         model.noises() + model.states() + 1
     }
 
-    pub fn new<M: StateSpace>(model: &M) -> Self {
+    pub(crate) fn new<M: StateSpace>(model: &M) -> Self {
         let (n, leading) = (model.states(), model.leading());
         Self {
             linear: Linearisation::zeros(n, leading, Self::noises(model)),
@@ -58,7 +58,7 @@ impl SigmaPoints {
     ///
     /// # Errors
     /// The middle point cannot be advanced.
-    pub fn predict<M: StateSpace>(
+    pub(crate) fn predict<M: StateSpace>(
         &mut self,
         model: &mut M,
         x: &mut [f64],
@@ -139,7 +139,7 @@ impl SigmaPoints {
     ///
     /// # Errors
     /// The middle point has no such reading.
-    pub fn output<M: StateSpace>(
+    pub(crate) fn output<M: StateSpace>(
         &mut self,
         model: &mut M,
         output: usize,

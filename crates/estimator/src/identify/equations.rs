@@ -53,7 +53,12 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    pub fn new(problem: &Problem, parametrisation: &Parametrisation, theta: &[f64], scheme: Scheme) -> Self {
+    pub(super) fn new(
+        problem: &Problem,
+        parametrisation: &Parametrisation,
+        theta: &[f64],
+        scheme: Scheme,
+    ) -> Self {
         let k = parametrisation.expand(theta);
         let schedule = Schedule::new(problem, k.dead_time);
         let transform = parametrisation.jacobian(theta);

@@ -61,7 +61,7 @@ pub(super) struct Maximum {
 
 impl Likelihood<'_> {
     /// The maximum from an estimate by another method. The initial response is integrated out.
-    pub fn maximise(&self, start: &Solution) -> Result<Maximum, IdentifyError> {
+    pub(super) fn maximise(&self, start: &Solution) -> Result<Maximum, IdentifyError> {
         let parametrisation = self.search.parametrisation;
         let mut theta = start.theta.clone();
         theta.push(self.first_intensity().ln());

@@ -24,29 +24,29 @@ pub(super) struct Coefficients {
 
 impl Coefficients {
     /// Positions in a row of derivatives by `a`, `b`, `c`, the offset and the dead time.
-    pub fn numerator_at(&self) -> usize {
+    pub(super) fn numerator_at(&self) -> usize {
         self.order
     }
 
-    pub fn initial_at(&self) -> usize {
+    pub(super) fn initial_at(&self) -> usize {
         2 * self.order
     }
 
-    pub fn offset_at(&self) -> usize {
+    pub(super) fn offset_at(&self) -> usize {
         3 * self.order
     }
 
-    pub fn dead_time_at(&self) -> usize {
+    pub(super) fn dead_time_at(&self) -> usize {
         3 * self.order + 1
     }
 
     /// Length of a row of derivatives.
-    pub fn width(&self) -> usize {
+    pub(super) fn width(&self) -> usize {
         3 * self.order + 2
     }
 
     /// Whether all poles lie in the left half plane (Hurwitz).
-    pub fn is_stable(&self) -> bool {
+    pub(super) fn is_stable(&self) -> bool {
         let a = &self.a[..self.order];
         a.iter().all(|a| *a > 0.0 && a.is_finite()) && (self.order < 3 || a[2] * a[1] > a[0])
     }
@@ -60,7 +60,7 @@ pub(super) struct Parametrisation {
 }
 
 impl Parametrisation {
-    pub fn new(structure: &Structure, units: &Units) -> Self {
+    pub(super) fn new(structure: &Structure, units: &Units) -> Self {
         let mut scaled = structure.clone();
         if let Gain::Fixed(gain) = &mut scaled.gain {
             *gain *= units.input / units.output;
@@ -77,7 +77,7 @@ impl Parametrisation {
     }
 
     /// Unit of a parameter.
-    pub fn unit(&self, parameter: Parameter, units: &Units) -> f64 {
+    pub(super) fn unit(&self, parameter: Parameter, units: &Units) -> f64 {
         let n = self.structure.order;
         let time = |power: usize| units.time_s.powi(-(power as i32));
         match parameter {
@@ -91,7 +91,7 @@ impl Parametrisation {
     }
 
     /// Coefficients of free parameters.
-    pub fn expand(&self, theta: &[f64]) -> Coefficients {
+    pub(super) fn expand(&self, theta: &[f64]) -> Coefficients {
         let structure = &self.structure;
         let mut k = Coefficients {
             order: structure.order,
@@ -128,7 +128,7 @@ impl Parametrisation {
     }
 
     /// Derivatives of the coefficients by the free parameters: (width, parameters).
-    pub fn jacobian(&self, theta: &[f64]) -> DMatrix<f64> {
+    pub(super) fn jacobian(&self, theta: &[f64]) -> DMatrix<f64> {
         let k = self.expand(theta);
         let n = k.order;
         let mut jacobian = DMatrix::zeros(k.width(), self.parameters.len());
@@ -174,7 +174,7 @@ impl Parametrisation {
     }
 
     /// Position of a parameter.
-    pub fn position(&self, parameter: Parameter) -> Option<usize> {
+    pub(super) fn position(&self, parameter: Parameter) -> Option<usize> {
         self.parameters.iter().position(|other| *other == parameter)
     }
 }

@@ -39,7 +39,7 @@ pub(super) struct Problem {
 
 impl Problem {
     /// The usable part of the data.
-    pub fn new(
+    pub(super) fn new(
         data: &Data,
         second: Option<&[f64]>,
         longest_gap_s: Option<f64>,
@@ -101,23 +101,23 @@ impl Problem {
     }
 
     /// Another unit of time, as a multiple of the present one.
-    pub fn rescale(&mut self, factor: f64) {
+    pub(super) fn rescale(&mut self, factor: f64) {
         self.units.time_s *= factor;
         self.input_time.iter_mut().chain(&mut self.output_time).for_each(|time| *time /= factor);
     }
 
     /// Length of the record.
-    pub fn duration(&self) -> f64 {
+    pub(super) fn duration(&self) -> f64 {
         self.input_time.last().copied().unwrap_or(0.0)
     }
 
     /// Median interval of the input.
-    pub fn interval(&self) -> f64 {
+    pub(super) fn interval(&self) -> f64 {
         median_interval(&self.input_time).unwrap_or(0.0)
     }
 
     /// Number of output samples.
-    pub fn samples(&self) -> usize {
+    pub(super) fn samples(&self) -> usize {
         self.y.len()
     }
 }

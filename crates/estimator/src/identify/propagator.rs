@@ -77,12 +77,12 @@ pub(super) struct Propagators<const D: usize> {
 }
 
 impl<const D: usize> Propagators<D> {
-    pub fn new(f: SMatrix<f64, D, D>, g: SVector<f64, D>) -> Self {
+    pub(super) fn new(f: SMatrix<f64, D, D>, g: SVector<f64, D>) -> Self {
         Self { f, g, held: Vec::with_capacity(HELD), latest: 0, next: 0 }
     }
 
     /// The system over an interval.
-    pub fn over(&mut self, interval: f64) -> &Propagator<D> {
+    pub(super) fn over(&mut self, interval: f64) -> &Propagator<D> {
         let same = |held: &Propagator<D>| (held.interval - interval).abs() <= SAME * interval;
         if !self.held.get(self.latest).is_some_and(same) {
             self.latest = match self.held.iter().position(same) {

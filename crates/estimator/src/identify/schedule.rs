@@ -23,7 +23,7 @@ pub(super) struct Piece {
 
 impl Piece {
     /// Input at its start and end.
-    pub fn input(&self, u: &[f64]) -> (f64, f64) {
+    pub(super) fn input(&self, u: &[f64]) -> (f64, f64) {
         let at = |share: f64| {
             if share == 0.0 { u[self.left] } else { u[self.left] + share * (u[self.left + 1] - u[self.left]) }
         };
@@ -54,7 +54,7 @@ struct Cursor<'a> {
 
 impl Schedule {
     /// Cut a record whose input acts after a dead time.
-    pub fn new(problem: &Problem, dead_time: f64) -> Self {
+    pub(super) fn new(problem: &Problem, dead_time: f64) -> Self {
         let mut cursor = Cursor {
             problem,
             dead_time,
@@ -78,7 +78,7 @@ impl Schedule {
     }
 
     /// Whether all pieces are alike: each an interval from input sample to input sample with an output at its end.
-    pub fn is_uniform(&self) -> bool {
+    pub(super) fn is_uniform(&self) -> bool {
         let Some(first) = self.pieces.first() else { return false };
         self.initial.is_some()
             && self.pieces.iter().all(|piece| {

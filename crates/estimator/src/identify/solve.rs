@@ -62,7 +62,7 @@ impl Search<'_> {
     }
 
     /// Parameters after a step; the dead time stays in its range.
-    pub fn moved(&self, theta: &[f64], step: &DVector<f64>, share: f64) -> Vec<f64> {
+    pub(super) fn moved(&self, theta: &[f64], step: &DVector<f64>, share: f64) -> Vec<f64> {
         let mut moved: Vec<f64> =
             theta.iter().zip(step.iter()).map(|(theta, step)| theta + share * step).collect();
         if let Some((at, longest)) = self.dead_time() {
@@ -86,7 +86,7 @@ impl Search<'_> {
     }
 
     /// Least output error from a start.
-    pub fn output_error(&self, start: Vec<f64>) -> Result<Solution, IdentifyError> {
+    pub(super) fn output_error(&self, start: Vec<f64>) -> Result<Solution, IdentifyError> {
         let scheme = Scheme::OutputError;
         let (mut theta, mut here) = (start.clone(), self.at(&start, scheme));
         let (mut damping, mut last_step) = (Damping::first(), f64::INFINITY);
@@ -124,7 +124,7 @@ impl Search<'_> {
     }
 
     /// Fixed point of another system of equations.
-    pub fn fixed_point(
+    pub(super) fn fixed_point(
         &self,
         start: Vec<f64>,
         scheme: Scheme,
@@ -157,7 +157,7 @@ impl Search<'_> {
     }
 
     /// A few steps of refined instrumental variables as far as they lower the errors.
-    pub fn improve_by_instruments(&self, start: Vec<f64>) -> Vec<f64> {
+    pub(super) fn improve_by_instruments(&self, start: Vec<f64>) -> Vec<f64> {
         let scheme = Scheme::RefinedInstruments;
         let (mut theta, mut here) = (start.clone(), self.at(&start, scheme));
         for _ in 0..FIRST_STEPS {

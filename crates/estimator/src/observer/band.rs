@@ -29,7 +29,7 @@ pub(super) struct Band {
 }
 
 impl Band {
-    pub fn new(states: &States, sensors: &[Sensor], settings: &ObserverSettings) -> Self {
+    pub(super) fn new(states: &States, sensors: &[Sensor], settings: &ObserverSettings) -> Self {
         let certainty_per_k2: f64 = sensors
             .iter()
             .filter(|sensor| matches!(sensor.kind, SensorKind::Surface { .. }))
@@ -47,7 +47,7 @@ impl Band {
     }
 
     /// Stated variance of the gas temperature, K², from the filter's, and the filter's variance of each state.
-    pub fn stated_k2(&self, gas_k2: f64, variance: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn stated_k2(&self, gas_k2: f64, variance: impl Fn(usize) -> f64) -> f64 {
         let left = match self.film {
             Some((state, prior)) if prior > 0.0 => (variance(state) / prior).min(1.0),
             _ => 0.0,

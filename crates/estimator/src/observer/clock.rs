@@ -40,7 +40,7 @@ pub(super) enum Exchange {
 
 impl Clock {
     /// Before the first sample.
-    pub fn new(sensors: &[Sensor]) -> Self {
+    pub(super) fn new(sensors: &[Sensor]) -> Self {
         Self {
             time_s: None,
             last_reading_s: vec![f64::NEG_INFINITY; sensors.len()],
@@ -61,13 +61,13 @@ impl Clock {
     }
 
     /// The mass of a later time, s, is the reference, and until then there is none.
-    pub fn await_reference(&mut self, due_s: f64) {
+    pub(super) fn await_reference(&mut self, due_s: f64) {
         self.reference_mass_kg = None;
         self.reference_due_s = due_s;
     }
 
     /// Whether gas is exchanged at a time; ends the settling that is over.
-    pub fn exchanging(&mut self, time_s: f64) -> bool {
+    pub(super) fn exchanging(&mut self, time_s: f64) -> bool {
         match self.exchange {
             Exchange::None => false,
             Exchange::Open => true,

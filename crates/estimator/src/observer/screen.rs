@@ -63,7 +63,7 @@ impl Limits {
 }
 
 impl Screen {
-    pub fn new(sensor: &Sensor) -> Self {
+    pub(super) fn new(sensor: &Sensor) -> Self {
         Self {
             limits: Limits::of(sensor),
             latest: f64::NAN,
@@ -74,12 +74,12 @@ impl Screen {
     }
 
     /// The same screen of a sensor after it has been saved.
-    pub fn of(self, sensor: &Sensor) -> Self {
+    pub(super) fn of(self, sensor: &Sensor) -> Self {
         Self { limits: Limits::of(sensor), ..self }
     }
 
     /// Judge and count a reading; NaN is none.
-    pub fn judge(&mut self, reading: f64) -> Option<Fault> {
+    pub(super) fn judge(&mut self, reading: f64) -> Option<Fault> {
         if !reading.is_finite() {
             return None;
         }
@@ -101,12 +101,12 @@ impl Screen {
     }
 
     /// How often in a row the last reading has been read before.
-    pub fn repeats(&self) -> u32 {
+    pub(super) fn repeats(&self) -> u32 {
         self.in_a_row.saturating_sub(1)
     }
 
     /// A reading that was so far from its expectation has been used, and has changed it by so much.
-    pub fn pull(&mut self, by: f64, innovation: f64) {
+    pub(super) fn pull(&mut self, by: f64, innovation: f64) {
         if innovation.abs() > self.limits.half_step {
             self.pulled += by;
         }

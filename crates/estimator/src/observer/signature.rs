@@ -92,7 +92,7 @@ impl Sums {
 
 impl Onsets {
     /// Become as others are, without allocating where there is room.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.sums.clone_from(&other.sums);
         self.responses.clone_from(&other.responses);
         self.compensated.clone_from(&other.compensated);
@@ -100,13 +100,13 @@ impl Onsets {
     }
 
     /// Whether it is of a member with so many states.
-    pub fn is_like(&self, states: usize) -> bool {
+    pub(super) fn is_like(&self, states: usize) -> bool {
         self.responses.len() == self.sums.len() * states
             && (self.compensated.len() == states || self.sums.is_empty() && self.compensated.is_empty())
     }
 
     /// The onsets with information, oldest first.
-    pub fn all(&self) -> impl Iterator<Item = Onset> {
+    pub(super) fn all(&self) -> impl Iterator<Item = Onset> {
         self.sums.iter().filter(|sums| sums.weighted > 0.0).map(|sums| Onset {
             since_s: sums.since_s,
             rate_kg_s: sums.rate(),
@@ -115,7 +115,7 @@ impl Onsets {
     }
 
     /// Round the responses, and what has been compensated, to single precision.
-    pub fn round(&mut self) {
+    pub(super) fn round(&mut self) {
         self.responses
             .iter_mut()
             .chain(&mut self.compensated)
@@ -123,7 +123,7 @@ impl Onsets {
     }
 
     /// None any more.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.sums.clear();
         self.responses.clear();
         self.compensated.fill(0.0);
@@ -131,7 +131,7 @@ impl Onsets {
     }
 
     /// The member's error has nothing of a leak any more, but for the rate.
-    pub fn begin_anew(&mut self, leak: usize) {
+    pub(super) fn begin_anew(&mut self, leak: usize) {
         let n = self.compensated.len();
         self.compensated.fill(0.0);
         for response in self.responses.chunks_mut(n.max(1)) {
@@ -141,7 +141,7 @@ impl Onsets {
     }
 
     /// The member's state is another one, whatever leak there was.
-    pub fn reset(&mut self, state: usize) {
+    pub(super) fn reset(&mut self, state: usize) {
         let n = self.compensated.len();
         let responses = self.responses.chunks_mut(n.max(1)).chain([self.compensated.as_mut_slice()]);
         responses.filter(|response| !response.is_empty()).for_each(|response| response[state] = 0.0);

@@ -19,7 +19,7 @@ use crate::EstimatorError;
 use crate::filter::{Backward, Belief, Smoothed, StateSpace, StepRecord};
 
 /// Rows of the record by default: at 18 states and three members some 120 MB; 23 hours at 10 s, 5.7 days at a minute.
-pub const ROWS: usize = 8192;
+pub(super) const ROWS: usize = 8192;
 
 /// An observer whose estimates are smoothed.
 ///
@@ -51,7 +51,7 @@ impl Smoother {
     /// a minute. A longer log is smoothed block by block, each row with at least half the room of later rows.
     ///
     /// # Errors
-    /// Its engine has not the gains of its covariance ([`Engine::can_be_smoothed`]), or it has taken samples.
+    /// Its engine has not the gains of its covariance (it is extended or unscented), or it has taken samples.
     pub fn new(observer: Observer) -> Result<Self, EstimatorError> {
         Self::with_rows(observer, ROWS)
     }

@@ -25,7 +25,7 @@ pub(super) struct ExposedSensor<'a> {
 
 impl<'a> ExposedSensor<'a> {
     /// A sensor with a specimen's parameters in a trajectory that has samples.
-    pub fn new(
+    pub(super) fn new(
         trajectory: &'a Trajectory,
         sensor: &'a Sensor,
         parameters: &'a [f64],
@@ -45,25 +45,25 @@ impl<'a> ExposedSensor<'a> {
     }
 
     /// Start of the trajectory, s.
-    pub fn start_s(&self) -> f64 {
+    pub(super) fn start_s(&self) -> f64 {
         self.time_s[0]
     }
 
     /// Static reading at a time, after a jump of the air.
-    pub fn at(&self, t_s: f64) -> Prediction {
+    pub(super) fn at(&self, t_s: f64) -> Prediction {
         let difference_k = self.air_difference.map_or(0.0, |(series, above)| above * series.at(t_s));
         self.predicted(t_s, self.air_k.at(t_s) + difference_k)
     }
 
     /// Static reading before the trajectory begins: the air as it was, everything else as at the start.
-    pub fn before_start(&self) -> f64 {
+    pub(super) fn before_start(&self) -> f64 {
         let start_s = self.start_s();
         self.predicted(start_s, self.air_at(start_s, start_s - BEFORE_S, start_s)).value
     }
 
     /// Static readings at the start and at the end of an interval that contains no knot in its inside, both approached
     /// from inside.
-    pub fn between(&self, from_s: f64, to_s: f64) -> (f64, f64) {
+    pub(super) fn between(&self, from_s: f64, to_s: f64) -> (f64, f64) {
         let at = |t_s| self.predicted(t_s, self.air_at(t_s, from_s, to_s)).value;
         (at(from_s), at(to_s))
     }
@@ -75,7 +75,7 @@ impl<'a> ExposedSensor<'a> {
     }
 
     /// Times between which the static reading is linear, s.
-    pub fn knots_s(&self) -> Vec<f64> {
+    pub(super) fn knots_s(&self) -> Vec<f64> {
         let (from_s, to_s) = (self.start_s(), self.time_s[self.time_s.len() - 1]);
         let of_difference = self.air_difference.iter().flat_map(|(series, _)| series.edges_s());
         let edges = self.air_k.edges_s().chain(of_difference).filter(|t| (from_s..to_s).contains(t));

@@ -24,14 +24,14 @@ use crate::world::{
 };
 
 /// Gas of every toy world, kg.
-pub const WHOLE_KG: f64 = 4.0;
+pub(super) const WHOLE_KG: f64 = 4.0;
 /// Pressure at 15 °C of all of it, Pa.
-pub const FULL_PA: f64 = 200e5;
+pub(super) const FULL_PA: f64 = 200e5;
 const GAS_K: f64 = 288.15;
 
 /// Makes toy worlds at once.
 #[derive(Clone, Copy, Debug)]
-pub struct Toys;
+pub(super) struct Toys;
 
 impl Source for Toys {
     type Simulated = ();
@@ -46,7 +46,7 @@ impl Source for Toys {
 }
 
 /// The toy world of a request.
-pub fn world(request: &Request) -> World {
+pub(super) fn world(request: &Request) -> World {
     static REAL: OnceLock<World> = OnceLock::new();
     let mut world =
         REAL.get_or_init(|| generate(&Request::tight(Family::usual(), 1, 900.0)).unwrap()).clone();
@@ -110,7 +110,7 @@ fn lost_part(overlay: &Overlay, t: f64) -> f64 {
 type Say = fn(&mut ChaCha8Rng, &Row<'_>) -> Said;
 
 /// A candidate of the tests.
-pub struct Toy {
+pub(super) struct Toy {
     say: Say,
     threshold: bool,
 }
@@ -140,12 +140,12 @@ impl Contender for Saying {
 }
 
 /// A candidate that says so.
-pub fn toy(say: Say) -> Arc<dyn Candidate> {
+pub(super) fn toy(say: Say) -> Arc<dyn Candidate> {
     Arc::new(Toy { say, threshold: false })
 }
 
 /// A decision in which everything agrees.
-pub fn decided(class: Class) -> Decision {
+pub(super) fn decided(class: Class) -> Decision {
     let loss = matches!(class, Class::Leak | Class::Discharge);
     let reaction = if loss { Reaction::AsSoonAsPossible } else { Reaction::None };
     Decision {
@@ -225,7 +225,7 @@ fn lost_mass(random: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
 }
 
 /// Kinds of the tests.
-pub fn registry() -> Registry {
+pub(super) fn registry() -> Registry {
     let mut registry = Registry::default();
     let kinds: [(&str, Kind); 8] = [
         ("perfect", |_| Ok(toy(perfect))),
@@ -242,7 +242,7 @@ pub fn registry() -> Registry {
 }
 
 /// A plan of some kinds over groups that are written out.
-pub fn plan(kinds: &[&str], groups: &str) -> Plan {
+pub(super) fn plan(kinds: &[&str], groups: &str) -> Plan {
     let candidates: String =
         kinds.iter().map(|kind| format!("[[candidate]]\nname = \"{kind}\"\nkind = \"{kind}\"\n")).collect();
     let text = format!(
@@ -253,7 +253,7 @@ pub fn plan(kinds: &[&str], groups: &str) -> Plan {
 }
 
 /// A group of toy worlds.
-pub fn group(families: &str, seeds: (u64, u64), length_d: f64, overlays: &str) -> String {
+pub(super) fn group(families: &str, seeds: (u64, u64), length_d: f64, overlays: &str) -> String {
     format!(
         "[[group]]\nname = \"toys\"\nfamilies = [\"{families}\"]\nseeds = [{}, {}]\nlength_d = {length_d:.3}\n\
          sensor_sets = 1\noverlays = [{overlays}]\n",
@@ -262,12 +262,12 @@ pub fn group(families: &str, seeds: (u64, u64), length_d: f64, overlays: &str) -
 }
 
 /// Settings of a run in a folder.
-pub fn settings(folder: &std::path::Path, threads: usize) -> RunSettings {
+pub(super) fn settings(folder: &std::path::Path, threads: usize) -> RunSettings {
     RunSettings { folder: folder.to_owned(), threads, program: "test".to_owned(), most_worlds: None }
 }
 
 /// Run a plan of toys; its table.
-pub fn judged(plan: &Plan) -> Table {
+pub(super) fn judged(plan: &Plan) -> Table {
     let folder = tempfile::tempdir().unwrap();
     let end = run(plan, &Toys, &settings(folder.path(), 2), &|_| ()).unwrap();
     assert_eq!(end, Progress { done: plan.tasks.len(), all: plan.tasks.len(), failed: 0 });
@@ -277,12 +277,12 @@ pub fn judged(plan: &Plan) -> Table {
 }
 
 /// The row of a table for all worlds that judge.
-pub fn all(table: &Table, candidate: usize) -> &GroupReport {
+pub(super) fn all(table: &Table, candidate: usize) -> &GroupReport {
     group_of(table, candidate, "all")
 }
 
 /// A row of a table.
-pub fn group_of<'a>(table: &'a Table, candidate: usize, group: &str) -> &'a GroupReport {
+pub(super) fn group_of<'a>(table: &'a Table, candidate: usize, group: &str) -> &'a GroupReport {
     use super::plan::Role;
     let of = table.candidates[candidate].groups.iter();
     of.clone().find(|of| of.role == Role::Judge && of.group == group).unwrap()

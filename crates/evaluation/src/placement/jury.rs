@@ -37,7 +37,7 @@ pub(super) type Verdict<L> = Vec<(Tallies, Run<L>)>;
 
 impl<'a, L: Listener> Jury<'a, L> {
     /// Observers that have read nothing yet, of candidates with priors as given.
-    pub fn new(
+    pub(super) fn new(
         claim: &Claim<'a>,
         candidates: &[Sensor],
         settings: &ObserverSettings,
@@ -64,7 +64,7 @@ impl<'a, L: Listener> Jury<'a, L> {
     }
 
     /// A row of readings of all candidates.
-    pub fn hear(
+    pub(super) fn hear(
         &mut self,
         time_s: f64,
         readings: &[f64],
@@ -85,7 +85,7 @@ impl<'a, L: Listener> Jury<'a, L> {
         Ok(())
     }
 
-    pub fn verdict(self) -> Verdict<L> {
+    pub(super) fn verdict(self) -> Verdict<L> {
         self.seats.into_iter().map(|seat| (seat.tallies, seat.run)).collect()
     }
 }

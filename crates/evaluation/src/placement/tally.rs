@@ -22,7 +22,7 @@ pub(super) struct Tally {
 
 impl Tally {
     /// Add an error with its stated standard deviation; one that is not finite was none.
-    pub fn add(&mut self, error: f64, sd: f64) {
+    pub(super) fn add(&mut self, error: f64, sd: f64) {
         if error.is_finite() && sd.is_finite() {
             self.count += 1.0;
             self.sum += error;
@@ -46,7 +46,7 @@ impl Tally {
     }
 
     /// Of all runs; `None` where there was no error.
-    pub fn achieved(runs: &[Self], predicted: Option<f64>) -> Option<Achieved> {
+    pub(super) fn achieved(runs: &[Self], predicted: Option<f64>) -> Option<Achieved> {
         let all = runs.iter().fold(Self::default(), |all, run| all.merge(run));
         if all.count == 0.0 {
             return None;

@@ -97,7 +97,7 @@ pub(super) struct Railway {
 }
 
 impl Railway {
-    pub fn draw(seed: u64, duration_s: f64, kind: Climate) -> Self {
+    pub(super) fn draw(seed: u64, duration_s: f64, kind: Climate) -> Self {
         let days = (duration_s / DAY_S).ceil() as usize;
         let mut climate = Random::new(seed, Purpose::Climate);
         let weather = &mut Random::new(seed, Purpose::Weather);
@@ -118,7 +118,7 @@ impl Railway {
     }
 
     /// Air temperature around the cylinder without turbulence, °C.
-    pub fn air_degc(&self, t_s: f64) -> f64 {
+    pub(super) fn air_degc(&self, t_s: f64) -> f64 {
         let outside = self.outside_degc(t_s);
         self.passages_at(t_s)
             .iter()
@@ -143,12 +143,12 @@ impl Railway {
     }
 
     /// Film by convection without gusts, W/(m² K).
-    pub fn film_w_m2_k(&self, t_s: f64) -> f64 {
+    pub(super) fn film_w_m2_k(&self, t_s: f64) -> f64 {
         FILM_PARKED_W_M2_K + at_work(&self.trips, t_s).map(|trip| trip.at(t_s)).sum::<f64>()
     }
 
     /// Irradiance, W/m²; none in tunnels.
-    pub fn irradiance_w_m2(&self, t_s: f64) -> f64 {
+    pub(super) fn irradiance_w_m2(&self, t_s: f64) -> f64 {
         let of_day = (t_s.rem_euclid(DAY_S) - SUN_S.0) / (SUN_S.1 - SUN_S.0);
         let arch = (4.0 * of_day * (1.0 - of_day)).max(0.0);
         let light: f64 = at_work(&self.sun, t_s).map(|patch| patch.at(t_s)).sum();
@@ -157,7 +157,7 @@ impl Railway {
     }
 
     /// Times at which a signal bends, s, in no order.
-    pub fn knots_s(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn knots_s(&self) -> impl Iterator<Item = f64> + '_ {
         let corners = self.trips.iter().chain(&self.sun).flat_map(|trapezoid| trapezoid.corners_s);
         self.passages.iter().flat_map(Passage::knots_s).chain(corners)
     }

@@ -53,7 +53,7 @@ pub(super) fn away_s(row: FaultRow, seed: u64) -> Option<f64> {
 
 impl Disturbed<'_> {
     /// Simulate a scenario with what this row does to it.
-    pub fn simulate(
+    pub(super) fn simulate(
         &self,
         mut scenario: Scenario,
         settings: &SimulationSettings,

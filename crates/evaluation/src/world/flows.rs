@@ -44,7 +44,7 @@ pub(super) struct Filled<'a> {
 
 impl Filled<'_> {
     /// The simulated flows of an overlay.
-    pub fn flows(&self, overlay: &Overlay) -> Result<Vec<Flow>, WorldError> {
+    pub(super) fn flows(&self, overlay: &Overlay) -> Result<Vec<Flow>, WorldError> {
         Ok(match *overlay {
             Overlay::Leak { .. } | Overlay::Fault { .. } => {
                 overlay.leak().map(|leak| self.leak(&leak)).into_iter().collect()

@@ -79,7 +79,7 @@ impl Place<'_> {
     }
 
     /// Readings at times of the simulation, s, in increasing order.
-    pub fn read(&self, sensor: &Thermometer, times_s: &[f64], seed: u64) -> Vec<f64> {
+    pub(super) fn read(&self, sensor: &Thermometer, times_s: &[f64], seed: u64) -> Vec<f64> {
         let mut noise = Random::new(seed, self.noise);
         let read = |value: f64| {
             let degc = value - ZERO_DEGC_K + sensor.noise_k * noise.normal();

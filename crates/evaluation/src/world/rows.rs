@@ -29,7 +29,7 @@ pub(super) struct Rows {
 
 impl Rows {
     /// The rows of a log. `is_good_clock`: the clock is never set and there are no gaps, because a fault is judged by itself.
-    pub fn draw(pattern: RowPattern, length_s: f64, seed: u64, is_good_clock: bool) -> Self {
+    pub(super) fn draw(pattern: RowPattern, length_s: f64, seed: u64, is_good_clock: bool) -> Self {
         let interval_s = pattern.interval_s();
         let random = &mut Random::new(seed, Purpose::WorldRows);
         let lost = random.uniform((0.0, LOST_MOST));
@@ -57,7 +57,7 @@ impl Rows {
     }
 
     /// Take away the rows of a stretch, s.
-    pub fn remove(&mut self, (from_s, until_s): (f64, f64)) {
+    pub(super) fn remove(&mut self, (from_s, until_s): (f64, f64)) {
         let kept = |time_s: f64| !(from_s..until_s).contains(&time_s);
         let mut of_stamp = self.time_s.iter().copied();
         self.stamp_s.retain(|_| of_stamp.next().is_some_and(kept));
@@ -66,7 +66,7 @@ impl Rows {
     }
 
     /// Stamp of a true time, s.
-    pub fn stamp(&self, time_s: f64) -> f64 {
+    pub(super) fn stamp(&self, time_s: f64) -> f64 {
         match self.clock {
             Some((at_s, by_s)) if time_s >= at_s => time_s + by_s,
             _ => time_s,

@@ -16,7 +16,7 @@ pub(super) struct Samples {
 
 impl Samples {
     /// A column at a time of the simulation, s, linear between samples.
-    pub fn at(&self, column: &[f64], t_s: f64) -> f64 {
+    pub(super) fn at(&self, column: &[f64], t_s: f64) -> f64 {
         let place = (t_s / self.interval_s).max(0.0);
         let knot = (place.floor() as usize).min(column.len() - 2);
         let weight = (place - knot as f64).min(1.0);
@@ -24,12 +24,12 @@ impl Samples {
     }
 
     /// Times of the samples, s.
-    pub fn times_s(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn times_s(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.mass_kg.len()).map(|sample| sample as f64 * self.interval_s)
     }
 
     /// What is kept of a trajectory.
-    pub fn of(trajectory: Trajectory, interval_s: f64) -> Self {
+    pub(super) fn of(trajectory: Trajectory, interval_s: f64) -> Self {
         let shoulder_k = trajectory.surface_k("shoulder").unwrap_or_default();
         let Trajectory { gas_mean_k, mass_kg, pressure_pa, outflow_kg_s, wall_mean_k, valve_k, .. } =
             trajectory;

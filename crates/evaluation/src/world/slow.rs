@@ -18,7 +18,7 @@ pub(super) struct SlowLeak {
 
 impl SlowLeak {
     /// That of a request, if it is to be laid over.
-    pub fn of(simulated: &Simulated, request: &Request) -> Option<Self> {
+    pub(super) fn of(simulated: &Simulated, request: &Request) -> Option<Self> {
         let leak = request.overlay.leak()?;
         if request.overlay.is_simulated(request.length_s) {
             return None;
@@ -28,12 +28,12 @@ impl SlowLeak {
     }
 
     /// Mass that has left until a time, kg.
-    pub fn lost_kg(&self, t_s: f64) -> f64 {
+    pub(super) fn lost_kg(&self, t_s: f64) -> f64 {
         self.rate_kg_s * (t_s - self.onset_s).max(0.0)
     }
 
     /// Take the gas out of a truth without it, whose masses are absolute.
-    pub fn apply(&self, simulated: &Simulated, truth: &mut Truth) {
+    pub(super) fn apply(&self, simulated: &Simulated, truth: &mut Truth) {
         let vessel = &simulated.vessel;
         for row in 0..truth.time_s.len() {
             let lost_kg = self.lost_kg(truth.time_s[row]);

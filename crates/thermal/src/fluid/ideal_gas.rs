@@ -4,7 +4,7 @@ use super::helmholtz::{HelmholtzEnergy, Reduced};
 
 /// The ideal gas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct IdealGas;
+pub(super) struct IdealGas;
 
 impl HelmholtzEnergy for IdealGas {
     fn residual<D: Real>(&self, _density_kg_m3: D, _temperature_k: D) -> Reduced<D> {

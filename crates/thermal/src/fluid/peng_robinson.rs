@@ -11,7 +11,7 @@ use super::helmholtz::{HelmholtzEnergy, Reduced};
 
 /// The Peng-Robinson equation of one fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PengRobinson {
+pub(super) struct PengRobinson {
     critical_temperature_k: f64,
     kappa: f64,
     /// Covolume, m³/kg.
@@ -22,7 +22,7 @@ pub struct PengRobinson {
 
 impl PengRobinson {
     /// From critical point and acentric factor.
-    pub fn new(data: &FluidData) -> Self {
+    pub(super) fn new(data: &FluidData) -> Self {
         let w = data.acentric_factor;
         let b = 0.077_796_073_903_888_46 * data.gas_constant_j_mol_k * data.critical_temperature_k
             / data.critical_pressure_pa;
@@ -35,7 +35,7 @@ impl PengRobinson {
     }
 
     /// Density that the equation cannot exceed, kg/m³.
-    pub fn densest_kg_m3(&self) -> f64 {
+    pub(super) fn densest_kg_m3(&self) -> f64 {
         1.0 / self.covolume_m3_kg
     }
 }

@@ -35,7 +35,7 @@ pub(super) enum GasNodes {
 }
 
 impl GasNodes {
-    pub fn as_slice(&self) -> &[Node<f64>] {
+    pub(super) fn as_slice(&self) -> &[Node<f64>] {
         match self {
             Self::One(node) => std::slice::from_ref(node),
             Self::Many(nodes) => nodes,

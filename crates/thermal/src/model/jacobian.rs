@@ -24,7 +24,7 @@ pub type Assembly<'a> = dyn FnMut(usize, usize, f64) + 'a;
 /// `matrix`: (2n + 3, 5n + 2). Rows: mass rates, energy rates, mass in, enthalpy in, work out. Columns: masses,
 /// energies, mean wall state, its rate, side heats, plate heats, side surface temperatures.
 #[derive(Debug)]
-pub struct GasBlock {
+pub(super) struct GasBlock {
     /// The matrix.
     pub matrix: DMatrix<f64>,
     /// Temperature and pressure of each cell with its (mass, energy, mean wall).

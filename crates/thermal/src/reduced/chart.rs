@@ -91,13 +91,13 @@ pub(super) struct Isotherm {
 impl Isotherm {
     /// Whether a density, kg/m³, is within the cell.
     #[inline]
-    pub fn holds(&self, rho: f64) -> bool {
+    pub(super) fn holds(&self, rho: f64) -> bool {
         (rho - self.middle_kg_m3).abs() <= self.half_kg_m3
     }
 
     /// Pressure, Pa, and its slope by density, Pa m³/kg.
     #[inline]
-    pub fn pressure(&self, rho: f64) -> (f64, f64) {
+    pub(super) fn pressure(&self, rho: f64) -> (f64, f64) {
         let b = (rho - self.middle_kg_m3) / self.half_kg_m3;
         let (mut z, mut slope) = (0.0, 0.0);
         for coefficient in self.coefficients.iter().rev() {
@@ -109,7 +109,7 @@ impl Isotherm {
 }
 
 impl Chart {
-    pub fn new(fluid: Fluid) -> Self {
+    pub(super) fn new(fluid: Fluid) -> Self {
         let nodes: [f64; ORDER] = std::array::from_fn(|k| (PI * (k as f64 + 0.5) / ORDER as f64).cos());
         let powers = Coefficients::from_fn(|node, power| nodes[node].powi(power as i32));
         Self {
@@ -122,12 +122,12 @@ impl Chart {
         }
     }
 
-    pub fn fluid(&self) -> &Fluid {
+    pub(super) fn fluid(&self) -> &Fluid {
         &self.fluid
     }
 
     /// All properties at a density, kg/m³, and temperature, K.
-    pub fn properties(&mut self, rho: f64, t: f64) -> Properties {
+    pub(super) fn properties(&mut self, rho: f64, t: f64) -> Properties {
         let (half, r) = ((0.5 * WIDTH_K, 0.5 * self.height_kg_m3), self.gas_constant_j_kg_k);
         let Some(Polynomials { middle, z, cv }) = self.polynomials(rho, t) else {
             return self.exact(rho, t);
@@ -146,7 +146,7 @@ impl Chart {
     }
 
     /// Pressure at a density, kg/m³, and temperature, K, with its derivatives.
-    pub fn pressure(&mut self, rho: f64, t: f64) -> Property {
+    pub(super) fn pressure(&mut self, rho: f64, t: f64) -> Property {
         let (half, r) = ((0.5 * WIDTH_K, 0.5 * self.height_kg_m3), self.gas_constant_j_kg_k);
         let Some(Polynomials { middle, z, .. }) = self.polynomials(rho, t) else {
             return self.exact(rho, t).p;
@@ -156,7 +156,7 @@ impl Chart {
     }
 
     /// The same without derivatives, Pa.
-    pub fn pressure_pa(&mut self, rho: f64, t: f64) -> f64 {
+    pub(super) fn pressure_pa(&mut self, rho: f64, t: f64) -> f64 {
         match self.isotherm(rho, t) {
             Some(isotherm) => isotherm.pressure(rho).0,
             None => self.exact(rho, t).p.value,
@@ -164,7 +164,7 @@ impl Chart {
     }
 
     /// Pressure about a density, kg/m³, at a temperature, K; `None` where the equation itself is to be used.
-    pub fn isotherm(&mut self, rho: f64, t: f64) -> Option<Isotherm> {
+    pub(super) fn isotherm(&mut self, rho: f64, t: f64) -> Option<Isotherm> {
         let (half_kg_m3, rt) = (0.5 * self.height_kg_m3, self.gas_constant_j_kg_k * t);
         let Polynomials { middle, z, .. } = self.polynomials(rho, t)?;
         let a = (t - middle.0) / (0.5 * WIDTH_K);

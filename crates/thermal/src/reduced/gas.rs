@@ -77,7 +77,7 @@ pub(super) struct GasNode {
 }
 
 impl GasNode {
-    pub fn new(fluid: Fluid, volume: InnerVolume) -> Self {
+    pub(super) fn new(fluid: Fluid, volume: InnerVolume) -> Self {
         Self {
             chart: Chart::new(fluid),
             volume,
@@ -86,20 +86,20 @@ impl GasNode {
         }
     }
 
-    pub fn fluid(&self) -> &Fluid {
+    pub(super) fn fluid(&self) -> &Fluid {
         self.chart.fluid()
     }
 
-    pub fn reference_volume_m3(&self) -> f64 {
+    pub(super) fn reference_volume_m3(&self) -> f64 {
         self.volume.volume_m3
     }
 
     /// Where Newton starts: for the gas, and for settled gas.
-    pub fn guesses_m3(&self) -> [f64; 2] {
+    pub(super) fn guesses_m3(&self) -> [f64; 2] {
         [self.guess_m3, self.settled_guess_m3]
     }
 
-    pub fn set_guesses_m3(&mut self, guesses_m3: [f64; 2]) {
+    pub(super) fn set_guesses_m3(&mut self, guesses_m3: [f64; 2]) {
         [self.guess_m3, self.settled_guess_m3] = guesses_m3;
     }
 
@@ -107,7 +107,12 @@ impl GasNode {
     ///
     /// # Errors
     /// The mass is not positive or a value not finite.
-    pub fn volume_m3(&mut self, temperature_k: f64, mass_kg: f64, wall_k: f64) -> Result<f64, ThermalError> {
+    pub(super) fn volume_m3(
+        &mut self,
+        temperature_k: f64,
+        mass_kg: f64,
+        wall_k: f64,
+    ) -> Result<f64, ThermalError> {
         let InnerVolume { volume_m3: v0, pressure_expansion_per_pa: b, .. } = self.volume;
         let sane = mass_kg > 0.0 && temperature_k > 0.0 && mass_kg.is_finite() && wall_k.is_finite();
         let mut v = self.guess_m3;
@@ -145,7 +150,7 @@ impl GasNode {
     ///
     /// # Errors
     /// As [`GasNode::volume_m3`].
-    pub fn at(
+    pub(super) fn at(
         &mut self,
         t: f64,
         m: f64,
@@ -174,7 +179,7 @@ impl GasNode {
     ///
     /// # Errors
     /// As [`GasNode::volume_m3`].
-    pub fn pressure_pa(&mut self, t: f64, m: f64, wall_k: f64) -> Result<f64, ThermalError> {
+    pub(super) fn pressure_pa(&mut self, t: f64, m: f64, wall_k: f64) -> Result<f64, ThermalError> {
         let rho = m / self.volume_m3(t, m, wall_k)?;
         Ok(self.chart.pressure_pa(rho, t))
     }
@@ -183,7 +188,7 @@ impl GasNode {
     ///
     /// # Errors
     /// As [`GasNode::volume_m3`].
-    pub fn settled_pressure_pa(&mut self, t: f64, m: f64) -> Result<f64, ThermalError> {
+    pub(super) fn settled_pressure_pa(&mut self, t: f64, m: f64) -> Result<f64, ThermalError> {
         let guess_m3 = std::mem::replace(&mut self.guess_m3, self.settled_guess_m3);
         let pressure_pa = self.pressure_pa(t, m, t);
         self.settled_guess_m3 = std::mem::replace(&mut self.guess_m3, guess_m3);
@@ -194,7 +199,7 @@ impl GasNode {
     ///
     /// # Errors
     /// As [`GasNode::volume_m3`].
-    pub fn pressure(&mut self, t: f64, m: f64, wall_k: f64) -> Result<Pressure, ThermalError> {
+    pub(super) fn pressure(&mut self, t: f64, m: f64, wall_k: f64) -> Result<Pressure, ThermalError> {
         let v = self.volume_m3(t, m, wall_k)?;
         let rho = m / v;
         let Property { value, by_t, by_rho } = self.chart.pressure(rho, t);

@@ -43,7 +43,12 @@ pub(super) struct Spread {
 
 impl Spread {
     /// Of a resolved mesh of one layer, its columns lumped into nodes; a contact of 0 W/K: no valve.
-    pub fn new(fine: &Mesh, node_of_column: &[usize], contact_w_k: f64, outside_film_w_m2_k: f64) -> Self {
+    pub(super) fn new(
+        fine: &Mesh,
+        node_of_column: &[usize],
+        contact_w_k: f64,
+        outside_film_w_m2_k: f64,
+    ) -> Self {
         let wall = wall_matrix(fine, outside_film_w_m2_k);
         let last = fine.columns.len() - 1;
         let valve = above_nodes(fine, node_of_column, &wall, |j| if j == last { 1.0 } else { 0.0 });

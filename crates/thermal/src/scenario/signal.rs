@@ -110,7 +110,7 @@ pub(super) struct Signal<'a> {
 
 impl Signal<'_> {
     /// The series, or `None` if the file says nothing about this signal.
-    pub fn series(&self, files: Files<'_>) -> Result<Option<Series>, ThermalError> {
+    pub(super) fn series(&self, files: Files<'_>) -> Result<Option<Series>, ThermalError> {
         let path = |form: &str| format!("ambient.{}{form}", self.name);
         let constant = path(&format!("_{}", crate::units::si_suffix(self.dimension)));
         let others = [
@@ -144,7 +144,7 @@ impl Signal<'_> {
     }
 
     /// Value before everything that changes it.
-    pub fn first(&self) -> Option<f64> {
+    pub(super) fn first(&self) -> Option<f64> {
         self.constant
     }
 

@@ -70,7 +70,7 @@ struct Parts {
 
 /// Sparse block with a dense border; `Default` has no border.
 #[derive(Default)]
-pub struct BorderedLu {
+pub(super) struct BorderedLu {
     border: usize,
     block: FaerSparseLU<f64>,
     parts: Option<Parts>,
@@ -78,7 +78,7 @@ pub struct BorderedLu {
 
 impl BorderedLu {
     /// For matrices whose last `border` rows and columns are dense.
-    pub fn new(border: usize) -> Self {
+    pub(super) fn new(border: usize) -> Self {
         Self { border, ..Self::default() }
     }
 }

@@ -24,7 +24,7 @@ enum Phase {
 }
 
 /// Phases of all flows.
-pub struct FlowStates<'a> {
+pub(super) struct FlowStates<'a> {
     flows: &'a [Flow],
     phases: Vec<Phase>,
 }
@@ -39,17 +39,17 @@ fn closes_below_pa(flow: &Flow) -> Option<f64> {
 
 impl<'a> FlowStates<'a> {
     /// All waiting.
-    pub fn new(flows: &'a [Flow]) -> Self {
+    pub(super) fn new(flows: &'a [Flow]) -> Self {
         Self { flows, phases: vec![Phase::Waiting; flows.len()] }
     }
 
     /// Which flows are open.
-    pub fn open(&self) -> Vec<bool> {
+    pub(super) fn open(&self) -> Vec<bool> {
         self.phases.iter().map(|&phase| phase == Phase::Open).collect()
     }
 
     /// Open and close by the clock; returns what happened.
-    pub fn at_time(&mut self, time_s: f64, pressure_pa: f64) -> Vec<EventKind> {
+    pub(super) fn at_time(&mut self, time_s: f64, pressure_pa: f64) -> Vec<EventKind> {
         let mut happened = Vec::new();
         for (flow, phase) in self.flows.iter().zip(&mut self.phases) {
             if *phase == Phase::Waiting && time_s >= flow.start_s {
@@ -72,7 +72,7 @@ impl<'a> FlowStates<'a> {
     }
 
     /// Open and close by the pressures that were crossed; returns what happened.
-    pub fn at_pressure(&mut self, fired: &[usize]) -> Vec<EventKind> {
+    pub(super) fn at_pressure(&mut self, fired: &[usize]) -> Vec<EventKind> {
         let mut happened = Vec::new();
         for &index in fired {
             let name = self.flows[index].name.clone();
@@ -108,7 +108,7 @@ enum Watch {
 }
 
 /// All watched quantities with their values at the start of the step.
-pub struct Monitors {
+pub(super) struct Monitors {
     watches: Vec<Watch>,
     names: Vec<String>,
     values: Vec<Option<f64>>,
@@ -116,10 +116,10 @@ pub struct Monitors {
 }
 
 /// Dense output of the last step: state at a time, s.
-pub type Interpolation<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), String> + 'a;
+pub(super) type Interpolation<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), String> + 'a;
 
 /// What was found in a step.
-pub struct Located {
+pub(super) struct Located {
     /// Events to report, in order of time.
     pub reports: Vec<(f64, EventKind)>,
     /// Time of the first crossing that acts on a flow, s.
@@ -128,7 +128,7 @@ pub struct Located {
 
 impl Monitors {
     /// Watches of a scenario.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub(super) fn new(scenario: &Scenario) -> Self {
         let mut watches: Vec<Watch> = scenario.pressure_limits_pa.iter().map(|&p| Watch::Limit(p)).collect();
         for (index, flow) in scenario.flows.iter().enumerate() {
             watches.extend(flow.opens_above_pa.map(|p| Watch::Opens(index, p)));
@@ -143,12 +143,17 @@ impl Monitors {
     }
 
     /// Flows whose watch fired at the last crossing.
-    pub fn take_fired(&mut self) -> Vec<usize> {
+    pub(super) fn take_fired(&mut self) -> Vec<usize> {
         std::mem::take(&mut self.fired)
     }
 
     /// Take the values at the start of a segment.
-    pub fn reset(&mut self, model: &Model, flows: &FlowStates<'_>, x: &[f64]) -> Result<(), ThermalError> {
+    pub(super) fn reset(
+        &mut self,
+        model: &Model,
+        flows: &FlowStates<'_>,
+        x: &[f64],
+    ) -> Result<(), ThermalError> {
         self.values = self.evaluate(model, flows, x)?;
         Ok(())
     }
@@ -183,7 +188,7 @@ impl Monitors {
 
     /// Compare with the values at the start of the step `[before, now]` and locate what changed its sign.
     #[allow(clippy::too_many_arguments)]
-    pub fn crossed(
+    pub(super) fn crossed(
         &mut self,
         model: &Model,
         flows: &FlowStates<'_>,

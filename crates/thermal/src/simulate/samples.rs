@@ -6,7 +6,7 @@ use crate::vessel::Vessel;
 use crate::wall::mesh::Mesh;
 
 /// The samples taken so far.
-pub struct Samples {
+pub(super) struct Samples {
     interval_s: f64,
     duration_s: f64,
     /// Times, s.
@@ -19,7 +19,7 @@ pub struct Samples {
 
 impl Samples {
     /// None yet.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
             interval_s: scenario.sample_time_s,
             duration_s: scenario.duration_s,
@@ -30,7 +30,7 @@ impl Samples {
     }
 
     /// Time of the next sample if it lies before `until` (or at it when `inclusive`), s. The end is always a sample.
-    pub fn next_time(&self, until: f64, inclusive: bool) -> Option<f64> {
+    pub(super) fn next_time(&self, until: f64, inclusive: bool) -> Option<f64> {
         if self.time_s.last().is_some_and(|&last| last >= self.duration_s) {
             return None;
         }
@@ -39,14 +39,14 @@ impl Samples {
     }
 
     /// Add a sample.
-    pub fn push(&mut self, time_s: f64, ambient_k: f64, output: Output) {
+    pub(super) fn push(&mut self, time_s: f64, ambient_k: f64, output: Output) {
         self.time_s.push(time_s);
         self.ambient_k.push(ambient_k);
         self.outputs.push(output);
     }
 
     /// The samples of a vessel's run, so far without events and balance.
-    pub fn into_trajectory(self, vessel: &Vessel, scenario: &Scenario, mesh: &Mesh) -> Trajectory {
+    pub(super) fn into_trajectory(self, vessel: &Vessel, scenario: &Scenario, mesh: &Mesh) -> Trajectory {
         let Self { time_s, ambient_k, outputs, .. } = self;
         let pick = |value: fn(&Output) -> f64| outputs.iter().map(value).collect::<Vec<f64>>();
         let places = ["bottom", "middle", "shoulder", "neck"]

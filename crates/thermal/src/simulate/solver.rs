@@ -29,7 +29,7 @@ type V = FaerVec<f64>;
 type LS = BorderedLu;
 
 /// What drives the model now; changed between segments while the solver holds the equations.
-pub struct Drive {
+pub(super) struct Drive {
     /// Surroundings of the segment.
     pub pieces: Cell<InputPieces>,
     /// Which flows are open.
@@ -40,7 +40,7 @@ pub struct Drive {
 
 /// Why a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub(super) enum Step {
     /// The solver chose its end.
     Internal,
     /// The stop time is reached.
@@ -48,7 +48,7 @@ pub enum Step {
 }
 
 /// A solver in the middle of a run.
-pub trait Stepper {
+pub(super) trait Stepper {
     /// Current time, s.
     fn time_s(&self) -> f64;
     /// Copy the current state.
@@ -372,7 +372,7 @@ impl<'a, 'm: 'a, S: OdeSolverMethod<'a, Equations<'m>>> Stepper for Wrapper<'a, 
 ///
 /// # Errors
 /// The first evaluation fails, or `work` does.
-pub fn with_stepper<R>(
+pub(super) fn with_stepper<R>(
     model: &Model,
     drive: &Drive,
     x0: Vec<f64>,

@@ -93,7 +93,11 @@ impl Side {
 
 impl Tangents {
     /// Displacements at time 0; `first_edge_s` ends the first piece of the inputs.
-    pub fn new(neighbours: &[Neighbours], model: &Model, first_edge_s: f64) -> Result<Self, ThermalError> {
+    pub(super) fn new(
+        neighbours: &[Neighbours],
+        model: &Model,
+        first_edge_s: f64,
+    ) -> Result<Self, ThermalError> {
         let n = model.layout().states;
         let mut displacement = DMatrix::zeros(n, neighbours.len());
         let mut sides = Vec::with_capacity(neighbours.len());
@@ -116,7 +120,7 @@ impl Tangents {
     }
 
     /// Inputs of `[from, to]`, s.
-    pub fn begin_segment(&mut self, from_s: f64, to_s: f64) {
+    pub(super) fn begin_segment(&mut self, from_s: f64, to_s: f64) {
         self.continues = false;
         for side in self.sides.iter_mut().flatten() {
             side.pieces = InputPieces::new(&side.scenario, from_s, to_s);
@@ -124,7 +128,7 @@ impl Tangents {
     }
 
     /// Integrate over `[from, to]`, s, of the last step, with the state `along` it.
-    pub fn advance(
+    pub(super) fn advance(
         &mut self,
         model: &Model,
         drive: &Drive,
@@ -207,7 +211,7 @@ impl Tangents {
     }
 
     /// Sample every neighbour at a time of the last step, at which the run's state is `x`.
-    pub fn sample(&mut self, time_s: f64, x: &[f64], open: &[bool]) -> Result<(), ThermalError> {
+    pub(super) fn sample(&mut self, time_s: f64, x: &[f64], open: &[bool]) -> Result<(), ThermalError> {
         let displacement = self.at(time_s);
         for (pair, column) in self.sides.iter_mut().zip(displacement.column_iter()) {
             for side in pair {
@@ -221,7 +225,7 @@ impl Tangents {
     }
 
     /// How much later, s, each neighbour above reaches the pressure that the run has reached in state `x`.
-    pub fn delays(
+    pub(super) fn delays(
         &self,
         model: &Model,
         inputs: &Inputs,
@@ -248,7 +252,7 @@ impl Tangents {
     }
 
     /// The jump of the displacements after an event of the run, whose rates are those of `delays` before it.
-    pub fn jump(
+    pub(super) fn jump(
         &mut self,
         delays: &Delays,
         model: &Model,
@@ -266,7 +270,7 @@ impl Tangents {
     }
 
     /// Trajectories of each neighbour, below and above, so far without events and balance.
-    pub fn into_trajectories(self) -> impl Iterator<Item = [Trajectory; 2]> {
+    pub(super) fn into_trajectories(self) -> impl Iterator<Item = [Trajectory; 2]> {
         self.sides.into_iter().map(|pair| {
             pair.map(|Side { vessel, scenario, model, samples, .. }| {
                 samples.into_trajectory(&vessel, &scenario, model.mesh())

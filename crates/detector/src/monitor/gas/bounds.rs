@@ -188,7 +188,7 @@ pub(in crate::monitor) struct GasBounds {
 
 impl GasBounds {
     /// Take in a row, with the mass of a pressure, Pa, and a temperature, K, kg; not a number outside the gas's domain.
-    pub fn push(&mut self, seen: &Seen, mass_kg: impl Fn(f64, f64) -> f64) -> Option<Certain> {
+    pub(crate) fn push(&mut self, seen: &Seen, mass_kg: impl Fn(f64, f64) -> f64) -> Option<Certain> {
         self.follow(seen);
         let unseen = match seen.contact {
             Contact::Wall => UNSEEN_WALL,
@@ -209,7 +209,13 @@ impl GasBounds {
 
     /// Take in what the observer says of gas that may flow, in a cylinder that is filled with so much, kg, and what the surroundings may have done to it since the row
     /// before, as a part of it.
-    pub fn push_flow(&mut self, time_s: f64, flow: &Flow, full_kg: f64, shaken: f64) -> Option<Certain> {
+    pub(crate) fn push_flow(
+        &mut self,
+        time_s: f64,
+        flow: &Flow,
+        full_kg: f64,
+        shaken: f64,
+    ) -> Option<Certain> {
         let since_s = self.flow_s.replace(time_s).map_or(0.0, |last_s| time_s - last_s);
         let kept = (-since_s / FLOW_FADING_S).exp();
         let by_kg = self.comes_and_goes_kg(flow, full_kg) + FLOW_PART * full_kg;
@@ -222,17 +228,17 @@ impl GasBounds {
     }
 
     /// What of a mass that the observer says comes and goes without gas, kg.
-    pub fn comes_and_goes_kg(&self, flow: &Flow, full_kg: f64) -> f64 {
+    pub(crate) fn comes_and_goes_kg(&self, flow: &Flow, full_kg: f64) -> f64 {
         FLOW_DEVIATIONS * flow.passing_sd_kg.hypot(self.wander.sd() * full_kg)
     }
 
     /// Part of the gas that is certainly gone or has certainly come by the thermometers, against the bound that it is beyond; 0 if none.
-    pub fn beyond(&self) -> f64 {
+    pub(crate) fn beyond(&self) -> f64 {
         self.walls.beyond()
     }
 
     /// Whether a mass, kg, can be that of the present row.
-    pub fn allow(&self, mass_kg: f64) -> bool {
+    pub(crate) fn allow(&self, mass_kg: f64) -> bool {
         self.walls
             .recent_kg
             .front()
@@ -240,13 +246,13 @@ impl GasBounds {
     }
 
     /// Gas has gone that way: what bounded the mass from that side does so no more. After a refill it is still no less than before.
-    pub fn gone(&mut self, way: Certain) {
+    pub(crate) fn gone(&mut self, way: Certain) {
         self.walls.gone(way);
         self.forget_flow();
     }
 
     /// The observer has begun anew: what it said before counts no more.
-    pub fn forget_flow(&mut self) {
+    pub(crate) fn forget_flow(&mut self) {
         self.flow = Ratchet::default();
         self.wander.begin_anew();
     }

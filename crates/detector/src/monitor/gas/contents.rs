@@ -10,7 +10,7 @@ const STEP: f64 = 1e-4;
 
 /// Pressure of a mass at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Tangent {
+pub(crate) struct Tangent {
     temperature_k: f64,
     mass_kg: f64,
     pressure_pa: f64,
@@ -19,12 +19,12 @@ pub struct Tangent {
 
 impl Tangent {
     /// At a temperature, K; its first use computes it.
-    pub fn at(temperature_k: f64) -> Self {
+    pub(crate) fn at(temperature_k: f64) -> Self {
         Self { temperature_k, mass_kg: f64::NAN, pressure_pa: f64::NAN, slope_pa_kg: f64::NAN }
     }
 
     /// From now on at that temperature, K.
-    pub fn move_to(&mut self, temperature_k: f64) {
+    pub(crate) fn move_to(&mut self, temperature_k: f64) {
         if temperature_k != self.temperature_k {
             *self = Self::at(temperature_k);
         }
@@ -34,7 +34,7 @@ impl Tangent {
     ///
     /// # Errors
     /// The mass does not fit the vessel.
-    pub fn pressure_pa(&mut self, contents: &Contents, mass_kg: f64) -> Result<f64, DetectorError> {
+    pub(crate) fn pressure_pa(&mut self, contents: &Contents, mass_kg: f64) -> Result<f64, DetectorError> {
         // Not a number at first.
         let near = (mass_kg - self.mass_kg).abs() <= RENEWED_AFTER * self.mass_kg;
         if !near {
@@ -48,7 +48,7 @@ impl Tangent {
     }
 
     /// Slope of the pressure in the mass, Pa/kg, where it was used last.
-    pub fn slope_pa_kg(&self) -> f64 {
+    pub(crate) fn slope_pa_kg(&self) -> f64 {
         self.slope_pa_kg
     }
 }

@@ -27,17 +27,17 @@ pub(in crate::monitor) struct FillingCheck {
 
 impl FillingCheck {
     /// Whether it is still looking.
-    pub fn is_open(&self) -> bool {
+    pub(crate) fn is_open(&self) -> bool {
         !self.done
     }
 
     /// Whether the readings do not fit.
-    pub fn is_wrong(&self) -> bool {
+    pub(crate) fn is_wrong(&self) -> bool {
         self.wrong
     }
 
     /// A leak has been found: the mean mass, kg, if it is none because the readings do not fit the filling from the first row on.
-    pub fn explains_leak(&mut self, (filled_kg, sd_kg): (f64, f64)) -> Option<f64> {
+    pub(crate) fn explains_leak(&mut self, (filled_kg, sd_kg): (f64, f64)) -> Option<f64> {
         if !self.done {
             (self.done, self.wrong) = (true, self.is_off(filled_kg, sd_kg));
         }
@@ -51,13 +51,13 @@ impl FillingCheck {
     }
 
     /// It has been explained otherwise: an exchange of gas, somebody who knows.
-    pub fn settle(&mut self) {
+    pub(crate) fn settle(&mut self) {
         (self.done, self.wrong) = (true, false);
     }
 
     /// Take in the mass that the readings of a row stand for, kg, against that of the filling and its standard deviation, kg; the mean
     /// mass once it is known not to fit.
-    pub fn take(&mut self, time_s: f64, mass_kg: f64, (filled_kg, sd_kg): (f64, f64)) -> Option<f64> {
+    pub(crate) fn take(&mut self, time_s: f64, mass_kg: f64, (filled_kg, sd_kg): (f64, f64)) -> Option<f64> {
         if self.done || !mass_kg.is_finite() {
             return None;
         }

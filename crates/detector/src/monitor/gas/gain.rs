@@ -23,7 +23,7 @@ pub(in crate::monitor) struct GainWatch {
 
 impl GainWatch {
     /// Take in a mass, kg, of a cylinder that was filled with so much, kg; when a filling began that is over now, s, and its gain, kg.
-    pub fn push(&mut self, time_s: f64, mass_kg: f64, filled_kg: f64) -> Option<(f64, f64)> {
+    pub(crate) fn push(&mut self, time_s: f64, mass_kg: f64, filled_kg: f64) -> Option<(f64, f64)> {
         if self.recent.back().is_some_and(|(last_s, _)| time_s - last_s < INTERVAL_S) {
             return None;
         }
@@ -41,7 +41,7 @@ impl GainWatch {
     }
 
     /// Other gas is in the cylinder.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.recent.clear();
     }
 }

@@ -84,7 +84,7 @@ pub(in crate::monitor) struct Look {
 
 impl LeakState {
     /// Take in a sample, and `fitted` at it where a look is due.
-    pub fn step(&mut self, look: &Look, fitted: impl FnOnce() -> Option<Fitted>) -> Change {
+    pub(crate) fn step(&mut self, look: &Look, fitted: impl FnOnce() -> Option<Fitted>) -> Change {
         let time_s = look.time_s;
         self.largest_odds = (look.false_alarm_s / LEAK_INTERVAL_S).clamp(PRIOR_ODDS, CERTAIN);
         let leaking = self.found.is_some();
@@ -139,24 +139,24 @@ impl LeakState {
     }
 
     /// Other gas is in the cylinder: whatever was found is over.
-    pub fn begin_anew(&mut self) -> Change {
+    pub(crate) fn begin_anew(&mut self) -> Change {
         let was = self.found.is_some();
         *self = Self::default();
         if was { Change::Ended } else { Change::None }
     }
 
     /// The leak, while there is one.
-    pub fn found(&self) -> Option<&LeakFinding> {
+    pub(crate) fn found(&self) -> Option<&LeakFinding> {
         self.found.as_ref()
     }
 
     /// Probability that gas is being lost; `None`: too little has been seen.
-    pub fn probability(&self) -> Option<f64> {
+    pub(crate) fn probability(&self) -> Option<f64> {
         self.odds.map(|odds| odds.min(self.largest_odds)).map(|odds| odds / (1.0 + odds))
     }
 
     /// What the rate of a leak is below with 97.5 %, as a part of the fill per second.
-    pub fn largest_per_s(&self) -> f64 {
+    pub(crate) fn largest_per_s(&self) -> f64 {
         self.largest_per_s
     }
 }

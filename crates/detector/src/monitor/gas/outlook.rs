@@ -36,7 +36,11 @@ pub(in crate::monitor) struct Basis<'a> {
 
 impl LimitMasses {
     /// Of a vessel with a filling, kg.
-    pub fn new(contents: &Contents, settings: &MonitorSettings, full_kg: f64) -> Result<Self, DetectorError> {
+    pub(crate) fn new(
+        contents: &Contents,
+        settings: &MonitorSettings,
+        full_kg: f64,
+    ) -> Result<Self, DetectorError> {
         let limits = &settings.limits;
         Ok(Self {
             operational_kg: contents.mass_kg(limits.operational_pa, QUOTED_K)?,
@@ -46,7 +50,11 @@ impl LimitMasses {
     }
 
     /// What is left for the mass and the leak.
-    pub fn outlook(&self, settings: &MonitorSettings, basis: &Basis<'_>) -> Result<Outlook, DetectorError> {
+    pub(crate) fn outlook(
+        &self,
+        settings: &MonitorSettings,
+        basis: &Basis<'_>,
+    ) -> Result<Outlook, DetectorError> {
         let (mass_kg, mass_sd_kg) = basis.mass_kg;
         let (rate_kg_s, rate_sd_kg_s) = match basis.finding {
             None => (0.0, basis.largest_kg_s / HALF_WIDTH_SD),

@@ -26,19 +26,19 @@ impl Default for Wander {
 
 impl Wander {
     /// Take in the mass, so long after the last one, s.
-    pub fn push(&mut self, since_s: f64, part: f64) {
+    pub(super) fn push(&mut self, since_s: f64, part: f64) {
         let level = self.level.get_or_insert(part);
         *level += -(-since_s / LEVEL_S).exp_m1() * (part - *level);
         self.usual.update(since_s, (part - *level).powi(2));
     }
 
     /// Standard deviation.
-    pub fn sd(&self) -> f64 {
+    pub(super) fn sd(&self) -> f64 {
         self.usual.sd()
     }
 
     /// Other gas, or an observer that began anew: what it was before counts no more, what is usual does.
-    pub fn begin_anew(&mut self) {
+    pub(super) fn begin_anew(&mut self) {
         self.level = None;
     }
 }

@@ -23,12 +23,12 @@ pub(super) struct Bins {
 
 impl Bins {
     /// Bins of a width, s; 0: none.
-    pub fn new(step_s: f64) -> Self {
+    pub(super) fn new(step_s: f64) -> Self {
         Self { step_s, filling: Vec::new(), passed_s: None }
     }
 
     /// Take a row: what is complete now is added to `done`.
-    pub fn take(&mut self, row: Row, done: &mut Vec<Row>) {
+    pub(super) fn take(&mut self, row: Row, done: &mut Vec<Row>) {
         let bin = |time_s: f64| (time_s / self.step_s).floor();
         let another = self.filling.last().is_some_and(|last| bin(last.time_s) != bin(row.time_s));
         let alone_s = match &self.filling[..] {
@@ -51,7 +51,7 @@ impl Bins {
     }
 
     /// The bin as it is, if there is anything in it.
-    pub fn close(&mut self) -> Option<Row> {
+    pub(super) fn close(&mut self) -> Option<Row> {
         let mut rows = std::mem::take(&mut self.filling);
         let mut one = rows.pop()?;
         if rows.is_empty() {
@@ -68,7 +68,7 @@ impl Bins {
     }
 
     /// Rows in the bin.
-    pub fn held(&self) -> usize {
+    pub(super) fn held(&self) -> usize {
         self.filling.len()
     }
 }

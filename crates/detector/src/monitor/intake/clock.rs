@@ -44,7 +44,7 @@ impl Default for Guard {
 
 impl Guard {
     /// Where a stamp lies with an allowed lateness and a time ahead that needs no confirmation, s.
-    pub fn place(&self, stamp_s: f64, lateness_s: f64, reach_s: f64) -> Place {
+    pub(super) fn place(&self, stamp_s: f64, lateness_s: f64, reach_s: f64) -> Place {
         match self.ahead_s(stamp_s) {
             _ if self.latest_s == f64::NEG_INFINITY => Place::On,
             ahead_s if ahead_s < -lateness_s => Place::Behind,
@@ -54,19 +54,19 @@ impl Guard {
     }
 
     /// How far a stamp lies ahead of the latest time, s.
-    pub fn ahead_s(&self, stamp_s: f64) -> f64 {
+    pub(super) fn ahead_s(&self, stamp_s: f64) -> f64 {
         stamp_s - self.offset_s - self.latest_s
     }
 
     /// Internal time of a stamp that is believed, s.
-    pub fn accept(&mut self, stamp_s: f64) -> f64 {
+    pub(super) fn accept(&mut self, stamp_s: f64) -> f64 {
         let time_s = stamp_s - self.offset_s;
         self.latest_s = self.latest_s.max(time_s);
         time_s
     }
 
     /// Move the axis so that a stamp lies a usual interval after the latest time: that time and the jump, s.
-    pub fn jump(&mut self, stamp_s: f64, usual_s: f64) -> Option<(f64, f64)> {
+    pub(super) fn jump(&mut self, stamp_s: f64, usual_s: f64) -> Option<(f64, f64)> {
         let time_s = self.latest_s + usual_s;
         let jump_s = stamp_s - self.offset_s - time_s;
         if !jump_s.is_finite() {
@@ -77,14 +77,14 @@ impl Guard {
     }
 
     /// Whether a stamp goes on where the run has come to; any does with an empty run.
-    pub fn fits_run(&self, stamp_s: f64, lateness_s: f64, longest_gap_s: f64) -> bool {
+    pub(super) fn fits_run(&self, stamp_s: f64, lateness_s: f64, longest_gap_s: f64) -> bool {
         let fits =
             |last: &Stray| (last.stamp_s - lateness_s..=last.stamp_s + longest_gap_s).contains(&stamp_s);
         self.run.last().is_none_or(fits)
     }
 
     /// Put a row into the run; one of a stamp that is there is united with it, says how, and confirms nothing.
-    pub fn join_run(&mut self, stray: Stray) -> Option<United> {
+    pub(super) fn join_run(&mut self, stray: Stray) -> Option<United> {
         let at = self.run.partition_point(|other| other.stamp_s < stray.stamp_s);
         match self.run.get_mut(at) {
             Some(same) if same.stamp_s == stray.stamp_s => {
@@ -102,17 +102,17 @@ impl Guard {
     }
 
     /// Earliest stamp of the run, s.
-    pub fn run_first_s(&self) -> Option<f64> {
+    pub(super) fn run_first_s(&self) -> Option<f64> {
         self.run.first().map(|stray| stray.stamp_s)
     }
 
     /// The run; there is none afterwards.
-    pub fn take_run(&mut self) -> Vec<Stray> {
+    pub(super) fn take_run(&mut self) -> Vec<Stray> {
         std::mem::take(&mut self.run)
     }
 
     /// Rows in the run.
-    pub fn held(&self) -> usize {
+    pub(super) fn held(&self) -> usize {
         self.run.len()
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct UsualInterval {
 
 impl UsualInterval {
     /// Take an interval, s; one that is not positive is none.
-    pub fn push(&mut self, interval_s: f64) {
+    pub(super) fn push(&mut self, interval_s: f64) {
         if interval_s <= 0.0 {
             return;
         }
@@ -31,7 +31,7 @@ impl UsualInterval {
     }
 
     /// Median, s, the lower one of an even number; `None` before the first interval.
-    pub fn median_s(&self) -> Option<f64> {
+    pub(super) fn median_s(&self) -> Option<f64> {
         (!self.recent_s.is_empty()).then_some(self.median_s)
     }
 }

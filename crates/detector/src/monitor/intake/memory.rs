@@ -41,7 +41,7 @@ struct Gap {
 
 impl Memory {
     /// Remember a row.
-    pub fn keep(&mut self, hash: u64) {
+    pub(super) fn keep(&mut self, hash: u64) {
         if self.generations.is_empty() || self.rows == ROWS {
             if self.generations.len() == GENERATIONS {
                 self.generations.pop_front();
@@ -56,12 +56,12 @@ impl Memory {
     }
 
     /// Whether a row is one of those.
-    pub fn knows(&self, hash: u64) -> bool {
+    pub(super) fn knows(&self, hash: u64) -> bool {
         self.generations.iter().any(|generation| generation.contains(fingerprint(hash)))
     }
 
     /// Remember a time without rows, s.
-    pub fn keep_gap(&mut self, from_s: f64, to_s: f64) {
+    pub(super) fn keep_gap(&mut self, from_s: f64, to_s: f64) {
         if self.gaps.len() == GAPS {
             self.gaps.pop_front();
         }
@@ -69,7 +69,7 @@ impl Memory {
     }
 
     /// Whether a time, s, lies within one of those: a row of that time comes from a store.
-    pub fn is_in_gap(&self, time_s: f64) -> bool {
+    pub(super) fn is_in_gap(&self, time_s: f64) -> bool {
         self.gaps.iter().any(|gap| time_s > gap.from_s && time_s < gap.to_s)
     }
 }

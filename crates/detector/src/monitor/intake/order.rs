@@ -32,7 +32,7 @@ pub(super) struct Order {
 
 impl Order {
     /// Put a row in its place.
-    pub fn insert(&mut self, mut row: Row) -> Inserted {
+    pub(super) fn insert(&mut self, mut row: Row) -> Inserted {
         match &self.handed_out {
             Some(last) if row.time_s < last.time_s => return Inserted::TooLate,
             Some(last) if row.time_s == last.time_s => {
@@ -60,14 +60,14 @@ impl Order {
     }
 
     /// The earliest row if it is before a time, s, or one too many.
-    pub fn pop(&mut self, before_s: f64) -> Option<Row> {
+    pub(super) fn pop(&mut self, before_s: f64) -> Option<Row> {
         let due = self.waiting.len() > HELD_AT_MOST
             || self.waiting.front().is_some_and(|first| first.time_s < before_s);
         if due { self.waiting.pop_front() } else { None }
     }
 
     /// A row is handed out; with another of its time before it, it stands together with that.
-    pub fn note(&mut self, row: &Row) {
+    pub(super) fn note(&mut self, row: &Row) {
         match &mut self.handed_out {
             Some(last) if last.time_s == row.time_s => {
                 last.unite(&row.readings);
@@ -81,12 +81,12 @@ impl Order {
     }
 
     /// Time of the row handed out last, s.
-    pub fn handed_out_s(&self) -> Option<f64> {
+    pub(super) fn handed_out_s(&self) -> Option<f64> {
         self.handed_out.as_ref().map(|last| last.time_s)
     }
 
     /// Rows that wait.
-    pub fn held(&self) -> usize {
+    pub(super) fn held(&self) -> usize {
         self.waiting.len()
     }
 }

@@ -157,7 +157,7 @@ pub(in crate::monitor) struct LagMeter {
 
 impl LagMeter {
     /// Take in two thermometers, in errors of a surface temperature, and the pressure, Pa; NaN where there is none.
-    pub fn push(&mut self, time_s: f64, readings: Three) {
+    pub(crate) fn push(&mut self, time_s: f64, readings: Three) {
         let Self { grid, points, differences, thermometers, with_pressure } = self;
         grid.push(time_s, readings, |point| {
             push_front(points, point, 3);
@@ -171,7 +171,7 @@ impl LagMeter {
     }
 
     /// How late each of the three is, s, against the earliest; `None` before the air has jumped often enough.
-    pub fn late_s(&self) -> Option<Three> {
+    pub(crate) fn late_s(&self) -> Option<Three> {
         let apart = self.thermometers.peak()?;
         let apart = if apart.abs() < APART { 0.0 } else { apart };
         let late = [apart.max(0.0), (-apart).max(0.0)];
@@ -207,12 +207,12 @@ pub(in crate::monitor) struct DelayLine {
 
 impl DelayLine {
     /// Hold each sensor back by so much, s.
-    pub fn of(delays_s: Vec<f64>) -> Self {
+    pub(crate) fn of(delays_s: Vec<f64>) -> Self {
         Self { delays_s, rows: VecDeque::new() }
     }
 
     /// The readings of a row at the time that all have.
-    pub fn align(&mut self, time_s: f64, readings: &mut [f64]) {
+    pub(crate) fn align(&mut self, time_s: f64, readings: &mut [f64]) {
         let longest_s = self.delays_s.iter().copied().fold(0.0, f64::max);
         if longest_s == 0.0 {
             return;

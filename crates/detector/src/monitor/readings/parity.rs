@@ -145,7 +145,7 @@ impl Window {
 
 impl Parity {
     /// Of thermometers where the model misses so much of a temperature on the surface, K.
-    pub fn new(error_k: f64) -> Self {
+    pub(crate) fn new(error_k: f64) -> Self {
         Self { error_k, ..Self::default() }
     }
 
@@ -155,7 +155,7 @@ impl Parity {
 
     /// Take in both thermometers, K, and the pressure, Pa; those that are none count for nothing. `gas_k` gives the temperature that a pressure,
     /// Pa, stands for near one, K.
-    pub fn push(
+    pub(crate) fn push(
         &mut self,
         time_s: f64,
         readings: [f64; 2],
@@ -268,7 +268,7 @@ impl Parity {
     }
 
     /// A thermometer that is off while the other one agrees with the pressure, and by how much, K.
-    pub fn deviating(&self) -> Option<(usize, f64)> {
+    pub(crate) fn deviating(&self) -> Option<(usize, f64)> {
         let named = self.named.filter(|named| named.windows as usize >= LATEST)?;
         Some((named.which, named.of_its_own(self.off_k())))
     }
@@ -283,17 +283,17 @@ impl Parity {
     }
 
     /// Whether the difference is the usual one, and has been for a while.
-    pub fn is_usual(&self) -> bool {
+    pub(crate) fn is_usual(&self) -> bool {
         self.unusual_k() < self.harmless_k() && self.doubt_k < OFF * self.error_k
     }
 
     /// What the mean gas temperature may be off by, as one end is warmed or cooled by itself, K.
-    pub fn doubt_k(&self) -> f64 {
+    pub(crate) fn doubt_k(&self) -> f64 {
         self.doubt_k
     }
 
     /// Another offset of a thermometer is taken off from now on: the difference is learnt anew.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         let (doubt_k, last_s) = (self.doubt_k, self.last_s);
         *self = Self { doubt_k, last_s, ..Self::new(self.error_k) };
     }

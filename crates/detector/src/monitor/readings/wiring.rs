@@ -53,12 +53,12 @@ pub(in crate::monitor) struct WiringCheck {
 
 impl WiringCheck {
     /// A check of everything.
-    pub fn of_all() -> Self {
+    pub(crate) fn of_all() -> Self {
         Self { lags: Some(LagMeter::default()), ..Self::default() }
     }
 
     /// Take in the readings of two thermometers, in errors of a surface temperature, and the pressure, Pa.
-    pub fn read(&mut self, time_s: f64, readings: [f64; 3]) {
+    pub(crate) fn read(&mut self, time_s: f64, readings: [f64; 3]) {
         self.begun_s.get_or_insert(time_s);
         if let Some(meter) = &mut self.lags {
             meter.push(time_s, readings);
@@ -66,7 +66,7 @@ impl WiringCheck {
     }
 
     /// Take in what the observer and its twin made of the same row, of sensors with such a noise, variances in K² and Pa².
-    pub fn compare(&mut self, observer: [Innovation; 3], twin: [Innovation; 3], noise: [f64; 3]) {
+    pub(crate) fn compare(&mut self, observer: [Innovation; 3], twin: [Innovation; 3], noise: [f64; 3]) {
         for i in 0..3 {
             let [own, other] = [observer[i], twin[i]].map(|of| (of.nu * of.nu + noise[i]).ln());
             if own.is_finite() && other.is_finite() {
@@ -77,12 +77,12 @@ impl WiringCheck {
     }
 
     /// The twin has begun anew.
-    pub fn forget_twin(&mut self) {
+    pub(crate) fn forget_twin(&mut self) {
         (self.differences, self.rows) = ([0.0; 3], [0.0; 3]);
     }
 
     /// What is known at a time, s. What was found is not found again.
-    pub fn judge(&mut self, time_s: f64) -> Finding {
+    pub(crate) fn judge(&mut self, time_s: f64) -> Finding {
         let Some(begun_s) = self.begun_s.filter(|begun_s| time_s - begun_s >= JUDGED_S) else {
             return Finding::Open;
         };

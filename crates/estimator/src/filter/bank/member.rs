@@ -28,7 +28,7 @@ pub(crate) struct Member<H> {
 }
 
 impl<H: Clone> Member<H> {
-    pub fn new(hypothesis: H, mean: &[f64], outputs: usize) -> Self {
+    pub(crate) fn new(hypothesis: H, mean: &[f64], outputs: usize) -> Self {
         Self {
             hypothesis,
             x: mean.to_vec(),
@@ -41,13 +41,13 @@ impl<H: Clone> Member<H> {
     }
 
     /// Its last step, recorded from now on; so many of its states move.
-    pub fn recorded(&mut self, leading: usize) -> &mut StepRecord {
+    pub(crate) fn recorded(&mut self, leading: usize) -> &mut StepRecord {
         let (n, outputs) = (self.x.len(), self.innovations.len());
         self.record.get_or_insert_with(|| Box::new(StepRecord::new(n, leading, outputs)))
     }
 
     /// Become as another one is, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(crate) fn copy_from(&mut self, other: &Self) {
         self.hypothesis.clone_from(&other.hypothesis);
         self.x.clone_from(&other.x);
         self.rejected.clone_from(&other.rejected);
@@ -61,18 +61,18 @@ impl<H: Clone> Member<H> {
     }
 
     /// Have another mean (n), and no reading refused.
-    pub fn place_at(&mut self, mean: impl Iterator<Item = f64>) {
+    pub(crate) fn place_at(&mut self, mean: impl Iterator<Item = f64>) {
         self.x.iter_mut().zip(mean).for_each(|(x, mean)| *x = mean);
         self.rejected.fill(0);
     }
 
     /// Whether it has so many outputs.
-    pub fn has_outputs(&self, outputs: usize) -> bool {
+    pub(crate) fn has_outputs(&self, outputs: usize) -> bool {
         [self.rejected.len(), self.innovations.len(), self.pulled.len()] == [outputs; 3]
     }
 
     /// What becomes of a reading with the innovation `nu` of variance `s`.
-    pub fn judge<P: Plant<Hypothesis = H>>(
+    pub(crate) fn judge<P: Plant<Hypothesis = H>>(
         &mut self,
         plant: &P,
         output: usize,
@@ -90,7 +90,7 @@ impl<H: Clone> Member<H> {
     /// in the metric of the covariance (D. Simon, IET Control Theory Appl. 4 (2010) 1303). Were it cut off alone, outputs would be predicted wrong from then on, row
     /// by row, which is what a slow loss looks like. A state that has gone farther than its standard deviation in one row did not creep there: what its covariance
     /// says of the others is worth nothing then, and it is cut off alone.
-    pub fn bound<P: Plant<Hypothesis = H>>(
+    pub(crate) fn bound<P: Plant<Hypothesis = H>>(
         &mut self,
         plant: &P,
         covariance: impl Fn(usize, &mut [f64]),
@@ -125,7 +125,7 @@ impl<H: Clone> Member<H> {
     }
 
     /// Mean (n).
-    pub fn mean(&self) -> DVector<f64> {
+    pub(crate) fn mean(&self) -> DVector<f64> {
         DVector::from_column_slice(&self.x)
     }
 }

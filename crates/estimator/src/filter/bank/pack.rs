@@ -55,7 +55,7 @@ pub(super) struct PackMemory {
 }
 
 impl PackMemory {
-    pub fn new<P: Plant>(plant: &P) -> Self {
+    pub(super) fn new<P: Plant>(plant: &P) -> Self {
         let (n, m) = (plant.states(), plant.leading());
         Self {
             step: StepTransition::new(plant),
@@ -87,10 +87,10 @@ type Some4 = [bool; LANES];
 
 impl Pack {
     /// Members per pack.
-    pub const SIZE: usize = LANES;
+    pub(super) const SIZE: usize = LANES;
 
     /// Members with these covariances.
-    pub fn new<P: Plant>(plant: &P, factors: &[UdFactors]) -> Self {
+    pub(super) fn new<P: Plant>(plant: &P, factors: &[UdFactors]) -> Self {
         let mut bank = UdBank::new(plant.states(), plant.leading()).with_filters(factors.len());
         // A lane without a member does as the first one.
         for lane in 0..LANES {
@@ -100,13 +100,13 @@ impl Pack {
     }
 
     /// Become as others of the same members are, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.bank.copy_from(&other.bank);
         self.groups.clone_from(&other.groups);
     }
 
     /// The covariance of the first member, with factors that are [coarse](numbers::coarse).
-    pub fn outline(&self) -> Self {
+    pub(super) fn outline(&self) -> Self {
         let mut bank = self.bank.clone().with_filters(1);
         (1..LANES).for_each(|lane| bank.copy_lane(0, lane));
         bank.round(numbers::coarse);
@@ -114,7 +114,7 @@ impl Pack {
     }
 
     /// Become as the outline is, each member with this variance of the state `own`.
-    pub fn return_to(&mut self, outline: &Self, own: usize, variances: &[f64]) {
+    pub(super) fn return_to(&mut self, outline: &Self, own: usize, variances: &[f64]) {
         self.copy_from(outline);
         for (lane, &variance) in variances.iter().enumerate().skip(1) {
             self.bank.decorrelate_and_set(lane, own, variance);
@@ -122,7 +122,7 @@ impl Pack {
     }
 
     /// Time update over an interval, in steps no longer than the plant allows.
-    pub fn predict<P: Plant>(
+    pub(super) fn predict<P: Plant>(
         &mut self,
         plant: &mut P,
         memory: &mut PackMemory,
@@ -167,7 +167,7 @@ impl Pack {
     }
 
     /// Innovation that a reading would be for a member, the first one, and its variance.
-    pub fn innovation_of<P: Plant>(
+    pub(super) fn innovation_of<P: Plant>(
         &mut self,
         plant: &mut P,
         (memory, gradient): (&mut PackMemory, &mut [f64]),
@@ -182,7 +182,7 @@ impl Pack {
     }
 
     /// Take a reading of an output, with memory for its gradient: (n).
-    pub fn update<P: Plant>(
+    pub(super) fn update<P: Plant>(
         &mut self,
         plant: &mut P,
         (memory, h): (&mut PackMemory, &mut [f64]),

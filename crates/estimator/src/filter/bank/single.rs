@@ -33,7 +33,7 @@ impl<P: Plant> Single<P> {
     ///
     /// # Errors
     /// The covariance is none.
-    pub fn new(engine: &BankEngine, plant: &P, mut p: UdFactors) -> Result<Self, EstimatorError> {
+    pub(super) fn new(engine: &BankEngine, plant: &P, mut p: UdFactors) -> Result<Self, EstimatorError> {
         p.reserve(plant.leading(), plant.noises());
         let engine = match engine {
             BankEngine::Extended | BankEngine::Unscented => {
@@ -50,7 +50,7 @@ impl<P: Plant> Single<P> {
     }
 
     /// Take over covariance and engine of another member; nothing is allocated for an engine without memory of its own.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.p.copy_from(&other.p);
         self.engine.clone_from(&other.engine);
     }
@@ -59,7 +59,7 @@ impl<P: Plant> Single<P> {
     ///
     /// # Errors
     /// The process refuses the state.
-    pub fn predict(
+    pub(super) fn predict(
         &mut self,
         plant: &mut P,
         work: &mut Workspace,
@@ -98,7 +98,7 @@ impl<P: Plant> Single<P> {
     ///
     /// # Errors
     /// The state has no such reading.
-    pub fn update(
+    pub(super) fn update(
         &mut self,
         plant: &mut P,
         work: &mut Workspace,
@@ -185,14 +185,14 @@ impl<P: Plant> Single<P> {
     }
 
     /// The sample is not as usual: a reading is missing or was rejected.
-    pub fn interrupt(&mut self) {
+    pub(super) fn interrupt(&mut self) {
         if let Engine::Stationary(stationary) = &mut self.engine {
             stationary.miss(&mut self.p);
         }
     }
 
     /// The sample is complete.
-    pub fn finish(&mut self, plant: &mut P, member: &mut Member<P::Hypothesis>) {
+    pub(super) fn finish(&mut self, plant: &mut P, member: &mut Member<P::Hypothesis>) {
         plant.suppose(&member.hypothesis);
         match &mut self.engine {
             Engine::Stationary(stationary) => stationary.settle(plant, &member.x, &self.p),
@@ -202,7 +202,7 @@ impl<P: Plant> Single<P> {
     }
 
     /// A constant has come closer to where it rests, by a factor.
-    pub fn relax(&mut self, state: usize, factor: f64, rest: f64) {
+    pub(super) fn relax(&mut self, state: usize, factor: f64, rest: f64) {
         match &mut self.engine {
             Engine::Stationary(stationary) => return stationary.relax(state, factor),
             Engine::MovingHorizon(windowed) => windowed.relax(state, factor, rest),
@@ -212,7 +212,7 @@ impl<P: Plant> Single<P> {
     }
 
     /// Add a variance to a constant.
-    pub fn inflate(&mut self, state: usize, variance: f64) {
+    pub(super) fn inflate(&mut self, state: usize, variance: f64) {
         match &mut self.engine {
             Engine::Stationary(stationary) => return stationary.inflate(state, variance),
             Engine::MovingHorizon(windowed) => windowed.inflate(state, variance),
@@ -221,22 +221,24 @@ impl<P: Plant> Single<P> {
         self.p.inflate(state, variance);
     }
 
-    /// Make a moving state independent of all others, with the given variance.
-    pub fn decorrelate_and_set(&mut self, state: usize, variance: f64) {
+    /// Make a state independent of all others, with the given variance.
+    pub(super) fn decorrelate_and_set(&mut self, state: usize, variance: f64) {
         match &mut self.engine {
-            Engine::Stationary(stationary) => stationary.forget(&mut self.p, state),
+            Engine::Stationary(stationary) => {
+                return stationary.decorrelate_and_set(&mut self.p, state, variance);
+            }
             Engine::MovingHorizon(windowed) => windowed.clear(),
             Engine::Unscented => {}
         }
         self.p.decorrelate_and_set(state, variance);
     }
 
-    pub fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         self.p.diagonal().iter().all(|d| d.is_finite())
     }
 
     /// Variance of a state, with all that is uncertain.
-    pub fn variance(&self, state: usize) -> f64 {
+    pub(super) fn variance(&self, state: usize) -> f64 {
         match &self.engine {
             Engine::Stationary(stationary) => stationary.variance(&self.p, state),
             _ => self.p.variance(state),
@@ -244,7 +246,7 @@ impl<P: Plant> Single<P> {
     }
 
     /// Covariance of a state with all states, with all that is uncertain: (n).
-    pub fn write_column(&self, state: usize, column: &mut [f64]) {
+    pub(super) fn write_column(&self, state: usize, column: &mut [f64]) {
         match &self.engine {
             Engine::Stationary(stationary) => stationary.write_column(&self.p, state, column),
             _ => self.p.write_column(state, column),
@@ -252,7 +254,7 @@ impl<P: Plant> Single<P> {
     }
 
     /// Covariance of all states, with all that is uncertain: (n, n).
-    pub fn covariance(&self) -> DMatrix<f64> {
+    pub(super) fn covariance(&self) -> DMatrix<f64> {
         match &self.engine {
             Engine::Stationary(stationary) => stationary.covariance(&self.p),
             _ => self.p.covariance(),
@@ -260,12 +262,12 @@ impl<P: Plant> Single<P> {
     }
 
     /// Whether the gain is that of the steady state.
-    pub fn is_settled(&self) -> bool {
+    pub(super) fn is_settled(&self) -> bool {
         matches!(&self.engine, Engine::Stationary(stationary) if stationary.is_settled())
     }
 
     /// Samples at which the moving horizon could not improve on the extended filter inside it.
-    pub fn fallbacks(&self) -> u64 {
+    pub(super) fn fallbacks(&self) -> u64 {
         match &self.engine {
             Engine::MovingHorizon(windowed) => windowed.fallbacks,
             _ => 0,

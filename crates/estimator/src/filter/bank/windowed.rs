@@ -24,7 +24,7 @@ pub(super) struct Windowed<P: Plant> {
 }
 
 impl<P: Plant> Windowed<P> {
-    pub fn new(plant: &P, settings: &HorizonSettings, constraints: &[Constraint]) -> Self {
+    pub(super) fn new(plant: &P, settings: &HorizonSettings, constraints: &[Constraint]) -> Self {
         Self {
             settings: settings.clone(),
             constraints: constraints.to_vec(),
@@ -37,36 +37,36 @@ impl<P: Plant> Windowed<P> {
     }
 
     /// A sample comes `dt_s`, s, after the last one.
-    pub fn begin(&mut self, dt_s: f64) {
+    pub(super) fn begin(&mut self, dt_s: f64) {
         self.dt_s = dt_s;
     }
 
     /// A reading passed its gate.
-    pub fn take(&mut self, output: usize, reading: f64) {
+    pub(super) fn take(&mut self, output: usize, reading: f64) {
         self.readings[output] = reading;
     }
 
     /// The past does not count any more.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.window = None;
     }
 
     /// A constant has come nearer to where it rests, by a factor.
-    pub fn relax(&mut self, state: usize, factor: f64, rest: f64) {
+    pub(super) fn relax(&mut self, state: usize, factor: f64, rest: f64) {
         if let Some(window) = &mut self.window {
             window.relax(state, factor, rest);
         }
     }
 
     /// Add `variance` to a constant.
-    pub fn inflate(&mut self, state: usize, variance: f64) {
+    pub(super) fn inflate(&mut self, state: usize, variance: f64) {
         if let Some(window) = &mut self.window {
             window.inflate(state, variance);
         }
     }
 
     /// Put the sample into the window; mean and covariance become those of its newest state.
-    pub fn refine(&mut self, x: &mut [f64], p: &mut UdFactors) {
+    pub(super) fn refine(&mut self, x: &mut [f64], p: &mut UdFactors) {
         let dt_s = std::mem::take(&mut self.dt_s);
         let estimate = self.window.as_mut().map(|window| window.step(dt_s, &self.readings));
         self.readings.fill(f64::NAN);
@@ -96,7 +96,7 @@ impl<P: Plant> Windowed<P> {
 
     /// Samples in the window.
     #[cfg(test)]
-    pub fn samples(&self) -> usize {
+    pub(super) fn samples(&self) -> usize {
         self.window.as_ref().map_or(0, |window| window.trajectory().len() - 1)
     }
 }

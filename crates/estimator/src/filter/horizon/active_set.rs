@@ -50,7 +50,7 @@ struct Violation {
 }
 
 impl<'a> ActiveSet<'a> {
-    pub fn new(problem: &'a WindowProblem<'a>, base: &'a Path) -> Self {
+    pub(super) fn new(problem: &'a WindowProblem<'a>, base: &'a Path) -> Self {
         let delta = match problem.loss {
             Loss::Huber { delta } => delta,
             Loss::Quadratic => f64::INFINITY,
@@ -63,7 +63,7 @@ impl<'a> ActiveSet<'a> {
     ///
     /// # Errors
     /// A violated row cannot be moved.
-    pub fn extend(&mut self, step: &Path, likely: &[Spot]) -> Result<bool, FallbackReason> {
+    pub(super) fn extend(&mut self, step: &Path, likely: &[Spot]) -> Result<bool, FallbackReason> {
         let before = (self.rows.len(), self.suspects.len());
         self.extend_suspects(step);
         let violations = self.violations(step);
@@ -145,7 +145,7 @@ impl<'a> ActiveSet<'a> {
     ///
     /// # Errors
     /// Why there is no solution.
-    pub fn solve(&mut self, resolution: &mut Resolution) -> Result<(), FallbackReason> {
+    pub(super) fn solve(&mut self, resolution: &mut Resolution) -> Result<(), FallbackReason> {
         self.program.rank = self.basis.rank();
         let solved = interior_point::solve(&self.program)?;
         let polished = polish(&self.program, &solved.optimum);

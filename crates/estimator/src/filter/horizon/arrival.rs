@@ -30,7 +30,7 @@ impl Arrival {
     ///
     /// # Errors
     /// The covariance is not one.
-    pub fn try_new(mean: &DVector<f64>, covariance: &DMatrix<f64>) -> Result<Self, EstimatorError> {
+    pub(super) fn try_new(mean: &DVector<f64>, covariance: &DMatrix<f64>) -> Result<Self, EstimatorError> {
         let factors = UdFactors::from_covariance(covariance)?;
         let mut arrival = Self {
             mean: mean.clone(),
@@ -43,7 +43,7 @@ impl Arrival {
     }
 
     /// Move on over an interval linearised at `from` and, its readings, at `to`.
-    pub fn absorb(&mut self, interval: &Interval, from: &DVector<f64>, to: &DVector<f64>) {
+    pub(super) fn absorb(&mut self, interval: &Interval, from: &DVector<f64>, to: &DVector<f64>) {
         let leading = interval.linear.phi.nrows();
         let offset = &self.mean - from;
         let mut moved = self.mean.rows_mut(0, leading);
@@ -60,14 +60,14 @@ impl Arrival {
     }
 
     /// Bring state `i` nearer to `rest` by a factor.
-    pub fn relax(&mut self, i: usize, factor: f64, rest: f64) {
+    pub(super) fn relax(&mut self, i: usize, factor: f64, rest: f64) {
         self.mean[i] = rest + factor * (self.mean[i] - rest);
         self.factors.scale(i, factor);
         self.refresh_root();
     }
 
     /// Add `variance` to state `i`.
-    pub fn inflate(&mut self, i: usize, variance: f64) {
+    pub(super) fn inflate(&mut self, i: usize, variance: f64) {
         self.factors.inflate(i, variance);
         self.refresh_root();
     }
@@ -80,7 +80,7 @@ impl Arrival {
     }
 
     /// The `xi` of a state, as far as the doubt about the state reaches: (n).
-    pub fn deviation(&self, x: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn deviation(&self, x: &DVector<f64>) -> DVector<f64> {
         let mut xi = x - &self.mean;
         for j in (0..xi.len()).rev() {
             let pivot = self.root[(j, j)];

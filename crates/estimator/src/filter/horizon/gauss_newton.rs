@@ -61,7 +61,7 @@ struct Searched {
 
 impl GaussNewton<'_> {
     /// Iterate until steps no longer matter; `likely` names rows that were active before.
-    pub fn iterate<M: StateSpace>(
+    pub(super) fn iterate<M: StateSpace>(
         &self,
         model: &mut M,
         window: &mut Window,

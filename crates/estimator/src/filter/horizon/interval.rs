@@ -42,7 +42,7 @@ pub(super) struct Reading {
 
 impl Interval {
     /// A sample still to be linearised.
-    pub fn new<M: StateSpace>(model: &M, dt_s: f64, z: &[f64]) -> Self {
+    pub(super) fn new<M: StateSpace>(model: &M, dt_s: f64, z: &[f64]) -> Self {
         let (n, leading, k) = (model.states(), model.leading(), model.noises());
         Self {
             dt_s,
@@ -56,7 +56,11 @@ impl Interval {
     }
 
     /// Advance `x` over the interval. No time leaves the state where it is.
-    pub fn advance<M: StateSpace>(&self, model: &mut M, x: &mut [f64]) -> Result<(), HorizonError<M::Error>> {
+    pub(super) fn advance<M: StateSpace>(
+        &self,
+        model: &mut M,
+        x: &mut [f64],
+    ) -> Result<(), HorizonError<M::Error>> {
         if self.dt_s > 0.0 {
             model.propagate(x, self.dt_s, None).map_err(HorizonError::Model)?;
         }
@@ -64,7 +68,7 @@ impl Interval {
     }
 
     /// Linearise the transition at `from` and the readings at `to`.
-    pub fn linearise<M: StateSpace>(
+    pub(super) fn linearise<M: StateSpace>(
         &mut self,
         model: &mut M,
         from: &DVector<f64>,
@@ -124,12 +128,12 @@ impl Interval {
     }
 
     /// Residual of a reading after the change `delta` of the state at its sample, linearised.
-    pub fn residual_after(&self, reading: &Reading, delta: &DVector<f64>) -> f64 {
+    pub(super) fn residual_after(&self, reading: &Reading, delta: &DVector<f64>) -> f64 {
         reading.residual - self.gradient.column(reading.output).dot(delta)
     }
 
     /// Cost of the readings at `x`, with their noise as linearised.
-    pub fn reading_cost<M: StateSpace>(
+    pub(super) fn reading_cost<M: StateSpace>(
         &self,
         model: &mut M,
         x: &DVector<f64>,
@@ -144,7 +148,7 @@ impl Interval {
     }
 
     /// Add the noise `omega` to the moving states of `x`.
-    pub fn add_noise(&self, omega: &DVector<f64>, x: &mut DVector<f64>) {
+    pub(super) fn add_noise(&self, omega: &DVector<f64>, x: &mut DVector<f64>) {
         for (column, w) in self.noise_input.column_iter().zip(omega) {
             axpy(*w, column.as_slice(), x.as_mut_slice());
         }

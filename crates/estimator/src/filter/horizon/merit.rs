@@ -28,7 +28,7 @@ const MARGIN: f64 = 2.0;
 
 impl Merit {
     /// Weights for the step that answers `problem`.
-    pub fn of(problem: &WindowProblem, resolution: &Resolution) -> Self {
+    pub(super) fn of(problem: &WindowProblem, resolution: &Resolution) -> Self {
         let multipliers = adjoints(problem, resolution);
         let mut weights = DVector::zeros(problem.path.newest().len());
         for p in &multipliers {
@@ -39,7 +39,7 @@ impl Merit {
     }
 
     /// `phi` of the trajectory of linearisation.
-    pub fn current(&self, window: &Window, problem: &WindowProblem) -> f64 {
+    pub(super) fn current(&self, window: &Window, problem: &WindowProblem) -> f64 {
         let path = &window.path;
         let mut phi = noise_cost(path) + self.outside(window, path, problem.constraints);
         for (i, interval) in window.intervals.iter().enumerate() {
@@ -53,7 +53,7 @@ impl Merit {
     ///
     /// # Errors
     /// The process or an output has no value on it.
-    pub fn trial<M: StateSpace>(
+    pub(super) fn trial<M: StateSpace>(
         &self,
         model: &mut M,
         window: &Window,

@@ -23,12 +23,12 @@ pub(super) struct Basis {
 const DEPENDENT: f64 = 1e-10;
 
 impl Basis {
-    pub fn rank(&self) -> usize {
+    pub(super) fn rank(&self) -> usize {
         self.vectors.len()
     }
 
     /// Coordinates of `t`, after growing the basis if `t` is not in its span. Later vectors have coordinate zero.
-    pub fn coordinates(&mut self, t: &[f64]) -> Vec<f64> {
+    pub(super) fn coordinates(&mut self, t: &[f64]) -> Vec<f64> {
         let mut rest = t.to_vec();
         let mut coordinates = vec![0.0; self.vectors.len()];
         // The second pass removes what rounding of the first left behind.
@@ -49,7 +49,7 @@ impl Basis {
     }
 
     /// What of `t` is orthogonal to the basis.
-    pub fn reject(&self, t: &[f64]) -> Vec<f64> {
+    pub(super) fn reject(&self, t: &[f64]) -> Vec<f64> {
         let mut rest = t.to_vec();
         for _ in 0..2 {
             for b in &self.vectors {
@@ -60,7 +60,7 @@ impl Basis {
     }
 
     /// `eta = B v`, of length `drives`.
-    pub fn combine(&self, v: &[f64], drives: usize) -> Vec<f64> {
+    pub(super) fn combine(&self, v: &[f64], drives: usize) -> Vec<f64> {
         let mut eta = vec![0.0; drives];
         for (v, b) in v.iter().zip(&self.vectors) {
             axpy(*v, b, &mut eta);
@@ -110,30 +110,30 @@ pub(super) struct Optimum {
 
 impl Program {
     /// `C`: (rows, rank).
-    pub fn row_matrix(&self) -> DMatrix<f64> {
+    pub(super) fn row_matrix(&self) -> DMatrix<f64> {
         dense(self.rank, self.rows.iter().map(|r| r.coordinates.as_slice()))
     }
 
     /// `L`: (suspects, rank).
-    pub fn suspect_matrix(&self) -> DMatrix<f64> {
+    pub(super) fn suspect_matrix(&self) -> DMatrix<f64> {
         dense(self.rank, self.suspects.iter().map(|s| s.coordinates.as_slice()))
     }
 
-    pub fn gaps(&self) -> DVector<f64> {
+    pub(super) fn gaps(&self) -> DVector<f64> {
         DVector::from_iterator(self.rows.len(), self.rows.iter().map(|r| r.gap))
     }
 
-    pub fn residuals(&self) -> DVector<f64> {
+    pub(super) fn residuals(&self) -> DVector<f64> {
         DVector::from_iterator(self.suspects.len(), self.suspects.iter().map(|s| s.residual))
     }
 
     /// `1 - omega`: (suspects).
-    pub fn missing_weights(&self) -> DVector<f64> {
+    pub(super) fn missing_weights(&self) -> DVector<f64> {
         DVector::from_iterator(self.suspects.len(), self.suspects.iter().map(|s| 1.0 - s.weight))
     }
 
     /// Hessian with `v`: `I + L^T diag(1 - omega) L`.
-    pub fn hessian(&self, l: &DMatrix<f64>, missing: &DVector<f64>) -> DMatrix<f64> {
+    pub(super) fn hessian(&self, l: &DMatrix<f64>, missing: &DVector<f64>) -> DMatrix<f64> {
         DMatrix::identity(self.rank, self.rank) + l.tr_mul(&(DMatrix::from_diagonal(missing) * l))
     }
 }

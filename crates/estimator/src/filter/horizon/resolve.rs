@@ -13,7 +13,7 @@ use super::window::Path;
 
 impl WindowProblem<'_> {
     /// Solve; `likely` names rows that were active before.
-    pub fn resolve(&self, likely: &[Spot]) -> Resolution {
+    pub(super) fn resolve(&self, likely: &[Spot]) -> Resolution {
         let base = self.sweep.run(None);
         match self.constrained(&base, likely) {
             Ok(resolution) => resolution,
@@ -39,7 +39,7 @@ impl WindowProblem<'_> {
     }
 
     /// State `i` after the change in `step`.
-    pub fn state(&self, step: &Path, i: usize) -> DVector<f64> {
+    pub(super) fn state(&self, step: &Path, i: usize) -> DVector<f64> {
         &self.path.x[i] + &step.x[i]
     }
 }

@@ -78,7 +78,7 @@ struct Work {
 
 impl Sweep {
     /// Room for windows of a problem of these sizes.
-    pub fn new(states: usize, leading: usize, noises: usize, outputs: usize) -> Self {
+    pub(super) fn new(states: usize, leading: usize, noises: usize, outputs: usize) -> Self {
         let (n, k) = (states, noises);
         let start = Start {
             xi: DVector::zeros(n),
@@ -96,7 +96,7 @@ impl Sweep {
     }
 
     /// Factorise the window linearised along `path`; the arrival cost is that of `x_0 = mean + root xi`.
-    pub fn factorise(
+    pub(super) fn factorise(
         &mut self,
         intervals: &[Interval],
         path: &Path,
@@ -136,17 +136,17 @@ impl Sweep {
     }
 
     /// Number of states that move.
-    pub fn leading(&self) -> usize {
+    pub(super) fn leading(&self) -> usize {
         self.leading
     }
 
     /// Length of `eta`.
-    pub fn drives(&self) -> usize {
+    pub(super) fn drives(&self) -> usize {
         self.states + self.stages.len() * self.noises
     }
 
     /// The optimum, moved by `eta` (length [`drives`](Self::drives)) where given. States are changes.
-    pub fn run(&self, eta: Option<&[f64]>) -> Path {
+    pub(super) fn run(&self, eta: Option<&[f64]>) -> Path {
         let n = self.states;
         let (mut xi, mut delta) = (self.start.xi.clone(), self.start.delta.clone());
         if let Some(eta) = eta {
@@ -174,7 +174,7 @@ impl Sweep {
     }
 
     /// Derivative `T^T c` of a row's value with `eta`; its square is the row's posterior variance.
-    pub fn derivative(&self, constraint: &Constraint, spot: Spot) -> Vec<f64> {
+    pub(super) fn derivative(&self, constraint: &Constraint, spot: Spot) -> Vec<f64> {
         let mut c = vec![0.0; self.states];
         for &(k, a) in constraint.terms() {
             c[k] += a;
@@ -193,7 +193,7 @@ impl Sweep {
     }
 
     /// Derivative with `eta` of `c^T delta` at a stage; `c`: (n).
-    pub fn derivative_at(&self, c: &[f64], stage: usize) -> Vec<f64> {
+    pub(super) fn derivative_at(&self, c: &[f64], stage: usize) -> Vec<f64> {
         let mut eta = vec![0.0; self.drives()];
         let mut y = c.to_vec();
         self.pull_back(&mut y, stage, 0, &mut eta);
@@ -219,7 +219,7 @@ impl Sweep {
     }
 
     /// Posterior covariance of the newest state, a sum of squares: (n, n).
-    pub fn newest_covariance(&self) -> DMatrix<f64> {
+    pub(super) fn newest_covariance(&self) -> DMatrix<f64> {
         let (n, leading) = (self.states, self.leading);
         let mut p = &self.start.delta_root * self.start.delta_root.transpose();
         let mut moved = DMatrix::zeros(leading, n);
@@ -239,7 +239,7 @@ impl Sweep {
     ///
     /// With `T_N` the newest rows of `T` and `B` a basis of the rows' derivatives it is `T_N (I - B B^T) T_N^T`,
     /// formed as a Gram matrix and so positive semi-definite.
-    pub fn projected_covariance<'a>(
+    pub(super) fn projected_covariance<'a>(
         &self,
         rows: impl Iterator<Item = (&'a Constraint, Spot)>,
     ) -> DMatrix<f64> {

@@ -20,12 +20,12 @@ pub(super) struct Path {
 }
 
 impl Path {
-    pub fn newest(&self) -> &DVector<f64> {
+    pub(super) fn newest(&self) -> &DVector<f64> {
         self.x.last().expect("a path holds the state at the window's start")
     }
 
     /// The path a fraction `alpha` of the way along `step`, whose states are changes and whose noises are absolute.
-    pub fn towards(&self, step: &Path, alpha: f64) -> Self {
+    pub(super) fn towards(&self, step: &Path, alpha: f64) -> Self {
         let blend = |a: &DVector<f64>, b: &DVector<f64>| a * (1.0 - alpha) + b * alpha;
         Self {
             x: self.x.iter().zip(&step.x).map(|(x, delta)| x + delta * alpha).collect(),
@@ -45,13 +45,17 @@ pub(super) struct Window {
 
 impl Window {
     /// A window without samples.
-    pub fn new(arrival: Arrival) -> Self {
+    pub(super) fn new(arrival: Arrival) -> Self {
         let path = Path { x: vec![arrival.mean.clone()], omega: Vec::new(), xi: arrival.mean.map(|_| 0.0) };
         Self { arrival, intervals: Vec::new(), path }
     }
 
     /// Let the oldest sample go into the arrival cost.
-    pub fn slide<M: StateSpace>(&mut self, model: &mut M, loss: Loss) -> Result<(), HorizonError<M::Error>> {
+    pub(super) fn slide<M: StateSpace>(
+        &mut self,
+        model: &mut M,
+        loss: Loss,
+    ) -> Result<(), HorizonError<M::Error>> {
         let (from, to) = (&self.path.x[0], &self.path.x[1]);
         self.intervals[0].linearise(model, from, to, loss)?;
         self.arrival.absorb(&self.intervals[0], from, to);
@@ -63,7 +67,7 @@ impl Window {
     }
 
     /// Put a sample at the end, its state predicted.
-    pub fn append<M: StateSpace>(
+    pub(super) fn append<M: StateSpace>(
         &mut self,
         model: &mut M,
         interval: Interval,
@@ -77,7 +81,7 @@ impl Window {
     }
 
     /// Linearise every interval along the trajectory.
-    pub fn linearise<M: StateSpace>(
+    pub(super) fn linearise<M: StateSpace>(
         &mut self,
         model: &mut M,
         loss: Loss,
@@ -87,7 +91,7 @@ impl Window {
     }
 
     /// Whether the newest state of `path` is outside a constraint.
-    pub fn ends_outside(&self, constraints: &[Constraint], path: &Path) -> bool {
+    pub(super) fn ends_outside(&self, constraints: &[Constraint], path: &Path) -> bool {
         let last = self.intervals.len();
         let (x, previous) = (path.x[last].as_slice(), path.x[last.saturating_sub(1)].as_slice());
         constraints.iter().any(|c| c.excess(previous, x) > 0.0)

@@ -31,7 +31,7 @@ pub(super) struct Steady {
 impl Steady {
     /// Steady state at the state `point` (n) for samples every `interval_s`, s; `None` where the process refuses the state, or the
     /// outputs do not see every state that walks.
-    pub fn solve<P: Plant>(plant: &mut P, point: &[f64], interval_s: f64) -> Option<Self> {
+    pub(super) fn solve<P: Plant>(plant: &mut P, point: &[f64], interval_s: f64) -> Option<Self> {
         let (n, m, outputs) = (plant.states(), plant.leading(), plant.outputs());
         let LinearSystem { phi, q, h, r } = LinearSystem::at(plant, point, interval_s).ok()?;
         let r: Vec<f64> = r.iter().map(|variance| MARGIN * variance).collect();
@@ -59,7 +59,7 @@ impl Steady {
 
     /// Whether no covariance of `p` among the `m` leading states differs by more than a share `tolerance` of the
     /// standard deviations; `now`: (n, n) is memory.
-    pub fn is_close(&self, p: &UdFactors, m: usize, tolerance: f64, now: &mut DMatrix<f64>) -> bool {
+    pub(super) fn is_close(&self, p: &UdFactors, m: usize, tolerance: f64, now: &mut DMatrix<f64>) -> bool {
         let steady = &self.covariance;
         // Variances first: they are cheap, and mostly decide.
         if !(0..m).all(|i| (p.variance(i) - steady[(i, i)]).abs() <= tolerance * steady[(i, i)]) {

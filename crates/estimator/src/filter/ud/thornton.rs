@@ -49,7 +49,7 @@ impl Clone for TimeUpdate {
 
 impl TimeUpdate {
     /// Zeroed room for `m` moving states of `n` and `k` noise sources.
-    pub fn reserve(&mut self, n: usize, m: usize, k: usize) {
+    pub(super) fn reserve(&mut self, n: usize, m: usize, k: usize) {
         if self.sizes == (m, n, k) {
             return;
         }
@@ -69,7 +69,7 @@ impl TimeUpdate {
     }
 
     /// Move the factors `u` (n, n) and `d` (n).
-    pub fn run(&mut self, linear: &Linearisation, u: &mut [f64], d: &mut [f64]) {
+    pub(super) fn run(&mut self, linear: &Linearisation, u: &mut [f64], d: &mut [f64]) {
         let (n, m, k) = (d.len(), linear.phi.nrows(), linear.q.len());
         if m == 0 {
             return;

@@ -36,7 +36,7 @@ impl Block {
     }
 
     /// The columns one by one.
-    pub fn columns(&self) -> impl Iterator<Item = usize> {
+    pub(super) fn columns(&self) -> impl Iterator<Item = usize> {
         self.runs.iter().cloned().flatten()
     }
 }

@@ -6,7 +6,7 @@ use crate::filter::lanes::{LANES, Lanes};
 
 /// Transitions of four filters over one interval, of one pattern, with noise covariances.
 #[derive(Clone, Debug)]
-pub struct BankTransition {
+pub(crate) struct BankTransition {
     pattern: Pattern,
     /// Elements of the blocks of rows, block by block, column by column.
     blocks: Vec<[Lanes; BLOCK_ROWS]>,
@@ -18,7 +18,7 @@ pub struct BankTransition {
 
 impl BankTransition {
     /// Zeros.
-    pub fn new(pattern: Pattern) -> Self {
+    pub(crate) fn new(pattern: Pattern) -> Self {
         let m = pattern.leading;
         let columns = pattern.blocks.iter().flat_map(Block::columns).count();
         Self {
@@ -30,12 +30,12 @@ impl BankTransition {
     }
 
     /// Number of leading rows.
-    pub fn leading(&self) -> usize {
+    pub(crate) fn leading(&self) -> usize {
         self.pattern.leading
     }
 
     /// Let the given lanes have the leading rows `phi`: column-major, (leading, n).
-    pub fn set(&mut self, lanes: [bool; LANES], phi: &[f64]) {
+    pub(crate) fn set(&mut self, lanes: [bool; LANES], phi: &[f64]) {
         let m = self.pattern.leading;
         let columns = self
             .pattern
@@ -53,7 +53,7 @@ impl BankTransition {
 
     /// Let the given lanes have noise covariances by row and column, those of the pattern in the upper triangle.
     #[inline(always)]
-    pub fn set_noise(&mut self, lanes: [bool; LANES], covariance: impl Fn((usize, usize)) -> Lanes) {
+    pub(crate) fn set_noise(&mut self, lanes: [bool; LANES], covariance: impl Fn((usize, usize)) -> Lanes) {
         let m = self.pattern.leading;
         for (j, rows) in self.pattern.noise.iter().enumerate() {
             for &i in rows.iter().chain([&j]) {
@@ -63,7 +63,7 @@ impl BankTransition {
     }
 
     /// `Phi u` of one column, `u`: (n), `out`: (leading).
-    pub fn carry(&self, u: &[Lanes], out: &mut [[Lanes; 1]]) {
+    pub(crate) fn carry(&self, u: &[Lanes], out: &mut [[Lanes; 1]]) {
         Arch::new().dispatch(Carry { transition: self, u, out });
     }
 

@@ -49,7 +49,7 @@ impl Kind {
 }
 
 impl<const N: usize> Process<N> {
-    pub fn new(k: &Coefficients, likelihood: &Likelihood<'_>, intensity: f64) -> Self {
+    pub(super) fn new(k: &Coefficients, likelihood: &Likelihood<'_>, intensity: f64) -> Self {
         let (f, g) = companion::<N>(k);
         let piece = Piece { duration: 0.0, left: 0, from: 0.0, to: 0.0, fresh: false, output: None };
         Self {

@@ -20,50 +20,50 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Zeros.
-    pub fn zeros(rows: usize, columns: usize) -> Self {
+    pub(super) fn zeros(rows: usize, columns: usize) -> Self {
         let groups = rows.div_ceil(4);
         Self { groups, values: vec![[0.0; 4]; groups * columns] }
     }
 
     /// Column `j`.
     #[inline(always)]
-    pub fn column(&self, j: usize) -> &[Group] {
+    pub(super) fn column(&self, j: usize) -> &[Group] {
         &self.values[j * self.groups..(j + 1) * self.groups]
     }
 
     /// Column `j`.
     #[inline(always)]
-    pub fn column_mut(&mut self, j: usize) -> &mut [Group] {
+    pub(super) fn column_mut(&mut self, j: usize) -> &mut [Group] {
         &mut self.values[j * self.groups..(j + 1) * self.groups]
     }
 
     /// Column `j` with its padding, number by number.
     #[inline(always)]
-    pub fn flat(&self, j: usize) -> &[f64] {
+    pub(super) fn flat(&self, j: usize) -> &[f64] {
         self.column(j).as_flattened()
     }
 
     /// Column `j` with its padding, number by number.
     #[inline(always)]
-    pub fn flat_mut(&mut self, j: usize) -> &mut [f64] {
+    pub(super) fn flat_mut(&mut self, j: usize) -> &mut [f64] {
         self.column_mut(j).as_flattened_mut()
     }
 
     /// Element of row `i` and column `j`.
     #[inline(always)]
-    pub fn at(&self, i: usize, j: usize) -> f64 {
+    pub(super) fn at(&self, i: usize, j: usize) -> f64 {
         self.flat(j)[i]
     }
 
     /// All zero.
     #[inline(always)]
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.values.fill([0.0; 4]);
     }
 
     /// `self <- c other`.
     #[inline(always)]
-    pub fn set_scaled(&mut self, c: f64, other: &Self) {
+    pub(super) fn set_scaled(&mut self, c: f64, other: &Self) {
         for (to, from) in self.values.as_flattened_mut().iter_mut().zip(other.values.as_flattened()) {
             *to = c * from;
         }
@@ -71,19 +71,19 @@ impl Columns {
 
     /// `self <- other`.
     #[inline(always)]
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         self.values.copy_from_slice(&other.values);
     }
 
     /// `self <- self + other`.
     #[inline(always)]
-    pub fn add(&mut self, other: &Self) {
+    pub(super) fn add(&mut self, other: &Self) {
         axpy(1.0, other.values.as_flattened(), self.values.as_flattened_mut());
     }
 
     /// `self <- a Z B + c B` with a square `Z` of as many rows.
     #[inline(always)]
-    pub fn set_product(&mut self, a: f64, z: &Square, b: &Self, c: f64) {
+    pub(super) fn set_product(&mut self, a: f64, z: &Square, b: &Self, c: f64) {
         if let [block] = z.blocks.as_slice() {
             for (to, from) in self.values.iter_mut().zip(&b.values) {
                 *to = combined(a, product(block, from), c, from);
@@ -104,7 +104,7 @@ impl Columns {
 
     /// `self <- self + c v v^T` for a square of columns as long as `v`.
     #[inline(always)]
-    pub fn add_square(&mut self, c: f64, v: &[Group]) {
+    pub(super) fn add_square(&mut self, c: f64, v: &[Group]) {
         if let ([v], [x0, x1, x2, x3]) = (v, self.values.as_mut_slice()) {
             for (to, value) in [x0, x1, x2, x3].into_iter().zip(v) {
                 *to = combined(1.0, *to, c * value, v);
@@ -137,14 +137,14 @@ pub(super) struct Square {
 
 impl Square {
     /// Zeros of so many rows and columns, padded.
-    pub fn zeros(rows: usize) -> Self {
+    pub(super) fn zeros(rows: usize) -> Self {
         let groups = rows.div_ceil(4);
         Self { blocks: vec![[[0.0; 4]; 4]; groups * groups] }
     }
 
     /// The first `rows` columns of `from`.
     #[inline(always)]
-    pub fn copy_from(&mut self, from: &Columns, rows: usize) {
+    pub(super) fn copy_from(&mut self, from: &Columns, rows: usize) {
         let groups = from.groups;
         for j in 0..rows {
             for (i, group) in from.column(j).iter().enumerate() {

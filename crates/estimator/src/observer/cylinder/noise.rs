@@ -15,7 +15,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    pub fn new(n: usize, leading: usize) -> Self {
+    pub(super) fn new(n: usize, leading: usize) -> Self {
         Self {
             phi: DMatrix::zeros(leading, n),
             noise: DMatrix::zeros(leading, leading),
@@ -24,13 +24,13 @@ impl Parts {
     }
 
     /// No parts.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.phi.fill_with_identity();
         self.noise.fill(0.0);
     }
 
     /// One more part with the transition `phi` and the noise `q`, an upper triangle.
-    pub fn append(&mut self, phi: &DMatrix<f64>, q: &DMatrix<f64>) {
+    pub(super) fn append(&mut self, phi: &DMatrix<f64>, q: &DMatrix<f64>) {
         let m = phi.nrows();
         let (moving, constant) = phi.as_slice().split_at(m * m);
         self.moved.fill(0.0);

@@ -17,7 +17,7 @@ pub(super) struct Structure {
 
 impl Structure {
     /// Temperatures are the states before the mass; lags are driven, and by what their sensors' parameters say.
-    pub fn of(states: &States) -> Self {
+    pub(super) fn of(states: &States) -> Self {
         let lags = states.lag.iter().flatten().copied();
         let block: Vec<usize> = (0..states.mass).chain(lags).collect();
         let acts = |state: &usize| match states.kinds[*state] {

@@ -79,7 +79,7 @@ pub(super) struct Transition {
 
 impl Transition {
     /// Room for equations of `count` states.
-    pub fn new(structure: &Structure, count: usize) -> Self {
+    pub(super) fn new(structure: &Structure, count: usize) -> Self {
         let Structure { block, outer, constants, .. } = structure;
         let columns: Vec<usize> = block.iter().chain(outer).chain(constants).copied().collect();
         let mut column_of = vec![None; count];
@@ -110,17 +110,17 @@ impl Transition {
     }
 
     /// By how much each row of the block changes per second and per unit of a state; `None`: the state acts on none.
-    pub fn per_state_mut(&mut self, state: usize) -> Option<&mut [f64]> {
+    pub(super) fn per_state_mut(&mut self, state: usize) -> Option<&mut [f64]> {
         self.column_of[state].map(|column| &mut self.a.flat_mut(column)[..self.rows])
     }
 
     /// Rate of change of each row of the block at the start.
-    pub fn rate_mut(&mut self) -> &mut [f64] {
+    pub(super) fn rate_mut(&mut self) -> &mut [f64] {
         &mut self.a.flat_mut(self.columns.len())[..self.rows]
     }
 
     /// Subtract what the linearisation at `a` makes of a state `b` from its `rate`, row by row of the block.
-    pub fn subtract_linear(&self, a: &[f64], b: &[f64], rate: &mut [f64]) {
+    pub(super) fn subtract_linear(&self, a: &[f64], b: &[f64], rate: &mut [f64]) {
         let mut linear = |away: f64, column: usize| {
             for (rate, by) in rate.iter_mut().zip(self.a.flat(column)) {
                 *rate -= away * by;
@@ -134,7 +134,7 @@ impl Transition {
 
     /// Solve the equations over `h` seconds from state `x`; `walking` holds the leading states.
     #[inline(always)]
-    pub fn solve(&mut self, x: &[f64], walking: &[Walking], h: f64) {
+    pub(super) fn solve(&mut self, x: &[f64], walking: &[Walking], h: f64) {
         let rates = self.outer.iter().map(|outer| walking[outer.state].decay_per_s);
         let norm = h * rates.fold(self.norm(), f64::max);
         // At least one, for the middle of the step.
@@ -236,7 +236,7 @@ impl Transition {
 
     /// Move a state over the step.
     #[inline(always)]
-    pub fn advance(&self, x: &mut [f64]) {
+    pub(super) fn advance(&self, x: &mut [f64]) {
         for (state, by) in self.columns[..self.rows].iter().zip(self.sum.flat(self.columns.len())) {
             x[*state] += by;
         }
@@ -248,7 +248,7 @@ impl Transition {
 
     /// Leading rows of the transition matrix: (leading, n).
     #[inline(always)]
-    pub fn write_phi(&self, phi: &mut DMatrix<f64>) {
+    pub(super) fn write_phi(&self, phi: &mut DMatrix<f64>) {
         let leading = phi.nrows();
         let (first, driven) = self.columns[..self.rows].split_at(self.temperatures);
         let phi = phi.as_mut_slice();
@@ -272,7 +272,7 @@ impl Transition {
     /// Noise covariance that the step of `h` seconds adds where each leading state gains `intensity` in a second: (leading, leading),
     /// its upper triangle. The rest has no meaning.
     #[inline(always)]
-    pub fn write_noise(&mut self, intensity: impl Fn(usize) -> f64, h: f64, q: &mut DMatrix<f64>) {
+    pub(super) fn write_noise(&mut self, intensity: impl Fn(usize) -> f64, h: f64, q: &mut DMatrix<f64>) {
         let m = q.nrows();
         let q = q.as_mut_slice();
         q.fill(0.0);

@@ -16,7 +16,7 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    pub fn new(constraints: &Constraints, candidates: usize) -> Self {
+    pub(super) fn new(constraints: &Constraints, candidates: usize) -> Self {
         let all = |value: f64| (0..candidates).map(|index| (index, value)).collect();
         let mut equal = vec![Row::new(all(1.0), constraints.sensors as f64)];
         let fixed = |index: &usize, value: f64| Row::new(vec![(*index, 1.0)], value);
@@ -41,12 +41,12 @@ impl Cuts {
     }
 
     /// Weights inside: as far from its faces as the solver's interior is.
-    pub fn inside(&self) -> Result<Vec<f64>, EstimatorError> {
+    pub(super) fn inside(&self) -> Result<Vec<f64>, EstimatorError> {
         self.least_of(&vec![0.0; self.candidates])
     }
 
     /// Weights at which a linear function is least.
-    pub fn least_of(&self, slope: &[f64]) -> Result<Vec<f64>, EstimatorError> {
+    pub(super) fn least_of(&self, slope: &[f64]) -> Result<Vec<f64>, EstimatorError> {
         let largest = slope.iter().fold(0.0, |of: f64, by| of.max(by.abs())).max(f64::MIN_POSITIVE);
         let mut program = ConeProgram::new(self.candidates);
         program.linear = slope.iter().map(|by| by / largest).collect();
@@ -55,7 +55,7 @@ impl Cuts {
     }
 
     /// Take in a tangent.
-    pub fn add(&mut self, relaxed: &Relaxed, at: &[f64]) {
+    pub(super) fn add(&mut self, relaxed: &Relaxed, at: &[f64]) {
         if self.tangents.is_empty() {
             self.scale = relaxed.value.abs().max(f64::MIN_POSITIVE);
         }
@@ -64,7 +64,7 @@ impl Cuts {
     }
 
     /// The least of the largest tangent, and where.
-    pub fn least(&self) -> Result<(f64, Vec<f64>), EstimatorError> {
+    pub(super) fn least(&self) -> Result<(f64, Vec<f64>), EstimatorError> {
         let level = self.candidates;
         let mut program = ConeProgram::new(self.candidates + 1);
         program.linear[level] = 1.0;
@@ -82,7 +82,7 @@ impl Cuts {
     }
 
     /// Add the polytope to a program whose first variables are the weights.
-    pub fn constrain(&self, program: &mut ConeProgram) {
+    pub(super) fn constrain(&self, program: &mut ConeProgram) {
         program.equal.extend(self.equal.iter().cloned());
         program.at_most.extend(self.at_most.iter().cloned());
     }

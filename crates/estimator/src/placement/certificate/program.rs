@@ -16,7 +16,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub fn new(factors: Vec<(usize, f64)>, bound: f64) -> Self {
+    pub(super) fn new(factors: Vec<(usize, f64)>, bound: f64) -> Self {
         Self { factors, bound }
     }
 }
@@ -43,7 +43,7 @@ pub(super) struct Solved {
 }
 
 impl ConeProgram {
-    pub fn new(variables: usize) -> Self {
+    pub(super) fn new(variables: usize) -> Self {
         Self {
             variables,
             quadratic: Vec::new(),
@@ -55,7 +55,7 @@ impl ConeProgram {
     }
 
     /// Solve it.
-    pub fn solve(&self) -> Result<Solved, EstimatorError> {
+    pub(super) fn solve(&self) -> Result<Solved, EstimatorError> {
         let mut entries = Vec::new();
         let mut b = Vec::new();
         let mut put = |row: &Row, sign: f64, b: &mut Vec<f64>| {

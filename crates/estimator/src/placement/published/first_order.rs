@@ -68,7 +68,12 @@ impl Moments {
 
 impl Record {
     /// Of columns in K; lost readings are NaN and left out.
-    pub fn new(time_s: &[f64], reading_k: impl Iterator<Item = f64>, gas_k: &[f64], zero_k: f64) -> Self {
+    pub(super) fn new(
+        time_s: &[f64],
+        reading_k: impl Iterator<Item = f64>,
+        gas_k: &[f64],
+        zero_k: f64,
+    ) -> Self {
         let mut record = Self::default();
         for ((time_s, reading_k), gas_k) in time_s.iter().zip(reading_k).zip(gas_k) {
             if reading_k.is_finite() {
@@ -81,7 +86,7 @@ impl Record {
     }
 
     /// With another behind it, from a time after its last sample on.
-    pub fn then(&self, other: &Self, gap_s: f64) -> Self {
+    pub(super) fn then(&self, other: &Self, gap_s: f64) -> Self {
         let mut joined = self.clone();
         let shift_s = self.time_s.last().map_or(0.0, |end_s| end_s + gap_s);
         joined.time_s.extend(other.time_s.iter().map(|time_s| time_s + shift_s));
@@ -91,7 +96,7 @@ impl Record {
     }
 
     /// Mean gas temperature, °C.
-    pub fn gas_degc(&self) -> &[f64] {
+    pub(super) fn gas_degc(&self) -> &[f64] {
         &self.gas_degc
     }
 
@@ -99,7 +104,7 @@ impl Record {
     ///
     /// # Errors
     /// Too few readings.
-    pub fn first_order(&self) -> Result<FirstOrder, IdentifyError> {
+    pub(super) fn first_order(&self) -> Result<FirstOrder, IdentifyError> {
         let samples = self.time_s.len();
         if samples <= PARAMETERS + 1 {
             return Err(IdentifyError::TooFewSamples { samples, parameters: PARAMETERS });
@@ -121,7 +126,7 @@ impl Record {
     }
 
     /// Errors of a lag, gas less model, K, its start fitted.
-    pub fn errors_k(&self, lag: FirstOrder) -> Vec<f64> {
+    pub(super) fn errors_k(&self, lag: FirstOrder) -> Vec<f64> {
         let start = self.moments(lag.time_constant_s).start(lag.gain);
         self.answers(lag.time_constant_s)
             .map(|(gas_degc, answer, decay)| gas_degc - lag.gain * answer - start * decay)

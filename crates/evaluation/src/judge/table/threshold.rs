@@ -14,7 +14,7 @@ use crate::world::Overlay;
 
 /// What the tight worlds that tune have reached.
 #[derive(Clone, Debug, Default)]
-pub struct Tuning {
+pub(super) struct Tuning {
     largest: Vec<f64>,
     length_s: f64,
 }
@@ -32,7 +32,7 @@ pub struct Tuned {
 
 impl Tuning {
     /// Take the largest value of a tight world.
-    pub fn take(&mut self, score: &Score, facts: &Facts) {
+    pub(super) fn take(&mut self, score: &Score, facts: &Facts) {
         if let Some((trace, _)) = &score.trace {
             self.largest.push(trace.most());
             self.length_s += facts.length_s;
@@ -40,14 +40,14 @@ impl Tuning {
     }
 
     /// The threshold for a wished mean time between false alarms, s; `None`: too few worlds have a value.
-    pub fn finish(&self, between_alarms_s: f64) -> Option<Tuned> {
+    pub(super) fn finish(&self, between_alarms_s: f64) -> Option<Tuned> {
         let level = alarm_level(&self.largest, self.length_s, between_alarms_s).ok()?;
         Some(Tuned { level, worlds: self.largest.len(), cylinder_years: self.length_s / YEAR_S })
     }
 }
 
 /// A score with what the candidate says at a threshold.
-pub fn at_threshold(score: &mut Score, threshold: f64, facts: &Facts, overlay: &Overlay) {
+pub(super) fn at_threshold(score: &mut Score, threshold: f64, facts: &Facts, overlay: &Overlay) {
     let silent = (Trace::default(), None);
     let (trace, told_s) = score.trace.as_ref().unwrap_or(&silent);
     let alarm_s = trace.alarm(threshold).map(|alarm| alarm.time_s);

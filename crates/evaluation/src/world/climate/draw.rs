@@ -17,7 +17,7 @@ pub(super) struct OutsideLaw {
 }
 
 impl OutsideLaw {
-    pub fn draw(&self, span: &Span) -> Outside {
+    pub(super) fn draw(&self, span: &Span) -> Outside {
         let mut random = Random::new(span.seed, Purpose::WorldAir);
         let weather = &mut Random::new(span.seed, Purpose::WorldWeather);
         Outside {
@@ -47,7 +47,7 @@ pub(super) struct TunnelLaw {
 const TUNNEL_GAP_S: f64 = 150.0;
 
 impl TunnelLaw {
-    pub fn draw(&self, span: &Span) -> Vec<Stay> {
+    pub(super) fn draw(&self, span: &Span) -> Vec<Stay> {
         let mut random = Random::new(span.seed, Purpose::WorldStays);
         let mut stays = Vec::new();
         for day in 0..span.days() {
@@ -78,7 +78,7 @@ pub(super) struct TripLaw {
 }
 
 impl TripLaw {
-    pub fn draw(&self, span: &Span) -> Vec<Trapezoid> {
+    pub(super) fn draw(&self, span: &Span) -> Vec<Trapezoid> {
         let mut random = Random::new(span.seed, Purpose::WorldTrips);
         let mut trips = Vec::new();
         for day in 0..span.days() {
@@ -109,7 +109,7 @@ pub(super) struct SunLaw {
 const SUN_EDGE_S: f64 = 60.0;
 
 impl SunLaw {
-    pub fn draw(&self, span: &Span) -> Vec<Trapezoid> {
+    pub(super) fn draw(&self, span: &Span) -> Vec<Trapezoid> {
         let mut random = Random::new(span.seed, Purpose::WorldSun);
         let mut patches = Vec::new();
         for day in 0..span.days() {

@@ -40,7 +40,7 @@ pub(super) struct Span {
 
 impl Span {
     /// A span whose log begins at a drawn time of the day, the simulation `lead_s` before it.
-    pub fn draw(seed: u64, lead_s: f64, length_s: f64, spacing_s: f64) -> Self {
+    pub(super) fn draw(seed: u64, lead_s: f64, length_s: f64, spacing_s: f64) -> Self {
         let of_day_s = Random::new(seed, Purpose::WorldClock).uniform((0.0, DAY_S)).floor();
         // One day more in front, so that the clock is positive when the simulation begins.
         Self { seed, start_s: DAY_S + of_day_s - lead_s, duration_s: lead_s + length_s, spacing_s }

@@ -27,7 +27,7 @@ pub(super) struct Outside {
 }
 
 impl Outside {
-    pub fn degc(&self, t_s: f64) -> f64 {
+    pub(super) fn degc(&self, t_s: f64) -> f64 {
         self.mean_degc - self.swing_k * (TAU * (t_s - self.coldest_s) / YEAR_S).cos()
             + self.diurnal_k * (TAU * (t_s - self.warmest_s) / DAY_S).cos()
             + self.weather_sd_k * self.weather.at(t_s)
@@ -42,7 +42,7 @@ pub(super) struct Trapezoid {
 }
 
 impl Trapezoid {
-    pub fn at(&self, t_s: f64) -> f64 {
+    pub(super) fn at(&self, t_s: f64) -> f64 {
         let [a, b, c, d] = self.corners_s;
         let rise = (t_s - a) / (b - a);
         let fall = (d - t_s) / (d - c);
@@ -91,7 +91,7 @@ impl Stay {
         rise.min(fall).clamp(0.0, 1.0)
     }
 
-    pub fn air_degc(&self, t_s: f64, inside_degc: f64, outside_degc: f64) -> f64 {
+    pub(super) fn air_degc(&self, t_s: f64, inside_degc: f64, outside_degc: f64) -> f64 {
         let target = match self.air {
             StayAir::Degc(degc) => degc,
             StayAir::Warmer(by_k, highest_degc) => (inside_degc + by_k).min(highest_degc.max(inside_degc)),
@@ -101,15 +101,15 @@ impl Stay {
         inside_degc + self.share(t_s, self.ramp_s) * (target - inside_degc)
     }
 
-    pub fn flow(&self, t_s: f64, otherwise: f64) -> f64 {
+    pub(super) fn flow(&self, t_s: f64, otherwise: f64) -> f64 {
         self.flow.map_or(otherwise, |(flow, ramp_s)| otherwise + self.share(t_s, ramp_s) * (flow - otherwise))
     }
 
-    pub fn light(&self, t_s: f64) -> f64 {
+    pub(super) fn light(&self, t_s: f64) -> f64 {
         if self.is_dark { 1.0 - self.share(t_s, self.ramp_s) } else { 1.0 }
     }
 
-    pub fn knots_s(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn knots_s(&self) -> impl Iterator<Item = f64> + '_ {
         let ramps = [Some(self.ramp_s), self.flow.map(|(_, ramp_s)| ramp_s)];
         let ends = [self.enter_s, self.leave_s];
         ends.into_iter().flat_map(move |end| {
@@ -125,7 +125,7 @@ pub(super) struct Polyline {
 }
 
 impl Polyline {
-    pub fn at(&self, t_s: f64) -> f64 {
+    pub(super) fn at(&self, t_s: f64) -> f64 {
         let next = self.time_s.partition_point(|&t| t <= t_s);
         match next {
             0 => self.value[0],

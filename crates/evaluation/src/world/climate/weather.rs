@@ -85,20 +85,20 @@ impl Weather {
     }
 
     /// Air without turbulence, °C.
-    pub fn air_degc(&self, t_s: f64) -> f64 {
+    pub(super) fn air_degc(&self, t_s: f64) -> f64 {
         let outside = self.outside.degc(t_s);
         let inside = self.inside.as_ref().map_or(outside, |inside| inside.at(t_s));
         self.stay_at(t_s).map_or(inside, |stay| stay.air_degc(t_s, inside, outside))
     }
 
     /// Film or wind without gusts.
-    pub fn flow(&self, t_s: f64, rest: f64) -> f64 {
+    pub(super) fn flow(&self, t_s: f64, rest: f64) -> f64 {
         let flow = rest + sum_at(&self.trips, t_s);
         self.stay_at(t_s).map_or(flow, |stay| stay.flow(t_s, flow))
     }
 
     /// Irradiance, W/m².
-    pub fn irradiance_w_m2(&self, t_s: f64) -> f64 {
+    pub(super) fn irradiance_w_m2(&self, t_s: f64) -> f64 {
         let (rise_s, set_s) = self.daylight_s;
         let of_day = (t_s.rem_euclid(super::part::DAY_S) - rise_s) / (set_s - rise_s);
         let arch = (4.0 * of_day * (1.0 - of_day)).max(0.0);
@@ -149,7 +149,7 @@ impl Weather {
     }
 
     /// The surroundings of a simulation, with a cylinder's own factor on the film and its change along the axis.
-    pub fn surroundings(
+    pub(super) fn surroundings(
         &self,
         span: &Span,
         film: f64,
@@ -182,7 +182,7 @@ impl Weather {
     }
 
     /// Beginnings of all jumps of the air by the clock of the simulation, s, in the order of time.
-    pub fn all_jumps_s(&self, span: &Span) -> Vec<f64> {
+    pub(super) fn all_jumps_s(&self, span: &Span) -> Vec<f64> {
         let ends = self.stays.iter().flat_map(|stay| [stay.enter_s, stay.leave_s]);
         let mut jumps: Vec<f64> =
             ends.chain(self.jumps_s.iter().copied()).map(|clock_s| clock_s - span.start_s).collect();

@@ -9,7 +9,7 @@ use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Dry air.
-pub static AIR: FluidData = FluidData {
+pub(super) static AIR: FluidData = FluidData {
     name: "air",
     reference: "Lemmon et al., J. Phys. Chem. Ref. Data 29 (2000) 331",
     gas_constant_j_mol_k: 8.31451,

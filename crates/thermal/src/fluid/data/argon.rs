@@ -9,7 +9,7 @@ use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Argon.
-pub static ARGON: FluidData = FluidData {
+pub(super) static ARGON: FluidData = FluidData {
     name: "argon",
     reference: "Tegeler, Span, Wagner, J. Phys. Chem. Ref. Data 28 (1999) 779",
     gas_constant_j_mol_k: 8.31451,

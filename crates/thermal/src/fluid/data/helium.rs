@@ -8,7 +8,7 @@ use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::Transport;
 
 /// Helium.
-pub static HELIUM: FluidData = FluidData {
+pub(super) static HELIUM: FluidData = FluidData {
     name: "helium",
     reference: "Ortiz-Vega et al., helium-4 (2013)",
     gas_constant_j_mol_k: 8.3144598,

@@ -7,7 +7,7 @@ use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::Transport;
 
 /// Hydrogen.
-pub static HYDROGEN: FluidData = FluidData {
+pub(super) static HYDROGEN: FluidData = FluidData {
     name: "hydrogen",
     reference: "Leachman et al., J. Phys. Chem. Ref. Data 38 (2009) 721",
     gas_constant_j_mol_k: 8.314472,

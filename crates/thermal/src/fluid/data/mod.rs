@@ -9,7 +9,7 @@ mod oxygen;
 use super::transport::Transport;
 
 /// All fluids.
-pub static ALL: &[&FluidData] =
+pub(super) static ALL: &[&FluidData] =
     &[&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM, &oxygen::OXYGEN];
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.

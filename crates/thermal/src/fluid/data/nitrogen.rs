@@ -9,7 +9,7 @@ use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Nitrogen.
-pub static NITROGEN: FluidData = FluidData {
+pub(super) static NITROGEN: FluidData = FluidData {
     name: "nitrogen",
     reference: "Span et al., J. Phys. Chem. Ref. Data 29 (2000) 1361",
     gas_constant_j_mol_k: 8.31451,

@@ -8,7 +8,9 @@ use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 
 /// Oxygen.
-pub static OXYGEN: FluidData = FluidData {
+// 6.283 is a coefficient of the source, not two pi.
+#[expect(clippy::approx_constant)]
+pub(super) static OXYGEN: FluidData = FluidData {
     name: "oxygen",
     reference: "Stewart, Jacobsen, Wagner, J. Phys. Chem. Ref. Data 20 (1991) 917",
     gas_constant_j_mol_k: 8.31434,

@@ -13,7 +13,7 @@ const WORTH: f64 = 300.0;
 pub const FORGOTTEN_S: f64 = 5.0 * DAY_S;
 
 /// Part of what a transmitter did so long ago, s, that is not forgotten.
-pub fn kept(since_s: f64) -> f64 {
+pub(super) fn kept(since_s: f64) -> f64 {
     (-since_s / FORGOTTEN_S).exp()
 }
 

@@ -10,13 +10,13 @@ const REST_BITS: u32 = 7;
 pub(super) struct Generation(Vec<u16>);
 
 impl Generation {
-    pub fn insert(&mut self, fingerprint: u16) {
+    pub(super) fn insert(&mut self, fingerprint: u16) {
         if let Err(at) = self.0.binary_search(&fingerprint) {
             self.0.insert(at, fingerprint);
         }
     }
 
-    pub fn contains(&self, fingerprint: u16) -> bool {
+    pub(super) fn contains(&self, fingerprint: u16) -> bool {
         self.0.binary_search(&fingerprint).is_ok()
     }
 }

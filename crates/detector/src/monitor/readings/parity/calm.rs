@@ -27,24 +27,24 @@ pub(super) struct Calm {
 impl Calm {
     /// A window that began then, s, of so many rows, with the sums of two thermometers and the temperature that the pressure stands for, K, NaN without a
     /// pressure.
-    pub fn new(begun_s: f64, rows: u32, sums_k: [f64; 2], gas_k: f64) -> Self {
+    pub(super) fn new(begun_s: f64, rows: u32, sums_k: [f64; 2], gas_k: f64) -> Self {
         let units = |of_k: f64| (of_k / UNIT_K).round() as i32;
         let above = if gas_k.is_nan() { NONE } else { units(sums_k[0] / f64::from(rows) - gas_k) };
         Self { begun_ms: (1e3 * begun_s).round() as i64, rows, apart: units(sums_k[0] - sums_k[1]), above }
     }
 
     /// When it began, s.
-    pub fn begun_s(&self) -> f64 {
+    pub(super) fn begun_s(&self) -> f64 {
         self.begun_ms as f64 / 1e3
     }
 
     /// First less second thermometer, K.
-    pub fn apart_k(&self) -> f64 {
+    pub(super) fn apart_k(&self) -> f64 {
         UNIT_K * f64::from(self.apart) / f64::from(self.rows)
     }
 
     /// Each less the temperature that the pressure stands for, K; NaN without a pressure.
-    pub fn above_k(&self) -> [f64; 2] {
+    pub(super) fn above_k(&self) -> [f64; 2] {
         let first_k = if self.above == NONE { f64::NAN } else { UNIT_K * f64::from(self.above) };
         [first_k, first_k - self.apart_k()]
     }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::observer::{Commissioning, LeakHypothesis, Observer, ObserverSettings};
-use crate::sensor::Sensor;
+use crate::sensor::{ParameterKind, Sensor};
 use crate::thermal::vessel::presets;
 
 const REST: [f64; 3] = [288.15, 288.15, 2e7];
@@ -47,6 +47,26 @@ fn the_gain_becomes_stationary_at_rest_and_again_after_a_gap_and_an_exchange() {
         assert!(!is_settled(&observer), "{interruption}");
         t += 60.0 * settle(&mut observer, t, 1200) as f64;
     }
+}
+
+/// A transmitter whose offset has shifted: its offset is as little known as at first, and the gas no better than before.
+#[test]
+fn a_forgotten_offset_is_as_uncertain_as_its_prior() {
+    let mut observer = observer(&["shoulder", "valve", "pressure"], Engine::Stationary);
+    observer.step(0.0, &REST).unwrap();
+    let t = 60.0 * settle(&mut observer, 0.0, 1200) as f64;
+    let pressure = 2;
+    let state = observer.cylinder.state_map().offset_of(pressure, observer.cylinder.sensors()).unwrap();
+    let gas = observer.cylinder.state_map().gas;
+    let before = observer.bank.variance(0, gas);
+    observer.forget_offset(pressure);
+    let parameters = observer.cylinder.sensors()[pressure].parameters();
+    let prior = parameters.iter().find(|of| of.kind == ParameterKind::Offset).unwrap();
+    assert_eq!(observer.bank.variance(0, state), prior.sd * prior.sd);
+    let relative = observer.bank.variance(0, gas) / before - 1.0;
+    assert!(relative > -1e-9, "{relative}");
+    let estimate = observer.step(t + 60.0, &REST).unwrap();
+    assert!(estimate.mass_kg.is_finite() && estimate.mass_sd_kg > 0.0);
 }
 
 /// The Riccati equation's covariance is where the filter itself goes that moves it.

@@ -22,7 +22,7 @@ const HOUR_S: f64 = 3600.0;
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
 /// The noise of the freest mass of a group, part of the gas: root mean square over worlds, median correlation time.
-pub fn noise_of(tally: &Tally) -> Option<Noise> {
+pub(crate) fn noise_of(tally: &Tally) -> Option<Noise> {
     let n = tally.noise.len() as f64;
     let variance = tally.noise.iter().map(|noise| noise.sd * noise.sd).sum::<f64>() / n;
     let mut times: Vec<f64> = tally.noise.iter().map(|noise| noise.correlation_time_s).collect();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-pub use self::build::noise_of;
+pub(super) use self::build::noise_of;
 use super::clustered::{Rate, Share};
 use super::threshold::Tuned;
 use crate::judge::measures::{Delay, SmallestLeak};
