@@ -6,6 +6,7 @@
 //! shoulder's temperatures. It needs no filling and no model. The bench sets its threshold on some cylinders and judges it on others.
 #![allow(clippy::print_stdout)]
 
+use cylwatch::thermal::units::DAY_S;
 use std::collections::VecDeque;
 
 use cylwatch::evaluation::EvaluationError;
@@ -13,7 +14,6 @@ use cylwatch::evaluation::baseline::Threshold;
 use cylwatch::evaluation::performance::bench::{Candidate, Contender, Plan, Readings, bench};
 use cylwatch::report::aligned;
 
-const DAY_S: f64 = 86_400.0;
 const BAR_H: f64 = 1e5 / 3600.0;
 
 // ANCHOR: detector

@@ -11,11 +11,9 @@ use super::views::Views;
 use clap::Args;
 use cylwatch::evaluation::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
 use cylwatch::report::{Provenance, bench_detector as report};
-use cylwatch::thermal::units::PASCAL_PER_BAR;
+use cylwatch::thermal::units::BAR_PA;
+use cylwatch::thermal::units::{DAY_S, HOUR_S};
 use std::sync::Mutex;
-
-const DAY_S: f64 = 86_400.0;
-const HOUR_S: f64 = 3600.0;
 
 /// Arguments of `bench-detector`.
 #[derive(Debug, Args)]
@@ -138,7 +136,7 @@ fn plan(arguments: &BenchDetectorArguments) -> Plan {
         ..Plan::default()
     };
     if let Some(rates) = &arguments.rates {
-        plan.rates_pa_s = rates.iter().map(|rate| rate * PASCAL_PER_BAR / HOUR_S).collect();
+        plan.rates_pa_s = rates.iter().map(|rate| rate * BAR_PA / HOUR_S).collect();
         plan.rates_pa_s.sort_by(f64::total_cmp);
         plan.rates_pa_s.dedup();
     }

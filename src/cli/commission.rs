@@ -10,16 +10,15 @@ use super::output::Target;
 use super::progress::Progress;
 use anyhow::{Context, bail};
 use cylwatch::detector::monitor::MonitorSettings;
-use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::evaluation::tails::{Campaign, FitSettings, commission, watch_all};
 use cylwatch::evaluation::world::NominalVessel;
 use cylwatch::report::commission::{CommissionedVessel, VesselMark, Worlds, intention};
 use cylwatch::report::{Provenance, quoted};
-use cylwatch::thermal::units::PASCAL_PER_BAR;
+use cylwatch::thermal::units::BAR_PA;
+use cylwatch::thermal::units::DAY_S;
+use cylwatch::thermal::units::YEAR_S;
 use options::Options;
 use std::path::Path;
-
-const DAY_S: f64 = 86_400.0;
 
 /// Simulates, fits, writes. A file appears at the end or not at all.
 pub(super) fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow::Result<()> {
@@ -31,7 +30,7 @@ pub(super) fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow
     let nominal = options.nominal(vessel)?;
     messages.say(&intention(&nominal, &options.campaign));
     let found = simulate(&nominal, &options, messages)?;
-    let of_bar = |pressure_pa: f64| pressure_pa / PASCAL_PER_BAR;
+    let of_bar = |pressure_pa: f64| pressure_pa / BAR_PA;
     let commissioned = CommissionedVessel {
         vessel: mark,
         fill_pressure_bar: of_bar(nominal.fill_pa.1),

@@ -2,8 +2,8 @@
 use super::format::Format;
 use super::number::{above, within};
 use clap::{Arg, Args, Command};
-use cylwatch::evaluation::performance::YEAR_S;
 use cylwatch::log::{LogOptions, Mapping, Zone};
+use cylwatch::thermal::units::YEAR_S;
 use std::path::{Path, PathBuf};
 
 /// Heading of options that few need; the short help leaves them out, see [`without_experts`].

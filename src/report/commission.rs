@@ -1,9 +1,9 @@
 //! The file of `cylwatch commission`: thresholds for one vessel, the worlds that they were found in, and how often they alarm without a leak.
-use super::{DAY_S, Provenance, Report, digest, number};
-use crate::evaluation::performance::YEAR_S;
+use super::{Provenance, Report, digest, number};
 use crate::evaluation::tails::{Campaign, Commissioned};
 use crate::evaluation::world::{Climate, GasKind, NominalVessel, RowPattern, SensorClass};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
+use crate::thermal::units::{DAY_S, YEAR_S};
 use crate::thermal::vessel::{Vessel, VesselSpec};
 use cylwatch_detector::evidence::Tails;
 use serde::{Deserialize, Serialize};
@@ -114,7 +114,7 @@ impl Worlds {
 
 /// What is going to be simulated, in words.
 pub fn intention(nominal: &NominalVessel, campaign: &Campaign) -> String {
-    let bar = |pressure_pa: f64| number(pressure_pa / PASCAL_PER_BAR, 4);
+    let bar = |pressure_pa: f64| number(pressure_pa / BAR_PA, 4);
     let Worlds { climates, gases, sensors, rows, cylinders, days, cylinder_years } = Worlds::of(campaign);
     format!(
         "{}: simulating {cylinders} tight cylinders of {} d ({} years)\n  fill {} to {} bar at 15 °C, transmitter up to {} bar, \
@@ -174,7 +174,7 @@ impl CommissionedVessel {
 
     /// Where a cylinder of this fill at 15 °C, Pa, is not what the thresholds were found for, in words.
     pub fn cautions(&self, fill_pa: f64) -> Vec<String> {
-        let (fill_bar, found_bar) = (fill_pa / PASCAL_PER_BAR, self.fill_pressure_bar);
+        let (fill_bar, found_bar) = (fill_pa / BAR_PA, self.fill_pressure_bar);
         let (low, high) = SAME_FILL;
         let mut cautions = Vec::new();
         if !(low * found_bar..=high * found_bar).contains(&fill_bar) {
@@ -199,8 +199,8 @@ impl CommissionedVessel {
     /// # Errors
     /// The mean time is not positive.
     pub fn summary(&self) -> Result<Report, cylwatch_detector::DetectorError> {
-        let usual = Tails::usual(PASCAL_PER_BAR * self.fill_pressure_bar)
-            .thresholds(self.false_alarm_years * YEAR_S)?;
+        let usual =
+            Tails::usual(BAR_PA * self.fill_pressure_bar).thresholds(self.false_alarm_years * YEAR_S)?;
         let rows = self.found.scales.iter().map(|of| {
             let (low, high) = of.threshold_interval;
             let [threshold, low, high, usual] =

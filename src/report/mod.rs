@@ -2,6 +2,8 @@
 //! or writes.
 //!
 //! The text of a result is a [`Report`]: a terminal and a page show the same one.
+use crate::thermal::units::HOUR_S;
+
 pub mod bench_detector;
 pub mod calibrate;
 pub mod commission;
@@ -28,12 +30,8 @@ pub use table::{Cell, Column, Digits, Field, RowFormat, Rows, Table, Values, ali
 pub(crate) const GRAM: f64 = 1e3;
 /// g/h in a kg/s.
 pub(crate) const GRAM_PER_HOUR: f64 = 3.6e6;
-/// s in an hour.
-pub(crate) const HOUR_S: f64 = 3600.0;
-/// s in a day.
-pub(crate) const DAY_S: f64 = 86_400.0;
 /// bar/h in a Pa/s.
-pub(crate) const BAR_PER_HOUR: f64 = HOUR_S / crate::thermal::units::PASCAL_PER_BAR;
+pub(crate) const BAR_PER_HOUR: f64 = HOUR_S / crate::thermal::units::BAR_PA;
 
 /// What can go wrong while results become text or pictures.
 #[derive(Debug, thiserror::Error)]

@@ -3,7 +3,7 @@ use crate::estimator::EstimatorError;
 use crate::estimator::log::Log;
 use crate::estimator::sensor::{PressureReference, Sensor, SensorKind, SensorSuite, SuiteTruth, sample};
 use crate::thermal::trajectory::Trajectory;
-use crate::thermal::units::{ATMOSPHERE_PA, PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{ATMOSPHERE_PA, BAR_PA, ZERO_CELSIUS_K};
 
 /// Readings of a scenario's sensors at the samples of a run.
 #[derive(Clone, Debug)]
@@ -56,9 +56,9 @@ impl Readings {
 /// Name of a sensor's column and its readings in that column's unit: °C, bar, or bar above the atmosphere.
 pub(super) fn column(sensor: &Sensor, values: &[f64]) -> (String, Vec<f64>) {
     let (unit, zero, factor) = match sensor.kind {
-        SensorKind::Pressure { reference: PressureReference::Absolute, .. } => ("bar", 0.0, PASCAL_PER_BAR),
+        SensorKind::Pressure { reference: PressureReference::Absolute, .. } => ("bar", 0.0, BAR_PA),
         SensorKind::Pressure { reference: PressureReference::Gauge { .. }, .. } => {
-            ("barg", ATMOSPHERE_PA, PASCAL_PER_BAR)
+            ("barg", ATMOSPHERE_PA, BAR_PA)
         }
         SensorKind::Surface { .. } | SensorKind::Gas { .. } | SensorKind::Ambient => {
             ("degc", ZERO_CELSIUS_K, 1.0)

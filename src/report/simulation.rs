@@ -3,7 +3,7 @@ use super::figure::{Figure, Item, Mark, Panel, style};
 use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Report, Table, number, readings};
 use crate::estimator::sensor::{Sensor, SensorKind};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
 /// Significant digits of a simulated number: beyond what the solver's tolerance carries, short enough to read.
@@ -14,7 +14,7 @@ fn celsius(values_k: &[f64]) -> impl Iterator<Item = f64> + '_ {
 }
 
 fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
-    values_pa.iter().map(|p| p / PASCAL_PER_BAR)
+    values_pa.iter().map(|p| p / BAR_PA)
 }
 
 /// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
@@ -54,7 +54,7 @@ pub(crate) fn event_name(event: &Event) -> String {
     match &event.kind {
         EventKind::PressureLimit { limit_pa, falling } => {
             let side = if *falling { "below" } else { "above" };
-            format!("{side} {} bar", number(limit_pa / PASCAL_PER_BAR, 6))
+            format!("{side} {} bar", number(limit_pa / BAR_PA, 6))
         }
         EventKind::FlowOpened { flow } => format!("{flow} opens"),
         EventKind::FlowClosed { flow } => format!("{flow} closes"),
@@ -73,8 +73,8 @@ pub fn title(run: &Trajectory) -> String {
 pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
     let time = &run.time_s;
     let limit = |&limit_pa: &f64| Item::Limit {
-        name: format!("limit {} bar", number(limit_pa / PASCAL_PER_BAR, 6)),
-        value: limit_pa / PASCAL_PER_BAR,
+        name: format!("limit {} bar", number(limit_pa / BAR_PA, 6)),
+        value: limit_pa / BAR_PA,
     };
     let mut pressure: Vec<Item> = run.scenario.pressure_limits_pa.iter().map(limit).collect();
     pressure.push(Item::line("pressure", time, bar(&run.pressure_pa), style::PRESSURE));
@@ -188,7 +188,7 @@ pub fn document(run: &Trajectory, readings: &Readings, provenance: &Provenance) 
         json!({
             "time_s": event.time_s,
             "event": event_name(event),
-            "pressure_bar": event.pressure_pa / PASCAL_PER_BAR,
+            "pressure_bar": event.pressure_pa / BAR_PA,
             "gas_mean_degc": event.gas_mean_k - ZERO_CELSIUS_K,
         })
     };
@@ -247,10 +247,7 @@ pub fn summary(run: &Trajectory) -> Report {
     let extremes =
         run.gas_mean_k.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, &t| (r.0.min(t), r.1.max(t)));
     let mut facts = vec![
-        (
-            "pressure, start and end".to_owned(),
-            format!("{:.2} and {:.2} bar", first / PASCAL_PER_BAR, last / PASCAL_PER_BAR),
-        ),
+        ("pressure, start and end".to_owned(), format!("{:.2} and {:.2} bar", first / BAR_PA, last / BAR_PA)),
         (
             "gas mean, lowest and highest".to_owned(),
             format!("{:.2} and {:.2} °C", extremes.0 - ZERO_CELSIUS_K, extremes.1 - ZERO_CELSIUS_K),

@@ -4,7 +4,7 @@ use super::cylinder::SLOPE_OF_PAPER_BAR_K;
 use super::table_1::TABLE_1;
 use crate::estimator::identify::published;
 use crate::report::number;
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 use serde_json::{Value, json};
 
 /// One question.
@@ -165,7 +165,7 @@ fn of_the_monitor(results: &Reproduction) -> Vec<Comparison> {
     let minutes = |delay: Option<f64>| delay.map_or("never".into(), |delay| format!("{delay:.0} min"));
     let rate = results.leak[1].method_run.finding.map(|finding| finding.rate_pa_s);
     let rate = rate.map_or_else(String::new, |rate| {
-        let [value, low, high] = [rate.value, rate.low, rate.high].map(|pa_s| pa_s * 3600.0 / PASCAL_PER_BAR);
+        let [value, low, high] = [rate.value, rate.low, rate.high].map(|pa_s| pa_s * 3600.0 / BAR_PA);
         format!("; {value:.2} bar/h ({low:.2} to {high:.2})")
     });
     vec![

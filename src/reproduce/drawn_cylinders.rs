@@ -18,12 +18,12 @@ use crate::estimator::placement::{Disturbance, Site, SiteSettings};
 use crate::estimator::sensor::Sensor;
 use crate::evaluation::truth::matched::{Chamber, least_errors, mass_member, settings};
 use crate::evaluation::truth::{Course, Truth, TruthLeak, TruthSettings, generate_with};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::HOUR_S;
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use crate::thermal::vessel::{Vessel, presets};
 use rayon::prelude::*;
 use std::ops::Range;
 
-const HOUR_S: f64 = 3600.0;
 const GRAM_PER_HOUR: f64 = 1e-3 / HOUR_S;
 /// Sensors of the observer.
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
@@ -245,7 +245,7 @@ impl Settings {
         };
         let rates = |method: usize| {
             let rates = all.iter().filter_map(|drawn| rate(drawn, method));
-            rates.map(|rate_pa_s| rate_pa_s * HOUR_S / PASCAL_PER_BAR).collect()
+            rates.map(|rate_pa_s| rate_pa_s * HOUR_S / BAR_PA).collect()
         };
         let early =
             |drawn: &&Drawn, method: usize| alarm_s(drawn, method).is_some_and(|alarm_s| alarm_s < onset_s);
@@ -285,7 +285,7 @@ fn bar_per_kg(nominal: &Vessel) -> Result<f64, ReproduceError> {
     let volume = nominal.volume.volume_m3(t, pressure_pa);
     let density = |p| nominal.fluid.density_from_pressure_temperature(p, t);
     let kg = volume * (density(pressure_pa + step_pa)? - density(pressure_pa - step_pa)?);
-    Ok(2.0 * step_pa / PASCAL_PER_BAR / kg)
+    Ok(2.0 * step_pa / BAR_PA / kg)
 }
 
 /// Time, min, after which the observer at rest can know of a leak at the monitor's rate of false alarms, and the standard deviation of its

@@ -17,7 +17,7 @@ use crate::estimator::sensor::Sensor;
 use crate::evaluation::baseline::{
     Expectation, Filling, GasTemperature, Loss, PressureError, Reading, Threshold,
 };
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Vessel;
 
 /// A full cylinder, as every method assumes it.
@@ -119,21 +119,20 @@ impl Methods {
         for k in 0..2 {
             let gas_k = self.gas[k].step(time_s, shoulder_k).unwrap_or(f64::NAN);
             method_run.gas_degc[k].push(gas_k - ZERO_CELSIUS_K);
-            method_run.missing_bar[k]
-                .push(self.errors[k].step(reading).map_or(f64::NAN, |e| e / PASCAL_PER_BAR));
-            method_run.lasting_bar[k].push(self.thresholds[k].update(reading) / PASCAL_PER_BAR);
+            method_run.missing_bar[k].push(self.errors[k].step(reading).map_or(f64::NAN, |e| e / BAR_PA));
+            method_run.lasting_bar[k].push(self.thresholds[k].update(reading) / BAR_PA);
         }
         for output in self.monitor.step(time_s, row)? {
             let estimate = &output.estimate;
             method_run.gas_degc[2].push(estimate.gas_mean_k - ZERO_CELSIUS_K);
             method_run.gas_sd_k.push(estimate.gas_mean_sd_k);
-            self.settled_bar.push(estimate.p15_pa / PASCAL_PER_BAR);
+            self.settled_bar.push(estimate.p15_pa / BAR_PA);
             method_run.finding = output.leak;
             method_run.found_s = method_run.found_s.or(output.leak.map(|_| time_s));
         }
         method_run.time_s.push(time_s);
         method_run.shoulder_degc.push(shoulder_k - ZERO_CELSIUS_K);
-        method_run.pressure_bar.push(pressure_pa / PASCAL_PER_BAR);
+        method_run.pressure_bar.push(pressure_pa / BAR_PA);
         Ok(())
     }
 }

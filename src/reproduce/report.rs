@@ -6,7 +6,7 @@ use super::scheme::Scheme;
 use super::{Reproduction, checks, comparison, figures};
 use crate::report::figure::{Part, Picture};
 use crate::report::{Report, simulation};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 
 /// What a method states about the cylinder of figure 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,9 +36,8 @@ impl Reproduction {
             let loss = leaking.losses.get(method).copied().flatten();
             let found = leaking.finding.map(|finding| finding.rate_pa_s.value);
             let rate_bar_h = if method < 2 { loss.map(|loss| loss.rate_pa_s) } else { found }
-                .map(|rate| rate * hours / PASCAL_PER_BAR);
-            let above_bar =
-                leaking.pressure_bar.last().map(|bar| bar - super::methods::LIMIT_PA / PASCAL_PER_BAR);
+                .map(|rate| rate * hours / BAR_PA);
+            let above_bar = leaking.pressure_bar.last().map(|bar| bar - super::methods::LIMIT_PA / BAR_PA);
             let left_h =
                 above_bar.zip(rate_bar_h).filter(|(_, rate)| *rate > 0.0).map(|(bar, rate)| bar / rate);
             LeakStatement {

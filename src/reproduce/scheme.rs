@@ -12,13 +12,13 @@ use super::methods::{FULL, LIMIT_PA};
 use super::passage::{ENTRY_S, ONSET_S};
 use crate::evaluation::baseline::{Expectation, GasTemperature, HOLD_S, Sustained, Trend};
 use crate::report::figure::{Arrow, Diagram, Form, Node};
+use crate::thermal::units::HOUR_S;
 use crate::thermal::units::ZERO_CELSIUS_K;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 const BAR: f64 = 1e5;
-const HOUR_S: f64 = 3600.0;
 /// Interval of the samples, s.
 pub const SAMPLE_S: f64 = 10.0;
 /// Duration of figures 6 and 8, s.

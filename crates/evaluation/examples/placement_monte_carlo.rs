@@ -8,6 +8,7 @@
 //! deviations and errors with 95 % intervals over seeds. Then the smallest leak that is found in a day, by the statistic of its signature, and the paper's
 //! question: one thermometer beside the pressure, at each place.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
+use cylwatch_thermal::units::DAY_S;
 use std::time::Instant;
 
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
@@ -23,7 +24,6 @@ use cylwatch_evaluation::truth::TruthSettings;
 
 const NAMES: [&str; 7] = ["bottom", "middle", "shoulder", "neck", "valve", "ambient", "pressure"];
 const BEST: usize = 5;
-const DAY_S: f64 = 86_400.0;
 const G: f64 = 1e-3;
 const G_H: f64 = 1e-3 / 3600.0;
 

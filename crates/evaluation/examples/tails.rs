@@ -5,6 +5,7 @@
 //! Runs the monitor over all worlds of PLAN (`plans/tails.toml`; what is not tuning in it is left out), takes the largest statistics of each stretch of
 //! operation and prints, for cylinders and for tanks, the tails as they stand in the library, the thresholds of one false alarm in ten years with their 95 % intervals,
 //! and the rate of false alarms that such thresholds have in cylinders that they were not fitted to. Then those whose statistics come closest to them, or above.
+use cylwatch_thermal::units::YEAR_S;
 use std::io::Write as _;
 use std::path::PathBuf;
 
@@ -12,7 +13,6 @@ use cylwatch_detector::evidence::{HIGH_PRESSURE_PA, Scale};
 use cylwatch_detector::monitor::MonitorSettings;
 use cylwatch_evaluation::judge::candidate::Registry;
 use cylwatch_evaluation::judge::plan::{Plan, Role, Unit};
-use cylwatch_evaluation::performance::YEAR_S;
 use cylwatch_evaluation::tails::{CommissionedScale, FitSettings, Watched, commission, watch};
 use cylwatch_evaluation::world::Simulated;
 use rayon::prelude::*;

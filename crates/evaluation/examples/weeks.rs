@@ -6,6 +6,7 @@
 //! The simulation is that of `cylwatch simulate nitrogen-20l railway-week`, its sensors are drawn by seed; the monitor is that of `cylwatch monitor
 //! nitrogen-20l`, told of the fill of 200 bar at 15 °C and nothing else.
 #![allow(clippy::print_stdout)]
+use cylwatch_thermal::units::DAY_S;
 use std::error::Error;
 
 use cylwatch_detector::monitor::{EventKind, Health, Monitor, MonitorSettings, Verdict};
@@ -19,7 +20,6 @@ use rayon::prelude::*;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-const DAY_S: f64 = 86_400.0;
 /// Air that is warmer than this is a tunnel's, K; what the warmest tunnel has, K.
 const TUNNEL_K: f64 = 293.15;
 const WARMEST_K: f64 = 328.15;

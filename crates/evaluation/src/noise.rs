@@ -125,11 +125,10 @@ impl Profile<'_> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use cylwatch_thermal::units::HOUR_S;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
-
-    const HOUR_S: f64 = 3600.0;
 
     /// Drawn at even intervals, about a mean of 7.
     fn drawn(noise: Noise, interval_s: f64, count: u32, random: &mut ChaCha8Rng) -> Vec<Residual> {

@@ -10,8 +10,20 @@ pub const ATMOSPHERE_PA: f64 = 101_325.0;
 
 /// Zero of the Celsius scale, K.
 pub const ZERO_CELSIUS_K: f64 = 273.15;
+/// Temperature that fill pressures are quoted at, K: 15 °C.
+pub const QUOTED_K: f64 = 288.15;
+
 /// One bar, Pa.
-pub const PASCAL_PER_BAR: f64 = 1e5;
+pub const BAR_PA: f64 = 1e5;
+
+/// One minute, s.
+pub const MINUTE_S: f64 = 60.0;
+/// One hour, s.
+pub const HOUR_S: f64 = 60.0 * MINUTE_S;
+/// One day, s.
+pub const DAY_S: f64 = 24.0 * HOUR_S;
+/// One year, s.
+pub const YEAR_S: f64 = 365.25 * DAY_S;
 
 const PSI_PA: f64 = 6_894.757_293_168_361;
 

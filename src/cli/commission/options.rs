@@ -1,11 +1,11 @@
 //! Options of `commission` that fit each other.
 use super::*;
-use cylwatch::detector::prognosis::QUOTED_K;
 use cylwatch::thermal::units::Dimension;
+use cylwatch::thermal::units::QUOTED_K;
 use cylwatch::thermal::vessel::Vessel;
 
 /// Usual fill, Pa.
-const FILL_PA: f64 = 200.0 * PASCAL_PER_BAR;
+const FILL_PA: f64 = 200.0 * BAR_PA;
 /// Stretches of a rehearsal, of the usual ones: none is longer than an hour.
 const REHEARSED: f64 = 1e-3;
 
@@ -43,7 +43,7 @@ impl Options {
 
     /// The vessel that cylinders are drawn around.
     pub(super) fn nominal(&self, vessel: Vessel) -> anyhow::Result<NominalVessel> {
-        let bar = |pressure_pa: f64| pressure_pa / PASCAL_PER_BAR;
+        let bar = |pressure_pa: f64| pressure_pa / BAR_PA;
         let state = vessel.fluid.density_from_pressure_temperature(self.fill_pa, QUOTED_K);
         state.with_context(|| {
             format!("--fill-pressure-bar {}: the gas has no such state", bar(self.fill_pa))

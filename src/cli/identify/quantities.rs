@@ -2,7 +2,7 @@
 use crate::cli::unit_options::{Choice, Choices, Given};
 use anyhow::bail;
 use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR};
+use cylwatch::thermal::units::{BAR_PA, Dimension};
 
 /// What can be given.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ impl Quantities {
     pub(crate) fn variance(&self, option: &str, signal: &Signal) -> anyhow::Result<f64> {
         let (asked, other) = (Dimension::TemperatureDifference, Dimension::PressureDifference);
         let (asked, other, unit) =
-            if signal.is_temperature() { (asked, other, 1.0) } else { (other, asked, PASCAL_PER_BAR) };
+            if signal.is_temperature() { (asked, other, 1.0) } else { (other, asked, BAR_PA) };
         let name = &signal.name;
         if let Some(wrong) = self.of(option, other).next() {
             bail!("{}: {name} is in {}, which is another quantity", wrong.name, signal.unit);

@@ -5,7 +5,7 @@ use cylwatch::estimator::log::Quantity;
 use cylwatch::log::columns::TruthQuantity;
 use cylwatch::log::{LogReader, Row};
 use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K, units_of};
+use cylwatch::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K, units_of};
 
 /// What is true and may be identified from.
 const GAS_MEAN: &str = "gas_mean";
@@ -70,7 +70,7 @@ impl Source {
     fn value(self, row: &Row) -> f64 {
         match self {
             Self::Channel(at, Quantity::Temperature) => row.readings[at] - ZERO_CELSIUS_K,
-            Self::Channel(at, Quantity::Pressure) => row.readings[at] / PASCAL_PER_BAR,
+            Self::Channel(at, Quantity::Pressure) => row.readings[at] / BAR_PA,
             Self::GasMean => row.truth.gas_mean_k - ZERO_CELSIUS_K,
         }
     }

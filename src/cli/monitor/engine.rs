@@ -4,9 +4,10 @@ use super::state::{Refusal, State};
 use super::*;
 use cylwatch::detector::monitor::alarm::AlarmSettings;
 use cylwatch::detector::monitor::{Limits, Monitor, MonitorSettings};
-use cylwatch::detector::prognosis::{Contents, QUOTED_K, ReactionSettings};
+use cylwatch::detector::prognosis::{Contents, ReactionSettings};
 use cylwatch::estimator::log::Quantity;
-use cylwatch::thermal::units::PASCAL_PER_BAR;
+use cylwatch::thermal::units::BAR_PA;
+use cylwatch::thermal::units::QUOTED_K;
 use cylwatch::thermal::vessel::Fill;
 
 /// A monitor and what a run must know beside it.
@@ -101,7 +102,7 @@ impl Engine {
         let full_pa = contents.pressure_pa(mass_kg, QUOTED_K)?;
         let limit_pa = options.limits.limit_pa;
         if full_pa < limit_pa && !options.states_limit {
-            let [full, limit] = [full_pa, limit_pa].map(|pressure_pa| pressure_pa / PASCAL_PER_BAR);
+            let [full, limit] = [full_pa, limit_pa].map(|pressure_pa| pressure_pa / BAR_PA);
             messages.caution(&format!(
                 "the fill makes {full:.1} bar at 15 °C, below the usual limit of {limit:.0} bar: if this vessel has \
                  another one, state it with --limit-bar"

@@ -6,11 +6,10 @@ use crate::cli::output::check_distinct;
 use crate::cli::unit_options::Given;
 use cylwatch::detector::monitor::intake::IntakeSettings;
 use cylwatch::report::monitor::OperatingLimits;
-use cylwatch::thermal::units::{Dimension, PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use cylwatch::thermal::units::DAY_S;
+use cylwatch::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K};
 use std::path::PathBuf;
 use std::time::Duration;
-
-const DAY_S: f64 = 86_400.0;
 
 /// Options that passed all checks that need no file to be read.
 pub(super) struct Options {
@@ -101,7 +100,7 @@ impl Options {
 
 fn limits(given: &Given<super::arguments::MonitorQuantities>) -> anyhow::Result<OperatingLimits> {
     Ok(OperatingLimits {
-        limit_pa: given.si("limit", Dimension::Pressure)?.unwrap_or(160.0 * PASCAL_PER_BAR),
+        limit_pa: given.si("limit", Dimension::Pressure)?.unwrap_or(160.0 * BAR_PA),
         coldest_k: given.si("coldest", Dimension::Temperature)?.unwrap_or(ZERO_CELSIUS_K - 25.0),
         next_service_s: given.si("next-service", Dimension::Time)?.unwrap_or(30.0 * DAY_S),
     })

@@ -2,8 +2,9 @@
 use super::*;
 use crate::cli::row_stream::RowStream;
 use cylwatch::detector::monitor::Output;
-use cylwatch::detector::prognosis::{Contents, QUOTED_K};
+use cylwatch::detector::prognosis::Contents;
 use cylwatch::report::monitor::{self as report, MonitorRow, Summary};
+use cylwatch::thermal::units::QUOTED_K;
 use cylwatch::thermal::vessel::Vessel;
 use serde_json::{Map, json};
 

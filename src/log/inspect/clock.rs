@@ -1,11 +1,10 @@
 //! The times of a log: gaps with their begin, steps back, and what looks like summer time.
 
 use super::sketch::Sketch;
+use crate::thermal::units::HOUR_S;
 
 /// Longest intervals that are kept.
 const KEPT: usize = 20;
-/// An interval of this length from one row to the next, s, or a step back of it, is a local time that changed.
-const HOUR_S: f64 = 3600.0;
 
 /// An interval between two rows.
 #[derive(Clone, Copy, Debug, PartialEq)]

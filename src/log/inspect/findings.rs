@@ -5,7 +5,7 @@ use super::*;
 use crate::log::columns::{self, TimeForm, TruthQuantity};
 use crate::log::label::Label;
 use crate::log::{Kind, Zone};
-use crate::thermal::units::{self, Dimension, PASCAL_PER_BAR};
+use crate::thermal::units::{self, BAR_PA, Dimension};
 
 /// An interval longer than this many usual ones is a gap.
 const GAP: f64 = 5.0;
@@ -180,9 +180,8 @@ fn unit_doubt(column: &ColumnReport) -> Option<String> {
         ))
     };
     if let Some(unit) = units::find(suffix, Dimension::Pressure) {
-        let bar = unit.to_si(median) / PASCAL_PER_BAR;
-        let starts_at_zero =
-            unit.offset == 0.0 && (unit.to_si(low) / PASCAL_PER_BAR).abs() < 0.5 && bar > 5.0;
+        let bar = unit.to_si(median) / BAR_PA;
+        let starts_at_zero = unit.offset == 0.0 && (unit.to_si(low) / BAR_PA).abs() < 0.5 && bar > 5.0;
         return doubt(Dimension::Pressure, !(0.5..700.0).contains(&bar)).or_else(|| {
             starts_at_zero
                 .then(|| format!("falls to {low} {suffix}, less than the air: gauge pressure, or no reading"))

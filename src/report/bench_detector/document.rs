@@ -1,8 +1,9 @@
 //! A bench as CSV, a row for each detector and rate, and as JSON with all that is known.
 use crate::evaluation::performance::bench::{Judged, Outcome};
 use crate::evaluation::performance::{CONFIDENCE, Row};
-use crate::report::{BAR_PER_HOUR, Digits, HOUR_S, Provenance, Table};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::report::{BAR_PER_HOUR, Digits, Provenance, Table};
+use crate::thermal::units::BAR_PA;
+use crate::thermal::units::HOUR_S;
 use serde_json::{Value, json};
 
 /// Significant digits of the numbers.
@@ -71,7 +72,7 @@ fn hours(seconds: Option<f64>) -> Option<f64> {
 /// As JSON: plan, thresholds, measures of each detector, and every run.
 pub fn document(outcome: &Outcome, provenance: &Provenance) -> Value {
     let noise = outcome.noise.map(|noise| {
-        json!({ "sd_bar": noise.sd / PASCAL_PER_BAR, "correlation_time_h": noise.correlation_time_s / HOUR_S })
+        json!({ "sd_bar": noise.sd / BAR_PA, "correlation_time_h": noise.correlation_time_s / HOUR_S })
     });
     json!({
         "provenance": provenance.to_json(),

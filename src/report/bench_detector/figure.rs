@@ -1,7 +1,8 @@
 //! Delay against leak rate, all detectors in one figure.
 use crate::evaluation::performance::bench::{Judged, Outcome};
+use crate::report::BAR_PER_HOUR;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, style};
-use crate::report::{BAR_PER_HOUR, HOUR_S};
+use crate::thermal::units::HOUR_S;
 
 /// Median delays with their 95 % intervals, and the shortest possible delay.
 pub fn figure(outcome: &Outcome) -> Figure {

@@ -1,8 +1,9 @@
 //! A bench in a few lines and two tables for people.
 use crate::evaluation::performance::bench::{Judged, Outcome};
-use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak, YEAR_S};
-use crate::report::{BAR_PER_HOUR, DAY_S, HOUR_S, Report, number};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak};
+use crate::report::{BAR_PER_HOUR, Report, number};
+use crate::thermal::units::BAR_PA;
+use crate::thermal::units::{DAY_S, HOUR_S, YEAR_S};
 
 /// Columns of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
@@ -70,7 +71,7 @@ fn reached(judged: &Judged) -> Vec<String> {
 fn threshold(judged: &Judged) -> String {
     let value = judged.level.threshold;
     match judged.unit.as_str() {
-        "Pa" => format!("{} bar", number(value / PASCAL_PER_BAR, 3)),
+        "Pa" => format!("{} bar", number(value / BAR_PA, 3)),
         "log10(years)" => format!("{} years", number(10_f64.powf(value), 2)),
         unit => format!("{} {unit}", number(value, 3)),
     }
@@ -142,7 +143,7 @@ fn bound(outcome: &Outcome) -> String {
     let noise = outcome.noise.map_or_else(String::new, |noise| {
         format!(
             "\nbound: shortest mean delay that an error of {} bar wandering over {} h allows",
-            number(noise.sd / PASCAL_PER_BAR, 2),
+            number(noise.sd / BAR_PA, 2),
             number(noise.correlation_time_s / HOUR_S, 2)
         )
     });

@@ -5,8 +5,8 @@ use crate::evaluation::performance::bench::{AlarmLevel, Judged, Outcome, Plan};
 use crate::evaluation::performance::{Performance, Run, TrueLeak};
 use crate::report::Provenance;
 use crate::report::figure::{Item, Picture};
+use crate::thermal::units::DAY_S;
 
-const DAY_S: f64 = 86_400.0;
 /// 0.1 bar/h.
 const SMALL: f64 = 1e4 / 3600.0;
 

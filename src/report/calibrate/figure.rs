@@ -3,7 +3,7 @@ use super::Study;
 use super::summary::unit;
 use crate::estimator::calibrate::ChannelResiduals;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, Picture, correlation, style};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 
 /// Two-sided normal quantile of 99 %.
 const QUANTILE_99: f64 = 2.576;
@@ -28,7 +28,7 @@ fn over_time(study: &Study, log: &str, channels: &[&ChannelResiduals]) -> Figure
             continue;
         }
         let (quantity, zero, scale) = if pressure {
-            ("pressure in bar", 0.0, PASCAL_PER_BAR)
+            ("pressure in bar", 0.0, BAR_PA)
         } else {
             ("temperature in °C", ZERO_CELSIUS_K, 1.0)
         };

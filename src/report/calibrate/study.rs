@@ -4,7 +4,7 @@ use crate::estimator::calibrate::{
     ParameterSpec, Profile, Scope,
 };
 use crate::estimator::log::Quantity;
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 use crate::thermal::vessel::spec::FittedSpec;
 
 const PASCAL_PER_MILLIBAR: f64 = 1e2;
@@ -46,7 +46,7 @@ pub struct Line<'a> {
 /// Unit of a parameter for people, and what it is in SI.
 pub fn shown_unit(kind: &ParameterKind, is_pressure: bool) -> (&'static str, f64) {
     match kind.si_unit(is_pressure) {
-        "Pa" => ("bar", PASCAL_PER_BAR),
+        "Pa" => ("bar", BAR_PA),
         "Pa/K" => ("mbar/K", PASCAL_PER_MILLIBAR),
         unit => (unit, 1.0),
     }

@@ -2,7 +2,7 @@
 use super::{Line, Study};
 use crate::estimator::calibrate::{ChannelResiduals, ChannelScore};
 use crate::report::{Report, number};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 
 /// Digits of values that people compare.
 const DIGITS: usize = 4;
@@ -99,5 +99,5 @@ fn held_out(study: &Study, report: Report) -> Report {
 
 /// Unit of a channel's differences for people, and what it is in SI.
 pub(super) fn unit(study: &Study, experiment: &str, channel: &str) -> (&'static str, f64) {
-    if study.is_pressure(experiment, channel) { ("bar", PASCAL_PER_BAR) } else { ("K", 1.0) }
+    if study.is_pressure(experiment, channel) { ("bar", BAR_PA) } else { ("K", 1.0) }
 }

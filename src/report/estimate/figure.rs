@@ -5,7 +5,7 @@ use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::Truth;
 use crate::report::GRAM_PER_HOUR;
 use crate::report::figure::{Figure, Item, Panel, style};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 
 /// Curves before those of the innovations.
 const FIXED: usize = 14;
@@ -40,7 +40,7 @@ impl FigureData {
         let leak = band(estimate.leak_kg_s, estimate.leak_sd_kg_s, truth.outflow_kg_s);
         let leak = leak.map(|flow| flow * GRAM_PER_HOUR);
         let difference_pa = estimate.pressure_pa - estimate.pressure_expected_pa;
-        let pressure = [estimate.pressure_pa, difference_pa].map(|p| p / PASCAL_PER_BAR);
+        let pressure = [estimate.pressure_pa, difference_pa].map(|p| p / BAR_PA);
         let fixed = [gas, mass, leak].into_iter().flatten().chain(pressure);
         self.curves.push(estimate.time_s, fixed.chain(innovations.iter().map(normalised)));
     }

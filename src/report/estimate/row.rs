@@ -1,7 +1,7 @@
 //! The columns of an estimate.
 use crate::estimator::observer::Estimate;
 use crate::report::{BAR_PER_HOUR, Digits, Field, GRAM, GRAM_PER_HOUR};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 
 /// What the columns mean, for a help page.
 pub const DOCUMENTATION: &str = "\
@@ -48,11 +48,11 @@ pub fn fields<R: AsRef<EstimateRow>>() -> [Field<R>; 13] {
         Field::number("leak_g_h", Decimals(6), |row| row.as_ref().estimate.leak_kg_s * GRAM_PER_HOUR),
         Field::number("leak_sd_g_h", Decimals(6), |row| row.as_ref().estimate.leak_sd_kg_s * GRAM_PER_HOUR),
         Field::number("leak_bar_h", Decimals(8), |row| row.as_ref().leak_pa_s * BAR_PER_HOUR),
-        Field::number("pressure_bar", Decimals(5), |row| row.as_ref().estimate.pressure_pa / PASCAL_PER_BAR),
+        Field::number("pressure_bar", Decimals(5), |row| row.as_ref().estimate.pressure_pa / BAR_PA),
         Field::number("pressure_expected_bar", Decimals(5), |row| {
-            row.as_ref().estimate.pressure_expected_pa / PASCAL_PER_BAR
+            row.as_ref().estimate.pressure_expected_pa / BAR_PA
         }),
-        Field::number("p15_bar", Decimals(5), |row| row.as_ref().estimate.p15_pa / PASCAL_PER_BAR),
+        Field::number("p15_bar", Decimals(5), |row| row.as_ref().estimate.p15_pa / BAR_PA),
         Field::text("verdict", |row| row.as_ref().verdict),
         Field::text("quality", |row| row.as_ref().estimate.quality.as_str()),
     ]

@@ -5,7 +5,7 @@ use super::score::{Score, Spread};
 use crate::estimator::consistency::{Finding, OutputReport};
 use crate::log::{Caution, Sampling};
 use crate::report::{GRAM_PER_HOUR, Report};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
 /// What is left of a run when its rows have gone.
@@ -98,12 +98,12 @@ fn end(summary: &Summary) -> Vec<(&'static str, String)> {
     ];
     if e.leak_kg_s.is_finite() {
         let (leak, sd) = (e.leak_kg_s * GRAM_PER_HOUR, e.leak_sd_kg_s * GRAM_PER_HOUR);
-        let bar_h = summary.last.leak_pa_s / PASCAL_PER_BAR * 3600.0;
+        let bar_h = summary.last.leak_pa_s / BAR_PA * 3600.0;
         let [leak, sd, bar_h] =
             [(leak, 4), (sd, 4), (bar_h, 5)].map(|(value, decimals)| fixed(value, decimals));
         lines.push(("leak rate at the end", format!("{leak} ± {sd} g/h, {bar_h} bar/h")));
     }
-    lines.push(("pressure at 15 °C", format!("{:.2} bar", e.p15_pa / PASCAL_PER_BAR)));
+    lines.push(("pressure at 15 °C", format!("{:.2} bar", e.p15_pa / BAR_PA)));
     lines
 }
 

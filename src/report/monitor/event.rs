@@ -4,7 +4,7 @@ use crate::detector::monitor::{Event, EventKind, Health, Interval, LeakFinding, 
 use crate::estimator::log::Quantity;
 use crate::report::estimate::duration;
 use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 use serde_json::{Value, json};
 
 /// What events call times and sensors.
@@ -48,7 +48,7 @@ fn event_kind_text(event: &Event, naming: &Naming) -> String {
         }
         EventKind::ColdNight(pressure_pa) => format!(
             "the coldest night will bring the pressure to {:.1} bar without any leak: refill before it",
-            pressure_pa / PASCAL_PER_BAR
+            pressure_pa / BAR_PA
         ),
         EventKind::FillingDoubted { mass_kg, filled_kg } => format!(
             "the readings correspond to {} of gas, the stated filling to {}: check the units of the log and the filling",
@@ -98,7 +98,7 @@ pub(crate) fn health_text(health: Health, quantity: Quantity) -> String {
         Health::Shifted(by) => {
             let (by, unit) = match quantity {
                 Quantity::Temperature => (by, "K"),
-                Quantity::Pressure => (by / PASCAL_PER_BAR, "bar"),
+                Quantity::Pressure => (by / BAR_PA, "bar"),
             };
             format!("is shifted by {} {unit}; corrected", short(by))
         }
@@ -143,7 +143,7 @@ fn details(kind: &EventKind, naming: &Naming) -> Value {
             "health": health_word(*health),
             "shift": shift(*health, naming.quantity(*sensor)),
         }),
-        EventKind::ColdNight(pressure_pa) => json!({ "pressure_bar": pressure_pa / PASCAL_PER_BAR }),
+        EventKind::ColdNight(pressure_pa) => json!({ "pressure_bar": pressure_pa / BAR_PA }),
         EventKind::FillingDoubted { mass_kg, filled_kg } => {
             json!({ "mass_kg": mass_kg, "filled_kg": filled_kg })
         }
@@ -191,7 +191,7 @@ pub(super) fn health_word(health: Health) -> &'static str {
 fn shift(health: Health, quantity: Quantity) -> Value {
     match (health, quantity) {
         (Health::Shifted(by) | Health::Deviates(by), Quantity::Temperature) => json!({ "k": by }),
-        (Health::Shifted(by), Quantity::Pressure) => json!({ "bar": by / PASCAL_PER_BAR }),
+        (Health::Shifted(by), Quantity::Pressure) => json!({ "bar": by / BAR_PA }),
         _ => Value::Null,
     }
 }

@@ -6,7 +6,7 @@ use crate::log::Truth;
 use crate::report::GRAM_PER_HOUR;
 use crate::report::estimate::DecimatedCurves;
 use crate::report::figure::{Figure, Item, Panel, style};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 
 /// Curves: places in the course.
 const RAW: usize = 0;
@@ -44,7 +44,7 @@ impl FigureData {
     /// Adds an output with the truth of its row.
     pub fn push(&mut self, output: &Output, truth: &Truth) {
         let e = &output.estimate;
-        let pressures = [e.pressure_pa, e.pressure_expected_pa, e.p15_pa].map(|p| p / PASCAL_PER_BAR);
+        let pressures = [e.pressure_pa, e.pressure_expected_pa, e.p15_pa].map(|p| p / BAR_PA);
         let mass = [e.mass_kg, e.mass_kg - 2.0 * e.mass_sd_kg, e.mass_kg + 2.0 * e.mass_sd_kg, truth.mass_kg];
         let found = output.leak.map_or([f64::NAN; 3], |leak| {
             let rate = leak.rate_kg_s.scaled(GRAM_PER_HOUR);
@@ -59,10 +59,10 @@ impl FigureData {
 
     fn pressures(&self) -> Panel {
         let limit = |name: String, pressure_pa: f64| {
-            let value = pressure_pa / PASCAL_PER_BAR;
+            let value = pressure_pa / BAR_PA;
             pressure_pa.is_finite().then_some(Item::Limit { name, value })
         };
-        let limit_bar = self.limit_pa / PASCAL_PER_BAR;
+        let limit_bar = self.limit_pa / BAR_PA;
         let items = [
             self.curves.item("as read", RAW, style::noisy(style::PRESSURE)),
             self.curves.item("expected if tight", EXPECTED, style::MODEL),

@@ -1,5 +1,6 @@
 //! The time that is left and the reaction that is due, in words.
 use crate::detector::prognosis::{Advice, Passage, Reaction};
+use crate::thermal::units::YEAR_S;
 
 use crate::report::estimate::duration;
 
@@ -15,7 +16,6 @@ pub(crate) fn passage_text(passage: Passage, horizon_s: f64) -> String {
 
 /// A duration, years in years.
 fn long(duration_s: f64) -> String {
-    const YEAR_S: f64 = 365.25 * 86_400.0;
     let years = duration_s / YEAR_S;
     match years {
         y if y < 0.99 => duration(duration_s),

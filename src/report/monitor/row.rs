@@ -3,7 +3,7 @@ use super::reaction_word;
 use crate::detector::monitor::Output;
 use crate::report::estimate::{self, EstimateRow};
 use crate::report::{Digits, Field, GRAM, GRAM_PER_HOUR};
-use crate::thermal::units::PASCAL_PER_BAR;
+use crate::thermal::units::BAR_PA;
 
 /// Standard deviations between the bounds of a 95 % interval.
 const INTERVAL_SD: f64 = 2.0 * 1.959_963_984_540_054;
@@ -87,7 +87,7 @@ pub fn fields() -> Vec<Field<MonitorRow>> {
         Field::number("leak_high_g_h", Decimals(6), |row| row.leak_high_kg_s * GRAM_PER_HOUR),
         Field::number("onset_s", Decimals(1), |row| row.onset_s),
         Field::number("lost_g", Decimals(3), |row| row.lost_kg * GRAM),
-        Field::number("cold_pressure_bar", Decimals(4), |row| row.cold_pressure_pa / PASCAL_PER_BAR),
+        Field::number("cold_pressure_bar", Decimals(4), |row| row.cold_pressure_pa / BAR_PA),
         Field::text("reaction", |row| row.reaction),
         Field::text("reason", |row| row.reason),
     ];

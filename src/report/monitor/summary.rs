@@ -9,7 +9,7 @@ use crate::log::{Caution, Sampling};
 use crate::report::Report;
 use crate::report::estimate::sampling_text;
 use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
-use crate::thermal::units::{PASCAL_PER_BAR, ZERO_CELSIUS_K};
+use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
 
 /// What the verdict is held against.
@@ -128,7 +128,7 @@ fn leak_rows(leak: &LeakFinding, naming: &Naming) -> [(&'static str, String); 3]
 fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
     let OperatingLimits { limit_pa, coldest_k, .. } = summary.limits;
     let held = |pressure_pa: f64| {
-        let limit = short(limit_pa / PASCAL_PER_BAR);
+        let limit = short(limit_pa / BAR_PA);
         match pressure_pa {
             p if p.is_nan() => format!("limit {limit} bar"),
             p if p > limit_pa => format!("above the limit of {limit} bar"),
@@ -138,10 +138,10 @@ fn pressure_rows(summary: &Summary) -> [(&'static str, String); 2] {
     let [p15_pa, cold_pa] = [summary.last.estimate.p15_pa, summary.last.cold_pressure_pa];
     let degc = coldest_k - ZERO_CELSIUS_K;
     [
-        ("pressure at 15 °C", format!("{:.2} bar, {}", p15_pa / PASCAL_PER_BAR, held(p15_pa))),
+        ("pressure at 15 °C", format!("{:.2} bar, {}", p15_pa / BAR_PA, held(p15_pa))),
         (
             "coldest night",
-            format!("{:.1} bar will be read at {degc:.0} °C, {}", cold_pa / PASCAL_PER_BAR, held(cold_pa)),
+            format!("{:.1} bar will be read at {degc:.0} °C, {}", cold_pa / BAR_PA, held(cold_pa)),
         ),
     ]
 }
@@ -252,9 +252,9 @@ pub fn document(summary: &Summary) -> Value {
         "leak_probability": summary.last.decision.leak_probability,
         "leak_rate_high_g_h": summary.last.leak_rate_kg_s.high * GRAM_PER_HOUR,
         "reaction": summary.last.decision.reaction.map(reaction_word),
-        "p15_bar": summary.last.estimate.p15_pa / PASCAL_PER_BAR,
-        "cold_pressure_bar": summary.last.cold_pressure_pa / PASCAL_PER_BAR,
-        "limit_bar": summary.limits.limit_pa / PASCAL_PER_BAR,
+        "p15_bar": summary.last.estimate.p15_pa / BAR_PA,
+        "cold_pressure_bar": summary.last.cold_pressure_pa / BAR_PA,
+        "limit_bar": summary.limits.limit_pa / BAR_PA,
         "coldest_degc": summary.limits.coldest_k - ZERO_CELSIUS_K,
         "outlook": summary.last.outlook.as_ref().map(outlook),
         "alarms": alarms,

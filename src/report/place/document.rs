@@ -2,7 +2,8 @@
 use super::{Placed, Unit};
 use crate::estimator::placement::study::{Judged, Numbered, Placement};
 use crate::estimator::placement::{CandidateOutput, CourseNumber, SitedCylinder};
-use crate::report::{Digits, GRAM, GRAM_PER_HOUR, HOUR_S, Provenance, Table};
+use crate::report::{Digits, GRAM, GRAM_PER_HOUR, Provenance, Table};
+use crate::thermal::units::HOUR_S;
 use serde_json::{Map, Value, json};
 
 /// Significant digits of the numbers.

@@ -1,7 +1,7 @@
 //! A study as a report: its settings, then one table after the other.
 use super::{BAR, GRAM_PER_HOUR, HOUR, Placed};
-use crate::report::DAY_S;
 use crate::report::{Report, number};
+use crate::thermal::units::DAY_S;
 use crate::thermal::units::ZERO_CELSIUS_K;
 
 impl Placed<'_> {

@@ -1,4 +1,5 @@
 //! What the monitor is told: limits, how rare a false alarm is to be, when something counts.
+use crate::units::YEAR_S;
 use serde::{Deserialize, Serialize};
 
 use super::alarm::AlarmSettings;
@@ -9,9 +10,6 @@ use crate::estimator::observer::ObserverSettings;
 use crate::evidence::Tails;
 use crate::prognosis::{ISO_14520_LOSS, LossLaw, ReactionSettings};
 use crate::units::HOUR_S;
-
-/// Mean year, s.
-pub const YEAR_S: f64 = 365.25 * 86_400.0;
 
 /// Limits of the pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,13 +2,12 @@
 //!
 //! `m = rho(p, T) V(T, p)`: the volume gives way to temperature and pressure. The inverse, pressure of a mass, is found by going round:
 //! density of the volume at the last pressure, pressure of that density.
+use crate::units::QUOTED_K;
 use cylwatch_estimator::thermal::fluid::Fluid;
 use cylwatch_estimator::thermal::vessel::{InnerVolume, Vessel};
 
 use crate::DetectorError;
 
-/// Temperature that a filling is quoted at, K.
-pub const QUOTED_K: f64 = 288.15;
 /// Loss of pressure, corrected for temperature, at which ISO 14520 has an inert gas container refilled or replaced.
 pub const ISO_14520_LOSS: f64 = 0.05;
 

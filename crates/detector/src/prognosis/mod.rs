@@ -38,7 +38,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use contents::{Contents, ISO_14520_LOSS, QUOTED_K};
+pub use contents::{Contents, ISO_14520_LOSS};
 pub use distribution::{Passage, Prognosis, Quantiles};
 pub(crate) use distribution::{normal_probability, root};
 pub use lambert::lambert_w;

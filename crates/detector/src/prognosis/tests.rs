@@ -1,4 +1,5 @@
 //! The distribution against closed forms, double integrals and draws; intervals against leaks that go on.
+use crate::units::{DAY_S, HOUR_S};
 use approx::assert_relative_eq;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -6,8 +7,6 @@ use rand_distr::StandardNormal;
 
 use super::*;
 
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 /// 1 g/h.
 const G_H: f64 = 1e-3 / HOUR_S;
 const LIMIT_KG: f64 = 3.66;

@@ -1,12 +1,9 @@
 //! The intake: order, duplicates, gaps, clocks that jump, bins, and the state in between.
 use cylwatch_detector::DetectorError;
+use cylwatch_detector::estimator::thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 use cylwatch_detector::monitor::intake::{Intake, IntakeSettings, Row, Taken};
 use cylwatch_detector::monitor::{Event, EventKind};
 use proptest::prelude::*;
-
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 
 type Arrival = (f64, Vec<f64>);
 

@@ -1,7 +1,8 @@
 //! The time left against leaks of the physical model: a hole in a cylinder, a cold night on a tight one.
 use cylwatch_detector::estimator::thermal::scenario::{self, Scenario};
+use cylwatch_detector::estimator::thermal::units::QUOTED_K;
 use cylwatch_detector::estimator::thermal::{simulate, vessel};
-use cylwatch_detector::prognosis::{Contents, LossLaw, MassAndLeak, Passage, Prognosis, QUOTED_K};
+use cylwatch_detector::prognosis::{Contents, LossLaw, MassAndLeak, Passage, Prognosis};
 
 const BAR: f64 = 1e5;
 

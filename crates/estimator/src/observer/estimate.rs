@@ -1,8 +1,9 @@
 //! What the observer says after a sample.
+use cylwatch_thermal::units::QUOTED_K;
 use serde::{Deserialize, Serialize};
 
 use super::clock::Exchange;
-use super::{Observer, QUOTED_K, REFERENCE_AFTER_S};
+use super::{Observer, REFERENCE_AFTER_S};
 use crate::EstimatorError;
 use crate::filter::{Belief, Outcome, StateSpace, mixture};
 

@@ -71,8 +71,6 @@ use signature::Onsets;
 pub use smoother::Smoother;
 pub use snapshot::Snapshot;
 
-/// Temperature at which the settled pressure is quoted, K: 15 °C.
-const QUOTED_K: f64 = 288.15;
 /// Time after commissioning or an exchange of gas after which the mass counts as the reference, s.
 const REFERENCE_AFTER_S: f64 = 86_400.0;
 /// Time after an exchange of gas during which mass and gas stay free, s.

@@ -6,10 +6,11 @@
 //!
 //! Assumption: what the reduced model gets wrong is a part of the pressure. An error of the gas temperature of 1 K is one, since
 //! `dp/dT` at constant density is nearly proportional to `p`: 0.99 bar/K in nitrogen of 200 bar, 0.0035 `p`/K in an ideal gas.
+use super::Commissioning;
 use super::settings::{LeakHypothesis, ModelError, ObserverSettings, Walk};
-use super::{Commissioning, QUOTED_K};
 use crate::EstimatorError;
 use crate::thermal::vessel::Vessel;
+use cylwatch_thermal::units::QUOTED_K;
 
 /// Mass, kg, that settings are stated for, that of the built-in `nitrogen-20l`, full, and its pressure at 15 °C in the volume of the
 /// empty vessel, Pa.

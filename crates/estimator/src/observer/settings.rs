@@ -4,6 +4,7 @@
 //! estimate, not for the statistics of the innovations: model error is coloured, and a filter that treats it as
 //! white noise of its actual size trusts its parameters too much. So the noise of the outputs is stated too large, grows with
 //! the temperature differences that the reduced model resolves worst, and what is learnt fades.
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
 
 use super::band_settings::BandSettings;
@@ -265,8 +266,6 @@ pub struct ObserverSettings {
 
 impl Default for ObserverSettings {
     fn default() -> Self {
-        const HOUR_S: f64 = 3600.0;
-        const DAY_S: f64 = 24.0 * HOUR_S;
         Self {
             engine: Engine::default(),
             wall_nodes: 2,

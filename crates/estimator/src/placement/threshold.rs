@@ -16,6 +16,7 @@
 //!
 //! Source: D. Siegmund and E. S. Venkatraman, Ann. Stat. 23 (1995) 255; D. Siegmund and B. Yakir, The Statistics of Gene Mapping, 2007;
 //! smooth fields: S. O. Rice, Bell Syst. Tech. J. 24 (1945) 46; mean overshoot: D. Siegmund, Sequential Analysis, 1985.
+
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
 use crate::EstimatorError;
@@ -142,14 +143,12 @@ fn threshold(wished: f64, mean: impl Fn(f64) -> f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
+    use cylwatch_thermal::units::{DAY_S, YEAR_S};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
     use super::*;
-
-    const DAY_S: f64 = 86_400.0;
-    const YEAR_S: f64 = 365.25 * DAY_S;
 
     #[test]
     fn a_day_of_minutes_at_one_alarm_in_ten_years_takes_between_five_and_six_deviations() {

@@ -1,4 +1,5 @@
 //! Faults of what sensors read.
+use cylwatch_thermal::units::ZERO_CELSIUS_K;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -7,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use super::{Arrival, Fault, Record};
 use crate::EvaluationError;
 
-const ZERO_DEGC_K: f64 = 273.15;
 /// Temperature at which a transmitter's temperature coefficient says nothing, K.
 const CALIBRATED_K: f64 = 288.15;
 const STANDARD_PRESSURE_PA: f64 = 101_325.0;
@@ -15,7 +15,7 @@ const PA_PER_PSI: f64 = 6_894.757_293_168;
 /// What a transmitter shows at 3.6 mA, the signal of a broken wire, as a part of its full scale: `(3.6 - 4)/16`.
 const WIRE_BREAK: f64 = -0.025;
 /// What an open Pt100 shows, the top of its range, K.
-const OPEN_PT100_K: f64 = 850.0 + ZERO_DEGC_K;
+const OPEN_PT100_K: f64 = 850.0 + ZERO_CELSIUS_K;
 
 /// What a dead sensor gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ impl DeadCode {
             (Self::NotANumber, _) => f64::NAN,
             (Self::Infinite, _) => f64::INFINITY,
             (Self::Minus999, Some(_)) => -999e5,
-            (Self::Minus999, None) => -999.0 + ZERO_DEGC_K,
+            (Self::Minus999, None) => -999.0 + ZERO_CELSIUS_K,
             (Self::FullScale, Some(full_scale_pa)) => full_scale_pa,
             (Self::WireBreak, Some(full_scale_pa)) => WIRE_BREAK * full_scale_pa,
             (Self::FullScale | Self::WireBreak, None) => OPEN_PT100_K,
@@ -98,9 +98,9 @@ impl MixUp {
     /// A reading as it is taken, K or Pa.
     fn taken(self, reading: f64) -> f64 {
         match self {
-            Self::CelsiusAsKelvin => reading - ZERO_DEGC_K,
-            Self::KelvinAsCelsius => reading + ZERO_DEGC_K,
-            Self::FahrenheitAsCelsius => 1.8 * (reading - ZERO_DEGC_K) + 32.0 + ZERO_DEGC_K,
+            Self::CelsiusAsKelvin => reading - ZERO_CELSIUS_K,
+            Self::KelvinAsCelsius => reading + ZERO_CELSIUS_K,
+            Self::FahrenheitAsCelsius => 1.8 * (reading - ZERO_CELSIUS_K) + 32.0 + ZERO_CELSIUS_K,
             Self::KilopascalAsBar => reading * 100.0,
             Self::BarAsKilopascal => reading / 100.0,
             Self::PsiAsBar => reading / PA_PER_PSI * 1e5,

@@ -1,15 +1,11 @@
 //! The table of faults: what each row draws, and what must come of it.
+use cylwatch_thermal::units::{BAR_PA, DAY_S, HOUR_S, MINUTE_S, YEAR_S};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::{DeadCode, EPOCH_S, Fault, MixUp, Snapshot};
 
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 24.0 * HOUR_S;
-const YEAR_S: f64 = 365.25 * DAY_S;
-const BAR_PA: f64 = 1e5;
 /// Full scale of the transmitter that the relative errors of the table are of, Pa.
 pub(crate) const TABLE_FULL_SCALE_PA: f64 = 250.0 * BAR_PA;
 /// Noise of a typical transmitter, Pa, and of a typical thermometer, K.

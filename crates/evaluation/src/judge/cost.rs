@@ -2,6 +2,7 @@
 //!
 //! Times are those of one core ([`super::clock`]). They stand in `times.jsonl`, one line for each world and run, apart from the results: they
 //! differ from run to run.
+use cylwatch_thermal::units::YEAR_S;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs::{File, OpenOptions};
@@ -11,7 +12,6 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::JudgeError;
-use super::measures::YEAR_S;
 
 /// Name of the file of times.
 pub const TIMES: &str = "times.jsonl";

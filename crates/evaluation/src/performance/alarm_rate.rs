@@ -5,13 +5,11 @@
 //! `2T/chi2(1 - a/2; 2n + 2)` to `2T/chi2(a/2; 2n)`, endless above if there was none.
 //!
 //! Source: F. Garwood, Biometrika 28 (1936) 437.
+use cylwatch_thermal::units::YEAR_S;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::Run;
-
-/// Seconds of a year of 365.25 d.
-pub const YEAR_S: f64 = 31_557_600.0;
 
 /// False alarms over the time without a leak and without an alarm before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

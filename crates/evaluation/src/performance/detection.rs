@@ -1,11 +1,10 @@
 //! Probability of finding a leak within a time, against its rate.
+use cylwatch_thermal::units::HOUR_S;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Proportion, Run};
-
-const HOUR_S: f64 = 3600.0;
 
 /// Times within which a leak should be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

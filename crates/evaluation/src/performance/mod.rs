@@ -46,7 +46,7 @@ mod summary;
 mod survival;
 
 pub use accuracy::{Accuracy, Errors};
-pub use alarm_rate::{AlarmRate, YEAR_S};
+pub use alarm_rate::AlarmRate;
 pub use confusion::{Class, Confusion};
 pub use delay::Delay;
 pub use detection::{Detection, Horizon};

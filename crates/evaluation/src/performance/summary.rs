@@ -171,8 +171,7 @@ impl Row {
 mod tests {
     use super::*;
     use crate::performance::{Reached, TrueLeak};
-
-    const HOUR_S: f64 = 3600.0;
+    use cylwatch_thermal::units::HOUR_S;
 
     fn run(seed: u64, rate_pa_s: Option<f64>, delay_h: Option<f64>) -> Run {
         Run {

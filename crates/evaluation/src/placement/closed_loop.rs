@@ -1,4 +1,5 @@
 //! Whether the best layouts achieve what is predicted, in the observer's own world and in others.
+use cylwatch_thermal::units::DAY_S;
 use std::sync::atomic::Ordering;
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +13,6 @@ use crate::estimator::placement::search::Watch;
 use crate::estimator::placement::study::{JUDGED, Placement, Study};
 use crate::truth::TruthSettings;
 
-const DAY_S: f64 = 86_400.0;
 /// Length of a mismatched run, and what of it the observer learns in, s.
 const MISMATCHED_S: f64 = 8.0 * DAY_S;
 const LEARNING_S: f64 = 5.0 * DAY_S;

@@ -9,6 +9,7 @@
 //!
 //! # Validity
 //! The truth has to stay where it was linearised, see [`calm`].
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use std::sync::atomic::Ordering;
 
 use nalgebra::{DMatrix, DVector};
@@ -19,7 +20,7 @@ use rayon::prelude::*;
 
 use super::draws::matched_draws;
 use super::jury::{Jury, Present, Verdict, confirmation};
-use super::{Claim, ConfirmSettings, Confirmation, DAY_S, HOUR_S, Listener, Rows, RunId};
+use super::{Claim, ConfirmSettings, Confirmation, Listener, Rows, RunId};
 use crate::EvaluationError;
 use crate::estimator::filter::{Linearisation, Plant, StateSpace};
 use crate::estimator::observer::cylinder::Cylinder;

@@ -1,10 +1,12 @@
 //! Worlds that the observer's model does not know: drawn cylinders in railway weather, read by drawn specimens of the candidates.
+use cylwatch_thermal::units::DAY_S;
+use cylwatch_thermal::units::QUOTED_K;
 use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
 use super::jury::{Jury, Present, Verdict, confirmation};
-use super::{Claim, ConfirmSettings, Confirmation, DAY_S, Listener, Rows, RunId};
+use super::{Claim, ConfirmSettings, Confirmation, Listener, Rows, RunId};
 use crate::EvaluationError;
 use crate::estimator::observer::Commissioning;
 use crate::estimator::observer::cylinder::Cylinder;
@@ -12,9 +14,6 @@ use crate::estimator::placement::cylinder::SitedCylinder;
 use crate::estimator::placement::search::Watch;
 use crate::estimator::sensor::{SensorSuite, sample};
 use crate::truth::{Course, Happenings, TruthSettings, simulate_around};
-
-/// Temperature at which a truth's filling is stated, K: 15 °C.
-const QUOTED_K: f64 = 288.15;
 
 /// Errors in worlds that differ from the observer's model: railway weeks of as many days as a run has, with the truths' `settings.vessel` and
 /// `settings.leak` as the claim and its confirmation have them. The observer has the claim's settings and its whole bank. Masses are compared

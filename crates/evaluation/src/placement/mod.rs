@@ -25,6 +25,7 @@ mod matched;
 mod mismatched;
 mod tally;
 
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
 
 use crate::EvaluationError;
@@ -41,9 +42,6 @@ pub use detection::{Detected, detected_matched, detected_mismatched};
 pub use listener::{Listener, Recorder, RunId};
 pub use matched::{calm, matched};
 pub use mismatched::mismatched;
-
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 24.0 * HOUR_S;
 
 /// What is to be confirmed.
 #[derive(Clone, Copy, Debug)]

@@ -1,20 +1,20 @@
 //! The worlds that a vessel is commissioned on, and the monitor in them.
 use cylwatch_detector::evidence::Scale;
 use cylwatch_detector::monitor::MonitorSettings;
+use cylwatch_thermal::units::DAY_S;
+use cylwatch_thermal::units::HOUR_S;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::fit::STRETCHES;
 use super::found::FOLDS;
-use super::record::{HOUR_S, Record};
+use super::record::Record;
 use super::watched::{Watched, watch};
 use crate::EvaluationError;
 use crate::world::{
     Climate, Family, GasKind, NominalVessel, Request, RowPattern, SensorClass, Simulated, SimulationKey,
     VesselKind,
 };
-
-const DAY_S: f64 = 86_400.0;
 
 /// Tight cylinders around a vessel, each with another seed, and each read by all classes of sensors. The other kinds are gone through in turn; one that is named twice
 /// has twice as many cylinders.

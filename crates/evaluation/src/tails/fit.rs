@@ -5,6 +5,7 @@
 //! records drawn again with replacement, whole cylinders with all their sets of sensors at a time.
 //!
 //! Source: J. Pickands, Ann. Stat. 3 (1975) 119; S. D. Grimshaw, Technometrics 35 (1993) 185.
+use cylwatch_thermal::units::HOUR_S;
 use std::collections::BTreeMap;
 
 use cylwatch_detector::evidence::{Scale, Tail, Tails, Thresholds};
@@ -12,7 +13,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::record::{HOUR_S, Record};
+use super::record::Record;
 use super::watched::Watched;
 use crate::EvaluationError;
 use crate::world::SimulationKey;

@@ -4,12 +4,13 @@
 //! ways. They rest on half of the data, so the rate is rather that of somewhat worse thresholds than of those fitted to all.
 //!
 //! Source: M. Stone, J. R. Stat. Soc. B 36 (1974) 111.
+use cylwatch_thermal::units::HOUR_S;
 use std::collections::BTreeMap;
 
 use cylwatch_detector::monitor::MonitorSettings;
 
 use super::fit::fit;
-use super::record::{HOUR_S, Record};
+use super::record::Record;
 use super::watched::Watched;
 use crate::EvaluationError;
 use crate::judge::table::{Clustered, Rate};
@@ -62,8 +63,8 @@ mod tests {
     use super::*;
     use crate::world::{Climate, Request};
     use cylwatch_detector::evidence::Scale;
+    use cylwatch_thermal::units::DAY_S;
 
-    const DAY_S: f64 = 86_400.0;
     const MEAN_TIME_S: f64 = 3652.5 * DAY_S;
 
     /// Forty days of stretches whose peaks fall off exponentially, `loudness` times as high.

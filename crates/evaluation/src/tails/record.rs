@@ -2,8 +2,7 @@
 //!
 //! From these follow the largest values of longer stretches and the alarms at any thresholds, as the monitor raises them.
 use cylwatch_detector::evidence::{Scale, Statistics, Thresholds};
-
-pub(super) const HOUR_S: f64 = 3600.0;
+use cylwatch_thermal::units::HOUR_S;
 
 /// Largest values of the statistics, hour by hour of operation.
 #[derive(Clone, Debug, Default, PartialEq)]

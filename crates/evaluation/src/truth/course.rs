@@ -1,9 +1,8 @@
 //! What a cylinder goes through: the scenarios of the climatic chamber, a tunnel, weeks of railway operation,
 //! and any of them after days of operation from which an observer has learnt.
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
 
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 /// Time at the start temperature before the air changes, s: the commissioning hour that masses are compared with.
 const COMMISSIONING_S: f64 = HOUR_S;
 /// Ramp from the railway's air to the start temperature of the next course, s, and rest at it: 12 time constants.

@@ -3,6 +3,7 @@
 //! Here, other than in the rest of this folder, the filter is right: what it misses is the price of linearising, and
 //! [`least_errors`] is what no estimator with the same prior goes below (the mean over true paths of each path's own posterior Cramér-Rao
 //! bound, see [`crate::estimator::bound`]). The change of the air is known, the rest of the air's walk is not.
+use cylwatch_thermal::units::HOUR_S;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
@@ -18,8 +19,6 @@ use crate::estimator::observer::{LeakHypothesis, ModelError, ObserverSettings, W
 use crate::estimator::sensor::Sensor;
 use crate::thermal::units::ZERO_CELSIUS_K;
 use crate::thermal::vessel::presets;
-
-const HOUR_S: f64 = 3600.0;
 
 /// Air of a climatic chamber: an hour of rest, a linear change (a jump where it takes no time), rest.
 #[derive(Clone, Copy, Debug)]

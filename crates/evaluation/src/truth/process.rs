@@ -5,6 +5,7 @@
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::scenario::{Scenario, Series};
 use cylwatch_thermal::trajectory::Trajectory;
+use cylwatch_thermal::units::{BAR_PA, QUOTED_K};
 use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,6 @@ use super::Truth;
 use super::disturbance::Disturbance;
 use crate::EvaluationError;
 
-const QUOTED_K: f64 = 288.15;
 /// Interval at which a changing leak changes, s.
 const STAIR_S: f64 = 1800.0;
 /// Duration of a puff, s.
@@ -157,7 +157,6 @@ impl Settled<'_> {
 
     /// Mass flow of a loss of pressure at the fill, kg/s.
     fn flow_kg_s(&self, rate_pa_s: f64) -> Result<f64, EvaluationError> {
-        const BAR_PA: f64 = 1e5;
         Ok(-self.change_kg(-BAR_PA)? / BAR_PA * rate_pa_s)
     }
 }

@@ -8,13 +8,9 @@
 //! Sun from 8 to 16 h in patches, up to 500 W/m², which is about 10 W on the shoulder of the 20 L cylinder.
 use super::course::Climate;
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
-
-const DAY_S: f64 = 86_400.0;
-const HOUR_S: f64 = 3600.0;
-const MINUTE_S: f64 = 60.0;
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S, YEAR_S};
 
 const MEAN_DEGC: (f64, f64) = (-8.0, 8.0);
-const YEAR_S: f64 = 365.25 * DAY_S;
 const ANNUAL_DEGC: (f64, f64) = (1.0, 6.0);
 const SWING_K: (f64, f64) = (14.0, 18.0);
 const DIURNAL_K: (f64, f64) = (3.0, 7.0);

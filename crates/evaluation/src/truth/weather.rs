@@ -6,6 +6,7 @@
 //! convection, about 20 with radiation. All signals are linear between the same knots, 2 min apart or closer
 //! ([`super::TruthSettings::weather_spacing_s`] spaces them wider; the disturbances keep their variance).
 use cylwatch_thermal::scenario::{AxialVariation, Initial, OutsideFilm, Scenario, Series, Sun, Surroundings};
+use cylwatch_thermal::units::ZERO_CELSIUS_K;
 use cylwatch_thermal::vessel::Fill;
 
 use super::course::{Chamber, Course, TRANSFER_S};
@@ -13,7 +14,6 @@ use super::railway::{APPROACH, Railway};
 use crate::EvaluationError;
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
 
-const ZERO_DEGC_K: f64 = 273.15;
 /// Spacing of the knots of turbulence, gusts and axial difference, s.
 pub(super) const SPACING_S: f64 = 120.0;
 const TURBULENCE_K: f64 = 0.4;
@@ -95,7 +95,7 @@ pub(super) fn draw_spaced(course: &Course, seed: u64, spacing_s: f64) -> Result<
     let settled_k = course
         .chamber()
         .filter(|_| course.railway_s() == 0.0)
-        .map_or(skies[0].air_k, |chamber| chamber.start_degc + ZERO_DEGC_K);
+        .map_or(skies[0].air_k, |chamber| chamber.start_degc + ZERO_CELSIUS_K);
     Ok(Scenario {
         name: course.name(),
         initial: Initial {
@@ -148,9 +148,9 @@ fn railway(course: &Course, seed: u64, grid: Grid) -> Vec<Sky> {
             let air_degc = weeks.air_degc(t_s);
             Sky {
                 t_s,
-                air_k: air_degc + ZERO_DEGC_K,
+                air_k: air_degc + ZERO_CELSIUS_K,
                 film_w_m2_k: weeks.film_w_m2_k(t_s),
-                radiation_k: lag.follow(t_s, air_degc) + ZERO_DEGC_K,
+                radiation_k: lag.follow(t_s, air_degc) + ZERO_CELSIUS_K,
                 irradiance_w_m2: weeks.irradiance_w_m2(t_s),
                 difference_k: 0.0,
             }
@@ -178,9 +178,9 @@ fn add_chamber(skies: &mut Vec<Sky>, course: &Course, chamber: &Chamber, grid: G
     let transfer_s = if skies.is_empty() { 0.0 } else { TRANSFER_S };
     let sky = |t_s: f64, degc: f64| Sky {
         t_s,
-        air_k: degc + ZERO_DEGC_K,
+        air_k: degc + ZERO_CELSIUS_K,
         film_w_m2_k: FILM_CHAMBER_W_M2_K,
-        radiation_k: degc + ZERO_DEGC_K,
+        radiation_k: degc + ZERO_CELSIUS_K,
         irradiance_w_m2: 0.0,
         difference_k: 0.0,
     };

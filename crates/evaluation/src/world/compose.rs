@@ -2,8 +2,8 @@
 use cylwatch_estimator::log::{Channel, Log, Quantity};
 use cylwatch_estimator::sensor::SensorSuite;
 use cylwatch_thermal::transfer::outside::Body;
+use cylwatch_thermal::units::QUOTED_K;
 
-use super::fill::QUOTED_K;
 use super::flows::{DISCHARGE, FAST_LOSS, LEAK, REFILL};
 use super::reading::{Place, read_pressure};
 use super::rows::Rows;

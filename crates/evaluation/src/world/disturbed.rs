@@ -6,6 +6,7 @@
 use cylwatch_thermal::scenario::{OutsideFilm, Scenario, Series, Surroundings};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
+use cylwatch_thermal::units::{BAR_PA, HOUR_S};
 use cylwatch_thermal::vessel::Vessel;
 
 use super::WorldError;
@@ -14,8 +15,6 @@ use crate::random::{Purpose, Random};
 use crate::truth::disturbance::{Disturbance, Surrounding};
 use crate::truth::{Happenings, Process};
 
-const HOUR_S: f64 = 3600.0;
-const BAR_PA: f64 = 1e5;
 /// Fill that the pressures of the table are written for, Pa.
 const TABLE_FILL_PA: f64 = 200.0 * BAR_PA;
 /// Part of the fill that a cylinder to be refilled begins with.

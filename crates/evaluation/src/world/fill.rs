@@ -4,13 +4,12 @@
 //! gas is 2.5 % less than stated on top. The told standard deviation of the mass, 1.2 %, is the root mean square of both. In one of four
 //! worlds the log begins in the middle of operation: the cylinder is not settled, and the candidate is told so.
 use cylwatch_estimator::observer::Commissioning;
+use cylwatch_thermal::units::QUOTED_K;
 use cylwatch_thermal::vessel::Fill;
 use serde::{Deserialize, Serialize};
 
 use crate::random::{Purpose, Random};
 
-/// Temperature that fills are stated at, K.
-pub(super) const QUOTED_K: f64 = 288.15;
 const STATED_SD: f64 = 0.005;
 const WRONG_SHARE: f64 = 1.0 / 6.0;
 const WRONG_BY: f64 = 0.025;

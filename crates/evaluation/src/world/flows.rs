@@ -6,6 +6,7 @@
 use cylwatch_thermal::flow::orifice::mass_flux;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::State;
+use cylwatch_thermal::units::HOUR_S;
 
 use super::{Leak, Overlay, WorldError};
 use crate::random::{Purpose, Random};
@@ -20,7 +21,6 @@ const SOURCE: f64 = 1.1;
 const SOURCE_K: f64 = 288.15;
 /// Temperature that an orifice is sized for, K.
 const SIZED_K: f64 = 288.15;
-const HOUR_S: f64 = 3600.0;
 
 /// Names of the flows of overlays; processes of the fault table have others.
 pub(super) const LEAK: &str = "steady leak";

@@ -1,4 +1,5 @@
 //! What is laid over a world: leaks, fast losses, discharges, refills, and the faults of the fault table.
+use cylwatch_thermal::units::HOUR_S;
 use serde::{Deserialize, Serialize};
 
 use super::WorldError;
@@ -83,7 +84,6 @@ impl Leak {
 /// gas is not cooled by its own expansion, and that less gas follows the wall sooner, then stays below a transmitter's noise.
 const SLOW_PART_PER_H: f64 = 1e-4;
 const SLOW_PART: f64 = 0.005;
-const HOUR_S: f64 = 3600.0;
 
 impl Overlay {
     /// Whether it changes the simulation; else it is laid over a finished one.

@@ -16,12 +16,12 @@
 //! standard deviation of 0.1 % per 10 K; with a range of 100 bar and more, one of four counts from the air and is logged as absolute,
 //! which nobody is told. A lag is stated with an error of up to 30 %.
 use cylwatch_estimator::sensor::{KindChoice, Pt100Class, SensorSpec, SensorsSpec};
+use cylwatch_thermal::units::BAR_PA;
 use serde::{Deserialize, Serialize};
 
 use super::SensorClass;
 use crate::random::{Purpose, Random};
 
-const BAR_PA: f64 = 1e5;
 /// Tolerances of classes A and B at 20 °C, K.
 const CLASS_A_K: f64 = 0.19;
 const CLASS_B_K: f64 = 0.4;

@@ -2,12 +2,13 @@
 use cylwatch_thermal::scenario::{Initial, Scenario, Surroundings};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::{Event, EventKind, Ledger, Trajectory};
+use cylwatch_thermal::units::QUOTED_K;
 use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
 
 use super::climate::{self, Span};
 use super::disturbed::{self, Disturbed};
-use super::fill::{FillDraw, QUOTED_K};
+use super::fill::FillDraw;
 use super::flows::{Filled, LEAK};
 use super::gas::GasDraw;
 use super::samples::Samples;

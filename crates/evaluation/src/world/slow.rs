@@ -6,8 +6,7 @@
 use super::Request;
 use super::simulation::Simulated;
 use super::truth::Truth;
-
-const HOUR_S: f64 = 3600.0;
+use cylwatch_thermal::units::HOUR_S;
 
 /// A leak of constant mass flow.
 #[derive(Clone, Copy, Debug, PartialEq)]

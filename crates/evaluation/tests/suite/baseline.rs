@@ -1,4 +1,5 @@
 //! Detectors without an observer on the paper's courses: closed forms of its figures, and what physics makes of them.
+use cylwatch_thermal::units::HOUR_S;
 use std::f64::consts::E;
 
 use approx::assert_relative_eq;
@@ -11,7 +12,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 const BAR: f64 = 1e5;
-const HOUR_S: f64 = 3600.0;
 /// Default memory of the slope.
 const MEMORY_S: f64 = 1000.0;
 const FULL: Filling = Filling { pressure_pa: 200.0 * BAR, temperature_k: 288.15 };

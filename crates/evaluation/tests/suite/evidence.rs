@@ -1,4 +1,5 @@
 //! Evidence from an observer on a cylinder under a train: tight, leaking, with gaps, exchanged, and saved in between.
+use cylwatch_thermal::units::{DAY_S, HOUR_S, YEAR_S};
 use std::sync::OnceLock;
 
 use cylwatch_detector::evidence::{Evidence, Scale, Statistics, Tails, observer_settings};
@@ -7,9 +8,6 @@ use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
 use cylwatch_evaluation::truth::{Course, TruthLeak, TruthSettings, generate_with};
 
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 24.0 * HOUR_S;
-const YEAR_S: f64 = 365.25 * DAY_S;
 const SEED: u64 = 77;
 const INTERVAL_S: f64 = 120.0;
 const ONSET_S: f64 = 5.0 * DAY_S;

@@ -1,4 +1,5 @@
 //! What each fault does to the rows, and that the table's rows draw what the table says.
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 use std::collections::HashSet;
 
 use cylwatch_evaluation::EvaluationError;
@@ -6,9 +7,6 @@ use cylwatch_evaluation::fault::{
     Arrival, DeadCode, Fault, MixUp, Record, Requirement, Snapshot, Step, TableRow,
 };
 
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 const ROWS: usize = 3000;
 const ONSET_S: f64 = 1000.0 * MINUTE_S;
 

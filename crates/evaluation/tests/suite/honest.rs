@@ -1,4 +1,5 @@
 //! The monitor outside the world that its rules were set in: it may know less there, but what it says must agree, and a loss must be told.
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 use std::path::Path;
 
 use cylwatch_detector::monitor::alarm::AlarmName;
@@ -12,10 +13,6 @@ use cylwatch_estimator::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_estimator::thermal::vessel::Fill;
 use cylwatch_estimator::thermal::{scenario, vessel};
 use cylwatch_evaluation::world::{Climate, Family, Overlay, Request, VesselKind, World, generate};
-
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 
 /// All outputs of a monitor over a world, every one of which must agree with itself and with the leak alarm.
 fn watched(world: &World) -> Vec<Output> {

@@ -1,4 +1,5 @@
 //! The monitor on simulated cylinders that are not the observer's model.
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use std::sync::OnceLock;
 
 use cylwatch_detector::DetectorError;
@@ -19,8 +20,6 @@ const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const SHOULDER: usize = 0;
 const VALVE: usize = 1;
 const PRESSURE: usize = 2;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 
 type Rows = Vec<(f64, [f64; 3])>;
 

@@ -1,4 +1,5 @@
 //! What layouts achieve in closed loop, and that a confirmation can fail.
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use std::sync::atomic::Ordering;
 
 use cylwatch_estimator::EstimatorError;
@@ -14,8 +15,6 @@ use cylwatch_evaluation::placement::{
 use cylwatch_evaluation::truth::{TruthLeak, TruthSettings};
 
 const NAMES: [&str; 4] = ["wall_bottom", "shoulder", "valve", "pressure"];
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 24.0 * HOUR_S;
 
 struct Case {
     vessel: Vessel,

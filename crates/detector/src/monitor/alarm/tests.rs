@@ -1,9 +1,7 @@
 use super::*;
 use crate::DetectorError;
+use crate::units::{DAY_S, MINUTE_S};
 use proptest::prelude::*;
-
-const MINUTE_S: f64 = 60.0;
-const DAY_S: f64 = 86_400.0;
 
 fn off_normal(timing: Timing) -> Alarm<OffNormal> {
     Alarm { trigger: OffNormal { severity: 700 }, timing }

@@ -2,13 +2,14 @@
 use crate::DetectorError;
 use crate::monitor::settings::MonitorSettings;
 use crate::monitor::{LeakFinding, Outlook};
-use crate::prognosis::{Contents, MassAndLeak, Passage, Prognosis, QUOTED_K, Quantiles};
+use crate::prognosis::{Contents, MassAndLeak, Passage, Prognosis, Quantiles};
+use crate::units::{DAY_S, HOUR_S, QUOTED_K, YEAR_S};
 
 /// Interval at which the time left is computed anew while gas is being lost, and while none is, s.
-const LEAKING_S: f64 = 3600.0;
-const TIGHT_S: f64 = 86_400.0;
+const LEAKING_S: f64 = HOUR_S;
+const TIGHT_S: f64 = DAY_S;
 /// How far ahead, s: ten years.
-const HORIZON_S: f64 = 10.0 * crate::monitor::settings::YEAR_S;
+const HORIZON_S: f64 = 10.0 * YEAR_S;
 /// Standard deviations between the ends of a 95 % interval, and between zero and its upper end.
 const WIDTH_SD: f64 = 3.92;
 const HALF_WIDTH_SD: f64 = 1.96;

@@ -2,7 +2,7 @@
 use super::{EXCHANGED_S, Monitor, SETTLED_S};
 use crate::monitor::gas::bounds::ROWS;
 use crate::monitor::{Health, Known, KnownExchange, Reason};
-use crate::prognosis::QUOTED_K;
+use crate::units::QUOTED_K;
 
 /// Part of the fill from which an exchange or a flow is the verdict: what is smaller is an event, and leaves the verdict open until gas and wall have settled.
 pub(super) const MATTERS: f64 = 0.01;

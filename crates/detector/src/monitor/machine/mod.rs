@@ -6,6 +6,7 @@ mod output;
 mod sensors;
 mod wiring;
 
+use crate::units::QUOTED_K;
 use serde::{Deserialize, Serialize};
 
 use self::disturbance::Undisturbed;
@@ -34,7 +35,7 @@ use crate::estimator::observer::{Commissioning, Estimate, Learned, Observer, Qua
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
-use crate::prognosis::{Contents, QUOTED_K};
+use crate::prognosis::Contents;
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;

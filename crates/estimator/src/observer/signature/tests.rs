@@ -1,3 +1,4 @@
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -7,8 +8,6 @@ use crate::observer::{Commissioning, LeakHypothesis, ObserverSettings, Snapshot}
 use crate::sensor::Sensor;
 use crate::thermal::vessel::presets;
 
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
 const FILL_K: f64 = 288.15;
 const MASS_KG: f64 = 4.4;
 const G_H: f64 = 1e-3 / HOUR_S;

@@ -4,6 +4,7 @@ use cylwatch_estimator::identify::{
     Data, Hold, Identified, IdentifyError, InputCourse, Interval, Method, Parameter, Settings, Structure,
     identify,
 };
+use cylwatch_thermal::units::HOUR_S;
 use rayon::prelude::*;
 
 use super::system::{System, normal, random};
@@ -30,8 +31,6 @@ pub struct Case {
     pub input_sd: f64,
     pub output_sd: f64,
 }
-
-const HOUR_S: f64 = 3600.0;
 
 /// The six records.
 pub const CASES: [Case; 6] = [

@@ -2,6 +2,7 @@
 //!
 //! Their expectations are those of [`crate::baseline`], through the filling that was stated. In parts of the filling one
 //! threshold fits a tank of 5 bar and a cylinder of 300.
+use cylwatch_thermal::units::QUOTED_K;
 use std::sync::Arc;
 
 use super::{Candidate, Contender, Kind, Row};
@@ -12,8 +13,6 @@ use crate::judge::said::Said;
 use crate::thermal::vessel::Fill;
 use crate::world::Told;
 
-/// Temperature at which a filling is quoted, K.
-const QUOTED_K: f64 = 288.15;
 /// How long the refitted detectors learn their error, s.
 const LEARNT_S: f64 = 4.0 * 86_400.0;
 /// Debouncing of the refitted detector, s.

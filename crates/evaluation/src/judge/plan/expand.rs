@@ -1,4 +1,5 @@
 //! From a plan to its worlds, and to the simulations behind them.
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 use std::collections::BTreeMap;
 
 use rand::{RngExt, SeedableRng};
@@ -8,9 +9,6 @@ use super::{Check, GroupDocument, OverlayDocument, Pattern, Plan, Role};
 use crate::judge::JudgeError;
 use crate::world::{FaultRow, Leak, Overlay, Request, SimulationKey};
 
-const MINUTE_S: f64 = 60.0;
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
 /// Shortest and longest log, s.
 const LENGTHS_S: std::ops::RangeInclusive<f64> = 900.0..=400.0 * DAY_S;
 /// Turns between the beginnings of two groups: prime to the numbers of kinds of all axes.

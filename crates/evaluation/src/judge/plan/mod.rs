@@ -3,6 +3,7 @@ mod document;
 mod expand;
 mod pattern;
 
+use cylwatch_thermal::units::YEAR_S;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,7 +17,6 @@ pub use pattern::{Axis, Pattern};
 
 use super::JudgeError;
 use super::candidate::{Candidate, Registry};
-use crate::performance::YEAR_S;
 use crate::world::Family;
 
 /// A checked plan.

@@ -13,6 +13,7 @@
 //!
 //! With a leak beside the fault it must be told, too, before the end; where the requirement is flagged, degraded, undecidable or warned,
 //! the last verdict may be unknown instead. Where the row takes gas away, the leak and the exchange that it is do not count as false.
+use cylwatch_thermal::units::DAY_S;
 use serde::{Deserialize, Serialize};
 
 use super::Moment;
@@ -21,7 +22,6 @@ use crate::judge::measures::Class;
 use crate::judge::said::Decision;
 use crate::world::{FaultRow, HappeningKind, Overlay, World};
 
-const DAY_S: f64 = 86_400.0;
 /// Time within which an exchange of gas must be recognised, s.
 const RECOGNISED_S: f64 = 3.0 * 3600.0;
 

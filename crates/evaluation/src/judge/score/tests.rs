@@ -1,4 +1,5 @@
 //! Scores of statements that are known, in toy worlds.
+use cylwatch_thermal::units::HOUR_S;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -11,8 +12,6 @@ use crate::judge::measures::Class;
 use crate::judge::said::{Decision, Innovation};
 use crate::judge::watch::watch;
 use crate::world::{Family, FaultRow, Leak, Regime, Request, RowPattern};
-
-const HOUR_S: f64 = 3600.0;
 
 fn request(overlay: Overlay, length_h: f64) -> Request {
     let family = Family { rows: RowPattern::Minute, ..Family::usual() };

@@ -11,10 +11,10 @@
 //!
 //! Source: F. Garwood, Biometrika 28 (1936) 437; P. McCullagh and J. A. Nelder, Generalized Linear Models, 1989, chapter 9; W. G. Cochran,
 //! Sampling Techniques, 1977, section 6.3.
+use cylwatch_thermal::units::YEAR_S;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::judge::measures::YEAR_S;
 use crate::judge::said::BAND_95;
 use crate::world::SimulationKey;
 

@@ -1,12 +1,11 @@
 //! Groups of worlds that the table has a row for.
+use cylwatch_thermal::units::DAY_S;
 use std::fmt;
 
 use serde::Serialize;
 
 use crate::judge::plan::{Role, Task};
 use crate::world::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
-
-const DAY_S: f64 = 86_400.0;
 
 /// Worlds of one role, and what they have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

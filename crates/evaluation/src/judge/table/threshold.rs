@@ -3,10 +3,11 @@
 //! The threshold comes from the tight worlds of the families that tune ([`alarm_level`]); it knows nothing of those that judge. At the threshold
 //! such a candidate says that it cannot tell until its statistic has a value, then that the cylinder is tight, and from its first alarm on
 //! that it leaks.
+use cylwatch_thermal::units::YEAR_S;
 use serde::Serialize;
 
 use crate::judge::entry::Facts;
-use crate::judge::measures::{AlarmLevel, Class, Trace, YEAR_S, alarm_level};
+use crate::judge::measures::{AlarmLevel, Class, Trace, alarm_level};
 use crate::judge::score::detection::Detected;
 use crate::judge::score::verdict::{Episode, Episodes, Shares};
 use crate::judge::score::{FIRST_DAY_S, Score};

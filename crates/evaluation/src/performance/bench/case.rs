@@ -1,5 +1,6 @@
 //! One simulated cylinder and what all candidates make of it.
 use crate::truth::{Course, Truth, TruthLeak, generate_with};
+use cylwatch_thermal::units::DAY_S;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -9,7 +10,6 @@ use crate::EvaluationError;
 use crate::noise::Residual;
 use crate::performance::{Horizon, TrueLeak};
 
-const DAY_S: f64 = 86_400.0;
 /// Interval of the settled pressures that are kept, s.
 pub(super) const SETTLED_S: f64 = 1200.0;
 /// Part of the gas after whose loss nobody needs to be told.

@@ -12,8 +12,9 @@ use crate::detector::evidence::Tails;
 use crate::detector::monitor::{Monitor, MonitorSettings};
 use crate::estimator::observer::Commissioning;
 use crate::estimator::sensor::Sensor;
-use crate::performance::{Found, YEAR_S};
+use crate::performance::Found;
 use crate::thermal::vessel::{Vessel, presets};
+use cylwatch_thermal::units::YEAR_S;
 
 /// Mean time between false alarms below which no threshold lies, as `log10(years)`: eight hours.
 const SELDOM: f64 = -3.0;

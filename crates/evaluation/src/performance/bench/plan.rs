@@ -2,13 +2,11 @@
 use crate::estimator::identify::published::Filling;
 use crate::thermal::vessel::presets;
 use crate::truth::TruthSettings;
+use cylwatch_thermal::units::YEAR_S;
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
 
-use crate::performance::YEAR_S;
 use crate::{EvaluationError, error::positive};
-
-const DAY_S: f64 = 86_400.0;
-const HOUR_S: f64 = 3600.0;
 
 /// Cylinders, leaks and seeds of a bench.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,13 +1,14 @@
 //! A bench of a few cylinders over a day.
+use cylwatch_thermal::units::DAY_S;
+use cylwatch_thermal::units::YEAR_S;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::*;
 use crate::EvaluationError;
 use crate::baseline::{Expectation, GasTemperature, PressureError, Threshold};
-use crate::performance::{Estimated, Found, Horizon, YEAR_S};
+use crate::performance::{Estimated, Found, Horizon};
 
-const DAY_S: f64 = 86_400.0;
 const BAR_H: f64 = 1e5 / 3600.0;
 
 fn plan() -> Plan {

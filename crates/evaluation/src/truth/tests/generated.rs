@@ -1,10 +1,9 @@
 //! Whole truths: what the simulation makes of a course.
+use cylwatch_thermal::units::ZERO_CELSIUS_K;
 use cylwatch_thermal::vessel::presets;
 
 use super::super::{Course, Truth, TruthLeak, TruthSettings, generate, generate_with, simulate_truth};
 use super::mean;
-
-const ZERO_DEGC_K: f64 = 273.15;
 
 /// Coarse in space: what is claimed here does not depend on the mesh.
 fn coarse() -> TruthSettings {
@@ -49,15 +48,15 @@ fn chamber_courses_start_settled_and_reach_their_temperatures() {
         for body in bodies(&truth) {
             // An outer surface differs from its wall by the film of the turbulent air alone.
             assert!(
-                (body[0] - start - ZERO_DEGC_K).abs() < 2e-3,
+                (body[0] - start - ZERO_CELSIUS_K).abs() < 2e-3,
                 "{}: {} K at first",
                 course.name(),
                 body[0]
             );
             // An hour of turbulence of 0.4 K and 2 min hardly moves a body of half an hour.
-            let rest = body[..change].iter().map(|k| (k - start - ZERO_DEGC_K).abs()).fold(0.0, f64::max);
+            let rest = body[..change].iter().map(|k| (k - start - ZERO_CELSIUS_K).abs()).fold(0.0, f64::max);
             assert!(rest < 0.6, "{}: {rest} K before the change", course.name());
-            let lag = body[body.len() - 1] - end - ZERO_DEGC_K;
+            let lag = body[body.len() - 1] - end - ZERO_CELSIUS_K;
             assert!(lag > least - 0.5 && lag < most + 0.5, "{}: {lag} K from the end", course.name());
         }
         assert_eq!(*truth.time_s.last().unwrap(), course.duration_s());

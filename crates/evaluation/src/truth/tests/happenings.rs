@@ -1,14 +1,13 @@
 //! What is done to the gas and what surroundings do, held against balances and against the course without it.
 use cylwatch_thermal::scenario::OutsideFilm;
 use cylwatch_thermal::trajectory::Trajectory;
+use cylwatch_thermal::units::{BAR_PA, HOUR_S};
 use cylwatch_thermal::vessel::presets;
 
 use super::super::disturbance::{Disturbance, Surrounding};
 use super::super::{Course, Happenings, Process, TruthSettings, generate_through, simulate_through};
 use super::mean;
 
-const HOUR_S: f64 = 3600.0;
-const BAR_PA: f64 = 1e5;
 /// Mass of 1 bar at 200 bar and 15 °C in 20 L, kg (CoolProp).
 const BAR_KG: f64 = 0.01918;
 

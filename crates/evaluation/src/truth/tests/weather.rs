@@ -5,9 +5,7 @@ use super::super::weather::draw_spaced;
 use super::super::{Course, Passage, draw_weather, passages};
 use super::{assert_uniform, mean, sd};
 use cylwatch_thermal::scenario::{OutsideFilm, Scenario, Series};
-
-const HOUR_S: f64 = 3600.0;
-const DAY_S: f64 = 86_400.0;
+use cylwatch_thermal::units::{DAY_S, HOUR_S};
 
 fn inside(passages: &[Passage], t_s: f64) -> bool {
     // Long after the slowest lag the air outside is back to 1e-6 of the step.

@@ -4,9 +4,10 @@
 //! A garage is entered within 1 to 5 min and left after 1 to 6 h, still air inside. The sky takes 4 to 10 K away; sun of up to 100 W/m².
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TunnelLaw};
-use super::part::{HOUR_S, MINUTE_S, StayAir};
+use super::part::StayAir;
 use super::weather::{Film, Unrest, Weather};
 use crate::random::{Purpose, Random};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 const DAYLIGHT_S: (f64, f64) = (10.0 * HOUR_S, 14.0 * HOUR_S);
 

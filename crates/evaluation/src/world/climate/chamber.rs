@@ -5,10 +5,11 @@
 //! chamber goes to its first temperature within an hour and rests there for 2 to 5 h; what they change at once takes 60 to 240 s here.
 //! Film 16 W/(m² K) by its fan; the walls have the temperature of the air.
 use super::Span;
-use super::part::{HOUR_S, MINUTE_S, Polyline};
+use super::part::Polyline;
 use super::weather::{Film, Unrest, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 /// From, °C; to, °C; duration of the change, s, 0: as fast as the chamber can; time until the next one, s.
 const PROFILES: [(f64, f64, f64, f64); 4] = [

@@ -4,9 +4,9 @@
 //! an hour. Hardly a cloud: sun from 6 to 19 h with single minutes of shade. The night sky takes 5 to 12 K away.
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw};
-use super::part::{HOUR_S, MINUTE_S};
 use super::weather::{Film, Unrest, Weather};
 use crate::random::{Purpose, Random};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 const HALF_A_YEAR_D: f64 = 182.625;
 const DAYLIGHT_S: (f64, f64) = (6.0 * HOUR_S, 19.0 * HOUR_S);

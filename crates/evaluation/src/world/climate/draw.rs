@@ -1,7 +1,8 @@
 //! Laws that several climates share, each drawn day by day, so that a longer log begins like a shorter one.
 use super::Span;
-use super::part::{DAY_S, HOUR_S, MINUTE_S, Outside, Stay, StayAir, Trapezoid, YEAR_S};
+use super::part::{Outside, Stay, StayAir, Trapezoid};
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S, YEAR_S};
 
 /// A range to draw from evenly.
 pub(super) type Range = (f64, f64);

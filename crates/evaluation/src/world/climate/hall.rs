@@ -5,10 +5,11 @@
 //! air within 20 to 90 s. Film 4 W/(m² K), while a door is open 6 to 12. The air is warmer at the top, by 1 K and more.
 use super::Span;
 use super::draw::TunnelLaw;
-use super::part::{DAY_S, HOUR_S, MINUTE_S, Polyline, StayAir};
+use super::part::{Polyline, StayAir};
 use super::weather::{Film, Unrest, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 
 const SET_DEGC: (f64, f64) = (12.0, 20.0);
 const BAND_K: (f64, f64) = (0.5, 1.5);

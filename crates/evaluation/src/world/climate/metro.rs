@@ -4,9 +4,10 @@
 //! 5 to 20 m/s on a trip, reached within 15 to 40 s, and 2 to 15 m/s in a tunnel, reached within 1 to 20 s. No sun but at the terminus.
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TripLaw, TunnelLaw};
-use super::part::{HOUR_S, MINUTE_S, StayAir};
+use super::part::StayAir;
 use super::railway::DAYLIGHT_S;
 use super::weather::{Film, Unrest, Weather};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 const SERVICE_S: (f64, f64) = (5.0 * HOUR_S, 24.0 * HOUR_S);
 const TUNNELS_A_DAY: usize = 20;

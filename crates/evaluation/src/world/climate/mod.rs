@@ -20,10 +20,10 @@ mod workshop;
 
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::scenario::Surroundings;
+use cylwatch_thermal::units::DAY_S;
 
 use super::Climate;
 use crate::random::{Purpose, Random};
-use part::DAY_S;
 use weather::Weather;
 
 /// What a climate is drawn for.

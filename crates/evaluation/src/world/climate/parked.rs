@@ -4,10 +4,10 @@
 //! hour; sun in patches of up to 700 W/m² on the upper part; the sky takes 2 to 8 K away.
 use super::Span;
 use super::draw::SunLaw;
-use super::part::{HOUR_S, MINUTE_S};
 use super::weather::{Film, Unrest, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 const DAYLIGHT_S: (f64, f64) = (7.0 * HOUR_S, 18.0 * HOUR_S);
 

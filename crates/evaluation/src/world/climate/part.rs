@@ -2,14 +2,10 @@
 //!
 //! Times are counted by the local clock, s from the midnight before the log begins. Nothing jumps: what changes at once does so on a
 //! ramp, so that a solver goes on without a restart.
+use cylwatch_thermal::units::{DAY_S, YEAR_S};
 use std::f64::consts::TAU;
 
 use crate::random::OrnsteinUhlenbeck;
-
-pub(super) const DAY_S: f64 = 86_400.0;
-pub(super) const HOUR_S: f64 = 3600.0;
-pub(super) const MINUTE_S: f64 = 60.0;
-pub(super) const YEAR_S: f64 = 365.25 * DAY_S;
 
 /// Air outside: `mean - swing cos(2 pi (t - coldest)/year) + diurnal cos(2 pi (t - warmest)/day) + sd weather(t)`.
 pub(super) struct Outside {

@@ -4,8 +4,9 @@
 //! Film by convection 4 W/(m² K) parked, 10 to 30 more on a trip. Sun up to 500 W/m² on the shoulder and the valve.
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TripLaw, TunnelLaw};
-use super::part::{HOUR_S, MINUTE_S, StayAir};
+use super::part::StayAir;
 use super::weather::{Film, Unrest, Weather};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 pub(super) const SERVICE_S: (f64, f64) = (5.0 * HOUR_S, 22.0 * HOUR_S);
 pub(super) const DAYLIGHT_S: (f64, f64) = (8.0 * HOUR_S, 16.0 * HOUR_S);

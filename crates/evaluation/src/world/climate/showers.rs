@@ -5,9 +5,10 @@
 //! 10 W/(m² K) in the open, varying by 30 % within an hour. The sky takes 2 to 8 K away.
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TunnelLaw};
-use super::part::{DAY_S, HOUR_S, MINUTE_S, StayAir};
+use super::part::StayAir;
 use super::weather::{Film, Unrest, Weather};
 use crate::random::{Purpose, Random};
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 
 const HALF_A_YEAR_D: f64 = 182.625;
 const DAYLIGHT_S: (f64, f64) = (5.0 * HOUR_S, 21.0 * HOUR_S);

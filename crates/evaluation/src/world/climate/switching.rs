@@ -5,9 +5,10 @@
 //! [`super::railway`], but the sun lights the upper 70 %.
 use super::Span;
 use super::draw::{TripLaw, TunnelLaw};
-use super::part::{MINUTE_S, StayAir};
+use super::part::StayAir;
 use super::railway::{DAYLIGHT_S, SERVICE_S, patchy_sun, winter};
 use super::weather::{Film, Unrest, Weather};
+use cylwatch_thermal::units::MINUTE_S;
 
 const HIGHEST_DEGC: f64 = 55.0;
 

@@ -1,9 +1,10 @@
 //! Each climate keeps to its statement.
-use super::part::{DAY_S, HOUR_S, MINUTE_S, Stay, StayAir, YEAR_S};
+use super::part::{Stay, StayAir};
 use super::weather::Weather;
 use super::{Span, draw};
 use crate::world::Climate;
 use crate::world::statistics::{Law, assert_equal_counts, assert_law, mean, sd};
+use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S, YEAR_S};
 
 fn span(seed: u64, days: f64) -> Span {
     Span::draw(seed, 0.0, days * DAY_S, 300.0)

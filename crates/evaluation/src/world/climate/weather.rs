@@ -5,12 +5,12 @@
 //! lag, less what a clear sky takes away. All signals are linear between the same knots.
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::scenario::{AxialVariation, OutsideFilm, Series, Sun, Surroundings};
+use cylwatch_thermal::units::{DAY_S, ZERO_CELSIUS_K};
 
 use super::Span;
 use super::part::{Outside, Polyline, Stay, Trapezoid, sum_at};
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
 
-const ZERO_DEGC_K: f64 = 273.15;
 const TURBULENCE_TIME_S: f64 = 120.0;
 const GUST_TIME_S: f64 = 120.0;
 const DIFFERENCE_TIME_S: f64 = 3600.0;
@@ -100,7 +100,7 @@ impl Weather {
     /// Irradiance, W/m².
     pub(super) fn irradiance_w_m2(&self, t_s: f64) -> f64 {
         let (rise_s, set_s) = self.daylight_s;
-        let of_day = (t_s.rem_euclid(super::part::DAY_S) - rise_s) / (set_s - rise_s);
+        let of_day = (t_s.rem_euclid(DAY_S) - rise_s) / (set_s - rise_s);
         let arch = (4.0 * of_day * (1.0 - of_day)).max(0.0);
         arch * sum_at(&self.sun, t_s) * self.stay_at(t_s).map_or(1.0, |stay| stay.light(t_s))
     }
@@ -138,9 +138,9 @@ impl Weather {
                 let gust = (1.0 + self.unrest.gust * gusts.at(t_s)).max(GUST_LEAST);
                 Sky {
                     t_s,
-                    air_k: air_degc + ZERO_DEGC_K + self.unrest.turbulence_k * turbulence.at(t_s),
+                    air_k: air_degc + ZERO_CELSIUS_K + self.unrest.turbulence_k * turbulence.at(t_s),
                     flow: self.flow(clock_s, self.rest * varied) * gust,
-                    radiation_k: lag.follow(clock_s, air_degc) + ZERO_DEGC_K - self.sky_k,
+                    radiation_k: lag.follow(clock_s, air_degc) + ZERO_CELSIUS_K - self.sky_k,
                     irradiance_w_m2: self.irradiance_w_m2(clock_s),
                     difference_k: self.unrest.difference_k * difference.at(t_s),
                 }

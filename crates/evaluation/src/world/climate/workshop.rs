@@ -3,9 +3,10 @@
 //! The air is an Ornstein-Uhlenbeck process of 0.2 K with 2 h around its set point, held within 0.5 K of it.
 use super::Span;
 use super::draw::{OutsideLaw, Range};
-use super::part::{HOUR_S, MINUTE_S, Polyline};
+use super::part::Polyline;
 use super::weather::{Film, Unrest, Weather};
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
+use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 const SET_DEGC: Range = (18.0, 24.0);
 const SD_K: f64 = 0.2;

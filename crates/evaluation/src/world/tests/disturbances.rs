@@ -1,9 +1,10 @@
 //! Rows of the fault table that happen to the cylinder, where the film is a coefficient and where it is a wind.
-use super::{DAY_S, request};
+use super::request;
 use crate::world::{FaultRow, HappeningKind, Overlay, Simulated, World};
 use cylwatch_thermal::scenario::OutsideFilm;
+use cylwatch_thermal::units::DAY_S;
+use cylwatch_thermal::units::HOUR_S;
 
-const HOUR_S: f64 = 3600.0;
 /// A climate with a coefficient and one with a wind, both without tunnels.
 const CLIMATES: [&str; 2] = ["showers", "parked"];
 const SEED: u64 = 5;

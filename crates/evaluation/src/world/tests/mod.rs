@@ -7,8 +7,7 @@ mod rows;
 mod worlds;
 
 use super::{Family, Request};
-
-const DAY_S: f64 = 86_400.0;
+use cylwatch_thermal::units::DAY_S;
 
 fn family(key: &str) -> Family {
     key.parse().unwrap()

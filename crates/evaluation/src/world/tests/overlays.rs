@@ -1,13 +1,13 @@
 //! Leaks, losses, refills and faults over a world.
-use super::{DAY_S, family, request};
+use super::{family, request};
 use crate::fault::Fault;
 use crate::world::slow::SlowLeak;
 use crate::world::{
     Family, FaultRow, HappeningKind, Leak, Overlay, Request, Simulated, VesselKind, World, compose, faulty,
     generate,
 };
-
-const HOUR_S: f64 = 3600.0;
+use cylwatch_thermal::units::DAY_S;
+use cylwatch_thermal::units::HOUR_S;
 
 /// The largest leak that is laid over, against its own simulation.
 #[test]

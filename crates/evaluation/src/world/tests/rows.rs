@@ -1,8 +1,8 @@
 //! When rows come.
-use super::DAY_S;
 use crate::world::RowPattern;
 use crate::world::rows::Rows;
 use crate::world::statistics::{Law, assert_law, assert_share};
+use cylwatch_thermal::units::DAY_S;
 
 #[test]
 fn rows_are_measured_within_two_percent_of_their_interval_and_one_second() {

@@ -1,9 +1,10 @@
 //! Simulations and what becomes of them: balances, repeatability, what sets share.
-use super::{DAY_S, family, request};
+use super::{family, request};
 use crate::world::{
     Climate, Family, GasKind, NominalVessel, Overlay, Request, SensorClass, Simulated, VesselKind, World,
     WorldError, generate,
 };
+use cylwatch_thermal::units::DAY_S;
 
 fn bits(world: &World) -> Vec<u64> {
     let truth = &world.truth;

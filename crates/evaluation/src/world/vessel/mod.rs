@@ -4,13 +4,13 @@
 //! volume within 5 %, expansions within 10 %, an emissivity of 0.6 to 0.95 and an absorptivity of 0.4 to 0.8, all drawn evenly.
 //! To add a vessel: a file beside this one, an entry in `VesselKind::nominal_entry`, and a kind in [`VesselKind`].
 use cylwatch_thermal::ThermalError;
+use cylwatch_thermal::units::BAR_PA;
 use cylwatch_thermal::vessel::{InsideFilm, Vessel, presets, read_vessel};
 use serde::{Deserialize, Serialize};
 
 use super::VesselKind;
 use crate::random::{Purpose, Random};
 
-const BAR_PA: f64 = 1e5;
 const CAPACITY: (f64, f64) = (0.7, 1.3);
 const CONTACT: (f64, f64) = (0.7, 1.3);
 const FILM: (f64, f64) = (0.7, 1.3);

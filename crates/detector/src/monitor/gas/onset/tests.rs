@@ -1,6 +1,6 @@
 use super::*;
+use crate::units::HOUR_S;
 
-const HOUR_S: f64 = 3600.0;
 const G_H: f64 = 1e-3 / HOUR_S;
 
 /// Onsets every hour with rates of so many standard deviations of 1 g/h.

@@ -1,6 +1,6 @@
 use super::*;
+use crate::units::HOUR_S;
 
-const HOUR_S: f64 = 3600.0;
 /// One per cent of the mass.
 const MUCH_K: f64 = 2.9;
 

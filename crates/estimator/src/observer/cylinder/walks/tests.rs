@@ -5,8 +5,7 @@ use crate::sensor::Sensor;
 use crate::thermal::sensor::SensorSpec;
 use crate::thermal::vessel::presets;
 use approx::assert_relative_eq;
-
-const DAY_S: f64 = 86_400.0;
+use cylwatch_thermal::units::DAY_S;
 
 fn cylinder(transmitter: &SensorSpec, settings: &ObserverSettings) -> Cylinder {
     let sensors = [Sensor::typical("shoulder").unwrap(), Sensor::try_from(transmitter).unwrap()];

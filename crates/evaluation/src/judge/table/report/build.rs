@@ -1,11 +1,13 @@
 //! From sums to the numbers of the table.
+use cylwatch_thermal::units::HOUR_S;
+use cylwatch_thermal::units::YEAR_S;
 use std::collections::BTreeMap;
 
 use super::{
     CoverageRow, DisagreementReport, FastRow, FaultRowReport, GroupReport, InnovationRow, LeakRow, Leaks,
     Tight,
 };
-use crate::judge::measures::{Class, Delay, Detection, Horizon, Reached, SmallestLeak, YEAR_S, by_rate};
+use crate::judge::measures::{Class, Delay, Detection, Horizon, Reached, SmallestLeak, by_rate};
 use crate::judge::score::agreement::Rule;
 use crate::judge::score::coverage::Quantity;
 use crate::judge::score::innovation::RegimeSums;
@@ -17,7 +19,6 @@ use crate::world::{FaultRow, Regime};
 
 /// Part of the leaks that must be found for the smallest leak.
 const FOUND: f64 = 0.95;
-const HOUR_S: f64 = 3600.0;
 /// Horizons of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
