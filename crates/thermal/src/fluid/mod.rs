@@ -29,7 +29,7 @@ use data::FluidData;
 use helmholtz::{HelmholtzEnergy, Multiparameter, PREPARED, Reduced, ideal};
 use ideal_gas::IdealGas;
 use peng_robinson::PengRobinson;
-use transport::{Transport, TransportState};
+use transport::TransportState;
 
 /// `f64` or a dual number of num-dual.
 pub trait Real: num_dual::DualNum<Primitive = f64> + Copy {}
@@ -61,7 +61,6 @@ pub struct Fluid {
     data: &'static FluidData,
     prepared: &'static Multiparameter,
     description: Description,
-    transport: Transport,
 }
 
 /// Where a fluid's equation may be used.
@@ -118,12 +117,7 @@ impl Fluid {
             });
         };
         let prepared = &PREPARED[index];
-        Ok(Self {
-            data: data::ALL[index],
-            prepared,
-            description: Description::Reference(prepared),
-            transport: data::ALL[index].transport,
-        })
+        Ok(Self { data: data::ALL[index], prepared, description: Description::Reference(prepared) })
     }
 
     /// Names that [`Fluid::named`] knows.
@@ -291,13 +285,13 @@ impl Fluid {
 
     /// Viscosity, Pa s.
     pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
-        self.transport.viscosity_pa_s(density_kg_m3, temperature_k)
+        self.data.transport.viscosity_pa_s(density_kg_m3, temperature_k)
     }
 
     /// Thermal conductivity, W/(m K), with its enhancement near the critical point.
     pub fn conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
-        let background = self.transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
-        let reference_k = self.transport.reference_temperature_k();
+        let background = self.data.transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
+        let reference_k = self.data.transport.reference_temperature_k();
         if reference_k.is_some_and(|reference_k| temperature_k.re() >= reference_k) {
             return background;
         }
@@ -314,6 +308,6 @@ impl Fluid {
             cv_j_kg_k: state.cv_j_kg_k,
         };
         let viscosity = self.viscosity_pa_s(density_kg_m3, temperature_k);
-        background + self.transport.critical_enhancement_w_m_k(&at, viscosity, dp_drho_reference)
+        background + self.data.transport.critical_enhancement_w_m_k(&at, viscosity, dp_drho_reference)
     }
 }

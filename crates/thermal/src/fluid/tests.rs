@@ -10,8 +10,7 @@ fn nitrogen_as_coolprop() -> Fluid {
     let copy = FluidData { reducing_density_mol_m3: COOLPROP_REDUCING_DENSITY_MOL_M3, ..*original };
     let data: &'static FluidData = Box::leak(Box::new(copy));
     let prepared: &'static Multiparameter = Box::leak(Box::new(Multiparameter::new(data)));
-    let transport = original.transport;
-    Fluid { data, prepared, description: Description::Reference(prepared), transport }
+    Fluid { data, prepared, description: Description::Reference(prepared) }
 }
 
 fn table(text: &str) -> Vec<Vec<f64>> {
