@@ -49,6 +49,8 @@ pub enum Reason {
     Restarted,
     /// A leak is more likely than not, but not found at the stated rate of false alarms.
     Suspected,
+    /// The gas is nearly at the pressure of the air: it drives no leak that could be seen.
+    Empty,
 }
 
 impl Verdict {
@@ -89,6 +91,7 @@ impl Reason {
             Self::Clock => "the clock jumped",
             Self::Restarted => "the estimate had to begin again",
             Self::Suspected => "a leak is likely, but not certain yet",
+            Self::Empty => "the cylinder is nearly empty: no leak would show",
         }
     }
 }

@@ -236,7 +236,9 @@ impl Observer {
             self.start(time_s, readings)?;
             return Ok(false);
         };
-        if self.advance(time_s - last_s, time_s, readings).is_ok() && self.is_possible() {
+        // The equations hold for a state that is possible alone.
+        if self.is_possible() && self.advance(time_s - last_s, time_s, readings).is_ok() && self.is_possible()
+        {
             return Ok(false);
         }
         self.clock.restarts += 1;

@@ -270,7 +270,7 @@ impl Default for ObserverSettings {
             engine: Engine::default(),
             wall_nodes: 2,
             film_w_m2_k: 14.0,
-            longest_step_s: 20.0,
+            longest_step_s: 60.0,
             temperature_walk_k_per_sqrt_s: 2.0 * PER_HOUR.sqrt(),
             gas_walk_k_per_sqrt_s: 2.0 * PER_HOUR.sqrt(),
             air: Walk { prior_sd: 5.0, per_sqrt_s: 0.7, memory_s: None },

@@ -14,9 +14,9 @@ const DAY_SAMPLES: usize = 1440;
 /// Return of a state towards itself within a sample that is none.
 const STAYS: f64 = 1e-9;
 /// Variance of a state from which on it may be one that nobody sees: states are of a size near one.
-const SUSPECT: f64 = 1e6;
-/// Doublings of samples after which an error is forgotten, years of minutes, and what may be left of its variance.
-const FORGETTING: usize = 24;
+const SUSPECT: f64 = 10.0;
+/// Doublings of samples after which an error is forgotten, eight years of minutes, and what may be left of its variance.
+const FORGETTING: usize = 22;
 const FORGOTTEN: f64 = 1e-3;
 /// Growth of the sum, relative, below which it has settled.
 const SETTLED: f64 = 1e-14;

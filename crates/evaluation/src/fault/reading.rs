@@ -1,5 +1,5 @@
 //! Faults of what sensors read.
-use cylwatch_thermal::units::ZERO_CELSIUS_K;
+use cylwatch_thermal::units::{ATMOSPHERE_PA, ZERO_CELSIUS_K};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -10,7 +10,6 @@ use crate::EvaluationError;
 
 /// Temperature at which a transmitter's temperature coefficient says nothing, K.
 const CALIBRATED_K: f64 = 288.15;
-const STANDARD_PRESSURE_PA: f64 = 101_325.0;
 const PA_PER_PSI: f64 = 6_894.757_293_168;
 /// What a transmitter shows at 3.6 mA, the signal of a broken wire, as a part of its full scale: `(3.6 - 4)/16`.
 const WIRE_BREAK: f64 = -0.025;
@@ -105,7 +104,7 @@ impl MixUp {
             Self::BarAsKilopascal => reading / 100.0,
             Self::PsiAsBar => reading / PA_PER_PSI * 1e5,
             Self::BarAsPsi => reading / 1e5 * PA_PER_PSI,
-            Self::GaugeAsAbsolute => reading - STANDARD_PRESSURE_PA,
+            Self::GaugeAsAbsolute => reading - ATMOSPHERE_PA,
         }
     }
 }

@@ -5,7 +5,7 @@
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::scenario::{Scenario, Series};
 use cylwatch_thermal::trajectory::Trajectory;
-use cylwatch_thermal::units::{BAR_PA, QUOTED_K};
+use cylwatch_thermal::units::{ATMOSPHERE_PA, BAR_PA, QUOTED_K};
 use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
@@ -180,7 +180,7 @@ impl Process {
                 let kind = FlowKind::Orifice {
                     diameter_m: *diameter_m,
                     discharge_coefficient: 0.8,
-                    back_pressure_pa: 101_325.0,
+                    back_pressure_pa: ATMOSPHERE_PA,
                 };
                 let open = flow("discharge", (*start_s, start_s + lasting_s), kind);
                 vec![Flow { closes_below_pa: Some(*until_pa), ..open }]

@@ -6,14 +6,13 @@
 use cylwatch_thermal::flow::orifice::mass_flux;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::State;
-use cylwatch_thermal::units::HOUR_S;
+use cylwatch_thermal::units::{ATMOSPHERE_PA, HOUR_S};
 
 use super::{Leak, Overlay, WorldError};
 use crate::random::{Purpose, Random};
 use crate::thermal::vessel::Vessel;
 
 const DISCHARGE_COEFFICIENT: f64 = 0.8;
-const BACK_PRESSURE_PA: f64 = 101_325.0;
 /// Pressure at which a loss that goes on stops, of that of the fill.
 const LEFT: f64 = 0.2;
 /// Source of a refill: this much above the fill.
@@ -76,7 +75,7 @@ impl Filled<'_> {
 
     /// Pressure at which what goes on stops, Pa.
     fn least_pa(&self) -> f64 {
-        (LEFT * self.pressure_pa).max(1.5 * BACK_PRESSURE_PA)
+        (LEFT * self.pressure_pa).max(1.5 * ATMOSPHERE_PA)
     }
 
     fn loss(
@@ -92,7 +91,7 @@ impl Filled<'_> {
             FlowKind::Orifice {
                 diameter_m: self.bore_m(part, within_s)?,
                 discharge_coefficient: DISCHARGE_COEFFICIENT,
-                back_pressure_pa: BACK_PRESSURE_PA,
+                back_pressure_pa: ATMOSPHERE_PA,
             }
         } else {
             FlowKind::Leak { mass_flow_kg_s: part * self.mass_kg / within_s }
@@ -106,7 +105,7 @@ impl Filled<'_> {
     fn bore_m(&self, part: f64, within_s: f64) -> Result<f64, WorldError> {
         let density = self.vessel.fluid.density_from_pressure_temperature(self.pressure_pa, SIZED_K)?;
         let stagnation: State<f64> = self.vessel.fluid.checked_state(density, SIZED_K)?;
-        let flux = mass_flux(&self.vessel.fluid, &stagnation, BACK_PRESSURE_PA)?.mass_flux_kg_m2_s;
+        let flux = mass_flux(&self.vessel.fluid, &stagnation, ATMOSPHERE_PA)?.mass_flux_kg_m2_s;
         let rate_kg_s = -self.mass_kg * (1.0 - part).ln() / within_s;
         let area_m2 = rate_kg_s / (DISCHARGE_COEFFICIENT * flux);
         Ok((4.0 * area_m2 / std::f64::consts::PI).sqrt())

@@ -4,7 +4,7 @@
 //! input `u` that is linear over `dt`, `y' = u' - s + (y - u + s) exp(-dt/tau)` with `s = tau (u' - u)/dt`.
 use cylwatch_thermal::scenario::{OutsideFilm, Surroundings};
 use cylwatch_thermal::transfer::outside::{Body, convection_w_m2_k};
-use cylwatch_thermal::units::ZERO_CELSIUS_K;
+use cylwatch_thermal::units::{ATMOSPHERE_PA, ZERO_CELSIUS_K};
 
 use super::samples::Samples;
 use super::sensors::{Thermometer, Transmitter};
@@ -15,7 +15,6 @@ const COUPLING_FILM_W_M2_K: f64 = 10.0;
 const COUPLING_EXPONENT: f64 = 0.3;
 /// Temperature of its electronics at which a transmitter has no temperature error, K.
 const ELECTRONICS_K: f64 = 288.15;
-const ATMOSPHERE_PA: f64 = 101_325.0;
 /// Ends of a transmitter's current loop, of its range (NAMUR NE 43).
 const LOOP: (f64, f64) = (-0.0125, 1.03125);
 

@@ -4,9 +4,8 @@ use crate::flow::{Flow, FlowKind};
 use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::trajectory::EventKind;
+use crate::units::ATMOSPHERE_PA;
 
-/// Below the atmosphere's pressure nothing leaks out, Pa.
-const ATMOSPHERE_PA: f64 = 101_325.0;
 /// Bisection steps: 2^-50 of a step.
 const BISECTIONS: usize = 50;
 

@@ -6,6 +6,7 @@
 //! properties at film temperature, valid 200-400 K. Radiation: grey body in a large enclosure.
 use crate::fluid::Real;
 use crate::transfer::inside::GRAVITY_M_S2;
+use crate::units::ATMOSPHERE_PA;
 use crate::wall::geometry::Orientation;
 
 /// Stefan-Boltzmann constant, W/(m² K⁴) (CODATA 2018).
@@ -15,7 +16,6 @@ const FLAT_BELOW_K: f64 = 0.01;
 /// Specific gas constant of dry air, J/(kg K), and its heat capacity, J/(kg K).
 const AIR_GAS_CONSTANT: f64 = 287.055;
 const AIR_HEAT_CAPACITY: f64 = 1006.0;
-const ATMOSPHERE_PA: f64 = 101_325.0;
 
 /// Air at 1 atm: conductivity W/(m K), kinematic viscosity m²/s, Prandtl number.
 fn air<D: Real>(temperature_k: D) -> (D, D, D) {

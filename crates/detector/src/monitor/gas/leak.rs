@@ -5,7 +5,7 @@
 //! one with odds of at most `T / LEAK_INTERVAL_S`. The odds are those of the Bayes factor, but beyond the prior no larger than that.
 use serde::{Deserialize, Serialize};
 
-use super::onset::Fitted;
+use super::onset::Posterior;
 use crate::monitor::{Interval, LeakFinding};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
@@ -83,8 +83,8 @@ pub(in crate::monitor) struct Look {
 }
 
 impl LeakState {
-    /// Take in a sample, and `fitted` at it where a look is due.
-    pub(crate) fn step(&mut self, look: &Look, fitted: impl FnOnce() -> Option<Fitted>) -> Change {
+    /// Take in a sample, and what is known of a leak at it where a look is due.
+    pub(crate) fn step(&mut self, look: &Look, posterior: impl FnOnce() -> Option<Posterior>) -> Change {
         let time_s = look.time_s;
         self.largest_odds = (look.false_alarm_s / LEAK_INTERVAL_S).clamp(PRIOR_ODDS, CERTAIN);
         let leaking = self.found.is_some();
@@ -92,7 +92,7 @@ impl LeakState {
         let newly = alarm && !leaking;
         if newly || time_s >= self.due_s {
             self.due_s = time_s + BETWEEN_LOOKS_S;
-            self.look(look, fitted(), newly || leaking);
+            self.look(look, posterior(), newly || leaking);
         }
         if newly {
             self.seen_s = time_s;
@@ -108,15 +108,15 @@ impl LeakState {
         Change::None
     }
 
-    fn look(&mut self, look: &Look, fitted: Option<Fitted>, leaking: bool) {
+    fn look(&mut self, look: &Look, posterior: Option<Posterior>, leaking: bool) {
         if leaking {
-            let loss = fitted.filter(|fitted| fitted.speaks_for_a_loss);
-            let finding = loss.map(|fitted| fitted.finding(look.pa_per_kg));
+            let loss = posterior.as_ref().filter(|posterior| posterior.speaks_for_a_loss);
+            let finding = loss.map(|posterior| posterior.finding(look.pa_per_kg));
             self.found = finding.or(self.found).or_else(|| Some(self.unseen(look)));
         }
-        if let Some(fitted) = fitted {
-            self.odds = Some((PRIOR_ODDS * fitted.log_bayes_factor.exp()).min(CERTAIN));
-            self.largest_per_s = fitted.rate_kg_s.high / look.filled_kg;
+        if let Some(posterior) = posterior {
+            self.odds = Some((PRIOR_ODDS * posterior.log_bayes_factor.exp()).min(CERTAIN));
+            self.largest_per_s = posterior.largest_rate_kg_s() / look.filled_kg;
         }
     }
 
@@ -165,15 +165,11 @@ impl LeakState {
 mod tests {
     use super::*;
 
-    fn fitted(log_bayes_factor: f64) -> Fitted {
-        let rate_kg_s = Interval { value: 1e-6, low: 5e-7, high: 2e-6 };
-        Fitted {
-            rate_kg_s,
-            onset_s: Interval { value: 0.0, low: 0.0, high: 600.0 },
-            lost_kg: rate_kg_s.scaled(600.0),
-            log_bayes_factor,
-            speaks_for_a_loss: true,
-        }
+    fn posterior(log_bayes_factor: f64) -> Posterior {
+        let onsets = [(0.0, 1e-6, 1e-7), (600.0, 1e-6, 1e-7)];
+        let mut posterior = Posterior::of(&onsets, 1200.0, 0.0).unwrap();
+        posterior.log_bayes_factor = log_bayes_factor;
+        posterior
     }
 
     fn look(time_s: f64, false_alarm_s: f64) -> Look {
@@ -194,7 +190,7 @@ mod tests {
         let probability = |false_alarm_s: f64| {
             let mut state = LeakState::default();
             assert_eq!(state.probability(), None);
-            assert_eq!(state.step(&look(0.0, false_alarm_s), || Some(fitted(20.0))), Change::None);
+            assert_eq!(state.step(&look(0.0, false_alarm_s), || Some(posterior(20.0))), Change::None);
             state.probability().unwrap()
         };
         assert!((probability(7.0 * 86_400.0) - 0.01 / 1.01).abs() < 1e-9, "the prior, no more");
@@ -207,8 +203,8 @@ mod tests {
     fn a_leak_is_found_at_once_looked_at_every_ten_minutes_and_over_a_day_after_it_was_seen() {
         let mut state = LeakState::default();
         let (mut looks, alarm) = (0, Look { alarm: true, calm: false, ..look(0.0, 1e12) });
-        let found = state.step(&alarm, || Some(fitted(10.0)));
-        assert_eq!(found, Change::Found(fitted(10.0).finding(4.4e6)));
+        let found = state.step(&alarm, || Some(posterior(10.0)));
+        assert_eq!(found, Change::Found(posterior(10.0).finding(4.4e6)));
         for minute in 1..1440 {
             let quiet = look(60.0 * f64::from(minute), 1e3);
             let change = state.step(&quiet, || {

@@ -37,15 +37,14 @@ const DRIFT_PER_S: f64 = 1e-5 / 4.477 / 3600.0;
 /// By how much an onset may be off beside what is known of it, s.
 const ONSET_S: f64 = 600.0;
 
-/// What is known of a leak.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fitted {
-    /// Leak rate, kg/s; the upper end is what one is below with 97.5 %.
-    pub rate_kg_s: Interval,
-    /// Onset, s.
-    pub onset_s: Interval,
-    /// Mass lost since the onset, kg.
-    pub lost_kg: Interval,
+/// What is known of a leak, if there is one: a mixture over its onsets. Quantiles are found when they are asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posterior {
+    candidates: Vec<Candidate>,
+    /// Time at which it is known, s.
+    time_s: f64,
+    /// Error of the rate that lasts, kg/s.
+    drift_kg_s: f64,
     /// Logarithm of the Bayes factor of a leak, its rate anywhere in four decades and its onset at any time, against none.
     pub log_bayes_factor: f64,
     /// Whether any onset makes a loss likelier than none.
@@ -53,7 +52,7 @@ pub struct Fitted {
 }
 
 /// One onset with its rate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Candidate {
     /// Onset, the one before it and the one after it, s.
     onset_s: f64,
@@ -65,69 +64,90 @@ struct Candidate {
 }
 
 /// Rate and onset of a leak at a time, s, of a cylinder that holds so much, kg, if there is one; `None`: too little has been seen.
-pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) -> Option<Fitted> {
+pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) -> Option<Posterior> {
     let error_sd = evidence.error_sd();
     let onset = |of: Onset| {
         let considered_kg_s = evidence.considered_kg_s(time_s - of.since_s);
         (of.since_s, of.rate_kg_s, (error_sd * of.sd_kg_s).hypot(considered_kg_s))
     };
-    fit_of(&observer.onsets().map(onset).collect::<Vec<_>>(), time_s, DRIFT_PER_S * mass_kg)
+    Posterior::of(&observer.onsets().map(onset).collect::<Vec<_>>(), time_s, DRIFT_PER_S * mass_kg)
 }
 
-/// The same of onsets, s, with their rates and standard deviations, kg/s, oldest first, and an error of the rate that lasts, kg/s.
-fn fit_of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Fitted> {
-    let mut candidates: Vec<Candidate> = onsets
-        .iter()
-        .enumerate()
-        .map(|(index, &(onset_s, rate, sd))| {
-            let from_s = index.checked_sub(1).map_or(onset_s, |before| onsets[before].0);
-            let to_s = onsets.get(index + 1).map_or(time_s, |after| after.0);
-            Candidate { onset_s, from_s, to_s, rate, sd, weight: 0.0 }
-        })
-        .collect();
-    let ratio = |one: &Candidate| 0.5 * (one.rate.max(0.0) / one.sd).powi(2);
-    let largest = candidates.iter().map(ratio).fold(0.0, f64::max);
-    let (mut total, mut factor, mut span_s) = (0.0, 0.0, 0.0);
-    for one in &mut candidates {
-        let width = 0.5 * (one.to_s - one.from_s);
-        let likelihood = (ratio(one) - largest).exp();
-        // Mean of the likelihood over rates that are uniform in their logarithm.
-        let mean = likelihood * TAU.sqrt() * one.sd / (one.rate.max(one.sd) * LN_RATES);
-        factor += width * mean;
-        // What lies above zero of a normal distribution of the rate.
-        one.weight = width * mean * normal_probability(one.rate / one.sd);
-        total += one.weight;
-        span_s += width;
+impl Posterior {
+    /// Of onsets, s, with their rates and standard deviations, kg/s, oldest first, and an error of the rate that lasts, kg/s.
+    pub(super) fn of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Self> {
+        let mut candidates: Vec<Candidate> = onsets
+            .iter()
+            .enumerate()
+            .map(|(index, &(onset_s, rate, sd))| {
+                let from_s = index.checked_sub(1).map_or(onset_s, |before| onsets[before].0);
+                let to_s = onsets.get(index + 1).map_or(time_s, |after| after.0);
+                Candidate { onset_s, from_s, to_s, rate, sd, weight: 0.0 }
+            })
+            .collect();
+        let ratio = |one: &Candidate| 0.5 * (one.rate.max(0.0) / one.sd).powi(2);
+        let largest = candidates.iter().map(ratio).fold(0.0, f64::max);
+        let (mut total, mut factor, mut span_s) = (0.0, 0.0, 0.0);
+        for one in &mut candidates {
+            let width = 0.5 * (one.to_s - one.from_s);
+            let likelihood = (ratio(one) - largest).exp();
+            // Mean of the likelihood over rates that are uniform in their logarithm.
+            let mean = likelihood * TAU.sqrt() * one.sd / (one.rate.max(one.sd) * LN_RATES);
+            factor += width * mean;
+            // What lies above zero of a normal distribution of the rate.
+            one.weight = width * mean * normal_probability(one.rate / one.sd);
+            total += one.weight;
+            span_s += width;
+        }
+        candidates.iter_mut().for_each(|one| one.weight /= total);
+        let log_bayes_factor = largest + (factor / span_s).ln();
+        if !(total > 0.0 && log_bayes_factor.is_finite()) {
+            return None;
+        }
+        Some(Self { candidates, time_s, drift_kg_s, log_bayes_factor, speaks_for_a_loss: largest > 0.0 })
     }
-    candidates.iter_mut().for_each(|one| one.weight /= total);
-    let log_bayes_factor = largest + (factor / span_s).ln();
-    if !(total > 0.0 && log_bayes_factor.is_finite()) {
-        return None;
-    }
-    let sd = |one: &Candidate| one.sd.hypot(MODEL * one.rate);
-    let rates = Mixture::new(&candidates, |one| (one.rate, sd(one).hypot(drift_kg_s)));
-    let losses = Mixture::new(&candidates, |one| {
-        let age_s = time_s - one.onset_s;
-        (one.rate * age_s, sd(one) * age_s)
-    });
-    let onset = |p: f64| onset_quantile(&candidates, p, time_s);
-    let onset_s = Interval {
-        value: onset(0.5),
-        low: onset(TAIL) - ONSET_S,
-        high: (onset(1.0 - TAIL) + ONSET_S).min(time_s),
-    };
-    let (rate_kg_s, lost_kg) = (rates.interval(), losses.interval());
-    Some(Fitted { rate_kg_s, onset_s, lost_kg, log_bayes_factor, speaks_for_a_loss: largest > 0.0 })
-}
 
-impl Fitted {
-    /// The same with the rate as loss of the pressure at 15 °C, of which a kilogram makes `pa_per_kg`.
+    fn rates(&self) -> Mixture {
+        Mixture::new(&self.candidates, |one| (one.rate, one.rate_sd().hypot(self.drift_kg_s)))
+    }
+
+    /// Leak rate, kg/s.
+    pub fn rate_kg_s(&self) -> Interval {
+        self.rates().interval()
+    }
+
+    /// What the rate is below with 97.5 %, kg/s: the upper end of [`Posterior::rate_kg_s`].
+    pub fn largest_rate_kg_s(&self) -> f64 {
+        self.rates().quantile(1.0 - TAIL)
+    }
+
+    /// Onset, s.
+    pub fn onset_s(&self) -> Interval {
+        let onset = |p: f64| onset_quantile(&self.candidates, p, self.time_s);
+        Interval {
+            value: onset(0.5),
+            low: onset(TAIL) - ONSET_S,
+            high: (onset(1.0 - TAIL) + ONSET_S).min(self.time_s),
+        }
+    }
+
+    /// Mass lost since the onset, kg.
+    pub fn lost_kg(&self) -> Interval {
+        let losses = Mixture::new(&self.candidates, |one| {
+            let age_s = self.time_s - one.onset_s;
+            (one.rate * age_s, one.rate_sd() * age_s)
+        });
+        losses.interval()
+    }
+
+    /// The leak, its rate also as loss of the pressure at 15 °C, of which a kilogram makes `pa_per_kg`.
     pub fn finding(&self, pa_per_kg: f64) -> LeakFinding {
+        let rate_kg_s = self.rate_kg_s();
         LeakFinding {
-            rate_kg_s: self.rate_kg_s,
-            rate_pa_s: self.rate_kg_s.scaled(pa_per_kg),
-            onset_s: self.onset_s,
-            lost_kg: self.lost_kg,
+            rate_kg_s,
+            rate_pa_s: rate_kg_s.scaled(pa_per_kg),
+            onset_s: self.onset_s(),
+            lost_kg: self.lost_kg(),
         }
     }
 }
@@ -182,6 +202,11 @@ fn onset_quantile(candidates: &[Candidate], p: f64, time_s: f64) -> f64 {
 }
 
 impl Candidate {
+    /// Standard deviation of the rate with what a kilogram is worth, kg/s.
+    fn rate_sd(&self) -> f64 {
+        self.sd.hypot(MODEL * self.rate)
+    }
+
     /// Probability of an onset before `value_s`.
     fn onset_before(&self, value_s: f64) -> f64 {
         let (rise_s, fall_s) = (self.onset_s - self.from_s, self.to_s - self.onset_s);

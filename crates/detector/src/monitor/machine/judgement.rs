@@ -2,10 +2,12 @@
 use super::{EXCHANGED_S, Monitor, SETTLED_S};
 use crate::monitor::gas::bounds::ROWS;
 use crate::monitor::{Health, Known, KnownExchange, Reason};
-use crate::units::QUOTED_K;
+use crate::units::{ATMOSPHERE_PA, QUOTED_K};
 
 /// Part of the fill from which an exchange or a flow is the verdict: what is smaller is an event, and leaves the verdict open until gas and wall have settled.
 pub(super) const MATTERS: f64 = 0.01;
+/// Pressure at 15 °C, Pa, below which gas leaves a hole slower than sound, and at the atmosphere not at all.
+const EMPTY_PA: f64 = 2.0 * ATMOSPHERE_PA;
 
 impl Monitor {
     /// Whether neither pressure nor temperature can be told, and why.
@@ -25,9 +27,9 @@ impl Monitor {
     }
 
     /// What is known of the present row, for the decision.
-    pub(super) fn known(&self, time_s: f64) -> Known {
+    pub(super) fn known(&self, time_s: f64, p15_pa: f64) -> Known {
         let state = &self.state;
-        let doubt = self.doubt(time_s);
+        let doubt = self.doubt(time_s).or((p15_pa < EMPTY_PA).then_some(Reason::Empty));
         let at_fault = |health: &Health| {
             matches!(health, Health::Stuck | Health::Shifted(_) | Health::Detached | Health::Implausible)
         };

@@ -18,7 +18,7 @@ use super::gas::filling::FillingCheck;
 use super::gas::gain::GainWatch;
 use super::gas::jump::JumpWatch;
 use super::gas::leak::{Change, LeakState, Look, LostUnheard};
-use super::gas::onset::{self, Fitted};
+use super::gas::onset::{self, Posterior};
 use super::gas::outlook::LimitMasses;
 use super::intake::{Intake, Row, Taken};
 use super::readings::health::SensorWatch;
@@ -352,7 +352,7 @@ impl Monitor {
     }
 
     /// Rate and onset of a leak, if there is one, whatever the evidence; `None`: too little has been seen.
-    pub fn fitted(&self) -> Option<Fitted> {
+    pub fn posterior(&self) -> Option<Posterior> {
         onset::fit(&self.observer, &self.state.evidence, self.state.last_s, self.filled_kg.0)
     }
 

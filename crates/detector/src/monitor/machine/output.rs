@@ -43,7 +43,7 @@ impl Monitor {
         estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
         self.warn_of_the_cold(time_s, cold_pressure_pa, &mut events);
-        let known = self.known(time_s);
+        let known = self.known(time_s, estimate.p15_pa);
         let verdict = decide(&known).verdict;
         let was = std::mem::replace(&mut self.state.verdict, verdict);
         if was != verdict {

@@ -79,8 +79,8 @@ impl Contender for Monitored {
 
     fn found(&mut self) -> Option<Found> {
         // Below any threshold nobody asks.
-        let fitted = self.monitor.fitted().filter(|_| self.log_years > SELDOM)?;
-        let finding = fitted.finding(self.pa_per_kg);
+        let posterior = self.monitor.posterior().filter(|_| self.log_years > SELDOM)?;
+        let finding = posterior.finding(self.pa_per_kg);
         let (rate_pa_s, onset_s) = (finding.rate_pa_s.into(), finding.onset_s.into());
         Some(Found { rate_pa_s: Some(rate_pa_s), onset_s: Some(onset_s) })
     }
