@@ -43,5 +43,27 @@ fn scaling(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, scenario_4, scaling);
+/// The closed bottle of the comparison with other integrators: 6 h, 61 samples, one wall cell and 48.
+fn closed_bottle(c: &mut Criterion) {
+    let mut scenario = scenario::presets::load("bottle-step").expect("built-in scenario");
+    scenario.sample_time_s = 360.0;
+    let lumped = vessel::presets::load("closed-bottle").expect("built-in vessel");
+    let mut resolved = lumped.clone();
+    let geometry = &mut resolved.geometry;
+    (geometry.lumped, geometry.cylinder_cells, geometry.layers[0].cells) = (false, 10, 3);
+    (geometry.bottom.cells, geometry.shoulder.cells) = (3, 3);
+    let mut group = c.benchmark_group("closed bottle, 6 h");
+    for (cells, vessel) in [(1, &lumped), (48, &resolved)] {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let settings =
+                SimulationSettings { relative_tolerance: tolerance, ..SimulationSettings::default() };
+            group.bench_function(format!("{cells} wall cells, {tolerance:e}"), |b| {
+                b.iter(|| simulate(vessel, &scenario, &settings, &mut |_| {}).expect("runs"));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, scenario_4, closed_bottle, scaling);
 criterion_main!(benches);
