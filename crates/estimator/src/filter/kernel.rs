@@ -4,7 +4,7 @@
 //! summation depends on the length alone, never on the machine.
 
 /// `sum a_i b_i` over the shorter of the two.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a4, a1) = a[..n].as_chunks::<4>();

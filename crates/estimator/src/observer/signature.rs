@@ -31,6 +31,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Observer;
 use crate::filter::kernel::{axpy, column, dot};
+use crate::filter::simd::{Arch, Simd, WithSimd};
 use crate::filter::{Plant, StateSpace, StepRecord};
 use crate::numbers;
 
@@ -152,30 +153,8 @@ impl Onsets {
         if !step.freed.is_empty() {
             self.clear();
         }
-        let n = self.compensated.len();
         moved.resize(step.phi.nrows(), 0.0);
-        for response in self.responses.chunks_mut(n).chain([self.compensated.as_mut_slice()]) {
-            carry(step, response, moved);
-        }
-        for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
-            let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
-            let (nu, s) = (step.innovation[sensor], step.variance[sensor]);
-            let weight = (BOUND * s.sqrt() / nu.abs()).min(1.0);
-            let expected = dot(h, &self.compensated);
-            axpy(-expected, gain, &mut self.compensated);
-            for (sums, response) in self.sums.iter_mut().zip(self.responses.chunks_mut(n)) {
-                let g = dot(h, response);
-                sums.score += weight * g * (nu + expected) / s;
-                sums.weighted += weight * g * g / s;
-                sums.information += g * g / s;
-                axpy(-g, gain, response);
-            }
-        }
-        for (&(state, _), shares) in step.bounded.iter().zip(step.shares.chunks(n.max(1))) {
-            for response in self.responses.chunks_mut(n).chain([self.compensated.as_mut_slice()]) {
-                axpy(-response[state], shares, response);
-            }
-        }
+        Arch::new().dispatch(Follow { onsets: self, step, moved });
         if step.replaced {
             self.begin_anew(leak);
         }
@@ -237,7 +216,47 @@ impl Onsets {
     }
 }
 
+/// A step of the member through all responses, compiled for the vector registers of the machine.
+struct Follow<'a> {
+    onsets: &'a mut Onsets,
+    step: &'a StepRecord,
+    moved: &'a mut [f64],
+}
+
+impl WithSimd for Follow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { onsets, step, moved } = self;
+        let n = onsets.compensated.len();
+        for response in onsets.responses.chunks_mut(n).chain([onsets.compensated.as_mut_slice()]) {
+            carry(step, response, moved);
+        }
+        for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
+            let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
+            let (nu, s) = (step.innovation[sensor], step.variance[sensor]);
+            let weight = (BOUND * s.sqrt() / nu.abs()).min(1.0);
+            let expected = dot(h, &onsets.compensated);
+            axpy(-expected, gain, &mut onsets.compensated);
+            for (sums, response) in onsets.sums.iter_mut().zip(onsets.responses.chunks_mut(n)) {
+                let g = dot(h, response);
+                sums.score += weight * g * (nu + expected) / s;
+                sums.weighted += weight * g * g / s;
+                sums.information += g * g / s;
+                axpy(-g, gain, response);
+            }
+        }
+        for (&(state, _), shares) in step.bounded.iter().zip(step.shares.chunks(n.max(1))) {
+            for response in onsets.responses.chunks_mut(n).chain([onsets.compensated.as_mut_slice()]) {
+                axpy(-response[state], shares, response);
+            }
+        }
+    }
+}
+
 /// Take a response over an interval, with memory for its moving part.
+#[inline(always)]
 fn carry(step: &StepRecord, response: &mut [f64], moved: &mut [f64]) {
     let (phi, m) = (step.phi.as_slice(), moved.len());
     moved.fill(0.0);

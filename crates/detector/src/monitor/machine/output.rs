@@ -5,7 +5,7 @@
 //! temperature and rate come from the flowing member.
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
-use crate::estimator::observer::Estimate;
+use crate::estimator::observer::{Estimate, Flow};
 use crate::monitor::alarm::AlarmInputs;
 use crate::monitor::gas::outlook::{self, Basis};
 use crate::monitor::intake::Row;
@@ -24,10 +24,11 @@ impl Monitor {
         let time_s = row.time_s;
         let leak = self.state.leak.found().copied();
         let largest_kg_s = self.state.leak.largest_per_s() * self.filled_kg.0;
-        if let (Some(_), Some(free)) = (leak, self.observer.freest_mass_kg()) {
+        if let Some(free) = leak.and_then(|_| self.observer.freest_mass_kg()) {
             (estimate.mass_kg, estimate.mass_sd_kg) = free;
         }
-        if let Some(flow) = self.observer.flow() {
+        let flow = self.observer.flow();
+        if let Some(flow) = &flow {
             if self.state.is_flowing(time_s) {
                 (estimate.mass_kg, estimate.mass_sd_kg) = (flow.mass_kg, flow.mass_sd_kg);
             }
@@ -68,7 +69,7 @@ impl Monitor {
             estimate,
             decision,
             leak,
-            leak_rate_kg_s: self.leak_rate(time_s, leak.as_ref(), held_kg_s),
+            leak_rate_kg_s: self.leak_rate(time_s, leak.as_ref(), held_kg_s, flow.as_ref()),
             cold_pressure_pa,
             health: self.state.health.clone(),
             outlook: self.state.outlook,
@@ -84,11 +85,17 @@ impl Monitor {
 
     /// Leak rate, kg/s: what the onsets say, and where they say nothing yet, gas was just exchanged or the flow is certainly
     /// another one, what the flow says, too.
-    fn leak_rate(&self, time_s: f64, found: Option<&LeakFinding>, held_kg_s: f64) -> Interval {
+    fn leak_rate(
+        &self,
+        time_s: f64,
+        found: Option<&LeakFinding>,
+        held_kg_s: f64,
+        flow: Option<&Flow>,
+    ) -> Interval {
         let high = self.state.leak.largest_per_s() * self.filled_kg.0;
         let unfound = Interval { value: held_kg_s.clamp(0.0, high), low: 0.0, high };
         let evident = found.map_or(unfound, |leak| leak.rate_kg_s);
-        let Some(flow) = self.observer.flow() else { return evident };
+        let Some(flow) = flow else { return evident };
         let (value, by) = (flow.rate_kg_s.max(0.0), 1.96 * flow.rate_sd_kg_s);
         let (low, high) = ((value - by).max(0.0), value + by);
         let known = found.is_some() || self.state.leak.probability().is_some();
