@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the book's figures again, each by the command that stands under it. Takes some minutes, with --long ten more for the
-# bench of detectors. Then look at them.
+# comparison of detectors. Then look at them.
 # The commands run in a folder of their own with plain names: a picture states the command that made it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -44,7 +44,7 @@ cold_night out
 cylwatch reproduce
 
 if [ "${1:-}" = --long ]; then
-    cylwatch bench-detector --plot delay.svg -o detectors.csv
+    cylwatch bench-detector --out railway --plot delay.svg
     cp delay.svg "$root/book/src/images/"
 fi
 cp my-plant/tutorial-*.png {tunnel,monitor,identify,calibrate,placement}.png out/{leak-masked-by-warming,cold-night}.svg \

@@ -3,94 +3,94 @@
 //! `cargo run --release --example own_detector`
 //!
 //! The detector compares the pressure with that of a day before, at the slope of a tight cylinder and the difference of the
-//! shoulder's temperatures. It needs no filling and no model. The bench sets its threshold on some cylinders and judges it on others.
+//! shoulder's temperatures. It needs no filling and no model. The judge sets its threshold on some cylinders and judges it on others.
 #![allow(clippy::print_stdout)]
 
+use cylwatch::evaluation::judge::candidate::{Candidate, Contender, Registry, Row};
+use cylwatch::evaluation::judge::run::{RunSettings, Simulator, run as judge};
+use cylwatch::evaluation::judge::{JudgeError, plan::Plan, said::Said, table::Table};
+use cylwatch::evaluation::world::Told;
+use cylwatch::report::bench_detector::summary;
 use cylwatch::thermal::units::DAY_S;
 use std::collections::VecDeque;
-
-use cylwatch::evaluation::EvaluationError;
-use cylwatch::evaluation::baseline::Threshold;
-use cylwatch::evaluation::performance::bench::{Candidate, Contender, Plan, Readings, bench};
-use cylwatch::report::aligned;
-
-const BAR_H: f64 = 1e5 / 3600.0;
+use std::sync::Arc;
 
 // ANCHOR: detector
-/// How much less pressure there is than a day before, temperature taken off, Pa.
-#[derive(Clone, Debug, Default)]
-pub struct DayBefore {
-    /// Readings of the last day, oldest first.
-    past: VecDeque<Readings>,
-    missing_pa: f64,
+/// How much less pressure there is than a day before, temperature taken off.
+struct DayBefore;
+
+/// The detector at work on one cylinder.
+pub struct Watching {
+    /// Indices of shoulder and pressure among the readings.
+    pub columns: [usize; 2],
+    /// Time, shoulder and pressure of the last day, oldest first.
+    pub past: VecDeque<[f64; 3]>,
 }
 
 /// Slope of a tight cylinder of 200 bar at 15 °C, Pa/K.
 const SLOPE_PA_K: f64 = 0.992e5;
 
-impl Contender for DayBefore {
-    fn step(&mut self, now: &Readings) -> Result<f64, EvaluationError> {
+impl Candidate for DayBefore {
+    fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError> {
+        let column = |name: &str| told.sensors.iter().position(|sensor| sensor.name == name);
+        let columns = ["shoulder", "pressure"].map(|name| column(name).expect("every world has both"));
+        Ok(Box::new(Watching { columns, past: VecDeque::new() }))
+    }
+
+    /// It says a statistic: the judge finds the threshold.
+    fn needs_threshold(&self) -> bool {
+        true
+    }
+}
+
+impl Contender for Watching {
+    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+        let [shoulder_k, pressure_pa] = self.columns.map(|column| row.readings[column]);
         // A missing reading leaves the state as it is.
-        if !(now.pressure_pa.is_finite() && now.shoulder_k.is_finite()) {
-            return Ok(self.missing_pa);
+        if !(pressure_pa.is_finite() && shoulder_k.is_finite()) {
+            return Ok(());
         }
-        self.past.push_back(*now);
-        while let Some(&before) = self.past.front().filter(|before| now.time_s - before.time_s >= DAY_S) {
-            let expected_pa = before.pressure_pa + SLOPE_PA_K * (now.shoulder_k - before.shoulder_k);
-            self.missing_pa = expected_pa - now.pressure_pa;
+        self.past.push_back([row.stamp_s, shoulder_k, pressure_pa]);
+        while let Some(&[_, k, pa]) = self.past.front().filter(|past| row.stamp_s - past[0] >= DAY_S) {
+            let missing_pa = pa + SLOPE_PA_K * (shoulder_k - k) - pressure_pa;
+            said.push(Said { stamp_s: row.stamp_s, statistic: Some(missing_pa), ..Said::default() });
             self.past.pop_front();
         }
-        Ok(self.missing_pa)
+        Ok(())
     }
 }
 // ANCHOR_END: detector
 
-/// What the bench says of a detector.
-pub struct Judged {
-    /// Name.
-    pub detector: String,
-    /// Threshold, bar.
-    pub threshold_bar: f64,
-    /// Found of all leaks, for each rate.
-    pub found: Vec<(u64, u64)>,
-}
+// ANCHOR: judge
+/// A few cylinders, half of them for the thresholds: enough to see how it is done, too few to rank.
+const PLAN: &str = r#"
+title = "Own detector"
+between_false_alarms_y = 10.0
+tune = ["*/railway/full-mesh/*/*"]
+judge = ["*/railway/mixed/*/*"]
+candidate = [{ name = "day before", kind = "day-before" }, { name = "paper", kind = "paper" }]
 
-/// Leak rates of the bench, bar/h.
-pub const RATES_BAR_H: [f64; 2] = [1.0, 10.0];
+[[group]]
+name = "tight, and leaks of 1 and 10 bar/h"
+families = ["nitrogen-20l/railway/full-mesh|mixed/class-b/120s"]
+seeds = [1, 5]
+length_d = 2.5
+overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [0.005, 0.05], onset_h = [48.0, 52.0] }]
+"#;
 
-// ANCHOR: bench
-/// Benches it beside the paper's detector, on a few cylinders over a day and a half: enough to see how it is done, too few to rank.
-pub fn run() -> anyhow::Result<Vec<Judged>> {
-    let plan = Plan {
-        rates_pa_s: RATES_BAR_H.map(|rate| rate * BAR_H).to_vec(),
-        training: 5,
-        tests: 3,
-        learning_s: 1.1 * DAY_S,
-        watched_s: 1.4 * DAY_S,
-        ..Plan::default()
-    };
-    let candidates = [
-        Candidate::new("day before", "Pa", || Ok(DayBefore::default())),
-        Candidate::new("paper", "Pa", || Ok(Threshold::published(Plan::FILLING))),
-    ];
-    let outcome = bench(&plan, &candidates, &|_progress| ())?;
-    let judged = outcome.judged.iter().map(|judged| Judged {
-        detector: judged.performance.detector.clone(),
-        threshold_bar: judged.level.threshold / 1e5,
-        found: judged.performance.sensitivity.iter().map(|at| (at.delay.found, at.delay.leaks)).collect(),
-    });
-    Ok(judged.collect())
+/// Registers it and judges it beside the paper's detector.
+pub fn run() -> anyhow::Result<Table> {
+    let mut registry = Registry::default();
+    registry.register("day-before", |_settings| Ok(Arc::new(DayBefore)));
+    let plan = Plan::parse(PLAN, "the plan", &registry, &[])?;
+    let out = tempfile::tempdir()?;
+    let (folder, program) = (out.path().into(), String::new());
+    let settings = RunSettings { folder, threads: 2, program, most_worlds: None };
+    Ok(judge(&plan, &Simulator, &settings, &|_progress| ())?)
 }
-// ANCHOR_END: bench
+// ANCHOR_END: judge
 
 fn main() -> anyhow::Result<()> {
-    let rows: Vec<Vec<String>> = run()?
-        .into_iter()
-        .map(|judged| {
-            let found = judged.found.iter().map(|(found, of)| format!("{found} of {of}"));
-            [judged.detector, format!("{:.1}", judged.threshold_bar)].into_iter().chain(found).collect()
-        })
-        .collect();
-    print!("{}", aligned(&["detector", "threshold / bar", "found of 1 bar/h", "of 10 bar/h"], &rows));
+    print!("{}", summary(&run()?).to_text());
     Ok(())
 }

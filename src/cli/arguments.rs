@@ -51,7 +51,7 @@ Examples:
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
 
-Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive (monitor) or ended early (place). Data goes to stdout, words to stderr; NO_COLOR is respected.";
+Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive (monitor), ended early (place) or with worlds missing (bench-detector). Data goes to stdout, words to stderr; NO_COLOR is respected.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -72,7 +72,7 @@ pub(super) enum Command {
     Identify(Box<IdentifyArguments>),
     /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.
     Calibrate(Box<CalibrateArguments>),
-    /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; ten minutes and more.
+    /// Compare leak detectors on simulated cylinders: false alarms, smallest leaks found, delays; minutes to a night.
     BenchDetector(BenchDetectorArguments),
     /// Find where sensors should sit, with a proof that no better layout was missed; takes seconds to minutes.
     Place(Box<PlaceArguments>),

@@ -1,144 +1,192 @@
-//! `cylwatch bench-detector`: leak detectors side by side on simulated cylinders.
-use super::format::Format;
+//! `cylwatch bench-detector`: leak detectors side by side on simulated cylinders, as a plan of the judge says.
 use super::input::Inputs;
 use super::message::Messages;
-use super::number::{above, at_least};
-use super::options::{DataArguments, FalseAlarmArguments, OUTPUT, ViewArguments};
-use super::output::{Target, remarks};
-use super::progress::Progress;
-use super::result::{Contents, Destination};
+use super::number::at_least;
+use super::options::{OUTPUT, ViewArguments};
+use super::output::{Target, make_folder};
+use super::progress::Progress as Bar;
 use super::views::Views;
+use anyhow::{Context, bail};
 use clap::Args;
-use cylwatch::evaluation::performance::bench::{Candidate, Outcome, Plan, baselines, bench, monitor};
-use cylwatch::report::{Provenance, bench_detector as report};
-use cylwatch::thermal::units::BAR_PA;
-use cylwatch::thermal::units::{DAY_S, HOUR_S};
+use cylwatch::evaluation::judge::candidate::Registry;
+use cylwatch::evaluation::judge::plan::{Extent, Plan, presets};
+use cylwatch::evaluation::judge::run::{Progress, RunSettings, Simulator, run as judge};
+use cylwatch::evaluation::judge::table::Table;
+use cylwatch::report::{Input, Report, aligned, bench_detector as report, number};
+use cylwatch::thermal::units::{HOUR_S, MINUTE_S};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::Mutex;
+use tempfile::TempDir;
+
+/// Exit code if worlds failed or are missing.
+const PARTIAL: u8 = 3;
 
 /// Arguments of `bench-detector`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(super) struct BenchDetectorArguments {
-    /// Cylinders for training, as many for the test, and as many for each leak rate; at least 5.
-    #[arg(long, value_name = "NUMBER", default_value_t = 24, value_parser = at_least(5_u64))]
-    pub seeds: u64,
-    /// Time that each cylinder is watched after --learning-days, in d; above 1.
-    #[arg(long, value_name = "NUMBER", default_value_t = 8.0, value_parser = above(1.0))]
-    pub days: f64,
-    /// Time that detectors learn before anything counts, in d.
-    #[arg(long, value_name = "NUMBER", default_value_t = 10.0, value_parser = above(0.0))]
-    pub learning_days: f64,
-    /// Leak rates in bar/h, loss of the pressure at 15 degC [default: 11 from 0.001 to 10].
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = above(0.0))]
-    pub rates: Option<Vec<f64>>,
-    #[command(flatten)]
-    pub false_alarms: FalseAlarmArguments,
-    /// First seed of cylinders and weather, a whole number of at least 0.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = at_least(0_u64))]
-    pub seed: u64,
-    /// Simulate stratified gas, a finer wall and weather: about thirty times the time.
+    /// Plan: a TOML file, the name of a built-in one, or - for stdin.
+    #[arg(default_value = "railway")]
+    pub plan: String,
+    /// Let the families of a kind judge instead of tuning, as climate=desert; may be given again.
+    #[arg(long = "leave-out", value_name = "AXIS=KIND")]
+    pub left_out: Vec<String>,
+    /// Threads [default: all cores].
+    #[arg(long, value_name = "NUMBER", value_parser = at_least(1_usize))]
+    pub threads: Option<usize>,
+    /// Stop after so many worlds; with --out the same command goes on.
+    #[arg(long, value_name = "NUMBER", value_parser = at_least(1_usize))]
+    pub most: Option<usize>,
+    /// Check the plan, say what it would run, and stop.
     #[arg(long)]
-    pub stratified: bool,
-    #[command(flatten)]
-    pub data: DataArguments,
-    /// The same as --format json.
-    #[arg(long, conflicts_with = "format", help_heading = OUTPUT)]
+    pub check: bool,
+    /// List the built-in plans and stop.
+    #[arg(long)]
+    pub list: bool,
+    /// Folder of the results, made if it is not there; a run that was ended goes on in it [default: nothing is kept].
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub out: Option<PathBuf>,
+    /// Print the table as JSON instead of Markdown.
+    #[arg(long, help_heading = OUTPUT)]
     pub json: bool,
     #[command(flatten)]
     pub views: ViewArguments,
 }
 
 const HELP: &str = "\
-Without --output, --format and --json stdout gets tables for people.
+A plan says which detectors watch which cylinders. Thresholds are set on families of cylinders
+that tune, for one rate of false alarms; other families judge. All detectors see the same readings.
+Without a plan: the monitor, the paper's detector as published and refitted, a textbook's
+cumulative sum, an ideal gas and a pressure switch on 20 L nitrogen in railway winters.
 
-Every detector sees the same readings of the same cylinders, drawn with errors of wall, films and
-sensors, in winter weeks under a train with tunnels. Thresholds are set on the training cylinders
-for one rate of false alarms; the test cylinders have other seeds.
-
-Detectors: cylwatch; the paper's as published and refitted (real gas, gain 1, zero learnt); a
-textbook's cumulative sum; an ideal gas at the shoulder's temperature; a pressure switch.
+DIR gets table.md, table.json, cost.md, cost.json, journal.jsonl and times.jsonl. It belongs to one
+plan and one build of the program. Exit code 3: worlds failed or are missing.
 
 Examples:
   cylwatch bench-detector
-  cylwatch bench-detector --seeds 60 --days 31 -o bench.csv --plot delay.svg
-  cylwatch bench-detector --rates 0.01,0.1,1 --json | jq '.detectors[].performance.smallest'";
+  cylwatch bench-detector reference --out ref --plot delay.svg
+  cylwatch bench-detector my-plan.toml --leave-out climate=desert --json | jq '.candidates[].threshold'";
 
-/// Validated options.
-struct Options {
-    plan: Plan,
-    data: Target,
-    format: Option<Format>,
-    views: Views,
-}
-
-/// Simulates, judges, writes.
-pub(super) fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Result<()> {
-    let options = Options::checked(arguments)?;
-    let outcome = options.bench(messages)?;
-    options.write(&outcome, messages)
-}
-
-impl Options {
-    fn checked(arguments: BenchDetectorArguments) -> anyhow::Result<Self> {
-        let data = Target::checked(arguments.data.output.as_deref(), &[])?;
-        let views = Views::checked(&arguments.views, &[], &[&data])?;
-        let format = arguments.data.format_or_tables(arguments.json);
-        Ok(Self { plan: plan(&arguments), data, format, views })
+/// Judges, writes; exit code 3 if worlds failed or are missing.
+pub(super) fn run(arguments: BenchDetectorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
+    if arguments.list {
+        Target::Stdout.write(list()?.as_bytes())?;
+        return Ok(ExitCode::SUCCESS);
     }
-
-    fn bench(&self, messages: &Messages) -> anyhow::Result<Outcome> {
-        let candidates = candidates(&self.plan)?;
-        let progress = Mutex::new(Progress::new(messages));
-        let outcome = bench(&self.plan, &candidates, &|so_far| {
-            // Without the bar the bench goes on.
-            if let Ok(bar) = progress.lock() {
-                bar.show("simulating cylinders", so_far.done as f64 / so_far.all as f64);
-            }
-        });
-        drop(progress);
-        Ok(outcome?)
+    let views = Views::checked(&arguments.views, &[Path::new(&arguments.plan)], &[])?;
+    let inputs = Inputs::default();
+    let plan = inputs.plan(&arguments.plan, &arguments.left_out)?;
+    let has_leaks = plan.has_leaks();
+    if arguments.views.plot.is_some() && !has_leaks {
+        bail!("--plot: the plan {} has no leaks that judge, whose delays the figure shows", arguments.plan);
     }
-
-    fn write(&self, outcome: &Outcome, messages: &Messages) -> anyhow::Result<()> {
-        let inputs = Inputs::default();
-        let provenance = Provenance { seed: Some(self.plan.seed), ..inputs.provenance() };
-        let summary = report::summary(outcome);
-        let remarks = remarks(&summary.to_text());
-        let contents = Contents {
-            summary,
-            csv: &|provenance| report::table(outcome).to_csv(provenance, &remarks),
-            json: &|provenance| report::document(outcome, provenance),
-            picture: &|| report::figure(outcome).into(),
-            report: &|picture, summary| summary.picture(picture, report::CAPTION),
-        };
-        let destination = Destination { data: &self.data, format: self.format, views: &self.views };
-        destination.write(contents, &inputs, &provenance, messages)
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.unwrap_or_else(cores);
+    let intention = intention(&plan, threads);
+    if arguments.check {
+        Target::Stdout.write(intention.as_bytes())?;
+        return Ok(ExitCode::SUCCESS);
     }
-}
-
-/// All detectors, ours first.
-fn candidates(plan: &Plan) -> anyhow::Result<Vec<Candidate>> {
-    let mut candidates = vec![monitor(plan)?];
-    candidates.extend(baselines(plan)?);
-    Ok(candidates)
-}
-
-/// The plan of the bench.
-fn plan(arguments: &BenchDetectorArguments) -> Plan {
-    let mut plan = Plan {
-        training: arguments.seeds,
-        tests: arguments.seeds,
-        seed: arguments.seed,
-        learning_s: DAY_S * arguments.learning_days,
-        watched_s: DAY_S * arguments.days,
-        between_alarms_s: arguments.false_alarms.mean_time_s(),
-        fast: !arguments.stratified,
-        ..Plan::default()
+    messages.say(&intention);
+    let folder = Folder::new(arguments.out)?;
+    let settings = RunSettings {
+        folder: folder.path().into(),
+        threads,
+        program: program()?,
+        most_worlds: arguments.most,
     };
-    if let Some(rates) = &arguments.rates {
-        plan.rates_pa_s = rates.iter().map(|rate| rate * BAR_PA / HOUR_S).collect();
-        plan.rates_pa_s.sort_by(f64::total_cmp);
-        plan.rates_pa_s.dedup();
+    let table = judged(&plan, &settings, messages)?;
+    let text = if arguments.json { table.to_json()? } else { table.to_markdown() };
+    let (provenance, sources) = (inputs.provenance(), inputs.sources());
+    let views = if has_leaks {
+        let report = |picture| Report::picture(report::summary(&table), picture, report::CAPTION);
+        views.make(|| report::figure(&table), report, sources, &provenance)?
+    } else {
+        views.make_report(|| report::summary(&table), sources, &provenance)?
+    };
+    Target::Stdout.write(text.as_bytes())?;
+    views.write()?;
+    if table.is_whole() {
+        return Ok(ExitCode::SUCCESS);
     }
-    plan
+    let found = &table.provenance;
+    messages.caution(&format!(
+        "{} of {} worlds are finished, and what failed stands in the table",
+        found.finished, found.worlds
+    ));
+    Ok(ExitCode::from(PARTIAL))
+}
+
+/// The built-in plans with their titles.
+fn list() -> anyhow::Result<String> {
+    let row = |name: &str| {
+        let plan = Plan::parse(presets::text(name).unwrap_or_default(), name, &Registry::default(), &[])?;
+        anyhow::Ok(vec![name.to_owned(), plan.document.title])
+    };
+    let rows: Vec<Vec<String>> = presets::names().map(row).collect::<anyhow::Result<_>>()?;
+    Ok(aligned(&["name", "what"], &rows))
+}
+
+/// What a plan asks for, and about how long it takes.
+fn intention(plan: &Plan, threads: usize) -> String {
+    let Extent { worlds, cylinder_years, rows, simulations, simulated_years, core_s } = plan.extent();
+    let about = match core_s / threads as f64 {
+        seconds if seconds < MINUTE_S => "less than a minute".to_owned(),
+        seconds if seconds < 2.0 * HOUR_S => format!("about {} min", (seconds / MINUTE_S).round()),
+        seconds => format!("about {} h", (seconds / HOUR_S).round()),
+    };
+    format!(
+        "{}: {worlds} worlds, {} cylinder-years, {} million rows; {simulations} simulations of {} years\n\
+         {about} from the start with {threads} threads, each on a core of its own\n",
+        plan.document.title,
+        number(cylinder_years, 3),
+        number(1e-6 * rows, 2),
+        number(simulated_years, 3),
+    )
+}
+
+/// Where the results go.
+enum Folder {
+    Kept(PathBuf),
+    Temporary(TempDir),
+}
+
+impl Folder {
+    fn new(out: Option<PathBuf>) -> anyhow::Result<Self> {
+        let Some(folder) = out else {
+            return Ok(Self::Temporary(
+                tempfile::tempdir().context("no temporary folder can be made: give --out")?,
+            ));
+        };
+        make_folder(&folder)?;
+        Ok(Self::Kept(folder))
+    }
+
+    fn path(&self) -> &Path {
+        match self {
+            Self::Kept(folder) => folder,
+            Self::Temporary(folder) => folder.path(),
+        }
+    }
+}
+
+/// Version of the program with the beginning of its file's hash: results of another build are not mixed in.
+fn program() -> anyhow::Result<String> {
+    let path = std::env::current_exe().context("the program does not find itself")?;
+    let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", path.display()))?;
+    Ok(format!("{} {}", env!("CARGO_PKG_VERSION"), &Input::of("", &bytes).sha256[..16]))
+}
+
+fn judged(plan: &Plan, settings: &RunSettings, messages: &Messages) -> anyhow::Result<Table> {
+    let bar = Mutex::new((Bar::new(messages), true));
+    let show = |Progress { done, all, .. }: Progress| {
+        // Without the bar the judge goes on.
+        let Ok(mut bar) = bar.lock() else { return };
+        if std::mem::take(&mut bar.1) && done > 0 {
+            bar.0.suspended(|| messages.say(&format!("goes on: {done} of {all} worlds are there")));
+        }
+        bar.0.show("judging", done as f64 / all as f64);
+    };
+    Ok(judge(plan, &Simulator, settings, &show)?)
 }

@@ -1,7 +1,9 @@
-//! What a run reads: files, stdin, built-in vessels and scenarios. Everything read is recorded with its SHA-256.
+//! What a run reads: files, stdin, built-in vessels, scenarios and plans. Everything read is recorded with its SHA-256.
 use super::message::Messages;
 use super::output::command_line;
 use anyhow::{Context, bail};
+use cylwatch::evaluation::judge::candidate::Registry;
+use cylwatch::evaluation::judge::plan::{self, Plan};
 use cylwatch::log::inspect::Inspector;
 use cylwatch::log::{LogError, LogOptions, LogReader, is_parquet};
 use cylwatch::report::{Fingerprint, Input, Provenance};
@@ -110,6 +112,13 @@ impl Inputs {
             })
         };
         Ok(scenario::read_scenario(&document.text, &document.shown, &table)?)
+    }
+
+    /// A plan of the judge by file name, by built-in name, or from stdin; `left_out` as in `climate=desert`.
+    pub(super) fn plan(&self, name: &str, left_out: &[String]) -> anyhow::Result<Plan> {
+        let Document { text, shown, .. } =
+            self.document("plan", name, plan::presets::text, plan::presets::names().collect())?;
+        Ok(Plan::parse(&text, &shown, &Registry::default(), left_out)?)
     }
 
     /// Opens a log for reading row by row; - is stdin.
@@ -288,8 +297,9 @@ fn neither(kind: &str, name: &str, known: &[&str]) -> String {
     let likeness = |candidate: &str| strsim::jaro_winkler(&stem, candidate);
     let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     let nearest = nearest.map_or(String::new(), |nearest| format!(", the nearest is {nearest}"));
+    let lists = if kind == "plan" { "bench-detector" } else { "simulate" };
     format!(
         "{name} is neither a {kind} file nor a built-in {kind}{nearest}: give the path of a TOML file, or a name \
-         that `cylwatch simulate --list` shows"
+         that `cylwatch {lists} --list` shows"
     )
 }

@@ -1,7 +1,7 @@
 //! The command line: raw arguments ([`arguments`]), validated options (the start of every command), the run, the output.
 //!
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error; of `monitor`
-//! also 1 leak found, 3 inconclusive; of `place` 3 ended early.
+//! also 1 leak found, 3 inconclusive; of `place` 3 ended early; of `bench-detector` 3 worlds failed or are missing.
 mod arguments;
 mod bench_detector;
 mod calibrate;
@@ -61,6 +61,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
     let done = match command {
         Command::Monitor(arguments) => return monitor::run(*arguments, messages),
         Command::Place(arguments) => return place::run(*arguments, messages),
+        Command::BenchDetector(arguments) => return bench_detector::run(arguments, messages),
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
@@ -68,7 +69,6 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Commission(arguments) => commission::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
-        Command::BenchDetector(arguments) => bench_detector::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

@@ -1,68 +1,130 @@
 //! `cylwatch bench-detector` on a few cylinders over a day.
-use crate::support::{TINY_BENCH, column, files, refused, rows, run};
+use crate::support::{Outcome, TINY_PLAN, files, refused, run, run_with_stdin};
+use serde_json::Value;
 use std::path::Path;
-use tempfile::tempdir;
+use tempfile::{TempDir, tempdir};
 
-fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&TINY_BENCH, more].concat()
+/// A folder with the tiny plan in it.
+fn folder() -> TempDir {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("tiny.toml"), TINY_PLAN).unwrap();
+    folder
 }
 
+fn bench(folder: &Path, more: &[&str]) -> Outcome {
+    run(folder, &[&["bench-detector", "tiny.toml"], more].concat())
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    std::fs::read_to_string(folder.join(name)).unwrap()
+}
+
+const RESULTS: [&str; 6] = ["cost.json", "cost.md", "journal.jsonl", "table.json", "table.md", "times.jsonl"];
+
 #[test]
-fn a_tiny_bench_writes_tables_figure_and_json_that_agree() {
-    let folder = tempdir().unwrap();
+fn stdout_tables_figure_and_report_agree() {
+    let folder = folder();
     let folder = folder.path();
-    let outcome = run(folder, &tiny(&["--rates", "20", "-o", "bench.csv", "--plot", "delay.svg"]));
-    assert_eq!((outcome.code, outcome.stdout.as_str()), (Some(0), ""), "{}", outcome.stderr);
-    assert_eq!(files(folder), ["bench.csv", "delay.svg"]);
-    agree_on_the_false_alarms(folder, &outcome.stderr);
-    let figure = std::fs::read_to_string(folder.join("delay.svg")).unwrap();
-    for words in ["leak rate in bar/h", "median delay in h", "cylwatch", "pressure switch"] {
+    let Outcome { code, stdout, stderr } =
+        bench(folder, &["--out", "made/here", "--plot", "delay.svg", "--report", "report.html"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(stderr.starts_with("A tiny plan: 11 worlds, 0.0301 cylinder-years"), "{stderr}");
+    assert_eq!(files(&folder.join("made/here")), RESULTS);
+    assert_eq!(stdout, read(folder, "made/here/table.md"));
+    assert!(stdout.contains("11 of 11 worlds") && stdout.contains("## pressure, switch"), "{stdout}");
+    let table: Value = serde_json::from_str(&read(folder, "made/here/table.json")).unwrap();
+    assert_eq!(table["provenance"]["finished"], 11);
+    let [ours, switch] = [0, 1].map(|n| &table["candidates"][n]);
+    assert!(ours["threshold"].is_null() && switch["threshold"]["worlds"] == 5);
+    let all = ours["groups"].as_array().unwrap().iter().find(|of| of["group"] == "all").unwrap();
+    let delay = &all["leaks"]["by_rate"][1]["delay"];
+    assert_eq!((&delay["leaks"], &delay["found"]), (&2.into(), &2.into()), "10 % an hour is found");
+    assert!(all["tight"]["losses"]["cylinder_years"].as_f64().unwrap() <= 2.0 / 365.25 + 1e-9);
+    let hours = delay["median_s"].as_f64().unwrap() / 3600.0;
+    let [figure, report] = ["delay.svg", "report.html"].map(|name| read(folder, name));
+    for words in ["leak rate in % of the gas per hour", "median delay in h", "cylwatch", "pressure, switch"] {
         assert!(figure.contains(words), "{words} is missing in the figure");
     }
-}
-
-/// CSV and the words beside it say the same.
-fn agree_on_the_false_alarms(folder: &Path, words: &str) {
-    let csv = std::fs::read_to_string(folder.join("bench.csv")).unwrap();
-    assert!(csv.contains("# seed: 1\n") && csv.contains("# command: cylwatch bench-detector"));
-    let (header, lines) = rows(&csv);
-    assert_eq!((header[0], lines.len()), ("detector", 6));
-    // Six times five tight cylinders of 1.1 d.
-    for years in column(&csv, "at_risk_years") {
-        assert!(years > 0.0 && years <= 5.0 * 1.1 / 365.25 + 1e-9, "{years}");
-    }
-    assert!(column(&csv, "leak_bar_h").iter().all(|rate| (rate - 20.0).abs() < 1e-6));
-    for line in &lines {
-        let said = words.lines().find(|said| said.starts_with(&format!("{} ", line[0])));
-        let said: Vec<&str> = said.unwrap_or_else(|| panic!("{} is missing", line[0])).split("  ").collect();
-        let cells: Vec<&str> = said.iter().map(|cell| cell.trim()).filter(|cell| !cell.is_empty()).collect();
-        assert_eq!(cells[2], line[3], "false alarms of {}", line[0]);
-    }
-    assert!(words.contains("extrapolated by a factor of"), "{words}");
+    // The plan is an input, with its hash.
+    assert!(
+        figure.contains("command: cylwatch bench-detector tiny.toml") && figure.contains("input: tiny.toml")
+    );
+    assert!(
+        report.contains(&format!("{} h", cylwatch::report::number(hours, 2))),
+        "{hours} h is not in the report"
+    );
+    assert!(report.contains("one false alarm in 0.1 years"));
 }
 
 #[test]
-fn tables_go_to_stdout_and_json_holds_every_run() {
-    let folder = tempdir().unwrap();
-    let outcome = run(folder.path(), &tiny(&["--rates", "20", "--json", "--quiet"]));
-    assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""));
-    let document: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
-    let detectors = document["detectors"].as_array().unwrap();
-    assert_eq!(detectors[0]["performance"]["detector"], "cylwatch");
-    assert!(detectors.iter().all(|detector| detector["runs"].as_array().unwrap().len() == 10));
-    assert_eq!(document["provenance"]["seed"], 1);
-    assert!(document["noise"]["sd_bar"].as_f64().unwrap() > 0.0);
+fn without_a_folder_the_table_alone_is_left_as_markdown_or_json_and_it_is_the_same() {
+    let folder = folder();
+    let folder = folder.path();
+    let kept = bench(folder, &["--out", "out", "--json", "--quiet", "--threads", "1"]);
+    assert_eq!((kept.code, kept.stderr.as_str()), (Some(0), ""));
+    assert_eq!(kept.stdout, read(folder, "out/table.json"));
+    let piped = run_with_stdin(folder, &["bench-detector", "-", "--json", "--quiet"], TINY_PLAN);
+    assert_eq!((piped.code, piped.stdout), (Some(0), kept.stdout));
+    assert_eq!(files(folder), ["out", "tiny.toml"]);
 }
 
 #[test]
-fn options_out_of_bounds_are_refused_by_name() {
-    let folder = tempdir().unwrap();
-    let refuse = |arguments: &[&str], words: &[&str]| refused(folder.path(), arguments, words);
-    refuse(&["bench-detector", "--seeds", "4"], &["--seeds 4", "at least 5"]);
-    refuse(&["bench-detector", "--days", "1"], &["--days 1", "above 1"]);
-    refuse(&["bench-detector", "--rates", "0.1,-2"], &["--rates -2", "above 0"]);
-    refuse(&["bench-detector", "--false-alarm-years", "0"], &["--false-alarm-years 0"]);
-    refuse(&["bench-detector", "--plot", "a.pdf"], &[".svg or .png"]);
-    refuse(&["bench-detector", "--json", "--format", "csv"], &["--format"]);
-    refuse(&["bench-detector", "-o", "x.svg", "--plot", "x.svg"], &["x.svg"]);
+fn a_run_that_was_stopped_says_so_and_goes_on_to_the_same_table() {
+    let folder = folder();
+    let folder = folder.path();
+    let partial = bench(folder, &["--out", "parts", "--most", "4"]);
+    assert_eq!(partial.code, Some(3), "{}", partial.stderr);
+    assert!(partial.stdout.contains("(partial)") && partial.stderr.contains("4 of 11 worlds are finished"));
+    let rest = bench(folder, &["--out", "parts"]);
+    assert_eq!(rest.code, Some(0), "{}", rest.stderr);
+    assert!(rest.stderr.contains("goes on: 4 of 11 worlds"), "{}", rest.stderr);
+    assert_eq!(rest.stdout, bench(folder, &[]).stdout);
+    // The folder is that of its plan.
+    refused(folder, &["bench-detector", "smoke", "--out", "parts"], &["another plan", "give another folder"]);
+}
+
+#[test]
+fn a_plan_is_checked_and_its_size_told_without_running_it() {
+    let folder = folder();
+    let folder = folder.path();
+    let check = |arguments: &[&str]| {
+        let outcome = run(folder, &[&["bench-detector", "--check"], arguments].concat());
+        assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""));
+        outcome.stdout
+    };
+    assert!(check(&["tiny.toml"]).contains("less than a minute"));
+    assert!(check(&[]).starts_with("Leak detectors side by side in railway winters: 624 worlds"));
+    assert!(check(&["quick", "--leave-out", "climate=desert"]).contains("1556 worlds"));
+    let list = run(folder, &["bench-detector", "--list"]);
+    for name in ["railway", "reference", "fault", "years", "smoke"] {
+        assert!(list.stdout.lines().any(|line| line.starts_with(name)), "{}", list.stdout);
+    }
+    assert_eq!(files(folder), ["tiny.toml"]);
+}
+
+#[test]
+fn mistakes_in_plan_and_command_are_refused_by_name_before_anything_runs() {
+    let folder = folder();
+    let folder = folder.path();
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    write("line.toml", &TINY_PLAN.replace("seeds = [1, 2]", "seeds = 1"));
+    write("kind.toml", &TINY_PLAN.replace("pressure-switch", "pressure-swich"));
+    write(
+        "tight.toml",
+        &TINY_PLAN.replace(r#", { kind = "leak", part_per_h = [0.05, 0.1], onset_h = [14.0, 15.0] }"#, ""),
+    );
+    let refuse = |arguments: &[&str], words: &[&str]| {
+        refused(folder, &[&["bench-detector"], arguments].concat(), words);
+    };
+    refuse(&["refrence"], &["refrence", "the nearest is reference", "bench-detector --list"]);
+    refuse(&["line.toml"], &["line.toml, line 19"]);
+    refuse(&["kind.toml"], &["kind.toml", "pressure-swich", "pressure-switch"]);
+    refuse(&["tiny.toml", "--leave-out", "climate=autumn"], &["--leave-out", "autumn", "railway"]);
+    refuse(&["tight.toml", "--plot", "delay.svg"], &["--plot", "tight.toml has no leaks"]);
+    refuse(&["--threads", "0"], &["--threads 0", "at least 1"]);
+    refuse(&["--plot", "a.pdf"], &[".svg or .png"]);
+    refuse(&["tiny.toml", "--plot", "not/there.svg"], &["not/there.svg", "no folder"]);
+    refuse(&["tiny.toml", "--report", "tiny.toml"], &["--report"]);
+    refuse(&["tiny.toml", "--out", "line.toml"], &["line.toml", "is a file"]);
+    assert_eq!(files(folder), ["kind.toml", "line.toml", "tight.toml", "tiny.toml"]);
 }

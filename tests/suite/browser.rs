@@ -3,7 +3,7 @@
 //! With Chromium or Chrome on the path (or named by `CYLWATCH_BROWSER`) each report is opened on a desk and on a phone: nothing is
 //! loaded from elsewhere, nothing is wider than the window, every picture has a size, no two labels of a picture cover each other.
 //! Without one this is skipped with a message. `CYLWATCH_LOOK=DIR` keeps the reports.
-use crate::support::{Outcome, TINY_BENCH, reproduced, run};
+use crate::support::{Outcome, TINY_PLAN, reproduced, run};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::tempdir;
@@ -98,8 +98,8 @@ fn reports(folder: &Path) -> Vec<&'static str> {
     ran(&[&["identify", "run.csv"], &columns[..], &["--report", "identify.html"]].concat(), &[0]);
     ran(&["calibrate", n, "run.csv", "--scenario", "tunnel-winter", "--report", "calibrate.html"], &[0]);
     ran(&["place", n, "--sensors", "2", "--scenario", "none", "--report", "place.html"], &[0]);
-    let bench = [&TINY_BENCH[..], &["--rates", "20", "--report", "bench-detector.html"]].concat();
-    ran(&bench, &[0]);
+    std::fs::write(folder.join("tiny.toml"), TINY_PLAN).unwrap();
+    ran(&["bench-detector", "tiny.toml", "--report", "bench-detector.html"], &[0]);
     let state = ["--temperature-degc", "15", "--pressure-bar", "200"];
     ran(&[&["properties", "nitrogen"], &state[..], &["--report", "properties.html"]].concat(), &[0]);
     std::fs::copy(reproduced().0.path().join("reproduce.html"), folder.join("reproduce.html")).unwrap();

@@ -35,6 +35,7 @@ mod tunnel_passage;
 
 use approx::assert_abs_diff_eq;
 use cylwatch::detector::monitor::Verdict;
+use std::collections::VecDeque;
 
 #[test]
 fn a_tight_cylinder_stays_above_160_bar_at_minus_25_degrees_and_alarms_when_it_is_colder() {
@@ -172,23 +173,23 @@ fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or
 
 #[test]
 fn a_detector_of_ones_own_is_judged_beside_the_papers_and_finds_a_large_leak() {
-    use cylwatch::evaluation::performance::bench::{Contender, Readings};
+    use cylwatch::evaluation::judge::candidate::{Contender, Row};
     // A tight cylinder that warms by 10 K from one day to the next misses nothing; one that has lost a bar misses it.
     let missing_pa = |shoulder_k, pressure_bar: f64| {
-        let mut detector = own_detector::DayBefore::default();
-        let readings = |time_s, shoulder_k, pressure_bar: f64| Readings {
-            time_s,
-            shoulder_k,
-            valve_k: f64::NAN,
-            pressure_pa: 1e5 * pressure_bar,
-        };
-        detector.step(&readings(0.0, 288.15, 200.0)).unwrap();
-        detector.step(&readings(86_400.0, shoulder_k, pressure_bar)).unwrap()
+        let mut detector = own_detector::Watching { columns: [1, 0], past: VecDeque::new() };
+        let mut said = Vec::new();
+        for (stamp_s, readings) in [(0.0, [200e5, 288.15]), (86_400.0, [1e5 * pressure_bar, shoulder_k])] {
+            detector.step(&Row { stamp_s, readings: &readings, historical: false }, &mut said).unwrap();
+        }
+        assert_eq!(said.len(), 1);
+        said[0].statistic.unwrap()
     };
     assert_abs_diff_eq!(missing_pa(298.15, 209.92), 0.0, epsilon = 1.0);
     assert_abs_diff_eq!(missing_pa(288.15, 199.0), 1e5, epsilon = 1.0);
-    let judged = own_detector::run().unwrap();
-    let [own, paper] = &judged[..] else { panic!("two detectors") };
-    assert_eq!([&own.detector[..], &paper.detector[..]], ["day before", "paper"]);
-    assert_eq!(own.found[1], (3, 3));
+    let table = own_detector::run().unwrap();
+    let [own, paper] = &table.candidates[..] else { panic!("two detectors") };
+    assert_eq!([&own.name[..], &paper.name[..]], ["day before", "paper"]);
+    assert!(table.is_whole() && own.threshold.is_some());
+    let largest = own.judged().unwrap().leaks.as_ref().unwrap().by_rate.last().unwrap();
+    assert_eq!((largest.delay.leaks, largest.delay.found), (5, 5));
 }

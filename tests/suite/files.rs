@@ -94,7 +94,7 @@ fn a_negative_number_is_refused_by_its_bounds_whatever_the_option() {
         &["reproduce", "--cylinders"],
         &["place", "nitrogen-20l", "--sensors"],
         &["calibrate", "nitrogen-20l", "log.csv", "--iterations"],
-        &["bench-detector", "--days"],
+        &["bench-detector", "--most"],
     ];
     for arguments in cases {
         let outcome = run(folder.path(), &[arguments, &["-3"]].concat());

@@ -94,15 +94,26 @@ pub fn column(csv: &str, name: &str) -> Vec<f64> {
     rows.iter().map(|row| row[index].parse().unwrap()).collect()
 }
 
-/// A bench of detectors that a test can afford: five cylinders a time, hours of learning.
-pub const TINY_BENCH: [&str; 9] = [
-    "bench-detector",
-    "--seeds",
-    "5",
-    "--days",
-    "1.1",
-    "--learning-days",
-    "0.3",
-    "--false-alarm-years",
-    "0.1",
-];
+/// A plan of the judge that a test can afford: two detectors, five cylinders for the threshold and two that judge, a day each.
+pub const TINY_PLAN: &str = r#"
+title = "A tiny plan"
+between_false_alarms_y = 0.1
+tune = ["*/workshop/*/*/*"]
+judge = ["*/railway/*/*/*"]
+candidate = [{ name = "cylwatch", kind = "monitor" }, { name = "pressure, switch", kind = "pressure-switch" }]
+
+[[group]]
+name = "for the threshold"
+families = ["nitrogen-20l/workshop/mixed/class-b/120s"]
+seeds = [1, 5]
+length_d = 1.0
+overlays = [{ kind = "nothing" }]
+candidates = ["pressure, switch"]
+
+[[group]]
+name = "tight and leaking"
+families = ["nitrogen-20l/railway/mixed/class-b/120s"]
+seeds = [1, 2]
+length_d = 1.0
+overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [0.05, 0.1], onset_h = [14.0, 15.0] }]
+"#;

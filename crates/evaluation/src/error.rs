@@ -84,18 +84,6 @@ pub enum EvaluationError {
         /// Runs needed.
         needed: usize,
     },
-    /// A detector's statistic says too little to set its threshold.
-    #[error(
-        "{detector} gives a statistic on {found} of the cylinders for training, {needed} are needed: give it more time to learn, or more cylinders"
-    )]
-    Silent {
-        /// Name of the detector.
-        detector: String,
-        /// Cylinders with a statistic.
-        found: usize,
-        /// Cylinders needed.
-        needed: usize,
-    },
     /// Reading or writing failed.
     #[error(transparent)]
     Io(#[from] std::io::Error),

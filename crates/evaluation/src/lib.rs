@@ -10,7 +10,6 @@
 //! | [`fault`] | faults put into good rows, and what a monitor must make of them |
 //! | [`baseline`] | the paper's detector and others without an observer, to compare with |
 //! | [`noise`] | noise of a series without a leak, and the shortest delay in it |
-//! | [`performance`] | what detectors are worth, side by side on the same cylinders |
 //! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
 #![warn(unreachable_pub)]
@@ -19,7 +18,6 @@ pub mod error;
 pub mod fault;
 pub mod judge;
 pub mod noise;
-pub mod performance;
 pub mod placement;
 mod random;
 pub mod tails;

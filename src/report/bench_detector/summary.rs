@@ -1,151 +1,104 @@
-//! A bench in a few lines and two tables for people.
-use crate::evaluation::performance::bench::{Judged, Outcome};
-use crate::evaluation::performance::{CONFIDENCE, Horizon, Reached, Sensitivity, SmallestLeak};
-use crate::report::{BAR_PER_HOUR, Report, number};
-use crate::thermal::units::BAR_PA;
-use crate::thermal::units::{DAY_S, HOUR_S, YEAR_S};
+//! The judge's table in a few lines and two tables, for a report.
+use crate::evaluation::judge::measures::{Delay, Reached, SmallestLeak};
+use crate::evaluation::judge::table::{CandidateReport, LeakRow, Table};
+use crate::report::{Report, number};
+use crate::thermal::units::HOUR_S;
 
-/// Columns of the smallest leak.
-const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
+/// Columns of the smallest leak, by their names in the judge's table.
+const HORIZONS: [&str; 3] = ["1 h", "24 h", "7 d"];
 
 /// What stands behind the numbers, what each detector reaches, and its delays.
-pub fn summary(outcome: &Outcome) -> Report {
-    let reached = outcome.judged.iter().map(reached).collect();
-    let report = Report::new("Leak detectors side by side").text(campaign_text(outcome)).explained_rows(
-        "",
-        &header(),
-        reached,
-        explained(outcome),
+pub fn summary(table: &Table) -> Report {
+    let of = &table.provenance;
+    let words = format!(
+        "{} of {} worlds are finished. Thresholds are for one false alarm in {} years, from the families {}; judged on {}.",
+        of.finished,
+        of.worlds,
+        number(of.between_false_alarms_y, 3),
+        of.tune.join(", "),
+        of.judge.join(", "),
     );
-    delays(outcome, report).remark(bound(outcome))
-}
-
-/// How many cylinders for how long.
-fn campaign_text(outcome: &Outcome) -> String {
-    let plan = &outcome.plan;
-    let (days, learnt) = (plan.watched_s / DAY_S, plan.learning_s / DAY_S);
-    let years = |cylinders: u64| cylinders as f64 * plan.watched_s / YEAR_S;
-    let truth = if plan.fast { "well-mixed gas" } else { "stratified gas" };
-    format!(
-        "{} simulated cylinders ({truth}) in winter railway weeks, {} d to learn from and {} d to watch each\n\
-         training: {} tight ones, {} cylinder-years; test: {} tight ones, {} cylinder-years, and as many leaking for each rate\n",
-        plan.cylinders(),
-        number(learnt, 3),
-        number(days, 3),
-        plan.training,
-        number(years(plan.training), 3),
-        plan.tests,
-        number(years(plan.tests), 3),
-    )
-}
-
-fn header() -> [&'static str; 8] {
-    [
+    let header = [
         "detector",
         "threshold",
-        "false alarms",
-        "a year",
-        "at most",
-        "found within 1 h / bar/h",
-        "24 h / bar/h",
-        "7 d / bar/h",
-    ]
+        "extrapolated",
+        "false losses",
+        "in ten years",
+        "1 h / %/h",
+        "24 h / %/h",
+        "7 d / %/h",
+    ];
+    let reached = table.candidates.iter().map(reached).collect();
+    let explained = "threshold: of the detector's own statistic; extrapolated: by this factor over the time behind it; false losses: in tight \
+                     cylinders, with the 95 % interval of their rate; 1 h, 24 h, 7 d: smallest leak that 95 % are found of within it, \
+                     in % of the gas per hour, with its 95 % interval";
+    let report = Report::new(of.title.clone()).text(words).explained_rows("", &header, reached, explained);
+    delays(table, report)
 }
 
-/// One detector: false alarms and smallest leaks.
-fn reached(judged: &Judged) -> Vec<String> {
-    let performance = &judged.performance;
-    let reliability = performance.reliability;
+/// One detector: threshold, false losses and smallest leaks.
+fn reached(candidate: &CandidateReport) -> Vec<String> {
+    let losses = candidate.judged().and_then(|all| all.tight.losses);
+    let level = candidate.threshold.map(|tuned| tuned.level);
     let mut cells = vec![
-        performance.detector.clone(),
-        threshold(judged),
-        reliability.alarms.to_string(),
-        number(reliability.per_year(), 2),
-        number(reliability.per_year_interval(CONFIDENCE).1, 2),
+        candidate.name.clone(),
+        level.map_or_else(String::new, |level| number(level.threshold, 3)),
+        level.map_or_else(String::new, |level| number(level.factor, 2)),
+        losses.map_or_else(String::new, |rate| rate.count.to_string()),
+        losses.map_or_else(String::new, |rate| {
+            let (low, high) = rate.by_simulation;
+            format!("{} ({} to {})", number(rate.per_ten_years, 2), number(low, 2), number(high, 2))
+        }),
     ];
-    cells.extend(HORIZONS.map(|horizon| performance.smallest(horizon).map_or_else(String::new, smallest)));
+    let leaks = super::leaks(candidate);
+    let found = |name| leaks.and_then(|leaks| leaks.smallest_percent_h.get(name)?.as_ref());
+    cells.extend(HORIZONS.map(|name| found(name).map_or_else(String::new, smallest)));
     cells
 }
 
-/// A threshold with its unit, pressures in bar.
-fn threshold(judged: &Judged) -> String {
-    let value = judged.level.threshold;
-    match judged.unit.as_str() {
-        "Pa" => format!("{} bar", number(value / BAR_PA, 3)),
-        "log10(years)" => format!("{} years", number(10_f64.powf(value), 2)),
-        unit => format!("{} {unit}", number(value, 3)),
-    }
-}
-
-/// A smallest leak with its interval, in bar/h.
+/// A smallest leak with its interval.
 fn smallest(found: &SmallestLeak) -> String {
-    let words = |reached: Reached| {
-        let rate = number(reached.rate_pa_s() * BAR_PER_HOUR, 2);
-        match reached {
-            Reached::AtMost(_) => format!("<{rate}"),
-            Reached::At(_) => rate,
-            Reached::Above(_) => format!(">{rate}"),
-        }
+    let words = |reached: Reached| match reached {
+        Reached::AtMost(rate) => format!("<{}", number(rate, 2)),
+        Reached::At(rate) => number(rate, 2),
+        Reached::Above(rate) => format!(">{}", number(rate, 2)),
     };
+    let (low, high) = found.interval;
     match found.rate {
-        Reached::At(_) => {
-            format!("{} ({} to {})", words(found.rate), words(found.interval.0), words(found.interval.1))
-        }
+        Reached::At(_) => format!("{} ({} to {})", words(found.rate), words(low), words(high)),
         rate => words(rate),
     }
 }
 
-/// What the table's columns are, and how far the thresholds are extrapolated.
-fn explained(outcome: &Outcome) -> String {
-    let wished_years = outcome.plan.between_alarms_s / YEAR_S;
-    let factor = outcome.judged.first().map_or(f64::NAN, |judged| judged.level.factor);
-    let extrapolated = if factor > 1.0 {
-        format!(", extrapolated by a factor of {} over the training", number(factor, 2))
-    } else {
-        String::new()
+/// Median delay of every detector at every rate, with the part that was found.
+fn delays(table: &Table, report: Report) -> Report {
+    let judged = || table.candidates.iter().filter_map(|of| Some((of.name.as_str(), super::leaks(of)?)));
+    let Some((_, first)) = judged().next() else { return report };
+    let header: Vec<&str> =
+        ["leak / %/h", "bar/h", "bound / h"].into_iter().chain(judged().map(|(name, _)| name)).collect();
+    let row = |at: &LeakRow| {
+        let of_rate =
+            |rows: &[LeakRow]| rows.iter().find(|row| row.percent_h == at.percent_h).map(|row| row.delay);
+        let mut cells = vec![number(at.percent_h, 3), number(at.percent_h * first.bar_per_percent, 2)];
+        cells.push(at.bound_s.map_or_else(String::new, |bound_s| number(bound_s / HOUR_S, 3)));
+        cells.extend(judged().map(|(_, leaks)| of_rate(&leaks.by_rate).map_or_else(String::new, delay)));
+        cells
     };
-    format!(
-        "thresholds for one false alarm in {} years{extrapolated}; at most: upper 95 % bound of the test;\n\
-         found: smallest leak that 95 % are found of, with its 95 % interval",
-        number(wished_years, 3)
+    let rows = first.by_rate.iter().map(row).collect();
+    report.explained_rows(
+        "",
+        &header,
+        rows,
+        "median delay from the onset, and how many were found where not all were",
     )
 }
 
-/// Median delay of every detector at every rate, with the part that was found.
-fn delays(outcome: &Outcome, report: Report) -> Report {
-    let Some(first) = outcome.judged.first() else { return report };
-    let names = outcome.judged.iter().map(|judged| judged.performance.detector.as_str());
-    let header: Vec<&str> = ["leak / bar/h", "bound / h"].into_iter().chain(names).collect();
-    let row = |(k, at): (usize, &Sensitivity)| {
-        let mut cells = vec![number(at.rate_pa_s * BAR_PER_HOUR, 3)];
-        cells.push(at.bound_s.map_or_else(String::new, |bound_s| number(bound_s / HOUR_S, 3)));
-        cells.extend(outcome.judged.iter().map(|judged| delay(&judged.performance.sensitivity[k])));
-        cells
-    };
-    let rows: Vec<Vec<String>> = first.performance.sensitivity.iter().enumerate().map(row).collect();
-    report.rows("", &header, rows)
-}
-
 /// Median delay in hours; the number found where it is less than half.
-fn delay(at: &Sensitivity) -> String {
-    let delay = at.delay;
-    match (delay.median_s, delay.found == delay.leaks) {
-        (Some(median_s), true) => format!("{} h", number(median_s / HOUR_S, 2)),
-        (Some(median_s), false) => {
-            format!("{} h, {} of {}", number(median_s / HOUR_S, 2), delay.found, delay.leaks)
-        }
-        (None, _) => format!("{} of {}", delay.found, delay.leaks),
+fn delay(delay: Delay) -> String {
+    let of = format!("{} of {}", delay.found, delay.leaks);
+    match delay.median_s.map(|median_s| number(median_s / HOUR_S, 2)) {
+        Some(hours) if delay.found == delay.leaks => format!("{hours} h"),
+        Some(hours) => format!("{hours} h, {of}"),
+        None => of,
     }
-}
-
-/// What the delays are, and the noise behind their bound.
-fn bound(outcome: &Outcome) -> String {
-    let noise = outcome.noise.map_or_else(String::new, |noise| {
-        format!(
-            "\nbound: shortest mean delay that an error of {} bar wandering over {} h allows",
-            number(noise.sd / BAR_PA, 2),
-            number(noise.correlation_time_s / HOUR_S, 2)
-        )
-    });
-    format!("median delay from the onset, and how many were found before the end where not all were{noise}")
 }

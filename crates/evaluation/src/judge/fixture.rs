@@ -11,11 +11,10 @@ use serde_json::Value;
 
 use super::JudgeError;
 use super::candidate::{Candidate, Contender, Kind, Registry, Row};
-use super::journal::{Binding, Journal};
-use super::measures::{Class, Estimated};
+use super::measures::Class;
 use super::plan::Plan;
-use super::run::{Progress, RunSettings, Source, run};
-use super::said::{Decision, Estimates, Innovation, Said, normal};
+use super::run::{RunSettings, Source, run};
+use super::said::{Decision, Estimated, Estimates, Innovation, Said, normal};
 use super::table::{GroupReport, Table};
 use crate::detector::prognosis::Reaction;
 use crate::world::{
@@ -269,16 +268,14 @@ pub(super) fn settings(folder: &std::path::Path, threads: usize) -> RunSettings 
 /// Run a plan of toys; its table.
 pub(super) fn judged(plan: &Plan) -> Table {
     let folder = tempfile::tempdir().unwrap();
-    let end = run(plan, &Toys, &settings(folder.path(), 2), &|_| ()).unwrap();
-    assert_eq!(end, Progress { done: plan.tasks.len(), all: plan.tasks.len(), failed: 0 });
-    let binding = Binding { plan: plan.hash().unwrap(), program: "test".to_owned() };
-    let journal = Journal::open(folder.path(), &binding).unwrap();
-    Table::of(plan, &mut journal.results().unwrap()).unwrap()
+    let table = run(plan, &Toys, &settings(folder.path(), 2), &|_| ()).unwrap();
+    assert!(table.is_whole());
+    table
 }
 
 /// The row of a table for all worlds that judge.
 pub(super) fn all(table: &Table, candidate: usize) -> &GroupReport {
-    group_of(table, candidate, "all")
+    table.candidates[candidate].judged().unwrap()
 }
 
 /// A row of a table.

@@ -17,7 +17,7 @@ use super::journal::{Binding, Journal};
 use super::plan::{Plan, Unit};
 use super::score::Score;
 use super::score::detection::Detecting;
-use super::table;
+use super::table::{self, Table};
 use super::watch::{watch, words_of};
 use crate::world::{Request, Simulated, World, WorldError};
 
@@ -84,7 +84,7 @@ pub struct Progress {
     pub failed: usize,
 }
 
-/// Run a plan to its end, or go on with it, and write its table.
+/// Run a plan to its end, or go on with it, write its table and return it. `progress` is told first what earlier runs have done.
 ///
 /// # Errors
 /// The folder belongs to another plan, or cannot be written. A world that fails is an entry of the table, not an error.
@@ -93,10 +93,11 @@ pub fn run<S: Source>(
     source: &S,
     settings: &RunSettings,
     progress: &(dyn Fn(Progress) + Sync),
-) -> Result<Progress, JudgeError> {
+) -> Result<Table, JudgeError> {
     let binding = Binding { plan: plan.hash()?, program: settings.program.clone() };
     let journal = Journal::open(&settings.folder, &binding)?;
     let costs = Costs::open(&settings.folder)?;
+    progress(Progress { done: journal.len(), all: plan.tasks.len(), failed: 0 });
     let missing = |unit: &Unit| -> Vec<usize> {
         unit.tasks.iter().copied().filter(|task| !journal.holds(*task)).collect()
     };
@@ -125,10 +126,9 @@ pub fn run<S: Source>(
     if let Some(error) = shared.error {
         return Err(error);
     }
-    let progress = Progress { done: shared.journal.len(), all: plan.tasks.len(), failed: shared.failed };
-    table::write(plan, &mut shared.journal.results()?, &settings.folder)?;
+    let table = table::write(plan, &mut shared.journal.results()?, &settings.folder)?;
     shared.costs.write(&settings.folder)?;
-    Ok(progress)
+    Ok(table)
 }
 
 struct Running<'a, S> {

@@ -1,7 +1,8 @@
 //! What a candidate says after a row.
+use crate::detector::monitor::Interval;
 use crate::detector::prognosis::Reaction;
 
-use super::measures::{Class, Estimated};
+use super::measures::Class;
 
 /// Half width of a 95 % interval in standard deviations.
 pub const BAND_95: f64 = 1.959_963_984_540_054;
@@ -64,6 +65,21 @@ pub struct Estimates {
     pub leak_kg_s: Option<Estimated>,
     /// Onset of the leak by the log's clock, s; `None`: no leak is stated.
     pub onset_s: Option<Estimated>,
+}
+
+/// A quantity as it is stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimated {
+    /// The value.
+    pub value: f64,
+    /// Its 95 % interval; `None`: none is stated.
+    pub interval: Option<(f64, f64)>,
+}
+
+impl From<Interval> for Estimated {
+    fn from(interval: Interval) -> Self {
+        Self { value: interval.value, interval: Some((interval.low, interval.high)) }
+    }
 }
 
 /// Innovation of a reading, before its gate.

@@ -102,8 +102,9 @@ fn intervals_of_known_normal_errors_hold_the_truth_in_95_percent_and_innovations
 fn the_smallest_leak_of_a_known_law_of_detection_is_found() {
     // A thousandth of the gas must be lost: 1e-3 per hour within an hour, 1/24 of it within a day, 1/168 within a week.
     let rates: Vec<String> = (0..26).map(|n| format!("{:.6e}", 2e-6 * 1.35_f64.powi(n))).collect();
-    let leaks = format!("{{ kind = \"leak\", part_per_h = [{}], onset_h = [30.0, 40.0] }}", rates.join(", "));
-    let table = judged(&plan(&["lawful"], &group(RAILWAY, (1, 8), 9.0, &leaks)));
+    let rates = rates.join(", ");
+    let leaks = format!("{TIGHT}, {{ kind = \"leak\", part_per_h = [{rates}], onset_h = [30.0, 40.0] }}");
+    let table = judged(&plan(&["lawful", "honest"], &group(RAILWAY, (1, 8), 9.0, &leaks)));
     let leaks = all(&table, 0).leaks.as_ref().unwrap();
     for (horizon, hours) in [("1 h", 1.0), ("24 h", 24.0), ("7 d", 168.0)] {
         let Reached::At(found) = leaks.smallest_percent_h[horizon].unwrap().rate else { panic!("{horizon}") };
@@ -112,6 +113,9 @@ fn the_smallest_leak_of_a_known_law_of_detection_is_found() {
     }
     let delays: Vec<f64> = leaks.by_rate.iter().filter_map(|row| row.delay.median_s).collect();
     assert!(delays.len() > 20 && delays.windows(2).all(|pair| pair[1] < pair[0]));
+    // The noise of the candidate that has a mass bounds the delay of the other one.
+    let bounds: Vec<f64> = leaks.by_rate.iter().filter_map(|row| row.bound_s).collect();
+    assert!(bounds.len() == 26 && bounds.windows(2).all(|pair| 0.0 < pair[1] && pair[1] < pair[0]));
 }
 
 #[test]
@@ -144,6 +148,19 @@ fn a_statistic_gets_its_threshold_from_the_families_that_tune_alone() {
     let other = group("nitrogen-20l/desert/mixed/class-b/120s", (1, 4), 5.0, &format!("{TIGHT}, {LEAKS}"));
     let again = judged(&plan(&["lost-mass"], &format!("{tuning}{other}")));
     assert_eq!(again.candidates[0].threshold.unwrap().level, tuned.level);
+}
+
+#[test]
+fn a_statistic_with_too_few_worlds_to_tune_on_has_no_threshold_and_that_is_named() {
+    let tuning = group("nitrogen-20l/workshop/mixed/class-b/120s", (1, 4), 5.0, TIGHT);
+    let groups = format!("{tuning}{}", group(RAILWAY, (1, 2), 5.0, &format!("{TIGHT}, {LEAKS}")));
+    let folder = tempfile::tempdir().unwrap();
+    let table =
+        run(&plan(&["lost-mass", "lawful"], &groups), &Toys, &settings(folder.path(), 2), &|_| ()).unwrap();
+    let [silent, lawful] = &table.candidates[..] else { panic!("two candidates") };
+    assert!(silent.threshold.is_none() && silent.failures[0].starts_with("no threshold"), "{silent:?}");
+    assert!(lawful.failures.is_empty() && !table.is_whole());
+    assert!(table.to_markdown().contains("no threshold"));
 }
 
 #[test]
@@ -197,8 +214,9 @@ fn stopped_after_some_worlds_the_table_is_partial_and_the_rest_follows() {
     run(&plan, &Toys, &settings(whole.path(), 2), &|_| ()).unwrap();
     let mut some = settings(parts.path(), 2);
     some.most_worlds = Some(30);
-    let end = run(&plan, &Toys, &some, &|_| ()).unwrap();
-    assert_eq!((end.done, end.all), (30, plan.tasks.len()));
+    let partial = run(&plan, &Toys, &some, &|_| ()).unwrap();
+    assert_eq!((partial.provenance.finished, partial.provenance.worlds), (30, plan.tasks.len()));
+    assert!(!partial.is_whole());
     assert!(String::from_utf8(tables(parts.path())[0].clone()).unwrap().contains("(partial)"));
     run(&plan, &Toys, &settings(parts.path(), 2), &|_| ()).unwrap();
     assert_eq!(tables(parts.path()), tables(whole.path()));

@@ -1,7 +1,9 @@
 //! Plans: which families tune and which judge, which candidates watch which worlds. Written before a run, and checked before it.
 mod document;
 mod expand;
+mod extent;
 mod pattern;
+pub mod presets;
 
 use cylwatch_thermal::units::YEAR_S;
 use std::path::Path;
@@ -13,11 +15,12 @@ use sha2::{Digest, Sha256};
 
 pub use document::{CandidateDocument, GroupDocument, OverlayDocument, PlanDocument};
 pub use expand::{Task, Unit};
+pub use extent::Extent;
 pub use pattern::{Axis, Pattern};
 
 use super::JudgeError;
 use super::candidate::{Candidate, Registry};
-use crate::world::Family;
+use crate::world::{Family, Overlay};
 
 /// A checked plan.
 #[derive(Clone)]
@@ -124,6 +127,12 @@ impl Plan {
     /// Worlds that share one simulation, in the order of the plan.
     pub fn units(&self) -> Vec<Unit> {
         expand::units(&self.tasks)
+    }
+
+    /// Whether there are leaks whose delays are judged.
+    pub fn has_leaks(&self) -> bool {
+        let is_leak = |task: &Task| matches!(task.request.overlay, Overlay::Leak { .. });
+        self.tasks.iter().any(|task| task.role == Role::Judge && is_leak(task))
     }
 
     /// SHA-256 over all that decides the results; comments and order of keys do not.

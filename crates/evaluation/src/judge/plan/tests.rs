@@ -43,6 +43,21 @@ fn a_group_is_families_times_seeds_times_sets_times_overlays() {
 }
 
 #[test]
+fn every_file_of_plans_is_built_in_and_passes_its_checks() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/plans");
+    assert_eq!(std::fs::read_dir(folder).unwrap().count(), presets::names().count());
+    for name in presets::names() {
+        let plan = parse(presets::text(name).unwrap(), &[]).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(
+            std::fs::read_to_string(format!("{folder}/{name}.toml")).ok().as_deref(),
+            presets::text(name)
+        );
+        let Extent { worlds, cylinder_years, simulations, simulated_years, core_s, .. } = plan.extent();
+        assert!(worlds >= simulations && cylinder_years >= simulated_years && core_s > 0.0);
+    }
+}
+
+#[test]
 fn onsets_are_drawn_within_their_bounds_and_differ_by_seed() {
     let plan = parse(PLAN, &[]).unwrap();
     let onsets: std::collections::BTreeSet<u64> = plan

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
-use crate::judge::measures::Estimated;
+use crate::judge::said::Estimated;
 use crate::world::{Overlay, World};
 
 /// Shortest time between two judged statements, s.

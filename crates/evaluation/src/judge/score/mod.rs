@@ -165,7 +165,7 @@ impl<'a> Scorer<'a> {
             if statistic.is_finite() {
                 self.first_told_s.get_or_insert(now_s);
             }
-            self.trace.push(now_s, statistic.min(f64::MAX), || None);
+            self.trace.push(now_s, statistic.min(f64::MAX));
         }
         self.score.coverage.take(&moment, self.world);
         // Spikes and exchanges of gas are no question of the noise.

@@ -174,7 +174,6 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::performance::Proportion;
     use crate::world::{Family, Request};
 
     fn key(seed: u64) -> SimulationKey {
@@ -193,11 +192,18 @@ mod tests {
     }
 
     #[test]
-    fn wilsons_interval_is_that_of_whole_trials() {
-        let expected = Proportion { hits: 81, trials: 263 }.wilson(0.95);
-        let found = wilson(81.0 / 263.0, 263.0);
-        assert_relative_eq!(found.0, expected.0, max_relative = 1e-9);
-        assert_relative_eq!(found.1, expected.1, max_relative = 1e-9);
+    fn wilsons_intervals_are_those_of_the_tables() {
+        // Newcombe, Stat. Med. 17 (1998) 857, table I, method 3.
+        let published = [
+            ((81.0, 263.0), (0.2553, 0.3662)),
+            ((15.0, 148.0), (0.0624, 0.1605)),
+            ((0.0, 20.0), (0.0, 0.1611)),
+            ((1.0, 29.0), (0.0061, 0.1718)),
+        ];
+        for ((hits, trials), expected) in published {
+            let found = wilson(hits / trials, trials);
+            assert!((found.0 - expected.0).abs() < 6e-5 && (found.1 - expected.1).abs() < 6e-5, "{found:?}");
+        }
     }
 
     #[test]
@@ -245,17 +251,17 @@ mod tests {
         for run in 0..400 {
             let mut random = ChaCha8Rng::seed_from_u64(run);
             let mut clustered = Clustered::default();
-            let (mut inside, mut rows) = (0, 0);
+            let (mut inside, mut rows) = (0.0, 0.0);
             for seed in 0..40 {
                 // Each simulation has a share of its own between 0.6 and 1.
                 let share = 0.6 + 0.4 * random.random::<f64>();
                 let hits = (0..500).filter(|_| random.random::<f64>() < share).count();
                 clustered.add(key(seed), hits as f64, 500.0);
-                (inside, rows) = (inside + hits as u64, rows + 500);
+                (inside, rows) = (inside + hits as f64, rows + 500.0);
             }
             let found = clustered.share().unwrap();
             held += u32::from((found.by_simulation.0..=found.by_simulation.1).contains(&0.8));
-            let (low, high) = Proportion { hits: inside, trials: rows }.wilson(0.95);
+            let (low, high) = wilson(inside / rows, rows);
             held_rows += u32::from((low..=high).contains(&0.8));
         }
         assert!((362..=397).contains(&held), "{held}");
@@ -267,9 +273,9 @@ mod tests {
         let mut clustered = Clustered::default();
         (0..20).for_each(|seed| clustered.add(key(seed), 1000.0, 1000.0));
         let share = clustered.share().unwrap();
-        let expected = Proportion { hits: 20, trials: 20 }.wilson(0.95);
         assert_eq!(share.share, 1.0);
-        assert_relative_eq!(share.by_simulation.0, expected.0, max_relative = 1e-9);
+        // As none of 20, seen from the other side.
+        assert!((share.by_simulation.0 - (1.0 - 0.1611)).abs() < 6e-5);
         assert!(Clustered::default().share().is_none() && Clustered::default().rate().is_none());
     }
 }

@@ -33,6 +33,8 @@ use crate::world::{Overlay, Request, SimulationKey};
 
 /// Names of the files of the table.
 pub const TABLE: [&str; 2] = ["table.md", "table.json"];
+/// Failure of a candidate that is not judged at all.
+const NO_THRESHOLD: &str = "no threshold: it says a number in fewer than five tight worlds that tune; give it more of them, or more time in each";
 /// Failures that are told one by one.
 const TOLD_FAILURES: usize = 10;
 
@@ -72,20 +74,20 @@ pub struct Table {
     pub candidates: Vec<CandidateReport>,
 }
 
-/// Write the table of the worlds that are finished.
+/// Write the table of the worlds that are finished, and return it.
 ///
 /// # Errors
 /// The journal cannot be read, or a file not be written.
-pub fn write(plan: &Plan, results: &mut Results, folder: &Path) -> Result<(), JudgeError> {
+pub fn write(plan: &Plan, results: &mut Results, folder: &Path) -> Result<Table, JudgeError> {
     let table = Table::of(plan, results)?;
-    let texts = [table.to_markdown(), serde_json::to_string_pretty(&table)? + "\n"];
+    let texts = [table.to_markdown(), table.to_json()?];
     for (name, text) in TABLE.into_iter().zip(texts) {
         // A kill leaves the old file or the new one.
         let (path, fresh) = (folder.join(name), folder.join(format!("{name}.new")));
         let written = std::fs::write(&fresh, text).and_then(|()| std::fs::rename(&fresh, &path));
         written.map_err(|source| JudgeError::File { path, source })?;
     }
-    Ok(())
+    Ok(table)
 }
 
 /// Sums by candidate and group.
@@ -108,7 +110,10 @@ impl Table {
             .map(|(named, threshold)| CandidateReport {
                 name: named.name.clone(),
                 threshold: *threshold,
-                failures: Vec::new(),
+                failures: match threshold {
+                    None if named.candidate.needs_threshold() => vec![NO_THRESHOLD.to_owned()],
+                    _ => Vec::new(),
+                },
                 contradictions: Vec::new(),
                 groups: Vec::new(),
             })
@@ -130,6 +135,20 @@ impl Table {
             report.groups = of.iter().map(group).collect();
         }
         Ok(Self { provenance, candidates: reports })
+    }
+
+    /// As JSON.
+    ///
+    /// # Errors
+    /// A number that JSON cannot hold.
+    pub fn to_json(&self) -> Result<String, JudgeError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// Whether all worlds are finished and none of them, and no candidate in them, has failed.
+    pub fn is_whole(&self) -> bool {
+        let Provenance { worlds, finished, failed_worlds, .. } = self.provenance;
+        finished == worlds && failed_worlds == 0 && self.candidates.iter().all(|of| of.failures.is_empty())
     }
 }
 

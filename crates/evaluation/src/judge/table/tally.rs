@@ -3,12 +3,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::clustered::Clustered;
 use crate::judge::entry::Facts;
-use crate::judge::measures::{Run, TrueLeak};
+use crate::judge::measures::Run;
 use crate::judge::plan::Task;
 use crate::judge::score::Score;
 use crate::judge::score::agreement::Disagreements;
 use crate::judge::score::coverage::Cell;
-use crate::judge::score::detection::{Detected, FastLoss};
+use crate::judge::score::detection::FastLoss;
 use crate::judge::score::innovation::Innovations;
 use crate::judge::score::verdict::{Episode, Shares};
 use crate::noise::Noise;
@@ -70,7 +70,7 @@ pub struct Tally {
     pub episodes: [Clustered; 4],
     /// False leaks of the first day.
     pub first_day_leaks: u64,
-    /// Runs with a leak; their rate is a part of the gas per hour.
+    /// Runs with a leak.
     pub runs: Vec<Run>,
     /// Sums of loss of pressure at 15 °C, Pa/s, and of parts per hour over the leaks.
     pub pressure_per_part: (f64, f64),
@@ -113,7 +113,12 @@ impl Tally {
         }
         if let (Some(leak), Some(detected)) = (&facts.leak, &score.detected) {
             self.leak_simulations.insert(simulation);
-            self.runs.push(run(task.request.seed, leak, detected));
+            self.runs.push(Run {
+                part_per_h: leak.part_per_h,
+                onset_s: leak.onset_s,
+                until_s: leak.until_s,
+                alarm_s: detected.alarm_s,
+            });
             self.pressure_per_part.0 += leak.rate_pa_s;
             self.pressure_per_part.1 += leak.part_per_h;
         }
@@ -192,16 +197,4 @@ impl FastTally {
 
 fn add_times((sums, times): (&mut [f64; 6], &[f64; 6])) {
     sums.iter_mut().zip(times).for_each(|(sum, time)| *sum += time);
-}
-
-/// A run whose rate is a part of the gas per hour.
-fn run(seed: u64, leak: &crate::judge::score::detection::LeakFacts, detected: &Detected) -> Run {
-    Run {
-        seed,
-        leak: Some(TrueLeak { rate_pa_s: leak.part_per_h, onset_s: leak.onset_s }),
-        from_s: 0.0,
-        until_s: leak.until_s,
-        alarm_s: detected.alarm_s,
-        found: None,
-    }
 }

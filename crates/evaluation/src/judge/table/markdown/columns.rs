@@ -70,7 +70,7 @@ fn smallest_words(leak: &SmallestLeak, bar: f64) -> String {
         Reached::Above(rate) => format!("> {}", short(rate)),
     };
     let (low, high) = leak.interval;
-    let rate = leak.rate.rate_pa_s() * bar;
+    let rate = leak.rate.rate() * bar;
     format!("{} [{}, {}] ({})", value(leak.rate), value(low), value(high), short(rate))
 }
 

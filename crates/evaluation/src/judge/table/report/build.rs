@@ -7,7 +7,7 @@ use super::{
     CoverageRow, DisagreementReport, FastRow, FaultRowReport, GroupReport, InnovationRow, LeakRow, Leaks,
     Tight,
 };
-use crate::judge::measures::{Class, Delay, Detection, Horizon, Reached, SmallestLeak, by_rate};
+use crate::judge::measures::{Class, Delay, Detection, Horizon, SmallestLeak, by_rate};
 use crate::judge::score::agreement::Rule;
 use crate::judge::score::coverage::Quantity;
 use crate::judge::score::innovation::RegimeSums;
@@ -17,6 +17,8 @@ use crate::judge::table::tally::{FastTally, FaultTally, Tally};
 use crate::noise::Noise;
 use crate::world::{FaultRow, Regime};
 
+/// Percent of all.
+const PERCENT: f64 = 100.0;
 /// Part of the leaks that must be found for the smallest leak.
 const FOUND: f64 = 0.95;
 /// Horizons of the smallest leak.
@@ -39,6 +41,7 @@ impl GroupReport {
         Self {
             role: group.role,
             group: group.of.to_string(),
+            is_all: group.of == Of::All,
             is_of_one_axis: group.is_of_one_axis(),
             is_family: matches!(group.of, Of::Family(_)),
             worlds: tally.worlds,
@@ -82,19 +85,15 @@ fn leaks(tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Option<L
         return None;
     }
     let within = |horizon: Horizon| Detection::against_rate(&groups, horizon.seconds());
-    let percent = |mut leak: SmallestLeak| {
-        leak.rate = scaled(leak.rate);
-        leak.interval = (scaled(leak.interval.0), scaled(leak.interval.1));
-        leak
-    };
-    let smallest = |horizon: Horizon| SmallestLeak::of(&within(horizon), FOUND).map(percent);
+    let smallest =
+        |horizon: Horizon| SmallestLeak::of(&within(horizon), FOUND).map(|leak| leak.times(PERCENT));
     let row = |(index, (part_per_h, runs)): (usize, &(f64, Vec<_>))| {
         let delay = Delay::of(runs);
         let bound_s =
             noise.map(|noise| noise.shortest_delay_s(part_per_h / HOUR_S, SETTLED_S, between_alarms_s));
         let found = HORIZONS.map(|horizon| within(horizon)[index].found);
         LeakRow {
-            percent_h: 100.0 * part_per_h,
+            percent_h: PERCENT * part_per_h,
             found: found.map(|found| (found.hits, found.trials)).to_vec(),
             efficiency: bound_s.and_then(|bound_s| delay.efficiency(bound_s)),
             delay,
@@ -104,21 +103,11 @@ fn leaks(tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Option<L
     Some(Leaks {
         runs: tally.runs.len() as u64,
         simulations: tally.leak_simulations.len() as u64,
-        bar_per_percent: 1e-5 * HOUR_S * pa_s / (100.0 * part_h),
+        bar_per_percent: 1e-5 * HOUR_S * pa_s / (PERCENT * part_h),
         smallest_percent_h: HORIZONS.into_iter().map(|of| (of.to_string(), smallest(of))).collect(),
         noise: noise.map(|noise| (noise.sd, noise.correlation_time_s)),
         by_rate: groups.iter().enumerate().map(row).collect(),
     })
-}
-
-/// Parts as percent.
-fn scaled(reached: Reached) -> Reached {
-    use Reached::{Above, At, AtMost};
-    match reached {
-        AtMost(part) => AtMost(100.0 * part),
-        At(part) => At(100.0 * part),
-        Above(part) => Above(100.0 * part),
-    }
 }
 
 fn coverage(tally: &Tally) -> Vec<CoverageRow> {

@@ -20,12 +20,19 @@ pub struct CandidateReport {
     pub name: String,
     /// Its threshold, if it needs one and there is one.
     pub threshold: Option<Tuned>,
-    /// Worlds in which it failed, and why: the first ones.
+    /// Worlds in which it failed, and why: the first ones; or why it has no threshold.
     pub failures: Vec<String>,
     /// Worlds in which it contradicts itself, and how: the first ones.
     pub contradictions: Vec<String>,
     /// By group.
     pub groups: Vec<GroupReport>,
+}
+
+impl CandidateReport {
+    /// All worlds that judge; `None`: none is finished.
+    pub fn judged(&self) -> Option<&GroupReport> {
+        self.groups.iter().find(|of| of.role == Role::Judge && of.is_all)
+    }
 }
 
 /// One candidate in one group.
@@ -35,6 +42,9 @@ pub struct GroupReport {
     pub role: Role,
     /// What the worlds have in common.
     pub group: String,
+    /// Whether it is of all worlds of its role.
+    #[serde(skip)]
+    pub is_all: bool,
     /// Whether it is of one axis, or of all of them.
     #[serde(skip)]
     pub is_of_one_axis: bool,

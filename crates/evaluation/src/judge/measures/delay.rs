@@ -67,18 +67,14 @@ fn mean_and_sd(values: &[f64]) -> (Option<f64>, Option<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::performance::TrueLeak;
     use approx::assert_relative_eq;
 
     fn runs(alarms: &[Option<f64>]) -> Vec<Run> {
-        let leak = Some(TrueLeak { rate_pa_s: 1.0, onset_s: 100.0 });
         let run = |alarm_s: &Option<f64>| Run {
-            seed: 0,
-            leak,
-            from_s: 0.0,
+            part_per_h: 1.0,
+            onset_s: 100.0,
             until_s: 1000.0,
             alarm_s: *alarm_s,
-            found: None,
         };
         alarms.iter().map(run).collect()
     }

@@ -24,7 +24,7 @@ const DRAWS: usize = 2000;
 /// Seed of the bootstrap: the same runs have the same interval.
 const SEED: u64 = 7;
 
-/// A rate at which the probability is reached, Pa/s, as far as the rates that were tried tell.
+/// A rate at which the probability is reached, part of the gas per hour, as far as the rates that were tried tell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reached {
@@ -37,10 +37,19 @@ pub enum Reached {
 }
 
 impl Reached {
-    /// The rate, or the end of the rates tried, Pa/s.
-    pub fn rate_pa_s(self) -> f64 {
+    /// The rate, or the end of the rates tried.
+    pub fn rate(self) -> f64 {
         match self {
             Self::AtMost(rate) | Self::At(rate) | Self::Above(rate) => rate,
+        }
+    }
+
+    /// In another unit, of which the old one has `factor`.
+    fn times(self, factor: f64) -> Self {
+        match self {
+            Self::AtMost(rate) => Self::AtMost(factor * rate),
+            Self::At(rate) => Self::At(factor * rate),
+            Self::Above(rate) => Self::Above(factor * rate),
         }
     }
 
@@ -80,6 +89,12 @@ impl SmallestLeak {
         let (low, high) = (draws[tail as usize], draws[DRAWS - 1 - tail as usize]);
         Some(Self { probability, rate, interval: holding(rate, low, high) })
     }
+
+    /// In another unit, of which the old one has `factor`.
+    pub fn times(self, factor: f64) -> Self {
+        let (low, high) = self.interval;
+        Self { rate: self.rate.times(factor), interval: (low.times(factor), high.times(factor)), ..self }
+    }
 }
 
 /// The interval, widened to its rate: "all of 24" is not taken for certainty in the draws, which may all lie on one side of it.
@@ -90,7 +105,7 @@ fn holding(rate: Reached, low: Reached, high: Reached) -> (Reached, Reached) {
 /// Where the interpolated probability is reached.
 fn reached(tried: &[Detection], probability: f64) -> Option<Reached> {
     let fitted = increasing(tried);
-    let (first, last) = (tried.first()?.rate_pa_s, tried.last()?.rate_pa_s);
+    let (first, last) = (tried.first()?.part_per_h, tried.last()?.part_per_h);
     // Fractions of counts: 38 of 40 are 0.95.
     let enough = |part: f64| part >= probability - 1e-9;
     let Some(index) = fitted.iter().position(|part| enough(*part)) else {
@@ -100,7 +115,7 @@ fn reached(tried: &[Detection], probability: f64) -> Option<Reached> {
         return Some(Reached::AtMost(first));
     };
     let share = ((probability - fitted[before]) / (fitted[index] - fitted[before])).clamp(0.0, 1.0);
-    let (low, high) = (tried[before].rate_pa_s.ln(), tried[index].rate_pa_s.ln());
+    let (low, high) = (tried[before].part_per_h.ln(), tried[index].part_per_h.ln());
     Some(Reached::At((low + share * (high - low)).exp()))
 }
 
@@ -134,8 +149,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn detections(counts: &[(f64, u64, u64)]) -> Vec<Detection> {
-        let of = |&(rate_pa_s, hits, trials): &(f64, u64, u64)| Detection {
-            rate_pa_s,
+        let of = |&(part_per_h, hits, trials): &(f64, u64, u64)| Detection {
+            part_per_h,
             found: Proportion { hits, trials },
         };
         counts.iter().map(of).collect()
@@ -147,15 +162,15 @@ mod tests {
         let found = SmallestLeak::of(&detections(&[(0.01, 0, 40), (0.1, 36, 40), (1.0, 40, 40)]), 0.95);
         let Some(SmallestLeak { rate: Reached::At(rate), interval, .. }) = found else { panic!("{found:?}") };
         assert_relative_eq!(rate, 0.1 * 10.0_f64.sqrt(), max_relative = 1e-9);
-        assert!(interval.0.rate_pa_s() < rate && rate < interval.1.rate_pa_s());
+        assert!(interval.0.rate() < rate && rate < interval.1.rate());
     }
 
     #[test]
     fn the_interval_holds_the_rate_where_none_turns_into_all() {
         let found = SmallestLeak::of(&detections(&[(0.01, 0, 24), (0.1, 24, 24), (1.0, 24, 24)]), 0.95);
         let SmallestLeak { rate, interval, .. } = found.unwrap();
-        let (low, high) = (interval.0.rate_pa_s(), interval.1.rate_pa_s());
-        assert!(low <= rate.rate_pa_s() && rate.rate_pa_s() < high, "{low} {rate:?} {high}");
+        let (low, high) = (interval.0.rate(), interval.1.rate());
+        assert!(low <= rate.rate() && rate.rate() < high, "{low} {rate:?} {high}");
     }
 
     #[test]
@@ -203,7 +218,7 @@ mod tests {
             let counts: Vec<(f64, u64, u64)> =
                 rates.iter().map(|r| (*r, (part(*r) * trials as f64).round() as u64, trials)).collect();
             let found = SmallestLeak::of(&detections(&counts), 0.95).unwrap();
-            let (low, high) = (found.interval.0.rate_pa_s(), found.interval.1.rate_pa_s());
+            let (low, high) = (found.interval.0.rate(), found.interval.1.rate());
             assert!((low..=high).contains(&truth), "{trials}: {low} {truth} {high}");
             (high / low).ln()
         };

@@ -1,8 +1,6 @@
 //! What a statistic reached for the first time, and when.
 use serde::{Deserialize, Serialize};
 
-use crate::performance::Found;
-
 /// A value above all before it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Highest {
@@ -10,8 +8,6 @@ pub struct Highest {
     pub time_s: f64,
     /// The value.
     pub value: f64,
-    /// What was said about the leak then.
-    pub found: Option<Found>,
 }
 
 /// The rising record of a statistic over one cylinder: enough for the first alarm at any threshold.
@@ -21,10 +17,10 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Take a value; what is said about the leak is asked for only if the value is above all before.
-    pub fn push(&mut self, time_s: f64, value: f64, found: impl FnOnce() -> Option<Found>) {
+    /// Take a value.
+    pub fn push(&mut self, time_s: f64, value: f64) {
         if value > self.most() {
-            self.highest.push(Highest { time_s, value, found: found() });
+            self.highest.push(Highest { time_s, value });
         }
     }
 
@@ -48,7 +44,7 @@ mod tests {
         let values = [0.0, 2.0, 1.0, 2.0, 5.0, f64::NAN, 4.0];
         let mut trace = Trace::default();
         for (n, value) in values.into_iter().enumerate() {
-            trace.push(n as f64, value, || None);
+            trace.push(n as f64, value);
         }
         let first = |threshold: f64| trace.alarm(threshold).map(|highest| highest.time_s);
         assert_eq!(

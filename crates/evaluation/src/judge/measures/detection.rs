@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Proportion, Run};
+use super::Run;
 
 /// Times within which a leak should be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -46,11 +46,30 @@ impl fmt::Display for Horizon {
     }
 }
 
+/// `hits` of `trials`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Proportion {
+    /// How often it happened.
+    pub hits: u64,
+    /// How often it could have.
+    pub trials: u64,
+}
+
+impl Proportion {
+    /// Count those that are true.
+    pub fn count(outcomes: impl IntoIterator<Item = bool>) -> Self {
+        outcomes.into_iter().fold(Self::default(), |sum, hit| Self {
+            hits: sum.hits + u64::from(hit),
+            trials: sum.trials + 1,
+        })
+    }
+}
+
 /// How many leaks of one rate were found within a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
-    /// Loss of the pressure at 15 °C, Pa/s.
-    pub rate_pa_s: f64,
+    /// Rate, part of the gas per hour.
+    pub part_per_h: f64,
     /// Found of those that were watched for so long, or found before.
     pub found: Proportion,
 }
@@ -58,8 +77,8 @@ pub struct Detection {
 impl Detection {
     /// Of runs with one rate each, in the order of [`by_rate`](super::by_rate), within `horizon_s`.
     pub fn against_rate(groups: &[(f64, Vec<Run>)], horizon_s: f64) -> Vec<Self> {
-        let of = |(rate_pa_s, runs): &(f64, Vec<Run>)| Self {
-            rate_pa_s: *rate_pa_s,
+        let of = |(part_per_h, runs): &(f64, Vec<Run>)| Self {
+            part_per_h: *part_per_h,
             found: Proportion::count(told(runs, horizon_s)),
         };
         groups.iter().map(of).collect()
@@ -69,7 +88,7 @@ impl Detection {
 /// Outcomes of the runs that can tell.
 ///
 /// A run that ends before the horizon could add a hit but never a miss: then it counts neither way.
-pub(super) fn told(runs: &[Run], horizon_s: f64) -> impl Iterator<Item = bool> + '_ {
+fn told(runs: &[Run], horizon_s: f64) -> impl Iterator<Item = bool> + '_ {
     let long_enough = move |run: &&Run| run.watched_s().is_some_and(|watched_s| watched_s >= horizon_s);
     runs.iter().filter(long_enough).filter_map(move |run| run.found_within(horizon_s))
 }
@@ -77,24 +96,22 @@ pub(super) fn told(runs: &[Run], horizon_s: f64) -> impl Iterator<Item = bool> +
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::performance::{TrueLeak, by_rate};
+    use crate::judge::measures::by_rate;
 
     #[test]
     fn runs_that_end_before_the_horizon_count_neither_way() {
-        let run = |seed, watched_h: f64, delay_h: Option<f64>| Run {
-            seed,
-            leak: Some(TrueLeak { rate_pa_s: 1.0, onset_s: 0.0 }),
-            from_s: 0.0,
+        let run = |watched_h: f64, delay_h: Option<f64>| Run {
+            part_per_h: 1.0,
+            onset_s: 0.0,
             until_s: watched_h * HOUR_S,
             alarm_s: delay_h.map(|hours| hours * HOUR_S),
-            found: None,
         };
         let runs = [
-            run(0, 48.0, Some(10.0)),
-            run(1, 48.0, Some(30.0)),
-            run(2, 48.0, None),
-            run(3, 12.0, Some(2.0)),
-            run(4, 12.0, None),
+            run(48.0, Some(10.0)),
+            run(48.0, Some(30.0)),
+            run(48.0, None),
+            run(12.0, Some(2.0)),
+            run(12.0, None),
         ];
         let within = |horizon: Horizon| Detection::against_rate(&by_rate(&runs), horizon.seconds())[0].found;
         assert_eq!(within(Horizon::Day), Proportion { hits: 1, trials: 3 });
