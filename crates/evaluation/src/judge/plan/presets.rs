@@ -15,12 +15,17 @@ const FILES: [(&str, &str); 12] = [
     ("smoke", include_str!("../../../plans/smoke.toml")),
 ];
 
+/// Names and texts of the built-in plans.
+pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FILES.into_iter()
+}
+
 /// Names of the built-in plans.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    FILES.iter().map(|(name, _)| *name)
+    all().map(|(name, _)| name)
 }
 
 /// Text of a built-in plan.
 pub fn text(name: &str) -> Option<&'static str> {
-    FILES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+    all().find(|(known, _)| *known == name).map(|(_, text)| text)
 }
