@@ -9,6 +9,7 @@ use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
 use anyhow::{Context, bail};
+use cylwatch::detector::evidence::Tails;
 use cylwatch::detector::monitor::MonitorSettings;
 use cylwatch::evaluation::tails::{Campaign, FitSettings, commission, watch_all};
 use cylwatch::evaluation::world::NominalVessel;
@@ -42,7 +43,7 @@ pub(super) fn run(arguments: CommissionArguments, messages: &Messages) -> anyhow
     };
     let provenance = Provenance { seed: Some(options.campaign.seed), ..inputs.provenance() };
     let document = serde_json::to_string_pretty(&commissioned.document(&provenance)?)? + "\n";
-    let summary = commissioned.summary()?;
+    let summary = commissioned.summary(&Tails::usual(&nominal.vessel, nominal.fill_pa.1))?;
     options.data.write(document.as_bytes())?;
     messages.say(&summary.to_text());
     messages.say(&format!("to use them: {}", usage(&options.vessel, &output)));

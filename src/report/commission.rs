@@ -194,13 +194,12 @@ impl CommissionedVessel {
         cautions
     }
 
-    /// Thresholds beside the usual ones, and the rate of false alarms that was found.
+    /// Thresholds beside the usual ones of such a vessel, and the rate of false alarms that was found.
     ///
     /// # Errors
     /// The mean time is not positive.
-    pub fn summary(&self) -> Result<Report, cylwatch_detector::DetectorError> {
-        let usual =
-            Tails::usual(BAR_PA * self.fill_pressure_bar).thresholds(self.false_alarm_years * YEAR_S)?;
+    pub fn summary(&self, usual: &Tails) -> Result<Report, cylwatch_detector::DetectorError> {
+        let usual = usual.thresholds(self.false_alarm_years * YEAR_S)?;
         let rows = self.found.scales.iter().map(|of| {
             let (low, high) = of.threshold_interval;
             let [threshold, low, high, usual] =
@@ -312,8 +311,8 @@ mod tests {
 
     #[test]
     fn thresholds_stand_beside_the_usual_ones_and_too_many_false_alarms_are_a_caution() {
-        let text = commissioned().summary().unwrap().to_text();
-        let usual = Tails::usual(200e5).thresholds(10.0 * 365.25 * 86_400.0).unwrap().of(Scale::Hour);
+        let text = commissioned().summary(&Tails::CYLINDER).unwrap().to_text();
+        let usual = Tails::CYLINDER.thresholds(10.0 * 365.25 * 86_400.0).unwrap().of(Scale::Hour);
         assert!(text.contains("month") && text.contains("3 to 6"), "{text}");
         assert!(text.contains(&number(usual, 3)), "{text} without {usual}");
         assert!(
@@ -323,6 +322,6 @@ mod tests {
         );
         let mut often = commissioned();
         often.found.false_alarms.by_simulation = (1.1, 4.0);
-        assert!(often.summary().unwrap().to_text().contains("more frequent"));
+        assert!(often.summary(&Tails::CYLINDER).unwrap().to_text().contains("more frequent"));
     }
 }

@@ -9,12 +9,12 @@ use cylwatch_thermal::units::YEAR_S;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use cylwatch_detector::evidence::{HIGH_PRESSURE_PA, Scale};
+use cylwatch_detector::evidence::{Scale, Tails};
 use cylwatch_detector::monitor::MonitorSettings;
 use cylwatch_evaluation::judge::candidate::Registry;
 use cylwatch_evaluation::judge::plan::{Plan, Role, Unit};
 use cylwatch_evaluation::tails::{CommissionedScale, FitSettings, Watched, commission, watch};
-use cylwatch_evaluation::world::Simulated;
+use cylwatch_evaluation::world::{NominalVessel, Simulated};
 use rayon::prelude::*;
 
 const YEARS: f64 = 10.0;
@@ -38,7 +38,8 @@ fn main() -> Result<(), Fault> {
 
 /// Whether a vessel has the tails of tanks.
 fn is_tank(unit: &Unit) -> bool {
-    unit.simulated.family.vessel.nominal().is_ok_and(|nominal| nominal.fill_pa.1 < HIGH_PRESSURE_PA)
+    let of_tanks = |of: NominalVessel| Tails::usual(&of.vessel, of.fill_pa.1) == Tails::TANK;
+    unit.simulated.family.vessel.nominal().is_ok_and(of_tanks)
 }
 
 fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Watched>, Fault> {

@@ -43,7 +43,7 @@ use serde::{Deserialize, Serialize};
 use crate::units::{DAY_S, HOUR_S};
 pub(crate) use restless::Restless;
 pub use tail::{Tail, Tails};
-pub use thresholds::{HIGH_PRESSURE_PA, Thresholds};
+pub use thresholds::Thresholds;
 
 /// Ages of the onsets whose rates are compared, s, and how far an onset may be from one, as a ratio.
 const COMPARED_S: [f64; 3] = [1.5 * HOUR_S, 8.0 * HOUR_S, 32.0 * HOUR_S];

@@ -123,16 +123,16 @@ fn samples_that_are_not_later_change_nothing() {
 fn a_value_at_a_threshold_stands_for_its_mean_time() {
     for years in [1.0, 7.3, 250.0] {
         let mean_time_s = years * 365.25 * 86_400.0;
-        let levels = Tails::usual(200e5).thresholds(mean_time_s).unwrap().levels;
-        assert!((Tails::usual(200e5).mean_time_s(&levels) / mean_time_s - 1.0).abs() < 1e-9);
+        let levels = Tails::CYLINDER.thresholds(mean_time_s).unwrap().levels;
+        assert!((Tails::CYLINDER.mean_time_s(&levels) / mean_time_s - 1.0).abs() < 1e-9);
         // One of them is enough.
         for scale in Scale::ALL {
             let mut one = [0.0; Scale::ALL.len()];
             one[scale as usize] = levels[scale as usize];
-            assert!((Tails::usual(200e5).mean_time_s(&one) / mean_time_s - 1.0).abs() < 1e-9);
+            assert!((Tails::CYLINDER.mean_time_s(&one) / mean_time_s - 1.0).abs() < 1e-9);
         }
     }
-    let at = |value: f64| Tails::usual(200e5).mean_time_s(&[value; Scale::ALL.len()]);
+    let at = |value: f64| Tails::CYLINDER.mean_time_s(&[value; Scale::ALL.len()]);
     // What speaks for nothing is never rare, and little evidence leaves the prior odds of 1:100 of a leak in ten years: it comes up far more often than that.
     let by_prior_s = 0.01 * 10.0 * 365.25 * 86_400.0;
     assert!(
@@ -143,7 +143,7 @@ fn a_value_at_a_threshold_stands_for_its_mean_time() {
 #[test]
 fn thresholds_rise_with_the_mean_time_and_name_the_scale() {
     let year_s = 365.25 * 86_400.0;
-    let [one, ten, hundred] = [1.0, 10.0, 100.0].map(|n| Tails::usual(200e5).thresholds(n * year_s).unwrap());
+    let [one, ten, hundred] = [1.0, 10.0, 100.0].map(|n| Tails::CYLINDER.thresholds(n * year_s).unwrap());
     for scale in Scale::ALL {
         assert!(one.of(scale) < ten.of(scale) && ten.of(scale) < hundred.of(scale), "{scale:?}");
     }
@@ -153,16 +153,16 @@ fn thresholds_rise_with_the_mean_time_and_name_the_scale() {
     statistics[3] = 1.2 * ten.levels[3];
     statistics[1] = 1.1 * ten.levels[1];
     assert_eq!(ten.alarm(&statistics), Some(Scale::Week));
-    assert!(Tails::usual(200e5).thresholds(0.0).is_err());
+    assert!(Tails::CYLINDER.thresholds(0.0).is_err());
 }
 
 #[test]
 fn a_built_in_vessel_has_tails_of_its_own_while_it_is_that_vessel_and_filled_as_it_was_commissioned() {
     let vessel = presets::load("nitrogen-20l").unwrap();
     let own = Tails::of(&vessel, 200e5);
-    assert!(own != Tails::usual(200e5) && own == Tails::of(&vessel, 180e5));
-    assert_eq!(Tails::of(&vessel, 110e5), Tails::usual(200e5));
-    assert_eq!(Tails::of(&vessel, 5e5), Tails::usual(5e5));
+    assert!(own != Tails::CYLINDER && own == Tails::of(&vessel, 180e5));
+    assert_eq!(Tails::of(&vessel, 110e5), Tails::CYLINDER);
+    assert_eq!(Tails::of(&vessel, 5e5), Tails::TANK);
     let larger = Vessel { volume: InnerVolume { volume_m3: 0.05, ..vessel.volume }, ..vessel };
-    assert_eq!(Tails::of(&larger, 200e5), Tails::usual(200e5));
+    assert_eq!(Tails::of(&larger, 200e5), Tails::CYLINDER);
 }

@@ -25,6 +25,7 @@
 pub mod alarm;
 mod decision;
 mod event;
+mod examination;
 pub mod gas;
 pub mod intake;
 mod machine;

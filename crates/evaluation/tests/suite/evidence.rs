@@ -59,7 +59,7 @@ fn run(rows: &[Row], mut before: impl FnMut(f64, &mut Observer)) -> Vec<(f64, St
 
 /// Time of the first alarm at one false alarm in ten years, s, and its scale.
 fn alarm(statistics: &[(f64, Statistics)]) -> Option<(f64, Scale)> {
-    let thresholds = Tails::usual(200e5).thresholds(10.0 * YEAR_S).unwrap();
+    let thresholds = Tails::CYLINDER.thresholds(10.0 * YEAR_S).unwrap();
     statistics.iter().find_map(|(time_s, statistics)| Some((*time_s, thresholds.alarm(statistics)?)))
 }
 

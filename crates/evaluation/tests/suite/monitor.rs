@@ -173,7 +173,7 @@ fn tails_of_a_vessel_of_its_own_find_a_leak_earlier_and_a_state_lives_through_th
 
 #[test]
 fn tails_that_are_none_are_refused_by_name() {
-    let tail = Tails::usual(200e5).0[0];
+    let tail = Tails::CYLINDER.0[0];
     for (bad, named) in [
         (Tail { level: f64::NAN, ..tail }, "tails.level"),
         (Tail { interval_s: 0.0, ..tail }, "tails.interval_s"),
@@ -181,7 +181,7 @@ fn tails_that_are_none_are_refused_by_name() {
         (Tail { shape: 0.6, ..tail }, "tails.shape"),
         (Tail { shape: f64::NAN, ..tail }, "tails.shape"),
     ] {
-        let mut tails = Tails::usual(200e5);
+        let mut tails = Tails::CYLINDER;
         tails.0[4] = bad;
         let settings = MonitorSettings { tails: Some(tails), ..MonitorSettings::default() };
         let error = settings.validate().unwrap_err().to_string();

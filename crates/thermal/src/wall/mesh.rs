@@ -235,6 +235,12 @@ impl Mesh {
         self.volume_m3.iter().zip(&self.material).map(|(v, &m)| v * self.materials[m].density_kg_m3).sum()
     }
 
+    /// Heat capacity of the wall at the reference temperature, J/K.
+    pub fn capacity_j_k(&self) -> f64 {
+        let of_volume = |m: usize| self.materials[m].density_kg_m3 * self.materials[m].heat_capacity_j_kg_k;
+        self.volume_m3.iter().zip(&self.material).map(|(v, &m)| v * of_volume(m)).sum()
+    }
+
     /// Column that stands for a place name: `bottom`, `middle`, `shoulder`, `neck`.
     ///
     /// `bottom` is the lowest column, `middle` the cylinder's column at half its height, `shoulder` the middle

@@ -27,9 +27,9 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::jump::FORGOTTEN_S;
 use super::wander::Wander;
 use crate::estimator::observer::Flow;
+use crate::monitor::examination::FORGOTTEN_S;
 
 /// Time constant with which extremes fade, s.
 const FADING_S: f64 = 2700.0;

@@ -12,10 +12,9 @@ use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Flow, Innovation, Quality};
 use crate::estimator::sensor::ParameterKind;
 use crate::estimator::thermal::sensor::SensorKind;
+use crate::monitor::examination::{Before, Cause, Compared, Examination, NO_OFFSET, Subject};
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
-use crate::monitor::gas::jump::{
-    Before, Cause, Compared, Examination, Innovated, LONGEST_INTERVAL_S, NO_OFFSET, USUAL_LARGEST,
-};
+use crate::monitor::gas::jump::{Innovated, LONGEST_INTERVAL_S, USUAL_LARGEST};
 use crate::monitor::gas::leak::{Change, LostUnheard};
 use crate::monitor::machine::judgement::MATTERS;
 use crate::monitor::{Event, EventKind, Reason};
@@ -264,7 +263,8 @@ impl Monitor {
         self.free_the_mass();
         let estimate = self.observer.step(time_s, &self.usable)?;
         let memory_s = self.settings.observer.flow_doubt.memory_s;
-        let examination = Examination::new(time_s, before, memory_s, self.state.jumps.far_off());
+        let examination =
+            Examination::new(Subject::Pressure, time_s, before, memory_s, self.state.jumps.far_off());
         self.state.examined =
             Some(Examined { examination, before_kg, samples: 0, flowing: false, silent_since_s });
         self.examine(estimate, events)

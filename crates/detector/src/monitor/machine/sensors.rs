@@ -7,7 +7,7 @@ use crate::estimator::thermal::vessel::Fill;
 use crate::monitor::gas::bounds::FLOW_DEVIATIONS;
 use crate::monitor::intake::Row;
 use crate::monitor::readings::parity::Disturbance;
-use crate::monitor::readings::thermometers::Lonely;
+use crate::monitor::readings::thermometers::{Lonely, Surroundings};
 use crate::monitor::{Event, EventKind, Health};
 
 /// Standard deviation of a thermometer's offset after it jumped, beside the jump, in errors of a surface temperature.
@@ -48,10 +48,14 @@ impl Monitor {
         if self.roles.pair.is_some() {
             self.compare_thermometers(time_s, pair, events);
         }
-        let doubt =
-            (FLOW_DEVIATIONS * self.settings.observer.flow_doubt.part, self.beside_the_gas_k(as_read));
+        let doubt = self.settings.observer.flow_doubt;
+        let surroundings = Surroundings {
+            part: FLOW_DEVIATIONS * doubt.part,
+            away_k: self.beside_the_gas_k(as_read),
+            memory_s: doubt.memory_s,
+        };
         let watches = &mut self.state.watches;
-        match self.state.pair.update(time_s, as_read, doubt, judged) {
+        match self.state.pair.update(time_s, as_read, surroundings, judged) {
             None => {}
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {

@@ -20,6 +20,7 @@ use statrs::function::erf::erf;
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
 use crate::monitor::Health;
+use crate::units::ATMOSPHERE_PA;
 
 /// Rows without a number that are too many in a row.
 const MISSING_ROWS: u32 = 3;
@@ -35,8 +36,8 @@ const MEMORY: f64 = 2000.0;
 const STEP_FORGETS: f64 = 1.01;
 /// Time for which a spike is remembered, s.
 const SPIKES_S: f64 = 3600.0;
-/// Least pressure that a transmitter on a vented cylinder reads, Pa.
-const LEAST_PA: f64 = 0.5e5;
+/// Least pressure that a transmitter on a vented cylinder reads, atmospheres.
+const LEAST: f64 = 0.5;
 
 /// Watch over one sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,7 +71,8 @@ impl SensorWatch {
     /// Of a sensor.
     pub fn new(sensor: &Sensor) -> Self {
         let (low, high) = sensor.usable_range();
-        let least = if sensor.quantity() == Quantity::Pressure { LEAST_PA } else { f64::NEG_INFINITY };
+        let least =
+            if sensor.quantity() == Quantity::Pressure { LEAST * ATMOSPHERE_PA } else { f64::NEG_INFINITY };
         Self {
             low: low.max(least),
             high,

@@ -9,20 +9,21 @@
 //! Temperatures are held against `e`, what the model misses of a temperature on the surface
 //! ([`ModelError::surface_k`](crate::estimator::observer::ModelError), 0.12 K), or a thermometer's noise where that is more.
 //!
-//! It is lonely where `|s| > 6 e` in a minute and that of the other one is below `0.05 |s| + 2 e`. It is then not used until both have been calm for five samples, and is believed if
-//! their difference is by `(1 -+ 0.4) |s|` another one than it was when both were calm last: at the mouth of a tunnel, where each bends in its own way, it is what it was. After two hours
-//! without calm it is used again. One that jumps by more than an offset can, or is restless while the other one is not and more so than usually, reads the air. For an hour after its jump a
-//! thermometer is not used: if it reads the air, it shows by then.
+//! A jump is lonely where `|s| > 6 e` in a minute and that of the other one is below `0.05 |s| + 2 e`. Readings in steps of `q` make up to `3 q` of the difference of two `s`: so much is added
+//! to what a jump is. Nor is it one where the surroundings may have made it: 0.44 of how far the nearer thermometer is from the gas, and of how far both went in one of the last three
+//! samples (see the observer's flowing member).
 //!
-//! Readings in steps of `q` make up to `3 q` of the difference of two `s`: so much is added to what a jump is. While the surroundings warm or cool the
-//! cylinder, what they do to one thermometer alone is in doubt: 0.44 of how far the nearer one is from the gas, and of how far both went in one of the last three samples (see
-//! the observer's flowing member). A jump is more than that.
+//! What it was the [bank of causes](super::super::examination) tells from how far both are apart: an offset, or nothing that lasts. What the surroundings make of that, `x`, has the standard
+//! deviation 0.44 of how far the nearer one is from the gas and of how far both went within the time in which the cylinder follows: while a wall that lags cools, the shoulder stays warmer than the
+//! valve. Until it is told the thermometer is not used, and for an hour after an offset neither: if it reads the air, it shows by then. One that jumps by more than an offset can, or is
+//! restless while the other one is not and more so than usually, reads the air.
 //!
 //! How often a jump is believed that is none, and one missed, the plans `tight.toml` and `fault.toml` (row T2) of `cylwatch-evaluation` measure; see `book/src/measured.md`.
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
+use crate::monitor::examination::{Before, Cause, Compared, Examination, FarOff, SPAN, Subject};
 use crate::monitor::gas::jump::LONGEST_INTERVAL_S;
 use crate::units::{DAY_S, HOUR_S, MINUTE_S};
 
@@ -31,14 +32,6 @@ const JUMP: f64 = 6.0;
 /// Part of it by which the other thermometer may jump too, beside the noise of both differences, errors.
 const ALONE: f64 = 0.05;
 const STILL: f64 = 2.0;
-/// Samples in which neither moves by more than this, errors in a minute, that say how far they are apart, and time within which they must come after a jump, s.
-const CALM_SAMPLES: u32 = 5;
-const CALM: f64 = 1.25;
-const DECIDED_S: f64 = 2.0 * HOUR_S;
-/// How far the change of the difference may be from the jump, as a part of it.
-const STEADY: f64 = 0.4;
-/// Jump that no offset makes, errors.
-const NO_OFFSET: f64 = 80.0;
 /// Mean size of the second differences lately, errors, that is restless, where that of the other one is a smaller part of it than usually by so much, and the times that both
 /// are means of, s. Until a day is seen that part is the one of a massive shoulder beside a thin valve in gusts. One counts no more than ten times that.
 const RESTLESS: f64 = 1.7;
@@ -72,9 +65,12 @@ pub struct Pair {
     /// What their steps may make of a second difference, K.
     steps_k: f64,
     moved_k: f64,
+    /// Lowest and highest readings lately, K, not a number before the first.
+    extremes_k: [(f64, f64); 2],
     /// The last samples: time, s, and readings, K.
     recent: VecDeque<(f64, [f64; 2])>,
-    calm: Calm,
+    /// First less second thermometer lately, K: what is in doubt counts little.
+    apart_k: Option<f64>,
     suspect: Option<Suspect>,
     /// Which one jumped last, and until when it is not used, s.
     probation: Option<(usize, f64)>,
@@ -82,45 +78,32 @@ pub struct Pair {
 }
 
 /// A thermometer under suspicion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Suspect {
     which: usize,
-    jump_k: f64,
-    since_s: f64,
-    /// First less second thermometer when both were calm last; without that, before the jump, K.
-    apart_k: f64,
+    examination: Examination,
 }
 
-/// How far both are apart while neither moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Calm {
-    samples: u32,
-    sum_k: f64,
-    /// Mean of the last calm time, K, and its end, s.
-    level: Option<(f64, f64)>,
-}
-
-impl Calm {
-    /// A sample with this difference, K, which both have come to without moving or not.
-    fn push(&mut self, time_s: f64, apart_k: f64, is_calm: bool) {
-        (self.samples, self.sum_k) =
-            if is_calm { (self.samples + 1, self.sum_k + apart_k) } else { (0, 0.0) };
-        if self.samples == CALM_SAMPLES {
-            self.level = Some((self.sum_k / f64::from(CALM_SAMPLES), time_s));
-            (self.samples, self.sum_k) = (0, 0.0);
-        }
-    }
-
-    /// The level, K, if it was found after that time, s.
-    fn since(&self, time_s: f64) -> Option<f64> {
-        self.level.filter(|(_, at_s)| *at_s > time_s).map(|(apart_k, _)| apart_k)
-    }
+/// What the surroundings do to the thermometers.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings {
+    /// Part of it that may reach one of them alone.
+    pub part: f64,
+    /// How far the nearer one is from the gas, K.
+    pub away_k: f64,
+    /// Time within which the cylinder follows, s.
+    pub memory_s: f64,
 }
 
 impl Pair {
     /// Of thermometers that read in steps of so much at most, K, where the model misses so much of a temperature on the surface, K.
     pub fn new(resolution_k: f64, error_k: f64) -> Self {
-        Self { error_k, steps_k: STEPS * resolution_k, ..Self::default() }
+        Self {
+            error_k,
+            steps_k: STEPS * resolution_k,
+            extremes_k: [(f64::NAN, f64::NAN); 2],
+            ..Self::default()
+        }
     }
 
     /// What the model misses of a temperature on the surface, K.
@@ -131,7 +114,7 @@ impl Pair {
     /// Compare nothing with the last readings.
     fn forget(&mut self) {
         self.recent.clear();
-        (self.suspect, self.moved_k, self.calm) = (None, 0.0, Calm::default());
+        (self.suspect, self.moved_k) = (None, 0.0);
     }
 
     /// How far both went from the last sample to this one, K: the less far of them, as air, sun and rain reach both.
@@ -139,31 +122,35 @@ impl Pair {
         self.moved_k
     }
 
-    /// Take in both readings, K, NaN where there is none. The surroundings may do to one of them alone this part of what they do: of how far, K, the nearer one is from
-    /// the gas, and of how far both lately moved. Not judged while other gas warms or cools the one before the other.
+    /// Take in both readings, K, NaN where there is none. Not judged while other gas warms or cools the one before the other.
     pub fn update(
         &mut self,
         time_s: f64,
         readings: [f64; 2],
-        (part, away_k): (f64, f64),
+        surroundings: Surroundings,
         judged: bool,
     ) -> Option<Lonely> {
-        if self.recent.back().is_some_and(|(last_s, _)| time_s - last_s > LONGEST_INTERVAL_S) {
+        let interval_s = self.recent.back().map_or(0.0, |(last_s, _)| time_s - last_s);
+        if interval_s > LONGEST_INTERVAL_S {
             self.forget();
         }
         let second_k = self.second_differences(time_s, readings);
+        let may_be = |by_k: f64| surroundings.part * surroundings.away_k.max(by_k);
+        let at_once_k = may_be(self.shaken_k());
         if !judged {
             self.suspect = None;
         }
-        self.be_calm(time_s, readings);
-        let shown = match (self.suspect, second_k) {
-            (Some(suspect), _) => self.follow(suspect, time_s),
-            (None, Some(second_k)) if judged => {
-                self.look_for_a_jump(time_s, second_k, part * away_k.max(self.shaken_k()))
+        if let Some(second_k) = second_k.filter(|_| judged && self.suspect.is_none()) {
+            self.look_for_a_jump((time_s, readings), second_k, at_once_k, surroundings.memory_s);
+        }
+        let doubt_k = may_be(self.went_k(interval_s, readings, surroundings.memory_s));
+        let shown = match self.suspect.take() {
+            Some(suspect) => self.follow(suspect, time_s, readings, doubt_k),
+            None => {
+                self.learn(interval_s, readings[0] - readings[1], doubt_k);
+                None
             }
-            (None, _) => None,
         };
-        let interval_s = self.recent.back().map_or(0.0, |(last_s, _)| time_s - last_s);
         let restless = second_k
             .and_then(|second_k| self.restless.push(interval_s, second_k, (self.error_k, self.steps_k)));
         self.recent.push_back((time_s, readings));
@@ -203,6 +190,20 @@ impl Pair {
         if size.is_nan() { UNSEEN * self.error_k } else { size }
     }
 
+    /// How far they went lately at most, K, one that jumped since then. Extremes fade to the present readings.
+    fn went_k(&mut self, interval_s: f64, readings: [f64; 2], memory_s: f64) -> f64 {
+        let share = -(-interval_s / memory_s).exp_m1();
+        for ((low_k, high_k), reading_k) in self.extremes_k.iter_mut().zip(readings) {
+            if !reading_k.is_finite() {
+                continue;
+            }
+            *low_k = (*low_k + share * (reading_k - *low_k)).min(reading_k);
+            *high_k = (*high_k + share * (reading_k - *high_k)).max(reading_k);
+        }
+        // Not a number counts for nothing.
+        self.extremes_k.iter().map(|(low_k, high_k)| high_k - low_k).fold(0.0, f64::max)
+    }
+
     /// How far both went in one of the last samples at most, K.
     fn shaken_k(&self) -> f64 {
         let later = self.recent.iter().skip(1);
@@ -214,8 +215,24 @@ impl Pair {
         moved.fold(self.moved_k, f64::max)
     }
 
-    fn look_for_a_jump(&mut self, time_s: f64, second_k: [f64; 2], doubt_k: f64) -> Option<Lonely> {
-        let (last_s, last) = *self.recent.back()?;
+    /// Learn how far both are apart; what the surroundings may have done to it, K, is noise.
+    fn learn(&mut self, interval_s: f64, apart_k: f64, doubt_k: f64) {
+        if apart_k.is_nan() {
+            return;
+        }
+        let usual_k = self.apart_k.get_or_insert(apart_k);
+        let weight = 1.0 / (1.0 + (doubt_k / self.error_k).powi(2));
+        *usual_k -= (-weight * interval_s / LATELY_S).exp_m1() * (apart_k - *usual_k);
+    }
+
+    fn look_for_a_jump(
+        &mut self,
+        (time_s, readings): (f64, [f64; 2]),
+        second_k: [f64; 2],
+        doubt_k: f64,
+        memory_s: f64,
+    ) {
+        let (Some(&(last_s, last)), Some(apart_k)) = (self.recent.back(), self.apart_k) else { return };
         let which = usize::from(second_k[1].abs() > second_k[0].abs());
         let (own_k, other_k) = (second_k[which], second_k[1 - which]);
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);
@@ -223,39 +240,50 @@ impl Pair {
             > (JUMP * self.error_k * minutes + self.steps_k).max(doubt_k);
         // Not so where one of them is no number.
         let alone = other_k.abs() < ALONE * own_k.abs() + STILL * self.error_k;
-        if !jumps || !alone {
-            return None;
+        if jumps && alone {
+            let of_span = |of_k: f64| of_k / (SPAN * self.error_k);
+            let missing = -of_its_own(which, of_span(last[0] - last[1] - apart_k));
+            let before = Before { missing, fresh: of_span(doubt_k), unseen: 0.0 };
+            let examination =
+                Examination::new(Subject::Thermometer, time_s, before, memory_s, FarOff::default());
+            self.suspect = Some(Suspect { which, examination });
+            self.extremes_k[which] = (readings[which], readings[which]);
         }
-        let apart_k = self.calm.since(f64::NEG_INFINITY).unwrap_or(last[0] - last[1]);
-        self.suspect = Some(Suspect { which, jump_k: own_k - other_k, since_s: time_s, apart_k });
-        Some(Lonely::Suspected(which))
     }
 
-    /// Note how far both are apart while neither moves.
-    fn be_calm(&mut self, time_s: f64, readings: [f64; 2]) {
-        let Some(&(last_s, last)) = self.recent.back() else { return };
-        let most_k = CALM * self.error_k * ((time_s - last_s) / MINUTE_S).max(1.0);
-        let is_calm = [0, 1].iter().all(|&i| (readings[i] - last[i]).abs() < most_k);
-        self.calm.push(time_s, readings[0] - readings[1], is_calm);
+    fn follow(
+        &mut self,
+        mut suspect: Suspect,
+        time_s: f64,
+        readings: [f64; 2],
+        doubt_k: f64,
+    ) -> Option<Lonely> {
+        let (which, span_k) = (suspect.which, SPAN * self.error_k);
+        let off_k = of_its_own(which, readings[0] - readings[1] - self.apart_k?);
+        let cause = suspect.examination.push(Compared {
+            time_s,
+            missing: -off_k / span_k,
+            considered: doubt_k / span_k,
+            noise: self.error_k.hypot(self.steps_k) / span_k,
+        });
+        match cause {
+            Cause::Open => {
+                self.suspect = Some(suspect);
+                Some(Lonely::Suspected(which))
+            }
+            Cause::Spike | Cause::Passed | Cause::Unclear => None,
+            Cause::Offset(by) => {
+                self.apart_k = None;
+                Some(Lonely::Shifted(which, by * span_k))
+            }
+            Cause::Flowing | Cause::Gas => Some(Lonely::Detached(which)),
+        }
     }
+}
 
-    fn follow(&mut self, suspect: Suspect, time_s: f64) -> Option<Lonely> {
-        let Suspect { which, jump_k, since_s, apart_k } = suspect;
-        let calm_k = self.calm.since(since_s);
-        if calm_k.is_none() && time_s - since_s <= DECIDED_S {
-            return Some(Lonely::Suspected(which));
-        }
-        self.suspect = None;
-        let by_k = if which == 0 { calm_k? - apart_k } else { apart_k - calm_k? };
-        if (by_k - jump_k).abs() > STEADY * jump_k.abs() {
-            return None;
-        }
-        Some(if by_k.abs() < NO_OFFSET * self.error_k {
-            Lonely::Shifted(which, by_k)
-        } else {
-            Lonely::Detached(which)
-        })
-    }
+/// What a difference of the first less the second is of one of them.
+fn of_its_own(which: usize, difference: f64) -> f64 {
+    if which == 0 { difference } else { -difference }
 }
 
 /// How restless both are: mean sizes of their second differences.
@@ -301,6 +329,10 @@ mod tests {
 
     const ERROR_K: f64 = 0.12;
 
+    fn surroundings(part: f64, away_k: f64) -> Surroundings {
+        Surroundings { part, away_k, memory_s: 1200.0 }
+    }
+
     fn course(shoulder: impl Fn(f64) -> f64, valve: impl Fn(f64) -> f64) -> Vec<Lonely> {
         told(Pair::new(0.0, ERROR_K), shoulder, valve)
     }
@@ -309,17 +341,23 @@ mod tests {
         (0..600)
             .filter_map(|minute| {
                 let t = f64::from(minute);
-                pair.update(60.0 * t, [shoulder(t), valve(t)], (0.44, 0.0), true)
+                pair.update(60.0 * t, [shoulder(t), valve(t)], surroundings(0.44, 0.0), true)
             })
             .filter(|lonely| !matches!(lonely, Lonely::Suspected(_)))
             .collect()
     }
 
+    /// That this is the one thing told; the size is an estimate.
+    fn assert_shifted(told: &[Lonely], which: usize, by_k: f64) {
+        let fits = matches!(told, [Lonely::Shifted(of, size_k)] if *of == which && (size_k / by_k - 1.0).abs() < 0.05);
+        assert!(fits, "{told:?}");
+    }
+
     #[test]
     fn a_lonely_step_that_stays_is_an_offset() {
         let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
-        assert_eq!(course(step, |_| 280.5), [Lonely::Shifted(0, 1.0)]);
-        assert_eq!(course(|_| 280.5, step), [Lonely::Shifted(1, 1.0)]);
+        assert_shifted(&course(step, |_| 280.5), 0, 1.0);
+        assert_shifted(&course(|_| 280.5, step), 1, 1.0);
     }
 
     #[test]
@@ -327,7 +365,7 @@ mod tests {
         let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
         assert_eq!(told(Pair::new(0.0, 2.0 * ERROR_K), step, |_| 280.5), []);
         let twice = |t: f64| 2.0 * step(t) - 280.0;
-        assert_eq!(told(Pair::new(0.0, 2.0 * ERROR_K), twice, |_| 280.5), [Lonely::Shifted(0, 2.0)]);
+        assert_shifted(&told(Pair::new(0.0, 2.0 * ERROR_K), twice, |_| 280.5), 0, 2.0);
     }
 
     #[test]
@@ -336,7 +374,7 @@ mod tests {
         let coarse = |t: f64| 0.5 * (560.0 + 0.02 * t).floor();
         assert_eq!(told(Pair::new(0.5, ERROR_K), coarse, |_| 280.0), []);
         let jumps = |t: f64| coarse(t) + if t >= 120.0 { 5.0 } else { 0.0 };
-        assert_eq!(told(Pair::new(0.5, ERROR_K), jumps, |_| 280.0), [Lonely::Shifted(0, 5.0)]);
+        assert_shifted(&told(Pair::new(0.5, ERROR_K), jumps, |_| 280.0), 0, 5.0);
         // The mouth of a tunnel, where one bends by 3.8 K and the other one by 1.9 K.
         let mouth = |t: f64, by: f64| 280.0 + if t >= 120.0 { by } else { 0.0 };
         assert_eq!(told(Pair::new(0.5, ERROR_K), |t| mouth(t, 4.0), |t| mouth(t, 1.5)), []);
@@ -347,9 +385,10 @@ mod tests {
         let shifts = |doubt_k: f64| {
             let mut pair = Pair::new(0.0, ERROR_K);
             let step = |t: f64| if t >= 100.0 { 281.0 } else { 280.0 };
+            let away_k = |t: f64| if t <= 100.0 { doubt_k } else { 0.0 };
             (0..200).map(f64::from).any(|t| {
                 matches!(
-                    pair.update(60.0 * t, [step(t), 280.5], (1.0, doubt_k), true),
+                    pair.update(60.0 * t, [step(t), 280.5], surroundings(1.0, away_k(t)), true),
                     Some(Lonely::Shifted(0, _))
                 )
             })
@@ -370,10 +409,7 @@ mod tests {
     #[test]
     fn an_offset_in_a_tunnel_is_one_and_sun_on_both_is_none() {
         let warming = |t: f64| 280.0 + 0.5 * t.min(90.0);
-        assert_eq!(
-            course(|t| warming(t) + if t >= 60.0 { -1.0 } else { 0.0 }, warming),
-            [Lonely::Shifted(0, -1.0)]
-        );
+        assert_shifted(&course(|t| warming(t) + if t >= 60.0 { -1.0 } else { 0.0 }, warming), 0, -1.0);
         assert_eq!(course(|t| 280.0 + (t - 100.0).max(0.0), |t| 280.0 + 0.3 * (t - 100.0).max(0.0)), []);
     }
 
@@ -445,7 +481,7 @@ mod tests {
             let minute = 5.0 * f64::from(row);
             let noise = if row % 3 == 0 { 1.0 } else { -0.5 };
             let readings = sizes_k(minute).map(|size_k| 290.0 + size_k * noise);
-            pair.update(60.0 * minute, readings, (0.44, 0.0), true).map(|told| (minute, told))
+            pair.update(60.0 * minute, readings, surroundings(0.44, 0.0), true).map(|told| (minute, told))
         })
     }
 

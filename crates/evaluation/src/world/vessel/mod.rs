@@ -169,3 +169,20 @@ impl VesselDraw {
         vessel
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cylwatch_detector::evidence::Tails;
+
+    #[test]
+    fn every_vessel_has_the_tails_that_were_fitted_to_its_like() {
+        for &kind in VesselKind::ALL {
+            let NominalVessel { vessel, fill_pa: (low, high), .. } = kind.nominal().unwrap();
+            let fitted = if kind == VesselKind::AirTank8 { Tails::TANK } else { Tails::CYLINDER };
+            for fill_pa in [low, high] {
+                assert_eq!(Tails::usual(&vessel, fill_pa), fitted, "{kind} {fill_pa}");
+            }
+        }
+    }
+}

@@ -18,11 +18,7 @@
 //! ([`Observer::doubt_surroundings`](crate::estimator::observer::Observer::doubt_surroundings)).
 //!
 //! # Examined
-//! What it was a bank of causes tells ([`Examination`]): nothing, an offset, gas.
-mod examination;
-mod far;
+//! What it was a bank of causes tells ([`Examination`](crate::monitor::examination::Examination)): nothing, an offset, gas.
 mod notice;
 
-pub use examination::{Before, Cause, Compared, Examination, NO_OFFSET};
-pub use far::FORGOTTEN_S;
 pub use notice::{Innovated, JumpWatch, LONGEST_INTERVAL_S, USUAL_LARGEST};

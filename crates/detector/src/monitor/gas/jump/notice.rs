@@ -1,7 +1,7 @@
 //! Whether a pressure has jumped; the rule stands in [`super`].
 use serde::{Deserialize, Serialize};
 
-use super::far::{FarOff, kept};
+use crate::monitor::examination::{FarOff, kept};
 use crate::units::MINUTE_S;
 
 /// Change of the innovation that is a jump, as a part of the full pressure, beside so many usual changes, and so many steps of the transmitter.

@@ -1,5 +1,4 @@
 use super::*;
-use crate::monitor::gas::jump::far::kept;
 use crate::units::MINUTE_S;
 
 fn before(missing: f64, fresh: f64) -> Before {
@@ -8,7 +7,7 @@ fn before(missing: f64, fresh: f64) -> Before {
 
 /// Of a jump before which 0.02 bar of 200 bar were missing, where the surroundings may have done so much, bar.
 fn begun(fresh_bar: f64) -> Examination {
-    Examination::new(0.0, before(-1e-4, fresh_bar / 200.0), 1200.0, FarOff::default())
+    Examination::new(Subject::Pressure, 0.0, before(-1e-4, fresh_bar / 200.0), 1200.0, FarOff::default())
 }
 
 /// What is missing after so many minutes beside that, bar.
@@ -71,7 +70,7 @@ fn who_has_many_spikes_has_more_of_them() {
         [false, true].into_iter().for_each(|again| many.saw_one_far_off(again));
     }
     let says_gas = |far_off: FarOff| {
-        let mut examination = Examination::new(0.0, before(-1e-4, 0.0), 1200.0, far_off);
+        let mut examination = Examination::new(Subject::Pressure, 0.0, before(-1e-4, 0.0), 1200.0, far_off);
         let missing_bar = [-50.0, -50.0, 0.0, 50.0, 50.0, 50.0, 0.0, 0.0, 0.0];
         let causes: Vec<Cause> = missing_bar
             .into_iter()
@@ -136,7 +135,8 @@ fn a_step_that_the_surroundings_may_have_made_is_no_offset() {
 #[test]
 fn what_the_model_was_off_by_before_comes_back_and_is_no_offset() {
     // Rain had cooled the valve: the observer was off by 1.1 bar, and is right again.
-    let mut examination = Examination::new(0.0, before(5.5e-3, 1e-3), 1200.0, FarOff::default());
+    let mut examination =
+        Examination::new(Subject::Pressure, 0.0, before(5.5e-3, 1e-3), 1200.0, FarOff::default());
     let mut causes = (0..40).map(|row| {
         let minutes = 5.0 * f64::from(row);
         let considered_bar = 0.6 * (-minutes / 20.0).exp();
@@ -187,7 +187,8 @@ fn spikes_of_three_readings_are_no_gas_at_any_time() {
 
 #[test]
 fn an_error_of_the_model_that_goes_on_is_told_at_once() {
-    let mut examination = Examination::new(0.0, before(5.5e-3, 1e-4), 1200.0, FarOff::default());
+    let mut examination =
+        Examination::new(Subject::Pressure, 0.0, before(5.5e-3, 1e-4), 1200.0, FarOff::default());
     let fades = |minutes: f64| 1.1 * (-minutes / 20.0).exp() + 0.02;
     let mut causes =
         (0..10).map(f64::from).map(|minutes| examination.push(sample(minutes, fades(minutes), 0.3)));
@@ -260,7 +261,8 @@ fn what_was_seen_before_the_surroundings_moved_decides() {
 fn an_error_that_goes_back_is_neither_an_offset_nor_gas() {
     let missing = [0.0386, 0.0301, 0.0232, 0.0154, 0.0283, 0.0312, 0.0275, 0.0224, 0.0162, 0.0115, 0.0067];
     let considered = [0.0101, 0.0070, 0.0052, 0.0041, 0.0070, 0.0052, 0.0039, 0.0028, 0.0021, 0.0016, 0.0012];
-    let mut examination = Examination::new(0.0, before(3e-3, 0.01), 1200.0, FarOff::default());
+    let mut examination =
+        Examination::new(Subject::Pressure, 0.0, before(3e-3, 0.01), 1200.0, FarOff::default());
     let later = (0..12).map(|_| (0.002, 0.0006));
     let samples = missing.into_iter().zip(considered).chain(later).enumerate();
     let causes: Vec<Cause> = samples

@@ -10,10 +10,10 @@ use crate::units::DAY_S;
 const FAR_OFF: f64 = 0.01;
 const WORTH: f64 = 300.0;
 /// Time within which what a transmitter did is forgotten, s.
-pub const FORGOTTEN_S: f64 = 5.0 * DAY_S;
+pub(crate) const FORGOTTEN_S: f64 = 5.0 * DAY_S;
 
 /// Part of what a transmitter did so long ago, s, that is not forgotten.
-pub(super) fn kept(since_s: f64) -> f64 {
+pub(crate) fn kept(since_s: f64) -> f64 {
     (-since_s / FORGOTTEN_S).exp()
 }
 

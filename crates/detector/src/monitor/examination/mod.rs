@@ -1,13 +1,17 @@
-//! What a jump was: one bank of causes.
+//! What a jump was: one bank of causes, for the transmitter and for the thermometers.
 //!
-//! A second observer goes on from before the jump without the pressure. What it expects less what is read, as a part of the full
-//! cylinder's pressure, is
+//! What is examined is what is missing of a reading, as a part of the sensor's span,
 //!
 //! `y_k = h_k + x_k + n_k`.
 //!
-//! `n` is the transmitter's noise, white. `x` is the model's error. It vanishes at equilibrium: its standard deviation `s_k` is what the observer
-//! considers for what the surroundings lately did ([`Flow::considered_sd_kg`](crate::estimator::observer::Flow)), and a floor;
-//! it begins with what was missing before the jump, within what they may have done since, and forgets within the time `tau` of that,
+//! | subject | `y` | span |
+//! |---|---|---|
+//! | pressure | what a second observer, which goes on from before the jump without the pressure, expects, less what is read | the full cylinder's pressure |
+//! | thermometer | how far both thermometers were apart before, less how far they are now | [`SPAN`] errors of a temperature on the surface |
+//!
+//! `n` is the sensor's noise, white. `x` is the model's error. It vanishes at equilibrium: its standard deviation `s_k` is what is
+//! considered for what the surroundings lately did ([`Flow::considered_sd_kg`](crate::estimator::observer::Flow), [`Pair`](super::readings::thermometers::Pair)), and a floor;
+//! it begins with what was missing before the jump, within what they may have done since, and forgets within a time `tau`,
 //!
 //! `x_k = rho min(1, s_k / s_{k-1}) x_{k-1} + v_k`, `rho = exp(-dt / tau)`, `var x -> s_k^2`.
 //!
@@ -15,42 +19,47 @@
 //! After a silence of more than a quarter of an hour nobody has seen what they did: all that was not expected of the first reading, `u`, may be theirs. Then `(u exp(-t / tau))^2` is added
 //! to `s_k^2`, and it is nothing only once half of `u` has gone back.
 //!
-//! `h` is what each cause makes of it:
+//! `h` is what each cause makes of it, the last two of a pressure alone:
 //!
 //! | cause | `h_k` | prior |
 //! |---|---|---|
 //! | nothing | 0 | |
-//! | offset | `b` | `b` of 1.5 % as a rule, of 100 % where the transmitter breaks |
+//! | offset | `b` | `b` of 1.5 % as a rule, of 100 % where the sensor breaks |
 //! | gas, at once | `a (1 + r exp(-t / T))` | `a` of 1 or 100 %, `r` of 0 or, each with `T` of 1 to 9 min, of 0.1 to 0.4 |
 //! | gas that flows | `w_k`, a random walk | by 0.1, 1 or 100 % in a minute |
 //!
 //! An isentropic step of the pressure is 1.4 to 1.67 times the isothermal one that is left when gas and wall have one temperature again: gas that goes
 //! at once comes back by a part `r`, and no transmitter does. Each cause is a linear Gaussian model with one unknown, so a Kalman filter of two states gives
-//! its likelihood with the unknown integrated out. Any reading may be far off, by up to the full pressure either way, under each cause: then it says nothing of it and costs
-//! what it is worth in this transmitter ([`FarOff`]). Spikes are "nothing" with readings far off, for less than [`REST_S`].
+//! its likelihood with the unknown integrated out. Any reading may be far off, by up to the span either way, under each cause: then it says nothing of it and costs
+//! what it is worth in this sensor ([`FarOff`]). Spikes are "nothing" with readings far off, for less than [`REST_S`].
 //!
 //! An offset is as likely as gas; by the densities of their sizes small steps are the transmitter's and large ones are gas. The examination ends when nothing is left of the jump with
 //! [`SURE`] odds, or when the error has stayed for [`REST_S`], as then gas and wall are at rest; what is not gas for sure waits until the surroundings no more make half of it. What is then not
-//! [`LIKELY`] is unclear, and where the model is right again, what is missing by less than half of what the cause says has passed.
+//! [`LIKELY`] is unclear, and where the model is right again, what is missing by less than half of what the cause says has passed. A thermometer, which has another one beside it, is
+//! examined for as long as only the surroundings hide what it did.
 //!
-//! Assumes that a jump of gas is over within two hours; a longer one is a flow.
+//! Assumes that a jump is over within two hours; gas that takes longer is a flow.
 //!
 //! Source: the bank of Kalman filters is Magill's, IEEE Trans. Autom. Control 10 (1965) 434; Willsky, Jones, IEEE Trans. Autom. Control 21 (1976) 108 has jumps.
+mod far;
+
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::far::FarOff;
+pub(super) use far::{FORGOTTEN_S, FarOff, kept};
 
 /// Model's error at rest, as a part of the full pressure.
 const FLOOR: f64 = 1e-4;
-/// Standard deviations of an offset, of a puff, and of gas that goes or an offset of a transmitter that has broken, as parts of the full pressure.
+/// A thermometer's span, in errors of a temperature on the surface, one of which is the model's error at rest.
+pub(in crate::monitor) const SPAN: f64 = 800.0;
+/// Standard deviations of an offset, of a puff, and of gas that goes or an offset of a sensor that has broken, as parts of the span.
 const OFFSET: f64 = 0.015;
 const PUFF: f64 = 0.01;
 const ANY: f64 = 1.0;
 /// Part of the jumps by gas that are puffs.
 const PUFFS: f64 = 0.2;
-/// Chance that a transmitter whose offset jumps has broken, and that gas that flows does so in jumps.
+/// Chance that a sensor whose offset jumps has broken, and that gas that flows does so in jumps.
 const BROKEN: f64 = 0.05;
 /// Parts of a step of gas that come back after the first sample, and the time constants with which they do, s.
 const REBOUNDS: [f64; 3] = [0.1, 0.2, 0.4];
@@ -59,6 +68,8 @@ const REBOUND_S: [f64; 3] = [60.0, 180.0, 540.0];
 const FLOWS: [f64; 3] = [1e-3, 1e-2, ANY];
 /// Chance that a jump is none, before it is looked at.
 const NOTHING: f64 = 0.7;
+/// The same of an offset, and of gas.
+const EITHER: f64 = (1.0 - NOTHING) / 2.0;
 /// Probability from which a cause is told at once, and from which it is told at the end.
 const SURE: f64 = 0.97;
 const LIKELY: f64 = 0.9;
@@ -69,12 +80,12 @@ const LONGEST_S: f64 = 7200.0;
 const GROWTH: f64 = 0.03;
 const CHANGE: f64 = 0.2;
 const DEVIATIONS: f64 = 5.0;
-/// Part of the full pressure that no jump of a transmitter's offset makes.
-pub const NO_OFFSET: f64 = 0.1;
+/// Part of the span that no jump of an offset makes.
+pub(super) const NO_OFFSET: f64 = 0.1;
 
 /// What the jump was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
+pub(super) enum Cause {
     /// Too early to say.
     Open,
     /// Gas is flowing, or went at once.
@@ -83,17 +94,17 @@ pub enum Cause {
     Spike,
     /// Nothing is left of it.
     Passed,
-    /// The transmitter's offset has changed by so much, as a part of the full pressure.
+    /// The sensor's offset has changed by so much, as a part of the span.
     Offset(f64),
-    /// Gas was exchanged and the flow is over.
+    /// Gas was exchanged and the flow is over; of a thermometer: no offset is that large, it reads something else.
     Gas,
     /// Either may be; gas is the safe assumption.
     Unclear,
 }
 
-/// What was before a jump, as parts of the full pressure.
+/// What was before a jump, as parts of the span.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Before {
+pub(super) struct Before {
     /// What was missing.
     pub missing: f64,
     /// What the surroundings may have done to it since, sd.
@@ -102,16 +113,16 @@ pub struct Before {
     pub unseen: f64,
 }
 
-/// A sample of the shadow and the transmitter.
+/// A sample, as parts of the span.
 #[derive(Clone, Copy, Debug)]
-pub struct Compared {
+pub(super) struct Compared {
     /// Time, s.
     pub time_s: f64,
-    /// What is expected without the pressure less what is read, as a part of the full pressure.
+    /// What is expected without the sensor less what is read.
     pub missing: f64,
     /// Standard deviation of that by what is considered for the surroundings.
     pub considered: f64,
-    /// Standard deviation of the transmitter's noise.
+    /// Standard deviation of the noise.
     pub noise: f64,
 }
 
@@ -124,13 +135,37 @@ enum Course {
     Flow { per_sqrt_minute: f64 },
 }
 
-/// All causes with their prior probabilities: an offset is as likely as gas.
-fn courses() -> impl Iterator<Item = (Course, f64)> {
-    let either = (1.0 - NOTHING) / 2.0;
-    let gas = either / (REBOUNDS.len() * REBOUND_S.len() + FLOWS.len() + 1) as f64;
+/// What has jumped; see the module's head.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Subject {
+    /// The pressure.
+    Pressure,
+    /// A thermometer.
+    Thermometer,
+}
+
+impl Subject {
+    /// Model's error at rest.
+    fn floor(self) -> f64 {
+        match self {
+            Self::Pressure => FLOOR,
+            Self::Thermometer => SPAN.recip(),
+        }
+    }
+
+    /// All causes with their prior probabilities.
+    fn courses(self) -> impl Iterator<Item = (Course, f64)> {
+        let gas = (self == Self::Pressure).then(of_gas).into_iter().flatten();
+        let offsets = [(OFFSET, 1.0 - BROKEN), (ANY, BROKEN)]
+            .map(|(sd, share)| (Course::Offset { sd }, EITHER * share));
+        [(Course::Nothing, NOTHING)].into_iter().chain(offsets).chain(gas)
+    }
+}
+
+/// Gas that came or went, at once or by a flow.
+fn of_gas() -> impl Iterator<Item = (Course, f64)> {
+    let gas = EITHER / (REBOUNDS.len() * REBOUND_S.len() + FLOWS.len() + 1) as f64;
     let sizes = [(PUFF, PUFFS), (ANY, 1.0 - PUFFS)].into_iter();
-    let offsets =
-        [(OFFSET, 1.0 - BROKEN), (ANY, BROKEN)].map(|(sd, share)| (Course::Offset { sd }, either * share));
     let rebounds = REBOUNDS.into_iter().flat_map(|rebound| REBOUND_S.map(|time_s| (rebound, time_s)));
     // All of it may have come back before the first sample.
     let at_once = rebounds.chain([(0.0, REST_S)]).flat_map(move |(rebound, time_s)| {
@@ -140,7 +175,7 @@ fn courses() -> impl Iterator<Item = (Course, f64)> {
     let rarely = |per_sqrt_minute: f64| if per_sqrt_minute < ANY { 1.0 } else { BROKEN };
     let flows =
         FLOWS.map(|per_sqrt_minute| (Course::Flow { per_sqrt_minute }, gas * rarely(per_sqrt_minute)));
-    [(Course::Nothing, NOTHING)].into_iter().chain(offsets).chain(at_once).chain(flows)
+    at_once.chain(flows)
 }
 
 /// Filter of one cause: the model's error and the unknown.
@@ -217,7 +252,8 @@ impl Member {
 
 /// The examination of a jump.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Examination {
+pub(super) struct Examination {
+    subject: Subject,
     onset_s: f64,
     /// Model's error at the last sample, sd.
     model: f64,
@@ -240,12 +276,19 @@ pub struct Examination {
 
 impl Examination {
     /// Of a jump at `onset_s`, s. What the surroundings do is forgotten within `memory_s`, s.
-    pub fn new(onset_s: f64, before: Before, memory_s: f64, far_off: FarOff) -> Self {
+    pub(super) fn new(
+        subject: Subject,
+        onset_s: f64,
+        before: Before,
+        memory_s: f64,
+        far_off: FarOff,
+    ) -> Self {
         let Before { missing, fresh, unseen } = before;
-        let model = unseen.hypot(FLOOR);
+        let model = unseen.hypot(subject.floor());
         let members =
-            courses().map(|(course, prior)| Member::new(course, prior, missing, fresh.hypot(model)));
+            subject.courses().map(|(course, prior)| Member::new(course, prior, missing, fresh.hypot(model)));
         Self {
+            subject,
             onset_s,
             model,
             unseen,
@@ -263,31 +306,31 @@ impl Examination {
     }
 
     /// When it began, s.
-    pub fn onset_s(&self) -> f64 {
+    pub(super) fn onset_s(&self) -> f64 {
         self.onset_s
     }
 
-    /// Pressure that is missing at the last sample, as a part of the full one; negative: gained.
-    pub fn error(&self) -> f64 {
+    /// What is missing at the last sample, as a part of the span; negative: gained.
+    pub(super) fn error(&self) -> f64 {
         self.error
     }
 
     /// Take in a sample.
-    pub fn push(&mut self, now: Compared) -> Cause {
+    pub(super) fn push(&mut self, now: Compared) -> Cause {
         let since_s = now.time_s - self.onset_s;
         if !now.missing.is_finite() {
             return if since_s > LONGEST_S { Cause::Unclear } else { Cause::Open };
         }
         let interval_s = now.time_s - std::mem::replace(&mut self.last_s, now.time_s);
         let unseen = self.unseen * (-since_s / self.memory_s).exp();
-        let model = now.considered.hypot(unseen).hypot(FLOOR);
+        let model = now.considered.hypot(unseen).hypot(self.subject.floor());
         let kept = (-interval_s / self.memory_s).exp() * (model / self.model).min(1.0);
         let fresh = model * model - (kept * self.model).powi(2);
         self.model = model;
         self.error = now.missing;
         let noise = now.noise * now.noise;
         let was_far = self.members[0].far;
-        for ((course, _), member) in courses().zip(&mut self.members) {
+        for ((course, _), member) in self.subject.courses().zip(&mut self.members) {
             if since_s > 0.0 {
                 member.predict(course, interval_s, (kept, fresh));
             }
@@ -307,12 +350,12 @@ impl Examination {
     }
 
     /// Readings that were far off, if there was nothing.
-    pub fn seen_far_off(&self) -> FarOff {
+    pub(super) fn seen_far_off(&self) -> FarOff {
         self.seen
     }
 
     /// Whether it is more likely than not that there was nothing.
-    pub fn is_likely_nothing(&self) -> bool {
+    pub(super) fn is_likely_nothing(&self) -> bool {
         self.probability()(Course::is_nothing) > 0.5
     }
 
@@ -338,9 +381,11 @@ impl Examination {
         }
         let (left, sd) = (some.mean[1], some.variance[1].max(0.0).sqrt());
         let half = left.abs() / 2.0;
-        let unknown = left.abs() < DEVIATIONS * sd.hypot(FLOOR);
+        let floor = self.subject.floor();
+        let unknown = left.abs() < DEVIATIONS * sd.hypot(floor);
+        let hidden = unknown && left.abs() > DEVIATIONS * floor && self.subject == Subject::Thermometer;
         // What the surroundings may still do is told to be the transmitter's when they do it no more.
-        if (gas <= LIKELY && self.model > half || unknown && !goes_back) && !over {
+        if (gas <= LIKELY && self.model > half || unknown && !goes_back || hidden) && !over {
             return Cause::Open;
         }
         // Where the model's error has gone, what is not missing now was its.
@@ -349,7 +394,7 @@ impl Examination {
             () if !still || unknown => Cause::Passed,
             () if gas > LIKELY || left.abs() > NO_OFFSET => Cause::Gas,
             // Of a gain the transmitter is the safe assumption: it leaves the mass as low as it was.
-            () if offset > LIKELY || left < 0.0 => Cause::Offset(-left),
+            () if offset > LIKELY || left < 0.0 && self.subject == Subject::Pressure => Cause::Offset(-left),
             () => Cause::Unclear,
         }
     }
@@ -360,7 +405,7 @@ impl Examination {
         let weights = move |of: &Member| (of.ln_odds - most).exp();
         let all: f64 = self.members.iter().map(weights).sum();
         move |is: fn(&Course) -> bool| {
-            let of_kind = courses().zip(&self.members).filter(|((course, _), _)| is(course));
+            let of_kind = self.subject.courses().zip(&self.members).filter(|((course, _), _)| is(course));
             of_kind.map(|(_, member)| weights(member)).sum::<f64>() / all
         }
     }
