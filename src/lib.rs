@@ -62,10 +62,13 @@ pub use cylwatch_estimator as estimator;
 pub use cylwatch_evaluation as evaluation;
 pub use cylwatch_thermal as thermal;
 
+mod cli;
 pub mod log;
-pub mod properties;
+mod properties;
 pub mod report;
 pub mod reproduce;
+
+pub use cli::main;
 
 /// The code of the README, so that it is compiled and run.
 #[cfg(doctest)]

@@ -1,7 +1,4 @@
 //! The command-line program `cylwatch`.
-#![warn(unreachable_pub)]
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::main()
+    cylwatch::main()
 }

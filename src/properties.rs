@@ -5,7 +5,7 @@ use crate::thermal::fluid::{Fluid, State};
 
 /// The two quantities that fix a state, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Given {
+pub(crate) enum Given {
     /// Temperature, K, and absolute pressure, Pa.
     TemperaturePressure(f64, f64),
     /// Temperature, K, and density, kg/m³.
@@ -17,7 +17,7 @@ pub enum Given {
 /// Why a state has no properties.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum PropertyError {
+pub(crate) enum PropertyError {
     /// The gas refuses the state.
     #[error(transparent)]
     Fluid(#[from] ThermalError),
@@ -41,7 +41,7 @@ const HIGHEST_K: f64 = 2000.0;
 
 /// Properties at one state.
 #[derive(Clone, Copy, Debug)]
-pub struct Properties {
+pub(crate) struct Properties {
     /// Thermodynamic state.
     pub state: State,
     /// Dynamic viscosity, Pa s.
@@ -81,7 +81,7 @@ const EXPANSION: Property =
 ///
 /// # Errors
 /// The state is outside the equation of state, or two-phase, or does not exist.
-pub fn evaluate(fluid: &Fluid, given: Given) -> Result<Properties, PropertyError> {
+pub(crate) fn evaluate(fluid: &Fluid, given: Given) -> Result<Properties, PropertyError> {
     let (density, temperature) = match given {
         Given::TemperaturePressure(t, p) => (fluid.density_from_pressure_temperature(p, t)?, t),
         Given::TemperatureDensity(t, rho) => (rho, t),
@@ -126,7 +126,7 @@ fn temperature_k(fluid: &Fluid, pressure_pa: f64, density_kg_m3: f64) -> Result<
 }
 
 /// The states as columns.
-pub fn table(states: &[Properties]) -> Table {
+pub(crate) fn table(states: &[Properties]) -> Table {
     // All digits of a double: such tables are compared with references.
     let mut table = Table::new();
     for (name, _, _, value) in PROPERTIES {
@@ -136,7 +136,7 @@ pub fn table(states: &[Properties]) -> Table {
 }
 
 /// One state for people.
-pub fn summary(fluid: &str, properties: &Properties) -> Report {
+pub(crate) fn summary(fluid: &str, properties: &Properties) -> Report {
     let degc = properties.state.temperature_k - 273.15;
     let bar = properties.state.pressure_pa / 1e5;
     let rows: Vec<Vec<String>> = PROPERTIES
@@ -155,7 +155,7 @@ pub fn summary(fluid: &str, properties: &Properties) -> Report {
 }
 
 /// Many states for people.
-pub fn summary_of_many(fluid: &str, states: &[Properties]) -> Report {
+pub(crate) fn summary_of_many(fluid: &str, states: &[Properties]) -> Report {
     let mut table = Table::new();
     for (_, name, unit, value) in PROPERTIES {
         table.push_quantity(name, unit, Digits::Significant(6), states.iter().map(value));

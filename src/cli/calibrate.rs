@@ -7,15 +7,15 @@ use super::output::Target;
 use super::progress::Progress;
 use super::selection;
 use super::views::Views;
-use anyhow::{Context, bail};
-use cylwatch::estimator::calibrate::{
+use crate::estimator::calibrate::{
     Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, SearchStep,
 };
-use cylwatch::estimator::sensor::SensorsSpec;
-use cylwatch::report::Input;
-use cylwatch::report::calibrate as report;
-use cylwatch::report::calibrate::Study;
-use cylwatch::thermal::vessel::{Vessel, VesselSpec};
+use crate::estimator::sensor::SensorsSpec;
+use crate::report::Input;
+use crate::report::calibrate as report;
+use crate::report::calibrate::Study;
+use crate::thermal::vessel::{Vessel, VesselSpec};
+use anyhow::{Context, bail};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

@@ -8,16 +8,16 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
+use crate::detector::evidence::Tails;
+use crate::detector::monitor::MonitorSettings;
+use crate::evaluation::tails::{Campaign, FitSettings, commission, watch_all};
+use crate::evaluation::world::NominalVessel;
+use crate::report::commission::{CommissionedVessel, VesselMark, Worlds, intention};
+use crate::report::{Provenance, quoted};
+use crate::thermal::units::BAR_PA;
+use crate::thermal::units::DAY_S;
+use crate::thermal::units::YEAR_S;
 use anyhow::{Context, bail};
-use cylwatch::detector::evidence::Tails;
-use cylwatch::detector::monitor::MonitorSettings;
-use cylwatch::evaluation::tails::{Campaign, FitSettings, commission, watch_all};
-use cylwatch::evaluation::world::NominalVessel;
-use cylwatch::report::commission::{CommissionedVessel, VesselMark, Worlds, intention};
-use cylwatch::report::{Provenance, quoted};
-use cylwatch::thermal::units::BAR_PA;
-use cylwatch::thermal::units::DAY_S;
-use cylwatch::thermal::units::YEAR_S;
 use options::Options;
 use std::path::Path;
 
@@ -54,7 +54,7 @@ fn simulate(
     nominal: &NominalVessel,
     options: &Options,
     messages: &Messages,
-) -> anyhow::Result<cylwatch::evaluation::tails::Commissioned> {
+) -> anyhow::Result<crate::evaluation::tails::Commissioned> {
     let progress = Progress::new(messages);
     let show = |part: f64| progress.show("simulating cylinders", part);
     let requests = options.campaign.requests();

@@ -2,12 +2,12 @@
 use super::number::above;
 use super::options::EXPERT;
 use super::unit_options::{Choice, Choices, Given};
+use crate::estimator::observer::{Commissioning, ObserverSettings};
+use crate::thermal::units::{Dimension, ZERO_CELSIUS_K};
+use crate::thermal::vessel::Fill;
+use crate::thermal::vessel::Vessel;
 use anyhow::{anyhow, bail};
 use clap::Args;
-use cylwatch::estimator::observer::{Commissioning, ObserverSettings};
-use cylwatch::thermal::units::{Dimension, ZERO_CELSIUS_K};
-use cylwatch::thermal::vessel::Fill;
-use cylwatch::thermal::vessel::Vessel;
 
 /// Quantities that fix the mass.
 #[derive(Clone, Debug)]

@@ -7,10 +7,10 @@ use super::output::{Target, remarks};
 use super::progress::Progress;
 use super::result::{Contents, Destination};
 use super::views::Views;
+use crate::estimator::identify::{Data, Method, Settings, Structure, identify};
+use crate::report::identify as report;
+use crate::report::identify::{Signal, Study};
 use anyhow::{Context, bail};
-use cylwatch::estimator::identify::{Data, Method, Settings, Structure, identify};
-use cylwatch::report::identify as report;
-use cylwatch::report::identify::{Signal, Study};
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! `cylwatch init`: start files to edit.
 use super::message::Messages;
 use super::output;
+use crate::thermal::{scenario, vessel};
 use anyhow::bail;
 use clap::Args;
-use cylwatch::thermal::{scenario, vessel};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -1,14 +1,14 @@
 //! What a run reads: files, stdin, built-in vessels, scenarios and plans. Everything read is recorded with its SHA-256.
 use super::message::Messages;
 use super::output::command_line;
+use crate::evaluation::judge::candidate::Registry;
+use crate::evaluation::judge::plan::{self, Plan};
+use crate::log::inspect::Inspector;
+use crate::log::{LogError, LogOptions, LogReader, is_parquet};
+use crate::report::{Fingerprint, Input, Provenance};
+use crate::thermal::scenario::{self, Scenario};
+use crate::thermal::vessel::{self, Vessel, VesselSpec};
 use anyhow::{Context, bail};
-use cylwatch::evaluation::judge::candidate::Registry;
-use cylwatch::evaluation::judge::plan::{self, Plan};
-use cylwatch::log::inspect::Inspector;
-use cylwatch::log::{LogError, LogOptions, LogReader, is_parquet};
-use cylwatch::report::{Fingerprint, Input, Provenance};
-use cylwatch::thermal::scenario::{self, Scenario};
-use cylwatch::thermal::vessel::{self, Vessel, VesselSpec};
 use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{Read, Seek};

@@ -5,8 +5,8 @@ use super::options::{LogArguments, ReportArguments};
 use super::output::Target;
 use super::progress::Progress;
 use super::views::Views;
+use crate::report::inspect as report;
 use clap::{Args, ValueEnum};
-use cylwatch::report::inspect as report;
 use std::path::{Path, PathBuf};
 
 /// Rows between two looks at the bar.

@@ -42,8 +42,8 @@ use std::process::ExitCode;
 /// Exit code of an error.
 const ERROR: u8 = 2;
 
-/// Reads the arguments, runs the command, and turns its outcome into an exit code.
-pub(crate) fn main() -> ExitCode {
+/// The program `cylwatch`: reads the arguments, runs the command, and turns its outcome into an exit code.
+pub fn main() -> ExitCode {
     let mut matches = Arguments::prepared().get_matches();
     let arguments = Arguments::from_arg_matches_mut(&mut matches).unwrap_or_else(|error| error.exit());
     let messages = Messages::new(arguments.quiet);

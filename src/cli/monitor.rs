@@ -8,10 +8,10 @@ use super::progress::Progress;
 use super::selection::{self, Selection};
 use super::start;
 use super::views::{Made, Views};
+use crate::detector::monitor::Outcome;
+use crate::log::{LogOptions, Row};
+use crate::report::monitor::Summary;
 use anyhow::{Context, bail};
-use cylwatch::detector::monitor::Outcome;
-use cylwatch::log::{LogOptions, Row};
-use cylwatch::report::monitor::Summary;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::R
         messages.say("no verdict yet: all rows wait in the state for late ones");
         return Ok(ExitCode::from(Outcome::Unknown.exit_code()));
     };
-    messages.say(&cylwatch::report::monitor::summary(&summary).to_text());
+    messages.say(&crate::report::monitor::summary(&summary).to_text());
     Ok(ExitCode::from(summary.outcome().exit_code()))
 }
 

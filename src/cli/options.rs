@@ -1,9 +1,9 @@
 //! Groups of options that commands share, each with one help text.
 use super::format::Format;
 use super::number::{above, within};
+use crate::log::{LogOptions, Mapping, Zone};
+use crate::thermal::units::YEAR_S;
 use clap::{Arg, Args, Command};
-use cylwatch::log::{LogOptions, Mapping, Zone};
-use cylwatch::thermal::units::YEAR_S;
 use std::path::{Path, PathBuf};
 
 /// Heading of options that few need; the short help leaves them out, see [`without_experts`].

@@ -2,8 +2,8 @@
 //!
 //! A [`Target`] is checked before the run. A file is written beside its place under another name and then renamed,
 //! so that a reader never meets half of it and an older file stays until the new one is there.
+use crate::report::quoted;
 use anyhow::{Context, anyhow, bail};
-use cylwatch::report::quoted;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};

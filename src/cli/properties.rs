@@ -7,11 +7,11 @@ use super::output::Target;
 use super::states;
 use super::states::GivenQuantities;
 use super::views::Views;
+use crate::properties::{self, Properties};
+use crate::report::{Provenance, Report};
+use crate::thermal::fluid::{Equation, Fluid};
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
-use cylwatch::properties::{self, Properties};
-use cylwatch::report::{Provenance, Report};
-use cylwatch::thermal::fluid::{Equation, Fluid};
 use serde_json::json;
 use std::path::PathBuf;
 

@@ -6,9 +6,9 @@ use super::output::command_line;
 use super::output::{self, Target};
 use super::progress::Progress;
 use super::views::Views;
+use crate::report::Provenance;
+use crate::reproduce::{self, Settings, checks};
 use clap::Args;
-use cylwatch::report::Provenance;
-use cylwatch::reproduce::{self, Settings, checks};
 use std::path::PathBuf;
 
 /// Arguments of `reproduce`.

@@ -4,8 +4,8 @@ use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::views::Views;
-use cylwatch::report::figure::Picture;
-use cylwatch::report::{Provenance, Report};
+use crate::report::figure::Picture;
+use crate::report::{Provenance, Report};
 use serde_json::Value;
 
 /// Where a result goes, and in which format; `None`: the summary goes to stdout.

@@ -2,7 +2,7 @@
 use super::format::Format;
 use super::input::{Inputs, LogInput};
 use super::output::{Stream, Target};
-use cylwatch::report::{Field, RowFormat, Rows};
+use crate::report::{Field, RowFormat, Rows};
 use serde_json::{Map, Value, json};
 
 /// A stream of records with declared columns.

@@ -1,8 +1,8 @@
 //! `cylwatch schema`: JSON schemas of the files that the program reads.
 use super::output::Target;
+use crate::estimator::placement::candidates_schema;
+use crate::thermal::{scenario, vessel};
 use clap::{Args, ValueEnum};
-use cylwatch::estimator::placement::candidates_schema;
-use cylwatch::thermal::{scenario, vessel};
 use serde_json::json;
 
 /// A kind of file.

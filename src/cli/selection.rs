@@ -1,11 +1,11 @@
 //! Which columns of a log are used, and as which sensors.
 use super::input::Inputs;
 use super::message::Messages;
+use crate::estimator::log::{Channel, Quantity};
+use crate::estimator::sensor::{ParameterKind, Sensor, SensorsSpec, read_sensors};
+use crate::log::{LogReader, Row};
+use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
-use cylwatch::estimator::log::{Channel, Quantity};
-use cylwatch::estimator::sensor::{ParameterKind, Sensor, SensorsSpec, read_sensors};
-use cylwatch::log::{LogReader, Row};
-use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
 
 /// Sensors with their channels in the log.

@@ -7,13 +7,13 @@ use super::options::{OUTPUT, SolverArguments, ViewArguments};
 use super::output::Target;
 use super::progress::Progress;
 use super::views::Views;
+use crate::log::is_parquet;
+use crate::report::{Provenance, Readings, aligned, simulation};
+use crate::thermal::simulate::{SimulationSettings, simulate};
+use crate::thermal::trajectory::Trajectory;
+use crate::thermal::{scenario, vessel};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
-use cylwatch::log::is_parquet;
-use cylwatch::report::{Provenance, Readings, aligned, simulation};
-use cylwatch::thermal::simulate::{SimulationSettings, simulate};
-use cylwatch::thermal::trajectory::Trajectory;
-use cylwatch::thermal::{scenario, vessel};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `simulate`.

@@ -2,12 +2,12 @@
 use super::fill::FillSource;
 use super::input::Inputs;
 use super::selection::Selection;
+use crate::estimator::log::Quantity;
+use crate::estimator::observer::Learned;
+use crate::log::{LogReader, Row};
+use crate::thermal::vessel::Fill;
+use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
-use cylwatch::estimator::log::Quantity;
-use cylwatch::estimator::observer::Learned;
-use cylwatch::log::{LogReader, Row};
-use cylwatch::thermal::vessel::Fill;
-use cylwatch::thermal::vessel::Vessel;
 use std::path::Path;
 
 /// Rows that are looked through for the first pressure.

@@ -1,10 +1,10 @@
 //! Quantities that fix a state, from options (`--pressure-bar 200`) or from the columns of a CSV file.
 use super::message::Messages;
 use super::unit_options::{Choice, Choices, Given as GivenOptions, Quantity};
+use crate::properties::Given;
+use crate::thermal::units::{self, Dimension, Unit};
 use anyhow::{Context, anyhow, bail};
 use clap::Arg;
-use cylwatch::properties::Given;
-use cylwatch::thermal::units::{self, Dimension, Unit};
 
 /// Quantities that can be given.
 #[derive(Clone, Debug)]

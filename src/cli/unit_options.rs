@@ -3,10 +3,10 @@
 //! The help shows the customary unit; the long help names the others.
 use super::number::finite;
 use super::options::EXPERT;
+use crate::thermal::units::{self, Dimension, Unit};
 use anyhow::bail;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use cylwatch::thermal::units::{self, Dimension, Unit};
 use std::marker::PhantomData;
 
 /// A quantity that can be given: name, what it measures, words of its help, with the unit if it is the only one.

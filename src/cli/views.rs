@@ -1,9 +1,9 @@
 //! What people look at: the figure (`--plot`) and the report (`--report`) of a run.
 use super::options::ViewArguments;
 use super::output::Target;
+use crate::report::figure::Picture;
+use crate::report::{Page, Provenance, Report};
 use anyhow::bail;
-use cylwatch::report::figure::Picture;
-use cylwatch::report::{Page, Provenance, Report};
 use std::path::Path;
 
 /// Checked places for a figure and a report.

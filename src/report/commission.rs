@@ -19,7 +19,7 @@ const TOO_OFTEN: &str =
 
 /// Thresholds for one vessel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CommissionedVessel {
+pub(crate) struct CommissionedVessel {
     /// The vessel that they are for.
     pub vessel: VesselMark,
     /// Highest pressure of the fills at 15 °C, bar absolute.
@@ -39,7 +39,7 @@ pub struct CommissionedVessel {
 
 /// What tells one vessel from another.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct VesselMark {
+pub(crate) struct VesselMark {
     /// Its name.
     pub name: String,
     /// Digest of its file's content.
@@ -48,7 +48,7 @@ pub struct VesselMark {
 
 /// Worlds that thresholds were found in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Worlds {
+pub(crate) struct Worlds {
     climates: Vec<Climate>,
     gases: Vec<GasKind>,
     sensors: Vec<SensorClass>,
@@ -61,7 +61,7 @@ pub struct Worlds {
 /// Why a file of thresholds cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum CommissionError {
+pub(crate) enum CommissionError {
     /// It is no JSON.
     #[error("it is no JSON: {0}")]
     NoJson(serde_json::Error),
@@ -98,14 +98,14 @@ impl VesselMark {
     ///
     /// # Errors
     /// A number that JSON does not know.
-    pub fn of(specification: &VesselSpec, vessel: &Vessel) -> serde_json::Result<Self> {
+    pub(crate) fn of(specification: &VesselSpec, vessel: &Vessel) -> serde_json::Result<Self> {
         Ok(Self { name: vessel.name.clone(), digest: digest(&serde_json::to_string(specification)?) })
     }
 }
 
 impl Worlds {
     /// Those of a campaign.
-    pub fn of(campaign: &Campaign) -> Self {
+    pub(crate) fn of(campaign: &Campaign) -> Self {
         let Campaign { climates, gases, sensors, rows, cylinders, length_s, .. } = campaign.clone();
         let cylinder_years = cylinders as f64 * length_s / YEAR_S;
         Self { climates, gases, sensors, rows, cylinders, days: length_s / DAY_S, cylinder_years }
@@ -113,7 +113,7 @@ impl Worlds {
 }
 
 /// What is going to be simulated, in words.
-pub fn intention(nominal: &NominalVessel, campaign: &Campaign) -> String {
+pub(crate) fn intention(nominal: &NominalVessel, campaign: &Campaign) -> String {
     let bar = |pressure_pa: f64| number(pressure_pa / BAR_PA, 4);
     let Worlds { climates, gases, sensors, rows, cylinders, days, cylinder_years } = Worlds::of(campaign);
     format!(
@@ -142,7 +142,7 @@ impl CommissionedVessel {
     ///
     /// # Errors
     /// A number that JSON does not know.
-    pub fn document(&self, provenance: &Provenance) -> serde_json::Result<Value> {
+    pub(crate) fn document(&self, provenance: &Provenance) -> serde_json::Result<Value> {
         let head = json!({ "provenance": provenance.to_json(), "format": FORMAT, "version": VERSION });
         let (Value::Object(mut document), Value::Object(content)) = (head, serde_json::to_value(self)?)
         else {
@@ -156,7 +156,7 @@ impl CommissionedVessel {
     ///
     /// # Errors
     /// It is another file, another version, damaged, or for another vessel.
-    pub fn read(text: &str, vessel: &VesselMark) -> Result<Self, CommissionError> {
+    pub(crate) fn read(text: &str, vessel: &VesselMark) -> Result<Self, CommissionError> {
         let document: Value = serde_json::from_str(text).map_err(CommissionError::NoJson)?;
         if document["format"] != FORMAT {
             return Err(CommissionError::Foreign);
@@ -173,7 +173,7 @@ impl CommissionedVessel {
     }
 
     /// Where a cylinder of this fill at 15 °C, Pa, is not what the thresholds were found for, in words.
-    pub fn cautions(&self, fill_pa: f64) -> Vec<String> {
+    pub(crate) fn cautions(&self, fill_pa: f64) -> Vec<String> {
         let (fill_bar, found_bar) = (fill_pa / BAR_PA, self.fill_pressure_bar);
         let (low, high) = SAME_FILL;
         let mut cautions = Vec::new();
@@ -198,7 +198,7 @@ impl CommissionedVessel {
     ///
     /// # Errors
     /// The mean time is not positive.
-    pub fn summary(&self, usual: &Tails) -> Result<Report, cylwatch_detector::DetectorError> {
+    pub(crate) fn summary(&self, usual: &Tails) -> Result<Report, cylwatch_detector::DetectorError> {
         let usual = usual.thresholds(self.false_alarm_years * YEAR_S)?;
         let rows = self.found.scales.iter().map(|of| {
             let (low, high) = of.threshold_interval;

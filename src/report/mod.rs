@@ -5,14 +5,14 @@
 use crate::thermal::units::HOUR_S;
 
 pub mod bench_detector;
-pub mod calibrate;
-pub mod commission;
+pub(crate) mod calibrate;
+pub(crate) mod commission;
 mod content;
-pub mod estimate;
+pub(crate) mod estimate;
 pub mod figure;
-pub mod identify;
-pub mod inspect;
-pub mod monitor;
+pub(crate) mod identify;
+pub(crate) mod inspect;
+pub(crate) mod monitor;
 mod page;
 pub mod place;
 mod provenance;

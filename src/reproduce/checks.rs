@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 /// A number that was computed, with what it is held against.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Check {
+pub(crate) struct Check {
     /// What it is.
     pub what: String,
     /// The number.
@@ -24,7 +24,7 @@ pub struct Check {
 
 /// What has to be met.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bar {
+pub(crate) enum Bar {
     /// Distance from the reference at most this.
     Within(f64),
     /// Magnitude at most this.
@@ -35,7 +35,7 @@ pub enum Bar {
 
 impl Check {
     /// Whether the bar is met; `None` where there is none.
-    pub fn met(&self) -> Option<bool> {
+    pub(crate) fn met(&self) -> Option<bool> {
         match (self.bar, self.reference) {
             (Bar::Within(most), Some(reference)) => Some((self.here - reference).abs() <= most),
             (Bar::AtMost(most), _) => Some(self.here.abs() <= most),
@@ -44,7 +44,7 @@ impl Check {
     }
 
     /// As JSON.
-    pub fn to_json(&self) -> Value {
+    pub(crate) fn to_json(&self) -> Value {
         let (kind, bar) = match self.bar {
             Bar::Within(most) => ("within", Some(most)),
             Bar::AtMost(most) => ("at most", Some(most)),
@@ -57,7 +57,7 @@ impl Check {
     }
 
     /// As a row of a table.
-    pub fn cells(&self) -> Vec<String> {
+    pub(crate) fn cells(&self) -> Vec<String> {
         let with_unit =
             |text: String| if self.unit.is_empty() { text } else { format!("{text} {}", self.unit) };
         let reference =
@@ -78,10 +78,10 @@ fn short(value: f64) -> String {
 }
 
 /// Names of the columns.
-pub const HEADER: [&str; 5] = ["what", "here", "reference", "bar", "met"];
+pub(crate) const HEADER: [&str; 5] = ["what", "here", "reference", "bar", "met"];
 
 /// What the scenarios took and where they ended: names of columns, rows.
-pub fn scenarios(results: &Reproduction) -> ([&'static str; 8], Vec<Vec<String>>) {
+pub(crate) fn scenarios(results: &Reproduction) -> ([&'static str; 8], Vec<Vec<String>>) {
     let row = |scenario: &ScenarioRun| {
         let run = &scenario.run;
         let end = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
@@ -110,7 +110,7 @@ pub fn scenarios(results: &Reproduction) -> ([&'static str; 8], Vec<Vec<String>>
 }
 
 /// All rows of a reproduction.
-pub fn checks(results: &Reproduction) -> Vec<Check> {
+pub(crate) fn checks(results: &Reproduction) -> Vec<Check> {
     let mut rows = tight_rows(results);
     rows.extend(closed_rows(results));
     rows.extend(variant_rows(

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// One question.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     /// Of what.
     pub what: &'static str,
     /// What the paper says.
@@ -22,25 +22,25 @@ pub struct Comparison {
 
 impl Comparison {
     /// As JSON.
-    pub fn to_json(&self) -> Value {
+    pub(crate) fn to_json(&self) -> Value {
         json!({ "what": self.what, "paper": self.paper, "here": self.here, "why": self.why })
     }
 
     /// As a row of a table.
-    pub fn cells(&self) -> Vec<String> {
+    pub(crate) fn cells(&self) -> Vec<String> {
         vec![self.what.to_owned(), self.paper.clone(), self.here.clone(), self.why.clone()]
     }
 }
 
 /// Names of the columns.
-pub const HEADER: [&str; 4] = ["what", "paper", "here", "why they differ"];
+pub(crate) const HEADER: [&str; 4] = ["what", "paper", "here", "why they differ"];
 
 fn n(value: f64, digits: usize) -> String {
     number(value, digits)
 }
 
 /// All answers, in the order of the paper.
-pub fn comparisons(results: &Reproduction) -> Vec<Comparison> {
+pub(crate) fn comparisons(results: &Reproduction) -> Vec<Comparison> {
     let mut all = of_the_gas(results);
     all.extend(of_the_model(results));
     all.extend(of_the_monitor(results));

@@ -39,7 +39,7 @@ pub(crate) const LEAKS_G_H: [f64; 2] = [60.0, 6.0];
 const TRAINING: u64 = 100_000;
 
 /// The four scenarios with their titles.
-pub const SCENARIOS: [(Course, &str); 4] = [
+pub(crate) const SCENARIOS: [(Course, &str); 4] = [
     (Course::Scenario1, "21 to \u{2212}25 °C at once"),
     (Course::Scenario2, "\u{2212}25 to 40 °C at once"),
     (Course::Scenario3, "10 to 60 °C in 5 h"),
@@ -48,7 +48,7 @@ pub const SCENARIOS: [(Course, &str); 4] = [
 
 /// A number over several cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub(crate) struct Spread {
     /// Root of the mean square, or the mean.
     pub value: f64,
     /// The least of a cylinder.
@@ -75,7 +75,7 @@ impl Spread {
 
 /// A drawn cylinder in a scenario with the results of all methods.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub(crate) struct Drawn {
     /// What really happened.
     pub truth: Truth,
     /// Results of the methods.
@@ -84,7 +84,7 @@ pub struct Drawn {
 
 impl Drawn {
     /// Error of the mean gas temperature, K, of one of [`METHODS`](super::methods::METHODS).
-    pub fn gas_error_k(&self, method: usize) -> Vec<f64> {
+    pub(crate) fn gas_error_k(&self, method: usize) -> Vec<f64> {
         let truth = self.truth.gas_mean_k.iter().map(|k| k - ZERO_CELSIUS_K);
         self.method_run.gas_degc[method].iter().zip(truth).map(|(said, truth)| said - truth).collect()
     }
@@ -103,7 +103,7 @@ impl Drawn {
 
 /// A scenario on all drawn cylinders.
 #[derive(Clone, Debug)]
-pub struct ScenarioScore {
+pub(crate) struct ScenarioScore {
     /// Its number and title.
     pub title: String,
     /// Root mean square error of the gas temperature from the change of the air on, K, of each of [`METHODS`](super::methods::METHODS).
@@ -122,7 +122,7 @@ pub struct ScenarioScore {
 
 /// A leak after a tunnel on all drawn cylinders.
 #[derive(Clone, Debug)]
-pub struct LeakScore {
+pub(crate) struct LeakScore {
     /// The leak, g/h.
     pub leak_g_h: f64,
     /// The same at 15 °C, bar/h.
@@ -147,7 +147,7 @@ pub struct LeakScore {
 
 /// How it is done.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// Cylinders of each case.
     pub cylinders: u64,
     /// Seed of the first.
@@ -191,7 +191,7 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
+    pub(crate) fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
         let (course, title) = &SCENARIOS[number];
         let all = self.all(course, None, self.seeds())?;
         let over = |value: &dyn Fn(&Drawn) -> f64| Spread::pooled(&all.iter().map(value).collect::<Vec<_>>());
@@ -214,7 +214,7 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
+    pub(crate) fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
         let seeds = self.seeds();
         self.all(&Course::Tunnel, None, seeds.start + TRAINING..seeds.end + TRAINING)
     }
@@ -223,7 +223,7 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
+    pub(crate) fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
         let leak_g_h = LEAKS_G_H[number];
         let onset_s = Course::Tunnel.change_s() + ONSET_AFTER_S;
         let leak = TruthLeak { rate_kg_s: leak_g_h * GRAM_PER_HOUR, start_s: onset_s };

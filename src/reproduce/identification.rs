@@ -11,7 +11,7 @@ const VALIDATION: [&str; 2] = ["ramp-warm", "cool-down"];
 
 /// A model on a scenario that it was not identified from.
 #[derive(Clone, Debug)]
-pub struct Validation {
+pub(crate) struct Validation {
     /// Number of the scenario.
     pub scenario: usize,
     /// Readings and gas.
@@ -28,7 +28,7 @@ pub struct Validation {
 
 /// The study.
 #[derive(Clone, Debug)]
-pub struct Identification {
+pub(crate) struct Identification {
     /// Scenarios 1 and 2 as one record.
     pub record: Record,
     /// The rows of Table 1, shoulder and valve.
@@ -50,7 +50,7 @@ impl Identification {
     ///
     /// # Errors
     /// The simulation's or the identification's.
-    pub fn study() -> Result<Self, ReproduceError> {
+    pub(crate) fn study() -> Result<Self, ReproduceError> {
         let couplings = [COUPLING; 2];
         let record = Record::of_table_1(couplings)?;
         let rows = [row(&record, Place::Shoulder)?, row(&record, Place::Valve)?];

@@ -21,15 +21,15 @@ use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Vessel;
 
 /// A full cylinder, as every method assumes it.
-pub const FULL: Filling = Filling { pressure_pa: 200e5, temperature_k: ZERO_CELSIUS_K + 15.0 };
+pub(crate) const FULL: Filling = Filling { pressure_pa: 200e5, temperature_k: ZERO_CELSIUS_K + 15.0 };
 /// Pressure at which the system is no longer operational, Pa.
 pub(crate) const LIMIT_PA: f64 = 160e5;
 /// The methods, in the order of all arrays.
-pub const METHODS: [&str; 3] = ["published", "refitted", "observer"];
+pub(crate) const METHODS: [&str; 3] = ["published", "refitted", "observer"];
 
 /// Who watches, and since when.
 #[derive(Clone, Debug)]
-pub struct Plan<'a> {
+pub(crate) struct Plan<'a> {
     /// The vessel that the monitor knows.
     pub nominal: &'a Vessel,
     /// Sensors of the monitor; shoulder, valve and pressure are among them.
@@ -42,7 +42,7 @@ pub struct Plan<'a> {
 
 /// What all of them made of a log. Every vector has the length of `time_s`.
 #[derive(Clone, Debug, Default)]
-pub struct MethodRun {
+pub(crate) struct MethodRun {
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Shoulder as read, °C.
@@ -67,7 +67,7 @@ pub struct MethodRun {
 
 impl MethodRun {
     /// When an error of the first two has lasted at a threshold, bar, for the first time after a time, s.
-    pub fn alarm_s(&self, method: usize, threshold_bar: f64, after_s: f64) -> Option<f64> {
+    pub(crate) fn alarm_s(&self, method: usize, threshold_bar: f64, after_s: f64) -> Option<f64> {
         let mut rows = self.time_s.iter().zip(&self.lasting_bar[method]);
         rows.find(|(time_s, lasting)| **time_s >= after_s && **lasting >= threshold_bar)
             .map(|(time_s, _)| *time_s)
@@ -141,7 +141,7 @@ impl Methods {
 ///
 /// # Errors
 /// A sensor is missing, or one of them cannot go on.
-pub fn run_methods(plan: &Plan<'_>, log: &Log) -> Result<MethodRun, ReproduceError> {
+pub(crate) fn run_methods(plan: &Plan<'_>, log: &Log) -> Result<MethodRun, ReproduceError> {
     let columns: Vec<usize> = plan
         .sensors
         .iter()

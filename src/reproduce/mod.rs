@@ -13,20 +13,20 @@
 //!
 //! [`run`] computes, [`Reproduction::report`] is the report, [`Reproduction::files`] gives the files to write.
 pub mod blowdown;
-pub mod checks;
-pub mod comparison;
+pub(crate) mod checks;
+mod comparison;
 pub mod cylinder;
-pub mod drawn_cylinders;
+mod drawn_cylinders;
 mod figures;
 mod files;
-pub mod identification;
+mod identification;
 pub mod measured;
-pub mod methods;
+mod methods;
 mod paragraphs;
-pub mod passage;
+mod passage;
 mod report;
-pub mod scheme;
-pub mod section_2;
+mod scheme;
+mod section_2;
 pub mod table_1;
 mod tables;
 
@@ -107,31 +107,31 @@ impl Default for Settings {
 #[derive(Clone, Debug)]
 pub struct Reproduction {
     /// Gas mass and heat capacities.
-    pub section_2: Section2,
+    pub(crate) section_2: Section2,
     /// Scenarios 1 to 4 of the paper.
-    pub scenarios: Vec<ScenarioRun>,
+    pub(crate) scenarios: Vec<ScenarioRun>,
     /// A closed bottle after a step of the air temperature.
-    pub closed: ScenarioRun,
+    pub(crate) closed: ScenarioRun,
     /// What the equation of state says about a tight cylinder.
-    pub tight: TightCylinder,
+    pub(crate) tight: TightCylinder,
     /// The measured blowdown I1.
-    pub blowdown: Blowdown,
+    pub(crate) blowdown: Blowdown,
     /// Table 1, figures 2 and 3.
-    pub identification: Identification,
+    pub(crate) identification: Identification,
     /// Figures 6 and 8 by the paper's scheme.
-    pub scheme: SchemeRun,
+    pub(crate) scheme: SchemeRun,
     /// Figure 6 on a simulated cylinder.
-    pub tunnel: Passage,
+    pub(crate) tunnel: Passage,
     /// Figure 8 on a simulated cylinder without its leak, for thresholds, and with it.
-    pub leak: [Passage; 2],
+    pub(crate) leak: [Passage; 2],
     /// Scenarios 1 to 4 on drawn cylinders.
-    pub drawn_cylinders: Vec<ScenarioScore>,
+    pub(crate) drawn_cylinders: Vec<ScenarioScore>,
     /// Leaks after a tunnel on drawn cylinders.
-    pub leaks: Vec<LeakScore>,
+    pub(crate) leaks: Vec<LeakScore>,
     /// Cylinders of each case.
-    pub cylinders: u64,
+    pub(crate) cylinders: u64,
     /// Seed.
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// Tells what is being done and which share of the work is done; steps count what they take, in parts of a second or so.
@@ -232,3 +232,6 @@ pub fn inputs() -> Vec<Input> {
         .filter_map(|(kind, name, text)| Some(Input::of(format!("preset {kind} {name}"), text?.as_bytes())));
     presets.chain(measured::FILES.iter().map(|(name, text)| Input::of(*name, text.as_bytes()))).collect()
 }
+
+#[cfg(test)]
+mod tests;

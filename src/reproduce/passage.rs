@@ -14,13 +14,13 @@ use crate::thermal::{scenario, vessel};
 /// Entry into the tunnel (t1), s.
 pub(crate) const ENTRY_S: f64 = 600.0;
 /// Onset of the leak (t2), s.
-pub const ONSET_S: f64 = 3600.0;
+pub(crate) const ONSET_S: f64 = 3600.0;
 /// The leak, g/h.
-pub const LEAK_G_H: f64 = 60.0;
+pub(crate) const LEAK_G_H: f64 = 60.0;
 
 /// What happens to the cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Case {
+pub(crate) enum Case {
     /// Figure 6: 3 h, tight.
     Tight,
     /// Figure 8 without its leak: 4 h.
@@ -31,7 +31,7 @@ pub enum Case {
 
 /// A passage.
 #[derive(Clone, Debug)]
-pub struct Passage {
+pub(crate) struct Passage {
     /// Air and mean gas temperature, °C, at the samples.
     pub air_degc: Vec<f64>,
     /// True mean gas temperature, °C.
@@ -44,7 +44,7 @@ pub struct Passage {
 ///
 /// # Errors
 /// The simulation's or a method's.
-pub fn passage(case: Case, pole_per_s: f64, seed: u64) -> Result<Passage, ReproduceError> {
+pub(crate) fn passage(case: Case, pole_per_s: f64, seed: u64) -> Result<Passage, ReproduceError> {
     let vessel = vessel::presets::load(VESSEL)?;
     let name = if case == Case::Tight { "tunnel-step" } else { "leak-after-tunnel" };
     let mut scenario = scenario::presets::load(name)?;

@@ -20,7 +20,7 @@ use rand_distr::StandardNormal;
 
 const BAR: f64 = 1e5;
 /// Interval of the samples, s.
-pub const SAMPLE_S: f64 = 10.0;
+pub(crate) const SAMPLE_S: f64 = 10.0;
 /// Duration of figures 6 and 8, s.
 const DURATION_S: f64 = 14_400.0;
 /// Noise of the pressure, Pa: 10 mbar.
@@ -34,7 +34,7 @@ const SHOULDER_DEGC: (f64, f64) = (-10.0, 35.0);
 
 /// What a block does.
 #[derive(Clone, Debug)]
-pub enum Stage {
+pub(crate) enum Stage {
     /// A reading that comes from outside, by its number.
     Reading(usize),
     /// Shoulder to gas.
@@ -62,7 +62,7 @@ pub enum Stage {
 
 /// A block of a scheme.
 #[derive(Clone, Debug)]
-pub struct Block {
+pub(crate) struct Block {
     /// What it is, as drawn.
     pub words: &'static str,
     /// What comes out, as drawn.
@@ -95,7 +95,7 @@ impl Block {
 
 /// A scheme: its blocks in the order in which they run.
 #[derive(Clone, Debug)]
-pub struct Scheme {
+pub(crate) struct Scheme {
     /// Title.
     pub title: &'static str,
     blocks: Vec<Block>,
@@ -103,7 +103,7 @@ pub struct Scheme {
 
 impl Scheme {
     /// Figure 4: from the shoulder to the expected pressure.
-    pub fn figure_4() -> Self {
+    pub(crate) fn figure_4() -> Self {
         let mut scheme =
             Self { title: "Figure 4: from the shoulder to the expected pressure", blocks: Vec::new() };
         scheme.expected();
@@ -112,7 +112,7 @@ impl Scheme {
     }
 
     /// Figure 5: the error between expected and actual pressure, and what is made of it.
-    pub fn figure_5() -> Self {
+    pub(crate) fn figure_5() -> Self {
         let mut scheme = Self { title: "Figure 5: the error, a threshold, a rate", blocks: Vec::new() };
         let expected = scheme.expected();
         let actual = scheme.add("pressure sensor", "p_a", (2.0, 2.1), Stage::Reading(1), &[]);
@@ -121,7 +121,7 @@ impl Scheme {
     }
 
     /// Figure 7: the simulated leak.
-    pub fn figure_7(seed: u64) -> Self {
+    pub(crate) fn figure_7(seed: u64) -> Self {
         let mut scheme = Self { title: "Figure 7: the same with a simulated leak", blocks: Vec::new() };
         let expected = scheme.expected();
         let noise = Stage::Noise(Box::new(ChaCha8Rng::seed_from_u64(seed)));
@@ -168,7 +168,7 @@ impl Scheme {
     }
 
     /// One sample: what comes out of every block, K, Pa, Pa/s, s or 1 and 0.
-    pub fn step(&mut self, time_s: f64, readings: &[f64]) -> Vec<f64> {
+    pub(crate) fn step(&mut self, time_s: f64, readings: &[f64]) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.blocks.len());
         for block in &mut self.blocks {
             let value = block.step(time_s, readings, &values);
@@ -178,7 +178,7 @@ impl Scheme {
     }
 
     /// The scheme as it runs.
-    pub fn diagram(&self) -> Diagram {
+    pub(crate) fn diagram(&self) -> Diagram {
         let node = |block: &Block| Node {
             words: block.words.into(),
             at: block.at,
@@ -216,7 +216,7 @@ impl Scheme {
 
 /// Figures 6 and 8 as the paper has them: the scheme of figure 7 over the step of the shoulder.
 #[derive(Clone, Debug, Default)]
-pub struct SchemeRun {
+pub(crate) struct SchemeRun {
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Shoulder, °C.
@@ -238,7 +238,7 @@ pub struct SchemeRun {
 }
 
 /// Runs the scheme of figure 7.
-pub fn run(seed: u64) -> SchemeRun {
+pub(crate) fn run(seed: u64) -> SchemeRun {
     let mut scheme = Scheme::figure_7(seed);
     let gas = scheme.index(|stage| matches!(stage, Stage::GasTemperature(_)));
     let expected = scheme.index(|stage| matches!(stage, Stage::Expectation(_)));

@@ -19,7 +19,7 @@ const GAS_J_KG_K: f64 = 1000.0;
 
 /// The arithmetic of the paper beside the real gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section2 {
+pub(crate) struct Section2 {
     /// Gas mass, kg, by the paper.
     pub paper_kg: f64,
     /// Gas mass, kg, by the equation of state.
@@ -41,7 +41,7 @@ impl Section2 {
     ///
     /// # Errors
     /// The gas's; none for nitrogen in this state.
-    pub fn evaluated() -> Result<Self, ReproduceError> {
+    pub(crate) fn evaluated() -> Result<Self, ReproduceError> {
         let gas = Fluid::named("nitrogen")?;
         let rho = gas.density_from_pressure_temperature(FILL_PRESSURE_PA, FILL_TEMPERATURE_K)?;
         let state = gas.checked_state(rho, FILL_TEMPERATURE_K)?;
@@ -58,12 +58,12 @@ impl Section2 {
     }
 
     /// Steel over gas by the paper, heat capacities.
-    pub fn paper_ratio(&self) -> f64 {
+    pub(crate) fn paper_ratio(&self) -> f64 {
         self.steel_j_k / self.paper_j_k
     }
 
     /// Steel over gas, heat capacities at constant volume.
-    pub fn real_ratio(&self) -> f64 {
+    pub(crate) fn real_ratio(&self) -> f64 {
         self.steel_j_k / self.real_j_k
     }
 }

@@ -3,14 +3,14 @@ use super::air::drawn;
 use super::quantities::Quantities;
 use super::recording::{AMBIENT, Recording};
 use crate::cli::fill::{self, FillSource, GivenFill};
+use crate::estimator::observer::ObserverSettings;
+use crate::estimator::observer::cylinder::Cylinder;
+use crate::estimator::sensor::{Parameter, ParameterKind};
+use crate::thermal::scenario::{AxialVariation, Initial, OutsideFilm, Scenario, Series, Surroundings};
+use crate::thermal::units::ZERO_CELSIUS_K;
+use crate::thermal::vessel::Fill;
+use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
-use cylwatch::estimator::observer::ObserverSettings;
-use cylwatch::estimator::observer::cylinder::Cylinder;
-use cylwatch::estimator::sensor::{Parameter, ParameterKind};
-use cylwatch::thermal::scenario::{AxialVariation, Initial, OutsideFilm, Scenario, Series, Surroundings};
-use cylwatch::thermal::units::ZERO_CELSIUS_K;
-use cylwatch::thermal::vessel::Fill;
-use cylwatch::thermal::vessel::Vessel;
 
 /// Gaps up to so many usual intervals are bridged.
 const BRIDGED_INTERVALS: f64 = 20.0;

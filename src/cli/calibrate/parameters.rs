@@ -1,12 +1,12 @@
 //! What is fitted: names, starts, priors and bounds of the command line as parameters.
 use super::conditions::Conditions;
 use super::recording::Recording;
+use crate::estimator::calibrate::{ParameterKind, ParameterNameError, ParameterSpec, Prior};
+use crate::estimator::log::Quantity;
+use crate::estimator::sensor::{Parameter, Sensor, SensorKind, SurfacePlace};
+use crate::report::calibrate::shown_unit;
+use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
-use cylwatch::estimator::calibrate::{ParameterKind, ParameterNameError, ParameterSpec, Prior};
-use cylwatch::estimator::log::Quantity;
-use cylwatch::estimator::sensor::{Parameter, Sensor, SensorKind, SurfacePlace};
-use cylwatch::report::calibrate::shown_unit;
-use cylwatch::thermal::vessel::Vessel;
 
 /// Prior of the valve's contact where --fit does not name it: 5 to 15 W/K, and no sensor sees it well.
 const CONTACT_SD: f64 = 0.5;

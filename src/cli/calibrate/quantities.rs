@@ -1,6 +1,6 @@
 //! Options of `calibrate` that have a unit: film, wind, gaps.
 use crate::cli::unit_options::{Choice, Choices, Given};
-use cylwatch::thermal::units::Dimension;
+use crate::thermal::units::Dimension;
 
 /// What can be given.
 #[derive(Clone, Debug)]

@@ -4,10 +4,10 @@ use crate::cli::message::Messages;
 use crate::cli::options::LogArguments;
 use crate::cli::progress::Progress;
 use crate::cli::selection::Selection;
-use cylwatch::estimator::log::{Channel, Log, Quantity};
-use cylwatch::estimator::sensor::{Sensor, SensorKind};
-use cylwatch::thermal::units::ZERO_CELSIUS_K;
-use cylwatch::thermal::vessel::Vessel;
+use crate::estimator::log::{Channel, Log, Quantity};
+use crate::estimator::sensor::{Sensor, SensorKind};
+use crate::thermal::units::ZERO_CELSIUS_K;
+use crate::thermal::vessel::Vessel;
 
 /// Column of the air.
 pub(super) const AMBIENT: &str = "ambient";

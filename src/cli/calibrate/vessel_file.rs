@@ -1,9 +1,9 @@
 //! The calibrated vessel, and its sensors, as files.
-use cylwatch::estimator::sensor::SensorsSpec;
-use cylwatch::report::calibrate::Study;
-use cylwatch::report::{Input, Provenance, number, rounded};
-use cylwatch::thermal::vessel::VesselSpec;
-use cylwatch::thermal::vessel::spec::{CalibrationSpec, FittedSpec, OriginSpec, PriorSpec};
+use crate::estimator::sensor::SensorsSpec;
+use crate::report::calibrate::Study;
+use crate::report::{Input, Provenance, number, rounded};
+use crate::thermal::vessel::VesselSpec;
+use crate::thermal::vessel::spec::{CalibrationSpec, FittedSpec, OriginSpec, PriorSpec};
 
 /// Significant digits of fitted values.
 const DIGITS: usize = 6;

@@ -2,11 +2,11 @@
 use crate::cli::number::{above, at_least};
 use crate::cli::options::FalseAlarmArguments;
 use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::evaluation::tails::Campaign;
+use crate::evaluation::world::{Climate, GasKind, RowPattern, SensorClass};
+use crate::thermal::units::Dimension;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use cylwatch::evaluation::tails::Campaign;
-use cylwatch::evaluation::world::{Climate, GasKind, RowPattern, SensorClass};
-use cylwatch::thermal::units::Dimension;
 use std::path::PathBuf;
 use std::str::FromStr;
 

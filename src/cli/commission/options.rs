@@ -1,8 +1,8 @@
 //! Options of `commission` that fit each other.
 use super::*;
-use cylwatch::thermal::units::Dimension;
-use cylwatch::thermal::units::QUOTED_K;
-use cylwatch::thermal::vessel::Vessel;
+use crate::thermal::units::Dimension;
+use crate::thermal::units::QUOTED_K;
+use crate::thermal::vessel::Vessel;
 
 /// Usual fill, Pa.
 const FILL_PA: f64 = 200.0 * BAR_PA;

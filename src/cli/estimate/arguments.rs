@@ -3,10 +3,10 @@ use crate::cli::fill::GivenFill;
 use crate::cli::options::{
     DataArguments, EXPERT, LogArguments, MORE, SensorArguments, VesselAndLog, ViewArguments,
 };
+use crate::estimator::EstimatorError;
+use crate::estimator::observer::Engine;
+use crate::report::estimate;
 use clap::{Args, ValueEnum};
-use cylwatch::estimator::EstimatorError;
-use cylwatch::estimator::observer::Engine;
-use cylwatch::report::estimate;
 use std::path::PathBuf;
 
 /// Arguments of `estimate`.

@@ -1,7 +1,7 @@
 //! The observer's way through the log: row by row, or smoothed, which hands rows out later.
+use crate::estimator::observer::{Estimate, Innovation, Observer, Smoother};
+use crate::log::{Row, Truth};
 use anyhow::Context;
-use cylwatch::estimator::observer::{Estimate, Innovation, Observer, Smoother};
-use cylwatch::log::{Row, Truth};
 use std::collections::VecDeque;
 
 /// A pass of an observer.

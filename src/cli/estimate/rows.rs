@@ -2,10 +2,10 @@
 use super::*;
 use crate::cli::row_stream::RowStream;
 use crate::cli::views::Made;
-use cylwatch::estimator::observer::cylinder::Cylinder;
-use cylwatch::estimator::observer::{Estimate, Innovation};
-use cylwatch::log::Truth;
-use cylwatch::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
+use crate::estimator::observer::cylinder::Cylinder;
+use crate::estimator::observer::{Estimate, Innovation};
+use crate::log::Truth;
+use crate::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
 use serde_json::Map;
 
 /// Change of the mass, relative, after which the slope of the settled pressure is taken anew.

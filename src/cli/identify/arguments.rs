@@ -3,10 +3,10 @@ use super::quantities::Quantities;
 use crate::cli::format::Format;
 use crate::cli::number::{at_least, within};
 use crate::cli::options::{EXPERT, LogArguments, MORE, OUTPUT, ViewArguments};
-use clap::{Args, ValueEnum};
-use cylwatch::estimator::identify::{
+use crate::estimator::identify::{
     DeadTime, ErrorModel, Gain, InitialState, InputCourse, Settings, StartMethod, Structure,
 };
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `identify`.

@@ -2,8 +2,8 @@
 use super::arguments::{HoldName, IdentifyArguments, MethodName};
 use super::record::base_name;
 use super::{Quantities, Record};
+use crate::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputCourse, Method, Structure};
 use anyhow::{Context, bail};
-use cylwatch::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputCourse, Method, Structure};
 
 /// A method that has what it needs, apart from the data.
 pub(super) struct Choice {

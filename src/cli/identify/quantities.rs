@@ -1,8 +1,8 @@
 //! Options of `identify` that have a unit: dead times, gaps, noises.
 use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::report::identify::Signal;
+use crate::thermal::units::{BAR_PA, Dimension};
 use anyhow::bail;
-use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::{BAR_PA, Dimension};
 
 /// What can be given.
 #[derive(Clone, Debug)]

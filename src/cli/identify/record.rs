@@ -1,11 +1,11 @@
 //! Columns of a log in memory, in the units that models are written in.
 use crate::cli::input::LogInput;
+use crate::estimator::log::Quantity;
+use crate::log::columns::TruthQuantity;
+use crate::log::{LogReader, Row};
+use crate::report::identify::Signal;
+use crate::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K, units_of};
 use anyhow::{Context, bail};
-use cylwatch::estimator::log::Quantity;
-use cylwatch::log::columns::TruthQuantity;
-use cylwatch::log::{LogReader, Row};
-use cylwatch::report::identify::Signal;
-use cylwatch::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K, units_of};
 
 /// What is true and may be identified from.
 const GAS_MEAN: &str = "gas_mean";

@@ -5,9 +5,9 @@ use crate::cli::options::{
     ViewArguments,
 };
 use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::report::monitor;
+use crate::thermal::units::Dimension;
 use clap::Args;
-use cylwatch::report::monitor;
-use cylwatch::thermal::units::Dimension;
 use std::path::PathBuf;
 
 /// What the verdict is held against, and times.

@@ -2,13 +2,13 @@
 use super::resume::refused;
 use super::state::{Refusal, State};
 use super::*;
-use cylwatch::detector::monitor::alarm::AlarmSettings;
-use cylwatch::detector::monitor::{Limits, Monitor, MonitorSettings};
-use cylwatch::detector::prognosis::{Contents, ReactionSettings};
-use cylwatch::estimator::log::Quantity;
-use cylwatch::thermal::units::BAR_PA;
-use cylwatch::thermal::units::QUOTED_K;
-use cylwatch::thermal::vessel::Fill;
+use crate::detector::monitor::alarm::AlarmSettings;
+use crate::detector::monitor::{Limits, Monitor, MonitorSettings};
+use crate::detector::prognosis::{Contents, ReactionSettings};
+use crate::estimator::log::Quantity;
+use crate::thermal::units::BAR_PA;
+use crate::thermal::units::QUOTED_K;
+use crate::thermal::vessel::Fill;
 
 /// A monitor and what a run must know beside it.
 pub(super) struct Engine {
@@ -32,7 +32,7 @@ fn settings(options: &Options, beginning: &RunStart, settled: bool) -> anyhow::R
         observer: fill::settings(defaults.observer, settled),
         false_alarm_interval_s: options.between_false_alarms_s,
         limits: Limits { operational_pa: limits.limit_pa, coldest_k: limits.coldest_k, ..defaults.limits },
-        intake: cylwatch::detector::monitor::intake::IntakeSettings {
+        intake: crate::detector::monitor::intake::IntakeSettings {
             lateness_s: options.lateness_s,
             step_s: options.step_s,
             ..defaults.intake

@@ -2,9 +2,9 @@
 use crate::cli::message::Messages;
 use crate::cli::output::{Appended, Target};
 use crate::cli::progress::Progress;
-use cylwatch::detector::monitor::Event;
-use cylwatch::detector::monitor::alarm::AlarmEvent;
-use cylwatch::report::monitor::{Naming, alarm_line, alarm_text, event_line, event_text};
+use crate::detector::monitor::Event;
+use crate::detector::monitor::alarm::AlarmEvent;
+use crate::report::monitor::{Naming, alarm_line, alarm_text, event_line, event_text};
 use serde_json::json;
 
 /// A sink of events.

@@ -4,10 +4,10 @@ use super::*;
 use crate::cli::options::LogArguments;
 use crate::cli::output::check_distinct;
 use crate::cli::unit_options::Given;
-use cylwatch::detector::monitor::intake::IntakeSettings;
-use cylwatch::report::monitor::OperatingLimits;
-use cylwatch::thermal::units::DAY_S;
-use cylwatch::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K};
+use crate::detector::monitor::intake::IntakeSettings;
+use crate::report::monitor::OperatingLimits;
+use crate::thermal::units::DAY_S;
+use crate::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K};
 use std::path::PathBuf;
 use std::time::Duration;
 

@@ -1,11 +1,11 @@
 //! How a run begins: from a state, or cold.
 use super::state::{Identity, Refusal, State};
 use super::*;
+use crate::estimator::sensor::Sensor;
+use crate::report::commission::{CommissionedVessel, VesselMark};
+use crate::report::{Input, digest};
+use crate::thermal::vessel::Vessel;
 use anyhow::anyhow;
-use cylwatch::estimator::sensor::Sensor;
-use cylwatch::report::commission::{CommissionedVessel, VesselMark};
-use cylwatch::report::{Input, digest};
-use cylwatch::thermal::vessel::Vessel;
 use jiff::Timestamp;
 
 /// A vessel and what is known of its past.
@@ -63,7 +63,7 @@ impl RunStart {
     /// What a state of this run belongs to. Limits, the coldest night, how rare a false alarm is to be and thresholds of its own are taken over as they are now.
     pub(super) fn identity(&self, options: &Options, sensors: &[Sensor]) -> Identity {
         let names: Vec<&str> = sensors.iter().map(|sensor| sensor.name.as_str()).collect();
-        let value = |value: f64| cylwatch::report::number(value, 9);
+        let value = |value: f64| crate::report::number(value, 9);
         let mut entries = vec![
             ("vessel", format!("{} ({})", self.mark.name, self.mark.digest)),
             ("sensors", format!("{} ({})", names.join(", "), digest(&format!("{sensors:?}")))),

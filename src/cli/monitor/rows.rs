@@ -1,11 +1,11 @@
 //! Outputs as rows of the data.
 use super::*;
 use crate::cli::row_stream::RowStream;
-use cylwatch::detector::monitor::Output;
-use cylwatch::detector::prognosis::Contents;
-use cylwatch::report::monitor::{self as report, MonitorRow, Summary};
-use cylwatch::thermal::units::QUOTED_K;
-use cylwatch::thermal::vessel::Vessel;
+use crate::detector::monitor::Output;
+use crate::detector::prognosis::Contents;
+use crate::report::monitor::{self as report, MonitorRow, Summary};
+use crate::thermal::units::QUOTED_K;
+use crate::thermal::vessel::Vessel;
 use serde_json::{Map, json};
 
 /// Relative width of the classes of mass that share a slope of the settled pressure.

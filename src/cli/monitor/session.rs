@@ -4,10 +4,10 @@ use super::resume::refused;
 use super::rows::Rows;
 use super::state::{Identity, Refusal, State};
 use super::*;
-use cylwatch::detector::monitor::intake::Counts;
-use cylwatch::detector::monitor::{Monitor, Outcome, Output};
-use cylwatch::log::Truth;
-use cylwatch::report::monitor::{self as report, Clock, FigureData, Naming, RowCounts, Summary};
+use crate::detector::monitor::intake::Counts;
+use crate::detector::monitor::{Monitor, Outcome, Output};
+use crate::log::Truth;
+use crate::report::monitor::{self as report, Clock, FigureData, Naming, RowCounts, Summary};
 use std::collections::VecDeque;
 use std::time::Instant;
 

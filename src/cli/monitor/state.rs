@@ -3,10 +3,10 @@
 //! The first line says what the file is, its version, and length and SHA-256 of what follows, in a binary form. A file is written beside its
 //! place and renamed, so that there is always a whole one, the new or the old.
 use crate::cli::output::write_file;
+use crate::detector::DetectorError;
+use crate::detector::monitor::Output;
+use crate::report::Input;
 use anyhow::Context;
-use cylwatch::detector::DetectorError;
-use cylwatch::detector::monitor::Output;
-use cylwatch::report::Input;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

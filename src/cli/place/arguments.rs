@@ -2,10 +2,10 @@
 use super::quantities::Quantities;
 use crate::cli::number::at_least;
 use crate::cli::options::{DataArguments, EXPERT, FalseAlarmArguments, MORE, OUTPUT, ViewArguments};
+use crate::estimator::placement::Criterion;
+use crate::estimator::placement::search::Method;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use cylwatch::estimator::placement::Criterion;
-use cylwatch::estimator::placement::search::Method;
 use std::path::PathBuf;
 
 /// Arguments of `place`.

@@ -1,11 +1,11 @@
 //! Options that fit each other.
 use super::*;
 use crate::cli::output::check_distinct;
-use cylwatch::estimator::placement::search::Method;
-use cylwatch::estimator::placement::{
+use crate::estimator::placement::search::Method;
+use crate::estimator::placement::{
     Criterion, DetectionSettings, PublishedSettings, SiteSettings, signature_threshold_sd,
 };
-use cylwatch::report::number;
+use crate::report::number;
 use std::path::Path;
 
 /// Scenario where none is named: a train in a tunnel in winter, for which the paper places its sensors.

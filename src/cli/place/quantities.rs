@@ -1,7 +1,7 @@
 //! Options of `place` that have a unit: where the cylinder stands, what is to be found, how long is searched.
 use crate::cli::unit_options::{Choice, Choices, Given};
-use cylwatch::estimator::placement::Conditions;
-use cylwatch::thermal::units::Dimension;
+use crate::estimator::placement::Conditions;
+use crate::thermal::units::Dimension;
 use std::time::Duration;
 
 /// What can be given.

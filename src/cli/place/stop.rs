@@ -1,6 +1,6 @@
 //! What ends a search early: Ctrl-C and the time limit. Meanwhile the progress is shown.
 use crate::cli::progress::Progress;
-use cylwatch::estimator::placement::search::Watch;
+use crate::estimator::placement::search::Watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};

@@ -12,7 +12,7 @@ const COARSE_PART: f64 = 0.1;
 const UNLEARNT: f64 = 0.9;
 
 /// Cautions of a calibration as sentences.
-pub fn cautions(study: &Study) -> Vec<String> {
+pub(crate) fn cautions(study: &Study) -> Vec<String> {
     let found = &study.calibrated.identifiability;
     let mut cautions: Vec<String> = found.inseparable.iter().map(inseparable).collect();
     cautions.extend(misfits(study));

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 const DIGITS: usize = 8;
 
 /// Everything as JSON, SI units.
-pub fn document(study: &Study, date: &str, provenance: &Provenance) -> Value {
+pub(crate) fn document(study: &Study, date: &str, provenance: &Provenance) -> Value {
     let calibrated = &study.calibrated;
     let settings = &study.calibration.settings;
     json!({

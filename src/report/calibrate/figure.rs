@@ -9,7 +9,7 @@ use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 const QUANTILE_99: f64 = 2.576;
 
 /// All logs, one below the other.
-pub fn figure(study: &Study) -> Picture {
+pub(crate) fn figure(study: &Study) -> Picture {
     let figures = study.fitted_sources().into_iter().flat_map(|log| {
         let of_log = |one: &&ChannelResiduals| one.experiment == log;
         let channels: Vec<&ChannelResiduals> = study.calibrated.channels.iter().filter(of_log).collect();

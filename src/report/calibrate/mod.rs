@@ -5,12 +5,12 @@ mod figure;
 mod study;
 mod summary;
 
-pub use caution::cautions;
-pub use document::document;
-pub use figure::figure;
-pub use study::{Line, Study, shown_unit};
-pub use summary::summary;
+pub(crate) use caution::cautions;
+pub(crate) use document::document;
+pub(crate) use figure::figure;
+pub(crate) use study::{Line, Study, shown_unit};
+pub(crate) use summary::summary;
 
 /// What the figure shows.
-pub const CAPTION: &str =
+pub(crate) const CAPTION: &str =
     "Readings and model of every channel, residuals, and their autocorrelation within bounds of 99 %.";

@@ -11,7 +11,7 @@ const PASCAL_PER_MILLIBAR: f64 = 1e2;
 
 /// A finished calibration.
 #[derive(Clone, Debug)]
-pub struct Study {
+pub(crate) struct Study {
     /// What was to be fitted, to what.
     pub calibration: Calibration,
     /// What was found.
@@ -30,7 +30,7 @@ pub struct Study {
 
 /// A fitted parameter for people.
 #[derive(Clone, Copy, Debug)]
-pub struct Line<'a> {
+pub(crate) struct Line<'a> {
     /// Place in the list of parameters.
     pub place: usize,
     /// What was found.
@@ -44,7 +44,7 @@ pub struct Line<'a> {
 }
 
 /// Unit of a parameter for people, and what it is in SI.
-pub fn shown_unit(kind: &ParameterKind, is_pressure: bool) -> (&'static str, f64) {
+pub(crate) fn shown_unit(kind: &ParameterKind, is_pressure: bool) -> (&'static str, f64) {
     match kind.si_unit(is_pressure) {
         "Pa" => ("bar", BAR_PA),
         "Pa/K" => ("mbar/K", PASCAL_PER_MILLIBAR),
@@ -54,14 +54,14 @@ pub fn shown_unit(kind: &ParameterKind, is_pressure: bool) -> (&'static str, f64
 
 impl Line<'_> {
     /// Share of the prior's variance that the logs have taken away; 1 without a prior.
-    pub fn learnt(&self) -> f64 {
+    pub(crate) fn learnt(&self) -> f64 {
         1.0 - self.estimate.prior_share.unwrap_or(0.0)
     }
 }
 
 impl Study {
     /// Parameters that took part, in their order.
-    pub fn lines(&self) -> Vec<Line<'_>> {
+    pub(crate) fn lines(&self) -> Vec<Line<'_>> {
         let specs = &self.calibration.parameters;
         let lines = self.calibrated.estimates.iter().zip(specs).enumerate();
         lines
@@ -74,7 +74,7 @@ impl Study {
     }
 
     /// The same as lines of a vessel file, SI.
-    pub fn fitted_lines(&self) -> Vec<FittedSpec> {
+    pub(crate) fn fitted_lines(&self) -> Vec<FittedSpec> {
         let lines = self.calibrated.fitted_specification(&self.sources());
         let specs = &self.calibration.parameters;
         lines
@@ -86,7 +86,7 @@ impl Study {
     }
 
     /// Name of a parameter, with its log where there are several.
-    pub fn name(&self, line: &Line<'_>) -> String {
+    pub(crate) fn name(&self, line: &Line<'_>) -> String {
         let name = line.spec.kind.name();
         match &line.spec.scope {
             Scope::Only(these) if self.fitted_sources().len() > 1 => {
@@ -98,7 +98,7 @@ impl Study {
     }
 
     /// Logs that were fitted.
-    pub fn fitted_sources(&self) -> Vec<&str> {
+    pub(crate) fn fitted_sources(&self) -> Vec<&str> {
         let mut sources: Vec<&str> = Vec::new();
         for channel in &self.calibrated.channels {
             if !sources.contains(&channel.experiment.as_str()) {
@@ -109,14 +109,14 @@ impl Study {
     }
 
     /// Place of the log whose vessel is the main one.
-    pub fn main_experiment(&self) -> usize {
+    pub(crate) fn main_experiment(&self) -> usize {
         let fitted = self.fitted_sources();
         let is_main = |one: &Experiment| one.vessel.is_none() && fitted.contains(&one.source.as_str());
         self.calibration.experiments.iter().position(is_main).unwrap_or(0)
     }
 
     /// How it was fitted.
-    pub fn settings_text(&self) -> String {
+    pub(crate) fn settings_text(&self) -> String {
         let fitted = self.fitted_sources();
         let of_fitted = |words: &&String| fitted.iter().any(|name| words.starts_with(&format!("{name}:")));
         let mut words: Vec<String> = self.conditions.iter().filter(of_fitted).cloned().collect();
@@ -138,7 +138,7 @@ impl Study {
     }
 
     /// Readings of a channel at the times of its residuals, K or Pa.
-    pub fn readings(&self, channel: &ChannelResiduals) -> Vec<f64> {
+    pub(crate) fn readings(&self, channel: &ChannelResiduals) -> Vec<f64> {
         let experiment = self.calibration.experiments.iter().find(|one| one.source == channel.experiment);
         let Some(log) = experiment.map(|one| &one.log) else { return Vec::new() };
         let Some(at) = log.channels.iter().position(|one| one.name == channel.channel) else {
@@ -149,7 +149,7 @@ impl Study {
     }
 
     /// Whether a channel of a log is a pressure.
-    pub fn is_pressure(&self, experiment: &str, channel: &str) -> bool {
+    pub(crate) fn is_pressure(&self, experiment: &str, channel: &str) -> bool {
         let experiment = self.calibration.experiments.iter().find(|one| one.source == experiment);
         experiment.is_some_and(|one| {
             let found = one.log.channels.iter().find(|known| known.name == channel);

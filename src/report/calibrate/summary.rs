@@ -8,7 +8,7 @@ use crate::thermal::units::BAR_PA;
 const DIGITS: usize = 4;
 
 /// The study in words and tables.
-pub fn summary(study: &Study) -> Report {
+pub(crate) fn summary(study: &Study) -> Report {
     let calibrated = &study.calibrated;
     let percent = format!("{} % low", 100.0 * study.calibration.settings.confidence);
     let high = percent.replace("low", "high");

@@ -20,19 +20,19 @@ const DIFFERENCE: usize = 13;
 
 /// What a figure needs, collected row by row.
 #[derive(Clone, Debug)]
-pub struct FigureData {
+pub(crate) struct FigureData {
     curves: DecimatedCurves,
     sensors: Vec<String>,
 }
 
 impl FigureData {
     /// For an observer with these sensors.
-    pub fn new(sensors: Vec<String>) -> Self {
+    pub(crate) fn new(sensors: Vec<String>) -> Self {
         Self { curves: DecimatedCurves::new(FIXED + sensors.len()), sensors }
     }
 
     /// Adds a row.
-    pub fn push(&mut self, estimate: &Estimate, truth: &Truth, innovations: &[Innovation]) {
+    pub(crate) fn push(&mut self, estimate: &Estimate, truth: &Truth, innovations: &[Innovation]) {
         let band = |value: f64, sd: f64, truth: f64| [value, value - 2.0 * sd, value + 2.0 * sd, truth];
         let gas_degc = estimate.gas_mean_k - ZERO_CELSIUS_K;
         let gas = band(gas_degc, estimate.gas_mean_sd_k, truth.gas_mean_k - ZERO_CELSIUS_K);
@@ -77,7 +77,7 @@ impl FigureData {
 }
 
 /// The figure of a run.
-pub fn figure(title: &str, data: &FigureData) -> Figure {
+pub(crate) fn figure(title: &str, data: &FigureData) -> Figure {
     let panels = [
         data.estimate("gas temperature in °C", GAS, 1.0),
         data.estimate("gas mass in kg", MASS, 0.8),

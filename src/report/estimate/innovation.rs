@@ -8,14 +8,14 @@ use crate::estimator::observer::{Innovation, Outcome};
 
 /// Counts and statistics of the innovations of a run.
 #[derive(Clone, Debug)]
-pub struct Innovations {
+pub(crate) struct Innovations {
     counts: Vec<Counts>,
     consistency: RunConsistency,
 }
 
 /// What became of the readings of a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub(crate) struct Counts {
     /// Readings that were used, also those that were taken after too many refusals.
     pub used: u64,
     /// Readings that were refused.
@@ -26,13 +26,13 @@ pub struct Counts {
 
 impl Innovations {
     /// For sensors of these names.
-    pub fn new(names: &[String]) -> Self {
+    pub(crate) fn new(names: &[String]) -> Self {
         let consistency = RunConsistency::new(names, RunConsistency::LAGS);
         Self { counts: vec![Counts::default(); names.len()], consistency }
     }
 
     /// Counts the innovations of a row.
-    pub fn push(&mut self, innovations: &[Innovation]) {
+    pub(crate) fn push(&mut self, innovations: &[Innovation]) {
         for (counts, innovation) in self.counts.iter_mut().zip(innovations) {
             match innovation.outcome {
                 Outcome::Missing => counts.missing += 1,
@@ -44,12 +44,12 @@ impl Innovations {
     }
 
     /// Counts in the order of the sensors.
-    pub fn counts(&self) -> &[Counts] {
+    pub(crate) fn counts(&self) -> &[Counts] {
         &self.counts
     }
 
     /// Sizes and whiteness with what they say, at one in a hundred.
-    pub fn report(&self) -> ConsistencyReport {
+    pub(crate) fn report(&self) -> ConsistencyReport {
         self.consistency.report(Significance::ONE_PERCENT)
     }
 }

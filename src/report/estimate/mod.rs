@@ -11,13 +11,13 @@ mod score;
 mod summary;
 
 pub(crate) use decimation::DecimatedCurves;
-pub use figure::{FigureData, figure};
-pub use innovation::{Counts, Innovations};
-pub use row::{DOCUMENTATION, EstimateRow, fields};
-pub use score::{Score, Spread};
-pub use summary::{Summary, document, doubts, summary};
+pub(crate) use figure::{FigureData, figure};
+pub(crate) use innovation::Innovations;
+pub(crate) use row::{DOCUMENTATION, EstimateRow, fields};
+pub(crate) use score::Score;
+pub(crate) use summary::{Summary, document, doubts, summary};
 pub(in crate::report) use summary::{duration, log as sampling_text};
 
 /// What the figure of a run shows.
-pub const CAPTION: &str = "Gas temperature, mass and leak rate with bands of two standard deviations, truth where the log has it, and the \
+pub(crate) const CAPTION: &str = "Gas temperature, mass and leak rate with bands of two standard deviations, truth where the log has it, and the \
                            innovations: readings less what was expected of them.";

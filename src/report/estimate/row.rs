@@ -4,7 +4,7 @@ use crate::report::{BAR_PER_HOUR, Digits, Field, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 
 /// What the columns mean, for a help page.
-pub const DOCUMENTATION: &str = "\
+pub(crate) const DOCUMENTATION: &str = "\
 Columns (empty where nothing is known; sd is a standard deviation):
   time_s                 of the row; counted from the first row where the log has dates
   gas_mean_degc, _sd_k   mean temperature of the gas
@@ -21,7 +21,7 @@ Columns (empty where nothing is known; sd is a standard deviation):
 
 /// An estimate with what a file says beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EstimateRow {
+pub(crate) struct EstimateRow {
     /// Estimate.
     pub estimate: Estimate,
     /// The leak as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown.
@@ -37,7 +37,7 @@ impl AsRef<Self> for EstimateRow {
 }
 
 /// Columns of an estimate, with the decimals that are worth writing.
-pub fn fields<R: AsRef<EstimateRow>>() -> [Field<R>; 13] {
+pub(crate) fn fields<R: AsRef<EstimateRow>>() -> [Field<R>; 13] {
     use Digits::{All, Decimals};
     [
         Field::number("time_s", All, |row: &R| row.as_ref().estimate.time_s),

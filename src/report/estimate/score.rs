@@ -4,7 +4,7 @@ use crate::log::Truth;
 
 /// Differences of estimate and truth, as sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spread {
+pub(crate) struct Spread {
     count: u64,
     sum: f64,
     squares: f64,
@@ -27,34 +27,34 @@ impl Spread {
     }
 
     /// Rows that count.
-    pub fn count(&self) -> u64 {
+    pub(crate) fn count(&self) -> u64 {
         self.count
     }
 
     /// Mean difference; NaN without rows.
-    pub fn mean(&self) -> f64 {
+    pub(crate) fn mean(&self) -> f64 {
         self.sum / self.count as f64
     }
 
     /// Root of the mean square; NaN without rows.
-    pub fn rms(&self) -> f64 {
+    pub(crate) fn rms(&self) -> f64 {
         (self.squares / self.count as f64).sqrt()
     }
 
     /// Largest difference in size.
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.largest
     }
 
     /// Share of rows where the truth lay within two standard deviations; 0.954 of a normal distribution do.
-    pub fn covered(&self) -> f64 {
+    pub(crate) fn covered(&self) -> f64 {
         self.covered as f64 / self.count as f64
     }
 }
 
 /// Estimates against the truth, row by row. SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Score {
+pub(crate) struct Score {
     /// Mean gas temperature, K.
     pub gas_mean_k: Spread,
     /// Gas mass, kg.
@@ -65,7 +65,7 @@ pub struct Score {
 
 impl Score {
     /// Counts a row.
-    pub fn push(&mut self, estimate: &Estimate, truth: &Truth) {
+    pub(crate) fn push(&mut self, estimate: &Estimate, truth: &Truth) {
         self.gas_mean_k.push(estimate.gas_mean_k - truth.gas_mean_k, estimate.gas_mean_sd_k);
         self.mass_kg.push(estimate.mass_kg - truth.mass_kg, estimate.mass_sd_kg);
         self.leak_kg_s.push(estimate.leak_kg_s - truth.outflow_kg_s, estimate.leak_sd_kg_s);

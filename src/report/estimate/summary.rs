@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 /// What is left of a run when its rows have gone.
 #[derive(Clone, Debug)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// Title: vessel and sensors.
     pub title: String,
     /// How the log was sampled.
@@ -30,7 +30,7 @@ pub struct Summary {
 }
 
 /// The run in a few lines, and its sensors.
-pub fn summary(summary: &Summary) -> Report {
+pub(crate) fn summary(summary: &Summary) -> Report {
     let mut facts = vec![("log", log(&summary.sampling))];
     facts.extend(end(summary));
     match summary.restarts {
@@ -44,7 +44,7 @@ pub fn summary(summary: &Summary) -> Report {
 }
 
 /// What speaks against the model: sensors whose readings it refused so often that it does not describe them.
-pub fn doubts(summary: &Summary) -> Vec<String> {
+pub(crate) fn doubts(summary: &Summary) -> Vec<String> {
     const FEWEST: u64 = 5;
     const SHARE: f64 = 0.05;
     let doubt = |(name, counts): (String, &Counts)| {
@@ -178,7 +178,7 @@ pub(in crate::report) fn duration(duration_s: f64) -> String {
 }
 
 /// The run as JSON; null where nothing is known.
-pub fn document(summary: &Summary) -> Value {
+pub(crate) fn document(summary: &Summary) -> Value {
     let (sampling, gaps) = (&summary.sampling, summary.sampling.gaps());
     let spread = |spread: &Spread, factor: f64| match spread.count() {
         0 => Value::Null,

@@ -4,7 +4,7 @@ use super::summary::probability;
 use crate::estimator::identify::Caution;
 
 /// Cautions of an identification as sentences.
-pub fn cautions(study: &Study) -> Vec<String> {
+pub(crate) fn cautions(study: &Study) -> Vec<String> {
     study.identified.cautions.iter().map(|caution| sentence(study, caution)).collect()
 }
 

@@ -4,7 +4,7 @@ use crate::estimator::identify::Residuals;
 use crate::report::figure::{Figure, Horizontal, Item, Panel, Picture, correlation, style};
 
 /// Data, model and errors against time, also of the held-out data; below, the errors' correlations against the lag.
-pub fn figure(study: &Study) -> Picture {
+pub(crate) fn figure(study: &Study) -> Picture {
     let mut figures = vec![over_time(study, &study.fitted, &study.identified.residuals, study.title())];
     figures.extend(study.held_out.as_ref().and_then(|part| {
         let title = format!("held out: {}", part.name);

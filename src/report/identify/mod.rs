@@ -5,12 +5,12 @@ mod series;
 mod study;
 mod summary;
 
-pub use caution::cautions;
-pub use figure::figure;
-pub use series::{document, table};
-pub use study::{Judged, Part, Signal, Start, Study};
-pub use summary::summary;
+pub(crate) use caution::cautions;
+pub(crate) use figure::figure;
+pub(crate) use series::{document, table};
+pub(crate) use study::{Part, Signal, Study};
+pub(crate) use summary::summary;
 
 /// What the figure shows.
-pub const CAPTION: &str = "Input, output, identified and published model; their errors; autocorrelation of the errors and their correlation with the \
+pub(crate) const CAPTION: &str = "Input, output, identified and published model; their errors; autocorrelation of the errors and their correlation with the \
                            input within bounds of 99 %.";

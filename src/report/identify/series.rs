@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 const DIGITS: Digits = Digits::Significant(10);
 
 /// Data, model and errors row by row, the held-out ones after the fitted ones.
-pub fn table(study: &Study) -> Table {
+pub(crate) fn table(study: &Study) -> Table {
     let parts = [
         Some((0.0, &study.fitted, &study.identified.residuals)),
         study.held_out.as_ref().and_then(|part| Some((1.0, part, &part.identified()?.residuals))),
@@ -56,7 +56,7 @@ pub fn table(study: &Study) -> Table {
 }
 
 /// Everything as JSON; `options` is the request.
-pub fn document(study: &Study, options: &Value, provenance: &Provenance) -> Value {
+pub(crate) fn document(study: &Study, options: &Value, provenance: &Provenance) -> Value {
     let signal = |signal: &super::Signal| json!({ "name": signal.name, "unit": signal.suffix });
     let comparable = study.fitted.published().is_some();
     json!({

@@ -5,7 +5,7 @@ use crate::estimator::identify::{
 
 /// A column that is identified from.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Signal {
+pub(crate) struct Signal {
     /// Name, as `shoulder`.
     pub name: String,
     /// Suffix of the unit of its values, as `degc`.
@@ -18,24 +18,24 @@ pub struct Signal {
 
 impl Signal {
     /// A temperature, °C.
-    pub fn temperature(name: impl Into<String>) -> Self {
+    pub(crate) fn temperature(name: impl Into<String>) -> Self {
         Self { name: name.into(), suffix: "degc", unit: "°C", difference: "K" }
     }
 
     /// A pressure, bar.
-    pub fn pressure(name: impl Into<String>) -> Self {
+    pub(crate) fn pressure(name: impl Into<String>) -> Self {
         Self { name: name.into(), suffix: "bar", unit: "bar", difference: "bar" }
     }
 
     /// Whether it is a temperature.
-    pub fn is_temperature(&self) -> bool {
+    pub(crate) fn is_temperature(&self) -> bool {
         self.suffix == "degc"
     }
 }
 
 /// State in which a model starts on data that it was not identified from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub(crate) enum Start {
     /// Fitted to the data.
     Fitted,
     /// At the first output, for a model of order 1.
@@ -54,7 +54,7 @@ impl Start {
     }
 
     /// In a few words.
-    pub fn text(self) -> &'static str {
+    pub(crate) fn text(self) -> &'static str {
         match self {
             Self::Fitted => "fitted",
             Self::FirstOutput => "first output",
@@ -77,7 +77,7 @@ impl Start {
 
 /// A given model on data from one start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub(crate) struct Judged {
     /// Which model.
     pub model: &'static str,
     /// Where it starts.
@@ -92,7 +92,7 @@ const PUBLISHED: &str = "published";
 
 /// Data with the models that were judged on them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub(crate) struct Part {
     /// What the data are, as a file's name.
     pub name: String,
     /// The data.
@@ -103,7 +103,7 @@ pub struct Part {
 
 /// An identification with its comparisons.
 #[derive(Clone, Debug)]
-pub struct Study {
+pub(crate) struct Study {
     /// The input.
     pub input: Signal,
     /// The output.
@@ -123,7 +123,7 @@ impl Study {
     ///
     /// # Errors
     /// The other data hold nothing to compare with.
-    pub fn new(
+    pub(crate) fn new(
         (input, output): (Signal, Signal),
         method: String,
         identified: Identified,
@@ -157,30 +157,30 @@ impl Study {
     }
 
     /// Title: from which column to which.
-    pub fn title(&self) -> String {
+    pub(crate) fn title(&self) -> String {
         format!("{} \u{2192} {}", self.input.name, self.output.name)
     }
 }
 
 impl Part {
     /// A model from a start.
-    pub fn of(&self, model: &str, start: Start) -> Option<&Comparison> {
+    pub(crate) fn of(&self, model: &str, start: Start) -> Option<&Comparison> {
         let found = self.judged.iter().find(|judged| judged.model == model && judged.start == start);
         found.map(|judged| &judged.comparison)
     }
 
     /// The identified model with a fitted start; none on the data that it was identified from.
-    pub fn identified(&self) -> Option<&Comparison> {
+    pub(crate) fn identified(&self) -> Option<&Comparison> {
         self.of(IDENTIFIED, Start::Fitted)
     }
 
     /// The published model with a fitted start.
-    pub fn published(&self) -> Option<&Comparison> {
+    pub(crate) fn published(&self) -> Option<&Comparison> {
         self.of(PUBLISHED, Start::Fitted)
     }
 
     /// Rows of the data that errors belong to.
-    pub fn rows(&self, errors: &Residuals) -> Vec<usize> {
+    pub(crate) fn rows(&self, errors: &Residuals) -> Vec<usize> {
         let times = self.data.time_s();
         let mut row = 0;
         let row_of = |time_s: &f64| {
@@ -198,7 +198,7 @@ impl Part {
     }
 
     /// What the model says at the times of its errors.
-    pub fn simulated(&self, errors: &Residuals) -> Vec<f64> {
+    pub(crate) fn simulated(&self, errors: &Residuals) -> Vec<f64> {
         let rows = self.rows(errors);
         rows.iter().zip(&errors.values).map(|(&row, error)| self.data.output()[row] - error).collect()
     }

@@ -7,7 +7,7 @@ use crate::report::{Report, number};
 const DIGITS: usize = 5;
 
 /// The study in words and tables.
-pub fn summary(study: &Study) -> Report {
+pub(crate) fn summary(study: &Study) -> Report {
     let header = ["", "value", "95 % low", "95 % high", "unit"];
     let report = Report::new(study.title()).text(format!("{}\n{}", log(&study.fitted), study.method)).rows(
         "",

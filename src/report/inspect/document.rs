@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 const DIGITS: usize = 10;
 
 /// Everything; values in the units of the file, times in s, null where nothing is known.
-pub fn document(inspection: &Inspection, provenance: &Provenance) -> Value {
+pub(crate) fn document(inspection: &Inspection, provenance: &Provenance) -> Value {
     let (form, times) = (&inspection.form, &inspection.times);
     let (from, to) = times.span_s;
     let (steps_back, first_back) = times.steps_back;

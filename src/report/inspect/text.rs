@@ -15,7 +15,7 @@ const DIGITS: usize = 6;
 const LISTED: usize = 12;
 
 /// All of it.
-pub fn text(inspection: &Inspection) -> String {
+pub(crate) fn text(inspection: &Inspection) -> String {
     let mut text = format!("{}: {}\n", inspection.name, form(inspection));
     text.push('\n');
     for (what, words) in times(&inspection.times) {
@@ -38,7 +38,7 @@ pub fn text(inspection: &Inspection) -> String {
 const VESSEL: &str = "In place of nitrogen-20l write your own vessel file, see `cylwatch init`.";
 
 /// The same for a page.
-pub fn summary(inspection: &Inspection) -> Report {
+pub(crate) fn summary(inspection: &Inspection) -> Report {
     let facts = std::iter::once(("form", form(inspection))).chain(times(&inspection.times));
     let mut report = Report::new(format!("The log {}", inspection.name))
         .facts(facts)

@@ -4,7 +4,7 @@ use crate::detector::monitor::alarm::{AlarmEvent, AlarmName, Change, Condition};
 use serde_json::json;
 
 /// A change of an alarm in words.
-pub fn alarm_text(event: &AlarmEvent, clock: &Clock) -> String {
+pub(crate) fn alarm_text(event: &AlarmEvent, clock: &Clock) -> String {
     let transition = &event.transition;
     let condition = &transition.condition;
     let limit = condition.limit.map_or(String::new(), |limit| format!(" at {}", limit.as_str()));
@@ -30,7 +30,7 @@ fn commented(what: &str, condition: &Condition) -> String {
 }
 
 /// A change of an alarm as one line of JSON, without its end.
-pub fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
+pub(crate) fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
     let transition = &event.transition;
     let condition = &transition.condition;
     json!({

@@ -3,29 +3,29 @@ use jiff::Timestamp;
 
 /// Names times of a log.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Clock {
+pub(crate) struct Clock {
     origin: Option<Timestamp>,
     offset_s: f64,
 }
 
 impl Clock {
     /// Of a log whose second 0 is an instant; `None`: it has no dates.
-    pub fn new(origin: Option<Timestamp>) -> Self {
+    pub(crate) fn new(origin: Option<Timestamp>) -> Self {
         Self { origin, offset_s: 0.0 }
     }
 
     /// The same with a date of second 0 that has become known.
-    pub fn with_origin(self, origin: Option<Timestamp>) -> Self {
+    pub(crate) fn with_origin(self, origin: Option<Timestamp>) -> Self {
         Self { origin, ..self }
     }
 
     /// The same for times of an axis without the jumps of the log's clock, which lies so many seconds before it.
-    pub fn with_offset(self, offset_s: f64) -> Self {
+    pub(crate) fn with_offset(self, offset_s: f64) -> Self {
         Self { offset_s, ..self }
     }
 
     /// The time as date in RFC 3339, in UTC and whole seconds.
-    pub fn date(&self, time_s: f64) -> Option<String> {
+    pub(crate) fn date(&self, time_s: f64) -> Option<String> {
         let origin = self.origin?;
         let fraction_s = f64::from(origin.subsec_nanosecond()) * 1e-9;
         let second = origin.as_second() as f64 + (fraction_s + time_s + self.offset_s);
@@ -34,7 +34,7 @@ impl Clock {
     }
 
     /// The time in words: a date, or the time of the log in the unit that people would say.
-    pub fn text(&self, time_s: f64) -> String {
+    pub(crate) fn text(&self, time_s: f64) -> String {
         self.date(time_s).unwrap_or_else(|| {
             let time_s = time_s + self.offset_s;
             let (size, unit) = match time_s.abs() {

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// What events call times and sensors.
 #[derive(Clone, Debug, Default)]
-pub struct Naming {
+pub(crate) struct Naming {
     /// Times.
     pub clock: Clock,
     /// Names and quantities of the sensors, in the order of the readings.
@@ -27,7 +27,7 @@ impl Naming {
 }
 
 /// An event in words.
-pub fn event_text(event: &Event, naming: &Naming) -> String {
+pub(crate) fn event_text(event: &Event, naming: &Naming) -> String {
     format!("{}: {}", naming.clock.text(event.time_s), event_kind_text(event, naming))
 }
 
@@ -118,7 +118,7 @@ pub(super) fn range(interval: Interval) -> String {
 }
 
 /// An event as one line of JSON, without its end.
-pub fn event_line(event: &Event, naming: &Naming) -> String {
+pub(crate) fn event_line(event: &Event, naming: &Naming) -> String {
     let mut line = json!({
         "id": event.id,
         "event": event.kind.name(),

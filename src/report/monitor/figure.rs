@@ -21,7 +21,7 @@ const CURVES: usize = 12;
 
 /// What a figure needs, collected output by output.
 #[derive(Clone, Debug)]
-pub struct FigureData {
+pub(crate) struct FigureData {
     curves: DecimatedCurves,
     strip: VerdictStrip,
     marks: Marks,
@@ -31,7 +31,7 @@ pub struct FigureData {
 
 impl FigureData {
     /// With the operational limit and the pressure of the full cylinder at 15 °C, Pa.
-    pub fn new(limit_pa: f64, full_pa: f64) -> Self {
+    pub(crate) fn new(limit_pa: f64, full_pa: f64) -> Self {
         Self {
             curves: DecimatedCurves::new(CURVES),
             strip: VerdictStrip::default(),
@@ -42,7 +42,7 @@ impl FigureData {
     }
 
     /// Adds an output with the truth of its row.
-    pub fn push(&mut self, output: &Output, truth: &Truth) {
+    pub(crate) fn push(&mut self, output: &Output, truth: &Truth) {
         let e = &output.estimate;
         let pressures = [e.pressure_pa, e.pressure_expected_pa, e.p15_pa].map(|p| p / BAR_PA);
         let mass = [e.mass_kg, e.mass_kg - 2.0 * e.mass_sd_kg, e.mass_kg + 2.0 * e.mass_sd_kg, truth.mass_kg];
@@ -108,7 +108,7 @@ fn panel<const N: usize>(quantity: &str, items: [Option<Item>; N], height: f64) 
 }
 
 /// The figure of a run.
-pub fn figure(title: &str, data: &FigureData) -> Figure {
+pub(crate) fn figure(title: &str, data: &FigureData) -> Figure {
     let panels = [Some(data.pressures()), Some(data.mass()), data.leak(), Some(data.verdict())];
     Figure::over_time(title, panels.into_iter().flatten().collect())
         .with_marks(data.marks.shifted(data.curves.origin_s()))

@@ -11,18 +11,18 @@ mod row;
 mod strip;
 mod summary;
 
-pub use alarm::{alarm_line, alarm_text};
-pub use clock::Clock;
+pub(crate) use alarm::{alarm_line, alarm_text};
+pub(crate) use clock::Clock;
 pub(crate) use event::health_text;
-pub use event::{Naming, event_line, event_text};
-pub use figure::{FigureData, figure};
+pub(crate) use event::{Naming, event_line, event_text};
+pub(crate) use figure::{FigureData, figure};
 pub(crate) use prognosis::{passage_text, reaction_reason, reaction_text, reaction_word};
-pub use row::{DOCUMENTATION, MonitorRow, fields};
+pub(crate) use row::{DOCUMENTATION, MonitorRow, fields};
 pub(crate) use strip::VerdictStrip;
-pub use summary::{OperatingLimits, RowCounts, Summary, document, summary};
+pub(crate) use summary::{OperatingLimits, RowCounts, Summary, document, summary};
 
 /// What the figure of a run shows.
-pub const CAPTION: &str = "Pressure at 15 °C and as read with the limit, mass and leak rate with their intervals, verdicts as colours, events \
+pub(crate) const CAPTION: &str = "Pressure at 15 °C and as read with the limit, mass and leak rate with their intervals, verdicts as colours, events \
                            and alarms as marks.";
 
 /// A number for people: so many digits that count, none that do not.

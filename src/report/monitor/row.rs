@@ -9,7 +9,7 @@ use crate::thermal::units::BAR_PA;
 const INTERVAL_SD: f64 = 2.0 * 1.959_963_984_540_054;
 
 /// What the columns mean, for a help page.
-pub const DOCUMENTATION: &str = "\
+pub(crate) const DOCUMENTATION: &str = "\
 Columns (those of `estimate`, then):
   leak_g_h, leak_sd_g_h  while a leak is found, the one that explains the masses best, else the
                          observer's; leak_bar_h is the same as fall of p15_bar
@@ -27,7 +27,7 @@ Columns (those of `estimate`, then):
 
 /// An output as a file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MonitorRow {
+pub(crate) struct MonitorRow {
     estimate: EstimateRow,
     leak_probability: f64,
     leak_low_kg_s: f64,
@@ -48,7 +48,7 @@ impl AsRef<EstimateRow> for MonitorRow {
 impl MonitorRow {
     /// Of an output; `leak_pa_s` is the observer's leak rate as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown. A leak that is
     /// found stands in place of the observer's rate.
-    pub fn new(output: &Output, leak_pa_s: f64) -> Self {
+    pub(crate) fn new(output: &Output, leak_pa_s: f64) -> Self {
         let Output { decision, leak_rate_kg_s, leak, .. } = output;
         let verdict = decision.verdict.as_str();
         let mut row = EstimateRow { estimate: output.estimate, leak_pa_s, verdict };
@@ -79,7 +79,7 @@ impl MonitorRow {
 }
 
 /// Columns of an output, with the decimals that are worth writing.
-pub fn fields() -> Vec<Field<MonitorRow>> {
+pub(crate) fn fields() -> Vec<Field<MonitorRow>> {
     use Digits::Decimals;
     let decision = [
         Field::number("leak_probability", Decimals(6), |row: &MonitorRow| row.leak_probability),

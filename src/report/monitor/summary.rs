@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 /// What the verdict is held against.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OperatingLimits {
+pub(crate) struct OperatingLimits {
     /// Operational limit, Pa.
     pub limit_pa: f64,
     /// Coldest temperature expected, K.
@@ -25,7 +25,7 @@ pub struct OperatingLimits {
 
 /// Rows that were not simply used, and jumps of the clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RowCounts {
+pub(crate) struct RowCounts {
     /// With nothing new.
     pub duplicates: u64,
     /// With another value than a row of the same time.
@@ -40,7 +40,7 @@ pub struct RowCounts {
 
 /// What is left of a run when its rows have gone.
 #[derive(Clone, Debug)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// Title: vessel and sensors.
     pub title: String,
     /// How the log was sampled.
@@ -68,7 +68,7 @@ pub struct Summary {
 }
 
 /// The run in a few lines.
-pub fn summary(summary: &Summary) -> Report {
+pub(crate) fn summary(summary: &Summary) -> Report {
     let decision = &summary.last.decision;
     let mut facts = vec![("verdict", decision_text(decision))];
     facts.extend(summary.last.leak.iter().flat_map(|leak| leak_rows(leak, &summary.naming)));
@@ -217,7 +217,7 @@ fn log(summary: &Summary) -> String {
 }
 
 /// The run as JSON; null where nothing is known.
-pub fn document(summary: &Summary) -> Value {
+pub(crate) fn document(summary: &Summary) -> Value {
     let clock = &summary.naming.clock;
     let sensors: Vec<Value> = summary
         .last
@@ -285,7 +285,7 @@ fn outlook(outlook: &Outlook) -> Value {
 
 impl Summary {
     /// What the run comes to: a loss if gas was lost in any of its rows, else what its last row says.
-    pub fn outcome(&self) -> Outcome {
+    pub(crate) fn outcome(&self) -> Outcome {
         if self.loss_found { Outcome::Loss } else { self.last.decision.outcome }
     }
 }
