@@ -103,7 +103,11 @@ impl LogReader {
     /// # Errors
     /// The file is no Parquet file, this build cannot read any, or the names of its columns do not say what they mean.
     #[cfg(feature = "parquet")]
-    pub fn from_parquet(input: std::fs::File, file: &str, options: &LogOptions) -> Result<Self, LogError> {
+    pub(crate) fn from_parquet(
+        input: std::fs::File,
+        file: &str,
+        options: &LogOptions,
+    ) -> Result<Self, LogError> {
         let mut cautions = Cautions::default();
         let (source, columns) = super::parquet::ParquetSource::open(input, file, options, &mut cautions)?;
         Ok(Self::new(Source::Parquet(Box::new(source)), columns, file, options, cautions))
@@ -114,7 +118,7 @@ impl LogReader {
     /// # Errors
     /// Always.
     #[cfg(not(feature = "parquet"))]
-    pub fn from_parquet(_: std::fs::File, file: &str, _: &LogOptions) -> Result<Self, LogError> {
+    pub(crate) fn from_parquet(_: std::fs::File, file: &str, _: &LogOptions) -> Result<Self, LogError> {
         Err(LogError::WithoutParquet { file: file.to_owned() })
     }
 
@@ -184,12 +188,12 @@ impl LogReader {
     }
 
     /// Whether the rows have dates rather than times.
-    pub fn has_dates(&self) -> bool {
+    pub(crate) fn has_dates(&self) -> bool {
         self.columns.time.form == TimeForm::Date
     }
 
     /// The same as an instant.
-    pub fn origin_instant(&self) -> Option<jiff::Timestamp> {
+    pub(crate) fn origin_instant(&self) -> Option<jiff::Timestamp> {
         self.source.origin()
     }
 

@@ -27,7 +27,7 @@ pub struct Truth {
 
 impl Truth {
     /// Nothing is known.
-    pub const UNKNOWN: Self = Self { gas_mean_k: f64::NAN, mass_kg: f64::NAN, outflow_kg_s: f64::NAN };
+    pub(crate) const UNKNOWN: Self = Self { gas_mean_k: f64::NAN, mass_kg: f64::NAN, outflow_kg_s: f64::NAN };
 }
 
 /// A row as a source gives it: readings, then truth, SI.

@@ -32,7 +32,7 @@ impl Input {
     }
 
     /// As a comment line of a CSV file, without its line feed.
-    pub fn comment_line(&self) -> String {
+    pub(crate) fn comment_line(&self) -> String {
         format!("# input: {} sha256 {}", one_line(&self.name), self.sha256)
     }
 }
@@ -59,7 +59,7 @@ impl Provenance {
     pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
     /// As comment lines for the top of a CSV file, each with its line feed.
-    pub fn comment_lines(&self) -> String {
+    pub(crate) fn comment_lines(&self) -> String {
         let mut text = format!("# cylwatch {}\n# command: {}\n", Self::VERSION, one_line(&self.command));
         for input in &self.inputs {
             text.push_str(&input.comment_line());

@@ -166,7 +166,7 @@ fn differences(bodies: &[Item]) -> Vec<Item> {
 }
 
 /// Events and balances as comment lines of a CSV file.
-pub fn remarks(run: &Trajectory) -> Vec<String> {
+pub(crate) fn remarks(run: &Trajectory) -> Vec<String> {
     let event = |event: &Event| format!("event at {} s: {}", number(event.time_s, 7), event_name(event));
     let mut lines: Vec<String> = run.events.iter().map(event).collect();
     lines.push(format!(
@@ -235,7 +235,7 @@ pub fn statistics(run: &Trajectory) -> Value {
 }
 
 /// What the figure of a run shows.
-pub const CAPTION: &str = "Temperatures; how wall, valve and sensors differ from the mean gas; pressure with the scenario's limits; \
+pub(crate) const CAPTION: &str = "Temperatures; how wall, valve and sensors differ from the mean gas; pressure with the scenario's limits; \
                            the gas mass where it changes. Lines named sensor are readings.";
 
 /// The run in a few lines for people.

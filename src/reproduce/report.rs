@@ -10,7 +10,7 @@ use crate::thermal::units::BAR_PA;
 
 /// What a method states about the cylinder of figure 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeakStatement {
+pub(crate) struct LeakStatement {
     /// Who.
     pub method: &'static str,
     /// Its threshold, bar; `None`: one of its own kind.
@@ -26,7 +26,7 @@ pub struct LeakStatement {
 impl Reproduction {
     /// Statements of the methods about the simulated cylinder of figure 8. The first two alarm at 1.1 times the error that lasted in the same passage of
     /// a tight cylinder.
-    pub fn figure_8_statements(&self) -> [LeakStatement; 3] {
+    pub(crate) fn figure_8_statements(&self) -> [LeakStatement; 3] {
         let [tight, leaking] = [&self.leak[0].method_run, &self.leak[1].method_run];
         let hours = 3600.0;
         [0, 1, 2].map(|method| {

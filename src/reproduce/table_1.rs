@@ -124,7 +124,7 @@ impl Record {
     }
 
     /// The same with readings that are drawn to a constant temperature, °C, by a share of the difference.
-    pub fn drawn_to(mut self, degc: f64, share: f64) -> Self {
+    pub(crate) fn drawn_to(mut self, degc: f64, share: f64) -> Self {
         let readings = self.shoulder.iter_mut().chain(&mut self.valve);
         readings.for_each(|reading| *reading += share * (degc - *reading));
         self

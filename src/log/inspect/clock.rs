@@ -69,7 +69,7 @@ impl Clock {
 
 impl Interval {
     /// Whether a local clock changed to or from summer time here, at an interval of so many seconds.
-    pub fn is_summer_time(&self, usual_s: f64) -> bool {
+    pub(crate) fn is_summer_time(&self, usual_s: f64) -> bool {
         let near = |length_s: f64| (length_s - usual_s).abs() <= 0.5 * usual_s.max(1.0);
         usual_s < HOUR_S / 4.0 && (near(self.length_s - HOUR_S) || near(self.length_s + HOUR_S))
     }

@@ -109,7 +109,7 @@ pub struct ColumnReport {
 
 impl ColumnReport {
     /// Whether there are numbers.
-    pub fn has_numbers(&self) -> bool {
+    pub(crate) fn has_numbers(&self) -> bool {
         self.cells.0 > 0
     }
 }
@@ -181,7 +181,11 @@ impl Inspector {
     ///
     /// # Errors
     /// As of [`Inspector::new`]; this build cannot read any.
-    pub fn of_parquet(input: std::fs::File, name: &str, options: &LogOptions) -> Result<Self, LogError> {
+    pub(crate) fn of_parquet(
+        input: std::fs::File,
+        name: &str,
+        options: &LogOptions,
+    ) -> Result<Self, LogError> {
         #[cfg(feature = "parquet")]
         {
             let text = super::parquet::text(input, name)?;

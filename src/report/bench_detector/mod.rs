@@ -8,7 +8,7 @@ pub use figure::figure;
 pub use summary::summary;
 
 /// What the figure shows.
-pub const CAPTION: &str = "Median delay against the leak rate of each detector with its interval, and the shortest delay that is possible.";
+pub(crate) const CAPTION: &str = "Median delay against the leak rate of each detector with its interval, and the shortest delay that is possible.";
 
 /// What a candidate finds of leaks; `None`: it watched none.
 fn leaks(candidate: &CandidateReport) -> Option<&Leaks> {

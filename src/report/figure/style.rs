@@ -9,23 +9,23 @@ pub struct Rgb(pub u8, pub u8, pub u8);
 
 impl Rgb {
     /// Black.
-    pub const BLACK: Self = Self(0, 0, 0);
+    pub(crate) const BLACK: Self = Self(0, 0, 0);
     /// Orange of Okabe and Ito.
-    pub const ORANGE: Self = Self(230, 159, 0);
+    pub(crate) const ORANGE: Self = Self(230, 159, 0);
     /// Sky blue of Okabe and Ito.
-    pub const SKY: Self = Self(86, 180, 233);
+    pub(crate) const SKY: Self = Self(86, 180, 233);
     /// Bluish green of Okabe and Ito.
-    pub const GREEN: Self = Self(0, 158, 115);
+    pub(crate) const GREEN: Self = Self(0, 158, 115);
     /// Blue of Okabe and Ito.
-    pub const BLUE: Self = Self(0, 114, 178);
+    pub(crate) const BLUE: Self = Self(0, 114, 178);
     /// Vermillion of Okabe and Ito.
-    pub const VERMILLION: Self = Self(213, 94, 0);
+    pub(crate) const VERMILLION: Self = Self(213, 94, 0);
     /// Reddish purple of Okabe and Ito.
-    pub const PURPLE: Self = Self(204, 121, 167);
+    pub(crate) const PURPLE: Self = Self(204, 121, 167);
     /// Middle grey for what stands behind the curves.
-    pub const GREY: Self = Self(120, 120, 120);
+    pub(crate) const GREY: Self = Self(120, 120, 120);
     /// Light grey of the grid.
-    pub const GRID: Self = Self(222, 222, 222);
+    pub(crate) const GRID: Self = Self(222, 222, 222);
     /// Fill of a measured band.
     pub const BAND: Self = Self(205, 222, 236);
     /// Paper.
@@ -72,17 +72,17 @@ pub(crate) const EVENT: Stroke = stroke(Rgb::GREY, 1.0, &[2.0, 2.0]);
 /// First curve of a comparison.
 pub const FIRST: Stroke = stroke(Rgb::ORANGE, 2.2, &[7.0, 3.0]);
 /// Second curve of a comparison.
-pub const SECOND: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
+pub(crate) const SECOND: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
 /// Third curve of a comparison.
 pub const THIRD: Stroke = stroke(Rgb::GREEN, 1.8, &[2.0, 2.2]);
 /// Fourth curve of a comparison.
-pub const FOURTH: Stroke = stroke(Rgb::PURPLE, 1.8, &[8.0, 2.5, 1.8, 2.5]);
+pub(crate) const FOURTH: Stroke = stroke(Rgb::PURPLE, 1.8, &[8.0, 2.5, 1.8, 2.5]);
 /// Middle of a measured band.
 pub(crate) const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
 /// A model over readings.
 pub const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
 /// Measured points.
-pub const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
+pub(crate) const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
 /// A number at rest against the place.
 pub(crate) const AT_REST: Stroke = stroke(Rgb::BLUE, 1.8, &[]);

@@ -31,7 +31,7 @@ use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings};
 use crate::thermal::vessel::Vessel;
 
 /// What the figure shows.
-pub const CAPTION: &str = "The cylinder to scale with its candidates and what a thermometer at each height is worth; cost against accuracy; what the best \
+pub(crate) const CAPTION: &str = "The cylinder to scale with its candidates and what a thermometer at each height is worth; cost against accuracy; what the best \
                            layouts reach.";
 
 const MILLIMETRES: f64 = 1e3;
@@ -90,7 +90,7 @@ impl Unit {
 
 impl Placed<'_> {
     /// Whether study or runs were stopped before their end.
-    pub fn is_partial(&self) -> bool {
+    pub(crate) fn is_partial(&self) -> bool {
         self.study.partial || self.closed_loop.is_some_and(|found| found.partial)
     }
 

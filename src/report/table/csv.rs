@@ -59,7 +59,7 @@ impl Records {
 
 impl Table {
     /// As CSV; `remarks` are further comment lines, without their `#`.
-    pub fn to_csv(&self, provenance: &Provenance, remarks: &[String]) -> String {
+    pub(crate) fn to_csv(&self, provenance: &Provenance, remarks: &[String]) -> String {
         let mut text = provenance.comment_lines();
         for remark in remarks {
             text.push_str(&format!("# {}\n", remark.replace(['\n', '\r'], " ")));

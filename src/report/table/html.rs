@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 impl Table {
     /// As an element, below its caption; an empty caption is left out.
-    pub fn to_html(&self, caption: &str) -> Markup {
+    pub(crate) fn to_html(&self, caption: &str) -> Markup {
         // Beside the table, not in it: a caption inside is broken at the width of a narrow table.
         let named = (!caption.is_empty()).then_some(caption);
         let class: Vec<Option<&str>> =

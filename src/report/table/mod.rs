@@ -6,7 +6,7 @@
 //! | a terminal, a page | [`Table::to_text`], [`Table::to_html`] |
 //! | CSV and JSON row by row, while a log is read | [`RowFormat`] |
 //!
-//! A [`Field`] declares a column once: name, unit, precision, and how a record gives its value.
+//! A [`Field`] declares a column once: name, precision, and how a record gives its value.
 mod csv;
 mod digits;
 mod html;
@@ -107,10 +107,8 @@ pub enum Source<R> {
 
 /// Declaration of a column of records `R`.
 pub struct Field<R> {
-    /// Name.
+    /// Name, which ends in the unit.
     pub name: &'static str,
-    /// Unit that stands behind the name for people.
-    pub unit: &'static str,
     /// Its cells.
     pub source: Source<R>,
 }
@@ -118,23 +116,17 @@ pub struct Field<R> {
 impl<R> Field<R> {
     /// A column of numbers.
     pub const fn number(name: &'static str, digits: Digits, value: fn(&R) -> f64) -> Self {
-        Self { name, unit: "", source: Source::Number(digits, value) }
+        Self { name, source: Source::Number(digits, value) }
     }
 
     /// A column of texts.
     pub const fn text(name: &'static str, value: fn(&R) -> &str) -> Self {
-        Self { name, unit: "", source: Source::Text(value) }
+        Self { name, source: Source::Text(value) }
     }
 
     /// A column of whole numbers.
     pub const fn integer(name: &'static str, value: fn(&R) -> Option<i64>) -> Self {
-        Self { name, unit: "", source: Source::Integer(value) }
-    }
-
-    /// The same with a unit.
-    pub const fn in_unit(mut self, unit: &'static str) -> Self {
-        self.unit = unit;
-        self
+        Self { name, source: Source::Integer(value) }
     }
 
     fn cell<'a>(&self, record: &'a R) -> Cell<'a> {
@@ -154,7 +146,7 @@ impl<R> Field<R> {
             Source::Integer(value) => Values::Integers(records.map(value).collect()),
             Source::Text(value) => Values::Texts(records.map(|record| value(record).to_owned()).collect()),
         };
-        Column { name: self.name.to_owned(), unit: self.unit, values }
+        Column { name: self.name.to_owned(), unit: "", values }
     }
 }
 
@@ -170,7 +162,7 @@ impl Table {
     }
 
     /// A table of texts; a row that is shorter than the others has empty cells at its end.
-    pub fn of_texts(header: &[impl AsRef<str>], rows: Vec<Vec<String>>) -> Self {
+    pub(crate) fn of_texts(header: &[impl AsRef<str>], rows: Vec<Vec<String>>) -> Self {
         let count = rows.iter().map(Vec::len).max().unwrap_or(0).max(header.len());
         let mut columns: Vec<Vec<String>> = vec![Vec::with_capacity(rows.len()); count];
         for row in rows {
@@ -189,7 +181,7 @@ impl Table {
     }
 
     /// The same with a unit that stands behind the name.
-    pub fn push_quantity(
+    pub(crate) fn push_quantity(
         &mut self,
         name: impl Into<String>,
         unit: &'static str,
@@ -201,13 +193,13 @@ impl Table {
     }
 
     /// Adds a column of whole numbers.
-    pub fn push_integers(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = usize>) {
+    pub(crate) fn push_integers(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = usize>) {
         let values = values.into_iter().map(|value| i64::try_from(value).ok()).collect();
         self.push_values(name, Values::Integers(values));
     }
 
     /// Adds a column of texts; an empty one is missing.
-    pub fn push_texts(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = String>) {
+    pub(crate) fn push_texts(&mut self, name: impl Into<String>, values: impl IntoIterator<Item = String>) {
         self.push_values(name, Values::Texts(values.into_iter().collect()));
     }
 
@@ -295,7 +287,7 @@ mod tests {
     #[test]
     fn a_declared_column_is_the_same_in_a_table_and_row_by_row() {
         const FIELDS: [Field<(f64, &str)>; 2] = [
-            Field::number("mass", Digits::Decimals(3), |record: &(f64, &str)| record.0).in_unit("kg"),
+            Field::number("mass_kg", Digits::Decimals(3), |record: &(f64, &str)| record.0),
             Field::text("verdict", |record| record.1),
         ];
         let records = [(4.5, "tight"), (f64::NAN, "")];
@@ -305,7 +297,7 @@ mod tests {
         let mut streamed = rows.header().to_owned();
         records.iter().for_each(|record| streamed.push_str(rows.row(record)));
         assert!(csv.ends_with(&streamed) && streamed.contains("4.500,tight\n,\n"), "{csv}");
-        assert_eq!(table.to_text(), "mass in kg  verdict\n----------  -------\n     4.500  tight\n\n");
+        assert_eq!(table.to_text(), "mass_kg  verdict\n-------  -------\n  4.500  tight\n\n");
     }
 
     #[test]

@@ -19,7 +19,11 @@ impl Table {
     ///
     /// # Errors
     /// The library fails.
-    pub fn to_parquet(&self, provenance: &Provenance, remarks: &[String]) -> Result<Vec<u8>, ReportError> {
+    pub(crate) fn to_parquet(
+        &self,
+        provenance: &Provenance,
+        remarks: &[String],
+    ) -> Result<Vec<u8>, ReportError> {
         self.parquet(provenance, remarks).map_err(|error| ReportError::Parquet { reason: error.to_string() })
     }
 

@@ -198,7 +198,7 @@ impl Evidence {
     }
 
     /// What the rate of an onset of an age, s, may be off by for what the surroundings do now, standard deviation, kg/s.
-    pub fn considered_kg_s(&self, age_s: f64) -> f64 {
+    pub(crate) fn considered_kg_s(&self, age_s: f64) -> f64 {
         (self.considered_kg * (FADED * self.memory_s / age_s).min(1.0) + self.off_kg) / age_s
     }
 

@@ -87,7 +87,7 @@ impl Outcome {
 
 impl Decision {
     /// Whether the leak alarm is due; `None`: it cannot be told, and changes nothing.
-    pub fn leak_alarm(&self) -> Option<bool> {
+    pub(crate) fn leak_alarm(&self) -> Option<bool> {
         match self.outcome {
             Outcome::Loss => Some(true),
             Outcome::NoLoss => Some(false),

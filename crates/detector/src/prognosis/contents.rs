@@ -65,7 +65,7 @@ impl Contents {
     ///
     /// # Errors
     /// `share` is not between 0 and 1; a state is outside the gas's domain.
-    pub fn limit_after_loss_kg(&self, full_kg: f64, share: f64) -> Result<f64, DetectorError> {
+    pub(crate) fn limit_after_loss_kg(&self, full_kg: f64, share: f64) -> Result<f64, DetectorError> {
         if !(share > 0.0 && share < 1.0) {
             return Err(DetectorError::Setting { setting: "share", value: share, bound: "between 0 and 1" });
         }

@@ -76,7 +76,7 @@ impl Prognosis {
     ///
     /// # Errors
     /// It is not between 0 and 1.
-    pub fn with_leak_probability(self, leak_probability: f64) -> Result<Self, DetectorError> {
+    pub(crate) fn with_leak_probability(self, leak_probability: f64) -> Result<Self, DetectorError> {
         if !(0.0..=1.0).contains(&leak_probability) {
             let (setting, bound) = ("leak_probability", "between 0 and 1");
             return Err(DetectorError::Setting { setting, value: leak_probability, bound });

@@ -32,16 +32,5 @@ pub use efficiency::Efficiency;
 pub use moments::Moments;
 pub use recursion::{Expectation, PosteriorBound, path_bound, posterior_bound};
 
-use nalgebra::DMatrix;
-
-/// Variance `w^T P w` of a functional of the state, such as the mean gas temperature, by the covariance of a bound.
-///
-/// # Shapes
-/// `w`: (n); `covariance`: (n, n).
-pub fn functional_variance(covariance: &DMatrix<f64>, w: &[f64]) -> f64 {
-    let w = nalgebra::DVectorView::from_slice(w, w.len());
-    (covariance * w).dot(&w)
-}
-
 #[cfg(test)]
 mod tests;

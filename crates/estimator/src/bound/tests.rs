@@ -285,11 +285,6 @@ fn a_bound_without_paths_or_of_another_size_is_refused() {
 }
 
 #[test]
-fn a_functional_has_the_variance_of_its_weights() {
-    assert_relative_eq!(functional_variance(&dmatrix![4.0, 1.0; 1.0, 9.0], &[1.0, -1.0]), 11.0);
-}
-
-#[test]
 fn efficiency_compares_standard_deviations() {
     let errors: Vec<f64> = (0..200).map(|i| if i % 2 == 0 { 2.0 } else { -2.0 }).collect();
     let at = Efficiency::at_time(1.0, &errors, Significance::FIVE_PERCENT).unwrap();

@@ -94,7 +94,7 @@ impl ParameterKind {
     }
 
     /// Bounds where none are given: beyond them nothing means anything.
-    pub fn usual_bounds(&self) -> (f64, f64) {
+    pub(crate) fn usual_bounds(&self) -> (f64, f64) {
         match self {
             Self::DischargeCoefficient { .. } => (0.05, 1.0),
             Self::Volume | Self::FillMass => (0.5, 2.0),

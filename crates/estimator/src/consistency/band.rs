@@ -33,7 +33,7 @@ impl Significance {
 
     /// What each of `tests` may use up so that all of them together call a correct filter wrong no more often than this
     /// (Bonferroni).
-    pub fn shared_by(self, tests: usize) -> Self {
+    pub(crate) fn shared_by(self, tests: usize) -> Self {
         Self(self.0 / tests.max(1) as f64)
     }
 
@@ -55,7 +55,7 @@ pub struct Band {
 impl Band {
     /// Band of the mean of chi-square variables per degree of freedom, with `dof` degrees in all: `chi^2_dof(p) / dof`.
     /// `None` without any degree of freedom.
-    pub fn of_mean_square(dof: u64, significance: Significance) -> Option<Self> {
+    pub(crate) fn of_mean_square(dof: u64, significance: Significance) -> Option<Self> {
         let chi_square = ChiSquared::new(dof as f64).ok()?;
         let half = 0.5 * significance.probability();
         let quantile = |p: f64| chi_square.inverse_cdf(p) / dof as f64;

@@ -44,7 +44,7 @@ impl NisAccumulator {
     }
 
     /// Degrees of freedom: number of readings.
-    pub fn dof(&self) -> u64 {
+    pub(crate) fn dof(&self) -> u64 {
         self.dof
     }
 

@@ -28,7 +28,7 @@ pub struct Lilliefors {
 
 /// Lilliefors' test that a sample is normal, whatever its mean and standard deviation. `None` with fewer than eight
 /// values, without spread, or with values that are not finite.
-pub fn lilliefors(sample: &[f64]) -> Option<Lilliefors> {
+pub(crate) fn lilliefors(sample: &[f64]) -> Option<Lilliefors> {
     let n = sample.len() as f64;
     if sample.len() < FEWEST || sample.iter().any(|value| !value.is_finite()) {
         return None;

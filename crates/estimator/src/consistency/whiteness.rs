@@ -78,7 +78,7 @@ impl Whiteness {
 
     /// All lags together: probability that white innovations give a sum of `K_l rho(l)^2`, chi-square with as many
     /// degrees of freedom as lags, as large as this one (Box and Pierce 1970). `None` with too few samples.
-    pub fn p_value(&self) -> Option<f64> {
+    pub(crate) fn p_value(&self) -> Option<f64> {
         let judged: Vec<f64> = (1..=self.lags())
             .filter(|lag| self.lags[lag - 1].pairs >= FEWEST_PAIRS)
             .filter_map(|lag| Some(self.lags[lag - 1].pairs as f64 * self.autocorrelation(lag)?.powi(2)))

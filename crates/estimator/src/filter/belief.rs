@@ -54,7 +54,7 @@ impl Belief {
     }
 
     /// Mixture of what both say of one quantity.
-    pub fn blend(self, member: Moments, free: Moments) -> Moments {
+    pub(crate) fn blend(self, member: Moments, free: Moments) -> Moments {
         mixture(self.weight(), member, free)
     }
 

@@ -83,7 +83,7 @@ impl UdFactors {
     }
 
     /// Write the covariance `P` into `p`: (n, n).
-    pub fn covariance_into(&self, p: &mut DMatrix<f64>) {
+    pub(crate) fn covariance_into(&self, p: &mut DMatrix<f64>) {
         self.write_covariance(p.as_mut_slice());
     }
 

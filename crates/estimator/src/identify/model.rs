@@ -34,7 +34,7 @@ impl Model {
     }
 
     /// Poles, 1/s, slowest first.
-    pub fn poles_per_s(&self) -> Vec<Complex<f64>> {
+    pub(crate) fn poles_per_s(&self) -> Vec<Complex<f64>> {
         poles(&self.den[1..].iter().rev().copied().collect::<Vec<_>>())
     }
 

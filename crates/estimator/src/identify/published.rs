@@ -6,13 +6,11 @@
 //! that is the slope of nitrogen filled to 175 bar at 15 °C, not to 200 bar.
 //!
 //! Source: Bücking, Pfaff, Dirksmeier (sections 4 and 5).
-use crate::thermal::ThermalError;
-use crate::thermal::fluid::Fluid;
 
 use super::Model;
 
 /// Numerator of the published transfer function, 1/s.
-pub const NUMERATOR_PER_S: f64 = 0.003121;
+pub(crate) const NUMERATOR_PER_S: f64 = 0.003121;
 /// Its pole, 1/s.
 pub const POLE_PER_S: f64 = 0.003021;
 /// Published slope of the pressure, Pa/K.
@@ -44,7 +42,7 @@ impl TransferFunction {
     }
 
     /// The same, starting at a gas temperature, °C. Zero gives the transient at the start of the paper's figure 2.
-    pub const fn starting_at(self, gas_degc: f64) -> Self {
+    pub(crate) const fn starting_at(self, gas_degc: f64) -> Self {
         Self { gas_degc, ..self }
     }
 
@@ -80,16 +78,6 @@ impl Filling {
     pub fn published_pressure_pa(&self, gas_k: f64) -> f64 {
         self.pressure_pa + SLOPE_PA_K * (gas_k - self.temperature_k)
     }
-
-    /// Expected pressure, Pa, at a gas temperature, K, by the equation of state at constant density.
-    ///
-    /// # Errors
-    /// A state is outside the fluid's domain.
-    pub fn real_gas_pressure_pa(&self, fluid: &Fluid, gas_k: f64) -> Result<f64, ThermalError> {
-        let density_kg_m3 = fluid.density_from_pressure_temperature(self.pressure_pa, self.temperature_k)?;
-        fluid.check(density_kg_m3, gas_k)?;
-        Ok(fluid.pressure_pa(density_kg_m3, gas_k))
-    }
 }
 
 #[cfg(test)]
@@ -98,9 +86,18 @@ mod tests {
 
     use super::*;
     use crate::identify::{Hold, InitialState};
+    use crate::thermal::fluid::Fluid;
     use crate::thermal::units::ZERO_CELSIUS_K;
 
     const FIFTEEN_K: f64 = ZERO_CELSIUS_K + 15.0;
+
+    /// Expected pressure, Pa, at a gas temperature, K, by the equation of state at constant density.
+    fn real_gas_pressure_pa(filling: &Filling, fluid: &Fluid, gas_k: f64) -> f64 {
+        let density_kg_m3 =
+            fluid.density_from_pressure_temperature(filling.pressure_pa, filling.temperature_k).unwrap();
+        fluid.check(density_kg_m3, gas_k).unwrap();
+        fluid.pressure_pa(density_kg_m3, gas_k)
+    }
 
     #[test]
     fn gain_and_time_constant_are_the_papers() {
@@ -138,7 +135,7 @@ mod tests {
         // CoolProp 8.0 (HEOS nitrogen): 160.09 bar at -25 °C, 244.4 bar at 60 °C.
         let filling = Filling { pressure_pa: 200e5, temperature_k: FIFTEEN_K };
         let nitrogen = Fluid::named("nitrogen").unwrap();
-        let at = |degc: f64| filling.real_gas_pressure_pa(&nitrogen, ZERO_CELSIUS_K + degc).unwrap();
+        let at = |degc: f64| real_gas_pressure_pa(&filling, &nitrogen, ZERO_CELSIUS_K + degc);
         assert!((at(-25.0) - 160.09e5).abs() < 0.006e5, "{} Pa", at(-25.0));
         assert!((at(60.0) - 244.4e5).abs() < 0.06e5, "{} Pa", at(60.0));
         assert_relative_eq!(at(15.0), 200e5, max_relative = 1e-9);
@@ -154,7 +151,7 @@ mod tests {
         let nitrogen = Fluid::named("nitrogen").unwrap();
         let slope = |pressure_pa: f64| {
             let filling = Filling { pressure_pa, temperature_k: FIFTEEN_K };
-            let at = |kelvin: f64| filling.real_gas_pressure_pa(&nitrogen, FIFTEEN_K + kelvin).unwrap();
+            let at = |kelvin: f64| real_gas_pressure_pa(&filling, &nitrogen, FIFTEEN_K + kelvin);
             0.5 * (at(1.0) - at(-1.0))
         };
         assert_relative_eq!(slope(175.25e5), SLOPE_PA_K, max_relative = 1e-4);

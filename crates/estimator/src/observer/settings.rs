@@ -121,7 +121,7 @@ impl LeakHypothesis {
     }
 
     /// Whether it has a leak rate that lasts.
-    pub fn is_slow(&self) -> bool {
+    pub(crate) fn is_slow(&self) -> bool {
         !self.rate.is_known() && !self.is_flowing()
     }
 

@@ -68,7 +68,7 @@ impl Constraints {
     }
 
     /// Whether a part of a layout may still become one that is allowed, if others are added to it.
-    pub fn may_grow(&self, part: &[usize]) -> bool {
+    pub(crate) fn may_grow(&self, part: &[usize]) -> bool {
         let has = |index: &usize| part.contains(index);
         let not_full =
             |group: &Group| group.members.iter().filter(|member| has(member)).count() <= group.most;

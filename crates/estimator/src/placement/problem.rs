@@ -147,7 +147,7 @@ impl LinearProblem {
     ///
     /// # Errors
     /// Not even all of them see every state that moves.
-    pub fn least_prediction(&self) -> Result<DMatrix<f64>, EstimatorError> {
+    pub(crate) fn least_prediction(&self) -> Result<DMatrix<f64>, EstimatorError> {
         steady_prediction(&self.transition, &self.information_of_all(), &self.process_noise)
     }
 

@@ -39,7 +39,7 @@ impl Parameter {
     }
 
     /// The same with a random walk.
-    pub fn walking(self, walk_per_sqrt_s: f64) -> Self {
+    pub(crate) fn walking(self, walk_per_sqrt_s: f64) -> Self {
         Self { walk_per_sqrt_s, ..self }
     }
 

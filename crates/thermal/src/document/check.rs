@@ -4,13 +4,13 @@ use crate::ThermalError;
 
 /// Temperatures a specification may state, K: what the fluids cover, and narrow enough to notice that °C were
 /// written as K.
-pub const TEMPERATURE_RANGE_K: (f64, f64) = (60.0, 1_500.0);
+pub(crate) const TEMPERATURE_RANGE_K: (f64, f64) = (60.0, 1_500.0);
 
 /// Pressures a specification may state, Pa.
-pub const PRESSURE_RANGE_PA: (f64, f64) = (1.0, 2e8);
+pub(crate) const PRESSURE_RANGE_PA: (f64, f64) = (1.0, 2e8);
 
 /// Most cells one count of a mesh may ask for.
-pub const CELLS_MAX: usize = 200;
+pub(crate) const CELLS_MAX: usize = 200;
 
 fn key_of(path: &str) -> String {
     let last = path.rsplit('.').next().unwrap_or(path);
@@ -34,7 +34,7 @@ pub fn missing(path: &str, remedy: &str) -> ThermalError {
 }
 
 /// The error of a key that cannot stand beside another.
-pub fn conflict(path: &str, other: &str, remedy: &str) -> ThermalError {
+pub(crate) fn conflict(path: &str, other: &str, remedy: &str) -> ThermalError {
     let (other, remedy) = (other.to_owned(), remedy.to_owned());
     at(path, Problem::Conflict { key: key_of(path), other, remedy })
 }
@@ -121,7 +121,7 @@ pub fn cells(path: &str, value: usize, least: usize) -> Result<usize, ThermalErr
 }
 
 /// A time for bounds in messages, in the largest unit that leaves it whole: `2 h`, `90 min`, `5 s`.
-pub fn time_text(time_s: f64) -> String {
+pub(crate) fn time_text(time_s: f64) -> String {
     match time_s {
         t if t != 0.0 && t % 3_600.0 == 0.0 => format!("{} h", t / 3_600.0),
         t if t != 0.0 && t % 60.0 == 0.0 => format!("{} min", t / 60.0),

@@ -106,7 +106,7 @@ pub struct Multiparameter {
 }
 
 /// Prepared equations, in the order of the data.
-pub static PREPARED: LazyLock<Vec<Multiparameter>> =
+pub(crate) static PREPARED: LazyLock<Vec<Multiparameter>> =
     LazyLock::new(|| ALL.iter().map(|data| Multiparameter::new(data)).collect());
 
 impl Multiparameter {

@@ -36,7 +36,7 @@ pub struct Inputs {
 
 impl Inputs {
     /// Whether any signal differs by more than the rounding of a linear piece.
-    pub fn jumped_from(&self, before: &Self) -> bool {
+    pub(crate) fn jumped_from(&self, before: &Self) -> bool {
         let signals = |inputs: &Self| {
             let (film, multiplier) = match inputs.film {
                 FilmInput::Coefficient(film) => (film, 1.0),

@@ -56,7 +56,7 @@ impl Layout {
     }
 
     /// Gas masses, kg, and energies, J, of a state vector.
-    pub fn gas_of<'a>(&self, x: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+    pub(crate) fn gas_of<'a>(&self, x: &'a [f64]) -> (&'a [f64], &'a [f64]) {
         x[self.mass..self.heat_in].split_at(self.gas)
     }
 }

@@ -100,7 +100,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::new`].
-    pub fn on_mesh(mesh: Mesh, vessel: &Vessel, scenario: &Scenario) -> Result<Self, ThermalError> {
+    pub(crate) fn on_mesh(mesh: Mesh, vessel: &Vessel, scenario: &Scenario) -> Result<Self, ThermalError> {
         let capacity_j_k: Vec<f64> = (0..mesh.cells())
             .map(|cell| {
                 let material = &mesh.materials[mesh.material[cell]];

@@ -69,7 +69,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::rate`].
-    pub fn gas_state(&self, x: &[f64]) -> Result<(f64, f64), ThermalError> {
+    pub(crate) fn gas_state(&self, x: &[f64]) -> Result<(f64, f64), ThermalError> {
         let nodes = self.gas_nodes(x)?;
         let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
         Ok(self.mean_state(x, &points))
@@ -94,7 +94,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::rate`].
-    pub fn choking_margin_pa(&self, x: &[f64], flow: usize) -> Result<Option<f64>, ThermalError> {
+    pub(crate) fn choking_margin_pa(&self, x: &[f64], flow: usize) -> Result<Option<f64>, ThermalError> {
         let FlowKind::Orifice { back_pressure_pa, .. } = self.flows[flow].kind else { return Ok(None) };
         let nodes = self.gas_nodes(x)?;
         let outlet = &nodes.as_slice()[self.grid.outlet];
@@ -119,7 +119,7 @@ impl Model {
     ///
     /// # Errors
     /// The gas is two-phase or outside the range of its equation of state.
-    pub fn check_gas(&self, x: &[f64]) -> Result<(), ThermalError> {
+    pub(crate) fn check_gas(&self, x: &[f64]) -> Result<(), ThermalError> {
         let nodes = self.gas_nodes(x)?;
         nodes
             .as_slice()

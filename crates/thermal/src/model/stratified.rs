@@ -148,7 +148,7 @@ impl Stratified {
     }
 
     /// The node at the valve.
-    pub fn outlet_node(&self) -> &WellMixed {
+    pub(crate) fn outlet_node(&self) -> &WellMixed {
         &self.nodes[self.outlet]
     }
 

@@ -99,7 +99,7 @@ impl WellMixed {
     ///
     /// # Errors
     /// As [`WellMixed::node`].
-    pub fn differentiated<D: Real>(
+    pub(crate) fn differentiated<D: Real>(
         &self,
         mass_kg: D,
         energy_j: D,
@@ -245,7 +245,7 @@ impl<D: Real> Node<D> {
 }
 
 /// Jets of open refills: mass flow, kg/s, and inlet diameter, m.
-pub fn jets(flows: &[Flow], open: &[bool]) -> impl Iterator<Item = (f64, f64)> {
+pub(crate) fn jets(flows: &[Flow], open: &[bool]) -> impl Iterator<Item = (f64, f64)> {
     flows.iter().zip(open).filter(|&(_, &open)| open).filter_map(|(flow, _)| match flow.kind {
         FlowKind::Refill { mass_flow_kg_s, inlet_diameter_m: Some(inlet), .. } => {
             Some((mass_flow_kg_s, inlet))
@@ -255,7 +255,7 @@ pub fn jets(flows: &[Flow], open: &[bool]) -> impl Iterator<Item = (f64, f64)> {
 }
 
 /// Film of the jets of open refills, W/(m² K); 0 without one.
-pub fn jet_film<D: Real>(
+pub(crate) fn jet_film<D: Real>(
     fluid: &Fluid,
     node: &Node<D>,
     flows: &[Flow],

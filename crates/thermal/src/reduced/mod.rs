@@ -64,13 +64,13 @@ impl Unknowns {
     /// Column of [`Unknowns::ln_capacity`].
     pub const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
-    pub const SUN: usize = 4;
+    pub(crate) const SUN: usize = 4;
     /// Column of [`Unknowns::valve_sun`].
     pub const VALVE_SUN: usize = 5;
     /// Column of [`Unknowns::film_slope`].
-    pub const SLOPE: usize = 6;
+    pub(crate) const SLOPE: usize = 6;
     /// Column of [`Unknowns::outflow_kg_s`].
-    pub const OUTFLOW: usize = 7;
+    pub(crate) const OUTFLOW: usize = 7;
 
     /// Nothing but surroundings of a temperature, K.
     pub fn still(air_k: f64) -> Self {
@@ -234,19 +234,13 @@ impl ReducedModel {
     }
 
     /// Index of the gas mass.
-    pub fn mass_index(&self) -> usize {
+    pub(crate) fn mass_index(&self) -> usize {
         self.gas_index() + 1
     }
 
     /// Number of states.
     pub fn states(&self) -> usize {
         self.gas_index() + 2
-    }
-
-    /// Conductance between the valve and the topmost wall node, W/K: the contact in series with the wall in which the valve's
-    /// heat spreads; 0 without a valve.
-    pub fn valve_conductance_w_k(&self) -> f64 {
-        self.spread.conductance_w_k
     }
 
     /// How the states give the temperature of a place on the surface; `None` where the vessel has no such place.

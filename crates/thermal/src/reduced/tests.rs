@@ -50,7 +50,7 @@ fn rates_are_those_of_the_simulation_on_the_same_wall() {
             let mut reduced = ReducedModel::new(&vessel, nodes, FILM);
             let mut vessel = vessel.clone();
             if let Some(valve) = &mut vessel.valve {
-                valve.contact_w_k = reduced.valve_conductance_w_k();
+                valve.contact_w_k = reduced.spread.conductance_w_k;
             }
             let outflow_kg_s = 3e-5;
             let mut scenario = leaking(outflow_kg_s);

@@ -21,7 +21,7 @@ pub enum Pt100Class {
 impl Pt100Class {
     /// Temperature at which a tolerance stands for a sensor's constant error, K: 20 °C, the middle of what a
     /// cylinder meets. To -20 and 60 °C the tolerance of class B changes by 0 and 0.2 K.
-    pub const MIDDLE_K: f64 = 293.15;
+    pub(crate) const MIDDLE_K: f64 = 293.15;
 
     /// Largest deviation that the class allows at a temperature, K.
     ///

@@ -20,7 +20,7 @@ use crate::vessel::InsideFilm;
 use crate::wall::mesh::Facing;
 
 /// Standard gravity, m/s².
-pub const GRAVITY_M_S2: f64 = 9.806_65;
+pub(crate) const GRAVITY_M_S2: f64 = 9.806_65;
 /// Temperature difference below which the film coefficient becomes constant, K.
 const FLAT_BELOW_K: f64 = 0.01;
 /// Factor and exponent of a plate that stirs the gas (hot floor, cold ceiling) and of one that does not, length D/4.
@@ -258,7 +258,7 @@ impl InsideConvection {
 ///
 /// # References
 /// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon.
-pub fn jet_film_w_m2_k<D: Real>(
+pub(crate) fn jet_film_w_m2_k<D: Real>(
     conductivity_w_m_k: D,
     viscosity_pa_s: D,
     mass_flow_kg_s: f64,

@@ -3,4 +3,5 @@ pub mod inside;
 pub mod outside;
 mod surface;
 
-pub use surface::{HalfCell, SurfaceBalance, solve_surface, solve_surface_from};
+pub use surface::{HalfCell, SurfaceBalance};
+pub(crate) use surface::{solve_surface, solve_surface_from};

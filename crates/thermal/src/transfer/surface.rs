@@ -36,7 +36,7 @@ pub struct HalfCell {
 
 /// Solve the balance of a half cell and a film whose heat flow and its derivative with the surface temperature
 /// are given by `film` (W, W/K).
-pub fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> SurfaceBalance {
+pub(crate) fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> SurfaceBalance {
     let with_nothing = |surface_k| {
         let (heat_w, slope) = film(surface_k);
         (heat_w, slope, ())
@@ -46,7 +46,7 @@ pub fn solve_surface(half: &HalfCell, film: impl Fn(f64) -> (f64, f64)) -> Surfa
 
 /// As [`solve_surface`], started at a known surface temperature, K; `film` may return something beside heat flow and
 /// slope, and what it returned last, within 1 µK of the solution, comes back.
-pub fn solve_surface_from<T>(
+pub(crate) fn solve_surface_from<T>(
     half: &HalfCell,
     start_k: f64,
     film: impl Fn(f64) -> (f64, f64, T),

@@ -16,7 +16,7 @@ pub struct LinkFlow {
 }
 
 /// Flow over one link at the node temperatures `temperature_k` (length: number of cells).
-pub fn link_flow(mesh: &Mesh, link: &Link, temperature_k: &[f64]) -> LinkFlow {
+pub(crate) fn link_flow(mesh: &Mesh, link: &Link, temperature_k: &[f64]) -> LinkFlow {
     let (ta, tb) = (temperature_k[link.a], temperature_k[link.b]);
     let half = |cell: usize, shape: f64, t: f64| {
         let material = &mesh.materials[mesh.material[cell]];

@@ -6,7 +6,7 @@
 //! wall can carry energy as its state and conserve it exactly (see [`crate::model`]).
 
 /// Temperature at which a material's data hold without correction, K.
-pub const REFERENCE_TEMPERATURE_K: f64 = 293.15;
+pub(crate) const REFERENCE_TEMPERATURE_K: f64 = 293.15;
 
 /// A solid.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,19 +37,19 @@ impl Material {
     }
 
     /// Derivative of [`Material::temperature_k`]: `c_20 / c(T)`.
-    pub fn temperature_slope(&self, energy_state_k: f64) -> f64 {
+    pub(crate) fn temperature_slope(&self, energy_state_k: f64) -> f64 {
         let y = energy_state_k - REFERENCE_TEMPERATURE_K;
         1.0 / (1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(f64::MIN_POSITIVE).sqrt()
     }
 
     /// Energy state of a cell at a temperature, K; inverse of [`Material::temperature_k`].
-    pub fn energy_state_k(&self, temperature_k: f64) -> f64 {
+    pub(crate) fn energy_state_k(&self, temperature_k: f64) -> f64 {
         let y = temperature_k - REFERENCE_TEMPERATURE_K;
         REFERENCE_TEMPERATURE_K + y * (1.0 + 0.5 * self.heat_capacity_slope_per_k * y)
     }
 
     /// Conductivity at a temperature, W/(m K).
-    pub fn conductivity_at_w_m_k(&self, temperature_k: f64) -> f64 {
+    pub(crate) fn conductivity_at_w_m_k(&self, temperature_k: f64) -> f64 {
         self.conductivity_w_m_k
             * (1.0 + self.conductivity_slope_per_k * (temperature_k - REFERENCE_TEMPERATURE_K))
     }

@@ -19,7 +19,7 @@ pub(crate) fn kept(since_s: f64) -> f64 {
 
 /// Readings that were good, that were the first ones far off, and that were so after one that was.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FarOff {
+pub(crate) struct FarOff {
     good: f64,
     begun: f64,
     lasted: f64,
@@ -27,24 +27,24 @@ pub struct FarOff {
 
 impl FarOff {
     /// Take in a reading that is as good as any, since the last of which a part of what was seen is kept.
-    pub fn saw_a_good_one(&mut self, kept: f64) {
+    pub(crate) fn saw_a_good_one(&mut self, kept: f64) {
         *self = Self { good: kept * self.good + 1.0, begun: kept * self.begun, lasted: kept * self.lasted };
     }
 
     /// Take in a reading that is far off after one that is, or is not.
-    pub fn saw_one_far_off(&mut self, again: bool) {
+    pub(crate) fn saw_one_far_off(&mut self, again: bool) {
         *(if again { &mut self.lasted } else { &mut self.begun }) += 1.0;
     }
 
     /// What another one has seen beside it.
-    pub fn add(&mut self, other: Self) {
+    pub(crate) fn add(&mut self, other: Self) {
         self.good += other.good;
         self.begun += other.begun;
         self.lasted += other.lasted;
     }
 
     /// Chance that a reading is far off after one that is, or is not.
-    pub fn chance(&self, again: bool) -> f64 {
+    pub(crate) fn chance(&self, again: bool) -> f64 {
         let first = FAR_OFF * WORTH;
         let (seen, of, worth) = if again {
             (self.lasted, self.begun + self.lasted, first)

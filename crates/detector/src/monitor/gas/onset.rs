@@ -117,7 +117,7 @@ impl Posterior {
     }
 
     /// What the rate is below with 97.5 %, kg/s: the upper end of [`Posterior::rate_kg_s`].
-    pub fn largest_rate_kg_s(&self) -> f64 {
+    pub(crate) fn largest_rate_kg_s(&self) -> f64 {
         self.rates().quantile(1.0 - TAIL)
     }
 

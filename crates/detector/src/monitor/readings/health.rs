@@ -157,7 +157,7 @@ impl SensorWatch {
     }
 
     /// Whether it may be standing still: readings have been identical for longer than is usual, and not for so long that it is no chance.
-    pub fn may_stand_still(&self) -> bool {
+    pub(crate) fn may_stand_still(&self) -> bool {
         self.unlikeliness(self.in_a_row) > UNUSUAL
     }
 
@@ -191,7 +191,7 @@ impl SensorWatch {
     }
 
     /// Its offset may have changed by so much; the reading is left as it is.
-    pub fn may_have_shifted(&mut self, by: f64) {
+    pub(crate) fn may_have_shifted(&mut self, by: f64) {
         self.shifted += by;
     }
 
@@ -206,7 +206,7 @@ impl SensorWatch {
     }
 
     /// Somebody has looked after the sensor: it is trusted again, with the offset it has.
-    pub fn repaired(&mut self) {
+    pub(crate) fn repaired(&mut self) {
         (self.detached, self.in_a_row) = (false, 0);
     }
 
@@ -221,7 +221,7 @@ impl SensorWatch {
     }
 
     /// Time of the last reading that was usable and that the observer took, s.
-    pub fn last_used_s(&self) -> f64 {
+    pub(crate) fn last_used_s(&self) -> f64 {
         self.last_used_s
     }
 }

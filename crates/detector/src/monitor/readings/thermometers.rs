@@ -164,7 +164,7 @@ impl Pair {
     }
 
     /// Whether one of them has jumped, and is not used yet.
-    pub fn is_on_probation(&self) -> bool {
+    pub(crate) fn is_on_probation(&self) -> bool {
         self.probation.is_some()
     }
 

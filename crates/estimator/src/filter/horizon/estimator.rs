@@ -85,13 +85,13 @@ impl<M: StateSpace> MovingHorizon<M> {
     }
 
     /// Add `variance` to state `i` at the window's start: a constant that walks so slowly that no interval has noise for it.
-    pub fn inflate(&mut self, i: usize, variance: f64) {
+    pub(crate) fn inflate(&mut self, i: usize, variance: f64) {
         self.window.arrival.inflate(i, variance);
         self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
     }
 
     /// Bring state `i`, a constant, nearer to `rest` by a factor all along the window.
-    pub fn relax(&mut self, i: usize, factor: f64, rest: f64) {
+    pub(crate) fn relax(&mut self, i: usize, factor: f64, rest: f64) {
         self.window.arrival.relax(i, factor, rest);
         self.window.path.x.iter_mut().for_each(|x| x[i] = rest + factor * (x[i] - rest));
         self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);

@@ -75,7 +75,7 @@ impl Pattern {
 
     /// The same where noise of two leading states is correlated only if `correlated` says so, or by what a later state has in common
     /// with both.
-    pub fn with_noise(mut self, correlated: impl Fn(usize, usize) -> bool) -> Self {
+    pub(crate) fn with_noise(mut self, correlated: impl Fn(usize, usize) -> bool) -> Self {
         let m = self.leading;
         let mut linked: Vec<Vec<bool>> =
             (0..m).map(|j| (0..m).map(|i| i < j && correlated(i, j)).collect()).collect();

@@ -62,7 +62,7 @@ impl Transport {
     }
 
     /// Thermal conductivity without the critical enhancement, W/(m K).
-    pub fn background_conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
+    pub(crate) fn background_conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::Hydrogen => hydrogen::conductivity_w_m_k(density_kg_m3, temperature_k),

@@ -12,7 +12,7 @@ impl Link {
 
 impl Mesh {
     /// All columns of the resolved mesh, the layers of each as one cell of their mixture.
-    pub fn of_mixture(geometry: &Geometry) -> Self {
+    pub(crate) fn of_mixture(geometry: &Geometry) -> Self {
         let parts: Vec<(&Material, f64)> =
             geometry.layers.iter().map(|layer| (&layer.material, layer.thickness_m)).collect();
         let mixture = Material::mixture(&parts);

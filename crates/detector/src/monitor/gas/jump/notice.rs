@@ -110,17 +110,17 @@ impl JumpWatch {
     }
 
     /// How often readings have been far off lately.
-    pub fn far_off(&self) -> FarOff {
+    pub(crate) fn far_off(&self) -> FarOff {
         self.far_off
     }
 
     /// Readings were far off in an examination.
-    pub fn were_far_off(&mut self, seen: FarOff) {
+    pub(crate) fn were_far_off(&mut self, seen: FarOff) {
         self.far_off.add(seen);
     }
 
     /// The last change was no jump: only what is beyond it is one.
-    pub fn was_none(&mut self) {
+    pub(crate) fn was_none(&mut self) {
         self.excess = self.excess.max(BEYOND * self.latest);
     }
 
