@@ -6,6 +6,7 @@
 //! block of wall and valve, `X = B^-1 E` and the Schur complement `S = D - C X`,
 //! `x_2 = S^-1 (r_2 - C B^-1 r_1)`, `x_1 = B^-1 r_1 - X x_2`. Columns of `E` that are empty (the ledger's) cost nothing.
 //! `B` is diagonally dominant, so that eliminating it first is stable; it goes to faer's sparse LU, `S` to nalgebra's.
+//! A matrix of at most [`DENSE`] rows is all border: a sparse factorisation costs more than it saves there.
 use diffsol_la::error::LaError;
 use diffsol_la::linear_solver::LinearSolver;
 use diffsol_la::matrix::sparsity::{MatrixSparsity, MatrixSparsityRef};
@@ -14,6 +15,9 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 type M = FaerSparseMat<f64>;
 type V = FaerVec<f64>;
+
+/// Rows up to which a matrix is factorised as a dense one, by measurement.
+const DENSE: usize = 16;
 
 /// Where an entry of the whole matrix belongs, in the order of its values.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +124,10 @@ impl Parts {
         })
     }
 
+    fn has_block(&self) -> bool {
+        MatrixCommon::ncols(&self.block.0) > 0
+    }
+
     /// Distribute the values of the whole matrix.
     fn scatter(&mut self) {
         self.below.clear();
@@ -148,8 +156,11 @@ impl LinearSolver<M> for BorderedLu {
     fn set_sparsity<C: LinearOp<V = V, T = f64, M = M, C = FaerContext>>(&mut self, op: &C) {
         let context = *op.context();
         let whole = M::new_from_sparsity(op.nrows(), op.ncols(), op.sparsity(), context);
+        if op.nrows() <= DENSE {
+            self.border = op.nrows();
+        }
         self.parts = Parts::new(whole, self.border, context);
-        if let Some(parts) = &self.parts {
+        if let Some(parts) = self.parts.as_ref().filter(|parts| parts.has_block()) {
             self.block.set_sparsity(&parts.block);
         }
     }
@@ -158,7 +169,9 @@ impl LinearSolver<M> for BorderedLu {
         let Some(parts) = &mut self.parts else { return };
         op.matrix_inplace(&mut parts.whole);
         parts.scatter();
-        self.block.set_linearisation(&parts.block);
+        if parts.has_block() {
+            self.block.set_linearisation(&parts.block);
+        }
         let mut schur = parts.corner.clone();
         for (column, &border_column) in parts.right.iter_mut().zip(&parts.touching) {
             // X = B^-1 E in place; a failing solve leaves a column that Newton will not like.
@@ -181,7 +194,9 @@ impl LinearSolver<M> for BorderedLu {
         for i in 0..n {
             first.set_index(i, x.get_index(i));
         }
-        self.block.solve_in_place(&mut first)?;
+        if parts.has_block() {
+            self.block.solve_in_place(&mut first)?;
+        }
         let mut second = DVector::from_fn(self.border, |i, _| x.get_index(n + i));
         for &(row, column, value) in &parts.below {
             second[row] -= value * first.get_index(column);
@@ -212,8 +227,8 @@ mod tests {
     use super::*;
 
     /// A tridiagonal block with two dense rows and columns and one row without a column.
-    fn example() -> (Block, DMatrix<f64>) {
-        let (n, border) = (7, 3);
+    fn example(n: usize) -> (Block, DMatrix<f64>) {
+        let border = 3;
         let dense = DMatrix::from_fn(n + border, n + border, |i, j| match (i < n, j < n) {
             (true, true) if i == j => 4.0 + i as f64,
             (true, true) if i.abs_diff(j) == 1 => -1.0 - 0.1 * j as f64,
@@ -241,16 +256,16 @@ mod tests {
 
     #[test]
     fn bordered_solve_is_the_dense_solve() {
-        let (op, dense) = example();
-        let right = DVector::from_fn(10, |i, _| (i as f64).sin() + 0.3);
-        let expected = dense.lu().solve(&right).unwrap();
-        for border in [3, 4] {
+        for (n, border) in [(DENSE, 3), (DENSE, 4), (DENSE - 3, 3)] {
+            let (op, dense) = example(n);
+            let right = DVector::from_fn(n + 3, |i, _| (i as f64).sin() + 0.3);
+            let expected = dense.lu().solve(&right).unwrap();
             let mut solver = BorderedLu::new(border);
             solver.set_sparsity(&op);
             solver.set_linearisation(&op);
             let mut x = V::from_vec(right.as_slice().to_vec(), FaerContext::default());
             solver.solve_in_place(&mut x).unwrap();
-            for i in 0..10 {
+            for i in 0..n + 3 {
                 approx::assert_relative_eq!(
                     x.get_index(i),
                     expected[i],
