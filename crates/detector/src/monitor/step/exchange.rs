@@ -16,7 +16,7 @@ use crate::monitor::examination::{Before, Cause, Compared, Examination, NO_OFFSE
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
 use crate::monitor::gas::jump::{Innovated, LONGEST_INTERVAL_S, USUAL_LARGEST};
 use crate::monitor::gas::leak::{Change, LostUnheard};
-use crate::monitor::machine::judgement::MATTERS;
+use crate::monitor::step::judgement::MATTERS;
 use crate::monitor::{Event, EventKind, Reason};
 
 /// Time for which a jump that remained unclear leaves doubt, s.

@@ -1,4 +1,4 @@
-//! The monitor of one cylinder.
+//! The monitor of one cylinder: what each row does.
 mod disturbance;
 mod exchange;
 mod judgement;
