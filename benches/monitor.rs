@@ -6,17 +6,16 @@ use cylwatch_detector::monitor::{Monitor, MonitorSettings};
 use cylwatch_estimator::observer::{Commissioning, Observer};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
-use cylwatch_evaluation::truth::{Course, TruthSettings, generate_with};
+use cylwatch_evaluation::world::{Family, Request, RowPattern, Simulated};
 
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 type Rows = Vec<(f64, [f64; 3])>;
 
-fn rows(days: f64, sample_time_s: f64) -> Rows {
-    let settings = TruthSettings { gas_cells: 1, relative_tolerance: 1e-4, ..TruthSettings::default() };
-    let truth = generate_with(&Course::RailwayWeeks { days }, 1, sample_time_s, &settings).expect("a truth");
-    let columns =
-        SENSORS.map(|name| truth.log.channels.iter().position(|c| c.name == name).expect("it is read"));
-    truth.log.rows().map(|(t, row)| (t, columns.map(|c| row[c]))).collect()
+fn rows(days: f64, rows: RowPattern) -> Rows {
+    let request = Request::tight(Family { rows, ..Family::usual() }, 1, 86_400.0 * days);
+    let simulated = Simulated::run(&request).expect("a simulation");
+    let world = simulated.world_of_even_rows(&request).expect("a world");
+    world.log.rows().map(|(t, row)| (t, [row[0], row[1], row[2]])).collect()
 }
 
 fn throughput(criterion: &mut Criterion) {
@@ -25,12 +24,12 @@ fn throughput(criterion: &mut Criterion) {
     let filled = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
     let mut group = criterion.benchmark_group("rows");
     group.sample_size(10);
-    for (name, days, interval_s, step_s) in [
-        ("every minute", 7.0, 60.0, 0.0),
-        ("every 10 s", 2.0, 10.0, 0.0),
-        ("every 10 s, in bins of a minute", 2.0, 10.0, 60.0),
+    for (name, days, pattern, step_s) in [
+        ("every minute", 7.0, RowPattern::Minute, 0.0),
+        ("every 10 s", 2.0, RowPattern::TenSeconds, 0.0),
+        ("every 10 s, in bins of a minute", 2.0, RowPattern::TenSeconds, 60.0),
     ] {
-        let rows = rows(days, interval_s);
+        let rows = rows(days, pattern);
         group.throughput(Throughput::Elements(rows.len() as u64));
         let mut settings = MonitorSettings::default();
         settings.intake.step_s = step_s;

@@ -1,7 +1,7 @@
 //! Cost of a step of the cylinder's observer: by engine, by size of the bank, by interval of the samples.
 //!
-//! A cylinder of 20 L with shoulder, valve and pressure sensors through one day of a railway week
-//! ([`cylwatch_evaluation::truth`], six tunnels), again and again. One step includes the estimate.
+//! A cylinder of 20 L with shoulder, valve and pressure sensors through one day under a train
+//! ([`cylwatch_evaluation::world`]), again and again. One step includes the estimate.
 //!
 //! `cargo bench -p cylwatch-benches --bench observer`
 use std::sync::OnceLock;
@@ -12,7 +12,7 @@ use cylwatch_estimator::observer::{
 };
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
-use cylwatch_evaluation::truth::{Course, generate};
+use cylwatch_evaluation::world::{Family, Request, RowPattern, Simulated};
 
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const INTERVAL_S: f64 = 10.0;
@@ -23,10 +23,11 @@ const FILL_PA: f64 = 2e7;
 fn readings(time_s: f64) -> [f64; 3] {
     static DAY: OnceLock<Vec<[f64; 3]>> = OnceLock::new();
     let day = DAY.get_or_init(|| {
-        let truth = generate(&Course::RailwayWeeks { days: 1.0 }, 1, INTERVAL_S).expect("sound course");
-        let column = |name: &str| truth.log.channels.iter().position(|channel| channel.name == name);
-        let columns = SENSORS.map(|name| column(name).expect("its own sensor"));
-        truth.log.rows().map(|(_, row)| columns.map(|column| row[column])).collect()
+        let family = Family { rows: RowPattern::TenSeconds, ..Family::usual() };
+        let request = Request::tight(family, 1, 86_400.0);
+        let simulated = Simulated::run(&request).expect("a simulation");
+        let world = simulated.world_of_even_rows(&request).expect("a world");
+        world.log.rows().map(|(_, row)| [row[0], row[1], row[2]]).collect()
     });
     day[(time_s / INTERVAL_S).round() as usize % day.len()]
 }

@@ -8,7 +8,7 @@ use anyhow::Context;
 use cylwatch::estimator::filter::{ExtendedKalman, Linearisation, StateSpace, UdFactors};
 use cylwatch::estimator::observer::{Commissioning, Observer, ObserverSettings};
 use cylwatch::estimator::sensor::Sensor;
-use cylwatch::evaluation::truth::{Course, generate};
+use cylwatch::evaluation::world::chamber::{Chamber, ChamberRequest};
 use cylwatch::thermal::units::ZERO_CELSIUS_K;
 use cylwatch::thermal::vessel::presets;
 use nalgebra::DMatrix;
@@ -36,14 +36,11 @@ pub fn inputs() -> anyhow::Result<Inputs> {
     let bank = settings.bank.get(LEAK_MEMBER).cloned().into_iter().collect();
     let settings = ObserverSettings { bank, ..settings };
     let mut observer = Observer::new(&vessel, &sensors, &filled, &settings)?;
-    let truth = generate(&Course::Scenario2, SEED, INTERVAL_S)?;
-    let column = |name| truth.log.channels.iter().position(|channel| channel.name == name);
-    let columns: Vec<usize> =
-        SENSORS.into_iter().map(column).collect::<Option<_>>().context("a sensor is missing in the log")?;
-    let end_s = truth.course.change_s() + AFTER_S;
-    for (time_s, row) in truth.log.rows().take_while(|(time_s, _)| *time_s <= end_s) {
-        let readings: Vec<f64> = columns.iter().map(|&column| row[column]).collect();
-        observer.step(time_s, &readings)?;
+    let chamber = Chamber::SCENARIOS[1];
+    let run = ChamberRequest::new(chamber, SEED, INTERVAL_S).run()?;
+    let end_s = chamber.change_s() + AFTER_S;
+    for (time_s, readings) in run.log.rows().take_while(|(time_s, _)| *time_s <= end_s) {
+        observer.step(time_s, readings)?;
     }
     let (mean, prior) = observer.state(0).context("no sample")?;
     let cylinder = observer.cylinder();

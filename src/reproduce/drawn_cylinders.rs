@@ -1,10 +1,10 @@
 //! The paper's cases on cylinders that are unknown to all methods: as published, refitted, by the observer, and the bound.
 //!
-//! **Cylinders** are drawn from seeds around the built-in one ([`crate::evaluation::truth`]): films, capacities, mounting, sensor errors and gusts
+//! **Cylinders** are drawn from seeds around the built-in one ([`crate::evaluation::world::chamber`]): films, capacities, mounting, sensor errors and gusts
 //! differ, the gas is stratified. Each rests for an hour before its air changes.
 //!
 //! **Bound** of the gas temperature: the posterior Cramér-Rao bound along paths of the observer's own model with its prior
-//! ([`matched`](crate::evaluation::truth::matched)); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
+//! ([`matched`](crate::evaluation::matched)); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
 //! steady observer at rest tell of it ([`Site`]), which knows no tunnel. No truth here comes from those models, so a bound is what
 //! could be hoped for, not what must hold.
 //!
@@ -16,8 +16,9 @@ use super::methods::{MethodRun, Plan, run_methods};
 use crate::estimator::observer::ObserverSettings;
 use crate::estimator::placement::{Disturbance, Site, SiteSettings};
 use crate::estimator::sensor::Sensor;
-use crate::evaluation::truth::matched::{Chamber, least_errors, mass_member, settings};
-use crate::evaluation::truth::{Course, Truth, TruthLeak, TruthSettings, generate_with};
+use crate::evaluation::matched::{least_errors, mass_member, settings};
+use crate::evaluation::world::SteadyLeak;
+use crate::evaluation::world::chamber::{Chamber, ChamberRequest, ChamberRun};
 use crate::thermal::units::HOUR_S;
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use crate::thermal::vessel::{Vessel, presets};
@@ -38,17 +39,17 @@ pub(crate) const LEAKS_G_H: [f64; 2] = [60.0, 6.0];
 /// Seeds of the tight cylinders that thresholds come from lie so far above those of the others.
 const TRAINING: u64 = 100_000;
 
-/// The four scenarios with their titles.
-pub(crate) const SCENARIOS: [(Course, &str); 4] = [
-    (Course::Scenario1, "21 to \u{2212}25 °C at once"),
-    (Course::Scenario2, "\u{2212}25 to 40 °C at once"),
-    (Course::Scenario3, "10 to 60 °C in 5 h"),
-    (Course::Scenario4, "60 to 28 °C in 14 h"),
+/// Titles of [`Chamber::SCENARIOS`].
+const TITLES: [&str; 4] = [
+    "21 to \u{2212}25 °C at once",
+    "\u{2212}25 to 40 °C at once",
+    "10 to 60 °C in 5 h",
+    "60 to 28 °C in 14 h",
 ];
 
 /// A number over several cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Spread {
+pub struct Spread {
     /// Root of the mean square, or the mean.
     pub value: f64,
     /// The least of a cylinder.
@@ -75,23 +76,24 @@ impl Spread {
 
 /// A drawn cylinder in a scenario with the results of all methods.
 #[derive(Clone, Debug)]
-pub(crate) struct Drawn {
-    /// What really happened.
-    pub truth: Truth,
+pub struct Drawn {
+    /// What really happened, and what was read.
+    pub run: ChamberRun,
     /// Results of the methods.
     pub method_run: MethodRun,
 }
 
 impl Drawn {
     /// Error of the mean gas temperature, K, of one of [`METHODS`](super::methods::METHODS).
-    pub(crate) fn gas_error_k(&self, method: usize) -> Vec<f64> {
-        let truth = self.truth.gas_mean_k.iter().map(|k| k - ZERO_CELSIUS_K);
+    pub fn gas_error_k(&self, method: usize) -> Vec<f64> {
+        let truth = self.run.trajectory.gas_mean_k.iter().map(|k| k - ZERO_CELSIUS_K);
         self.method_run.gas_degc[method].iter().zip(truth).map(|(said, truth)| said - truth).collect()
     }
 
     /// First sample after the air begins to change.
     fn change(&self) -> usize {
-        self.truth.time_s.partition_point(|&time_s| time_s < self.truth.course.change_s())
+        let change_s = self.run.request.chamber.change_s();
+        self.run.trajectory.time_s.partition_point(|&time_s| time_s < change_s)
     }
 
     /// Root mean square from the change on.
@@ -103,7 +105,7 @@ impl Drawn {
 
 /// A scenario on all drawn cylinders.
 #[derive(Clone, Debug)]
-pub(crate) struct ScenarioScore {
+pub struct ScenarioScore {
     /// Its number and title.
     pub title: String,
     /// Root mean square error of the gas temperature from the change of the air on, K, of each of [`METHODS`](super::methods::METHODS).
@@ -122,7 +124,7 @@ pub(crate) struct ScenarioScore {
 
 /// A leak after a tunnel on all drawn cylinders.
 #[derive(Clone, Debug)]
-pub(crate) struct LeakScore {
+pub struct LeakScore {
     /// The leak, g/h.
     pub leak_g_h: f64,
     /// The same at 15 °C, bar/h.
@@ -147,7 +149,7 @@ pub(crate) struct LeakScore {
 
 /// How it is done.
 #[derive(Clone, Debug)]
-pub(crate) struct Settings {
+pub struct Settings {
     /// Cylinders of each case.
     pub cylinders: u64,
     /// Seed of the first.
@@ -163,42 +165,41 @@ impl Settings {
 
     fn drawn(
         &self,
-        course: &Course,
-        leak: Option<TruthLeak>,
+        chamber: Chamber,
+        leak: Option<SteadyLeak>,
         nominal: &Vessel,
         seed: u64,
     ) -> Result<Drawn, ReproduceError> {
-        let settings = TruthSettings { leak, ..TruthSettings::default() };
-        let truth = generate_with(course, seed, SAMPLE_S, &settings)?;
+        let run = ChamberRequest { leak, ..ChamberRequest::new(chamber, seed, SAMPLE_S) }.run()?;
         let sensors = SENSORS.into_iter().map(Sensor::typical).collect::<Result<Vec<_>, _>>()?;
         let plan =
-            Plan { nominal, sensors: &sensors, pole_per_s: self.pole_per_s, rest_s: truth.course.change_s() };
-        let method_run = run_methods(&plan, &truth.log)?;
-        Ok(Drawn { truth, method_run })
+            Plan { nominal, sensors: &sensors, pole_per_s: self.pole_per_s, rest_s: chamber.change_s() };
+        let method_run = run_methods(&plan, &run.log)?;
+        Ok(Drawn { run, method_run })
     }
 
     fn all(
         &self,
-        course: &Course,
-        leak: Option<TruthLeak>,
+        chamber: Chamber,
+        leak: Option<SteadyLeak>,
         seeds: Range<u64>,
     ) -> Result<Vec<Drawn>, ReproduceError> {
         let nominal = presets::load(VESSEL)?;
-        seeds.into_par_iter().map(|seed| self.drawn(course, leak, &nominal, seed)).collect()
+        seeds.into_par_iter().map(|seed| self.drawn(chamber, leak, &nominal, seed)).collect()
     }
 
     /// A scenario, by its number from 0; `slope_bar_k` turns the bound of the temperature into one of the pressure.
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub(crate) fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
-        let (course, title) = &SCENARIOS[number];
-        let all = self.all(course, None, self.seeds())?;
+    pub fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
+        let (chamber, title) = (Chamber::SCENARIOS[number], TITLES[number]);
+        let all = self.all(chamber, None, self.seeds())?;
         let over = |value: &dyn Fn(&Drawn) -> f64| Spread::pooled(&all.iter().map(value).collect::<Vec<_>>());
         let gas_k = [0, 1, 2].map(|method| over(&|drawn| drawn.rms(&drawn.gas_error_k(method))));
         let missing_bar =
             [0, 1, 2].map(|method| over(&|drawn| drawn.rms(&drawn.method_run.missing_bar[method])));
-        let bound = least_errors(Chamber::scenarios()[number], &settings(mass_member()), PATHS, self.seed)?;
+        let bound = least_errors(chamber, &settings(mass_member()), PATHS, self.seed)?;
         Ok(ScenarioScore {
             title: format!("scenario {}: {title}", number + 1),
             gas_k,
@@ -214,20 +215,20 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub(crate) fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
+    pub fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
         let seeds = self.seeds();
-        self.all(&Course::Tunnel, None, seeds.start + TRAINING..seeds.end + TRAINING)
+        self.all(Chamber::TUNNEL, None, seeds.start + TRAINING..seeds.end + TRAINING)
     }
 
     /// A leak in the tunnel, by its number: 60 or 6 g/h.
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub(crate) fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
+    pub fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
         let leak_g_h = LEAKS_G_H[number];
-        let onset_s = Course::Tunnel.change_s() + ONSET_AFTER_S;
-        let leak = TruthLeak { rate_kg_s: leak_g_h * GRAM_PER_HOUR, start_s: onset_s };
-        let all = self.all(&Course::Tunnel, Some(leak), self.seeds())?;
+        let onset_s = Chamber::TUNNEL.change_s() + ONSET_AFTER_S;
+        let leak = SteadyLeak { rate_kg_s: leak_g_h * GRAM_PER_HOUR, onset_s };
+        let all = self.all(Chamber::TUNNEL, Some(leak), self.seeds())?;
         let threshold_bar = [0, 1].map(|method| {
             1.1 * tight.iter().map(|drawn| drawn.method_run.largest_lasting_bar(method)).fold(0.0, f64::max)
         });
@@ -251,8 +252,7 @@ impl Settings {
             |drawn: &&Drawn, method: usize| alarm_s(drawn, method).is_some_and(|alarm_s| alarm_s < onset_s);
         let nominal = presets::load(VESSEL)?;
         let bar_per_kg = bar_per_kg(&nominal)?;
-        let watched_s =
-            all.first().and_then(|drawn| drawn.truth.time_s.last()).map_or(0.0, |end_s| end_s - onset_s);
+        let watched_s = Chamber::TUNNEL.duration_s() - onset_s;
         let (bound_min, sd_kg_s) = leak_bounds(&nominal, leak.rate_kg_s, watched_s)?;
         Ok(LeakScore {
             leak_g_h,

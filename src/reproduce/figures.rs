@@ -186,8 +186,8 @@ fn alarm(name: &str, t: &[f64], values: &[f64], alarm_s: Option<f64>, stroke: St
 
 /// A scenario on the first of the drawn cylinders.
 pub(super) fn drawn_cylinder(score: &ScenarioScore) -> Figure {
-    let (truth, method_run) = (&score.shown.truth, &score.shown.method_run);
-    let t = &truth.time_s;
+    let (run, method_run) = (&score.shown.run, &score.shown.method_run);
+    let (truth, t) = (&run.trajectory, &run.trajectory.time_s);
     let celsius = |k: &[f64]| k.iter().map(|k| k - ZERO_CELSIUS_K).collect::<Vec<f64>>();
     let high: Vec<f64> = method_run.gas_sd_k.iter().map(|sd| 2.0 * sd).collect();
     let low = high.iter().map(|high| -high).collect();
@@ -206,7 +206,7 @@ pub(super) fn drawn_cylinder(score: &ScenarioScore) -> Figure {
         Panel::new("gas error in K", 0.8, std::iter::once(band).chain(errors).collect()),
         Panel::new("missing in bar", 0.8, missing.collect()),
     ];
-    let marks = vec![mark(truth.course.change_s(), "the air changes")];
+    let marks = vec![mark(run.request.chamber.change_s(), "the air changes")];
     Figure::over_time(format!("{}, one drawn cylinder", score.title), panels).with_marks(marks)
 }
 

@@ -33,7 +33,7 @@ mod tables;
 use crate::detector::DetectorError;
 use crate::estimator::EstimatorError;
 use crate::estimator::identify::IdentifyError;
-use crate::evaluation::EvaluationError;
+use crate::evaluation::world::chamber::Chamber;
 use crate::report::{Input, ReportError};
 use crate::thermal::ThermalError;
 use crate::thermal::simulate::SimulationSettings;
@@ -62,9 +62,6 @@ pub enum ReproduceError {
     /// A detector.
     #[error(transparent)]
     Detector(#[from] DetectorError),
-    /// The drawn cylinders.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
     /// A figure.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -167,7 +164,7 @@ const DRAWN: f64 = 12.0;
 /// # Errors
 /// A simulation, an identification or a detector fails.
 pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<Reproduction, ReproduceError> {
-    let all = 12.0 * QUICK + DRAWN * (drawn_cylinders::SCENARIOS.len() + 1 + LEAKS_G_H.len()) as f64;
+    let all = 12.0 * QUICK + DRAWN * (Chamber::SCENARIOS.len() + 1 + LEAKS_G_H.len()) as f64;
     let mut work = Work { done: 0.0, all, progress };
     let simulation = &settings.simulation;
     let tight = cylinder::tight()?;
@@ -192,7 +189,7 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
         passed("figure 8", Case::Leaking, seed.wrapping_add(2))?,
     ];
     let drawn = drawn_cylinders::Settings { cylinders: settings.cylinders, seed, pole_per_s };
-    let drawn_cylinders = (0..drawn_cylinders::SCENARIOS.len())
+    let drawn_cylinders = (0..Chamber::SCENARIOS.len())
         .map(|k| {
             let what = format!("scenario {} on drawn cylinders", k + 1);
             work.step(&what, DRAWN, |_| drawn.scenario(k, tight.slope_bar_k))

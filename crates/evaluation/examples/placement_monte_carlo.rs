@@ -20,7 +20,6 @@ use cylwatch_evaluation::placement::{
     Achieved, Claim, ConfirmSettings, Confirmed, Detected, calm, detected_matched, detected_mismatched,
     matched, mismatched,
 };
-use cylwatch_evaluation::truth::TruthSettings;
 
 const NAMES: [&str; 7] = ["bottom", "middle", "shoulder", "neck", "valve", "ambient", "pressure"];
 const BEST: usize = 5;
@@ -173,29 +172,24 @@ fn main() {
     let layouts = study.best(&usual, &mass);
     let settings =
         ConfirmSettings { seeds: mismatched_seeds, duration_s: 8.0 * DAY_S, ..ConfirmSettings::default() };
-    let truth = TruthSettings::fast();
     let found =
-        mismatched(&study.claim(&usual, &mass, &layouts), &settings, &truth, &Watch::default(), &|_| ())
-            .unwrap();
+        mismatched(&study.claim(&usual, &mass, &layouts), &settings, &Watch::default(), &|_| ()).unwrap();
     println!("mismatched, railway weeks: {mismatched_seeds} seeds, {:.0} s", begun.elapsed().as_secs_f64());
     table(&found.layouts);
     let settings = ConfirmSettings { burn_in_s: 5.0 * DAY_S, ..settings };
     let found =
-        detected_mismatched(&study.claim(&usual, &slow, &layouts), &settings, &detection, &truth, &watch)
-            .unwrap();
+        detected_mismatched(&study.claim(&usual, &slow, &layouts), &settings, &detection, &watch).unwrap();
     println!("mismatched, smallest leak: {mismatched_seeds} seeds");
     leaks(&found);
     // The paper's question: one thermometer beside the pressure, at each place.
     let singles: Vec<Vec<usize>> = (0..5).map(|place| vec![place, NAMES.len() - 1]).collect();
     let seeds = 2 * mismatched_seeds;
     let settings = ConfirmSettings { seeds, burn_in_s: 3.0 * DAY_S, ..settings };
-    let found =
-        mismatched(&study.claim(&usual, &mass, &singles), &settings, &truth, &watch, &|_| ()).unwrap();
+    let found = mismatched(&study.claim(&usual, &mass, &singles), &settings, &watch, &|_| ()).unwrap();
     println!("one thermometer, railway weeks: {seeds} seeds");
     table(&found.layouts);
     let settings = ConfirmSettings { burn_in_s: 5.0 * DAY_S, ..settings };
     let found =
-        detected_mismatched(&study.claim(&usual, &slow, &singles), &settings, &detection, &truth, &watch)
-            .unwrap();
+        detected_mismatched(&study.claim(&usual, &slow, &singles), &settings, &detection, &watch).unwrap();
     leaks(&found);
 }

@@ -6,7 +6,7 @@
 //! | part | what |
 //! |---|---|
 //! | [`world`] | worlds that judge: vessel, climate, gas, sensors and rows, drawn by seed, with what really happened |
-//! | [`truth`] | drawn cylinders in railway weather, read by drawn sensors; how good an observer was |
+//! | [`matched`] | worlds that are the observer's own model, and the bound that no estimator goes below there |
 //! | [`fault`] | faults put into good rows, and what a monitor must make of them |
 //! | [`baseline`] | the paper's detector and others without an observer, to compare with |
 //! | [`noise`] | noise of a series without a leak, and the shortest delay in it |
@@ -17,11 +17,11 @@ pub mod baseline;
 pub mod error;
 pub mod fault;
 pub mod judge;
+pub mod matched;
 pub mod noise;
 pub mod placement;
 mod random;
 pub mod tails;
-pub mod truth;
 pub mod world;
 
 pub use cylwatch_detector as detector;

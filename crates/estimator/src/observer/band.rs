@@ -11,7 +11,7 @@
 //! what no data tell, the offset that thermometers on the surface have together, `1/b^2 = sum 1/b_i^2`, and `m` the error of the
 //! model ([`BandSettings::model_k`]). It never exceeds `P`, is about `P` where `P` is large, and nearly so once learnt.
 //!
-//! Assumption: `d` and `m` were fitted on drawn cylinders ([`crate::truth`]), with three sensors of typical offsets and with exact
+//! Assumption: `d` and `m` were fitted on drawn cylinders in a chamber, with three sensors of typical offsets and with exact
 //! thermometers. They say nothing of a vessel or a course of another kind.
 use super::band_settings::BandSettings;
 use super::settings::ObserverSettings;

@@ -1,6 +1,6 @@
 //! What the observer assumes: resolution, priors, random walks, model error.
 //!
-//! The defaults are tuned on drawn cylinders under a train (`truth` of `cylwatch-evaluation`; seeds 1 to 12, others judge). They are tuned for the
+//! The defaults are tuned on drawn cylinders under a train; worlds of `cylwatch-evaluation` judge them. They are tuned for the
 //! estimate, not for the statistics of the innovations: model error is coloured, and a filter that treats it as
 //! white noise of its actual size trusts its parameters too much. So the noise of the outputs is stated too large, grows with
 //! the temperature differences that the reduced model resolves worst, and what is learnt fades.

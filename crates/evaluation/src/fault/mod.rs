@@ -4,7 +4,7 @@
 //! [`Fault::Offset`], ...), how rows arrive ([`Fault::OutOfOrder`], [`Fault::ClockJump`], ...), or takes the power away
 //! ([`Fault::PowerCycles`]). A [`TableRow`] is one row of the table of faults that a monitor has to survive: it draws a fault of its
 //! kind ([`TableRow::draw`]) and says what must come of it ([`TableRow::requirement`]). Rows that happen to the cylinder and not
-//! to its data are processes and disturbances of [`truth`](crate::truth).
+//! to its data are simulated with the [world](crate::world) that they are laid over.
 //!
 //! Source of the kinds: E. Balaban et al., IEEE Sensors J. 9 (2009) 1907 (bias, drift, scaling, dropout); B. de Bruijn et al.,
 //! Sensors 16 (2016) (random, malfunction, bias, drift).

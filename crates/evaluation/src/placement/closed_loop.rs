@@ -11,7 +11,6 @@ use super::{
 use crate::EvaluationError;
 use crate::estimator::placement::search::Watch;
 use crate::estimator::placement::study::{JUDGED, Placement, Study};
-use crate::truth::TruthSettings;
 
 /// Length of a mismatched run, and what of it the observer learns in, s.
 const MISMATCHED_S: f64 = 8.0 * DAY_S;
@@ -107,12 +106,10 @@ pub fn confirm(
         found.matched_leaks = detected_matched(&claim(true, slow), &of_seeds(own), detection, watch)?;
     }
     if drawn > 0 {
-        let truth = TruthSettings::fast();
         let settings = ConfirmSettings { duration_s: MISMATCHED_S, ..of_seeds(drawn) };
-        found.mismatched = mismatched(&claim(false, first), &settings, &truth, watch, &|_| ())?.layouts;
+        found.mismatched = mismatched(&claim(false, first), &settings, watch, &|_| ())?.layouts;
         let settings = ConfirmSettings { burn_in_s: LEARNING_S, ..settings };
-        found.mismatched_leaks =
-            detected_mismatched(&claim(false, slow), &settings, &site.detection, &truth, watch)?;
+        found.mismatched_leaks = detected_mismatched(&claim(false, slow), &settings, &site.detection, watch)?;
     }
     found.partial = watch.stop.load(Ordering::Relaxed);
     Ok(found)

@@ -16,7 +16,7 @@ use crate::estimator::observer::{Innovation, ObserverSettings};
 use crate::estimator::placement::cylinder::{Quantity, SitedCylinder};
 use crate::estimator::placement::search::Watch;
 use crate::estimator::placement::{DetectionSettings, Disturbance};
-use crate::truth::{TruthLeak, TruthSettings};
+use crate::world::SteadyLeak;
 
 /// A leak before each layout.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -97,7 +97,6 @@ pub fn detected_mismatched(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
     detection: &DetectionSettings,
-    truth: &TruthSettings,
     watch: &Watch,
 ) -> Result<Vec<Detected>, EvaluationError> {
     let alone = ObserverSettings { bank: vec![*claim.member], ..claim.settings.clone() };
@@ -105,8 +104,7 @@ pub fn detected_mismatched(
     let sited =
         SitedCylinder::new(claim.vessel, claim.candidates, claim.settings, claim.member, claim.conditions)?;
     detected(&claim, settings, detection, &sited, &|claim, settings, predictions| {
-        mismatched(claim, settings, truth, watch, &|id| listener(claim, settings, &predictions[id.layout]))
-            .map(sums)
+        mismatched(claim, settings, watch, &|id| listener(claim, settings, &predictions[id.layout])).map(sums)
     })
 }
 
@@ -147,7 +145,7 @@ fn detected(
     let predictions: Vec<Prediction> =
         claim.layouts.iter().map(predict).collect::<Result<_, EvaluationError>>()?;
     let Some(first) = predictions.first() else { return Ok(Vec::new()) };
-    let leak = TruthLeak { rate_kg_s: first.smallest_kg_s, start_s: settings.burn_in_s };
+    let leak = SteadyLeak { rate_kg_s: first.smallest_kg_s, onset_s: settings.burn_in_s };
     let long =
         ConfirmSettings { duration_s: settings.burn_in_s + detection.within_s, leak: None, ..*settings };
     let tight = runs(claim, &long, &predictions)?;

@@ -32,6 +32,14 @@ pub(super) struct Jury<'a, L> {
     seats: Vec<Seat<'a, L>>,
 }
 
+/// How a seed's run begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Begin {
+    pub seed: u64,
+    /// Whether the cylinder has settled, which the observers are told.
+    pub settled: bool,
+}
+
 /// What one seed leaves behind, layout by layout.
 pub(super) type Verdict<L> = Vec<(Tallies, Run<L>)>;
 
@@ -41,11 +49,11 @@ impl<'a, L: Listener> Jury<'a, L> {
         claim: &Claim<'a>,
         candidates: &[Sensor],
         settings: &ObserverSettings,
-        seed: u64,
+        Begin { seed, settled }: Begin,
         listen: &impl Fn(RunId) -> L,
     ) -> Result<Self, EvaluationError> {
         let (pressure_pa, temperature_k) = claim.conditions.filling;
-        let commissioning = Commissioning::filled(pressure_pa, temperature_k);
+        let commissioning = Commissioning { settled, ..Commissioning::filled(pressure_pa, temperature_k) };
         let seat = |(index, layout): (usize, &'a Vec<usize>)| {
             let sensors: Vec<Sensor> =
                 layout.iter().map(|candidate| candidates[*candidate].clone()).collect();

@@ -19,7 +19,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use super::draws::matched_draws;
-use super::jury::{Jury, Present, Verdict, confirmation};
+use super::jury::{Begin, Jury, Present, Verdict, confirmation};
 use super::{Claim, ConfirmSettings, Confirmation, Listener, Rows, RunId};
 use crate::EvaluationError;
 use crate::estimator::filter::{Linearisation, Plant, StateSpace};
@@ -181,7 +181,8 @@ pub fn matched<L: Listener>(
             motion: &motion,
             rng: ChaCha12Rng::seed_from_u64(seed),
         };
-        let mut jury = Jury::new(claim, &candidates, &observed, seed, listen)?;
+        let begin = Begin { seed, settled: true };
+        let mut jury = Jury::new(claim, &candidates, &observed, begin, listen)?;
         let mut readings = vec![f64::NAN; candidates.len()];
         for row in 0..rows.count {
             let time_s = row as f64 * rows.interval_s;
@@ -218,9 +219,9 @@ impl World<'_> {
     /// Take away what a leak lets out in the interval before a time; its rate then, kg/s.
     fn lose(&mut self, settings: &ConfirmSettings, time_s: f64, interval_s: f64) -> f64 {
         let Some(leak) = settings.leak else { return 0.0 };
-        let open_s = (time_s - leak.start_s).clamp(0.0, interval_s);
+        let open_s = (time_s - leak.onset_s).clamp(0.0, interval_s);
         self.x[self.cylinder.state_map().mass] -= leak.rate_kg_s * open_s;
-        if time_s >= leak.start_s { leak.rate_kg_s } else { 0.0 }
+        if time_s >= leak.onset_s { leak.rate_kg_s } else { 0.0 }
     }
 
     fn read(&mut self, readings: &mut [f64]) -> Result<(), EvaluationError> {

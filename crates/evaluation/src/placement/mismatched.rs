@@ -1,30 +1,28 @@
 //! Worlds that the observer's model does not know: drawn cylinders in railway weather, read by drawn specimens of the candidates.
-use cylwatch_thermal::units::DAY_S;
-use cylwatch_thermal::units::QUOTED_K;
+use cylwatch_thermal::units::{HOUR_S, QUOTED_K};
 use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use super::jury::{Jury, Present, Verdict, confirmation};
+use super::jury::{Begin, Jury, Present, Verdict, confirmation};
 use super::{Claim, ConfirmSettings, Confirmation, Listener, Rows, RunId};
 use crate::EvaluationError;
 use crate::estimator::observer::Commissioning;
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::placement::cylinder::SitedCylinder;
 use crate::estimator::placement::search::Watch;
-use crate::estimator::sensor::{SensorSuite, sample};
-use crate::truth::{Course, Happenings, TruthSettings, simulate_around};
+use crate::estimator::sensor::{SensorSuite, sample_at};
+use crate::world::{Family, NominalVessel, Overlay, Request, RowPattern, Run};
 
-/// Errors in worlds that differ from the observer's model: railway weeks of as many days as a run has, with the truths' `settings.vessel` and
-/// `settings.leak` as the claim and its confirmation have them. The observer has the claim's settings and its whole bank. Masses are compared
-/// as they are: a transmitter's constant offset is part of the error, but not of the prediction.
+/// Errors in worlds that differ from the observer's model: cylinders with well-mixed gas, drawn around the claim's vessel with the claim's
+/// filling, under a rail vehicle in winter, for as long as a run is. The observer has the claim's settings and its whole bank. Masses are
+/// in the stated volume and otherwise compared as they are: a transmitter's constant offset is part of the error, but not of the prediction.
 ///
 /// # Errors
 /// A setting is out of its bounds, a layout names no candidate, a candidate has no place on the vessel, or a simulation fails.
 pub fn mismatched<L: Listener>(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
-    truth: &TruthSettings,
     watch: &Watch,
     listen: &(impl Fn(RunId) -> L + Sync),
 ) -> Result<Confirmation<L>, EvaluationError> {
@@ -34,26 +32,44 @@ pub fn mismatched<L: Listener>(
     let suite = SensorSuite::try_new(candidates.to_vec())?;
     let (pressure_pa, temperature_k) = conditions.filling;
     let mass_kg = Commissioning::filled(pressure_pa, temperature_k).mass_kg(vessel, temperature_k)?;
-    let mut nominal = Cylinder::new(vessel, candidates, claim.settings)?;
-    let fill_pa = nominal.model().settled_pressure_pa(mass_kg, QUOTED_K)?;
-    let happenings = Happenings { fill_pa: Some(fill_pa), ..Happenings::default() };
-    let course = Course::RailwayWeeks { days: settings.duration_s / DAY_S };
-    let truth = TruthSettings { leak: settings.leak, ..truth.clone() };
+    let mut model = Cylinder::new(vessel, candidates, claim.settings)?;
+    let fill_pa = model.model().settled_pressure_pa(mass_kg, QUOTED_K)?;
+    let nominal =
+        NominalVessel { fill_pa: (fill_pa, fill_pa), ..NominalVessel::own(vessel.clone(), fill_pa) };
+    let overlay = settings.leak.map_or(Overlay::Nothing, |leak| Overlay::Leak {
+        part_per_h: leak.rate_kg_s * HOUR_S / mass_kg,
+        onset_s: leak.onset_s,
+    });
+    let pattern = if rows.interval_s < 60.0 { RowPattern::TenSeconds } else { RowPattern::Minute };
+    let family = Family { rows: pattern, ..Family::usual() };
     let of_seed = |seed: u64| -> Result<Option<Verdict<L>>, EvaluationError> {
         if watch.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        let (_, trajectory) = simulate_around(vessel, &course, seed, rows.interval_s, &truth, &happenings)?;
-        let log = sample(&trajectory, &suite.draw(seed), seed)?;
-        let mut jury = Jury::new(claim, candidates, claim.settings, seed, listen)?;
+        let request = Request::tight(family, seed, settings.duration_s).with(overlay);
+        request.validate()?;
+        // The leak is simulated however slow it is: candidates read surfaces that it cools.
+        let Run { drawn, trajectory, .. } = Run::around(&nominal, &request, &overlay)?;
+        let times_s: Vec<f64> =
+            (0..rows.count).map(|row| drawn.fill.lead_s + row as f64 * rows.interval_s).collect();
+        let log = sample_at(&trajectory, &suite.draw(seed), &times_s, seed)?;
+        let at = |values: &[f64], t_s: f64| {
+            let known_s = &trajectory.time_s;
+            let next = known_s.partition_point(|&known| known <= t_s).clamp(1, known_s.len() - 1);
+            let weight = (t_s - known_s[next - 1]) / (known_s[next] - known_s[next - 1]);
+            values[next - 1] + weight * (values[next] - values[next - 1])
+        };
+        let begin = Begin { seed, settled: drawn.fill.lead_s == 0.0 };
+        let mut jury = Jury::new(claim, candidates, claim.settings, begin, listen)?;
         for (row, (time_s, readings)) in log.rows().enumerate() {
-            let leak = settings.leak.filter(|leak| time_s >= leak.start_s);
+            let log_s = row as f64 * rows.interval_s;
+            let leak = settings.leak.filter(|leak| log_s >= leak.onset_s);
             let present = Present {
-                gas_k: trajectory.gas_mean_k[row],
-                mass_kg: trajectory.mass_kg[row],
+                gas_k: at(&trajectory.gas_mean_k, time_s),
+                mass_kg: at(&trajectory.mass_kg, time_s) / drawn.vessel.volume,
                 leak_kg_s: leak.map_or(0.0, |leak| leak.rate_kg_s),
             };
-            jury.hear(time_s, readings, &present, rows.is_judged(row))?;
+            jury.hear(log_s, readings, &present, rows.is_judged(row))?;
         }
         Ok(Some(jury.verdict()))
     };

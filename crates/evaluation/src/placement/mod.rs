@@ -9,7 +9,7 @@
 //! | world | truth | observer |
 //! |---|---|---|
 //! | [`matched()`] | the observer's own equations, nonlinear, with its own noise | one member, no allowance for the model |
-//! | [`mismatched()`] | drawn cylinders in railway weather ([`crate::truth`]) read by drawn specimens | as the settings say |
+//! | [`mismatched()`] | drawn cylinders in railway weather ([`crate::world`]) read by drawn specimens | as the settings say |
 //!
 //! The interval of an rms is that of a bootstrap over seeds, since the times of one run hang together. In the matched world the constants
 //! of all seeds are drawn together, with exactly the moments of their prior; the bootstrap does not know that, so its interval is too wide
@@ -35,7 +35,7 @@ use crate::estimator::observer::{LeakHypothesis, ObserverSettings};
 use crate::estimator::placement::Conditions;
 use crate::estimator::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
-use crate::truth::TruthLeak;
+use crate::world::SteadyLeak;
 
 pub use closed_loop::{ClosedLoop, ClosedLoopSettings, confirm, confirm_study};
 pub use detection::{Detected, detected_matched, detected_mismatched};
@@ -74,7 +74,7 @@ pub struct ConfirmSettings {
     /// From one time at which they are taken to the next, s: well apart.
     pub every_s: f64,
     /// A leak of the truth that the observer is not told of.
-    pub leak: Option<TruthLeak>,
+    pub leak: Option<SteadyLeak>,
     /// Standard deviation of the truth's process noise in that of the filter; in the matched world alone. 1: they are matched.
     pub noise_factor: f64,
 }

@@ -1,25 +1,19 @@
 //! From a simulation to a world: rows, readings, truth, and what is laid over them.
-use cylwatch_estimator::log::{Channel, Log, Quantity};
+use cylwatch_estimator::log::Log;
 use cylwatch_estimator::sensor::SensorSuite;
-use cylwatch_thermal::transfer::outside::Body;
 use cylwatch_thermal::units::QUOTED_K;
 
 use super::flows::{DISCHARGE, FAST_LOSS, LEAK, REFILL};
-use super::reading::{Place, read_pressure};
+use super::reading::Scene;
 use super::rows::Rows;
 use super::sensors::{SensorDraw, seed_of_set};
 use super::simulation::Simulated;
-use super::slow::SlowLeak;
 use super::truth::Truth;
 use super::{
-    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, Told, World, WorldError,
-    disturbed, faulty,
+    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, SteadyLeak, Told, World,
+    WorldError, disturbed, faulty,
 };
 use crate::random::Purpose;
-
-/// Heights of the thermometers above the middle, as fractions of the vessel's.
-const SHOULDER_ABOVE: f64 = 0.4;
-const VALVE_ABOVE: f64 = 0.5;
 
 impl Simulated {
     /// The world of a request over this simulation. The request may differ from that of [`Simulated::run`] in sensors, set, rows
@@ -28,18 +22,30 @@ impl Simulated {
     /// # Errors
     /// A request that needs another simulation.
     pub fn world(&self, request: &Request) -> Result<World, WorldError> {
+        let seed = seed_of_set(request.seed, request.set);
+        self.world_of(request, rows(request, seed))
+    }
+
+    /// The same with a row exactly every interval: for what is repeated, shifted or counted by rows.
+    ///
+    /// # Errors
+    /// As [`Simulated::world`].
+    pub fn world_of_even_rows(&self, request: &Request) -> Result<World, WorldError> {
+        self.world_of(request, Rows::even(request.family.rows, request.length_s))
+    }
+
+    fn world_of(&self, request: &Request, rows: Rows) -> Result<World, WorldError> {
         request.validate()?;
         self.check(request)?;
-        world(self, request)
+        world(self, request, rows)
     }
 }
 
 /// The world of a request that fits a simulation.
-fn world(simulated: &Simulated, request: &Request) -> Result<World, WorldError> {
+fn world(simulated: &Simulated, request: &Request, rows: Rows) -> Result<World, WorldError> {
     let family = request.family;
     let seed = seed_of_set(request.seed, request.set);
-    let rows = rows(request, seed);
-    let leak = SlowLeak::of(simulated, request);
+    let leak = SteadyLeak::laid_over(simulated, request);
     let truth = truth(simulated, &rows.time_s, leak.as_ref())?;
     let sensors = SensorDraw::draw(family.sensors, simulated.nominal.full_scale_pa, seed);
     let log = readings(simulated, &sensors, &rows, &truth, seed);
@@ -90,7 +96,7 @@ fn with_fault(
     mut world: World,
     simulated: &Simulated,
     rows: &Rows,
-    leak: Option<&SlowLeak>,
+    leak: Option<&SteadyLeak>,
     (row, onset_s): (FaultRow, f64),
     seed: u64,
 ) -> Result<World, WorldError> {
@@ -108,7 +114,7 @@ fn with_fault(
 pub(super) fn truth(
     simulated: &Simulated,
     time_s: &[f64],
-    leak: Option<&SlowLeak>,
+    leak: Option<&SteadyLeak>,
 ) -> Result<Truth, WorldError> {
     let lead_s = simulated.drawn.fill.lead_s;
     let samples = &simulated.samples;
@@ -157,46 +163,22 @@ fn settled(simulated: &Simulated, mass_kg: &[f64]) -> Vec<f64> {
 }
 
 fn readings(simulated: &Simulated, sensors: &SensorDraw, rows: &Rows, truth: &Truth, seed: u64) -> Log {
-    let samples = &simulated.samples;
-    let geometry = &simulated.vessel.geometry;
-    let diameter_m = geometry.inner_diameter_m + 2.0 * geometry.thickness_m();
-    let cylinder =
-        Body { orientation: geometry.orientation, diameter_m, height_m: geometry.outer_height_m() };
-    let valve_m = simulated.vessel.valve.as_ref().map_or(diameter_m, |valve| valve.diameter_m);
-    let valve = Body { diameter_m: valve_m, height_m: valve_m, ..cylinder };
-    let times_s: Vec<f64> = rows.time_s.iter().map(|t| t + simulated.drawn.fill.lead_s).collect();
-    let place = |body, surface_k, above_middle, noise| Place {
+    let scene = Scene {
+        vessel: &simulated.vessel,
         surroundings: &simulated.surroundings,
-        body,
-        samples,
-        surface_k,
-        above_middle,
-        noise,
+        samples: &simulated.samples,
+        seed,
+        noise: [Purpose::WorldShoulderNoise, Purpose::WorldValveNoise, Purpose::WorldPressureNoise],
     };
-    let shoulder = place(cylinder, &samples.shoulder_k, SHOULDER_ABOVE, Purpose::WorldShoulderNoise);
-    let valve = place(valve, &samples.valve_k, VALVE_ABOVE, Purpose::WorldValveNoise);
-    let columns = [
-        shoulder.read(&sensors.shoulder, &times_s, seed),
-        valve.read(&sensors.valve, &times_s, seed),
-        read_pressure(&sensors.pressure, &truth.pressure_pa, &truth.valve_k, seed),
-    ];
-    let channel = |name: &str, quantity| Channel { name: name.into(), quantity };
-    Log {
-        channels: vec![
-            channel("shoulder", Quantity::Temperature),
-            channel("valve", Quantity::Temperature),
-            channel("pressure", Quantity::Pressure),
-        ],
-        time_s: rows.stamp_s.clone(),
-        values: (0..times_s.len()).flat_map(|row| columns.iter().map(move |column| column[row])).collect(),
-    }
+    let times_s: Vec<f64> = rows.time_s.iter().map(|t| t + simulated.drawn.fill.lead_s).collect();
+    scene.read(sensors, &times_s, rows.stamp_s.clone(), &truth.pressure_pa)
 }
 
 fn happenings(
     simulated: &Simulated,
     request: &Request,
     rows: &Rows,
-    leak: Option<&SlowLeak>,
+    leak: Option<&SteadyLeak>,
 ) -> Vec<Happening> {
     let mut all: Vec<Happening> =
         rows.gaps_s.iter().map(|&gap| Happening::of_rows(HappeningKind::Gap, gap)).collect();
@@ -207,7 +189,7 @@ fn happenings(
 }
 
 /// What the overlay does to the cylinder and its sensors.
-fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SlowLeak>) -> Vec<Happening> {
+fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SteadyLeak>) -> Vec<Happening> {
     let samples = &simulated.samples;
     let mass_kg = |t_s: f64| samples.at(&samples.mass_kg, t_s + simulated.drawn.fill.lead_s);
     let simulated_kg = mass_kg(0.0) - mass_kg(request.length_s);

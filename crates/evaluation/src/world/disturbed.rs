@@ -1,19 +1,19 @@
 //! Rows of the fault table that happen to the cylinder: what the surroundings do (E) and what is done to the gas (G).
 //!
-//! They are disturbances and processes of [`crate::truth`], their parameters drawn by the seed. Pressures of the table, which is written for
+//! They are [`Disturbance`]s and [`Process`]es, their parameters drawn by the seed. Pressures of the table, which is written for
 //! 200 bar, are parts of the fill here. Where the film follows from a wind, films of the table become winds: 0.3 m/s standing, 15 m/s
 //! fast, 0.5 m/s in the sun, 40 m/s for running water, whose film is as large as a wind can make it.
-use cylwatch_thermal::scenario::{OutsideFilm, Scenario, Series, Surroundings};
+use cylwatch_thermal::scenario::{OutsideFilm, Scenario, Surroundings};
 use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::units::{BAR_PA, HOUR_S};
 use cylwatch_thermal::vessel::Vessel;
 
 use super::WorldError;
+use super::disturbance::{Disturbance, Surrounding};
 use super::overlay::FaultRow;
+use super::process::{Process, Settled};
 use crate::random::{Purpose, Random};
-use crate::truth::disturbance::{Disturbance, Surrounding};
-use crate::truth::{Happenings, Process};
 
 /// Fill that the pressures of the table are written for, Pa.
 const TABLE_FILL_PA: f64 = 200.0 * BAR_PA;
@@ -39,6 +39,13 @@ pub(super) struct Disturbed<'a> {
     pub onset_s: f64,
 }
 
+/// What a row does to a scenario.
+#[derive(Clone, Debug, Default)]
+struct Effect {
+    disturbance: Option<Disturbance>,
+    process: Option<Process>,
+}
+
 /// Whether a row begins with less gas than the fill.
 pub(super) const fn begins_low(row: FaultRow) -> bool {
     matches!(row, FaultRow::G1)
@@ -58,39 +65,42 @@ impl Disturbed<'_> {
         settings: &SimulationSettings,
     ) -> Result<Trajectory, WorldError> {
         let random = &mut Random::new(self.seed, Purpose::WorldFault);
-        let mut happenings = Happenings::default();
-        if let Some((lasting_s, kind)) = self.surrounding(random, &scenario.surroundings) {
-            happenings.disturbances.push(Disturbance { start_s: self.onset_s, lasting_s, kind });
-        } else {
-            happenings.processes.extend(self.process(random, scenario.duration_s));
-        }
-        if self.row == FaultRow::G5 {
-            happenings = self.masked(&scenario, settings)?;
-        }
-        self.apply(&happenings, &mut scenario)?;
+        let disturbance = self.surrounding(random, &scenario.surroundings);
+        let effect = match disturbance {
+            _ if self.row == FaultRow::G5 => self.masked(&scenario, settings)?,
+            Some(_) => Effect { disturbance, process: None },
+            None => Effect { disturbance, process: self.process(random, scenario.duration_s) },
+        };
+        self.apply(&effect, &mut scenario)?;
         Ok(simulate(self.vessel, &scenario, settings, &mut |_| ())?)
     }
 
     /// Winds pass through the law of films as if they were films, and come back.
-    fn apply(&self, happenings: &Happenings, scenario: &mut Scenario) -> Result<(), WorldError> {
+    fn apply(&self, effect: &Effect, scenario: &mut Scenario) -> Result<(), WorldError> {
         let film = scenario.surroundings.film.clone();
         if let OutsideFilm::Convection { wind_m_s, .. } = &film {
             scenario.surroundings.film = OutsideFilm::Coefficient { film_w_m2_k: wind_m_s.clone() };
         }
-        happenings.apply(self.vessel, scenario)?;
+        if let Some(disturbance) = &effect.disturbance {
+            disturbance.apply(&mut scenario.surroundings)?;
+        }
+        if let Some(process) = &effect.process {
+            let settled = Settled { vessel: self.vessel, filled_pa: self.fill_pa };
+            scenario.flows.extend(process.flows(&settled, &scenario.surroundings.air_k)?);
+        }
         if let (OutsideFilm::Convection { multiplier, .. }, OutsideFilm::Coefficient { film_w_m2_k }) =
             (film, &scenario.surroundings.film)
         {
-            let wind_m_s = limited(film_w_m2_k, WIND_MOST_M_S)?;
+            let wind_m_s = film_w_m2_k.mapped(|wind_m_s| wind_m_s.min(WIND_MOST_M_S))?;
             scenario.surroundings.film = OutsideFilm::Convection { wind_m_s, multiplier };
         }
         Ok(())
     }
 
-    fn surrounding(&self, random: &mut Random, around: &Surroundings) -> Option<(f64, Surrounding)> {
+    fn surrounding(&self, random: &mut Random, around: &Surroundings) -> Option<Disturbance> {
         let is_wind = matches!(around.film, OutsideFilm::Convection { .. });
         let flow = |film: f64, wind: f64| if is_wind { wind } else { film };
-        Some(match self.row {
+        let (lasting_s, kind) = match self.row {
             FaultRow::E1 => {
                 let air_k = 273.15 + random.uniform((32.0, 42.0));
                 let stay_s = random.uniform((1200.0, 2100.0));
@@ -121,7 +131,8 @@ impl Disturbed<'_> {
                 (24.0 * HOUR_S, Surrounding::Speed { standing_w_m2_k, fast_w_m2_k, period_s })
             }
             _ => return None,
-        })
+        };
+        Some(Disturbance { start_s: self.onset_s, lasting_s, kind })
     }
 
     fn process(&self, random: &mut Random, end_s: f64) -> Option<Process> {
@@ -167,26 +178,19 @@ impl Disturbed<'_> {
     }
 
     /// Warming by 20 K within ten hours, and the leak that hides it: found from the simulation without it, then once more.
-    fn masked(&self, scenario: &Scenario, settings: &SimulationSettings) -> Result<Happenings, WorldError> {
-        let warming = Surrounding::Air { by_k: 20.0, within_s: 10.0 * HOUR_S };
-        let disturbance = Disturbance { start_s: self.onset_s, lasting_s: 30.0 * HOUR_S, kind: warming };
-        let mut happenings = Happenings { disturbances: vec![disturbance], ..Happenings::default() };
+    fn masked(&self, scenario: &Scenario, settings: &SimulationSettings) -> Result<Effect, WorldError> {
+        let kind = Surrounding::Air { by_k: 20.0, within_s: 10.0 * HOUR_S };
+        let warming = Disturbance { start_s: self.onset_s, lasting_s: 30.0 * HOUR_S, kind };
+        let mut effect = Effect { disturbance: Some(warming), process: None };
         let (from_s, until_s) = (self.onset_s + HOUR_S, self.onset_s + 10.0 * HOUR_S);
         for _ in 0..2 {
             let mut until = scenario.clone();
             until.duration_s = (self.onset_s + 11.0 * HOUR_S).min(scenario.duration_s);
-            self.apply(&happenings, &mut until)?;
+            self.apply(&effect, &mut until)?;
             let warm = simulate(self.vessel, &until, settings, &mut |_| ())?;
             let window_s = (from_s, until_s.min(until.duration_s));
-            happenings.processes = vec![Process::masked(self.vessel, &warm, window_s, 600.0)?];
+            effect.process = Some(Process::masked(self.vessel, &warm, window_s, 600.0)?);
         }
-        Ok(happenings)
+        Ok(effect)
     }
-}
-
-/// A series with nothing above a largest value.
-fn limited(series: &Series, most: f64) -> Result<Series, WorldError> {
-    let time_s: Vec<f64> = series.edges_s().collect();
-    let value = time_s.iter().map(|&t| series.at(t).min(most)).collect();
-    Ok(Series::try_new(time_s, value)?)
 }

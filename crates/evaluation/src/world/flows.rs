@@ -7,6 +7,7 @@ use cylwatch_thermal::flow::orifice::mass_flux;
 use cylwatch_thermal::flow::{Flow, FlowKind};
 use cylwatch_thermal::fluid::State;
 use cylwatch_thermal::units::{ATMOSPHERE_PA, HOUR_S};
+use serde::{Deserialize, Serialize};
 
 use super::{Leak, Overlay, WorldError};
 use crate::random::{Purpose, Random};
@@ -26,6 +27,27 @@ pub(super) const LEAK: &str = "steady leak";
 pub(super) const FAST_LOSS: &str = "fast loss";
 pub(super) const DISCHARGE: &str = "ordered discharge";
 pub(super) const REFILL: &str = "ordered refill";
+
+/// A leak of constant mass flow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SteadyLeak {
+    /// Mass flow out, kg/s.
+    pub rate_kg_s: f64,
+    /// When it begins, s.
+    pub onset_s: f64,
+}
+
+impl SteadyLeak {
+    /// Mass that has left until a time, kg.
+    pub fn lost_kg(&self, t_s: f64) -> f64 {
+        self.rate_kg_s * (t_s - self.onset_s).max(0.0)
+    }
+
+    /// Its flow by the clock of the simulation.
+    pub(super) fn flow(&self) -> Flow {
+        flow(LEAK, (self.onset_s, f64::INFINITY), FlowKind::Leak { mass_flow_kg_s: self.rate_kg_s })
+    }
+}
 
 /// What flows are made for.
 pub(super) struct Filled<'a> {
@@ -68,8 +90,8 @@ impl Filled<'_> {
     }
 
     fn leak(&self, leak: &Leak) -> Flow {
-        let mass_flow_kg_s = leak.part_per_h * self.mass_kg / HOUR_S;
-        let open = self.flow(LEAK, (leak.onset_s, f64::INFINITY), FlowKind::Leak { mass_flow_kg_s });
+        let rate_kg_s = leak.part_per_h * self.mass_kg / HOUR_S;
+        let open = SteadyLeak { rate_kg_s, onset_s: leak.onset_s + self.lead_s }.flow();
         Flow { closes_below_pa: Some(self.least_pa()), ..open }
     }
 
@@ -112,14 +134,19 @@ impl Filled<'_> {
     }
 
     fn flow(&self, name: &str, (start_s, stop_s): (f64, f64), kind: FlowKind) -> Flow {
-        Flow {
-            name: name.into(),
-            kind,
-            start_s: start_s + self.lead_s,
-            stop_s: stop_s + self.lead_s,
-            opens_above_pa: None,
-            closes_below_pa: None,
-            closes_above_pa: None,
-        }
+        flow(name, (start_s + self.lead_s, stop_s + self.lead_s), kind)
+    }
+}
+
+/// A flow between two times by the clock of the simulation, s.
+pub(super) fn flow(name: &str, (start_s, stop_s): (f64, f64), kind: FlowKind) -> Flow {
+    Flow {
+        name: name.into(),
+        kind,
+        start_s,
+        stop_s,
+        opens_above_pa: None,
+        closes_below_pa: None,
+        closes_above_pa: None,
     }
 }

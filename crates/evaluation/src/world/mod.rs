@@ -3,8 +3,12 @@
 //! A [`Request`] decides a [`World`] on every machine, around the nominal vessel of its kind or around an own one ([`NominalVessel`]): the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
 //! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
 //! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
+//!
+//! Published cases, whose air changes at stated times, have their cylinders in [`chamber`].
+pub mod chamber;
 mod climate;
 mod compose;
+mod disturbance;
 mod disturbed;
 mod error;
 mod family;
@@ -13,6 +17,7 @@ mod fill;
 mod flows;
 mod gas;
 mod overlay;
+mod process;
 mod reading;
 mod regime;
 mod rows;
@@ -21,7 +26,7 @@ mod sensors;
 mod simulation;
 mod slow;
 #[cfg(test)]
-mod statistics;
+pub(crate) mod statistics;
 mod told;
 mod truth;
 mod vessel;
@@ -38,9 +43,11 @@ pub use crate::fault::Snapshot;
 pub use error::WorldError;
 pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
 pub use fill::FillDraw;
+pub use flows::SteadyLeak;
 pub use gas::GasDraw;
 pub use overlay::{FaultRow, Leak, Overlay};
 pub use sensors::{SensorDraw, Thermometer, Transmitter};
+pub(crate) use simulation::Run;
 pub use simulation::{CylinderDraw, Simulated, SimulationKey};
 pub use told::Told;
 pub use truth::{Happening, HappeningKind, Regime, Truth};

@@ -2,13 +2,19 @@
 //!
 //! Between samples of the simulation surfaces and pressure are linear in time; the air is the signal itself. A lag is then exact: for an
 //! input `u` that is linear over `dt`, `y' = u' - s + (y - u + s) exp(-dt/tau)` with `s = tau (u' - u)/dt`.
+use cylwatch_estimator::log::{Channel, Log, Quantity};
 use cylwatch_thermal::scenario::{OutsideFilm, Surroundings};
 use cylwatch_thermal::transfer::outside::{Body, convection_w_m2_k};
 use cylwatch_thermal::units::{ATMOSPHERE_PA, ZERO_CELSIUS_K};
+use cylwatch_thermal::vessel::Vessel;
 
 use super::samples::Samples;
-use super::sensors::{Thermometer, Transmitter};
+use super::sensors::{SensorDraw, Thermometer, Transmitter};
 use crate::random::{Purpose, Random};
+
+/// Heights of the thermometers above the middle, as fractions of the vessel's.
+const SHOULDER_ABOVE: f64 = 0.4;
+const VALVE_ABOVE: f64 = 0.5;
 
 /// Film by convection at which a mounting has its stated coupling, W/(m² K).
 const COUPLING_FILM_W_M2_K: f64 = 10.0;
@@ -17,6 +23,65 @@ const COUPLING_EXPONENT: f64 = 0.3;
 const ELECTRONICS_K: f64 = 288.15;
 /// Ends of a transmitter's current loop, of its range (NAMUR NE 43).
 const LOOP: (f64, f64) = (-0.0125, 1.03125);
+
+/// A simulated cylinder that sensors read.
+pub(super) struct Scene<'a> {
+    pub vessel: &'a Vessel,
+    pub surroundings: &'a Surroundings,
+    pub samples: &'a Samples,
+    pub seed: u64,
+    /// Streams of the noise of shoulder, valve and pressure.
+    pub noise: [Purpose; 3],
+}
+
+impl Scene<'_> {
+    /// Readings of shoulder, valve and pressure at times of the simulation, s, in increasing order, with their stamps, s, and the
+    /// pressures at those times, Pa.
+    pub(super) fn read(
+        &self,
+        sensors: &SensorDraw,
+        times_s: &[f64],
+        stamp_s: Vec<f64>,
+        pressure_pa: &[f64],
+    ) -> Log {
+        let (samples, geometry) = (self.samples, &self.vessel.geometry);
+        let diameter_m = geometry.inner_diameter_m + 2.0 * geometry.thickness_m();
+        let cylinder =
+            Body { orientation: geometry.orientation, diameter_m, height_m: geometry.outer_height_m() };
+        let valve_m = self.vessel.valve.as_ref().map_or(diameter_m, |valve| valve.diameter_m);
+        let valve = Body { diameter_m: valve_m, height_m: valve_m, ..cylinder };
+        let [shoulder_noise, valve_noise, pressure_noise] = self.noise;
+        let place = |body, surface_k, above_middle, noise| Place {
+            surroundings: self.surroundings,
+            body,
+            samples,
+            surface_k,
+            above_middle,
+            noise,
+        };
+        let shoulder = place(cylinder, &samples.shoulder_k, SHOULDER_ABOVE, shoulder_noise);
+        let valve = place(valve, &samples.valve_k, VALVE_ABOVE, valve_noise);
+        let electronics_k: Vec<f64> = times_s.iter().map(|&t| samples.at(&samples.valve_k, t)).collect();
+        let noise = Random::new(self.seed, pressure_noise);
+        let columns = [
+            shoulder.read(&sensors.shoulder, times_s, self.seed),
+            valve.read(&sensors.valve, times_s, self.seed),
+            read_pressure(&sensors.pressure, pressure_pa, &electronics_k, noise),
+        ];
+        let channel = |name: &str, quantity| Channel { name: name.into(), quantity };
+        Log {
+            channels: vec![
+                channel("shoulder", Quantity::Temperature),
+                channel("valve", Quantity::Temperature),
+                channel("pressure", Quantity::Pressure),
+            ],
+            time_s: stamp_s,
+            values: (0..times_s.len())
+                .flat_map(|row| columns.iter().map(move |column| column[row]))
+                .collect(),
+        }
+    }
+}
 
 /// Where a thermometer sits and what surrounds it.
 pub(super) struct Place<'a> {
@@ -93,9 +158,8 @@ pub(super) fn read_pressure(
     sensor: &Transmitter,
     pressure_pa: &[f64],
     electronics_k: &[f64],
-    seed: u64,
+    mut noise: Random,
 ) -> Vec<f64> {
-    let mut noise = Random::new(seed, Purpose::WorldPressureNoise);
     let zero_pa = if sensor.is_gauge { ATMOSPHERE_PA } else { 0.0 };
     let (low_pa, high_pa) = (LOOP.0 * sensor.full_scale_pa, LOOP.1 * sensor.full_scale_pa);
     let read = |(&pressure_pa, &electronics_k): (&f64, &f64)| {

@@ -56,6 +56,14 @@ impl Rows {
         rows
     }
 
+    /// A row exactly every interval, stamped with its time.
+    pub(super) fn even(pattern: RowPattern, length_s: f64) -> Self {
+        let interval_s = pattern.interval_s();
+        let count = (length_s / interval_s).floor() as usize;
+        let time_s: Vec<f64> = (0..=count).map(|row| row as f64 * interval_s).collect();
+        Self { stamp_s: time_s.clone(), time_s, ..Self::default() }
+    }
+
     /// Take away the rows of a stretch, s.
     pub(super) fn remove(&mut self, (from_s, until_s): (f64, f64)) {
         let kept = |time_s: f64| !(from_s..until_s).contains(&time_s);

@@ -96,6 +96,40 @@ fn simulate_with(
     }
 }
 
+/// A drawn cylinder with every cell of its wall and its gas.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub drawn: CylinderDraw,
+    vessel: Vessel,
+    jumps_s: Vec<f64>,
+    heated_s: Vec<(f64, f64)>,
+    calm_flow: f64,
+    /// From the lead on, which is before the log.
+    pub trajectory: Trajectory,
+}
+
+impl Run {
+    /// The cylinder of a request around a vessel, with all of an overlay simulated.
+    pub(crate) fn around(
+        nominal: &NominalVessel,
+        request: &Request,
+        overlay: &Overlay,
+    ) -> Result<Self, WorldError> {
+        let key = SimulationKey::of(request);
+        let drawn = CylinderDraw::draw(&key, nominal.fill_pa, overlay);
+        let mut vessel = drawn.vessel.apply(&nominal.vessel);
+        key.gas.resolve(&mut vessel, &drawn.gas);
+        let (spacing_s, sample_s) = (spacing_s(request.family.rows), sample_s(request.family.rows));
+        let span = Span::draw(key.seed, drawn.fill.lead_s, request.length_s, spacing_s);
+        let (film, film_slope) = (drawn.vessel.outside_film, drawn.vessel.film_slope);
+        let climate::Drawn { surroundings, jumps_s, heated_s, calm_flow } =
+            climate::surroundings(key.climate, &span, film, film_slope)?;
+        let scenario = scenario(&key, &span, &drawn.fill, surroundings, sample_s);
+        let trajectory = simulate_with(&key, (&vessel, nominal.inlet_m), &drawn, scenario, overlay)?;
+        Ok(Self { drawn, vessel, jumps_s, heated_s, calm_flow, trajectory })
+    }
+}
+
 /// When flows closed, by their names, s from the start of the log.
 fn closed_s(trajectory: &Trajectory, lead_s: f64) -> Vec<(String, f64)> {
     let closing = |event: &Event| match &event.kind {
@@ -143,32 +177,24 @@ impl Simulated {
     /// As [`Simulated::run`].
     pub fn around(nominal: NominalVessel, request: &Request) -> Result<Self, WorldError> {
         request.validate()?;
-        let key = SimulationKey::of(request);
         let overlay = request.overlay.simulated_part(request.length_s);
-        let drawn = CylinderDraw::draw(&key, nominal.fill_pa, &overlay);
-        let mut vessel = drawn.vessel.apply(&nominal.vessel);
-        key.gas.resolve(&mut vessel, &drawn.gas);
-        let (spacing_s, sample_s) = (spacing_s(request.family.rows), sample_s(request.family.rows));
-        let span = Span::draw(key.seed, drawn.fill.lead_s, request.length_s, spacing_s);
-        let around =
-            climate::surroundings(key.climate, &span, drawn.vessel.outside_film, drawn.vessel.film_slope)?;
-        let scenario = scenario(&key, &span, &drawn.fill, around.surroundings, sample_s);
-        let trajectory = simulate_with(&key, (&vessel, nominal.inlet_m), &drawn, scenario, &overlay)?;
+        let Run { drawn, vessel, jumps_s, heated_s, calm_flow, trajectory } =
+            Run::around(&nominal, request, &overlay)?;
         let ledger = trajectory.ledger;
         Ok(Self {
-            key,
+            key: SimulationKey::of(request),
             length_s: request.length_s,
-            spacing_s,
+            spacing_s: spacing_s(request.family.rows),
             overlay,
             drawn,
             nominal,
             vessel,
             surroundings: trajectory.scenario.surroundings.clone(),
             closed_s: closed_s(&trajectory, drawn.fill.lead_s),
-            jumps_s: around.jumps_s,
-            heated_s: around.heated_s,
-            calm_flow: around.calm_flow,
-            samples: Samples::of(trajectory, sample_s),
+            jumps_s,
+            heated_s,
+            calm_flow,
+            samples: Samples::of(trajectory, sample_s(request.family.rows)),
             ledger,
         })
     }

@@ -3,32 +3,20 @@
 //! With `m(t)` of the simulation and a leak of `r` from `t_0` on, the mass is `m - r (t - t_0)` and the pressure
 //! `p + p_eos(m - r (t - t_0), T) - p_eos(m, T)` at the simulated temperature of the gas. What is left out is the cooling of the gas by
 //! its expansion, `r p/rho` over the conductance of the film, and the smaller heat capacity of less gas.
-use super::Request;
 use super::simulation::Simulated;
 use super::truth::Truth;
+use super::{Request, SteadyLeak};
 use cylwatch_thermal::units::HOUR_S;
 
-/// A leak of constant mass flow.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SlowLeak {
-    pub rate_kg_s: f64,
-    pub onset_s: f64,
-}
-
-impl SlowLeak {
+impl SteadyLeak {
     /// That of a request, if it is to be laid over.
-    pub(super) fn of(simulated: &Simulated, request: &Request) -> Option<Self> {
+    pub(super) fn laid_over(simulated: &Simulated, request: &Request) -> Option<Self> {
         let leak = request.overlay.leak()?;
         if request.overlay.is_simulated(request.length_s) {
             return None;
         }
         let mass_kg = simulated.samples.mass_kg[0];
         Some(Self { rate_kg_s: leak.part_per_h * mass_kg / HOUR_S, onset_s: leak.onset_s })
-    }
-
-    /// Mass that has left until a time, kg.
-    pub(super) fn lost_kg(&self, t_s: f64) -> f64 {
-        self.rate_kg_s * (t_s - self.onset_s).max(0.0)
     }
 
     /// Take the gas out of a truth without it, whose masses are absolute.

@@ -3,43 +3,47 @@ use cylwatch_thermal::units::{DAY_S, HOUR_S, YEAR_S};
 use std::sync::OnceLock;
 
 use cylwatch_detector::evidence::{Evidence, Scale, Statistics, Tails, observer_settings};
-use cylwatch_estimator::observer::{Commissioning, Observer};
-use cylwatch_estimator::sensor::Sensor;
-use cylwatch_estimator::thermal::vessel::presets;
-use cylwatch_evaluation::truth::{Course, TruthLeak, TruthSettings, generate_with};
+use cylwatch_estimator::observer::Observer;
+use cylwatch_evaluation::world::{Overlay, Request, Simulated, World};
 
 const SEED: u64 = 77;
-const INTERVAL_S: f64 = 120.0;
 const ONSET_S: f64 = 5.0 * DAY_S;
-/// 1 bar at 15 °C in 20 L, kg.
-const KG_PER_BAR: f64 = 0.019_18;
+/// Part of the gas of 200 bar that is 1 bar at 15 °C.
+const PART_PER_BAR: f64 = 0.004_3;
 
 type Row = (f64, [f64; 3]);
 
-/// Readings of shoulder, valve and pressure over eight days, with a leak of so many bar/h from the sixth on.
-fn readings(rate_bar_h: f64) -> Vec<Row> {
-    let leak = TruthLeak { rate_kg_s: rate_bar_h * KG_PER_BAR / HOUR_S, start_s: ONSET_S };
-    let settings = TruthSettings { leak: (rate_bar_h > 0.0).then_some(leak), ..TruthSettings::fast() };
-    let truth = generate_with(&Course::RailwayWeeks { days: 8.0 }, SEED, INTERVAL_S, &settings).unwrap();
-    let column = |name: &str| truth.log.channels.iter().position(|c| c.name == name).unwrap();
-    let columns = ["shoulder", "valve", "pressure"].map(column);
-    truth.log.rows().map(|(time_s, row)| (time_s, columns.map(|column| row[column]))).collect()
+/// Eight days of the 20 L cylinder under a train, with a leak of so many bar/h from the sixth on.
+fn world(rate_bar_h: f64) -> World {
+    let leak = Overlay::Leak { part_per_h: PART_PER_BAR * rate_bar_h, onset_s: ONSET_S };
+    let overlay = if rate_bar_h > 0.0 { leak } else { Overlay::Nothing };
+    let family = "nitrogen-20l/railway/mixed/class-b/120s".parse().unwrap();
+    let request = Request::tight(family, SEED, 8.0 * DAY_S).with(overlay);
+    Simulated::run(&request).unwrap().world_of_even_rows(&request).unwrap()
+}
+
+fn rows_of(world: &World) -> Vec<Row> {
+    world.log.rows().map(|(time_s, row)| (time_s, [row[0], row[1], row[2]])).collect()
+}
+
+fn tight_world() -> &'static World {
+    static WORLD: OnceLock<World> = OnceLock::new();
+    WORLD.get_or_init(|| world(0.0))
 }
 
 fn tight() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
-    ROWS.get_or_init(|| readings(0.0))
+    ROWS.get_or_init(|| rows_of(tight_world()))
 }
 
 fn leaking() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
-    ROWS.get_or_init(|| readings(0.3))
+    ROWS.get_or_init(|| rows_of(&world(0.3)))
 }
 
 fn observer() -> Observer {
-    let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
-    let vessel = presets::load("nitrogen-20l").unwrap();
-    Observer::new(&vessel, &sensors, &Commissioning::filled(2e7, 288.15), &observer_settings()).unwrap()
+    let told = &tight_world().told;
+    Observer::new(&told.vessel, &told.sensors, &told.commissioning, &observer_settings()).unwrap()
 }
 
 fn evidence() -> Evidence {
@@ -79,7 +83,7 @@ fn a_leak_is_found_within_a_day_and_not_before_it_begins() {
 
 #[test]
 fn a_fast_leak_is_found_within_an_hour() {
-    let (alarm_s, scale) = alarm(&run(&readings(8.0), |_, _| {})).unwrap();
+    let (alarm_s, scale) = alarm(&run(&rows_of(&world(8.0)), |_, _| {})).unwrap();
     println!("8 bar/h found after {:.2} h by {scale:?}", (alarm_s - ONSET_S) / HOUR_S);
     assert!(alarm_s > ONSET_S && alarm_s < ONSET_S + HOUR_S, "{alarm_s} {scale:?}");
 }

@@ -10,64 +10,75 @@ use cylwatch_detector::monitor::{
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
-use cylwatch_evaluation::truth::disturbance::{Disturbance, Surrounding};
-use cylwatch_evaluation::truth::{
-    Course, Happenings, Process, Truth, TruthLeak, TruthSettings, generate_through, generate_with,
-};
-use cylwatch_evaluation::world::{Request, generate};
+use cylwatch_evaluation::world::chamber::{Chamber, ChamberRequest};
+use cylwatch_evaluation::world::{FaultRow, Overlay, Request, Simulated, SteadyLeak, Told, World, generate};
 
-const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const SHOULDER: usize = 0;
 const VALVE: usize = 1;
 const PRESSURE: usize = 2;
+/// Gas of the cylinder that the leaks of these tests are parts of, kg.
+const FULL_KG: f64 = 4.4;
+
+const SEED: u64 = 5;
 
 type Rows = Vec<(f64, [f64; 3])>;
 
-fn vessel() -> Vessel {
-    presets::load("nitrogen-20l").unwrap()
+/// A world of the 20 L cylinder in winter under a train, a row every minute.
+fn cylinder(days: f64, seed: u64, overlay: Overlay) -> World {
+    let family = "nitrogen-20l/railway/mixed/class-b/60s".parse().unwrap();
+    let request = Request::tight(family, seed, days * DAY_S).with(overlay);
+    Simulated::run(&request).unwrap().world_of_even_rows(&request).unwrap()
 }
 
-fn sensors() -> Vec<Sensor> {
-    SENSORS.map(|name| Sensor::typical(name).unwrap()).to_vec()
+fn leak(rate_g_h: f64, onset_s: f64) -> Overlay {
+    Overlay::Leak { part_per_h: 1e-3 * rate_g_h / FULL_KG, onset_s }
 }
 
-fn rows_of(truth: &Truth) -> Rows {
-    let columns = SENSORS.map(|name| truth.log.channels.iter().position(|c| c.name == name).unwrap());
-    truth.log.rows().map(|(t, row)| (t, columns.map(|c| row[c]))).collect()
+fn rows_of(world: &World) -> Rows {
+    world.log.rows().map(|(t, row)| (t, [row[SHOULDER], row[VALVE], row[PRESSURE]])).collect()
 }
 
-fn week(days: f64, leak: Option<TruthLeak>) -> Rows {
-    rows_of(&cylinder(days, 5, leak))
-}
-
-fn cylinder(days: f64, seed: u64, leak: Option<TruthLeak>) -> Truth {
-    let settings = TruthSettings {
-        gas_cells: 1,
-        cylinder_cells: 3,
-        relative_tolerance: 1e-4,
-        leak,
-        ..TruthSettings::default()
-    };
-    generate_with(&Course::RailwayWeeks { days }, seed, 60.0, &settings).unwrap()
+fn tight_world() -> &'static World {
+    static WORLD: OnceLock<World> = OnceLock::new();
+    WORLD.get_or_init(|| cylinder(4.0, SEED, Overlay::Nothing))
 }
 
 /// Four days without a leak.
 fn tight() -> &'static Rows {
     static ROWS: OnceLock<Rows> = OnceLock::new();
-    ROWS.get_or_init(|| week(4.0, None))
+    ROWS.get_or_init(|| rows_of(tight_world()))
+}
+
+fn vessel() -> Vessel {
+    tight_world().told.vessel.clone()
+}
+
+fn sensors() -> Vec<Sensor> {
+    tight_world().told.sensors.clone()
+}
+
+fn monitor_of(told: &Told, settings: &MonitorSettings) -> Monitor {
+    Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings).unwrap()
 }
 
 fn monitor() -> Monitor {
-    let commissioning = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
-    Monitor::new(&vessel(), &sensors(), &commissioning, &MonitorSettings::default()).unwrap()
+    monitor_of(&tight_world().told, &MonitorSettings::default())
 }
 
-fn run(rows: &[(f64, [f64; 3])]) -> Vec<Output> {
-    let mut monitor = monitor();
+fn watch(mut monitor: Monitor, rows: &[(f64, [f64; 3])]) -> Vec<Output> {
     let mut outputs: Vec<Output> =
         rows.iter().flat_map(|(t, readings)| monitor.step(*t, readings).unwrap()).collect();
     outputs.extend(monitor.finish().unwrap());
     outputs
+}
+
+/// What is said of rows of the cylinder of [`tight_world`].
+fn run(rows: &[(f64, [f64; 3])]) -> Vec<Output> {
+    watch(monitor(), rows)
+}
+
+fn run_world(world: &World) -> Vec<Output> {
+    watch(monitor_of(&world.told, &MonitorSettings::default()), &rows_of(world))
 }
 
 fn events(outputs: &[Output]) -> impl Iterator<Item = &EventKind> {
@@ -119,9 +130,10 @@ fn mouths_of_tunnels_that_no_row_shows_are_no_exchange_of_gas() {
 
 #[test]
 fn a_leak_is_found_with_its_rate_and_onset() {
-    let rate_kg_s = 3e-3 / HOUR_S;
     let onset_s = 2.0 * DAY_S;
-    let outputs = run(&week(4.0, Some(TruthLeak { rate_kg_s, start_s: onset_s })));
+    let world = cylinder(4.0, SEED, leak(3.0, onset_s));
+    let rate_kg_s = *world.truth.outflow_kg_s.last().unwrap();
+    let outputs = run_world(&world);
     let alarm =
         outputs.iter().find(|output| output.decision.verdict == Verdict::Leak).expect("a leak is found");
     assert!(alarm.estimate.time_s > onset_s && alarm.estimate.time_s < onset_s + DAY_S);
@@ -146,28 +158,24 @@ fn found_s(outputs: &[Output]) -> f64 {
 
 #[test]
 fn tails_of_a_vessel_of_its_own_find_a_leak_earlier_and_a_state_lives_through_their_change() {
-    let leak = TruthLeak { rate_kg_s: 1e-3 / HOUR_S, start_s: 2.0 * DAY_S };
-    let rows = week(4.0, Some(leak));
+    let onset_s = 2.0 * DAY_S;
+    let rows = rows_of(&cylinder(4.0, SEED, leak(1.0, onset_s)));
     let usual_s = found_s(&run(&rows));
     let settings = smaller_tails(1.3);
-    let commissioning = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
-    let own = Monitor::new(&vessel(), &sensors(), &commissioning, &settings).unwrap();
+    let own = monitor_of(&tight_world().told, &settings);
     // The state of a monitor with the usual tails, an hour before the leak.
     let mut before = monitor();
-    let (first, rest) = rows.split_at(rows.partition_point(|(t, _)| *t < leak.start_s - HOUR_S));
+    let (first, rest) = rows.split_at(rows.partition_point(|(t, _)| *t < onset_s - HOUR_S));
     first.iter().for_each(|(t, readings)| drop(before.step(*t, readings).unwrap()));
     let bytes = before.save().unwrap();
     let changed = Monitor::restore(&vessel(), &sensors(), &settings, &bytes).unwrap();
-    let watch = |mut monitor: Monitor, rows: &[(f64, [f64; 3])]| -> Vec<Output> {
-        rows.iter().flat_map(|(t, readings)| monitor.step(*t, readings).unwrap()).collect()
-    };
     let (own_s, changed_s) = (found_s(&watch(own, &rows)), found_s(&watch(changed, rest)));
     println!(
         "found after {:.1} h, {:.1} h with own tails",
-        (usual_s - leak.start_s) / HOUR_S,
-        (own_s - leak.start_s) / HOUR_S
+        (usual_s - onset_s) / HOUR_S,
+        (own_s - onset_s) / HOUR_S
     );
-    assert!(own_s > leak.start_s && own_s < usual_s - HOUR_S, "{own_s} {usual_s}");
+    assert!(own_s > onset_s && own_s < usual_s - HOUR_S, "{own_s} {usual_s}");
     assert_eq!(changed_s, own_s);
 }
 
@@ -191,24 +199,27 @@ fn tails_that_are_none_are_refused_by_name() {
 
 #[test]
 fn in_a_slow_leak_the_mass_does_not_lag() {
-    let leak = TruthLeak { rate_kg_s: 1e-3 / HOUR_S, start_s: 2.0 * DAY_S };
+    let onset_s = 2.0 * DAY_S;
+    let error_kg = |world: &World, output: &Output| {
+        let row = world.truth.time_s.partition_point(|t| *t < output.estimate.time_s);
+        output.estimate.mass_kg - world.truth.mass_kg[row.min(world.truth.mass_kg.len() - 1)]
+    };
     let mut lags_g = Vec::new();
     let (mut within, mut all) = (0, 0);
     for seed in 11..=14 {
-        let truth = cylinder(6.0, seed, Some(leak));
-        let outputs = run(&rows_of(&truth));
-        let at = |time_s: f64| truth.time_s.partition_point(|t| *t < time_s).min(truth.time_s.len() - 1);
-        let error_kg = |output: &Output| output.estimate.mass_kg - truth.mass_kg[at(output.estimate.time_s)];
-        let before = outputs.iter().rfind(|output| output.estimate.time_s < leak.start_s).unwrap();
+        let [leaking, tight] =
+            [leak(1.0, onset_s), Overlay::Nothing].map(|overlay| cylinder(6.0, seed, overlay));
+        let [outputs, of_tight] = [&leaking, &tight].map(run_world);
         let last = outputs.last().unwrap();
         assert_eq!(last.decision.verdict, Verdict::Leak, "seed {seed}");
-        lags_g.push((error_kg(last) - error_kg(before)) * 1e3);
+        lags_g.push((error_kg(&leaking, last) - error_kg(&tight, of_tight.last().unwrap())) * 1e3);
         for output in outputs.iter().filter(|output| output.decision.verdict == Verdict::Leak) {
             all += 1;
-            within += usize::from(error_kg(output).abs() < 2.0 * output.estimate.mass_sd_kg);
+            within += usize::from(error_kg(&leaking, output).abs() < 2.0 * output.estimate.mass_sd_kg);
         }
     }
-    // 96 g are lost; what was wrong with the mass before is no lag. The estimate's own mass would be behind by 3 to 11 g.
+    // 96 g are lost. What is wrong with the mass of the tight twin, up to 13 g by its transmitter and 7 g more or less after four days
+    // of learning, is no lag.
     println!("lag {lags_g:.1?} g, {within} of {all} masses within two standard deviations");
     let mean_g = lags_g.iter().map(|lag| lag.abs()).sum::<f64>() / lags_g.len() as f64;
     assert!(mean_g < 3.0, "{lags_g:?}");
@@ -383,40 +394,28 @@ fn a_monitor_killed_while_it_puts_the_wiring_right_goes_on_to_the_last_digit() {
     assert_eq!(print(&outputs), print(&expected));
 }
 
-fn happening(days: f64, seed: u64, happenings: &Happenings) -> Vec<Output> {
-    let course = Course::RailwayWeeks { days };
-    run(&rows_of(&generate_through(&course, seed, 60.0, &TruthSettings::fast(), happenings).unwrap()))
-}
-
 #[test]
-fn a_heater_beside_one_end_is_no_leak_neither_then_nor_later() {
-    let heater = Disturbance {
-        start_s: 3.0 * DAY_S,
-        lasting_s: 15.0 * HOUR_S,
-        kind: Surrounding::Heater { difference_k: 14.0 },
-    };
-    let outputs = happening(6.0, 56, &Happenings { disturbances: vec![heater], ..Happenings::default() });
-    assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
-    assert_eq!(outputs.last().unwrap().decision.verdict, Verdict::Tight);
+fn what_stands_beside_a_cylinder_is_no_leak_neither_then_nor_later() {
+    // A heater at one end for 14 h, 13.5 K from bottom to top, a cooler of -17.5 K for 18 h, air conditioning that switches, a heated
+    // hall. How many heaters of all still end in a false leak is counted by the fault table (E5).
+    let beside = Overlay::Fault { row: FaultRow::E5, onset_s: 3.0 * DAY_S, leak: None };
+    for seed in [34, 71, 56, 57] {
+        let outputs = run_world(&cylinder(6.0, seed, beside));
+        assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))), "seed {seed}");
+        assert_eq!(outputs.last().unwrap().decision.verdict, Verdict::Tight, "seed {seed}");
+    }
 }
 
 #[test]
 fn a_filling_of_more_than_an_hour_is_one() {
-    let filling =
-        Process::Refill { start_s: 2.0 * DAY_S, lasting_s: 4600.0, rise_pa: 40e5, source_k: 288.15 };
-    let fill_pa = 160e5;
-    let happenings = Happenings { fill_pa: Some(fill_pa), processes: vec![filling], ..Happenings::default() };
-    let course = Course::RailwayWeeks { days: 3.0 };
-    let truth = generate_through(&course, 57, 60.0, &TruthSettings::fast(), &happenings).unwrap();
-    let commissioning = Commissioning { settled: false, ..Commissioning::filled(fill_pa, 288.15) };
-    let mut monitor =
-        Monitor::new(&vessel(), &sensors(), &commissioning, &MonitorSettings::default()).unwrap();
-    let outputs: Vec<Output> =
-        rows_of(&truth).iter().flat_map(|(t, row)| monitor.step(*t, row).unwrap()).collect();
-    let gained: Vec<f64> = events(&outputs)
+    let world = cylinder(3.0, 57, Overlay::Refill { part: 0.22, within_s: 4600.0, onset_s: 2.0 * DAY_S });
+    let outputs = run_world(&world);
+    let gained_kg: Vec<f64> = events(&outputs)
         .filter_map(|kind| if let EventKind::Refill(gained_kg) = kind { Some(*gained_kg) } else { None })
         .collect();
-    assert!(!gained.is_empty() && (gained.iter().sum::<f64>() - 0.8).abs() < 0.08, "{gained:?} kg");
+    let filled_kg = world.truth.mass_kg.last().unwrap() - world.truth.mass_kg[0];
+    let off_kg = gained_kg.iter().sum::<f64>() - filled_kg;
+    assert!(!gained_kg.is_empty() && off_kg.abs() < 0.08, "{gained_kg:?} of {filled_kg} kg");
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_) | EventKind::Discharge(_))));
 }
 
@@ -510,9 +509,15 @@ fn a_wire_that_breaks_makes_it_unknown_and_never_tight() {
 
 #[test]
 fn an_empty_cylinder_is_no_refill_and_never_tight() {
-    // 10 bar/h from the second day on: empty within a day.
-    let leak = TruthLeak { start_s: 1.2 * DAY_S, rate_kg_s: 5.33e-5 };
-    let outputs = run(&week(2.7, Some(leak)));
+    // In a room of 10 °C, 10 bar/h from the second day on: empty within a day.
+    let room = Chamber { start_degc: 10.0, end_degc: 10.0, ramp_s: 0.0, lag_s: 0.0, after_s: 2.7 * DAY_S };
+    let leak = Some(SteadyLeak { onset_s: 1.2 * DAY_S, rate_kg_s: 5.33e-5 });
+    let run = ChamberRequest { leak, gas_cells: 4, ..ChamberRequest::new(room, SEED, 60.0) }.run().unwrap();
+    let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
+    let commissioning = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
+    let monitor = Monitor::new(&vessel(), &sensors, &commissioning, &MonitorSettings::default()).unwrap();
+    let rows: Rows = run.log.rows().map(|(t, row)| (t, [row[0], row[1], row[2]])).collect();
+    let outputs = watch(monitor, &rows);
     assert!(events(&outputs).any(|kind| matches!(kind, EventKind::LeakFound(_))));
     assert!(!events(&outputs).any(|kind| matches!(kind, EventKind::Refill(_))));
     let empty = outputs.iter().filter(|output| output.estimate.time_s > 2.25 * DAY_S);

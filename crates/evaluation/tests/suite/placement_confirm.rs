@@ -12,7 +12,7 @@ use cylwatch_evaluation::EvaluationError;
 use cylwatch_evaluation::placement::{
     Claim, ConfirmSettings, Confirmation, Recorder, calm, detected_matched, matched, mismatched,
 };
-use cylwatch_evaluation::truth::{TruthLeak, TruthSettings};
+use cylwatch_evaluation::world::SteadyLeak;
 
 const NAMES: [&str; 4] = ["wall_bottom", "shoulder", "valve", "pressure"];
 
@@ -102,15 +102,14 @@ fn the_same_seeds_give_the_same_numbers_and_other_seeds_others() {
 #[test]
 fn innovations_show_a_leak_in_both_worlds() {
     let case = Case::quiet(&[&[1, 3]]);
-    let leak = Some(TruthLeak { rate_kg_s: 20e-3 / HOUR_S, start_s: 0.5 * DAY_S });
+    let leak = Some(SteadyLeak { rate_kg_s: 20e-3 / HOUR_S, onset_s: 0.5 * DAY_S });
     let listen = |_| Recorder::from(0.5 * DAY_S);
     let watch = Watch::default();
     let pressure_sum = |settings: &ConfirmSettings, is_matched: bool| {
         let found = if is_matched {
             matched(&case.claim(), settings, &watch, &listen).unwrap()
         } else {
-            let truth = TruthSettings::fast();
-            mismatched(&case.claim(), settings, &truth, &watch, &listen).unwrap()
+            mismatched(&case.claim(), settings, &watch, &listen).unwrap()
         };
         assert_eq!(found.runs.len(), 2);
         let of = |run: &Recorder| -> f64 {
@@ -134,8 +133,7 @@ fn drawn_cylinders_in_weather_are_judged_too() {
     let case = Case::quiet(&[&[0, 1, 3]]);
     let usual = ObserverSettings::default();
     let claim = Claim { settings: &usual, ..case.claim() };
-    let truth = TruthSettings::fast();
-    let found = mismatched(&claim, &days(1.0), &truth, &Watch::default(), &|_| ()).unwrap();
+    let found = mismatched(&claim, &days(1.0), &Watch::default(), &|_| ()).unwrap();
     let of = &found.layouts[0];
     assert!(of.gas_k.rms < 2.0 && of.mass_kg.rms < 0.05 && of.leak_kg_s.is_some(), "{of:?}");
     assert!(of.gas_k.coverage > 0.5 && !found.partial);

@@ -1,23 +1,16 @@
 //! A climatic chamber that repeats four profiles, in an order drawn for each round.
 //!
-//! From 21 to -25 °C, -25 to 40 °C, evenly from 10 to 60 °C in 5 h, evenly from 60 to 28 °C in 14 h: the scenarios of Buecking, Pfaff,
-//! Dirksmeier, "Sensor positioning and thermal model for condition monitoring of pressure gas reservoirs in vehicles". Before each the
-//! chamber goes to its first temperature within an hour and rests there for 2 to 5 h; what they change at once takes 60 to 240 s here.
+//! They are [`Chamber::SCENARIOS`]. Before each the chamber goes to its first temperature within an hour and rests there for 2 to 5 h;
+//! what they change at once takes 60 to 240 s here.
 //! Film 16 W/(m² K) by its fan; the walls have the temperature of the air.
 use super::Span;
 use super::part::Polyline;
 use super::weather::{Film, Unrest, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
+use crate::world::chamber::Chamber;
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
-/// From, °C; to, °C; duration of the change, s, 0: as fast as the chamber can; time until the next one, s.
-const PROFILES: [(f64, f64, f64, f64); 4] = [
-    (21.0, -25.0, 0.0, 3.0 * HOUR_S),
-    (-25.0, 40.0, 0.0, 3.45 * HOUR_S),
-    (10.0, 60.0, 5.0 * HOUR_S, 5.0 * HOUR_S),
-    (60.0, 28.0, 14.0 * HOUR_S, 14.0 * HOUR_S),
-];
 const FAST_S: (f64, f64) = (60.0, 240.0);
 const TRANSFER_S: f64 = HOUR_S;
 const REST_S: (f64, f64) = (2.0 * HOUR_S, 5.0 * HOUR_S);
@@ -29,21 +22,22 @@ fn programme(span: &Span) -> (Polyline, Vec<f64>) {
     let (mut t, mut round) = (0.0, Vec::new());
     while t <= span.clock_end_s() {
         if round.is_empty() {
-            round = PROFILES.to_vec();
+            round = Chamber::SCENARIOS.to_vec();
         }
-        let (from_degc, to_degc, change_s, after_s) = round.remove(random.whole((0, round.len() - 1)));
-        let is_fast = change_s == 0.0;
-        let change_s = if is_fast { random.uniform(FAST_S) } else { change_s };
+        let Chamber { start_degc, end_degc, ramp_s, after_s, .. } =
+            round.remove(random.whole((0, round.len() - 1)));
+        let is_fast = ramp_s == 0.0;
+        let change_s = if is_fast { random.uniform(FAST_S) } else { ramp_s };
         let change_at_s = t + TRANSFER_S + random.uniform(REST_S);
         for (at_s, degc) in
-            [(t + TRANSFER_S, from_degc), (change_at_s, from_degc), (change_at_s + change_s, to_degc)]
+            [(t + TRANSFER_S, start_degc), (change_at_s, start_degc), (change_at_s + change_s, end_degc)]
         {
             air.time_s.push(at_s);
             air.value.push(degc);
         }
         t = change_at_s + after_s.max(change_s + MINUTE_S);
         air.time_s.push(t);
-        air.value.push(to_degc);
+        air.value.push(end_degc);
         jumps_s.extend(is_fast.then_some(change_at_s));
     }
     (air, jumps_s)

@@ -25,6 +25,7 @@ use cylwatch_thermal::units::DAY_S;
 use super::Climate;
 use crate::random::{Purpose, Random};
 use weather::Weather;
+pub(super) use weather::{Lag, Unrest};
 
 /// What a climate is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -28,13 +28,58 @@ pub(super) enum Film {
 
 /// Standard deviations of what varies on top.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Unrest {
+pub(in crate::world) struct Unrest {
     /// Air, K.
     pub turbulence_k: f64,
     /// Film or wind, relative.
     pub gust: f64,
     /// Air at the top against the bottom, K.
     pub difference_k: f64,
+}
+
+/// What varies on top, drawn.
+pub(in crate::world) struct DrawnUnrest {
+    sd: Unrest,
+    turbulence: OrnsteinUhlenbeck,
+    gusts: OrnsteinUhlenbeck,
+    difference: OrnsteinUhlenbeck,
+}
+
+impl Unrest {
+    /// The draw of a seed with a stream each for turbulence, gusts and difference, its knots so far apart, s.
+    pub(in crate::world) fn draw(
+        self,
+        (seed, streams): (u64, [Purpose; 3]),
+        spacing_s: f64,
+        duration_s: f64,
+    ) -> DrawnUnrest {
+        let process = |stream: usize, time_s| {
+            OrnsteinUhlenbeck::draw(&mut Random::new(seed, streams[stream]), time_s, spacing_s, duration_s)
+        };
+        DrawnUnrest {
+            sd: self,
+            turbulence: process(0, TURBULENCE_TIME_S),
+            gusts: process(1, GUST_TIME_S),
+            difference: process(2, DIFFERENCE_TIME_S),
+        }
+    }
+}
+
+impl DrawnUnrest {
+    /// Turbulence of the air, K.
+    pub(in crate::world) fn air_k(&self, t_s: f64) -> f64 {
+        self.sd.turbulence_k * self.turbulence.at(t_s)
+    }
+
+    /// Factor of a gust on film or wind.
+    pub(in crate::world) fn gust(&self, t_s: f64) -> f64 {
+        (1.0 + self.sd.gust * self.gusts.at(t_s)).max(GUST_LEAST)
+    }
+
+    /// Air at the top against the bottom, K.
+    pub(in crate::world) fn difference_k(&self, t_s: f64) -> f64 {
+        self.sd.difference_k * self.difference.at(t_s)
+    }
 }
 
 /// A drawn climate.
@@ -120,14 +165,11 @@ impl Weather {
     }
 
     fn skies(&self, span: &Span) -> Vec<Sky> {
-        let process = |purpose, time_s| {
-            let duration_s = span.duration_s + span.spacing_s;
-            OrnsteinUhlenbeck::draw(&mut Random::new(span.seed, purpose), time_s, span.spacing_s, duration_s)
-        };
-        let turbulence = process(Purpose::WorldTurbulence, TURBULENCE_TIME_S);
-        let gusts = process(Purpose::WorldGusts, GUST_TIME_S);
-        let difference = process(Purpose::WorldDifference, DIFFERENCE_TIME_S);
-        let wind = process(Purpose::WorldWind, DIFFERENCE_TIME_S);
+        let (spacing_s, duration_s) = (span.spacing_s, span.duration_s + span.spacing_s);
+        let streams = [Purpose::WorldTurbulence, Purpose::WorldGusts, Purpose::WorldDifference];
+        let unrest = self.unrest.draw((span.seed, streams), spacing_s, duration_s);
+        let random = &mut Random::new(span.seed, Purpose::WorldWind);
+        let wind = OrnsteinUhlenbeck::draw(random, DIFFERENCE_TIME_S, spacing_s, duration_s);
         let mut lag = Lag::settled(span.start_s, self.air_degc(span.start_s), self.radiation_lag_s);
         self.knots_s(span)
             .into_iter()
@@ -135,14 +177,13 @@ impl Weather {
                 let t_s = clock_s - span.start_s;
                 let air_degc = self.air_degc(clock_s);
                 let varied = (self.rest_variation * wind.at(t_s) - 0.5 * self.rest_variation.powi(2)).exp();
-                let gust = (1.0 + self.unrest.gust * gusts.at(t_s)).max(GUST_LEAST);
                 Sky {
                     t_s,
-                    air_k: air_degc + ZERO_CELSIUS_K + self.unrest.turbulence_k * turbulence.at(t_s),
-                    flow: self.flow(clock_s, self.rest * varied) * gust,
+                    air_k: air_degc + ZERO_CELSIUS_K + unrest.air_k(t_s),
+                    flow: self.flow(clock_s, self.rest * varied) * unrest.gust(t_s),
                     radiation_k: lag.follow(clock_s, air_degc) + ZERO_CELSIUS_K - self.sky_k,
                     irradiance_w_m2: self.irradiance_w_m2(clock_s),
-                    difference_k: self.unrest.difference_k * difference.at(t_s),
+                    difference_k: unrest.difference_k(t_s),
                 }
             })
             .collect()
@@ -192,7 +233,7 @@ impl Weather {
 }
 
 /// First-order lag of an input that is linear between the times it is followed to.
-struct Lag {
+pub(in crate::world) struct Lag {
     time_s: f64,
     t_s: f64,
     input: f64,
@@ -200,11 +241,11 @@ struct Lag {
 }
 
 impl Lag {
-    fn settled(t_s: f64, at: f64, time_s: f64) -> Self {
+    pub(in crate::world) fn settled(t_s: f64, at: f64, time_s: f64) -> Self {
         Self { time_s, t_s, input: at, output: at }
     }
 
-    fn follow(&mut self, t_s: f64, input: f64) -> f64 {
+    pub(in crate::world) fn follow(&mut self, t_s: f64, input: f64) -> f64 {
         let dt_s = t_s - self.t_s;
         if self.time_s <= 0.0 {
             self.output = input;

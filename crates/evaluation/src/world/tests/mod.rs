@@ -1,7 +1,9 @@
 //! Tests of worlds: laws of what is drawn, simulations, readings, overlays.
+mod chamber;
 mod disturbances;
 mod laws;
 mod overlays;
+mod processes;
 mod readings;
 mod rows;
 mod worlds;

@@ -1,10 +1,9 @@
 //! Leaks, losses, refills and faults over a world.
 use super::{family, request};
 use crate::fault::Fault;
-use crate::world::slow::SlowLeak;
 use crate::world::{
-    Family, FaultRow, HappeningKind, Leak, Overlay, Request, Simulated, VesselKind, World, compose, faulty,
-    generate,
+    Family, FaultRow, HappeningKind, Leak, Overlay, Request, Simulated, SteadyLeak, VesselKind, World,
+    compose, faulty, generate,
 };
 use cylwatch_thermal::units::DAY_S;
 use cylwatch_thermal::units::HOUR_S;
@@ -21,7 +20,7 @@ fn a_slow_leak_laid_over_is_that_of_a_full_simulation_within_the_noise_of_a_tran
         let full = generate(&tight.with(leak)).unwrap().truth;
         let simulated = Simulated::run(&tight).unwrap();
         let rate_kg_s = 1.001e-4 * simulated.samples.mass_kg[0] / HOUR_S;
-        let slow = SlowLeak { rate_kg_s, onset_s: 6.0 * HOUR_S };
+        let slow = SteadyLeak { rate_kg_s, onset_s: 6.0 * HOUR_S };
         let over = compose::truth(&simulated, &full.time_s, Some(&slow)).unwrap();
         let noise_pa = 4e-5 * vessel.nominal().unwrap().full_scale_pa;
         for (over, full) in over.mass_kg.iter().zip(&full.mass_kg) {

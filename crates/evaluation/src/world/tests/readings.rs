@@ -5,7 +5,7 @@ use cylwatch_thermal::transfer::outside::Body;
 use cylwatch_thermal::wall::geometry::Orientation;
 
 use super::request;
-use crate::random::Purpose;
+use crate::random::{Purpose, Random};
 use crate::world::generate;
 use crate::world::reading::{Place, read_pressure};
 use crate::world::samples::Samples;
@@ -122,7 +122,9 @@ fn temperatures_come_in_steps_of_their_celsius_value_and_with_white_noise() {
 #[test]
 fn a_transmitter_adds_its_errors_counts_from_the_air_and_ends_with_its_loop() {
     let off = Transmitter { offset_pa: 2e4, coefficient_pa_k: 1500.0, ..transmitter() };
-    let at = |sensor: &Transmitter, pressure_pa: f64| read_pressure(sensor, &[pressure_pa], &[298.15], 1)[0];
+    let at = |sensor: &Transmitter, pressure_pa: f64| {
+        read_pressure(sensor, &[pressure_pa], &[298.15], Random::new(1, Purpose::WorldPressureNoise))[0]
+    };
     assert_relative_eq!(at(&off, 180e5), 180e5 + 2e4 + 1.5e4, max_relative = 1e-12);
     let gauge = Transmitter { is_gauge: true, ..off };
     assert_relative_eq!(at(&off, 180e5) - at(&gauge, 180e5), 101_325.0, max_relative = 1e-9);

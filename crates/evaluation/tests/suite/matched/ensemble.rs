@@ -8,7 +8,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 use rayon::prelude::*;
 
-use cylwatch_evaluation::truth::matched::{Chamber, Draws, World};
+use cylwatch_evaluation::matched::{Draws, OwnWorld};
+use cylwatch_evaluation::world::chamber::Chamber;
 
 /// Fixed times at which errors are judged.
 const TIMES: usize = 10;
@@ -70,8 +71,8 @@ fn fixed(samples: usize) -> Vec<usize> {
 }
 
 fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
-    let mut world = World::new(plan.chamber, &plan.truth, plan.spread).unwrap();
-    let model = World::new(plan.chamber, &plan.filter, plan.spread).unwrap();
+    let mut world = OwnWorld::new(plan.chamber, &plan.truth, plan.spread).unwrap();
+    let model = OwnWorld::new(plan.chamber, &plan.filter, plan.spread).unwrap();
     let (mean, p) = (model.prior().0, UdFactors::from_covariance(&model.prior_covariance()).unwrap());
     let mut run = Run {
         nis: NisAccumulator::default(),
@@ -86,7 +87,7 @@ fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
     let mut draws = Draws(ChaCha12Rng::seed_from_u64(seed));
     let mut x = draws.state(&world);
     let mut filter = ExtendedKalman::try_new(model, &mean, p).unwrap();
-    let (fixed, sample_s) = (fixed(samples), plan.chamber.sample_s);
+    let (fixed, sample_s) = (fixed(samples), world.sample_s);
     for k in 0..samples {
         let (dt_s, before) = (if k > 0 { sample_s } else { 0.0 }, x.clone());
         world.time_s = k.saturating_sub(1) as f64 * sample_s;
@@ -111,7 +112,7 @@ fn run(plan: &Plan, samples: usize, functionals: [usize; 2], seed: u64) -> Run {
 }
 
 impl Bound {
-    fn add(&mut self, world: &mut World, step: (&[f64], f64, &[f64]), functionals: [usize; 2]) {
+    fn add(&mut self, world: &mut OwnWorld, step: (&[f64], f64, &[f64]), functionals: [usize; 2]) {
         let heard = vec![true; world.outputs()];
         let mut linear = Linearisation::zeros(world.states(), world.leading(), world.noises());
         let mut moments = Moments::new(world.states(), world.leading());
@@ -126,14 +127,14 @@ impl Bound {
 
 impl Ensemble {
     pub fn of(plan: &Plan) -> Self {
-        let world = World::new(plan.chamber, &plan.truth, plan.spread).unwrap();
+        let world = OwnWorld::new(plan.chamber, &plan.truth, plan.spread).unwrap();
         let prior = world.prior_covariance();
         let functionals = [world.map().gas, world.map().mass];
-        let samples = (plan.chamber.duration_s / plan.chamber.sample_s) as usize + 1;
+        let samples = world.samples();
         Self {
             runs: (0..plan.seeds).into_par_iter().map(|seed| run(plan, samples, functionals, seed)).collect(),
             plan: plan.clone(),
-            times_s: fixed(samples).iter().map(|k| *k as f64 * plan.chamber.sample_s).collect(),
+            times_s: fixed(samples).iter().map(|k| *k as f64 * world.sample_s).collect(),
             samples,
             functionals,
             uncertain: (0..world.states()).filter(|&i| prior[(i, i)] > 0.0).collect(),
@@ -170,7 +171,7 @@ impl Ensemble {
         let paths: Vec<&Bound> = self.runs.iter().filter_map(|run| run.bound.as_ref()).collect();
         let along =
             [0, 1].map(|w| paths.iter().map(|path| path.variances[w]).sum::<f64>() / paths.len() as f64);
-        let world = World::new(self.plan.chamber, &self.plan.truth, self.plan.spread).unwrap();
+        let world = OwnWorld::new(self.plan.chamber, &self.plan.truth, self.plan.spread).unwrap();
         let mut bound =
             PosteriorBound::try_new(&world.prior_covariance(), world.leading(), Expectation::Full).unwrap();
         let mut published = [0.0; 2];

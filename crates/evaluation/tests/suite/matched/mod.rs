@@ -15,7 +15,8 @@ use cylwatch_estimator::bound::Efficiency;
 use cylwatch_estimator::consistency::{Finding, Significance};
 use cylwatch_estimator::observer::LeakHypothesis;
 
-use cylwatch_evaluation::truth::matched::{COLD, COMMISSIONED, Chamber, leak_member, mass_member, settings};
+use cylwatch_evaluation::matched::{COLD, COMMISSIONED, leak_member, mass_member, settings};
+use cylwatch_evaluation::world::chamber::Chamber;
 use ensemble::{Ensemble, Plan};
 
 const SEEDS: u64 = 200;
@@ -24,7 +25,7 @@ const ONE: Significance = Significance::ONE_PERCENT;
 fn plan(scenario: usize, member: LeakHypothesis) -> Plan {
     let settings = settings(member);
     Plan {
-        chamber: Chamber::scenarios()[scenario - 1],
+        chamber: Chamber::SCENARIOS[scenario - 1],
         truth: settings.clone(),
         filter: settings,
         spread: COMMISSIONED,

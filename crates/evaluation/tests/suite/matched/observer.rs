@@ -8,7 +8,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha12Rng;
 
-use cylwatch_evaluation::truth::matched::{Chamber, Draws, World, leak_member, mass_member, settings};
+use cylwatch_evaluation::matched::{Draws, OwnWorld, leak_member, mass_member, settings};
+use cylwatch_evaluation::world::chamber::Chamber;
 
 /// Intervals of irregular samples, s, some of them longer than the longest step.
 const INTERVALS_S: [f64; 5] = [60.0, 20.0, 45.0, 7.5, 300.0];
@@ -29,8 +30,8 @@ fn observed(member: LeakHypothesis) -> ObserverSettings {
 
 /// Rows of time, s, and readings of a drawn truth; some readings are missing.
 fn rows(settings: &ObserverSettings) -> Vec<(f64, Vec<f64>)> {
-    let chamber = Chamber { change_k: 0.0, ..Chamber::scenarios()[0] };
-    let mut world = World::new(chamber, settings, 0.3).unwrap();
+    let chamber = Chamber { end_degc: 21.0, ..Chamber::SCENARIOS[0] };
+    let mut world = OwnWorld::new(chamber, settings, 0.3).unwrap();
     let mut draws = Draws(ChaCha12Rng::seed_from_u64(11));
     let (mut x, mut time_s) = (draws.state(&world), 0.0);
     (0..150)

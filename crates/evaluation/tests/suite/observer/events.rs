@@ -103,7 +103,7 @@ fn what_was_learnt_makes_a_better_cold_start() {
     let text = serde_json::to_string(&learned).unwrap();
     let restored: Learned = serde_json::from_str(&text).unwrap();
     assert_eq!(restored, learned);
-    let case = Case::new(&Course::Scenario2, SHOCK_SEED, 60.0);
+    let case = Case::new(Chamber::SCENARIOS[1], SHOCK_SEED, 60.0);
     let mut cold = observer(Engine::Extended);
     let mut taught = observer(Engine::Extended).with_learned(restored);
     let (cold, taught) = (case.run(&mut cold), case.run(&mut taught));

@@ -11,7 +11,8 @@ use std::sync::OnceLock;
 use cylwatch_estimator::observer::{Commissioning, Engine, Estimate, Observer, ObserverSettings};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
-use cylwatch_evaluation::truth::{Course, Truth, TruthSettings, generate_with};
+use cylwatch_evaluation::thermal::trajectory::Trajectory;
+use cylwatch_evaluation::world::chamber::{Chamber, ChamberRequest};
 
 /// Sensors of the observer, in the order of their readings.
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
@@ -23,33 +24,31 @@ const SHOCK_SEED: u64 = 5;
 const FILL_PA: f64 = 2e7;
 const FILL_K: f64 = 288.15;
 
-/// A truth with its readings of [`SENSORS`].
+/// A drawn cylinder with its readings of [`SENSORS`].
 #[derive(Clone)]
 struct Case {
-    truth: Truth,
+    truth: Trajectory,
     rows: Vec<(f64, [f64; 3])>,
 }
 
 impl Case {
-    fn new(course: &Course, seed: u64, sample_time_s: f64) -> Self {
-        let settings = TruthSettings { cylinder_cells: 3, gas_cells: 4, ..TruthSettings::default() };
-        let truth = generate_with(course, seed, sample_time_s, &settings).unwrap();
-        let column = |name: &str| truth.log.channels.iter().position(|c| c.name == name).unwrap();
-        let columns = SENSORS.map(column);
-        let rows = truth.log.rows().map(|(t, row)| (t, columns.map(|c| row[c]))).collect();
-        Self { truth, rows }
+    fn new(chamber: Chamber, seed: u64, sample_s: f64) -> Self {
+        let request = ChamberRequest::new(chamber, seed, sample_s);
+        let run = ChamberRequest { wall_cells: 3, gas_cells: 4, ..request }.run().unwrap();
+        let rows = run.log.rows().map(|(t, row)| (t, [row[SHOULDER], row[VALVE], row[PRESSURE]])).collect();
+        Self { truth: run.trajectory, rows }
     }
 
     /// The chamber from 10 to 60 °C in five hours.
     fn ramp() -> &'static Self {
         static CASE: OnceLock<Case> = OnceLock::new();
-        CASE.get_or_init(|| Self::new(&Course::Scenario3, 3, 60.0))
+        CASE.get_or_init(|| Self::new(Chamber::SCENARIOS[2], 3, 60.0))
     }
 
     /// The chamber from 21 to -25 °C at once.
     fn shock() -> &'static Self {
         static CASE: OnceLock<Case> = OnceLock::new();
-        CASE.get_or_init(|| Self::new(&Course::Scenario1, SHOCK_SEED, 20.0))
+        CASE.get_or_init(|| Self::new(Chamber::SCENARIOS[0], SHOCK_SEED, 20.0))
     }
 
     /// The first hours of it.

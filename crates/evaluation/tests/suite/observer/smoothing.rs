@@ -39,7 +39,7 @@ fn smoothing_lowers_the_errors_over_several_cylinders() {
     // Whole and varying error of the temperature, K², varying error of the mass, kg².
     let (mut filtered, mut smoothed) = ([0.0; 3], [0.0; 3]);
     for seed in 1..5 {
-        let case = Case::new(&Course::Scenario1, seed, 60.0);
+        let case = Case::new(Chamber::SCENARIOS[0], seed, 60.0);
         let add = |sums: &mut [f64; 3], estimates: &[Estimate]| {
             let gas = estimates.iter().zip(&case.truth.gas_mean_k).map(|(e, k)| e.gas_mean_k - k);
             let mass = estimates.iter().zip(&case.truth.mass_kg).map(|(e, kg)| e.mass_kg - kg);

@@ -1,18 +1,15 @@
-//! What is done to the gas beside a constant leak: refills, discharges, puffs, leaks that change, bottles that are exchanged.
+//! What is done to the gas beside a constant leak: refills, discharges, puffs, leaks that change.
 //!
 //! A [`Process`] becomes flows of the scenario. Its quantities are stated as losses of the pressure at 15 °C, and turned into masses
 //! by the fill: `m = (rho(p, 15 °C) - rho(p - dp, 15 °C)) V`.
+use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::{Flow, FlowKind};
-use cylwatch_thermal::scenario::{Scenario, Series};
+use cylwatch_thermal::scenario::Series;
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::units::{ATMOSPHERE_PA, BAR_PA, QUOTED_K};
-use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::Vessel;
-use serde::{Deserialize, Serialize};
 
-use super::Truth;
-use super::disturbance::Disturbance;
-use crate::EvaluationError;
+use super::flows::flow;
 
 /// Interval at which a changing leak changes, s.
 const STAIR_S: f64 = 1800.0;
@@ -21,21 +18,9 @@ const PUFF_S: f64 = 2.0;
 /// Bore through which a refill enters, m: that of a cylinder valve.
 const INLET_M: f64 = 0.006;
 
-/// What happens to a cylinder on top of its course.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Happenings {
-    /// Pressure of the fill at 15 °C instead of 200 bar, Pa.
-    pub fill_pa: Option<f64>,
-    /// Exchanges of gas.
-    pub processes: Vec<Process>,
-    /// What the surroundings do.
-    pub disturbances: Vec<Disturbance>,
-}
-
 /// An exchange of gas.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "process")]
-pub enum Process {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Process {
     /// Gas is put in at a constant rate.
     Refill {
         /// Beginning, s.
@@ -113,56 +98,33 @@ pub enum Process {
     },
 }
 
-impl Happenings {
-    /// Put into a scenario of a vessel what happens.
-    ///
-    /// # Errors
-    /// The fill is no state of the fluid.
-    pub fn apply(&self, vessel: &Vessel, scenario: &mut Scenario) -> Result<(), EvaluationError> {
-        if let Some(pressure_pa) = self.fill_pa {
-            scenario.initial.fill = Fill::Settled { pressure_pa, temperature_k: QUOTED_K };
-        }
-        for disturbance in &self.disturbances {
-            disturbance.apply(&mut scenario.surroundings)?;
-        }
-        let filled_pa = match scenario.initial.fill {
-            Fill::Settled { pressure_pa, .. } | Fill::Pressure { pressure_pa } => pressure_pa,
-            Fill::Mass { .. } => return Ok(()),
-        };
-        let settled = Settled { vessel, filled_pa };
-        for process in &self.processes {
-            let flows = process.flows(&settled, &scenario.surroundings.air_k)?;
-            scenario.flows.extend(flows);
-        }
-        Ok(())
-    }
-}
-
 /// Masses of pressures at 15 °C.
-struct Settled<'a> {
-    vessel: &'a Vessel,
-    filled_pa: f64,
+pub(super) struct Settled<'a> {
+    pub vessel: &'a Vessel,
+    /// Pressure of the fill, Pa.
+    pub filled_pa: f64,
 }
 
 impl Settled<'_> {
-    fn mass_kg(&self, pressure_pa: f64) -> Result<f64, EvaluationError> {
+    fn mass_kg(&self, pressure_pa: f64) -> Result<f64, ThermalError> {
         let density = self.vessel.fluid.density_from_pressure_temperature(pressure_pa, QUOTED_K)?;
         Ok(density * self.vessel.volume.volume_m3(QUOTED_K, pressure_pa))
     }
 
     /// Mass of a change of the pressure from the fill on, kg.
-    fn change_kg(&self, by_pa: f64) -> Result<f64, EvaluationError> {
+    fn change_kg(&self, by_pa: f64) -> Result<f64, ThermalError> {
         Ok(self.mass_kg(self.filled_pa + by_pa)? - self.mass_kg(self.filled_pa)?)
     }
 
     /// Mass flow of a loss of pressure at the fill, kg/s.
-    fn flow_kg_s(&self, rate_pa_s: f64) -> Result<f64, EvaluationError> {
+    fn flow_kg_s(&self, rate_pa_s: f64) -> Result<f64, ThermalError> {
         Ok(-self.change_kg(-BAR_PA)? / BAR_PA * rate_pa_s)
     }
 }
 
 impl Process {
-    fn flows(&self, settled: &Settled<'_>, air_k: &Series) -> Result<Vec<Flow>, EvaluationError> {
+    /// Its flows, with the air of the scenario, K.
+    pub(super) fn flows(&self, settled: &Settled<'_>, air_k: &Series) -> Result<Vec<Flow>, ThermalError> {
         let out = |start_s: f64, stop_s: f64, mass_flow_kg_s: f64| {
             flow("leak", (start_s, stop_s), FlowKind::Leak { mass_flow_kg_s })
         };
@@ -215,18 +177,15 @@ impl Process {
     /// The leak that holds the pressure of a course at its value while the gas becomes warmer: exactly masked.
     /// It is open where `rho(p_0, T(t)) V(T(t), p_0)` falls, and lets out just that; `step_s` is its resolution, s. Such a leak cools the
     /// gas itself: after one simulation with the leak of a leak-free course, that of the result is all but exact.
-    ///
-    /// # Errors
-    /// The pressure is no state of the fluid at a temperature of the course.
-    pub fn masked(
+    pub(super) fn masked(
         vessel: &Vessel,
         course: &Trajectory,
         (start_s, stop_s): (f64, f64),
         step_s: f64,
-    ) -> Result<Self, EvaluationError> {
+    ) -> Result<Self, ThermalError> {
         let nearest = |t_s: f64| course.time_s.partition_point(|&t| t < t_s).min(course.time_s.len() - 1);
         let pressure_pa = course.pressure_pa[nearest(start_s)];
-        let mass = |t_s: f64| -> Result<f64, EvaluationError> {
+        let mass = |t_s: f64| -> Result<f64, ThermalError> {
             let index = nearest(t_s);
             let density =
                 vessel.fluid.density_from_pressure_temperature(pressure_pa, course.gas_mean_k[index])?;
@@ -250,42 +209,4 @@ fn stairs(start_s: f64, stop_s: f64) -> impl Iterator<Item = (f64, f64)> {
         let from_s = start_s + k as f64 * STAIR_S;
         (from_s, (from_s + STAIR_S).min(stop_s))
     })
-}
-
-fn flow(name: &str, (start_s, stop_s): (f64, f64), kind: FlowKind) -> Flow {
-    let closes = None;
-    Flow {
-        name: name.into(),
-        kind,
-        start_s,
-        stop_s,
-        opens_above_pa: closes,
-        closes_below_pa: closes,
-        closes_above_pa: closes,
-    }
-}
-
-impl Truth {
-    /// This truth until its bottle is taken away, then, after a while without rows, another bottle: what the place on the
-    /// vehicle goes through. Both must have been sampled at the same times.
-    pub fn exchanged(&self, by: &Self, at_s: f64, away_s: f64) -> Self {
-        let (end, begin) =
-            (self.time_s.partition_point(|&t| t < at_s), by.time_s.partition_point(|&t| t < at_s + away_s));
-        let join = |a: &[f64], b: &[f64]| [&a[..end], &b[begin..]].concat();
-        let width = self.log.channels.len();
-        let mut truth = self.clone();
-        truth.time_s = join(&self.time_s, &by.time_s);
-        truth.gas_mean_k = join(&self.gas_mean_k, &by.gas_mean_k);
-        truth.mass_kg = join(&self.mass_kg, &by.mass_kg);
-        truth.pressure_pa = join(&self.pressure_pa, &by.pressure_pa);
-        truth.ambient_k = join(&self.ambient_k, &by.ambient_k);
-        truth.wall_mean_k = join(&self.wall_mean_k, &by.wall_mean_k);
-        truth.shoulder_k = join(&self.shoulder_k, &by.shoulder_k);
-        truth.valve_k = join(&self.valve_k, &by.valve_k);
-        truth.middle_k = join(&self.middle_k, &by.middle_k);
-        truth.bottom_k = join(&self.bottom_k, &by.bottom_k);
-        truth.log.time_s.clone_from(&truth.time_s);
-        truth.log.values = [&self.log.values[..end * width], &by.log.values[begin * width..]].concat();
-        truth
-    }
 }

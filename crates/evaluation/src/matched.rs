@@ -1,6 +1,6 @@
-//! Worlds that are the observer's own model: its state space, with truths drawn from its prior and its noise.
+//! Worlds that are the observer's own model: its state space in the paper's chamber, with truths drawn from its prior and its noise.
 //!
-//! Here, other than in the rest of this folder, the filter is right: what it misses is the price of linearising, and
+//! Here, other than in a [world](crate::world), the filter is right: what it misses is the price of linearising, and
 //! [`least_errors`] is what no estimator with the same prior goes below (the mean over true paths of each path's own posterior Cramér-Rao
 //! bound, see [`crate::estimator::bound`]). The change of the air is known, the rest of the air's walk is not.
 use cylwatch_thermal::units::HOUR_S;
@@ -17,67 +17,26 @@ use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::states::{StateKind, States};
 use crate::estimator::observer::{LeakHypothesis, ModelError, ObserverSettings, Walk};
 use crate::estimator::sensor::Sensor;
-use crate::thermal::units::ZERO_CELSIUS_K;
 use crate::thermal::vessel::presets;
-
-/// Air of a climatic chamber: an hour of rest, a linear change (a jump where it takes no time), rest.
-#[derive(Clone, Copy, Debug)]
-pub struct Chamber {
-    /// Air during the rest, K.
-    pub start_k: f64,
-    /// Change of the air, K.
-    pub change_k: f64,
-    /// Time that it takes, s.
-    pub ramp_s: f64,
-    /// Rest, change and what follows, s.
-    pub duration_s: f64,
-    /// Interval of the samples, s.
-    pub sample_s: f64,
-}
-
-impl Chamber {
-    /// Scenarios 1 to 4 of the paper.
-    pub fn scenarios() -> [Self; 4] {
-        [(21.0, -25.0, 0.0, 3.0), (-25.0, 40.0, 0.0, 3.45), (10.0, 60.0, 5.0, 5.0), (60.0, 28.0, 14.0, 14.0)]
-            .map(Self::of)
-    }
-
-    fn of((start_degc, end_degc, ramp_h, after_h): (f64, f64, f64, f64)) -> Self {
-        Self {
-            start_k: start_degc + ZERO_CELSIUS_K,
-            change_k: end_degc - start_degc,
-            ramp_s: ramp_h * HOUR_S,
-            duration_s: (1.0 + after_h) * HOUR_S,
-            sample_s: if after_h > 10.0 { 120.0 } else { 60.0 },
-        }
-    }
-
-    fn air_k(&self, time_s: f64) -> f64 {
-        let since_s = time_s - HOUR_S;
-        let done = if self.ramp_s > 0.0 {
-            (since_s / self.ramp_s).clamp(0.0, 1.0)
-        } else {
-            f64::from(u8::from(since_s > 0.0))
-        };
-        self.start_k + done * self.change_k
-    }
-}
+use crate::world::chamber::Chamber;
 
 /// A cylinder in a chamber: the known change of the air comes on top of the cylinder's own transition, half of it before and
 /// half of it after.
 #[derive(Debug)]
-pub struct World {
+pub struct OwnWorld {
     /// The observer's cylinder.
     pub cylinder: Cylinder,
     /// What happens to it.
     pub chamber: Chamber,
+    /// Interval of the samples, s.
+    pub sample_s: f64,
     /// Part of the cold spreads that the prior has.
     pub spread: f64,
     /// Time at the beginning of the next transition, s.
     pub time_s: f64,
 }
 
-impl World {
+impl OwnWorld {
     /// A cylinder with the typical sensors of the shoulder, the valve and the pressure.
     ///
     /// # Errors
@@ -88,12 +47,13 @@ impl World {
             .map(Sensor::typical)
             .collect::<Result<Vec<_>, _>>()?;
         let cylinder = Cylinder::new(&presets::load("nitrogen-20l")?, &sensors, settings)?;
-        Ok(Self { cylinder, chamber, spread, time_s: 0.0 })
+        let sample_s = if chamber.after_s > 10.0 * HOUR_S { 120.0 } else { 60.0 };
+        Ok(Self { cylinder, chamber, sample_s, spread, time_s: 0.0 })
     }
 
     /// Number of samples.
     pub fn samples(&self) -> usize {
-        (self.chamber.duration_s / self.chamber.sample_s) as usize + 1
+        (self.chamber.duration_s() / self.sample_s) as usize + 1
     }
 
     /// What each state is.
@@ -104,7 +64,7 @@ impl World {
     /// Mean and standard deviations of the state at the first sample.
     pub fn prior(&self) -> (Vec<f64>, Vec<f64>) {
         let (states, settings) = (self.cylinder.state_map(), self.cylinder.settings());
-        let (start_k, spread) = (self.chamber.start_k, self.spread);
+        let (start_k, spread) = (self.chamber.air_k(0.0), self.spread);
         let of = |kind: &StateKind| match *kind {
             StateKind::Wall(_) | StateKind::Valve | StateKind::Gas | StateKind::Lag { .. } => {
                 (start_k, spread * BODY_SD_K)
@@ -189,7 +149,7 @@ impl Draws {
     }
 
     /// A state of the prior.
-    pub fn state(&mut self, world: &World) -> Vec<f64> {
+    pub fn state(&mut self, world: &OwnWorld) -> Vec<f64> {
         let (mean, sd) = world.prior();
         mean.iter().zip(&sd).map(|(mean, sd)| mean + sd * self.normal()).collect()
     }
@@ -198,7 +158,7 @@ impl Draws {
     ///
     /// # Errors
     /// The model's.
-    pub fn advance(&mut self, world: &mut World, x: &mut [f64], dt_s: f64) -> Result<(), EstimatorError> {
+    pub fn advance(&mut self, world: &mut OwnWorld, x: &mut [f64], dt_s: f64) -> Result<(), EstimatorError> {
         let mut linear = Linearisation::zeros(world.states(), world.leading(), world.noises());
         world.propagate(x, dt_s, Some(&mut linear))?;
         let w = DVector::from_fn(linear.q.len(), |i, _| linear.q[i].sqrt() * self.normal());
@@ -211,14 +171,14 @@ impl Draws {
     ///
     /// # Errors
     /// The model's.
-    pub fn readings(&mut self, world: &mut World, x: &[f64]) -> Result<Vec<f64>, EstimatorError> {
+    pub fn readings(&mut self, world: &mut OwnWorld, x: &[f64]) -> Result<Vec<f64>, EstimatorError> {
         (0..world.outputs())
             .map(|j| Ok(world.output(j, x, None)? + world.noise_variance(j, x).sqrt() * self.normal()))
             .collect()
     }
 }
 
-impl StateSpace for World {
+impl StateSpace for OwnWorld {
     type Error = EstimatorError;
 
     fn states(&self) -> usize {
@@ -280,7 +240,7 @@ pub fn least_errors(
     seed: u64,
 ) -> Result<LeastErrors, EstimatorError> {
     let of_path = |path: u64| {
-        let world = World::new(chamber, settings, COLD)?;
+        let world = OwnWorld::new(chamber, settings, COLD)?;
         path_variances(world, Draws(ChaCha12Rng::seed_from_u64(seed.wrapping_add(path))))
     };
     let variances = (0..paths).into_par_iter().map(of_path).collect::<Result<Vec<_>, EstimatorError>>()?;
@@ -290,8 +250,8 @@ pub fn least_errors(
 }
 
 /// Mean variances of gas temperature and mass along one true path, from the change of the air on.
-fn path_variances(mut world: World, mut draws: Draws) -> Result<[f64; 2], EstimatorError> {
-    let (samples, sample_s) = (world.samples(), world.chamber.sample_s);
+fn path_variances(mut world: OwnWorld, mut draws: Draws) -> Result<[f64; 2], EstimatorError> {
+    let (samples, sample_s) = (world.samples(), world.sample_s);
     let functionals = [world.map().gas, world.map().mass];
     let heard = vec![true; world.outputs()];
     let mut linear = Linearisation::zeros(world.states(), world.leading(), world.noises());

@@ -1,6 +1,6 @@
 //! Streams of random numbers and the Ornstein-Uhlenbeck process.
-use super::assert_uniform;
-use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
+use super::{OrnsteinUhlenbeck, Purpose, Random};
+use crate::world::statistics::{Law, assert_equal_counts, assert_law, assert_share, mean, sd};
 
 fn draws(seed: u64, purpose: Purpose) -> Vec<f64> {
     let mut random = Random::new(seed, purpose);
@@ -9,28 +9,28 @@ fn draws(seed: u64, purpose: Purpose) -> Vec<f64> {
 
 #[test]
 fn a_stream_is_repeated_by_its_seed_and_shared_with_no_other() {
-    assert_eq!(draws(7, Purpose::Weather), draws(7, Purpose::Weather));
-    for (seed, purpose) in [(8, Purpose::Weather), (7, Purpose::Sun), (7, Purpose::PressureNoise)] {
+    let of = || draws(7, Purpose::WorldWeather);
+    assert_eq!(of(), of());
+    for (seed, purpose) in
+        [(8, Purpose::WorldWeather), (7, Purpose::WorldSun), (7, Purpose::ChamberPressureNoise)]
+    {
         let other = draws(seed, purpose);
-        assert!(draws(7, Purpose::Weather).iter().all(|value| !other.contains(value)));
+        assert!(of().iter().all(|value| !other.contains(value)));
     }
 }
 
 #[test]
 fn uniform_whole_and_signed_numbers_keep_to_their_laws() {
-    let mut random = Random::new(1, Purpose::Cylinder);
+    let mut random = Random::new(1, Purpose::WorldVessel);
     let values: Vec<f64> = (0..4000).map(|_| random.uniform((-3.0, 5.0))).collect();
-    assert_uniform("uniform", &values, (-3.0, 5.0));
-    let mut counts = [0_u32; 4];
+    assert_law("uniform", &values, Law::Uniform(-3.0, 5.0));
+    let mut counts = [0; 4];
     (0..4000).for_each(|_| counts[random.whole((3, 6)) - 3] += 1);
-    // Pearson's statistic of equal shares, three degrees of freedom: 21.1 has probability 1e-4.
-    let pearson: f64 = counts.iter().map(|&count| (f64::from(count) - 1000.0).powi(2) / 1000.0).sum();
-    assert!(pearson < 21.1, "{counts:?}");
+    assert_equal_counts("whole", &counts);
     let signed: Vec<f64> = (0..4000).map(|_| random.either_sign((2.0, 3.0))).collect();
     let magnitudes: Vec<f64> = signed.iter().map(|value| value.abs()).collect();
-    assert_uniform("magnitude", &magnitudes, (2.0, 3.0));
-    let positive = signed.iter().filter(|&&value| value > 0.0).count() as f64;
-    assert!((positive - 2000.0).abs() < 4.0 * 1000_f64.sqrt(), "{positive} of 4000 positive");
+    assert_law("magnitude", &magnitudes, Law::Uniform(2.0, 3.0));
+    assert_share("positive", signed.iter().filter(|&&value| value > 0.0).count(), 4000, 0.5);
 }
 
 /// Mean of `x(t) x(t + lag)` over a process, its error's standard deviation being about `sqrt(2 tau / T)`.
@@ -48,7 +48,7 @@ fn ornstein_uhlenbeck_has_unit_variance_in_the_mean_over_time_and_its_correlatio
     // Steps that see every part of the lines between the knots alike.
     let (time_s, spacing_s, duration_s) = (120.0, 120.0, 1.2e7);
     let process =
-        OrnsteinUhlenbeck::draw(&mut Random::new(3, Purpose::Turbulence), time_s, spacing_s, duration_s);
+        OrnsteinUhlenbeck::draw(&mut Random::new(3, Purpose::WorldTurbulence), time_s, spacing_s, duration_s);
     let variance = autocovariance(&process, duration_s, spacing_s / 10.0, 0.0);
     let doubt = (2.0 * time_s / duration_s).sqrt();
     assert!((variance - 1.0).abs() < 4.0 * doubt, "variance {variance} ± {doubt}");
@@ -65,14 +65,14 @@ fn ornstein_uhlenbeck_has_unit_variance_in_the_mean_over_time_and_its_correlatio
 fn ornstein_uhlenbeck_starts_stationary() {
     let first: Vec<f64> = (0..4000)
         .map(|seed| {
-            let random = &mut Random::new(seed, Purpose::Weather);
+            let random = &mut Random::new(seed, Purpose::WorldWeather);
             OrnsteinUhlenbeck::draw(random, 172_800.0, 3600.0, 7200.0).at(0.0)
         })
         .collect();
     // Knots an hour apart lie close to the process itself; the stretch for the lines adds a third of 2 %.
     let r = (-3600_f64 / 172_800.0).exp();
     let expected = (3.0 / (2.0 + r)).sqrt();
-    let deviation = super::sd(&first) / expected;
+    let deviation = sd(&first) / expected;
     assert!((deviation - 1.0).abs() < 4.0 / (2.0_f64 * 4000.0).sqrt(), "sd over expected {deviation}");
-    assert!(super::mean(&first).abs() < 4.0 / 4000_f64.sqrt(), "mean {}", super::mean(&first));
+    assert!(mean(&first).abs() < 4.0 / 4000_f64.sqrt(), "mean {}", mean(&first));
 }

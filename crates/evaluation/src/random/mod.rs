@@ -1,27 +1,20 @@
-//! Random numbers of a truth: one stream for each purpose, so that a change to one leaves the others as they are.
+//! Random numbers of a world: one stream for each purpose, so that a change to one leaves the others as they are.
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-/// What a stream of random numbers is drawn for.
+/// What a stream of random numbers is drawn for; its number is that of the stream, so it stays when others come and go.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Purpose {
-    Cylinder,
-    Sensors,
-    Climate,
-    Weather,
-    Tunnels,
-    Trips,
-    Sun,
-    Turbulence,
-    Gusts,
-    AxialDifference,
-    ShoulderNoise,
-    ValveNoise,
-    MiddleNoise,
-    BottomNoise,
-    PressureNoise,
-    WorldVessel,
+    ChamberVessel = 0,
+    ChamberSensors = 1,
+    ChamberTurbulence = 7,
+    ChamberGusts = 8,
+    ChamberDifference = 9,
+    ChamberShoulderNoise = 10,
+    ChamberValveNoise = 11,
+    ChamberPressureNoise = 14,
+    WorldVessel = 15,
     WorldGas,
     WorldFill,
     WorldClock,
@@ -126,3 +119,6 @@ impl OrnsteinUhlenbeck {
         self.value[knot] + weight * (self.value[knot + 1] - self.value[knot])
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,13 +1,12 @@
-//! What surroundings do beside a course's own weather: tunnels, cold nights, sun, rain, heaters, air conditioning, speed.
+//! What surroundings do beside a climate's own weather: tunnels, cold nights, sun, rain, heaters, air conditioning, speed.
 //!
 //! A [`Disturbance`] changes the series of a scenario during windows with ramps: with the window's share `s(t)` of 0 to 1 the air is
 //! `T + s (T_target - T)` or `T + s dT`, the film `h + s (h_target - h)`. What the surface radiates to follows a change of the air
-//! with a lag of 30 min. The series must be continuous, as those of railway weeks are: a jump becomes a ramp to the next knot.
+//! with a lag of 30 min. The series must be continuous, as those of climates are: a jump becomes a ramp to the next knot.
+use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::scenario::{OutsideFilm, Series, Surroundings};
-use serde::{Deserialize, Serialize};
 
-use super::weather::Lag;
-use crate::EvaluationError;
+use super::climate::Lag;
 
 const MELTING_K: f64 = 273.15;
 /// Rate at which the air changes at the portals of a tunnel, K/s.
@@ -19,12 +18,14 @@ const FILM_WET_W_M2_K: f64 = 150.0;
 /// Share of the time in which moving shade leaves the sun, and its period, s.
 const SHADE_PERIOD_S: f64 = 900.0;
 const SUNLIT: f64 = 0.75;
+/// Lag of what the surface radiates to behind the air, s.
+const RADIATION_LAG_S: f64 = 1800.0;
 /// Distance of knots while radiation falls behind, s.
 const KNOTS_S: f64 = 300.0;
 
 /// Something that the surroundings do for a while.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Disturbance {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Disturbance {
     /// Beginning, s.
     pub start_s: f64,
     /// Duration, s.
@@ -34,9 +35,8 @@ pub struct Disturbance {
 }
 
 /// What surroundings do.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "surrounding")]
-pub enum Surrounding {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Surrounding {
     /// One tunnel after the other, entered and left at 3 K/s.
     Tunnels {
         /// Air in the tunnel, K.
@@ -97,10 +97,7 @@ pub enum Surrounding {
 
 impl Disturbance {
     /// Change the surroundings.
-    ///
-    /// # Errors
-    /// A value that is not finite.
-    pub fn apply(&self, around: &mut Surroundings) -> Result<(), EvaluationError> {
+    pub(super) fn apply(&self, around: &mut Surroundings) -> Result<(), ThermalError> {
         match self.kind {
             Surrounding::Tunnels { air_k, .. } => {
                 self.change_air(around, |t_s, air| air + self.share(t_s, air) * (air_k - air))
@@ -202,14 +199,14 @@ impl Disturbance {
         &self,
         around: &mut Surroundings,
         change: impl Fn(f64, f64) -> f64,
-    ) -> Result<(), EvaluationError> {
+    ) -> Result<(), ThermalError> {
         let before = around.air_k.clone();
         around.air_k = changed(&before, &self.edges_s(), change)?;
         let Some(radiation_k) = &around.radiation_k else { return Ok(()) };
         // The lag outlasts the disturbance by a few hours.
         let mut edges = self.edges_s();
         edges.extend((1..48).map(|k| self.start_s + self.lasting_s + f64::from(k) * KNOTS_S));
-        let mut lag = Lag::at_rest(self.start_s);
+        let mut lag = Lag::settled(self.start_s, 0.0, RADIATION_LAG_S);
         around.radiation_k = Some(changed(radiation_k, &edges, |t_s, value| {
             let by_k = around.air_k.at(t_s) - before.at(t_s);
             if t_s < self.start_s { value } else { value + lag.follow(t_s, by_k) }
@@ -221,7 +218,7 @@ impl Disturbance {
         &self,
         around: &mut Surroundings,
         target: impl Fn(f64) -> (f64, f64),
-    ) -> Result<(), EvaluationError> {
+    ) -> Result<(), ThermalError> {
         if let OutsideFilm::Coefficient { film_w_m2_k } = &mut around.film {
             *film_w_m2_k = changed(film_w_m2_k, &self.edges_s(), |t_s, film| {
                 let (share, target) = target(t_s);
@@ -231,7 +228,7 @@ impl Disturbance {
         Ok(())
     }
 
-    fn add_sun(&self, around: &mut Surroundings, irradiance_w_m2: f64) -> Result<(), EvaluationError> {
+    fn add_sun(&self, around: &mut Surroundings, irradiance_w_m2: f64) -> Result<(), ThermalError> {
         if let Some(sun) = &mut around.sun {
             sun.irradiance_w_m2 = changed(&sun.irradiance_w_m2, &self.edges_s(), |t_s, value| {
                 let phase = ((t_s - self.start_s) / SHADE_PERIOD_S).rem_euclid(1.0);
@@ -254,11 +251,11 @@ fn changed(
     series: &Series,
     edges_s: &[f64],
     mut change: impl FnMut(f64, f64) -> f64,
-) -> Result<Series, EvaluationError> {
+) -> Result<Series, ThermalError> {
     let mut knots: Vec<f64> =
         series.edges_s().chain(edges_s.iter().copied()).filter(|&t_s| t_s >= 0.0).collect();
     knots.sort_by(f64::total_cmp);
     knots.dedup();
     let values = knots.iter().map(|&t_s| change(t_s, series.at(t_s))).collect();
-    Ok(Series::try_new(knots, values)?)
+    Series::try_new(knots, values)
 }
