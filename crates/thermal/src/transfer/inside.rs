@@ -258,6 +258,7 @@ impl InsideConvection {
 ///
 /// # References
 /// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon.
+#[cfg(feature = "simulate")]
 pub(crate) fn jet_film_w_m2_k<D: Real>(
     conductivity_w_m_k: D,
     viscosity_pa_s: D,
