@@ -54,13 +54,13 @@ pressure_bar = [160]
 "#;
 
 /// Where the switch stands, and the coldest night that the monitor is told to expect.
-pub const SWITCH_BAR: f64 = 160.0;
+pub(crate) const SWITCH_BAR: f64 = 160.0;
 const COLDEST_DEGC: f64 = -12.0;
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const SEED: u64 = 12;
 
 /// What happened and what was said.
-pub struct Night {
+pub(crate) struct Night {
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Air and gas, °C.
@@ -78,7 +78,7 @@ pub struct Night {
 }
 
 /// Simulates, and lets switch and monitor watch.
-pub fn run() -> anyhow::Result<Night> {
+pub(crate) fn run() -> anyhow::Result<Night> {
     let vessel = vessel::presets::load("nitrogen-20l")?;
     let scenario = scenario::read_scenario(SCENARIO, "cold night", &scenario::presets::table)?;
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;
@@ -119,7 +119,7 @@ pub fn run() -> anyhow::Result<Night> {
 }
 
 /// Temperatures and pressures.
-pub fn figure(night: &Night) -> Figure {
+pub(crate) fn figure(night: &Night) -> Figure {
     let t = &night.time_s;
     let curve = |name: &str, values: &[f64], stroke| Item::line(name, t, values.iter().copied(), stroke);
     let [read, settled, cold] = &night.pressures_bar;

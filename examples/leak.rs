@@ -39,7 +39,7 @@ flow_g_h = 60
 ";
 
 /// What is known of a cylinder at one time.
-pub struct Reading {
+pub(crate) struct Reading {
     /// Which cylinder.
     pub cylinder: &'static str,
     /// Time, h.
@@ -56,7 +56,7 @@ pub struct Reading {
 
 // ANCHOR: run
 /// Runs both; the second is read when its gauge shows what the first one's shows at the end.
-pub fn run() -> anyhow::Result<[Reading; 2]> {
+pub(crate) fn run() -> anyhow::Result<[Reading; 2]> {
     let cold = simulated(COLD)?;
     let leaky = simulated(LEAK)?;
     let end = cold.time_s.len() - 1;

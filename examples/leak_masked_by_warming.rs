@@ -64,13 +64,13 @@ start_h = 48.3
 const WARMING_S: f64 = 48.0 * 3600.0;
 const LEAK_S: f64 = 48.3 * 3600.0;
 /// True leak, g/h.
-pub const LEAK_G_H: f64 = 31.6;
+pub(crate) const LEAK_G_H: f64 = 31.6;
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const SEED: u64 = 3;
 const GRAM_PER_HOUR: f64 = 3.6e6;
 
 /// What happened and what was said.
-pub struct Masked {
+pub(crate) struct Masked {
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Air and gas, °C.
@@ -88,7 +88,7 @@ pub struct Masked {
 }
 
 /// Simulates, and lets the monitor watch.
-pub fn run() -> anyhow::Result<Masked> {
+pub(crate) fn run() -> anyhow::Result<Masked> {
     let vessel = vessel::presets::load("nitrogen-20l")?;
     let scenario = scenario::read_scenario(SCENARIO, "masked leak", &scenario::presets::table)?;
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;
@@ -122,7 +122,7 @@ pub fn run() -> anyhow::Result<Masked> {
 
 impl Masked {
     /// By how much the pressure as read rises or falls from the onset on, bar, and what is gone by then, g.
-    pub fn spread_and_loss(&self) -> (f64, f64) {
+    pub(crate) fn spread_and_loss(&self) -> (f64, f64) {
         let onset = self.time_s.partition_point(|&t| t < LEAK_S);
         let read = &self.pressures_bar[0][onset..];
         let ends = read.iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -131,7 +131,7 @@ impl Masked {
 }
 
 /// Temperatures, pressures, lost gas.
-pub fn figure(masked: &Masked) -> Figure {
+pub(crate) fn figure(masked: &Masked) -> Figure {
     let t = &masked.time_s;
     let curve = |name: &str, values: &[f64], stroke| Item::line(name, t, values.iter().copied(), stroke);
     let panels = vec![

@@ -20,7 +20,7 @@ use std::sync::Arc;
 struct DayBefore;
 
 /// The detector at work on one cylinder.
-pub struct Watching {
+pub(crate) struct Watching {
     /// Indices of shoulder and pressure among the readings.
     pub columns: [usize; 2],
     /// Time, shoulder and pressure of the last day, oldest first.
@@ -79,7 +79,7 @@ overlays = [{ kind = "nothing" }, { kind = "leak", part_per_h = [0.005, 0.05], o
 "#;
 
 /// Registers it and judges it beside the paper's detector.
-pub fn run() -> anyhow::Result<Table> {
+pub(crate) fn run() -> anyhow::Result<Table> {
     let mut registry = Registry::default();
     registry.register("day-before", |_settings| Ok(Arc::new(DayBefore)));
     let plan = Plan::parse(PLAN, "the plan", &registry, &[])?;

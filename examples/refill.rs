@@ -55,12 +55,12 @@ closes_above_bar = 226
 "#;
 
 /// Start of the refill, s.
-pub const REFILL_S: f64 = 40.0 * 3600.0;
+pub(crate) const REFILL_S: f64 = 40.0 * 3600.0;
 const SENSORS: [&str; 3] = ["shoulder", "valve", "pressure"];
 const SEED: u64 = 5;
 
 /// What happened and what was said.
-pub struct Refill {
+pub(crate) struct Refill {
     /// Time, s.
     pub time_s: Vec<f64>,
     /// Shoulder as read, and gas, °C.
@@ -76,7 +76,7 @@ pub struct Refill {
 }
 
 /// Simulates, and lets the monitor watch.
-pub fn run() -> anyhow::Result<Refill> {
+pub(crate) fn run() -> anyhow::Result<Refill> {
     let vessel = vessel::presets::load("nitrogen-20l")?;
     let scenario = scenario::read_scenario(SCENARIO, "refill", &scenario::presets::table)?;
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;
@@ -121,7 +121,7 @@ pub fn run() -> anyhow::Result<Refill> {
 
 impl Refill {
     /// Highest pressure as read, and what it falls by until the end, bar.
-    pub fn peak_and_fall(&self) -> (f64, f64) {
+    pub(crate) fn peak_and_fall(&self) -> (f64, f64) {
         let read = &self.pressures_bar[0];
         let peak = read.iter().copied().fold(f64::MIN, f64::max);
         (peak, peak - read[read.len() - 1])
@@ -129,7 +129,7 @@ impl Refill {
 }
 
 /// Temperatures and pressures from an hour before the refill on.
-pub fn figure(refill: &Refill) -> Figure {
+pub(crate) fn figure(refill: &Refill) -> Figure {
     let from = refill.time_s.partition_point(|&t| t < REFILL_S - 3600.0);
     let until = refill.time_s.partition_point(|&t| t < REFILL_S + 5.0 * 3600.0);
     let t: Vec<f64> = refill.time_s[from..until].iter().map(|t| t - refill.time_s[from]).collect();

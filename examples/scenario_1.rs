@@ -13,7 +13,7 @@ use cylwatch::thermal::trajectory::EventKind;
 use cylwatch::thermal::{scenario, vessel};
 
 /// A step into cold air.
-pub struct Fall {
+pub(crate) struct Fall {
     /// Air after the step, °C.
     pub air_degc: i32,
     /// Gauge before the step and after three hours, bar.
@@ -23,7 +23,7 @@ pub struct Fall {
 }
 
 /// Runs the three steps.
-pub fn run() -> anyhow::Result<Vec<Fall>> {
+pub(crate) fn run() -> anyhow::Result<Vec<Fall>> {
     [-25, -30, -40].into_iter().map(fall).collect()
 }
 

@@ -14,7 +14,7 @@ use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::{scenario, vessel};
 
 /// How the gas follows a place on the outside.
-pub struct Lag {
+pub(crate) struct Lag {
     /// The place or its sensor.
     pub place: String,
     /// How much later the gas is half way, s.
@@ -27,7 +27,7 @@ pub struct Lag {
 const HALF_WAY_K: f64 = 273.15 + 7.5;
 
 /// Runs the scenario.
-pub fn run() -> anyhow::Result<Vec<Lag>> {
+pub(crate) fn run() -> anyhow::Result<Vec<Lag>> {
     let vessel = vessel::presets::load("nitrogen-20l")?;
     let scenario = scenario::presets::load("tunnel-winter")?;
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;

@@ -13,7 +13,7 @@ use cylwatch::thermal::trajectory::Trajectory;
 use cylwatch::thermal::{scenario, vessel};
 
 /// A time in the ramp.
-pub struct Moment {
+pub(crate) struct Moment {
     /// Time, h.
     pub time_h: usize,
     /// Mean gas temperature, °C.
@@ -25,7 +25,7 @@ pub struct Moment {
 }
 
 /// Runs the scenario.
-pub fn run() -> anyhow::Result<Vec<Moment>> {
+pub(crate) fn run() -> anyhow::Result<Vec<Moment>> {
     let vessel = vessel::presets::load("nitrogen-20l")?;
     let scenario = scenario::presets::load("ramp-warm")?;
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;

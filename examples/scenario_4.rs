@@ -12,7 +12,7 @@ use cylwatch::thermal::simulate::{SimulationSettings, simulate};
 use cylwatch::thermal::{scenario, vessel};
 
 /// A cylinder that cools.
-pub struct Cooling {
+pub(crate) struct Cooling {
     /// Equation of state.
     pub equation: &'static str,
     /// Gas mass, kg.
@@ -24,7 +24,7 @@ pub struct Cooling {
 }
 
 /// Runs both.
-pub fn run() -> anyhow::Result<[Cooling; 2]> {
+pub(crate) fn run() -> anyhow::Result<[Cooling; 2]> {
     Ok([cooling("reference", Equation::Reference)?, cooling("ideal gas", Equation::IdealGas)?])
 }
 

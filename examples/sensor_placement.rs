@@ -54,7 +54,7 @@ const WALL_NODES: usize = 3;
 const LONGEST_STEP_S: f64 = 60.0;
 
 /// The study of a cylinder in one attitude.
-pub struct Attitude {
+pub(crate) struct Attitude {
     /// Its name.
     pub name: &'static str,
     /// The vessel.
@@ -67,7 +67,7 @@ pub struct Attitude {
 
 impl Attitude {
     /// The study as it is shown.
-    pub fn placed(&self) -> Placed<'_> {
+    pub(crate) fn placed(&self) -> Placed<'_> {
         Placed {
             study: &self.study,
             candidates: &self.candidates,
@@ -78,13 +78,13 @@ impl Attitude {
     }
 
     /// One thermometer at a place, beside the pressure.
-    pub fn position(&self, place: &str) -> Option<&Position> {
+    pub(crate) fn position(&self, place: &str) -> Option<&Position> {
         let sensor = self.candidates.index(place)?;
         self.study.positions.iter().find(|position| position.sensor == sensor)
     }
 
     /// The thermometers of the best layouts.
-    pub fn best(&self) -> Vec<String> {
+    pub(crate) fn best(&self) -> Vec<String> {
         let names = |layout: &[usize]| {
             let names = self.candidates.names(layout).into_iter().filter(|name| *name != "pressure");
             names.collect::<Vec<_>>().join(" + ")
@@ -100,7 +100,7 @@ impl Attitude {
 }
 
 /// Searches for both attitudes.
-pub fn run() -> anyhow::Result<[Attitude; 2]> {
+pub(crate) fn run() -> anyhow::Result<[Attitude; 2]> {
     let [standing, lying] = ATTITUDES;
     Ok([study(standing)?, study(lying)?])
 }

@@ -37,7 +37,7 @@ to_degc = -30
 const SWITCH_PA: f64 = 160e5;
 
 /// What the switch said.
-pub struct Passage {
+pub(crate) struct Passage {
     /// Which cylinder.
     pub cylinder: &'static str,
     /// Lowest and highest pressure, bar.
@@ -49,7 +49,7 @@ pub struct Passage {
 }
 
 /// Runs both cylinders.
-pub fn run() -> anyhow::Result<[Passage; 2]> {
+pub(crate) fn run() -> anyhow::Result<[Passage; 2]> {
     let poor = SCENARIO.replace("fill_pressure_bar = 200", "fill_pressure_bar = 170");
     Ok([passage("tight, 200 bar at 15 degC", SCENARIO)?, passage("leaky, 170 bar at 15 degC", &poor)?])
 }

@@ -56,7 +56,6 @@
 //! ```
 //!
 //! The programs in the folder `examples` answer one question each in the same way; the `book` says what the numbers mean.
-#![warn(unreachable_pub)]
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;
 pub use cylwatch_evaluation as evaluation;

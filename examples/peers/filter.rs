@@ -27,7 +27,7 @@ const SEED: u64 = 1;
 const LEAK_MEMBER: usize = 1;
 
 /// The observer at the operating point, and readings of a process that is as it supposes.
-pub fn inputs() -> anyhow::Result<Inputs> {
+pub(crate) fn inputs() -> anyhow::Result<Inputs> {
     let sensors = SENSORS.map(Sensor::typical).into_iter().collect::<Result<Vec<_>, _>>()?;
     let filled = Commissioning::filled(200e5, ZERO_CELSIUS_K + 15.0);
     let vessel = presets::load("nitrogen-20l")?;
@@ -68,7 +68,7 @@ pub fn inputs() -> anyhow::Result<Inputs> {
 }
 
 /// Readings of a process that starts from the prior.
-pub fn readings(
+pub(crate) fn readings(
     inputs: &Inputs,
     prior: &DMatrix<f64>,
     samples: usize,
@@ -93,14 +93,14 @@ pub fn readings(
 
 /// State and covariance after the last sample, and the time of a step.
 #[derive(Debug, Serialize)]
-pub struct Results {
+pub(crate) struct Results {
     x: Vec<f64>,
     covariance: Vec<Vec<f64>>,
     time: Timing,
 }
 
 /// The filter over the record.
-pub fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
+pub(crate) fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
     let process = Process::new(inputs);
     let start = vec![0.0; process.states()];
     let prior = UdFactors::from_covariance(&super::linear::matrix(&inputs.prior))?;

@@ -18,7 +18,7 @@ const WINDOWS: u64 = 20;
 
 /// The linear problem and its windows.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     linear: linear::Inputs,
     /// Samples in a window.
     samples: usize,
@@ -29,7 +29,7 @@ pub struct Inputs {
 }
 
 /// Scaled matrices and readings.
-pub fn inputs(of: &linear::Inputs) -> anyhow::Result<Inputs> {
+pub(crate) fn inputs(of: &linear::Inputs) -> anyhow::Result<Inputs> {
     let bounded = of.names.iter().position(|name| name.starts_with("leak")).context("no leak rate")?;
     let mass = of.names.iter().position(|name| name == "mass_kg").context("no mass")?;
     let prior = matrix(&of.prior);
@@ -61,7 +61,7 @@ pub fn inputs(of: &linear::Inputs) -> anyhow::Result<Inputs> {
 
 /// Newest state of each window, and the time of a sample once the window is full.
 #[derive(Debug, Serialize)]
-pub struct Results {
+pub(crate) struct Results {
     newest: Vec<Vec<f64>>,
     /// Windows in which the bound pushes.
     active: usize,
@@ -80,7 +80,7 @@ fn estimator(inputs: &Inputs) -> anyhow::Result<MovingHorizon<Process>> {
 }
 
 /// Solves the windows, then times a long record.
-pub fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
+pub(crate) fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
     let fresh = estimator(inputs)?;
     let dt_s = inputs.linear.interval_s;
     let solve = |window: &Vec<Vec<f64>>| {

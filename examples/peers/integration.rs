@@ -34,7 +34,7 @@ const CELLS: (usize, usize, usize) = (10, 3, 3);
 
 /// A conductance between two wall cells, W/K.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Link {
+pub(crate) struct Link {
     a: usize,
     b: usize,
     conductance_w_k: f64,
@@ -42,7 +42,7 @@ pub struct Link {
 
 /// A face of the wall: its cell, its area and the conductance of the half cell behind it.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Face {
+pub(crate) struct Face {
     cell: usize,
     area_m2: f64,
     conductance_w_k: f64,
@@ -50,7 +50,7 @@ pub struct Face {
 
 /// A state with its derivative.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Specimen {
+pub(crate) struct Specimen {
     wall_k: Vec<f64>,
     energy_j: f64,
     gas_k: f64,
@@ -61,7 +61,7 @@ pub struct Specimen {
 
 /// The system of equations.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     name: String,
     capacity_j_k: Vec<f64>,
     links: Vec<Link>,
@@ -91,7 +91,7 @@ pub struct Inputs {
 }
 
 /// The two systems.
-pub fn inputs() -> anyhow::Result<Vec<Inputs>> {
+pub(crate) fn inputs() -> anyhow::Result<Vec<Inputs>> {
     let (systems, scenario) = systems()?;
     systems.iter().map(|(name, vessel)| system(name, vessel, &scenario)).collect()
 }
@@ -225,7 +225,7 @@ fn specimens(
 
 /// A run at one tolerance.
 #[derive(Debug, Serialize)]
-pub struct Run {
+pub(crate) struct Run {
     tolerance: f64,
     time: Timing,
     steps: usize,
@@ -238,7 +238,7 @@ pub struct Run {
 
 /// One system.
 #[derive(Debug, Serialize)]
-pub struct Results {
+pub(crate) struct Results {
     name: String,
     states: usize,
     /// Time of one right-hand side.
@@ -251,7 +251,7 @@ pub struct Results {
 }
 
 /// Both systems at every tolerance.
-pub fn run(stopwatch: &Stopwatch) -> anyhow::Result<Vec<Results>> {
+pub(crate) fn run(stopwatch: &Stopwatch) -> anyhow::Result<Vec<Results>> {
     let (systems, scenario) = systems()?;
     systems.iter().map(|(name, vessel)| results(name, vessel, &scenario, stopwatch)).collect()
 }

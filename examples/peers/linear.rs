@@ -8,7 +8,7 @@ use std::convert::Infallible;
 ///
 /// The first rows of `F` are `phi`, the others those of the identity; rows of matrices are lists.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     /// Names of the states.
     pub names: Vec<String>,
     /// Time between samples, s.
@@ -30,19 +30,19 @@ pub struct Inputs {
 }
 
 /// Rows of a matrix.
-pub fn rows(of: &DMatrix<f64>) -> Vec<Vec<f64>> {
+pub(crate) fn rows(of: &DMatrix<f64>) -> Vec<Vec<f64>> {
     of.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 /// Matrix of rows.
-pub fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
+pub(crate) fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
     let columns = rows.first().map_or(0, Vec::len);
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
 
 /// The process of the inputs.
 #[derive(Clone, Debug)]
-pub struct Process {
+pub(crate) struct Process {
     linear: Linearisation,
     h: Vec<Vec<f64>>,
     r: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct Process {
 
 impl Process {
     /// Of the inputs' matrices.
-    pub fn new(inputs: &Inputs) -> Self {
+    pub(crate) fn new(inputs: &Inputs) -> Self {
         let (phi, g) = (matrix(&inputs.phi), matrix(&inputs.g));
         Self {
             moved: vec![0.0; phi.nrows()],
@@ -62,12 +62,12 @@ impl Process {
     }
 
     /// Standard deviations of the noise sources.
-    pub fn noise_sd(&self) -> Vec<f64> {
+    pub(crate) fn noise_sd(&self) -> Vec<f64> {
         self.linear.q.iter().map(|q| q.sqrt()).collect()
     }
 
     /// Add `G w` to the leading states.
-    pub fn disturb(&self, x: &mut [f64], w: &[f64]) {
+    pub(crate) fn disturb(&self, x: &mut [f64], w: &[f64]) {
         for (column, w) in self.linear.g.column_iter().zip(w) {
             x.iter_mut().zip(column.iter()).for_each(|(x, g)| *x += g * w);
         }

@@ -19,16 +19,16 @@ use anyhow::{Context, bail};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, to_value};
 use std::time::Duration;
-pub use stopwatch::Stopwatch;
+pub(crate) use stopwatch::Stopwatch;
 
 /// Cases, in the order in which they are described.
-pub const CASES: [&str; 5] = ["vessels", "properties", "integration", "filter", "horizon"];
+pub(crate) const CASES: [&str; 5] = ["vessels", "properties", "integration", "filter", "horizon"];
 /// Time spent on each timing, s.
 const BUDGET: Duration = Duration::from_millis(400);
 
 /// What both sides read.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     vessels: vessels::Inputs,
     properties: properties::Inputs,
     integration: Vec<integration::Inputs>,
@@ -37,7 +37,7 @@ pub struct Inputs {
 }
 
 /// Makes the inputs.
-pub fn inputs() -> anyhow::Result<Inputs> {
+pub(crate) fn inputs() -> anyhow::Result<Inputs> {
     let filter = filter::inputs()?;
     Ok(Inputs {
         vessels: vessels::Inputs::new(),
@@ -49,7 +49,7 @@ pub fn inputs() -> anyhow::Result<Inputs> {
 }
 
 /// Runs one case.
-pub fn run(case: &str, inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Value> {
+pub(crate) fn run(case: &str, inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Value> {
     Ok(match case {
         "vessels" => to_value(vessels::run(stopwatch)?)?,
         "properties" => to_value(properties::run(&inputs.properties, stopwatch)?)?,

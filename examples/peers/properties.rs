@@ -12,7 +12,7 @@ const PRESSURES_BAR: [f64; 15] =
 
 /// States: temperature, K, pressure, Pa, and the density there, kg/m³.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     temperature_k: Vec<f64>,
     pressure_pa: Vec<f64>,
     density_kg_m3: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct Inputs {
 
 /// Properties at the states, and the time of one state.
 #[derive(Debug, Serialize)]
-pub struct Results {
+pub(crate) struct Results {
     /// `p(T, rho)` at the densities of the inputs.
     pressure_pa: Vec<f64>,
     /// The others are at temperature and pressure.
@@ -35,7 +35,7 @@ pub struct Results {
 }
 
 /// The grid.
-pub fn inputs() -> anyhow::Result<Inputs> {
+pub(crate) fn inputs() -> anyhow::Result<Inputs> {
     let fluid = Fluid::named("nitrogen")?;
     let grid = TEMPERATURES_K.step_by(STEP_K).flat_map(|t| PRESSURES_BAR.map(|p| (f64::from(t), 1e5 * p)));
     let (temperature_k, pressure_pa): (Vec<f64>, Vec<f64>) = grid.unzip();
@@ -53,7 +53,7 @@ fn all(fluid: &Fluid, p: f64, t: f64) -> [f64; 5] {
 }
 
 /// Evaluates the grid.
-pub fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
+pub(crate) fn run(inputs: &Inputs, stopwatch: &Stopwatch) -> anyhow::Result<Results> {
     let fluid = Fluid::named("nitrogen")?;
     let states = || inputs.pressure_pa.iter().copied().zip(inputs.temperature_k.iter().copied());
     let dense = || inputs.density_kg_m3.iter().copied().zip(inputs.temperature_k.iter().copied());

@@ -10,13 +10,13 @@ const REPETITIONS: usize = 5;
 
 /// How long to measure.
 #[derive(Clone, Copy, Debug)]
-pub struct Stopwatch {
+pub(crate) struct Stopwatch {
     budget: Duration,
 }
 
 /// Times of one call, s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Timing {
+pub(crate) struct Timing {
     /// Shortest batch: what the machine can do when nobody disturbs it.
     pub minimum_s: f64,
     /// Quartiles of the batches.
@@ -31,12 +31,12 @@ pub struct Timing {
 
 impl Stopwatch {
     /// Spend about `budget` on each timing; zero runs everything once or a few times.
-    pub fn new(budget: Duration) -> Self {
+    pub(crate) fn new(budget: Duration) -> Self {
         Self { budget }
     }
 
     /// Time of one call of `run`, which stands for `parts` equal parts: the time of a part.
-    pub fn time<T>(&self, parts: usize, mut run: impl FnMut() -> T) -> Timing {
+    pub(crate) fn time<T>(&self, parts: usize, mut run: impl FnMut() -> T) -> Timing {
         let mut timed = |calls: usize| {
             let start = Instant::now();
             (0..calls).for_each(|_| drop(black_box(run())));

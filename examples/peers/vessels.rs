@@ -22,14 +22,14 @@ const BOTTLE_AIR_K: f64 = 308.15;
 
 /// A measured curve: times, s, and values.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Points {
+pub(crate) struct Points {
     time_s: Vec<f64>,
     value: Vec<f64>,
 }
 
 /// The measured points that both sides are scored at, and when the runs end.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     gas_middle_k: Points,
     wall_high_k: Points,
     pressure_bar: Points,
@@ -40,7 +40,7 @@ pub struct Inputs {
 
 impl Inputs {
     /// The record of run I1.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let points = |curve: &Curve| Points { time_s: curve.time_s.clone(), value: curve.value.clone() };
         let measured = Measured::embedded();
         Self {
@@ -56,7 +56,7 @@ impl Inputs {
 
 /// One way to compute run I1.
 #[derive(Debug, Serialize)]
-pub struct Blowdown {
+pub(crate) struct Blowdown {
     name: &'static str,
     discharge_coefficient: f64,
     wall_cells: usize,
@@ -73,7 +73,7 @@ pub struct Blowdown {
 
 /// The closed bottle at one tolerance.
 #[derive(Debug, Serialize)]
-pub struct Bottle {
+pub(crate) struct Bottle {
     tolerance: f64,
     time: Timing,
     steps: usize,
@@ -87,7 +87,7 @@ pub struct Bottle {
 
 /// Everything of this case.
 #[derive(Debug, Serialize)]
-pub struct Results {
+pub(crate) struct Results {
     blowdown: Vec<Blowdown>,
     stratified_high_rms_k: f64,
     stratified_low_rms_k: f64,
@@ -96,7 +96,7 @@ pub struct Results {
 }
 
 /// Runs both vessels.
-pub fn run(stopwatch: &Stopwatch) -> anyhow::Result<Results> {
+pub(crate) fn run(stopwatch: &Stopwatch) -> anyhow::Result<Results> {
     let settings = SimulationSettings::default();
     let study = blowdown::study(&settings, &mut |_| ())?;
     let (vessel, scenario) = i1()?;

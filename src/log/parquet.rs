@@ -67,7 +67,7 @@ enum Batch {
 
 impl ParquetSource {
     /// Reads the schema and finds the columns.
-    pub fn open(
+    pub(super) fn open(
         input: File,
         file: &str,
         options: &LogOptions,
@@ -107,7 +107,7 @@ impl ParquetSource {
     }
 
     /// Reads the next row that has a time; `false` at the end.
-    pub fn next(&mut self, row: &mut RawRow, cautions: &mut Cautions) -> Result<bool, LogError> {
+    pub(super) fn next(&mut self, row: &mut RawRow, cautions: &mut Cautions) -> Result<bool, LogError> {
         loop {
             if self.at == self.length && !self.fetch()? {
                 return Ok(false);
@@ -134,16 +134,16 @@ impl ParquetSource {
     }
 
     /// Date of second 0, if the log has dates.
-    pub fn origin(&self) -> Option<jiff::Timestamp> {
+    pub(super) fn origin(&self) -> Option<jiff::Timestamp> {
         self.time.origin()
     }
 
-    pub fn place(&self, number: u64) -> String {
+    pub(super) fn place(&self, number: u64) -> String {
         place(&self.file, number)
     }
 
     /// Share of the rows that has been read.
-    pub fn fraction(&self) -> f64 {
+    pub(super) fn fraction(&self) -> f64 {
         let rows = self.reader.metadata().file_metadata().num_rows().max(1);
         (self.rows_before + self.at as u64) as f64 / rows as f64
     }

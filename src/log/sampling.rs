@@ -74,7 +74,7 @@ impl Sampling {
     }
 
     /// Times of the first and the last row, s; NaN without rows.
-    pub fn span_s(&self) -> (f64, f64) {
+    pub(crate) fn span_s(&self) -> (f64, f64) {
         (self.first_s, self.last_s)
     }
 

@@ -50,18 +50,18 @@ pub struct Report {
 
 impl Report {
     /// Nothing but a title.
-    pub fn new(title: impl Into<String>) -> Self {
+    pub(crate) fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), blocks: Vec::new() }
     }
 
     /// With a heading.
-    pub fn heading(mut self, words: impl Into<String>) -> Self {
+    pub(crate) fn heading(mut self, words: impl Into<String>) -> Self {
         self.blocks.push(Block::Heading(words.into()));
         self
     }
 
     /// With a paragraph; an empty one is left out.
-    pub fn text(mut self, words: impl Into<String>) -> Self {
+    pub(crate) fn text(mut self, words: impl Into<String>) -> Self {
         let words = words.into();
         if !words.is_empty() {
             self.blocks.push(Block::Text(words));
@@ -70,7 +70,7 @@ impl Report {
     }
 
     /// With an explanation of the table above; an empty one is left out.
-    pub fn remark(mut self, words: impl Into<String>) -> Self {
+    pub(crate) fn remark(mut self, words: impl Into<String>) -> Self {
         let words = words.into();
         if !words.is_empty() {
             self.blocks.push(Block::Remark(words));
@@ -79,19 +79,19 @@ impl Report {
     }
 
     /// With cautions.
-    pub fn cautions(mut self, words: impl IntoIterator<Item = String>) -> Self {
+    pub(crate) fn cautions(mut self, words: impl IntoIterator<Item = String>) -> Self {
         self.blocks.extend(words.into_iter().map(Block::Caution));
         self
     }
 
     /// With facts.
-    pub fn facts<N: Into<String>>(mut self, facts: impl IntoIterator<Item = (N, String)>) -> Self {
+    pub(crate) fn facts<N: Into<String>>(mut self, facts: impl IntoIterator<Item = (N, String)>) -> Self {
         self.blocks.push(Block::Facts(facts.into_iter().map(|(name, value)| (name.into(), value)).collect()));
         self
     }
 
     /// With a table; one without rows is left out.
-    pub fn table(mut self, caption: impl Into<String>, table: Table) -> Self {
+    pub(crate) fn table(mut self, caption: impl Into<String>, table: Table) -> Self {
         if table.rows() > 0 {
             self.blocks.push(Block::Table { caption: caption.into(), table });
         }
@@ -99,7 +99,7 @@ impl Report {
     }
 
     /// With a table of texts; one without rows is left out.
-    pub fn rows<H: AsRef<str>>(
+    pub(crate) fn rows<H: AsRef<str>>(
         self,
         caption: impl Into<String>,
         header: &[H],
@@ -123,19 +123,19 @@ impl Report {
     }
 
     /// With a picture.
-    pub fn picture(mut self, picture: impl Into<Picture>, caption: impl Into<String>) -> Self {
+    pub(crate) fn picture(mut self, picture: impl Into<Picture>, caption: impl Into<String>) -> Self {
         self.blocks.push(Block::Picture { picture: picture.into(), caption: caption.into() });
         self
     }
 
     /// With a text as it was read.
-    pub fn source(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn source(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.blocks.push(Block::Source { name: name.into(), text: text.into() });
         self
     }
 
     /// With all of another one, its title left out.
-    pub fn then(mut self, other: Self) -> Self {
+    pub(crate) fn then(mut self, other: Self) -> Self {
         self.blocks.extend(other.blocks);
         self
     }

@@ -43,12 +43,12 @@ pub struct Fingerprint(Sha256);
 
 impl Fingerprint {
     /// Takes in a piece.
-    pub fn update(&mut self, piece: &[u8]) {
+    pub(crate) fn update(&mut self, piece: &[u8]) {
         self.0.update(piece);
     }
 
     /// The record of the input that the pieces make.
-    pub fn input(&self, name: impl Into<String>) -> Input {
+    pub(crate) fn input(&self, name: impl Into<String>) -> Input {
         let sha256 = self.0.clone().finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Input { name: name.into(), sha256 }
     }
@@ -56,7 +56,7 @@ impl Fingerprint {
 
 impl Provenance {
     /// Version of the program.
-    pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+    pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
     /// As comment lines for the top of a CSV file, each with its line feed.
     pub(crate) fn comment_lines(&self) -> String {

@@ -21,7 +21,7 @@ impl Readings {
     ///
     /// # Errors
     /// The run has no samples.
-    pub fn sampled(run: &Trajectory, seed: u64) -> Result<Self, EstimatorError> {
+    pub(crate) fn sampled(run: &Trajectory, seed: u64) -> Result<Self, EstimatorError> {
         let (suite, left_out) = SensorSuite::from(&run.scenario).split_by_fit(&run.vessel);
         Self::of(run, suite.draw(seed), left_out, seed)
     }

@@ -37,7 +37,7 @@ pub struct Score {
 
 impl Score {
     /// Of pairs (model, measurement).
-    pub fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Self {
+    pub(crate) fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Self {
         let (count, sum, squares) = pairs.fold((0.0, 0.0, 0.0), |(n, sum, squares), (model, measured)| {
             let e: f64 = model - measured;
             (n + 1.0, sum + e, squares + e * e)

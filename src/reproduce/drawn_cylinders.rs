@@ -49,7 +49,7 @@ const TITLES: [&str; 4] = [
 
 /// A number over several cylinders.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub(crate) struct Spread {
     /// Root of the mean square, or the mean.
     pub value: f64,
     /// The least of a cylinder.
@@ -76,7 +76,7 @@ impl Spread {
 
 /// A drawn cylinder in a scenario with the results of all methods.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub(crate) struct Drawn {
     /// What really happened, and what was read.
     pub run: ChamberRun,
     /// Results of the methods.
@@ -85,7 +85,7 @@ pub struct Drawn {
 
 impl Drawn {
     /// Error of the mean gas temperature, K, of one of [`METHODS`](super::methods::METHODS).
-    pub fn gas_error_k(&self, method: usize) -> Vec<f64> {
+    pub(crate) fn gas_error_k(&self, method: usize) -> Vec<f64> {
         let truth = self.run.trajectory.gas_mean_k.iter().map(|k| k - ZERO_CELSIUS_K);
         self.method_run.gas_degc[method].iter().zip(truth).map(|(said, truth)| said - truth).collect()
     }
@@ -105,7 +105,7 @@ impl Drawn {
 
 /// A scenario on all drawn cylinders.
 #[derive(Clone, Debug)]
-pub struct ScenarioScore {
+pub(crate) struct ScenarioScore {
     /// Its number and title.
     pub title: String,
     /// Root mean square error of the gas temperature from the change of the air on, K, of each of [`METHODS`](super::methods::METHODS).
@@ -124,7 +124,7 @@ pub struct ScenarioScore {
 
 /// A leak after a tunnel on all drawn cylinders.
 #[derive(Clone, Debug)]
-pub struct LeakScore {
+pub(crate) struct LeakScore {
     /// The leak, g/h.
     pub leak_g_h: f64,
     /// The same at 15 °C, bar/h.
@@ -149,7 +149,7 @@ pub struct LeakScore {
 
 /// How it is done.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub(super) struct Settings {
     /// Cylinders of each case.
     pub cylinders: u64,
     /// Seed of the first.
@@ -192,7 +192,7 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
+    pub(super) fn scenario(&self, number: usize, slope_bar_k: f64) -> Result<ScenarioScore, ReproduceError> {
         let (chamber, title) = (Chamber::SCENARIOS[number], TITLES[number]);
         let all = self.all(chamber, None, self.seeds())?;
         let over = |value: &dyn Fn(&Drawn) -> f64| Spread::pooled(&all.iter().map(value).collect::<Vec<_>>());
@@ -215,7 +215,7 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
+    pub(super) fn tight(&self) -> Result<Vec<Drawn>, ReproduceError> {
         let seeds = self.seeds();
         self.all(Chamber::TUNNEL, None, seeds.start + TRAINING..seeds.end + TRAINING)
     }
@@ -224,7 +224,7 @@ impl Settings {
     ///
     /// # Errors
     /// A simulation's or a method's.
-    pub fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
+    pub(super) fn leak(&self, number: usize, tight: &[Drawn]) -> Result<LeakScore, ReproduceError> {
         let leak_g_h = LEAKS_G_H[number];
         let onset_s = Chamber::TUNNEL.change_s() + ONSET_AFTER_S;
         let leak = SteadyLeak { rate_kg_s: leak_g_h * GRAM_PER_HOUR, onset_s };

@@ -62,7 +62,7 @@ impl Curve {
     }
 
     /// Value at a time, linear between points and constant beyond them.
-    pub fn at(&self, time_s: f64) -> f64 {
+    pub(crate) fn at(&self, time_s: f64) -> f64 {
         interpolated(&self.time_s, &self.value, time_s)
     }
 }

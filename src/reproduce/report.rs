@@ -86,7 +86,7 @@ impl Reproduction {
     }
 
     /// Everything in the order of the paper.
-    pub fn report(&self) -> Report {
+    pub(crate) fn report(&self) -> Report {
         self.report_with(&self.pictures())
     }
 
@@ -175,7 +175,7 @@ impl Reproduction {
     }
 
     /// What a terminal shows: the numbers that compare.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut report = Report::new("");
         report = self.table_1(report);
         report = self.figure_8(report);

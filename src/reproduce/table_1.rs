@@ -118,7 +118,7 @@ impl Record {
     }
 
     /// The same with readings that are off by a constant, K.
-    pub fn with_offset(mut self, offset_k: f64) -> Self {
+    pub(crate) fn with_offset(mut self, offset_k: f64) -> Self {
         self.shoulder.iter_mut().chain(&mut self.valve).for_each(|reading| *reading += offset_k);
         self
     }
@@ -131,22 +131,17 @@ impl Record {
     }
 
     /// Times, s.
-    pub fn time_s(&self) -> &[f64] {
+    pub(crate) fn time_s(&self) -> &[f64] {
         &self.time_s
     }
 
     /// The shoulder as read, °C.
-    pub fn shoulder_degc(&self) -> &[f64] {
+    pub(crate) fn shoulder_degc(&self) -> &[f64] {
         &self.shoulder
     }
 
-    /// The valve as read, °C.
-    pub fn valve_degc(&self) -> &[f64] {
-        &self.valve
-    }
-
     /// Mean gas temperature, °C.
-    pub fn gas_degc(&self) -> &[f64] {
+    pub(crate) fn gas_degc(&self) -> &[f64] {
         &self.gas
     }
 
@@ -154,7 +149,11 @@ impl Record {
     ///
     /// # Errors
     /// As [`Model::compare_from`].
-    pub fn compared(&self, model: &Model, initial: &InitialState) -> Result<Comparison, IdentifyError> {
+    pub(crate) fn compared(
+        &self,
+        model: &Model,
+        initial: &InitialState,
+    ) -> Result<Comparison, IdentifyError> {
         model.compare_from(&self.data(Place::Shoulder, Hold::First)?, initial, LAGS)
     }
 
@@ -162,7 +161,7 @@ impl Record {
     ///
     /// # Errors
     /// There are too few samples.
-    pub fn data(&self, place: Place, hold: Hold) -> Result<Data, IdentifyError> {
+    pub(crate) fn data(&self, place: Place, hold: Hold) -> Result<Data, IdentifyError> {
         let input = match place {
             Place::Shoulder => &self.shoulder,
             Place::Valve => &self.valve,

@@ -6,14 +6,14 @@ use std::sync::OnceLock;
 use tempfile::TempDir;
 
 /// The program with arguments, in a folder.
-pub fn program(folder: &Path, arguments: &[&str]) -> Command {
+pub(crate) fn program(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cylwatch"));
     command.current_dir(folder).args(arguments).stdin(Stdio::null()).env_remove("NO_COLOR");
     command
 }
 
 /// What the program did.
-pub struct Outcome {
+pub(crate) struct Outcome {
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
@@ -27,13 +27,13 @@ impl From<Output> for Outcome {
 }
 
 /// Runs the program in a folder.
-pub fn run(folder: &Path, arguments: &[&str]) -> Outcome {
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Outcome {
     program(folder, arguments).output().unwrap().into()
 }
 
 /// The paper rebuilt by the program with one cylinder of each case and seed 3, once for all tests: the folder, with `made/here` and
 /// `reproduce.html` in it, and what the program said.
-pub fn reproduced() -> &'static (TempDir, Outcome) {
+pub(crate) fn reproduced() -> &'static (TempDir, Outcome) {
     static REPRODUCED: OnceLock<(TempDir, Outcome)> = OnceLock::new();
     REPRODUCED.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
@@ -44,7 +44,7 @@ pub fn reproduced() -> &'static (TempDir, Outcome) {
 }
 
 /// Runs the program with a text on stdin.
-pub fn run_with_stdin(folder: &Path, arguments: &[&str], text: &str) -> Outcome {
+pub(crate) fn run_with_stdin(folder: &Path, arguments: &[&str], text: &str) -> Outcome {
     let mut command = program(folder, arguments);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
@@ -56,12 +56,12 @@ pub fn run_with_stdin(folder: &Path, arguments: &[&str], text: &str) -> Outcome 
 }
 
 /// Runs the program, which must refuse with exit code 2, one message that names all of `words`, and no data.
-pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
+pub(crate) fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
     refusal(run(folder, arguments), words);
 }
 
 /// Asserts a refusal.
-pub fn refusal(outcome: Outcome, words: &[&str]) {
+pub(crate) fn refusal(outcome: Outcome, words: &[&str]) {
     assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
     assert_eq!(outcome.stdout, "");
     assert!(!outcome.stderr.contains("panicked"), "{}", outcome.stderr);
@@ -71,7 +71,7 @@ pub fn refusal(outcome: Outcome, words: &[&str]) {
 }
 
 /// Names of the files in a folder.
-pub fn files(folder: &Path) -> Vec<String> {
+pub(crate) fn files(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -81,21 +81,21 @@ pub fn files(folder: &Path) -> Vec<String> {
 }
 
 /// Lines of a CSV text below its comments: header and rows.
-pub fn rows(csv: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+pub(crate) fn rows(csv: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
     let mut lines = csv.lines().filter(|line| !line.starts_with('#'));
     let header = lines.next().unwrap().split(',').collect();
     (header, lines.map(|line| line.split(',').collect()).collect())
 }
 
 /// A column of a CSV text as numbers.
-pub fn column(csv: &str, name: &str) -> Vec<f64> {
+pub(crate) fn column(csv: &str, name: &str) -> Vec<f64> {
     let (header, rows) = rows(csv);
     let index = header.iter().position(|found| *found == name).unwrap_or_else(|| panic!("no column {name}"));
     rows.iter().map(|row| row[index].parse().unwrap()).collect()
 }
 
 /// A plan of the judge that a test can afford: two detectors, five cylinders for the threshold and two that judge, a day each.
-pub const TINY_PLAN: &str = r#"
+pub(crate) const TINY_PLAN: &str = r#"
 title = "A tiny plan"
 between_false_alarms_y = 0.1
 tune = ["*/workshop/*/*/*"]

@@ -24,7 +24,6 @@
 //! # Ok(())
 //! # }
 //! ```
-#![warn(unreachable_pub)]
 pub mod error;
 pub mod evidence;
 pub mod monitor;

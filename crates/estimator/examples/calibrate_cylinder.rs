@@ -31,7 +31,7 @@ const SEED: u64 = 1;
 const COUPLING: f64 = 0.1;
 
 /// A number that the file has wrong.
-pub struct Wrong {
+pub(crate) struct Wrong {
     /// What it is.
     pub kind: ParameterKind,
     /// Where the search begins: what the file or the data sheet says.
@@ -41,7 +41,7 @@ pub struct Wrong {
 }
 
 /// Five factors of the vessel, and the shoulder's coupling.
-pub fn wrong() -> [Wrong; 6] {
+pub(crate) fn wrong() -> [Wrong; 6] {
     let coupling = ParameterKind::SensorCoupling { sensor: "shoulder".into() };
     let of = |kind, stated: f64, factor: f64| Wrong { kind, stated, truth: stated * factor };
     [
@@ -55,7 +55,7 @@ pub fn wrong() -> [Wrong; 6] {
 }
 
 /// The cylinder as it is.
-pub fn cylinder() -> Result<Vessel, Box<dyn Error>> {
+pub(crate) fn cylinder() -> Result<Vessel, Box<dyn Error>> {
     let mut vessel = vessel::presets::load(VESSEL)?;
     let [outside, inside, wall, valve_capacity, contact, _] = wrong().map(|one| one.truth);
     vessel.surface.film_factor *= outside;
@@ -86,7 +86,7 @@ fn log(scenario: &Scenario, sensors: &[Sensor]) -> Result<Log, Box<dyn Error>> {
 }
 
 /// Fits the six numbers, and beside them what the data sheets leave open.
-pub fn calibrated() -> Result<Calibrated, Box<dyn Error>> {
+pub(crate) fn calibrated() -> Result<Calibrated, Box<dyn Error>> {
     let mut scenario = scenario::presets::load(RECORDED)?;
     scenario.sample_time_s = INTERVAL_S;
     let sensors: Vec<Sensor> =
@@ -111,7 +111,7 @@ pub fn calibrated() -> Result<Calibrated, Box<dyn Error>> {
 }
 
 /// Root mean square errors of the mean gas temperature in the next scenario, K: with the file, and with what was fitted.
-pub fn prediction(calibrated: &Calibrated) -> Result<[f64; 2], Box<dyn Error>> {
+pub(crate) fn prediction(calibrated: &Calibrated) -> Result<[f64; 2], Box<dyn Error>> {
     let next = scenario::presets::load(NEXT)?;
     let gas_k = |vessel: &Vessel| -> Result<Vec<f64>, Box<dyn Error>> {
         Ok(simulate(vessel, &next, &SimulationSettings::default(), &mut |_| ())?.gas_mean_k)

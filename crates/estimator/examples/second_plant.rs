@@ -24,13 +24,13 @@ const SD: [f64; 5] = [0.5, 0.7, 1.0, 0.2, 0.003];
 const NOISE: [f64; 4] = [0.5, 0.02, 1e-4, 1e-3];
 /// Of thermometer, K, and gauge, m.
 const READING_SD: [f64; 2] = [0.2, 0.002];
-pub const SAMPLE_S: f64 = 60.0;
+pub(crate) const SAMPLE_S: f64 = 60.0;
 const TIMES: [usize; 4] = [60, 180, 330, 480];
 
 type Linear<'a> = Option<&'a mut Linearisation>;
 /// The tank with the part of the leak's noise that a member supposes: 0 of a tight one.
 #[derive(Clone, Debug, Default)]
-pub struct Tank(f64);
+pub(crate) struct Tank(f64);
 
 impl StateSpace for Tank {
     type Error = Infallible;
@@ -87,7 +87,7 @@ impl Plant for Tank {
 }
 
 /// A bank of a tight member and a leaking one.
-pub fn bank(tank: &mut Tank, engine: &BankEngine) -> Bank<Tank> {
+pub(crate) fn bank(tank: &mut Tank, engine: &BankEngine) -> Bank<Tank> {
     let prior = DMatrix::from_fn(5, 5, |i, j| if i == j { SD[i] * SD[i] } else { 0.0 });
     let members = vec![(0.0, prior.clone()), (1.0, prior)];
     let mut bank = Bank::new(tank, engine, &MEAN, members).expect("a covariance");
@@ -96,7 +96,7 @@ pub fn bank(tank: &mut Tank, engine: &BankEngine) -> Bank<Tank> {
 }
 
 /// True states and readings of a drawn tank with a leak so many times as large.
-pub fn truth(seed: u64, leak: f64) -> Vec<([f64; 5], [f64; 2])> {
+pub(crate) fn truth(seed: u64, leak: f64) -> Vec<([f64; 5], [f64; 2])> {
     let (mut tank, mut x, mut rng) = (Tank::default(), MEAN, ChaCha8Rng::seed_from_u64(seed));
     let mut normal = move || rng.sample::<f64, _>(StandardNormal);
     x.iter_mut().zip(SD).for_each(|(x, sd)| *x += sd * normal());
@@ -114,7 +114,11 @@ pub fn truth(seed: u64, leak: f64) -> Vec<([f64; 5], [f64; 2])> {
 }
 
 /// Errors of the leaking member, filtered and smoothed; readings refused; whether the tight member is excluded at the end.
-pub fn watch(seed: u64, leak: f64, nees: &mut [EnsembleNees; 2]) -> Result<(usize, bool), EstimatorError> {
+pub(crate) fn watch(
+    seed: u64,
+    leak: f64,
+    nees: &mut [EnsembleNees; 2],
+) -> Result<(usize, bool), EstimatorError> {
     let (mut tank, truth, mut refused) = (Tank::default(), truth(seed, leak), 0);
     let (mut bank, mut work) = (bank(&mut tank, &BankEngine::Extended), Workspace::new(&tank));
     let mut records = vec![bank.record(1, &tank)];
@@ -134,7 +138,7 @@ pub fn watch(seed: u64, leak: f64, nees: &mut [EnsembleNees; 2]) -> Result<(usiz
     Ok((refused, Belief::of(bank.moments(0, 2), bank.moments(1, 2)).is_excluded()))
 }
 
-pub fn ensembles() -> [EnsembleNees; 2] {
+pub(crate) fn ensembles() -> [EnsembleNees; 2] {
     [0, 1].map(|_| EnsembleNees::new(&TIMES.map(|k| SAMPLE_S * k as f64), 5))
 }
 

@@ -31,7 +31,6 @@
 //! # Ok(())
 //! # }
 //! ```
-#![warn(unreachable_pub)]
 #[cfg(feature = "design")]
 pub mod bound;
 #[cfg(feature = "design")]

@@ -12,7 +12,6 @@
 //! | [`noise`] | noise of a series without a leak, and the shortest delay in it |
 //! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
-#![warn(unreachable_pub)]
 pub mod baseline;
 pub mod error;
 pub mod fault;

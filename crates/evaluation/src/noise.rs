@@ -53,7 +53,7 @@ pub struct Noise {
 impl Noise {
     /// The noise about the mean of a series. `None` if there are fewer than 50 values, one is not finite, times do not increase, or the
     /// values do not vary.
-    pub fn fit(series: &[Residual]) -> Option<Self> {
+    pub(crate) fn fit(series: &[Residual]) -> Option<Self> {
         if !is_series(series) {
             return None;
         }
@@ -78,7 +78,7 @@ impl Noise {
 
     /// Smallest mean delay, s, at which any detector finds a loss of `rate`, per second in the unit of the series, with
     /// `between_alarms_s` between false alarms, fed every `interval_s`.
-    pub fn shortest_delay_s(self, rate: f64, interval_s: f64, between_alarms_s: f64) -> f64 {
+    pub(crate) fn shortest_delay_s(self, rate: f64, interval_s: f64, between_alarms_s: f64) -> f64 {
         let (variance, tau_s) = (self.sd * self.sd, self.correlation_time_s);
         let renewal_s = interval_s.max(2.0 * tau_s);
         let needed = (between_alarms_s / renewal_s).ln().max(0.0);

@@ -114,7 +114,7 @@ fn weather(random: &mut Random) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// The whole table as CSV.
-pub fn table() -> String {
+pub(crate) fn table() -> String {
     let mut random = Random(SEED);
     let (air_degc, irradiance_w_m2) = weather(&mut random);
     let (trips, tunnels) = (trips(&mut random), tunnels(&mut random));

@@ -304,7 +304,8 @@ pub enum ThermalError {
 
 impl ThermalError {
     /// The same error with the time of the run at which it happened.
-    pub fn at_time(self, time_s: f64) -> Self {
+    #[cfg(feature = "simulate")]
+    pub(crate) fn at_time(self, time_s: f64) -> Self {
         match self {
             Self::AtTime { .. } => self,
             cause => Self::AtTime { time_s, cause: Box::new(cause) },

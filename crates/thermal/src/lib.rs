@@ -30,7 +30,6 @@
 //! # Ok(())
 //! # }
 //! ```
-#![warn(unreachable_pub)]
 #[cfg(feature = "files")]
 pub mod document;
 pub mod error;

@@ -22,7 +22,7 @@ impl Figure {
 
 impl Picture {
     /// The picture in words.
-    pub fn described(&self) -> String {
+    pub(crate) fn described(&self) -> String {
         let of = |part: &Part| match part {
             Part::Figure(figure) => figure.described(),
             Part::Elevation(elevation) => elevation.described(),

@@ -179,7 +179,7 @@ impl Panel {
 
 impl Item {
     /// Its name; of a strip that of its first stretch.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         match self {
             Self::Line { name, .. }
             | Self::Points { name, .. }

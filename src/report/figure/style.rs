@@ -27,9 +27,9 @@ impl Rgb {
     /// Light grey of the grid.
     pub(crate) const GRID: Self = Self(222, 222, 222);
     /// Fill of a measured band.
-    pub const BAND: Self = Self(205, 222, 236);
+    pub(crate) const BAND: Self = Self(205, 222, 236);
     /// Paper.
-    pub const WHITE: Self = Self(255, 255, 255);
+    pub(crate) const WHITE: Self = Self(255, 255, 255);
 }
 
 /// How a line is drawn. Lengths in figure units (a figure is [`WIDTH`] of them wide).

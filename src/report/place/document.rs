@@ -11,7 +11,7 @@ const DIGITS: Digits = Digits::Significant(8);
 
 impl Placed<'_> {
     /// A row for each judged layout; an empty cell is a leak that is never found.
-    pub fn table(&self) -> Table {
+    pub(crate) fn table(&self) -> Table {
         let judged = &self.study.judged;
         let mut table = Table::new();
         table.push_integers("sensors", judged.iter().map(|one| one.sensors.len()));
@@ -40,7 +40,7 @@ impl Placed<'_> {
     }
 
     /// As CSV, the tables for people as remarks above it.
-    pub fn csv(&self, provenance: &Provenance) -> String {
+    pub(crate) fn csv(&self, provenance: &Provenance) -> String {
         let remarks: Vec<String> =
             self.text().lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
         self.table().to_csv(provenance, &remarks)
@@ -48,7 +48,7 @@ impl Placed<'_> {
 
     /// As JSON: the best layouts by name in units that people think in, then the whole study in SI, sensors by their
     /// index in `candidates`; what is infinite is null.
-    pub fn document(&self, provenance: &Provenance) -> Value {
+    pub(crate) fn document(&self, provenance: &Provenance) -> Value {
         let mut document = Map::new();
         let criterion = self.study.settings.criterion;
         document.insert("provenance".into(), provenance.to_json());

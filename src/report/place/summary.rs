@@ -6,7 +6,7 @@ use crate::thermal::units::ZERO_CELSIUS_K;
 
 impl Placed<'_> {
     /// The settings, then one table after the other.
-    pub fn summary(&self) -> Report {
+    pub(crate) fn summary(&self) -> Report {
         let mut report = Report::new("").text(self.settings_text());
         if self.study.numbers.is_empty() {
             report = report.text("No layout was looked at before the end.");
@@ -29,7 +29,7 @@ impl Placed<'_> {
     }
 
     /// Tables for people, at most 110 characters wide.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         self.summary().to_text()
     }
 

@@ -99,8 +99,6 @@ impl<'a> Cell<'a> {
 pub enum Source<R> {
     /// A number with its precision; NaN is a missing one.
     Number(Digits, fn(&R) -> f64),
-    /// A whole number.
-    Integer(fn(&R) -> Option<i64>),
     /// A text; an empty one is missing.
     Text(fn(&R) -> &str),
 }
@@ -115,50 +113,27 @@ pub struct Field<R> {
 
 impl<R> Field<R> {
     /// A column of numbers.
-    pub const fn number(name: &'static str, digits: Digits, value: fn(&R) -> f64) -> Self {
+    pub(crate) const fn number(name: &'static str, digits: Digits, value: fn(&R) -> f64) -> Self {
         Self { name, source: Source::Number(digits, value) }
     }
 
     /// A column of texts.
-    pub const fn text(name: &'static str, value: fn(&R) -> &str) -> Self {
+    pub(crate) const fn text(name: &'static str, value: fn(&R) -> &str) -> Self {
         Self { name, source: Source::Text(value) }
-    }
-
-    /// A column of whole numbers.
-    pub const fn integer(name: &'static str, value: fn(&R) -> Option<i64>) -> Self {
-        Self { name, source: Source::Integer(value) }
     }
 
     fn cell<'a>(&self, record: &'a R) -> Cell<'a> {
         match self.source {
             Source::Number(digits, value) => Cell::number(value(record), digits),
-            Source::Integer(value) => value(record).map_or(Cell::Missing, Cell::Integer),
             Source::Text(value) => Cell::text(value(record)),
         }
-    }
-
-    fn column<'a>(&self, records: impl Iterator<Item = &'a R>) -> Column
-    where
-        R: 'a,
-    {
-        let values = match self.source {
-            Source::Number(digits, value) => Values::Numbers(digits, records.map(value).collect()),
-            Source::Integer(value) => Values::Integers(records.map(value).collect()),
-            Source::Text(value) => Values::Texts(records.map(|record| value(record).to_owned()).collect()),
-        };
-        Column { name: self.name.to_owned(), unit: "", values }
     }
 }
 
 impl Table {
     /// A table without columns.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::default()
-    }
-
-    /// A row for each record.
-    pub fn of<'a, R: 'a>(fields: &[Field<R>], records: impl Iterator<Item = &'a R> + Clone) -> Self {
-        Self { columns: fields.iter().map(|field| field.column(records.clone())).collect() }
     }
 
     /// A table of texts; a row that is shorter than the others has empty cells at its end.
@@ -176,7 +151,12 @@ impl Table {
     }
 
     /// Adds a column of numbers on the right; NaN is a missing one.
-    pub fn push(&mut self, name: impl Into<String>, digits: Digits, values: impl IntoIterator<Item = f64>) {
+    pub(crate) fn push(
+        &mut self,
+        name: impl Into<String>,
+        digits: Digits,
+        values: impl IntoIterator<Item = f64>,
+    ) {
         self.push_quantity(name, "", digits, values);
     }
 
@@ -208,7 +188,7 @@ impl Table {
     }
 
     /// Number of rows.
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
     }
 
@@ -291,7 +271,9 @@ mod tests {
             Field::text("verdict", |record| record.1),
         ];
         let records = [(4.5, "tight"), (f64::NAN, "")];
-        let table = Table::of(&FIELDS, records.iter());
+        let mut table = Table::new();
+        table.push("mass_kg", Digits::Decimals(3), records.map(|record| record.0));
+        table.push_texts("verdict", records.map(|record| record.1.to_owned()));
         let csv = table.to_csv(&provenance(), &[]);
         let mut rows = Rows::new(FIELDS.into(), RowFormat::Csv);
         let mut streamed = rows.header().to_owned();

@@ -27,17 +27,17 @@ pub struct Rows<R> {
 
 impl<R> Rows<R> {
     /// For records with these columns.
-    pub fn new(fields: Vec<Field<R>>, format: RowFormat) -> Self {
+    pub(crate) fn new(fields: Vec<Field<R>>, format: RowFormat) -> Self {
         let digits = |field: &Field<R>| match field.source {
             Source::Number(digits, _) => digits,
-            Source::Integer(_) | Source::Text(_) => Digits::All,
+            Source::Text(_) => Digits::All,
         };
         let digits = fields.iter().map(digits).collect();
         Self { fields, digits, format, is_first: true, csv: Records::new(), text: String::new() }
     }
 
     /// What stands above the rows: the names of the columns.
-    pub fn header(&mut self) -> &str {
+    pub(crate) fn header(&mut self) -> &str {
         let names: Vec<&str> = self.fields.iter().map(|field| field.name).collect();
         self.text = match self.format {
             RowFormat::Csv => names.join(",") + "\n",
@@ -47,7 +47,7 @@ impl<R> Rows<R> {
     }
 
     /// A record with what separates it from the one before.
-    pub fn row(&mut self, record: &R) -> &str {
+    pub(crate) fn row(&mut self, record: &R) -> &str {
         self.text.clear();
         match self.format {
             RowFormat::Csv => {

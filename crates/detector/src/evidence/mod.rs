@@ -203,17 +203,17 @@ impl Evidence {
     }
 
     /// What the standard deviations of the rates are larger by than if innovations were independent and nothing else were in doubt.
-    pub fn error_sd(&self) -> f64 {
+    pub(crate) fn error_sd(&self) -> f64 {
         self.usual.sd() * self.divisor
     }
 
     /// The statistics after the last sample; 0 before the first and after an exchange of gas.
-    pub fn statistics(&self) -> Statistics {
+    pub(crate) fn statistics(&self) -> Statistics {
         self.statistics
     }
 
     /// Begin anew, as after an exchange of gas.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.statistics = [0.0; Scale::ALL.len()];
     }
 }

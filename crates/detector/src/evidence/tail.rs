@@ -37,7 +37,7 @@ impl Tail {
     ///
     /// # Errors
     /// Names the number, its value and the bound.
-    pub fn validate(&self) -> Result<(), DetectorError> {
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
         positive("tails.level", self.level)?;
         positive("tails.interval_s", self.interval_s)?;
         positive("tails.scale", self.scale)?;
@@ -57,7 +57,7 @@ impl Tail {
 
     /// Mean time between stretches that exceed a value, s: infinite beyond the end of a bounded tail. Below the level, where the law says nothing,
     /// it is continued so that it is 0 where nothing speaks for a leak.
-    pub fn mean_time_s(&self, value: f64) -> f64 {
+    pub(crate) fn mean_time_s(&self, value: f64) -> f64 {
         let excess = (value - self.level) / self.scale;
         if excess < 0.0 {
             return self.interval_s * (value / self.level).max(0.0) * excess.exp();
@@ -92,7 +92,7 @@ impl Tails {
     }
 
     /// Mean time between samples without a leak whose statistics speak for one as much as these, s.
-    pub fn mean_time_s(&self, statistics: &Statistics) -> f64 {
+    pub(crate) fn mean_time_s(&self, statistics: &Statistics) -> f64 {
         let each_s = self.0.iter().zip(statistics).map(|(tail, value)| tail.mean_time_s(*value));
         each_s.fold(0.0, f64::max) / self.0.len() as f64
     }

@@ -24,11 +24,6 @@ impl Contents {
         Self { fluid: vessel.fluid.clone(), volume: vessel.volume }
     }
 
-    /// Of a gas in a volume.
-    pub fn new(fluid: Fluid, volume: InnerVolume) -> Self {
-        Self { fluid, volume }
-    }
-
     /// Mass, kg, at a pressure, Pa, and temperature, K.
     ///
     /// # Errors
@@ -86,7 +81,7 @@ mod tests {
             reference_temperature_k: 288.15,
             reference_pressure_pa: 1e5,
         };
-        Contents::new(Fluid::named("nitrogen").unwrap(), volume)
+        Contents { fluid: Fluid::named("nitrogen").unwrap(), volume }
     }
 
     #[test]
@@ -114,7 +109,7 @@ mod tests {
             pressure_expansion_per_pa: 1.5e-10,
             ..rigid().volume
         };
-        let contents = Contents::new(Fluid::named("nitrogen").unwrap(), volume);
+        let contents = Contents { fluid: Fluid::named("nitrogen").unwrap(), volume };
         for (pressure_pa, kelvin) in [(1e5, 230.0), (160e5, 248.15), (200e5, 288.15), (300e5, 330.0)] {
             let mass_kg = contents.mass_kg(pressure_pa, kelvin).unwrap();
             assert_relative_eq!(

@@ -58,7 +58,7 @@ pub struct Quantiles {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prognosis {
     state: MassAndLeak,
-    limit_kg: f64,
+    pub(super) limit_kg: f64,
     law: LossLaw,
     leak_probability: f64,
 }
@@ -125,11 +125,6 @@ impl Prognosis {
     pub fn quantiles(&self, horizon_s: f64) -> Quantiles {
         let [p5, p50, p95] = [0.05, 0.5, 0.95].map(|probability| self.quantile(probability, horizon_s));
         Quantiles { p5, p50, p95, horizon_s }
-    }
-
-    /// The limit, kg.
-    pub fn limit_kg(&self) -> f64 {
-        self.limit_kg
     }
 
     /// `F(t)`, given that there is a leak.

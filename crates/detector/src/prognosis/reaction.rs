@@ -77,7 +77,7 @@ pub struct Advice {
 impl ReactionSettings {
     /// # Errors
     /// A time is not positive, or a probability not between 0 and 1.
-    pub fn validate(&self) -> Result<(), DetectorError> {
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
         positive("safe_state_s", self.safe_state_s)?;
         positive("next_service_s", self.next_service_s)?;
         positive("service_interval_s", self.service_interval_s)?;

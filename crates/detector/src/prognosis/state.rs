@@ -1,5 +1,4 @@
 //! What is known of mass and leak rate, and how the loss goes on.
-use cylwatch_estimator::observer::Leak;
 use serde::{Deserialize, Serialize};
 
 use super::lambert_w;
@@ -27,7 +26,7 @@ impl LossLaw {
     }
 
     /// Time until the limit, s, of a mass and leak rate without uncertainty; infinite without a leak, 0 at the limit.
-    pub fn time_s(self, mass_kg: f64, leak_kg_s: f64, limit_kg: f64) -> f64 {
+    pub(crate) fn time_s(self, mass_kg: f64, leak_kg_s: f64, limit_kg: f64) -> f64 {
         if mass_kg <= limit_kg {
             return 0.0;
         }
@@ -87,15 +86,5 @@ impl MassAndLeak {
         let correlation = if scale > 0.0 { across / scale } else { 0.0 };
         let correlation = correlation.clamp(-1.0, 1.0);
         Ok(Self { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, correlation })
-    }
-
-    /// From what a member of the observer's bank says.
-    ///
-    /// # Errors
-    /// As [`MassAndLeak::try_new`].
-    pub fn of_leak(leak: &Leak) -> Result<Self, DetectorError> {
-        let across = leak.covariance_kg2_s;
-        let covariance = [[leak.mass_sd_kg.powi(2), across], [across, leak.sd_kg_s.powi(2)]];
-        Self::try_new(leak.mass_kg, leak.rate_kg_s, covariance)
     }
 }

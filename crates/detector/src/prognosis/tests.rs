@@ -39,11 +39,7 @@ fn drawn(prognosis: &Prognosis, state: MassAndLeak, law: LossLaw, count: usize, 
         let leak_kg_s = state.leak_kg_s + state.leak_sd_kg_s * a;
         let across = state.correlation * a + (1.0 - state.correlation.powi(2)).sqrt() * b;
         if leak_kg_s >= 0.0 {
-            times.push(law.time_s(
-                state.mass_kg + state.mass_sd_kg * across,
-                leak_kg_s,
-                prognosis.limit_kg(),
-            ));
+            times.push(law.time_s(state.mass_kg + state.mass_sd_kg * across, leak_kg_s, prognosis.limit_kg));
         }
     }
     times.sort_by(f64::total_cmp);

@@ -18,25 +18,6 @@ pub struct Efficiency {
 }
 
 impl Efficiency {
-    /// At one time: the bound on the variance of a functional, and its errors in independent runs. `N MSE / sigma^2` is
-    /// chi-square with as many degrees of freedom as runs.
-    ///
-    /// # Errors
-    /// There are no runs, or the errors are all zero or not finite.
-    pub fn at_time(bound: f64, errors: &[f64], significance: Significance) -> Result<Self, EstimatorError> {
-        let runs = errors.len();
-        let mse = errors.iter().map(|e| e * e).sum::<f64>() / runs as f64;
-        let band = Band::of_mean_square(runs as u64, significance);
-        match band {
-            Some(band) if mse > 0.0 && mse.is_finite() => {
-                let end = |quantile: f64| (bound * quantile / mse).sqrt();
-                let interval = Band { low: end(band.low), high: end(band.high) };
-                Ok(Self { ratio: (bound / mse).sqrt(), interval, runs })
-            }
-            _ => Err(EstimatorError::NoErrors { runs }),
-        }
-    }
-
     /// Over a stretch of time: the bounds' sum over its samples, and for each independent run the sum of its squared errors.
     /// Errors within a run may depend on each other; the interval comes from the spread between runs (normal).
     ///

@@ -111,7 +111,7 @@ impl Moments {
     }
 
     /// Number of paths.
-    pub fn paths(&self) -> u64 {
+    pub(crate) fn paths(&self) -> u64 {
         self.paths
     }
 

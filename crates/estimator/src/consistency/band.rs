@@ -27,7 +27,7 @@ impl Significance {
     }
 
     /// The probability.
-    pub fn probability(self) -> f64 {
+    pub(crate) fn probability(self) -> f64 {
         self.0
     }
 
@@ -38,7 +38,7 @@ impl Significance {
     }
 
     /// Half width of the band of a standard normal variable.
-    pub fn normal_quantile(self) -> f64 {
+    pub(crate) fn normal_quantile(self) -> f64 {
         Normal::standard().inverse_cdf(1.0 - 0.5 * self.0)
     }
 }

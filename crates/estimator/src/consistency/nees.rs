@@ -92,24 +92,6 @@ impl EnsembleNees {
         Ok(())
     }
 
-    /// Add other runs of the same times.
-    ///
-    /// # Errors
-    /// Their times differ in number, or their errors in length.
-    pub fn merge(&mut self, other: &Self) -> Result<(), EstimatorError> {
-        if other.at.len() != self.at.len() {
-            return Err(EstimatorError::TimeUnknown { index: other.at.len(), times: self.at.len() });
-        }
-        if other.dof != self.dof {
-            return Err(EstimatorError::StateLength { length: other.dof, states: self.dof });
-        }
-        for (own, other) in self.at.iter_mut().zip(&other.at) {
-            own.sum += other.sum;
-            own.runs += other.runs;
-        }
-        Ok(())
-    }
-
     /// The times one by one, each with the band of its own test.
     pub fn times(&self, significance: Significance) -> Vec<NeesAt> {
         let summary = |at: &Sum| {

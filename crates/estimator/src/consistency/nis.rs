@@ -49,7 +49,7 @@ impl NisAccumulator {
     }
 
     /// Readings that the gate did not pass.
-    pub fn refused(&self) -> u64 {
+    pub(crate) fn refused(&self) -> u64 {
         self.dof - self.accepted_dof
     }
 
@@ -59,7 +59,7 @@ impl NisAccumulator {
     }
 
     /// The same of the accepted readings alone, a little below 1 for a correct filter.
-    pub fn mean_accepted(&self) -> f64 {
+    pub(crate) fn mean_accepted(&self) -> f64 {
         self.accepted_sum / self.accepted_dof as f64
     }
 

@@ -60,7 +60,7 @@ pub(super) fn p_value(distance: f64, n: f64) -> f64 {
 /// Values of a run to be tested for normality, thinned evenly so that they never take more than a fixed room.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Normality {
-    kept: Vec<f64>,
+    pub(super) kept: Vec<f64>,
     capacity: usize,
     /// Every `stride`-th value is kept.
     stride: u64,
@@ -76,13 +76,13 @@ impl Default for Normality {
 
 impl Normality {
     /// Room for `capacity` values, at least eight; the test is made with half of them or more once there were so many.
-    pub fn with_capacity(capacity: usize) -> Self {
+    pub(crate) fn with_capacity(capacity: usize) -> Self {
         let capacity = capacity.max(FEWEST);
         Self { kept: Vec::with_capacity(capacity), capacity, stride: 1, seen: 0 }
     }
 
     /// Add a value; one that is not finite was none.
-    pub fn push(&mut self, value: f64) {
+    pub(crate) fn push(&mut self, value: f64) {
         if !value.is_finite() {
             return;
         }
@@ -102,18 +102,13 @@ impl Normality {
         self.seen += 1;
     }
 
-    /// The values kept: every so many-th one of the run.
-    pub fn kept(&self) -> &[f64] {
-        &self.kept
-    }
-
     /// The test on what was kept.
-    pub fn test(&self) -> Option<Lilliefors> {
+    pub(crate) fn test(&self) -> Option<Lilliefors> {
         lilliefors(&self.kept)
     }
 
     /// What the test says. A significance above 0.1 is taken as 0.1.
-    pub fn finding(&self, significance: Significance) -> Finding {
+    pub(crate) fn finding(&self, significance: Significance) -> Finding {
         match self.test() {
             None => Finding::TooFew,
             Some(test) if test.p_value < significance.probability().min(LARGEST_P) => Finding::NotNormal,

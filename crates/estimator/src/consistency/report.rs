@@ -39,7 +39,7 @@ impl Finding {
     }
 
     /// In plain words.
-    pub fn as_str(self) -> &'static str {
+    pub(crate) fn as_str(self) -> &'static str {
         match self {
             Self::Consistent => "as stated",
             Self::TooConfident => "larger than stated: the filter is too confident",

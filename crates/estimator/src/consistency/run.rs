@@ -40,7 +40,7 @@ impl RunConsistency {
 
     /// Add the innovation of an output at one sample: `nu` and its variance `s` before the gate, NaN where there was no
     /// reading. An output that the run does not have is left out.
-    pub fn record(&mut self, output: usize, nu: f64, s: f64, accepted: bool) {
+    pub(crate) fn record(&mut self, output: usize, nu: f64, s: f64, accepted: bool) {
         let Some(output) = self.outputs.get_mut(output) else { return };
         let normalised = if s > 0.0 { nu / s.sqrt() } else { f64::NAN };
         self.total.add(nu, s, accepted);
@@ -63,11 +63,6 @@ impl RunConsistency {
             self.coverage.len() - 1
         });
         self.coverage[at].1.add(error, sd);
-    }
-
-    /// Innovations of all outputs so far.
-    pub fn nis(&self) -> &NisAccumulator {
-        &self.total
     }
 
     /// The statistics so far with what they say at a significance.

@@ -52,25 +52,25 @@ impl Whiteness {
     }
 
     /// Number of lags.
-    pub fn lags(&self) -> usize {
+    pub(crate) fn lags(&self) -> usize {
         self.lags.len()
     }
 
     /// Autocorrelation at a lag from 1 on; `None` beyond the lags or without a pair.
-    pub fn autocorrelation(&self, lag: usize) -> Option<f64> {
+    pub(crate) fn autocorrelation(&self, lag: usize) -> Option<f64> {
         let lag = self.lags.get(lag.checked_sub(1)?)?;
         let scale = (lag.squares_before * lag.squares_after).sqrt();
         (lag.pairs > 0 && scale > 0.0).then(|| lag.products / scale)
     }
 
     /// Bound on the size of one autocorrelation: the normal quantile over `sqrt(K_l)`.
-    pub fn bound(&self, lag: usize, significance: Significance) -> Option<f64> {
+    pub(crate) fn bound(&self, lag: usize, significance: Significance) -> Option<f64> {
         let pairs = self.lags.get(lag.checked_sub(1)?)?.pairs;
         (pairs > 0).then(|| significance.normal_quantile() / (pairs as f64).sqrt())
     }
 
     /// The lag of the largest autocorrelation by size, and that autocorrelation.
-    pub fn largest(&self) -> Option<(usize, f64)> {
+    pub(crate) fn largest(&self) -> Option<(usize, f64)> {
         (1..=self.lags())
             .filter_map(|lag| Some((lag, self.autocorrelation(lag)?)))
             .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))

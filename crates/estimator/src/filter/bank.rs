@@ -243,7 +243,7 @@ impl<P: Plant> Bank<P> {
     }
 
     /// Let a member become as another one in mean and covariance; its hypothesis stays.
-    pub fn replace(&mut self, index: usize, from: usize) {
+    pub(crate) fn replace(&mut self, index: usize, from: usize) {
         let Ok([member, other]) = self.members.get_disjoint_mut([index, from]) else { return };
         member.x.clone_from(&other.x);
         if let Some(record) = &mut member.record {
@@ -424,7 +424,8 @@ impl<P: Plant> Bank<P> {
     }
 
     /// Whether the gain of a member is that of the steady state.
-    pub fn is_settled(&self, index: usize) -> bool {
+    #[cfg(test)]
+    pub(crate) fn is_settled(&self, index: usize) -> bool {
         match &self.covariances {
             Covariances::Packs(_) => false,
             Covariances::Singles(all) => all[index].is_settled(),

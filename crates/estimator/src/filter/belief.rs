@@ -43,7 +43,7 @@ impl Belief {
     }
 
     /// Probability that the member is right.
-    pub fn weight(self) -> f64 {
+    pub(crate) fn weight(self) -> f64 {
         let odds = PRIOR / (1.0 - PRIOR) * (-0.5 * self.square).exp();
         odds / (1.0 + odds)
     }

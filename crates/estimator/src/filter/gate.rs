@@ -52,7 +52,7 @@ impl Default for Gate {
 
 impl Gate {
     /// What becomes of a reading with the innovation `nu` of variance `s`, and the count of rejections in a row after it.
-    pub fn judge(self, (nu, s): (f64, f64), rejected: &mut u32) -> Outcome {
+    pub(crate) fn judge(self, (nu, s): (f64, f64), rejected: &mut u32) -> Outcome {
         let outcome = match () {
             () if nu * nu > self.limit * s && *rejected < self.rejections_in_a_row => Outcome::Rejected,
             () if nu * nu > self.limit * s => Outcome::Reacquired,

@@ -197,6 +197,7 @@ impl Stationary {
     }
 
     /// Whether the covariance is that of the steady state, after a sample.
+    #[cfg(test)]
     pub(super) fn is_settled(&self) -> bool {
         self.phase == Phase::Settled
     }

@@ -55,7 +55,7 @@ impl UdFactors {
     }
 
     /// Number of states `n`.
-    pub fn states(&self) -> usize {
+    pub(crate) fn states(&self) -> usize {
         self.d.len()
     }
 
@@ -70,7 +70,7 @@ impl UdFactors {
     }
 
     /// Take over the covariance of `other`, of the same size, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
+    pub(crate) fn copy_from(&mut self, other: &Self) {
         self.u.copy_from(&other.u);
         self.d.copy_from(&other.d);
     }
@@ -138,7 +138,7 @@ impl UdFactors {
     }
 
     /// Variance `h^T P h` of a linear function of the state, kept for `update_projected`; `h`: (n).
-    pub fn project(&mut self, h: &[f64]) -> f64 {
+    pub(crate) fn project(&mut self, h: &[f64]) -> f64 {
         let n = self.states();
         let (u, f) = (self.u.as_slice(), self.f.as_mut_slice());
         f.fill(0.0);

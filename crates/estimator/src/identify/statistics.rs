@@ -50,7 +50,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Figures of a simulated or predicted output; `parameters` of the model were estimated.
-    pub fn new(output: &[f64], errors: &[f64], parameters: usize) -> Self {
+    pub(crate) fn new(output: &[f64], errors: &[f64], parameters: usize) -> Self {
         let (n, d) = (errors.len() as f64, parameters as f64);
         let mse = errors.iter().map(|e| e * e).sum::<f64>() / n;
         let constant = n * ((2.0 * std::f64::consts::PI).ln() + 1.0);
@@ -98,7 +98,7 @@ pub struct Residuals {
 
 impl Residuals {
     /// Analysis of errors with the input at the same times, for lags up to `lags` (fewer than samples).
-    pub fn new(time_s: Vec<f64>, values: Vec<f64>, input: &[f64], lags: usize) -> Self {
+    pub(crate) fn new(time_s: Vec<f64>, values: Vec<f64>, input: &[f64], lags: usize) -> Self {
         let n = values.len();
         let lags = lags.min(n.saturating_sub(1));
         let mean = input.iter().sum::<f64>() / n as f64;

@@ -118,7 +118,7 @@ impl Structure {
     }
 
     /// Free parameters in the order in which everything here lists them.
-    pub fn parameters(&self) -> Vec<Parameter> {
+    pub(crate) fn parameters(&self) -> Vec<Parameter> {
         let mut free: Vec<Parameter> = (0..self.order).rev().map(Parameter::Denominator).collect();
         let fixed = usize::from(matches!(self.gain, Gain::Fixed(_)));
         free.extend((fixed..=self.zeros).rev().map(Parameter::Numerator));

@@ -218,16 +218,11 @@ impl Cylinder {
         self.interval_s[sensor] = interval_s;
     }
 
-    /// Interval since the last sample of a sensor, s.
-    pub fn interval_s(&self, sensor: usize) -> f64 {
-        self.interval_s[sensor]
-    }
-
     /// Pressure at a state, Pa.
     ///
     /// # Errors
     /// The state has no gas.
-    pub fn pressure_pa(&mut self, x: &[f64]) -> Result<f64, EstimatorError> {
+    pub(crate) fn pressure_pa(&mut self, x: &[f64]) -> Result<f64, EstimatorError> {
         let n = self.model.states();
         Ok(self.model.pressure_pa(&x[..n])?)
     }

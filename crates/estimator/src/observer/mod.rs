@@ -477,12 +477,6 @@ impl Observer {
         self.clock.restarts
     }
 
-    /// Samples, of all members, at which the engine could not do its own and fell back on the extended filter inside it:
-    /// windows of the moving horizon without a solution inside the constraints.
-    pub fn fallbacks(&self) -> u64 {
-        self.bank.fallbacks()
-    }
-
     /// What has been learnt of the constants: films, capacity, sensors. `None` before the first sample.
     pub fn learned(&self) -> Option<Learned> {
         let first = self.bank.members.first()?;

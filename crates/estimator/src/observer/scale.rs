@@ -31,7 +31,7 @@ impl Scale {
     ///
     /// # Errors
     /// The fill is no mass.
-    pub fn of(vessel: &Vessel, commissioning: &Commissioning) -> Result<Self, EstimatorError> {
+    pub(crate) fn of(vessel: &Vessel, commissioning: &Commissioning) -> Result<Self, EstimatorError> {
         let mass_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
         let density_kg_m3 = mass_kg / vessel.volume.volume_m3;
         let pressure_pa = vessel.fluid.pressure_pa(density_kg_m3, QUOTED_K);
@@ -39,7 +39,7 @@ impl Scale {
     }
 
     /// Settings for this fill.
-    pub fn applied(self, settings: &ObserverSettings) -> ObserverSettings {
+    pub(crate) fn applied(self, settings: &ObserverSettings) -> ObserverSettings {
         let Self { mass, pressure } = self;
         let error = &settings.model_error;
         let bank = settings.bank.iter().map(|member| LeakHypothesis {

@@ -43,7 +43,7 @@ impl Walk {
     }
 
     /// Whether the quantity is known and constant, so that it needs no state.
-    pub fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         self.prior_sd == 0.0 && self.per_sqrt_s == 0.0
     }
 
@@ -116,7 +116,7 @@ impl LeakHypothesis {
     }
 
     /// A leak rate of so many g/h, either way, that is another one after a memory, s: gas that flows.
-    pub fn flowing(grams_per_h: f64, memory_s: f64) -> Self {
+    pub(crate) fn flowing(grams_per_h: f64, memory_s: f64) -> Self {
         Self::leaking(Walk::forgetting(grams_per_h * 1e-3 * PER_HOUR, memory_s))
     }
 

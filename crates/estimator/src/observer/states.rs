@@ -102,7 +102,7 @@ impl States {
     }
 
     /// The states that a model, its sensors and the settings ask for.
-    pub fn new(model: &ReducedModel, sensors: &[Sensor], settings: &ObserverSettings) -> Self {
+    pub(crate) fn new(model: &ReducedModel, sensors: &[Sensor], settings: &ObserverSettings) -> Self {
         let mut kinds: Vec<StateKind> = (0..model.wall_nodes()).map(StateKind::Wall).collect();
         let push = |kinds: &mut Vec<StateKind>, kind: StateKind| {
             kinds.push(kind);
@@ -164,12 +164,12 @@ impl States {
     }
 
     /// States that belong to the cylinder and its sensors, not to the moment.
-    pub fn constants(&self) -> Range<usize> {
+    pub(crate) fn constants(&self) -> Range<usize> {
         self.leading..self.count()
     }
 
     /// Number of states.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.kinds.len()
     }
 }

@@ -264,7 +264,7 @@ impl CandidatesSpec {
     ///
     /// # Errors
     /// [`EstimatorError::Thermal`] with the path of the first value that breaks a bound.
-    pub fn build(&self, vessel: &Vessel) -> Result<Candidates, EstimatorError> {
+    pub(crate) fn build(&self, vessel: &Vessel) -> Result<Candidates, EstimatorError> {
         let mut candidates = if self.sensor.is_empty() {
             Candidates::of_vessel(vessel)?
         } else {

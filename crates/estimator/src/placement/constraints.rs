@@ -48,7 +48,7 @@ impl Constraints {
     }
 
     /// Cost of a layout.
-    pub fn cost(&self, layout: &[usize]) -> f64 {
+    pub(crate) fn cost(&self, layout: &[usize]) -> f64 {
         layout.iter().filter_map(|index| self.costs.get(*index)).sum()
     }
 
@@ -80,7 +80,7 @@ impl Constraints {
     }
 
     /// Candidates that may be in a layout beside those that must.
-    pub fn free(&self, candidates: usize) -> Vec<usize> {
+    pub(crate) fn free(&self, candidates: usize) -> Vec<usize> {
         let free = |index: &usize| !self.must.contains(index) && !self.forbidden.contains(index);
         (0..candidates).filter(free).collect()
     }
@@ -89,7 +89,7 @@ impl Constraints {
     ///
     /// # Errors
     /// Names the contradiction.
-    pub fn validate(&self, candidates: usize) -> Result<(), EstimatorError> {
+    pub(crate) fn validate(&self, candidates: usize) -> Result<(), EstimatorError> {
         let refuse = |what: String| Err(EstimatorError::PlacementConstraints { what });
         let mut named =
             self.must.iter().chain(&self.forbidden).chain(self.groups.iter().flat_map(|of| &of.members));

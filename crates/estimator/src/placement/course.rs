@@ -62,7 +62,7 @@ impl Variant {
 
     /// Part of the square of its error that counts as variance: of a film that lies anywhere within its bounds a third, half for either bound;
     /// of a coupling half for either side; well mixed, stratified and stratified in the other attitude a third each.
-    pub fn weight(&self) -> f64 {
+    pub(crate) fn weight(&self) -> f64 {
         match self {
             Self::Nominal => 0.0,
             Self::OutsideFilm(_) | Self::InsideFilm(_) => 1.0 / 6.0,
@@ -233,7 +233,7 @@ impl Course {
     }
 
     /// Name of the scenario.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 

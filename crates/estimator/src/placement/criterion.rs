@@ -25,7 +25,8 @@ pub enum Criterion {
 
 impl Criterion {
     /// Those of a cylinder at rest.
-    pub const AT_REST: [Self; 4] = [Self::GasTemperature, Self::Mass, Self::LeakRate, Self::SmallestLeak];
+    pub(crate) const AT_REST: [Self; 4] =
+        [Self::GasTemperature, Self::Mass, Self::LeakRate, Self::SmallestLeak];
 
     /// All, in the order of a list.
     pub const ALL: [Self; 8] = [

@@ -247,7 +247,7 @@ impl SitedCylinder {
     }
 
     /// Number of candidates.
-    pub fn candidates(&self) -> usize {
+    pub(crate) fn candidates(&self) -> usize {
         self.outputs.len()
     }
 

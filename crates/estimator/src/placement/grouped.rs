@@ -43,7 +43,7 @@ impl GroupedProblem {
     ///
     /// # Errors
     /// The owners are not as many as the states, or one is no candidate.
-    pub fn new(whole: LinearProblem, owners: &[Option<usize>]) -> Result<Self, EstimatorError> {
+    pub(crate) fn new(whole: LinearProblem, owners: &[Option<usize>]) -> Result<Self, EstimatorError> {
         let (states, candidates) = (whole.transition().nrows(), whole.outputs().len());
         if owners.len() != states {
             return Err(EstimatorError::StateLength { length: owners.len(), states });

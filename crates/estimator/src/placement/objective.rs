@@ -24,7 +24,7 @@ pub struct Relaxed {
 
 impl Relaxed {
     /// What the tangent at `at` says of the function at other weights: no convex function is below it.
-    pub fn tangent(&self, at: &[f64], other: &[f64]) -> f64 {
+    pub(crate) fn tangent(&self, at: &[f64], other: &[f64]) -> f64 {
         let steps = self.gradient.iter().zip(at.iter().zip(other));
         self.value + steps.map(|(slope, (at, other))| slope * (other - at)).sum::<f64>()
     }

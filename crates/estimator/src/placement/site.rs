@@ -152,7 +152,7 @@ impl Site {
     }
 
     /// Samples within which a leak is to be found.
-    pub fn samples(&self) -> u64 {
+    pub(crate) fn samples(&self) -> u64 {
         self.settings.detection.samples(self.settings.conditions.interval_s)
     }
 

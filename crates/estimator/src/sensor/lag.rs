@@ -28,7 +28,7 @@ pub struct LagWeights {
 
 impl FirstOrderLag {
     /// Weights for an interval of `dt_s >= 0`.
-    pub fn weights(&self, dt_s: f64) -> LagWeights {
+    pub(crate) fn weights(&self, dt_s: f64) -> LagWeights {
         if self.tau_s <= 0.0 {
             return LagWeights { before: 0.0, start: 0.0, end: 1.0 };
         }
@@ -42,7 +42,7 @@ impl FirstOrderLag {
     }
 
     /// Lagged reading after `dt_s` in which the static one went linearly from `start` to `end`.
-    pub fn advance(&self, lagged: f64, start: f64, end: f64, dt_s: f64) -> f64 {
+    pub(crate) fn advance(&self, lagged: f64, start: f64, end: f64, dt_s: f64) -> f64 {
         let LagWeights { before, start: w0, end: w1 } = self.weights(dt_s);
         before * lagged + w0 * start + w1 * end
     }

@@ -119,7 +119,7 @@ impl Sensor {
     }
 
     /// Means of the parameters; 0 beyond the last one.
-    pub fn means(&self) -> [f64; MAX_PARAMETERS] {
+    pub(crate) fn means(&self) -> [f64; MAX_PARAMETERS] {
         let mut means = [0.0; MAX_PARAMETERS];
         for (mean, parameter) in means.iter_mut().zip(&self.parameters) {
             *mean = parameter.mean;

@@ -24,7 +24,7 @@ pub struct WhiteNoise {
 
 impl WhiteNoise {
     /// Next value.
-    pub fn next<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
+    pub(crate) fn next<R: Rng + ?Sized>(&self, rng: &mut R) -> f64 {
         self.sd * normal(rng)
     }
 }
@@ -39,12 +39,12 @@ pub struct GaussMarkov {
 
 impl GaussMarkov {
     /// Noise with a standard deviation and a correlation time, s, both at least 0.
-    pub fn new(sd: f64, time_s: f64) -> Self {
+    pub(crate) fn new(sd: f64, time_s: f64) -> Self {
         Self { sd, time_s, value: None }
     }
 
     /// Value `elapsed_s` after the one before; the first one comes from the stationary distribution.
-    pub fn next<R: Rng + ?Sized>(&mut self, elapsed_s: f64, rng: &mut R) -> f64 {
+    pub(crate) fn next<R: Rng + ?Sized>(&mut self, elapsed_s: f64, rng: &mut R) -> f64 {
         let value = match self.value {
             None => self.sd * normal(rng),
             Some(before) => {
@@ -66,12 +66,12 @@ pub struct RandomWalk {
 
 impl RandomWalk {
     /// A walk whose standard deviation after `t` seconds is `per_sqrt_s sqrt(t)`.
-    pub fn new(per_sqrt_s: f64) -> Self {
+    pub(crate) fn new(per_sqrt_s: f64) -> Self {
         Self { per_sqrt_s, value: 0.0 }
     }
 
     /// Value `elapsed_s` after the one before.
-    pub fn next<R: Rng + ?Sized>(&mut self, elapsed_s: f64, rng: &mut R) -> f64 {
+    pub(crate) fn next<R: Rng + ?Sized>(&mut self, elapsed_s: f64, rng: &mut R) -> f64 {
         self.value += self.per_sqrt_s * elapsed_s.sqrt() * normal(rng);
         self.value
     }

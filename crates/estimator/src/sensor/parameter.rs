@@ -34,7 +34,7 @@ pub struct Parameter {
 
 impl Parameter {
     /// A parameter that does not walk, as stated.
-    pub fn new(kind: ParameterKind, stated: Stated) -> Self {
+    pub(crate) fn new(kind: ParameterKind, stated: Stated) -> Self {
         Self { kind, mean: stated.value, sd: stated.sd, walk_per_sqrt_s: 0.0, law: stated.law }
     }
 
@@ -44,7 +44,7 @@ impl Parameter {
     }
 
     /// Lowest and highest value that means something.
-    pub fn domain(&self) -> (f64, f64) {
+    pub(crate) fn domain(&self) -> (f64, f64) {
         match self.kind {
             ParameterKind::Coupling => (0.0, 1.0),
             ParameterKind::Offset | ParameterKind::TemperatureCoefficient | ParameterKind::Span => {

@@ -42,7 +42,7 @@ pub struct SuiteTruth {
 impl Sensor {
     /// One specimen: every uncertain parameter from its prior, uniform where the prior is a tolerance, else normal, and
     /// never outside of the parameter's domain (a coupling is redrawn until it lies within 0 and 1).
-    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> SensorTruth {
+    pub(crate) fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> SensorTruth {
         let mut truth = self.nominal();
         for (value, parameter) in truth.parameters.iter_mut().zip(self.parameters()) {
             *value = drawn(parameter, rng);
@@ -51,7 +51,7 @@ impl Sensor {
     }
 
     /// The specimen whose parameters are the means of their priors.
-    pub fn nominal(&self) -> SensorTruth {
+    pub(crate) fn nominal(&self) -> SensorTruth {
         SensorTruth { parameters: self.means() }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 /// A dense, stable process with constant matrices, whatever the interval. It does not allocate in a step.
 #[derive(Clone, Debug)]
-pub struct CopyingModel {
+pub(crate) struct CopyingModel {
     pub linear: Linearisation,
     moved: Vec<f64>,
     /// Gradients of the outputs, one per column.
@@ -16,7 +16,7 @@ pub struct CopyingModel {
 }
 
 impl CopyingModel {
-    pub fn new(states: usize, leading: usize, noises: usize, outputs: usize) -> Self {
+    pub(crate) fn new(states: usize, leading: usize, noises: usize, outputs: usize) -> Self {
         let mut linear = Linearisation::zeros(states, leading, noises);
         let weak = |i: usize, j: usize| 0.1 / (1 + i + 2 * j) as f64;
         linear.phi = DMatrix::from_fn(leading, states, |i, j| if i == j { 0.9 } else { weak(i, j) });
@@ -28,7 +28,7 @@ impl CopyingModel {
     }
 
     /// Of these matrices, with one variance of all readings.
-    pub fn of(linear: Linearisation, h: DMatrix<f64>, r: f64) -> Self {
+    pub(crate) fn of(linear: Linearisation, h: DMatrix<f64>, r: f64) -> Self {
         Self { moved: vec![0.0; linear.phi.nrows()], linear, h, r }
     }
 }

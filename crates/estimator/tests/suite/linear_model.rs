@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// `dx = A x dt + dw`, `dw ~ N(0, Q_c dt)`, `z = H x + v`, `v ~ N(0, diag(r))`; the trailing rows of `A` and `Q_c` are zero.
 #[derive(Clone, Debug)]
-pub struct LinearModel {
+pub(crate) struct LinearModel {
     pub a: DMatrix<f64>,
     pub q_c: DMatrix<f64>,
     pub h: DMatrix<f64>,
@@ -17,21 +17,21 @@ pub struct LinearModel {
     pub leading: usize,
 }
 
-pub fn rng(seed: u64) -> ChaCha8Rng {
+pub(crate) fn rng(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)
 }
 
-pub fn uniform(rng: &mut ChaCha8Rng, rows: usize, columns: usize) -> DMatrix<f64> {
+pub(crate) fn uniform(rng: &mut ChaCha8Rng, rows: usize, columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0))
 }
 
-pub fn normal(rng: &mut ChaCha8Rng, n: usize) -> DVector<f64> {
+pub(crate) fn normal(rng: &mut ChaCha8Rng, n: usize) -> DVector<f64> {
     DVector::from_fn(n, |_, _| StandardNormal.sample(rng))
 }
 
 /// Transition and noise covariance over `dt_s` of `dx = A x dt + dw`, `dw ~ N(0, Q_c dt)`: from the exponential of one block
 /// matrix (Van Loan 1978) over an interval so short that nothing in it overflows, then doubled.
-pub fn discretise(a: &DMatrix<f64>, q_c: &DMatrix<f64>, dt_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+pub(crate) fn discretise(a: &DMatrix<f64>, q_c: &DMatrix<f64>, dt_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
     let n = a.nrows();
     let norm = a.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max) * dt_s;
     let doublings = norm.max(0.25).log2().ceil() as i32 + 2;
@@ -52,13 +52,13 @@ pub fn discretise(a: &DMatrix<f64>, q_c: &DMatrix<f64>, dt_s: f64) -> (DMatrix<f
 }
 
 /// A well-conditioned covariance.
-pub fn covariance(rng: &mut ChaCha8Rng, n: usize) -> DMatrix<f64> {
+pub(crate) fn covariance(rng: &mut ChaCha8Rng, n: usize) -> DMatrix<f64> {
     let a = uniform(rng, n, 2 * n);
     &a * a.transpose() + DMatrix::identity(n, n) * 0.1
 }
 
 /// A process, its start, and irregular samples of which about every fourth reading is missing.
-pub struct Case {
+pub(crate) struct Case {
     pub model: LinearModel,
     pub x0: DVector<f64>,
     pub p0: DMatrix<f64>,
@@ -67,7 +67,11 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn random(rng: &mut ChaCha8Rng, (n, leading, outputs): (usize, usize, usize), steps: usize) -> Self {
+    pub(crate) fn random(
+        rng: &mut ChaCha8Rng,
+        (n, leading, outputs): (usize, usize, usize),
+        steps: usize,
+    ) -> Self {
         let model = LinearModel::random(rng, n, leading, outputs);
         let p0 = covariance(rng, n);
         let x0 = normal(rng, n) * 3.0;
@@ -79,7 +83,7 @@ impl Case {
 
 impl LinearModel {
     /// A stable random process of `n` states, of which `leading` move, with `outputs` outputs.
-    pub fn random(rng: &mut ChaCha8Rng, n: usize, leading: usize, outputs: usize) -> Self {
+    pub(crate) fn random(rng: &mut ChaCha8Rng, n: usize, leading: usize, outputs: usize) -> Self {
         let mut a = uniform(rng, n, n) / (n as f64).sqrt();
         (0..n).for_each(|i| a[(i, i)] -= 1.0);
         a.rows_mut(leading, n - leading).fill(0.0);
@@ -91,12 +95,12 @@ impl LinearModel {
     }
 
     /// Transition and noise covariance over `dt_s`.
-    pub fn discrete(&self, dt_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+    pub(crate) fn discrete(&self, dt_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
         discretise(&self.a, &self.q_c, dt_s)
     }
 
     /// The same as a linearisation; the noise comes in along the principal axes of its covariance.
-    pub fn linearisation(&self, dt_s: f64) -> Linearisation {
+    pub(crate) fn linearisation(&self, dt_s: f64) -> Linearisation {
         let (f, q) = self.discrete(dt_s);
         let m = self.leading;
         let axes = q.view((0, 0), (m, m)).into_owned().symmetric_eigen();
@@ -105,7 +109,7 @@ impl LinearModel {
     }
 
     /// Simulated readings at the times `dt_s` apart; about `missing` of them are NaN.
-    pub fn readings(
+    pub(crate) fn readings(
         &self,
         rng: &mut ChaCha8Rng,
         x0: &DVector<f64>,
@@ -189,7 +193,7 @@ impl Plant for LinearModel {
 
 /// The textbook filter: vector update with the inverse of `S`, Joseph's form.
 #[derive(Clone, Debug)]
-pub struct DenseFilter {
+pub(crate) struct DenseFilter {
     pub x: DVector<f64>,
     pub p: DMatrix<f64>,
     /// Innovations and covariance of the last update, of the outputs that were there.
@@ -198,17 +202,17 @@ pub struct DenseFilter {
 }
 
 impl DenseFilter {
-    pub fn new(x: DVector<f64>, p: DMatrix<f64>) -> Self {
+    pub(crate) fn new(x: DVector<f64>, p: DMatrix<f64>) -> Self {
         Self { x, p, innovation: DVector::zeros(0), s: DMatrix::zeros(0, 0) }
     }
 
-    pub fn predict(&mut self, model: &LinearModel, dt_s: f64) {
+    pub(crate) fn predict(&mut self, model: &LinearModel, dt_s: f64) {
         let (f, q) = model.discrete(dt_s);
         self.x = &f * &self.x;
         self.p = &f * &self.p * f.transpose() + q;
     }
 
-    pub fn update(&mut self, model: &LinearModel, z: &[f64]) {
+    pub(crate) fn update(&mut self, model: &LinearModel, z: &[f64]) {
         let there: Vec<usize> = (0..z.len()).filter(|j| z[*j].is_finite()).collect();
         let h = model.h.select_rows(&there);
         let r = DMatrix::from_diagonal(&model.r.select_rows(&there));
@@ -225,20 +229,20 @@ impl DenseFilter {
         self.p = (&p + p.transpose()) * 0.5;
     }
 
-    pub fn step(&mut self, model: &LinearModel, dt_s: f64, z: &[f64]) {
+    pub(crate) fn step(&mut self, model: &LinearModel, dt_s: f64, z: &[f64]) {
         self.predict(model, dt_s);
         self.update(model, z);
     }
 }
 
 /// Largest difference of two covariances, each element relative to the two standard deviations.
-pub fn covariance_difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
+pub(crate) fn covariance_difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
     let sd = b.diagonal().map(|v| v.sqrt().max(1e-100));
     (a - b).map_with_location(|i, j, e| (e / (sd[i] * sd[j])).abs()).max()
 }
 
 /// Largest difference of two states, relative to the larger of their size and their standard deviation.
-pub fn state_difference(a: &[f64], b: &DVector<f64>, p: &DMatrix<f64>) -> f64 {
+pub(crate) fn state_difference(a: &[f64], b: &DVector<f64>, p: &DMatrix<f64>) -> f64 {
     let scale = |i: usize| p[(i, i)].sqrt().max(b[i].abs()).max(1e-100);
     (0..b.len()).map(|i| ((a[i] - b[i]) / scale(i)).abs()).fold(0.0, f64::max)
 }

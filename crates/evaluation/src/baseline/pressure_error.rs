@@ -63,7 +63,7 @@ pub struct GasTemperature {
 
 impl GasTemperature {
     /// The gas is as warm as the shoulder.
-    pub const SHOULDER: Self = Self { function: None, last_s: None };
+    pub(crate) const SHOULDER: Self = Self { function: None, last_s: None };
     /// `0.003121/(s + 0.003021)`, the one of the paper, settled at its first reading.
     pub const PUBLISHED: Self = Self { function: Some(TransferFunction::PUBLISHED), last_s: None };
 
@@ -112,7 +112,7 @@ impl PressureError {
     ///
     /// # Errors
     /// As [`Expectation::real_gas`].
-    pub fn refitted(gas: &str, filling: Filling) -> Result<Self, ThermalError> {
+    pub(crate) fn refitted(gas: &str, filling: Filling) -> Result<Self, ThermalError> {
         let expectation = Expectation::real_gas(gas, filling)?;
         Ok(Self::new(expectation, GasTemperature::with_pole(REFITTED_POLE_PER_S)))
     }

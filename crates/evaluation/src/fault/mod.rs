@@ -237,7 +237,7 @@ impl Fault {
     }
 
     /// Sensors whose readings are wrong.
-    pub fn sensors(&self) -> Vec<&str> {
+    pub(crate) fn sensors(&self) -> Vec<&str> {
         match self {
             Self::Stuck { sensor, .. }
             | Self::Offset { sensor, .. }

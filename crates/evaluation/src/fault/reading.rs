@@ -78,7 +78,7 @@ pub enum MixUp {
 
 impl MixUp {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::CelsiusAsKelvin,
         Self::KelvinAsCelsius,
         Self::FahrenheitAsCelsius,
@@ -90,7 +90,7 @@ impl MixUp {
     ];
 
     /// Whether it concerns pressures, else temperatures.
-    pub fn is_of_pressure(self) -> bool {
+    pub(crate) fn is_of_pressure(self) -> bool {
         !matches!(self, Self::CelsiusAsKelvin | Self::KelvinAsCelsius | Self::FahrenheitAsCelsius)
     }
 

@@ -1,5 +1,4 @@
 //! What arrives at a monitor: rows, and the times at which it loses its power.
-use crate::estimator::log::Log;
 use serde::{Deserialize, Serialize};
 
 use crate::EvaluationError;
@@ -52,25 +51,11 @@ pub enum Snapshot {
 }
 
 impl Record {
-    /// The rows of a log, of the sensors in the order in which they are named.
-    ///
-    /// # Errors
-    /// [`EvaluationError::NoSuchSensor`]: the log has no such channel.
-    pub fn of_log(log: &Log, sensors: &[&str]) -> Result<Self, EvaluationError> {
-        let all: Vec<String> = log.channels.iter().map(|channel| channel.name.clone()).collect();
-        let picked = sensors.iter().map(|name| index_of(&all, name)).collect::<Result<Vec<_>, _>>()?;
-        let row = |(time_s, row): (f64, &[f64])| {
-            Step::Row(Arrival::live(time_s, picked.iter().map(|&index| row[index]).collect()))
-        };
-        let sensors = sensors.iter().map(|name| (*name).to_owned()).collect();
-        Ok(Self { sensors, steps: log.rows().map(row).collect() })
-    }
-
     /// Index of a sensor.
     ///
     /// # Errors
     /// [`EvaluationError::NoSuchSensor`]: there is none of that name.
-    pub fn sensor(&self, name: &str) -> Result<usize, EvaluationError> {
+    pub(crate) fn sensor(&self, name: &str) -> Result<usize, EvaluationError> {
         index_of(&self.sensors, name)
     }
 
@@ -80,7 +65,7 @@ impl Record {
     }
 
     /// The rows, to change them.
-    pub fn rows_mut(&mut self) -> impl Iterator<Item = &mut Arrival> {
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = &mut Arrival> {
         self.steps.iter_mut().filter_map(|step| match step {
             Step::Row(arrival) => Some(arrival),
             Step::PowerCycle(_) => None,
@@ -101,7 +86,7 @@ impl Record {
 
 impl Step {
     /// The row, if it is one.
-    pub fn row(&self) -> Option<&Arrival> {
+    pub(crate) fn row(&self) -> Option<&Arrival> {
         match self {
             Self::Row(arrival) => Some(arrival),
             Self::PowerCycle(_) => None,

@@ -13,12 +13,12 @@ pub struct Clock {
 
 impl Clock {
     /// Begin now.
-    pub fn begin() -> Self {
+    pub(crate) fn begin() -> Self {
         Self { begin: Instant::now(), begin_on_core_s: on_core_s() }
     }
 
     /// Time since the beginning, s.
-    pub fn elapsed_s(&self) -> f64 {
+    pub(crate) fn elapsed_s(&self) -> f64 {
         match (self.begin_on_core_s, on_core_s()) {
             (Some(begin_s), Some(now_s)) => now_s - begin_s,
             _ => self.begin.elapsed().as_secs_f64(),
@@ -26,7 +26,7 @@ impl Clock {
     }
 
     /// Time since the beginning, s, and begin anew now.
-    pub fn lap_s(&mut self) -> f64 {
+    pub(crate) fn lap_s(&mut self) -> f64 {
         let now = Self::begin();
         let elapsed_s = match (self.begin_on_core_s, now.begin_on_core_s) {
             (Some(begin_s), Some(now_s)) => now_s - begin_s,

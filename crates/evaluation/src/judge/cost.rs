@@ -68,7 +68,7 @@ impl Costs {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn open(folder: &Path) -> Result<Self, JudgeError> {
+    pub(crate) fn open(folder: &Path) -> Result<Self, JudgeError> {
         let path = folder.join(TIMES);
         let file = OpenOptions::new().append(true).create(true).open(&path);
         let mut file = file.map_err(|source| JudgeError::File { path: path.clone(), source })?;
@@ -81,7 +81,7 @@ impl Costs {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn enter(&mut self, times: Times) -> Result<(), JudgeError> {
+    pub(crate) fn enter(&mut self, times: Times) -> Result<(), JudgeError> {
         let line = format!("{}\n", serde_json::to_string(&times)?);
         let written = self.file.write_all(line.as_bytes());
         written.map_err(|source| JudgeError::File { path: self.path.clone(), source })
@@ -91,7 +91,7 @@ impl Costs {
     ///
     /// # Errors
     /// A file cannot be read or written.
-    pub fn write(&self, folder: &Path) -> Result<CostOfYear, JudgeError> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<CostOfYear, JudgeError> {
         let failed = |path: PathBuf| move |source| JudgeError::File { path, source };
         let text = std::fs::read_to_string(&self.path).map_err(failed(self.path.clone()))?;
         let times = text.lines().filter_map(|line| serde_json::from_str(line).ok());
@@ -106,7 +106,7 @@ impl Costs {
 
 impl CostOfYear {
     /// From the times of worlds.
-    pub fn of(times: impl IntoIterator<Item = Times>) -> Self {
+    pub(crate) fn of(times: impl IntoIterator<Item = Times>) -> Self {
         let (mut all, mut truth_s, mut bookkeeping_s, mut rows) = (0.0, 0.0, 0.0, 0.0);
         let mut candidates: BTreeMap<String, (f64, f64)> = BTreeMap::new();
         for of in times {

@@ -70,7 +70,7 @@ impl Journal {
     ///
     /// # Errors
     /// Another process writes here, the results are of another plan or program, or a line that is not the last one is broken.
-    pub fn open(folder: &Path, binding: &Binding) -> Result<Self, JudgeError> {
+    pub(crate) fn open(folder: &Path, binding: &Binding) -> Result<Self, JudgeError> {
         let path = folder.join(JOURNAL);
         let failed = |source| JudgeError::File { path: path.clone(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
@@ -147,7 +147,7 @@ impl Journal {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn append<T: Serialize>(&mut self, world: usize, result: &T) -> Result<(), JudgeError> {
+    pub(crate) fn append<T: Serialize>(&mut self, world: usize, result: &T) -> Result<(), JudgeError> {
         let text = serde_json::to_string(&Numbered { world, result })?;
         let begin = self.end + (BEFORE_SUM.len() + DIGITS + BEFORE_ENTRY.len()) as u64;
         self.write(&text)?;
@@ -168,25 +168,20 @@ impl Journal {
     }
 
     /// Whether a world is finished.
-    pub fn holds(&self, world: usize) -> bool {
+    pub(crate) fn holds(&self, world: usize) -> bool {
         self.places.contains_key(&world)
     }
 
     /// Number of finished worlds.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.places.len()
-    }
-
-    /// Whether no world is finished.
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
     }
 
     /// A reader of the worlds that are finished now.
     ///
     /// # Errors
     /// The file cannot be opened.
-    pub fn results(&self) -> Result<Results, JudgeError> {
+    pub(crate) fn results(&self) -> Result<Results, JudgeError> {
         let file = File::open(&self.path).map_err(|source| self.failed(source))?;
         Ok(Results { path: self.path.clone(), file, places: self.places.clone() })
     }
@@ -209,7 +204,7 @@ impl Results {
     ///
     /// # Errors
     /// The file cannot be read, or is not what was written.
-    pub fn of<T: DeserializeOwned>(&mut self, world: usize) -> Result<Option<T>, JudgeError> {
+    pub(crate) fn of<T: DeserializeOwned>(&mut self, world: usize) -> Result<Option<T>, JudgeError> {
         let Some(&(begin, length)) = self.places.get(&world) else { return Ok(None) };
         let mut entry = vec![0; length];
         let read = |file: &mut File, entry: &mut [u8]| {
@@ -223,13 +218,8 @@ impl Results {
     }
 
     /// Number of finished worlds.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.places.len()
-    }
-
-    /// Whether no world is finished.
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
     }
 }
 

@@ -49,7 +49,7 @@ pub struct Decision {
 
 impl Decision {
     /// Whether a leak is said, by verdict or by finding.
-    pub fn says_leak(&self) -> bool {
+    pub(crate) fn says_leak(&self) -> bool {
         self.leak || self.class == Class::Leak
     }
 }

@@ -23,7 +23,7 @@ pub struct Alarms {
 
 impl Record {
     /// Take the statistics of a sample.
-    pub fn update(&mut self, time_s: f64, statistics: &Statistics) {
+    pub(crate) fn update(&mut self, time_s: f64, statistics: &Statistics) {
         let since_s = time_s - *self.first_s.get_or_insert(time_s);
         let hour = (since_s / HOUR_S) as usize;
         if hour >= self.hours.len() {
@@ -35,12 +35,12 @@ impl Record {
 
     /// Hours of a stretch. It is as long as the statistic remembers ([`Scale::memory_s`]), so that an excursion counts once, or twice where it
     /// crosses from one stretch to the next; `stretch` is 1, or a part of that time for a rehearsal.
-    pub fn stretch_h(scale: Scale, stretch: f64) -> usize {
+    pub(crate) fn stretch_h(scale: Scale, stretch: f64) -> usize {
         ((stretch * scale.memory_s() / HOUR_S).round() as usize).max(1)
     }
 
     /// Largest values of the whole stretches of a scale.
-    pub fn peaks(&self, scale: Scale, stretch: f64) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn peaks(&self, scale: Scale, stretch: f64) -> impl Iterator<Item = f64> + '_ {
         let stretch_h = Self::stretch_h(scale, stretch);
         let whole = self.hours.len().saturating_sub(1) / stretch_h;
         let of_hours = move |hours: &[Option<Statistics>]| {
@@ -60,7 +60,7 @@ impl Record {
     /// theirs for longer than a time, s ([`MonitorSettings::leak_over_after_s`]).
     ///
     /// [`MonitorSettings::leak_over_after_s`]: cylwatch_detector::monitor::MonitorSettings::leak_over_after_s
-    pub fn alarms(&self, thresholds: &Thresholds, over_after_s: f64) -> Alarms {
+    pub(crate) fn alarms(&self, thresholds: &Thresholds, over_after_s: f64) -> Alarms {
         let mut alarms = Alarms::default();
         // The last hour of an alarm that was not calm.
         let mut stands: Option<usize> = None;

@@ -121,6 +121,7 @@ pub fn cells(path: &str, value: usize, least: usize) -> Result<usize, ThermalErr
 }
 
 /// A time for bounds in messages, in the largest unit that leaves it whole: `2 h`, `90 min`, `5 s`.
+#[cfg(feature = "simulate")]
 pub(crate) fn time_text(time_s: f64) -> String {
     match time_s {
         t if t != 0.0 && t % 3_600.0 == 0.0 => format!("{} h", t / 3_600.0),

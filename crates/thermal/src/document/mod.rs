@@ -49,7 +49,7 @@ pub struct Places {
 
 impl Places {
     /// The place of a path, or of the innermost table around it that the document has.
-    pub fn nearest(&self, path: &str) -> Option<(&str, &Place)> {
+    pub(crate) fn nearest(&self, path: &str) -> Option<(&str, &Place)> {
         let mut path = path;
         loop {
             if let Some((found, place)) = self.by_path.get_key_value(path) {

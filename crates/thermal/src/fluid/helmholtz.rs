@@ -35,7 +35,7 @@ pub struct Reduced<D> {
 
 impl<D: Real> Reduced<D> {
     /// All zero: the ideal gas's residual part.
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         let zero = D::from(0.0);
         Self { a: zero, d: zero, t: zero, dd: zero, dt: zero, tt: zero }
     }
@@ -162,11 +162,6 @@ impl Multiparameter {
         }
     }
 
-    /// The data it was made from.
-    pub fn data(&self) -> &'static FluidData {
-        self.data
-    }
-
     /// The distinct powers of `tau`.
     #[inline(always)]
     fn tau_powers<D: Real>(&self, tau: D) -> [D; MAX_TAU] {
@@ -192,7 +187,7 @@ impl Multiparameter {
 
     /// Collapse the power terms at a temperature.
     #[inline]
-    pub fn isotherm(&self, temperature_k: f64) -> Isotherm<'_> {
+    pub(crate) fn isotherm(&self, temperature_k: f64) -> Isotherm<'_> {
         let tau = self.data.reducing_temperature_k / temperature_k;
         let powers = self.tau_powers(tau);
         let mut coefficients = [0.0; MAX_SLOTS];
@@ -379,7 +374,7 @@ pub struct Isotherm<'a> {
 impl Isotherm<'_> {
     /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`.
     #[inline]
-    pub fn slopes(&self, density_kg_m3: f64) -> (f64, f64) {
+    pub(crate) fn slopes(&self, density_kg_m3: f64) -> (f64, f64) {
         self.equation.slopes(density_kg_m3, |i| self.coefficients[i], |i| self.gaussian[i])
     }
 }

@@ -48,7 +48,7 @@ pub struct GasGrid {
 
 impl GasGrid {
     /// The grid of a vessel's gas.
-    pub fn new(vessel: &Vessel, mesh: &Mesh) -> Self {
+    pub(crate) fn new(vessel: &Vessel, mesh: &Mesh) -> Self {
         match vessel.gas {
             GasResolution::WellMixed => Self::single(mesh),
             GasResolution::Stratified(s) if s.cells < 2 => Self::single(mesh),

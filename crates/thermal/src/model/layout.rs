@@ -35,7 +35,7 @@ pub struct Layout {
 
 impl Layout {
     /// Layout for so many wall and gas cells.
-    pub fn new(wall: usize, valve: bool, gas: usize) -> Self {
+    pub(crate) fn new(wall: usize, valve: bool, gas: usize) -> Self {
         let mean_wall = wall + usize::from(valve);
         let mass = mean_wall + 1;
         let energy = mass + gas;

@@ -35,7 +35,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::rate`].
-    pub fn output(&self, x: &[f64], inputs: &Inputs, open: &[bool]) -> Result<Output, ThermalError> {
+    pub(crate) fn output(&self, x: &[f64], inputs: &Inputs, open: &[bool]) -> Result<Output, ThermalError> {
         let layout = &self.layout;
         let nodes = self.gas_nodes(x)?;
         let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
@@ -85,7 +85,7 @@ impl Model {
     }
 
     /// Heat capacity of the wall at the reference temperature, J/K.
-    pub fn wall_capacity_j_k(&self) -> f64 {
+    pub(crate) fn wall_capacity_j_k(&self) -> f64 {
         self.wall_capacity_j_k
     }
 
@@ -103,7 +103,7 @@ impl Model {
     }
 
     /// Energy of gas, wall and valve, J, up to a constant.
-    pub fn energy_j(&self, x: &[f64]) -> f64 {
+    pub(crate) fn energy_j(&self, x: &[f64]) -> f64 {
         let layout = &self.layout;
         let wall: f64 = x[..layout.wall].iter().zip(&self.capacity_j_k).map(|(x, c)| x * c).sum();
         let valve = layout.valve.zip(self.valve.as_ref()).map_or(0.0, |(i, v)| x[i] * v.capacity_j_k());

@@ -126,7 +126,12 @@ fn dual8(value: f64, lanes: &[f64; LANES]) -> Dual8 {
 
 impl Stratified {
     /// The stacked gas of a vessel, started near a temperature.
-    pub fn new(vessel: &Vessel, grid: &GasGrid, constants: Stratification, temperature_k: f64) -> Self {
+    pub(crate) fn new(
+        vessel: &Vessel,
+        grid: &GasGrid,
+        constants: Stratification,
+        temperature_k: f64,
+    ) -> Self {
         let nodes = grid
             .cells
             .iter()
@@ -156,7 +161,7 @@ impl Stratified {
     ///
     /// # Errors
     /// A cell has no state.
-    pub fn nodes(
+    pub(crate) fn nodes(
         &self,
         mass_kg: &[f64],
         energy_j: &[f64],
@@ -188,7 +193,7 @@ impl Stratified {
     ///
     /// # Errors
     /// An orifice without a throat state.
-    pub fn rates(
+    pub(crate) fn rates(
         &self,
         nodes: &[Node<f64>],
         boundary: &Boundary<'_>,
@@ -303,7 +308,7 @@ impl Stratified {
     ///
     /// # Errors
     /// As [`Stratified::rates`].
-    pub fn jacobian(
+    pub(crate) fn jacobian(
         &self,
         mass_kg: &[f64],
         energy_j: &[f64],

@@ -78,12 +78,12 @@ impl Solved {
 
 impl WellMixed {
     /// A node of a fluid in a volume, started near a temperature.
-    pub fn new(fluid: Fluid, volume: InnerVolume, temperature_k: f64) -> Self {
+    pub(crate) fn new(fluid: Fluid, volume: InnerVolume, temperature_k: f64) -> Self {
         Self { fluid, volume, start_k: temperature_k, last: Cell::new(None) }
     }
 
     /// The fluid.
-    pub fn fluid(&self) -> &Fluid {
+    pub(crate) fn fluid(&self) -> &Fluid {
         &self.fluid
     }
 
@@ -91,7 +91,7 @@ impl WellMixed {
     ///
     /// # Errors
     /// No temperature gives this energy at this density.
-    pub fn node(&self, mass_kg: f64, energy_j: f64, wall_k: f64) -> Result<Node<f64>, ThermalError> {
+    pub(crate) fn node(&self, mass_kg: f64, energy_j: f64, wall_k: f64) -> Result<Node<f64>, ThermalError> {
         Ok(self.solved([mass_kg, energy_j, wall_k])?.node)
     }
 
@@ -196,7 +196,7 @@ impl WellMixed {
     ///
     /// # Errors
     /// An orifice without a throat state.
-    pub fn rates<D: Real>(
+    pub(crate) fn rates<D: Real>(
         &self,
         node: &Node<D>,
         boundary: &Boundary<'_>,
@@ -210,7 +210,7 @@ impl WellMixed {
 
 impl<D: Real> Node<D> {
     /// Rates of the node for its net mass, enthalpy and heat inflow and the rate of the mean wall temperature.
-    pub fn balance(&self, mass_kg_s: D, enthalpy_w: D, heat_w: D, wall_rate_k_s: D) -> Rates<D> {
+    pub(crate) fn balance(&self, mass_kg_s: D, enthalpy_w: D, heat_w: D, wall_rate_k_s: D) -> Rates<D> {
         let p = self.state.pressure_pa;
         let [by_mass, by_energy, by_wall] = self.volume_by;
         let volume_rate_without_energy = by_mass * mass_kg_s + by_wall * wall_rate_k_s;
@@ -220,7 +220,7 @@ impl<D: Real> Node<D> {
     }
 
     /// The same node in other numbers, e.g. with other derivatives.
-    pub fn map<E: Real>(&self, f: impl Fn(D) -> E) -> Node<E> {
+    pub(crate) fn map<E: Real>(&self, f: impl Fn(D) -> E) -> Node<E> {
         let s = &self.state;
         Node {
             state: State {
@@ -314,7 +314,11 @@ impl Boundary<'_> {
     ///
     /// # Errors
     /// An orifice without a throat state.
-    pub fn exchange<D: Real>(&self, fluid: &Fluid, outlet: &State<D>) -> Result<Exchange<D>, ThermalError> {
+    pub(crate) fn exchange<D: Real>(
+        &self,
+        fluid: &Fluid,
+        outlet: &State<D>,
+    ) -> Result<Exchange<D>, ThermalError> {
         let mut sum = Exchange { mass_kg_s: D::from(0.0), enthalpy_w: D::from(0.0) };
         for (index, flow) in self.flows.iter().enumerate().filter(|&(index, _)| self.open[index]) {
             let (mass, enthalpy) = match flow.kind {

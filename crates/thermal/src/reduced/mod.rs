@@ -56,17 +56,17 @@ impl Unknowns {
     /// Number of unknowns: columns of the Jacobian behind the states, in the order of the fields.
     pub const COUNT: usize = 8;
     /// Column of [`Unknowns::air_k`] behind the states.
-    pub const AIR: usize = 0;
+    pub(crate) const AIR: usize = 0;
     /// Column of [`Unknowns::ln_outside_film`].
-    pub const OUTSIDE: usize = 1;
+    pub(crate) const OUTSIDE: usize = 1;
     /// Column of [`Unknowns::ln_inside_film`].
-    pub const INSIDE: usize = 2;
+    pub(crate) const INSIDE: usize = 2;
     /// Column of [`Unknowns::ln_capacity`].
-    pub const CAPACITY: usize = 3;
+    pub(crate) const CAPACITY: usize = 3;
     /// Column of [`Unknowns::sun_w`].
     pub(crate) const SUN: usize = 4;
     /// Column of [`Unknowns::valve_sun`].
-    pub const VALVE_SUN: usize = 5;
+    pub(crate) const VALVE_SUN: usize = 5;
     /// Column of [`Unknowns::film_slope`].
     pub(crate) const SLOPE: usize = 6;
     /// Column of [`Unknowns::outflow_kg_s`].
@@ -229,7 +229,7 @@ impl ReducedModel {
     }
 
     /// Index of the gas temperature.
-    pub fn gas_index(&self) -> usize {
+    pub(crate) fn gas_index(&self) -> usize {
         self.wall_nodes() + usize::from(self.valve.is_some())
     }
 
@@ -284,15 +284,6 @@ impl ReducedModel {
     /// As [`ReducedModel::pressure`].
     pub fn settled_pressure_pa(&mut self, mass_kg: f64, temperature_k: f64) -> Result<f64, ThermalError> {
         self.gas.settled_pressure_pa(temperature_k, mass_kg)
-    }
-
-    /// Density of the gas at a state, kg/m³.
-    ///
-    /// # Errors
-    /// As [`ReducedModel::pressure`].
-    pub fn density_kg_m3(&mut self, x: &[f64]) -> Result<f64, ThermalError> {
-        let (wall_k, mass_kg) = (self.mean_wall_k(x), x[self.mass_index()]);
-        Ok(mass_kg / self.gas.volume_m3(x[self.gas_index()], mass_kg, wall_k)?)
     }
 
     /// Mean wall temperature, K: that of a uniform wall of the same energy.

@@ -42,7 +42,8 @@ pub enum GasPlace {
 
 impl SurfacePlace {
     /// The place of a name in [`PLACES`].
-    pub fn named(name: &str) -> Option<Self> {
+    #[cfg(feature = "files")]
+    pub(crate) fn named(name: &str) -> Option<Self> {
         match name {
             "bottom" => Some(Self::Bottom),
             "middle" => Some(Self::Middle),

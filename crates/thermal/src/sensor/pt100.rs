@@ -27,7 +27,7 @@ impl Pt100Class {
     ///
     /// # References
     /// IEC 60751:2008, tolerance classes of thermometers.
-    pub fn tolerance_k(self, temperature_k: f64) -> f64 {
+    pub(crate) fn tolerance_k(self, temperature_k: f64) -> f64 {
         let (constant_k, slope) = match self {
             Self::AA => (0.1, 0.0017),
             Self::A => (0.15, 0.002),

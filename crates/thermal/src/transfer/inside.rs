@@ -15,7 +15,9 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
 use crate::ThermalError;
-use crate::fluid::{Fluid, Real};
+use crate::fluid::Fluid;
+#[cfg(feature = "simulate")]
+use crate::fluid::Real;
 use crate::vessel::InsideFilm;
 use crate::wall::mesh::Facing;
 
@@ -97,7 +99,7 @@ pub struct FilmGrid {
 
 impl FilmGrid {
     /// An empty grid.
-    pub fn new(fluid: Fluid) -> Self {
+    pub(crate) fn new(fluid: Fluid) -> Self {
         Self {
             fluid,
             nodes: RefCell::default(),
@@ -108,7 +110,7 @@ impl FilmGrid {
     }
 
     /// Interpolated property groups. NaN where the fluid has no single phase within 40 K above the state.
-    pub fn groups(&self, temperature_k: f64, pressure_pa: f64) -> FilmGroups {
+    pub(crate) fn groups(&self, temperature_k: f64, pressure_pa: f64) -> FilmGroups {
         let (i, u) = cell_of(temperature_k / STEP_K);
         let (j, v) = cell_of(self.ln_pressure(pressure_pa) / STEP_LN_P);
         let ((wt, dt), (wp, dp), index) = (catmull_rom(u), catmull_rom(v), (i, j));
@@ -187,13 +189,13 @@ pub struct InsideConvection {
 
 impl InsideConvection {
     /// Film law `law` of a vessel of characteristic length `length_m` (its inner diameter; irrelevant for n = 1/3).
-    pub fn new(law: InsideFilm, length_m: f64, fluid: Fluid) -> Self {
+    pub(crate) fn new(law: InsideFilm, length_m: f64, fluid: Fluid) -> Self {
         Self { law, ln_length: length_m.ln(), grid: FilmGrid::new(fluid) }
     }
 
     /// Heat flux from a surface at `surface_k` to gas at `gas_k` and `pressure_pa`, with `jet_w_m2_k` added for
     /// forced convection. A floor or ceiling has its own law: it stirs the gas or lets it rest.
-    pub fn flux(
+    pub(crate) fn flux(
         &self,
         facing: Facing,
         surface_k: f64,
@@ -258,6 +260,7 @@ impl InsideConvection {
 ///
 /// # References
 /// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon.
+#[cfg(feature = "simulate")]
 pub(crate) fn jet_film_w_m2_k<D: Real>(
     conductivity_w_m_k: D,
     viscosity_pa_s: D,

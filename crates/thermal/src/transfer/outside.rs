@@ -10,6 +10,7 @@ use crate::units::ATMOSPHERE_PA;
 use crate::wall::geometry::Orientation;
 
 /// Stefan-Boltzmann constant, W/(m² K⁴) (CODATA 2018).
+#[cfg(feature = "simulate")]
 pub(crate) const STEFAN_BOLTZMANN_W_M2_K4: f64 = 5.670_374_419e-8;
 /// Temperature difference below which natural convection becomes linear, K.
 const FLAT_BELOW_K: f64 = 0.01;
@@ -72,6 +73,7 @@ pub fn convection_w_m2_k<D: Real>(body: &Body, surface_k: D, air_k: f64, wind_m_
 }
 
 /// Net radiation leaving a grey surface in a large enclosure, W/m².
+#[cfg(feature = "simulate")]
 pub(crate) fn radiation_w_m2<D: Real>(emissivity: f64, surface_k: D, enclosure_k: f64) -> D {
     (surface_k.powi(4) - enclosure_k.powi(4)) * (emissivity * STEFAN_BOLTZMANN_W_M2_K4)
 }

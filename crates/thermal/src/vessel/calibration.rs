@@ -73,7 +73,7 @@ impl CalibrationSpec {
     ///
     /// # Errors
     /// [`ThermalError::Specification`] with the path of the first value that cannot be.
-    pub fn check(&self) -> Result<(), ThermalError> {
+    pub(crate) fn check(&self) -> Result<(), ThermalError> {
         if !is_date(&self.date) {
             let remedy = "write it as 2026-03-01T12:00:00Z";
             let bound = "a date with time and zone of RFC 3339";

@@ -30,7 +30,7 @@ pub struct Material {
 impl Material {
     /// Temperature of a cell from its energy state: `x = T_ref + e / c_20`, the temperature that a constant
     /// heat capacity would give, K.
-    pub fn temperature_k(&self, energy_state_k: f64) -> f64 {
+    pub(crate) fn temperature_k(&self, energy_state_k: f64) -> f64 {
         let y = energy_state_k - REFERENCE_TEMPERATURE_K;
         let root = (1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(0.0).sqrt();
         REFERENCE_TEMPERATURE_K + 2.0 * y / (1.0 + root)
@@ -55,7 +55,7 @@ impl Material {
     }
 
     /// Volume-weighted mixture for a lumped wall: capacities add, resistances of the layers add.
-    pub fn mixture(parts: &[(&Material, f64)]) -> Material {
+    pub(crate) fn mixture(parts: &[(&Material, f64)]) -> Material {
         if let [(only, _)] = parts {
             return (*only).clone();
         }

@@ -2,16 +2,16 @@
 use cylwatch_thermal::fluid::{Equation, Fluid};
 
 /// Every equation.
-pub const EQUATIONS: [Equation; 3] = [Equation::Reference, Equation::IdealGas, Equation::PengRobinson];
+pub(crate) const EQUATIONS: [Equation; 3] = [Equation::Reference, Equation::IdealGas, Equation::PengRobinson];
 
 /// Every fluid with every equation.
-pub fn all() -> Vec<Fluid> {
+pub(crate) fn all() -> Vec<Fluid> {
     let named = Fluid::names().map(|name| Fluid::named(name).unwrap());
     named.flat_map(|fluid| EQUATIONS.map(|equation| fluid.clone().with_equation(equation))).collect()
 }
 
 /// Rows of a table of numbers below its header; lines with `#` are comments.
-pub fn rows(text: &str) -> Vec<Vec<f64>> {
+pub(crate) fn rows(text: &str) -> Vec<Vec<f64>> {
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
     lines.map(|line| line.split(',').map(|value| value.parse().unwrap()).collect()).collect()
 }

@@ -8,9 +8,10 @@ use cylwatch_thermal::vessel::{GasResolution, InnerVolume, InsideFilm, Surface, 
 use cylwatch_thermal::wall::geometry::{End, EndShape, Geometry, Layer, Orientation};
 use cylwatch_thermal::wall::material::Material;
 
-pub const MCADAMS: InsideFilm = InsideFilm::Rayleigh { factor: 0.13, exponent: 1.0 / 3.0, multiplier: 1.0 };
+pub(crate) const MCADAMS: InsideFilm =
+    InsideFilm::Rayleigh { factor: 0.13, exponent: 1.0 / 3.0, multiplier: 1.0 };
 
-pub fn solid(density: f64, heat_capacity: f64, conductivity: f64) -> Material {
+pub(crate) fn solid(density: f64, heat_capacity: f64, conductivity: f64) -> Material {
     Material {
         name: "steel".into(),
         density_kg_m3: density,
@@ -23,7 +24,7 @@ pub fn solid(density: f64, heat_capacity: f64, conductivity: f64) -> Material {
 }
 
 /// The closed bottle of the project's reference run: flat ends, 0.70 m x 190.7 mm, wall 6.7 mm, rigid, one wall cell.
-pub fn closed_bottle() -> Vessel {
+pub(crate) fn closed_bottle() -> Vessel {
     let end = End { shape: EndShape::Flat, thickness_m: 0.0067, cells: 1 };
     let geometry = Geometry {
         orientation: Orientation::Vertical,
@@ -48,7 +49,7 @@ pub fn closed_bottle() -> Vessel {
     }
 }
 
-pub fn rigid(volume_m3: f64) -> InnerVolume {
+pub(crate) fn rigid(volume_m3: f64) -> InnerVolume {
     InnerVolume {
         volume_m3,
         thermal_expansion_per_k: 0.0,
@@ -59,7 +60,7 @@ pub fn rigid(volume_m3: f64) -> InnerVolume {
 }
 
 /// Constant surroundings with a film coefficient, settled fill of 200 bar at 288.15 K.
-pub fn still(air_k: f64, start_k: f64, film_w_m2_k: f64, hours: f64) -> Scenario {
+pub(crate) fn still(air_k: f64, start_k: f64, film_w_m2_k: f64, hours: f64) -> Scenario {
     Scenario {
         name: "test".into(),
         initial: Initial {
@@ -82,11 +83,11 @@ pub fn still(air_k: f64, start_k: f64, film_w_m2_k: f64, hours: f64) -> Scenario
     }
 }
 
-pub fn run(vessel: &Vessel, scenario: &Scenario, relative_tolerance: f64) -> Trajectory {
+pub(crate) fn run(vessel: &Vessel, scenario: &Scenario, relative_tolerance: f64) -> Trajectory {
     let settings = SimulationSettings { relative_tolerance, ..SimulationSettings::default() };
     simulate(vessel, scenario, &settings, &mut |_| {}).unwrap()
 }
 
-pub fn insulated(fluid: Fluid) -> Vessel {
+pub(crate) fn insulated(fluid: Fluid) -> Vessel {
     Vessel { fluid, inside_film: InsideFilm::Coefficient { film_w_m2_k: 1e-9 }, ..closed_bottle() }
 }

@@ -14,7 +14,7 @@ pub struct Delayed {
 
 impl Delayed {
     /// After a sample `step_s` after the last one; `None` is a signal that is unknown.
-    pub fn step(self, step_s: f64, signal: Option<bool>, timing: &Timing) -> Self {
+    pub(crate) fn step(self, step_s: f64, signal: Option<bool>, timing: &Timing) -> Self {
         match signal {
             Some(signal) if signal == self.on => Self { served_s: None, ..self },
             Some(signal) => {

@@ -112,7 +112,7 @@ impl Posterior {
     }
 
     /// Leak rate, kg/s.
-    pub fn rate_kg_s(&self) -> Interval {
+    pub(crate) fn rate_kg_s(&self) -> Interval {
         self.rates().interval()
     }
 
@@ -122,7 +122,7 @@ impl Posterior {
     }
 
     /// Onset, s.
-    pub fn onset_s(&self) -> Interval {
+    pub(crate) fn onset_s(&self) -> Interval {
         let onset = |p: f64| onset_quantile(&self.candidates, p, self.time_s);
         Interval {
             value: onset(0.5),
@@ -132,7 +132,7 @@ impl Posterior {
     }
 
     /// Mass lost since the onset, kg.
-    pub fn lost_kg(&self) -> Interval {
+    pub(crate) fn lost_kg(&self) -> Interval {
         let losses = Mixture::new(&self.candidates, |one| {
             let age_s = self.time_s - one.onset_s;
             (one.rate * age_s, one.rate_sd() * age_s)
@@ -141,7 +141,7 @@ impl Posterior {
     }
 
     /// The leak, its rate also as loss of the pressure at 15 °C, of which a kilogram makes `pa_per_kg`.
-    pub fn finding(&self, pa_per_kg: f64) -> LeakFinding {
+    pub(crate) fn finding(&self, pa_per_kg: f64) -> LeakFinding {
         let rate_kg_s = self.rate_kg_s();
         LeakFinding {
             rate_kg_s,

@@ -28,7 +28,7 @@ impl IntakeSettings {
     ///
     /// # Errors
     /// Names the setting, its value and the bound.
-    pub fn validate(&self) -> Result<(), DetectorError> {
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
         let require = |ok: bool, setting: &'static str, value: f64, bound: &'static str| {
             if ok { Ok(()) } else { Err(DetectorError::Setting { setting, value, bound }) }
         };

@@ -18,7 +18,7 @@ use super::gas::filling::FillingCheck;
 use super::gas::gain::GainWatch;
 use super::gas::jump::JumpWatch;
 use super::gas::leak::{Change, LeakState, Look, LostUnheard};
-use super::gas::onset::{self, Posterior};
+use super::gas::onset;
 use super::gas::outlook::LimitMasses;
 use super::intake::{Intake, Row, Taken};
 use super::readings::health::SensorWatch;
@@ -349,16 +349,6 @@ impl Monitor {
     /// The statistics of the evidence for a leak after the last row.
     pub fn evidence(&self) -> Statistics {
         self.state.evidence.statistics()
-    }
-
-    /// Rate and onset of a leak, if there is one, whatever the evidence; `None`: too little has been seen.
-    pub fn posterior(&self) -> Option<Posterior> {
-        onset::fit(&self.observer, &self.state.evidence, self.state.last_s, self.filled_kg.0)
-    }
-
-    /// What the evidence is held against.
-    pub fn tails(&self) -> &Tails {
-        &self.tails
     }
 
     /// What has become of the rows so far.

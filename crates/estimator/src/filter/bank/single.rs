@@ -262,6 +262,7 @@ impl<P: Plant> Single<P> {
     }
 
     /// Whether the gain is that of the steady state.
+    #[cfg(test)]
     pub(super) fn is_settled(&self) -> bool {
         matches!(&self.engine, Engine::Stationary(stationary) if stationary.is_settled())
     }

@@ -97,16 +97,6 @@ impl<M: StateSpace> MovingHorizon<M> {
         self.window.path.xi = self.window.arrival.deviation(&self.window.path.x[0]);
     }
 
-    /// The process.
-    pub fn model(&self) -> &M {
-        &self.model
-    }
-
-    /// Settings in use.
-    pub fn settings(&self) -> &HorizonSettings {
-        &self.settings
-    }
-
     /// States along the window, from the sample before it to the newest one: each (n).
     pub fn trajectory(&self) -> &[DVector<f64>] {
         &self.window.path.x

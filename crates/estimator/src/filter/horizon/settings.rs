@@ -16,7 +16,7 @@ pub enum Loss {
 
 impl Loss {
     /// `rho(r)`.
-    pub fn value(self, r: f64) -> f64 {
+    pub(crate) fn value(self, r: f64) -> f64 {
         match self {
             Self::Huber { delta } if r.abs() > delta => delta * (r.abs() - 0.5 * delta),
             _ => 0.5 * r * r,
@@ -24,7 +24,7 @@ impl Loss {
     }
 
     /// Derivative `psi(r)` of `rho`.
-    pub fn slope(self, r: f64) -> f64 {
+    pub(crate) fn slope(self, r: f64) -> f64 {
         match self {
             Self::Huber { delta } => r.clamp(-delta, delta),
             Self::Quadratic => r,
@@ -32,7 +32,7 @@ impl Loss {
     }
 
     /// `psi(r) / r`, from 0 to 1: a quadratic cost with this weight has the same slope at `r`.
-    pub fn weight(self, r: f64) -> f64 {
+    pub(crate) fn weight(self, r: f64) -> f64 {
         match self {
             Self::Huber { delta } if r.abs() > delta => delta / r.abs(),
             _ => 1.0,
@@ -64,7 +64,7 @@ impl HorizonSettings {
     ///
     /// # Errors
     /// [`EstimatorError::HorizonSetting`] names the first setting out of its range.
-    pub fn validate(&self) -> Result<(), EstimatorError> {
+    pub(crate) fn validate(&self) -> Result<(), EstimatorError> {
         let refuse = |name, value, bound| Err(EstimatorError::HorizonSetting { name, value, bound });
         if self.samples == 0 {
             return refuse("samples", 0.0, "at least 1");

@@ -43,7 +43,7 @@ impl Block {
 
 impl Pattern {
     /// Columns of each row, in any order.
-    pub fn new(rows: &[Vec<usize>]) -> Self {
+    pub(crate) fn new(rows: &[Vec<usize>]) -> Self {
         let sorted = |columns: &Vec<usize>| {
             let mut columns = columns.clone();
             columns.sort_unstable();

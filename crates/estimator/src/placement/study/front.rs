@@ -31,7 +31,7 @@ pub struct Point {
 
 impl Front {
     /// Of points in any order.
-    pub fn of(mut all: Vec<Point>, complete: bool) -> Self {
+    pub(crate) fn of(mut all: Vec<Point>, complete: bool) -> Self {
         let compared = all.len();
         let in_order = |a: &Point, b: &Point| {
             a.cost

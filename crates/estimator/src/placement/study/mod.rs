@@ -245,16 +245,6 @@ impl Placement {
         &self.site
     }
 
-    /// What judges along scenarios.
-    pub fn courses(&self) -> &[Course] {
-        &self.courses
-    }
-
-    /// What was asked.
-    pub fn settings(&self) -> &StudySettings {
-        &self.settings
-    }
-
     fn constraints(&self, sensors: usize) -> Constraints {
         self.candidates.constraints(sensors, self.settings.budget)
     }
@@ -266,7 +256,7 @@ impl Placement {
     }
 
     /// Layouts that a search looks at in the worst case.
-    pub fn layouts(&self, sensors: usize) -> f64 {
+    pub(crate) fn layouts(&self, sensors: usize) -> f64 {
         let constraints = self.constraints(sensors);
         let free = constraints.free(self.candidates.list.len()).len();
         let wanted = sensors.saturating_sub(constraints.must.len());
@@ -285,7 +275,7 @@ impl Placement {
     }
 
     /// How layouts of so many sensors are searched.
-    pub fn method(&self, sensors: usize) -> Method {
+    pub(crate) fn method(&self, sensors: usize) -> Method {
         // A layout along a course takes a thousand times as long as one at rest.
         let most = if let Criterion::Course(_) = self.settings.criterion { 400.0 } else { ALL_LAYOUTS };
         let usual = if self.layouts(sensors) <= most { Method::Exhaustive } else { Method::Greedy };

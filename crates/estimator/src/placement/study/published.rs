@@ -27,7 +27,7 @@ impl Placement {
     ///
     /// # Errors
     /// As [`published_scores`].
-    pub fn by_paper(&self) -> Result<ByPaper, EstimatorError> {
+    pub(crate) fn by_paper(&self) -> Result<ByPaper, EstimatorError> {
         let found = published_scores(&self.vessel, &self.candidates.sensors(), &self.settings.published)?;
         let duel = |record| Some((record, found.duel("valve", "shoulder", record)?));
         let valve_against_shoulder = PublishedRecord::ALL.into_iter().filter_map(duel).collect();

@@ -15,14 +15,14 @@ use rand_chacha::ChaCha8Rng;
 /// How far each property is off, as a factor.
 const OFF: f64 = 1.3;
 
-pub const COUPLING: f64 = 0.1;
+pub(crate) const COUPLING: f64 = 0.1;
 
 /// How far the contact of a valve may be off, as a standard deviation of its logarithm: a factor of two. Nothing outside
 /// shows it well, and without any idea of it some logs leave all else uncertain.
 const CONTACT_SD: f64 = 0.7;
 
 /// What is sought: four factors and the couplings of shoulder and valve.
-pub fn kinds() -> [ParameterKind; 6] {
+pub(crate) fn kinds() -> [ParameterKind; 6] {
     [
         ParameterKind::OutsideFilm,
         ParameterKind::InsideFilm,
@@ -34,7 +34,7 @@ pub fn kinds() -> [ParameterKind; 6] {
 }
 
 /// A cylinder of a seed: which of its properties are larger, which are smaller.
-pub struct Case {
+pub(crate) struct Case {
     pub seed: u64,
     /// True values of the [`kinds`].
     pub truth: [f64; 6],
@@ -43,7 +43,7 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut off = || if rng.random::<bool>() { OFF } else { 1.0 / OFF };
         let mut truth = [(); 6].map(|()| off());
@@ -51,7 +51,7 @@ impl Case {
         Self { seed, truth, contact: off() }
     }
 
-    pub fn vessel(&self) -> Vessel {
+    pub(crate) fn vessel(&self) -> Vessel {
         let mut vessel = vessel::presets::load("nitrogen-20l").unwrap();
         let [_, inside, wall, valve_capacity, ..] = self.truth;
         let InsideFilm::Rayleigh { multiplier, .. } = &mut vessel.inside_film else { panic!("a power law") };
@@ -64,7 +64,7 @@ impl Case {
     }
 
     /// A scenario as this cylinder feels it.
-    pub fn exposed(&self, scenario: &Scenario) -> Scenario {
+    pub(crate) fn exposed(&self, scenario: &Scenario) -> Scenario {
         let mut scenario = scenario.clone();
         if let OutsideFilm::Coefficient { film_w_m2_k } = &mut scenario.surroundings.film {
             *film_w_m2_k = film_w_m2_k.scaled(self.truth[0]).unwrap();
@@ -72,24 +72,24 @@ impl Case {
         scenario
     }
 
-    pub fn course(&self, scenario: &Scenario) -> Trajectory {
+    pub(crate) fn course(&self, scenario: &Scenario) -> Trajectory {
         run(&self.vessel(), &self.exposed(scenario))
     }
 
     /// What drawn specimens of the sensors read.
-    pub fn log(&self, scenario: &Scenario) -> Log {
+    pub(crate) fn log(&self, scenario: &Scenario) -> Log {
         self.readings(&self.course(scenario))
     }
 
     /// What they read along a course.
-    pub fn readings(&self, course: &Trajectory) -> Log {
+    pub(crate) fn readings(&self, course: &Trajectory) -> Log {
         let mut specimens = SensorSuite::try_new(sensors()).unwrap().draw(self.seed);
         specimens.find_mut("shoulder").unwrap().truth.parameters[1] = self.truth[4];
         specimens.find_mut("valve").unwrap().truth.parameters[1] = self.truth[5];
         sample(course, &specimens, self.seed).unwrap()
     }
 
-    pub fn calibration(&self, scenario: &Scenario) -> Calibration {
+    pub(crate) fn calibration(&self, scenario: &Scenario) -> Calibration {
         let starts = [1.0, 1.0, 1.0, 1.0, COUPLING, COUPLING];
         let sensors = sensors();
         let sought = kinds().into_iter().zip(starts).map(|(kind, start)| ParameterSpec::new(kind, start));
@@ -112,13 +112,13 @@ impl Case {
     }
 
     /// Which of the six intervals hold the truth.
-    pub fn covered(&self, calibrated: &Calibrated) -> [bool; 6] {
+    pub(crate) fn covered(&self, calibrated: &Calibrated) -> [bool; 6] {
         std::array::from_fn(|i| calibrated.estimates[i].holds(self.truth[i]))
     }
 
     /// Root mean square errors of the mean gas temperature, K, in a scenario that was not recorded: as the vessel's file
     /// says, and as calibrated.
-    pub fn prediction(&self, calibrated: &Calibrated, next: &Scenario) -> (f64, f64) {
+    pub(crate) fn prediction(&self, calibrated: &Calibrated, next: &Scenario) -> (f64, f64) {
         let truth = self.course(next).gas_mean_k;
         let file = vessel::presets::load("nitrogen-20l").unwrap();
         let before = run(&file, next);
@@ -129,27 +129,27 @@ impl Case {
 }
 
 /// Pt100 of class B on shoulder and valve, a pressure transmitter of 0.25 % accuracy.
-pub fn sensors() -> Vec<Sensor> {
+pub(crate) fn sensors() -> Vec<Sensor> {
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
     sensors.to_vec()
 }
 
-pub fn preset(name: &str) -> Scenario {
+pub(crate) fn preset(name: &str) -> Scenario {
     scenario::presets::load(name).unwrap()
 }
 
-pub fn run(vessel: &Vessel, scenario: &Scenario) -> Trajectory {
+pub(crate) fn run(vessel: &Vessel, scenario: &Scenario) -> Trajectory {
     let settings = SimulationSettings { relative_tolerance: 1e-10, ..SimulationSettings::default() };
     simulate(vessel, scenario, &settings, &mut |_| {}).unwrap()
 }
 
-pub fn rms(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn rms(a: &[f64], b: &[f64]) -> f64 {
     (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
 }
 
 /// A sensor without offset and with known numbers.
 #[allow(dead_code)]
-pub fn known(name: &str, noise: f64) -> Sensor {
+pub(crate) fn known(name: &str, noise: f64) -> Sensor {
     let mut sensor = Sensor::typical(name).unwrap().ideal();
     for kind in [SensorNumber::Offset, SensorNumber::Coupling] {
         if let Some(number) = sensor.parameter_mut(kind) {

@@ -9,7 +9,7 @@ use rand_distr::StandardNormal;
 
 /// `x <- x + dt [a x + u; 0] + noise of variance dt q through g`, `z = h x + noise of variance r`.
 #[derive(Clone, Debug)]
-pub struct Linear {
+pub(crate) struct Linear {
     /// Rates of the moving states: (leading, n).
     pub a: DMatrix<f64>,
     /// Known input of the moving states: (leading).
@@ -26,7 +26,7 @@ pub struct Linear {
 
 impl Linear {
     /// A stable random problem with `k` noise sources, of which the last is silent where there are two or more.
-    pub fn random(rng: &mut ChaCha8Rng, n: usize, leading: usize, k: usize, outputs: usize) -> Self {
+    pub(crate) fn random(rng: &mut ChaCha8Rng, n: usize, leading: usize, k: usize, outputs: usize) -> Self {
         let mut a = normal_matrix(rng, leading, n) * 0.2;
         (0..leading).for_each(|i| a[(i, i)] -= 0.6);
         let mut q = DVector::from_fn(k, |_, _| rng.random_range(0.05..2.0));
@@ -44,7 +44,7 @@ impl Linear {
     }
 
     /// Transition matrix and input over `dt_s`: (n, n) and (n).
-    pub fn transition(&self, dt_s: f64) -> (DMatrix<f64>, DVector<f64>) {
+    pub(crate) fn transition(&self, dt_s: f64) -> (DMatrix<f64>, DVector<f64>) {
         let (leading, n) = self.a.shape();
         let mut f = DMatrix::identity(n, n);
         let mut u = DVector::zeros(n);
@@ -58,7 +58,7 @@ impl Linear {
     }
 
     /// `G diag(sqrt(q))` with a row for every state: (n, k).
-    pub fn noise_input(&self, dt_s: f64) -> DMatrix<f64> {
+    pub(crate) fn noise_input(&self, dt_s: f64) -> DMatrix<f64> {
         let (leading, n) = self.a.shape();
         DMatrix::from_fn(n, self.q.len(), |i, j| {
             if i < leading { self.g[(i, j)] * (dt_s * self.q[j]).sqrt() } else { 0.0 }
@@ -66,7 +66,7 @@ impl Linear {
     }
 
     /// Let the process run and be read; a reading is missing with the given probability.
-    pub fn sample(
+    pub(crate) fn sample(
         &self,
         rng: &mut ChaCha8Rng,
         x: &mut DVector<f64>,
@@ -129,7 +129,7 @@ impl StateSpace for Linear {
 }
 
 /// Mass that leaks: states mass and leak rate, `mass' = -leak`, both with a random walk; the mass is read.
-pub fn leaking_mass(mass_variance_rate: f64, leak_variance_rate: f64, r: f64) -> Linear {
+pub(crate) fn leaking_mass(mass_variance_rate: f64, leak_variance_rate: f64, r: f64) -> Linear {
     Linear {
         a: DMatrix::from_row_slice(2, 2, &[0.0, -1.0, 0.0, 0.0]),
         u: DVector::zeros(2),
@@ -141,17 +141,17 @@ pub fn leaking_mass(mass_variance_rate: f64, leak_variance_rate: f64, r: f64) ->
 }
 
 /// Independent standard normal numbers.
-pub fn normal(rng: &mut ChaCha8Rng, n: usize) -> DVector<f64> {
+pub(crate) fn normal(rng: &mut ChaCha8Rng, n: usize) -> DVector<f64> {
     DVector::from_fn(n, |_, _| rng.sample(StandardNormal))
 }
 
 /// A matrix of independent standard normal numbers.
-pub fn normal_matrix(rng: &mut ChaCha8Rng, rows: usize, columns: usize) -> DMatrix<f64> {
+pub(crate) fn normal_matrix(rng: &mut ChaCha8Rng, rows: usize, columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns, |_, _| rng.sample(StandardNormal))
 }
 
 /// A random covariance of the given rank.
-pub fn covariance(rng: &mut ChaCha8Rng, n: usize, rank: usize) -> DMatrix<f64> {
+pub(crate) fn covariance(rng: &mut ChaCha8Rng, n: usize, rank: usize) -> DMatrix<f64> {
     let root = normal_matrix(rng, n, rank);
     &root * root.transpose()
 }

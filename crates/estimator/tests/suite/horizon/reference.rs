@@ -5,13 +5,13 @@ use nalgebra::{DMatrix, DVector};
 use super::problems::Linear;
 
 /// Mean and covariance by the textbook Kalman filter with a joint (not sequential) Joseph update.
-pub struct Kalman {
+pub(crate) struct Kalman {
     pub x: DVector<f64>,
     pub p: DMatrix<f64>,
 }
 
 impl Kalman {
-    pub fn step(&mut self, problem: &Linear, dt_s: f64, z: &DVector<f64>) {
+    pub(crate) fn step(&mut self, problem: &Linear, dt_s: f64, z: &DVector<f64>) {
         let (f, u) = problem.transition(dt_s);
         let noise = problem.noise_input(dt_s);
         self.x = &f * &self.x + u;
@@ -31,7 +31,7 @@ impl Kalman {
 }
 
 /// The window's problem over `y = (xi, omega_0, ...)`: `x_i = map_i y + offset_i`, cost `|y|^2/2 + sum rho`.
-pub struct Condensed {
+pub(crate) struct Condensed {
     pub maps: Vec<DMatrix<f64>>,
     pub offsets: Vec<DVector<f64>>,
     /// Readings that are there, over their standard deviations: rows and values.
@@ -41,7 +41,7 @@ pub struct Condensed {
 
 impl Condensed {
     /// All samples `(dt_s, z)` in one window, from the prior with covariance `root root^T`.
-    pub fn new(
+    pub(crate) fn new(
         problem: &Linear,
         mean: &DVector<f64>,
         root: &DMatrix<f64>,
@@ -71,17 +71,17 @@ impl Condensed {
         Self { maps, offsets, rows, values: DVector::from_vec(values) }
     }
 
-    pub fn hessian(&self) -> DMatrix<f64> {
+    pub(crate) fn hessian(&self) -> DMatrix<f64> {
         DMatrix::identity(self.rows.ncols(), self.rows.ncols()) + self.rows.tr_mul(&self.rows)
     }
 
     /// State `i` at `y`.
-    pub fn state(&self, i: usize, y: &DVector<f64>) -> DVector<f64> {
+    pub(crate) fn state(&self, i: usize, y: &DVector<f64>) -> DVector<f64> {
         &self.maps[i] * y + &self.offsets[i]
     }
 
     /// Covariance of the newest state when `equalities y` is known: projection by the KKT matrix's inverse.
-    pub fn newest_covariance(&self, equalities: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(crate) fn newest_covariance(&self, equalities: &DMatrix<f64>) -> DMatrix<f64> {
         let (size, m) = (self.rows.ncols(), equalities.nrows());
         let inverse = kkt(&self.hessian(), equalities).try_inverse().expect("independent equalities");
         let map = self.maps.last().expect("there is a state");
@@ -90,7 +90,7 @@ impl Condensed {
     }
 
     /// The minimum of the quadratic cost subject to `c y <= gap`, by trying every active set of at most `most` rows.
-    pub fn constrained(&self, c: &DMatrix<f64>, gap: &DVector<f64>, most: usize) -> Optimum {
+    pub(crate) fn constrained(&self, c: &DMatrix<f64>, gap: &DVector<f64>, most: usize) -> Optimum {
         let mut found = Vec::new();
         let rhs = self.rows.tr_mul(&self.values);
         for active in subsets(c.nrows(), most) {
@@ -112,7 +112,7 @@ impl Condensed {
 }
 
 /// Optimum of a quadratic program with its active rows.
-pub struct Optimum {
+pub(crate) struct Optimum {
     pub y: DVector<f64>,
     pub multipliers: DVector<f64>,
     pub active: Vec<usize>,
@@ -138,6 +138,6 @@ fn subsets(count: usize, most: usize) -> Vec<Vec<usize>> {
 }
 
 /// Largest difference of two matrices relative to the larger one's largest entry.
-pub fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
+pub(crate) fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
     (a - b).amax() / a.amax().max(b.amax()).max(f64::MIN_POSITIVE)
 }

@@ -11,7 +11,7 @@ use super::system::{System, normal, random};
 
 /// Course of the true input, °C.
 #[derive(Clone, Copy, Debug)]
-pub enum Course {
+pub(crate) enum Course {
     /// A new level about every half hour.
     Steps,
     /// Ornstein-Uhlenbeck process of this time constant, s, with a standard deviation of 10 K.
@@ -22,7 +22,7 @@ pub enum Course {
 
 /// A record.
 #[derive(Clone, Copy, Debug)]
-pub struct Case {
+pub(crate) struct Case {
     pub name: &'static str,
     pub course: Course,
     pub interval_s: f64,
@@ -33,7 +33,7 @@ pub struct Case {
 }
 
 /// The six records.
-pub const CASES: [Case; 6] = [
+pub(crate) const CASES: [Case; 6] = [
     case("steps, 10 s, 0.5 K", Course::Steps, 10.0, 13.0, 0.5),
     case("wander, 10 s, 0.5 K", Course::Wander(1800.0), 10.0, 24.0, 0.5),
     case("wander, 60 s, 0.5 K", Course::Wander(1800.0), 60.0, 24.0, 0.5),
@@ -48,18 +48,18 @@ const fn case(name: &'static str, course: Course, interval_s: f64, hours: f64, i
 
 impl Case {
     /// Times of the samples, s.
-    pub fn times(&self) -> Vec<f64> {
+    pub(crate) fn times(&self) -> Vec<f64> {
         let samples = (self.duration_s / self.interval_s).round() as usize + 1;
         (0..samples).map(|k| k as f64 * self.interval_s).collect()
     }
 
     /// Variances of input and output noise.
-    pub fn variances(&self) -> (f64, f64) {
+    pub(crate) fn variances(&self) -> (f64, f64) {
         (self.input_sd.powi(2), self.output_sd.powi(2))
     }
 
     /// A record with fresh noise, and readings of a second sensor of the input, just as noisy.
-    pub fn record(&self, seed: u64) -> (Data, Vec<f64>) {
+    pub(crate) fn record(&self, seed: u64) -> (Data, Vec<f64>) {
         let mut random = random(seed);
         let time_s = self.times();
         let (mut wander, mut level) = (10.0 * normal(&mut random), 20.0);
@@ -93,13 +93,13 @@ impl Case {
     }
 
     /// The method that knows this record's noise.
-    pub fn compensated(&self) -> Method {
+    pub(crate) fn compensated(&self) -> Method {
         let (input_variance, output_variance) = self.variances();
         Method::BiasCompensated { input_variance, output_variance }
     }
 
     /// The method that knows the input's kind as well.
-    pub fn likely(&self, course: InputCourse) -> Method {
+    pub(crate) fn likely(&self, course: InputCourse) -> Method {
         let (input_variance, output_variance) = self.variances();
         Method::MaximumLikelihood { input_variance, output_variance, course }
     }
@@ -123,7 +123,7 @@ fn published_response(interval_s: f64, input: &[f64]) -> Vec<f64> {
 
 /// Errors of one quantity over many runs.
 #[derive(Clone, Debug, Default)]
-pub struct Errors {
+pub(crate) struct Errors {
     pub relative: Vec<f64>,
     pub coverage: Coverage,
 }
@@ -136,7 +136,7 @@ impl Errors {
     }
 
     /// Mean relative error with its standard deviation, and the standard deviation of one run.
-    pub fn bias(&self) -> (f64, f64, f64) {
+    pub(crate) fn bias(&self) -> (f64, f64, f64) {
         let n = self.relative.len() as f64;
         let mean = self.relative.iter().sum::<f64>() / n;
         let variance = self.relative.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / (n - 1.0);
@@ -146,14 +146,18 @@ impl Errors {
 
 /// Pole and gain over many runs, and how many runs failed.
 #[derive(Clone, Debug, Default)]
-pub struct Study {
+pub(crate) struct Study {
     pub pole: Errors,
     pub gain: Errors,
     pub failures: Vec<IdentifyError>,
 }
 
 /// Identify many records of a case.
-pub fn study(case: &Case, seeds: std::ops::Range<u64>, method: impl Fn(&[f64]) -> Method + Sync) -> Study {
+pub(crate) fn study(
+    case: &Case,
+    seeds: std::ops::Range<u64>,
+    method: impl Fn(&[f64]) -> Method + Sync,
+) -> Study {
     let one = |seed: u64| -> Result<Identified, IdentifyError> {
         let (data, second) = case.record(seed);
         identify(&data, &Structure::new(1, 0), &method(&second), &Settings::default())

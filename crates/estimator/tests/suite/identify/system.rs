@@ -9,7 +9,7 @@ type C = Complex<f64>;
 
 /// `y = sum_i r_i/(s - p_i) e^(-s delta) u + sum_i f_i e^(p_i t) + offset`.
 #[derive(Clone, Debug)]
-pub struct System {
+pub(crate) struct System {
     pub poles: Vec<C>,
     pub residues: Vec<C>,
     /// Parts of the free response at the start.
@@ -20,7 +20,7 @@ pub struct System {
 
 impl System {
     /// With real poles.
-    pub fn real(poles: &[f64], residues: &[f64]) -> Self {
+    pub(crate) fn real(poles: &[f64], residues: &[f64]) -> Self {
         let complex = |values: &[f64]| values.iter().map(|v| C::new(*v, 0.0)).collect::<Vec<_>>();
         Self {
             poles: complex(poles),
@@ -32,18 +32,18 @@ impl System {
     }
 
     /// The paper's.
-    pub fn published() -> Self {
+    pub(crate) fn published() -> Self {
         Self::real(&[-0.003021], &[0.003121])
     }
 
     /// Starting off rest.
-    pub fn free(mut self, parts: &[f64]) -> Self {
+    pub(crate) fn free(mut self, parts: &[f64]) -> Self {
         self.free = parts.iter().map(|v| C::new(*v, 0.0)).collect();
         self
     }
 
     /// Coefficients, highest power first: numerator with as many zeros as wanted, denominator.
-    pub fn coefficients(&self, zeros: usize) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn coefficients(&self, zeros: usize) -> (Vec<f64>, Vec<f64>) {
         let mut den = vec![C::new(1.0, 0.0)];
         for pole in &self.poles {
             den = times(&den, *pole);
@@ -62,7 +62,7 @@ impl System {
     }
 
     /// Output at the times of the input.
-    pub fn respond(&self, time_s: &[f64], input: &[f64], hold: Hold) -> Vec<f64> {
+    pub(crate) fn respond(&self, time_s: &[f64], input: &[f64], hold: Hold) -> Vec<f64> {
         let start_s = time_s[0];
         // Bends of the delayed input; before the first, the input has its first value.
         let bends: Vec<f64> = time_s.iter().map(|t| t - start_s + self.dead_time_s).collect();
@@ -95,7 +95,7 @@ impl System {
     }
 
     /// A record.
-    pub fn data(&self, time_s: Vec<f64>, input: Vec<f64>, hold: Hold) -> Data {
+    pub(crate) fn data(&self, time_s: Vec<f64>, input: Vec<f64>, hold: Hold) -> Data {
         let output = self.respond(&time_s, &input, hold);
         Data::try_new(time_s, input, output, hold).unwrap()
     }
@@ -117,22 +117,22 @@ fn times(polynomial: &[C], root: C) -> Vec<C> {
     product
 }
 
-pub fn random(seed: u64) -> ChaCha8Rng {
+pub(crate) fn random(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)
 }
 
 /// Standard normal numbers.
-pub fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(random: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(random)
 }
 
 /// Times of regular samples, from a start other than zero.
-pub fn regular(samples: usize, interval_s: f64) -> Vec<f64> {
+pub(crate) fn regular(samples: usize, interval_s: f64) -> Vec<f64> {
     (0..samples).map(|k| 1000.0 + k as f64 * interval_s).collect()
 }
 
 /// Times with intervals from a third to five thirds of the mean.
-pub fn irregular(samples: usize, interval_s: f64, seed: u64) -> Vec<f64> {
+pub(crate) fn irregular(samples: usize, interval_s: f64, seed: u64) -> Vec<f64> {
     let mut random = random(seed);
     let mut time_s = -500.0;
     (0..samples)
@@ -144,7 +144,7 @@ pub fn irregular(samples: usize, interval_s: f64, seed: u64) -> Vec<f64> {
 }
 
 /// Levels that change now and then, with a ripple: rich in all frequencies.
-pub fn levels(time_s: &[f64], seed: u64) -> Vec<f64> {
+pub(crate) fn levels(time_s: &[f64], seed: u64) -> Vec<f64> {
     let mut random = random(seed);
     let mut level = 20.0;
     time_s
@@ -159,7 +159,7 @@ pub fn levels(time_s: &[f64], seed: u64) -> Vec<f64> {
 }
 
 /// Largest relative error of the coefficients.
-pub fn error(identified: &Identified, system: &System) -> f64 {
+pub(crate) fn error(identified: &Identified, system: &System) -> f64 {
     let (num, den) = system.coefficients(identified.model.num.len() - 1);
     let found = identified.model.num.iter().chain(&identified.model.den);
     found.zip(num.iter().chain(&den)).map(|(found, truth)| (found / truth - 1.0).abs()).fold(0.0, f64::max)

@@ -120,12 +120,12 @@ impl Registry {
     }
 
     /// A kind by its name.
-    pub fn kind(&self, name: &str) -> Option<Kind> {
+    pub(crate) fn kind(&self, name: &str) -> Option<Kind> {
         self.0.get(name).copied()
     }
 
     /// Names of all kinds.
-    pub fn names(&self) -> Vec<&str> {
+    pub(crate) fn names(&self) -> Vec<&str> {
         self.0.keys().map(String::as_str).collect()
     }
 }

@@ -25,7 +25,7 @@ pub enum Class {
 
 impl Class {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 6] =
+    pub(crate) const ALL: [Self; 6] =
         [Self::Tight, Self::Leak, Self::Discharge, Self::Refill, Self::SensorFault, Self::Unknown];
 }
 

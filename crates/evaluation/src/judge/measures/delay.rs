@@ -47,7 +47,7 @@ impl Delay {
 
     /// The shortest mean delay of any detector ([`crate::noise::Noise::shortest_delay_s`]) over the mean delay of this one, if it
     /// found all leaks: 1 is as good as can be.
-    pub fn efficiency(&self, bound_s: f64) -> Option<f64> {
+    pub(crate) fn efficiency(&self, bound_s: f64) -> Option<f64> {
         let mean_s = self.mean_found_s.filter(|_| self.found == self.leaks)?;
         Some(bound_s / mean_s)
     }

@@ -21,11 +21,8 @@ pub enum Horizon {
 }
 
 impl Horizon {
-    /// All of them, increasing.
-    pub const ALL: [Self; 4] = [Self::Hour, Self::Day, Self::Week, Self::Month];
-
     /// How long it is, s.
-    pub fn seconds(self) -> f64 {
+    pub(crate) fn seconds(self) -> f64 {
         match self {
             Self::Hour => HOUR_S,
             Self::Day => 24.0 * HOUR_S,
@@ -57,7 +54,7 @@ pub struct Proportion {
 
 impl Proportion {
     /// Count those that are true.
-    pub fn count(outcomes: impl IntoIterator<Item = bool>) -> Self {
+    pub(crate) fn count(outcomes: impl IntoIterator<Item = bool>) -> Self {
         outcomes.into_iter().fold(Self::default(), |sum, hit| Self {
             hits: sum.hits + u64::from(hit),
             trials: sum.trials + 1,
@@ -76,7 +73,7 @@ pub struct Detection {
 
 impl Detection {
     /// Of runs with one rate each, in the order of [`by_rate`](super::by_rate), within `horizon_s`.
-    pub fn against_rate(groups: &[(f64, Vec<Run>)], horizon_s: f64) -> Vec<Self> {
+    pub(crate) fn against_rate(groups: &[(f64, Vec<Run>)], horizon_s: f64) -> Vec<Self> {
         let of = |(part_per_h, runs): &(f64, Vec<Run>)| Self {
             part_per_h: *part_per_h,
             found: Proportion::count(told(runs, horizon_s)),

@@ -15,19 +15,19 @@ pub struct Run {
 
 impl Run {
     /// From the onset to the alarm, s; `None`: not found, or an alarm before it.
-    pub fn delay_s(&self) -> Option<f64> {
+    pub(crate) fn delay_s(&self) -> Option<f64> {
         let delay_s = self.alarm_s? - self.onset_s;
         (delay_s >= 0.0).then_some(delay_s)
     }
 
     /// Time for which the leak was watched, s; `None`: an alarm before it, after which the run says nothing about the leak.
-    pub fn watched_s(&self) -> Option<f64> {
+    pub(crate) fn watched_s(&self) -> Option<f64> {
         let is_false = self.alarm_s.is_some_and(|alarm_s| alarm_s < self.onset_s);
         (!is_false).then_some(self.until_s - self.onset_s)
     }
 
     /// Whether the leak was found so soon; `None`: an alarm before it, or it was not watched for so long.
-    pub fn found_within(&self, horizon_s: f64) -> Option<bool> {
+    pub(crate) fn found_within(&self, horizon_s: f64) -> Option<bool> {
         let watched_s = self.watched_s()?;
         match self.delay_s() {
             Some(delay_s) if delay_s <= horizon_s => Some(true),

@@ -38,7 +38,7 @@ pub enum Reached {
 
 impl Reached {
     /// The rate, or the end of the rates tried.
-    pub fn rate(self) -> f64 {
+    pub(crate) fn rate(self) -> f64 {
         match self {
             Self::AtMost(rate) | Self::At(rate) | Self::Above(rate) => rate,
         }
@@ -78,7 +78,7 @@ pub struct SmallestLeak {
 
 impl SmallestLeak {
     /// From the parts found at increasing rates; rates without trials are left out. `None` without any.
-    pub fn of(detections: &[Detection], probability: f64) -> Option<Self> {
+    pub(crate) fn of(detections: &[Detection], probability: f64) -> Option<Self> {
         let tried: Vec<Detection> = detections.iter().filter(|d| d.found.trials > 0).copied().collect();
         let rate = reached(&tried, probability)?;
         let mut random = ChaCha8Rng::seed_from_u64(SEED);
@@ -91,7 +91,7 @@ impl SmallestLeak {
     }
 
     /// In another unit, of which the old one has `factor`.
-    pub fn times(self, factor: f64) -> Self {
+    pub(crate) fn times(self, factor: f64) -> Self {
         let (low, high) = self.interval;
         Self { rate: self.rate.times(factor), interval: (low.times(factor), high.times(factor)), ..self }
     }

@@ -39,7 +39,7 @@ struct Step {
 
 impl Survival {
     /// From observations in any order.
-    pub fn of(observations: &[Observed]) -> Self {
+    pub(crate) fn of(observations: &[Observed]) -> Self {
         let mut events: Vec<f64> = Vec::new();
         let mut ends: Vec<f64> = Vec::new();
         for observed in observations {
@@ -64,30 +64,15 @@ impl Survival {
         survival
     }
 
-    /// Part of which the event has not come by `time_s`.
-    pub fn left(&self, time_s: f64) -> f64 {
-        let reached = self.steps.partition_point(|step| step.time_s <= time_s);
-        reached.checked_sub(1).map_or(1.0, |index| self.steps[index].left)
-    }
-
-    /// Standard deviation of [`Self::left`].
-    pub fn left_sd(&self, time_s: f64) -> f64 {
-        let reached = self.steps.partition_point(|step| step.time_s <= time_s);
-        reached.checked_sub(1).map_or(0.0, |index| {
-            let step = self.steps[index];
-            if step.left > 0.0 { step.left * step.variance.sqrt() } else { 0.0 }
-        })
-    }
-
     /// Time, s, by which the event has come in the part `probability`; `None` if it was not seen to.
-    pub fn quantile_s(&self, probability: f64) -> Option<f64> {
+    pub(crate) fn quantile_s(&self, probability: f64) -> Option<f64> {
         // Products of fractions are exact to rounding only: 1/2 must count as reached.
         let reached = |step: &&Step| step.left <= (1.0 - probability) * (1.0 + 1e-12);
         self.steps.iter().find(reached).map(|step| step.time_s)
     }
 
     /// Interval of a quantile, s, at a level such as 0.95; `None` where a bound of the staircase does not come so far.
-    pub fn quantile_interval_s(&self, probability: f64, level: f64) -> (Option<f64>, Option<f64>) {
+    pub(crate) fn quantile_interval_s(&self, probability: f64, level: f64) -> (Option<f64>, Option<f64>) {
         let (z, left) = (normal_quantile(level), 1.0 - probability);
         let first = |bound: &dyn Fn(&Step) -> f64| {
             self.steps.iter().find(|step| bound(step) <= left).map(|step| step.time_s)
@@ -121,6 +106,22 @@ mod tests {
         Survival::of(&all.collect::<Vec<_>>())
     }
 
+    /// The step that holds at `time_s`, if one has come.
+    fn step_at(survival: &Survival, time_s: f64) -> Option<Step> {
+        let reached = survival.steps.partition_point(|step| step.time_s <= time_s);
+        reached.checked_sub(1).map(|index| survival.steps[index])
+    }
+
+    /// Part of which the event has not come by `time_s`.
+    fn left_at(survival: &Survival, time_s: f64) -> f64 {
+        step_at(survival, time_s).map_or(1.0, |step| step.left)
+    }
+
+    /// Its standard deviation.
+    fn left_sd(survival: &Survival, time_s: f64) -> f64 {
+        step_at(survival, time_s).map_or(0.0, |step| step.left * step.variance.sqrt())
+    }
+
     #[test]
     fn remissions_are_as_published() {
         // E. J. Freireich et al., Blood 21 (1963) 699; S and its standard error in D. R. Cox and D. Oakes, Analysis of Survival
@@ -136,10 +137,10 @@ mod tests {
         ];
         let survival = remissions();
         for (weeks, left, sd) in published {
-            assert_abs_diff_eq!(survival.left(weeks), left, epsilon = 6e-5);
-            assert_abs_diff_eq!(survival.left_sd(weeks), sd, epsilon = 6e-5);
+            assert_abs_diff_eq!(left_at(&survival, weeks), left, epsilon = 6e-5);
+            assert_abs_diff_eq!(left_sd(&survival, weeks), sd, epsilon = 6e-5);
         }
-        assert_eq!((survival.left(5.9), survival.left(100.0)), (1.0, survival.left(23.0)));
+        assert_eq!((left_at(&survival, 5.9), left_at(&survival, 100.0)), (1.0, left_at(&survival, 23.0)));
         assert_eq!(survival.quantile_s(0.5), Some(23.0));
         assert_eq!(survival.quantile_s(0.75), None);
         // By hand: the lower bound of S is 0.503 after 10 weeks and 0.432 after 13; the upper one never falls to a half.
@@ -150,7 +151,7 @@ mod tests {
     fn without_runs_that_end_early_quantiles_are_order_statistics() {
         let times: Vec<Observed> = [5.0, 1.0, 4.0, 2.0, 3.0].map(Observed::After).to_vec();
         let survival = Survival::of(&times);
-        assert_relative_eq!(survival.left(3.5), 0.4, max_relative = 1e-12);
+        assert_relative_eq!(left_at(&survival, 3.5), 0.4, max_relative = 1e-12);
         assert_eq!([0.2, 0.5, 0.95].map(|q| survival.quantile_s(q)), [Some(1.0), Some(3.0), Some(5.0)]);
         assert_eq!(Survival::of(&[]).quantile_s(0.5), None);
     }

@@ -18,19 +18,19 @@ pub struct Trace {
 
 impl Trace {
     /// Take a value.
-    pub fn push(&mut self, time_s: f64, value: f64) {
+    pub(crate) fn push(&mut self, time_s: f64, value: f64) {
         if value > self.most() {
             self.highest.push(Highest { time_s, value });
         }
     }
 
     /// The largest value; minus infinity without any.
-    pub fn most(&self) -> f64 {
+    pub(crate) fn most(&self) -> f64 {
         self.highest.last().map_or(f64::NEG_INFINITY, |highest| highest.value)
     }
 
     /// First time at which a threshold was reached.
-    pub fn alarm(&self, threshold: f64) -> Option<&Highest> {
+    pub(crate) fn alarm(&self, threshold: f64) -> Option<&Highest> {
         self.highest.get(self.highest.partition_point(|highest| highest.value < threshold))
     }
 }

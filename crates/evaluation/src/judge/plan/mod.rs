@@ -120,7 +120,7 @@ impl Plan {
     }
 
     /// Wished mean time between false alarms, s.
-    pub fn between_false_alarms_s(&self) -> f64 {
+    pub(crate) fn between_false_alarms_s(&self) -> f64 {
         self.document.between_false_alarms_y * YEAR_S
     }
 
@@ -139,7 +139,7 @@ impl Plan {
     ///
     /// # Errors
     /// A number that JSON cannot hold.
-    pub fn hash(&self) -> Result<String, JudgeError> {
+    pub(crate) fn hash(&self) -> Result<String, JudgeError> {
         let left_out: Vec<String> = self.left_out.iter().map(ToString::to_string).collect();
         let text = serde_json::to_vec(&(&self.document, left_out))?;
         Ok(hex(&Sha256::digest(text)))

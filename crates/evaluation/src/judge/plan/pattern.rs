@@ -75,7 +75,7 @@ impl FromStr for Pattern {
 
 impl Pattern {
     /// Whether a family is one of the pattern.
-    pub fn holds(&self, family: &Family) -> bool {
+    pub(crate) fn holds(&self, family: &Family) -> bool {
         self.vessel.holds(&family.vessel)
             && self.climate.holds(&family.climate)
             && self.gas.holds(&family.gas)
@@ -84,12 +84,12 @@ impl Pattern {
     }
 
     /// The families of the pattern, in the order of the axes; `turn` gives the turn of the combination of a number.
-    pub fn families(&self, turn: impl Fn(usize) -> usize) -> Vec<Family> {
+    pub(crate) fn families(&self, turn: impl Fn(usize) -> usize) -> Vec<Family> {
         (0..self.combinations()).filter_map(|number| self.family(number, turn(number))).collect()
     }
 
     /// Number of families of one turn: combinations of the axes that do not go round.
-    pub fn combinations(&self) -> usize {
+    pub(crate) fn combinations(&self) -> usize {
         let count = |in_turn: bool, kinds: usize| if in_turn { 1 } else { kinds };
         count(self.vessel.in_turn, self.vessel.kinds.len())
             * count(self.climate.in_turn, self.climate.kinds.len())
@@ -155,7 +155,7 @@ impl FromStr for Axis {
 
 impl Axis {
     /// Whether a family has this kind.
-    pub fn holds(&self, family: &Family) -> bool {
+    pub(crate) fn holds(&self, family: &Family) -> bool {
         let key = match self.axis {
             "vessel" => family.vessel.key(),
             "climate" => family.climate.key(),

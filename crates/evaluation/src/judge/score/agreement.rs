@@ -43,7 +43,7 @@ pub enum Rule {
 
 impl Rule {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::NoProbability,
         Self::TightButProbable,
         Self::SensorFaultButProbable,
@@ -60,7 +60,7 @@ impl Rule {
     ];
 
     /// Words for a table.
-    pub const fn words(self) -> &'static str {
+    pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::NoProbability => "probability is none",
             Self::TightButProbable => "tight, but a leak is probable",
@@ -92,7 +92,7 @@ pub struct Disagreements {
 
 impl Disagreements {
     /// Which rules are broken, and in how many rows.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let broken = Rule::ALL.into_iter().zip(self.by_rule).filter(|(_, count)| *count > 0);
         let words: Vec<String> = broken.map(|(rule, count)| format!("{} ({count})", rule.words())).collect();
         words.join("; ")
@@ -119,13 +119,13 @@ pub struct Agreement {
 
 impl Agreement {
     /// Of a candidate that decides for a leak from a probability of `level` on.
-    pub fn new(world: &World, level: f64) -> Self {
+    pub(crate) fn new(world: &World, level: f64) -> Self {
         let announced = world.told.announced.clone();
         Self { level, announced, loss_said: false, counts: Disagreements::default() }
     }
 
     /// Take a decision.
-    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         let stamp_s = moment.said.stamp_s;
         // An announced discharge may be seen a while after its end.
         let announced = self
@@ -144,7 +144,7 @@ impl Agreement {
     }
 
     /// After the last decision.
-    pub fn finish(self) -> Disagreements {
+    pub(crate) fn finish(self) -> Disagreements {
         self.counts
     }
 }

@@ -27,7 +27,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Mass, Self::Gas, Self::Leak, Self::Onset];
+    pub(crate) const ALL: [Self; 4] = [Self::Mass, Self::Gas, Self::Leak, Self::Onset];
 }
 
 /// Sums of one quantity, period and state of the gas.
@@ -69,7 +69,7 @@ impl Cell {
 
 impl Coverage {
     /// Take what is estimated at a row.
-    pub fn take(&mut self, moment: &Moment<'_>, world: &World) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, world: &World) {
         let fault = matches!(world.request.overlay, Overlay::Fault { .. });
         if fault || self.last_s.is_some_and(|last_s| moment.now_s - last_s < APART_S) {
             return;

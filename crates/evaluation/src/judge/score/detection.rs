@@ -49,7 +49,7 @@ pub struct Detecting {
 
 impl Detecting {
     /// The truth of the leak of a world; `None`: it has none.
-    pub fn facts(world: &World) -> Option<LeakFacts> {
+    pub(crate) fn facts(world: &World) -> Option<LeakFacts> {
         let Overlay::Leak { part_per_h, onset_s } = world.request.overlay else { return None };
         let until_s = *world.truth.time_s.last()?;
         let rate_pa_s = settled_pa_per_part(world)? * part_per_h / 3600.0;
@@ -57,13 +57,13 @@ impl Detecting {
     }
 
     /// Before the first decision; `None`: the world has no leak.
-    pub fn of(world: &World) -> Option<Self> {
+    pub(crate) fn of(world: &World) -> Option<Self> {
         let Overlay::Leak { onset_s, .. } = world.request.overlay else { return None };
         Some(Self { onset_s, detected: Detected::default(), since_s: None })
     }
 
     /// Take a decision.
-    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         if !(decision.loss || decision.says_leak()) {
             self.since_s = None;
             return;
@@ -75,7 +75,7 @@ impl Detecting {
     }
 
     /// After the last decision.
-    pub fn finish(self) -> Detected {
+    pub(crate) fn finish(self) -> Detected {
         self.detected
     }
 }
@@ -127,7 +127,7 @@ pub struct ExchangeWatch {
 
 impl ExchangeWatch {
     /// The exchange of a world; `None`: it has none.
-    pub fn of(world: &World) -> Option<Self> {
+    pub(crate) fn of(world: &World) -> Option<Self> {
         let (out, onset_s) = match world.request.overlay {
             Overlay::Discharge { onset_s, .. } => (true, onset_s),
             Overlay::Refill { onset_s, .. } => (false, onset_s),
@@ -137,14 +137,14 @@ impl ExchangeWatch {
     }
 
     /// Take a decision.
-    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         let wanted = if self.outcome.out { Class::Discharge } else { Class::Refill };
         let since_s = moment.now_s - self.onset_s;
         self.outcome.recognised |= decision.class == wanted && (0.0..=RECOGNISED_S).contains(&since_s);
     }
 
     /// After the last decision.
-    pub fn finish(self) -> Exchanged {
+    pub(crate) fn finish(self) -> Exchanged {
         self.outcome
     }
 }
@@ -162,7 +162,7 @@ pub struct FastLossWatch {
 
 impl FastLossWatch {
     /// The fast loss of a world; `None`: it has none.
-    pub fn of(world: &World) -> Option<Self> {
+    pub(crate) fn of(world: &World) -> Option<Self> {
         let (part, onset_s, announced) = match world.request.overlay {
             Overlay::FastLoss { part, onset_s, .. } => (part, onset_s, false),
             Overlay::Discharge { part, onset_s, announced, .. } => (part, onset_s, announced),
@@ -194,7 +194,7 @@ impl FastLossWatch {
     }
 
     /// Take a decision.
-    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         let lost = self.outcome.matters_s.map(|matters_s| self.onset_s + matters_s);
         if decision.exit_code == 1 && self.outcome.told_s.is_none() {
             self.outcome.told_s = Some(moment.now_s - self.onset_s);
@@ -207,7 +207,7 @@ impl FastLossWatch {
     }
 
     /// After the last decision.
-    pub fn finish(self) -> FastLoss {
+    pub(crate) fn finish(self) -> FastLoss {
         self.outcome
     }
 }

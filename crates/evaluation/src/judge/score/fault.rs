@@ -65,7 +65,7 @@ pub struct FaultWatch {
 
 impl FaultWatch {
     /// The fault of a world; `None`: it has none.
-    pub fn of(world: &World) -> Option<Self> {
+    pub(crate) fn of(world: &World) -> Option<Self> {
         let Overlay::Fault { row, onset_s, leak } = world.request.overlay else { return None };
         let any =
             |is: fn(&HappeningKind) -> bool| world.happenings.iter().any(|happening| is(&happening.kind));
@@ -93,7 +93,7 @@ impl FaultWatch {
     }
 
     /// Take a decision.
-    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         let since_s = moment.now_s - self.onset_s;
         if since_s < 0.0 {
             return;
@@ -113,7 +113,7 @@ impl FaultWatch {
     }
 
     /// After the last decision.
-    pub fn finish(self) -> FaultOutcome {
+    pub(crate) fn finish(self) -> FaultOutcome {
         let false_leak = self.leak && !self.loses;
         // An exchange that the row makes is a loss if gas goes out.
         let false_loss = false_leak || self.loss && !self.loses && !self.exchanges;

@@ -44,13 +44,13 @@ pub type Innovations = [RegimeSums; 5];
 
 impl Pairs {
     /// Autocorrelation; `None` without pairs.
-    pub fn correlation(&self) -> Option<f64> {
+    pub(crate) fn correlation(&self) -> Option<f64> {
         let scale = (self.before * self.after).sqrt();
         (self.count > 0 && scale > 0.0).then(|| self.products / scale)
     }
 
     /// Add other sums.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.products += other.products;
         self.before += other.before;
         self.after += other.after;
@@ -60,14 +60,14 @@ impl Pairs {
 
 impl RegimeSums {
     /// Add other sums.
-    pub fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         self.count += other.count;
         self.nis += other.nis;
         self.lags.iter_mut().zip(&other.lags).for_each(|(lag, other)| lag.add(other));
     }
 
     /// Mean of `nu^2/S`; `None` without innovations.
-    pub fn mean_nis(&self) -> Option<f64> {
+    pub(crate) fn mean_nis(&self) -> Option<f64> {
         (self.count > 0).then(|| self.nis / self.count as f64)
     }
 }
@@ -80,7 +80,7 @@ pub struct Whiteness {
 
 impl Whiteness {
     /// Take an innovation.
-    pub fn take(
+    pub(crate) fn take(
         &mut self,
         sums: &mut Innovations,
         time_s: f64,

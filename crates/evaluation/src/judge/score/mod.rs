@@ -112,7 +112,7 @@ pub struct Scorer<'a> {
 
 impl<'a> Scorer<'a> {
     /// Before the first statement; `level` is the probability from which on the candidate decides for a leak.
-    pub fn new(world: &'a World, level: f64) -> Self {
+    pub(crate) fn new(world: &'a World, level: f64) -> Self {
         Self {
             world,
             last_s: None,
@@ -131,7 +131,7 @@ impl<'a> Scorer<'a> {
     }
 
     /// Take a statement that is said at the true time `now_s` about the row of an index.
-    pub fn take(&mut self, now_s: f64, row: usize, said: &Said) {
+    pub(crate) fn take(&mut self, now_s: f64, row: usize, said: &Said) {
         let truth = &self.world.truth;
         let step_s = self.last_s.map_or(0.0, |last_s| (now_s - last_s).clamp(0.0, LONGEST_STEP_S));
         self.last_s = Some(now_s);
@@ -176,7 +176,7 @@ impl<'a> Scorer<'a> {
     }
 
     /// After the last statement.
-    pub fn finish(self) -> Score {
+    pub(crate) fn finish(self) -> Score {
         let mut score = self.score;
         let quiet = self.world.request.overlay == Overlay::Nothing;
         if self.verdicts.any() {

@@ -17,7 +17,7 @@ pub struct FreeMass {
 
 impl FreeMass {
     /// Take a statement.
-    pub fn take(&mut self, moment: &Moment<'_>, world: &World) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, world: &World) {
         let Some(mass_kg) = moment.said.free_mass_kg.filter(|mass_kg| mass_kg.is_finite()) else { return };
         let due = self.kept.last().is_none_or(|last| moment.now_s >= last.time_s + SETTLED_S);
         if moment.period == 1 && due {
@@ -27,7 +27,7 @@ impl FreeMass {
     }
 
     /// After the last statement, part of the gas; `None`: too few to tell.
-    pub fn finish(self) -> Option<Noise> {
+    pub(crate) fn finish(self) -> Option<Noise> {
         let noise = Noise::fit(&self.kept)?;
         (noise.sd.is_finite() && noise.correlation_time_s.is_finite()).then_some(noise)
     }

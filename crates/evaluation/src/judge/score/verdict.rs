@@ -75,7 +75,7 @@ pub struct Verdicts {
 
 impl Verdicts {
     /// Take a decision.
-    pub fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+    pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
         if let Some(class) = self.last {
             let seconds = match moment.gas {
                 Gas::Tight => &mut self.shares.tight_s,
@@ -91,12 +91,12 @@ impl Verdicts {
     }
 
     /// Whether anything was decided.
-    pub fn any(&self) -> bool {
+    pub(crate) fn any(&self) -> bool {
         self.last.is_some()
     }
 
     /// After the last decision.
-    pub fn finish(self) -> (Shares, Episodes) {
+    pub(crate) fn finish(self) -> (Shares, Episodes) {
         let episodes = Episodes {
             loss: self.loss.episode,
             leak: self.leak.episode,

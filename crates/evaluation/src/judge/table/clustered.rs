@@ -20,7 +20,7 @@ use crate::world::SimulationKey;
 
 /// Sums over simulations; what belongs to one simulation must come together.
 #[derive(Clone, Debug, Default)]
-pub struct Clustered {
+pub(crate) struct Clustered {
     open: Option<(SimulationKey, f64, f64)>,
     simulations: u64,
     with_any: u64,
@@ -34,7 +34,7 @@ pub struct Clustered {
 
 impl Clustered {
     /// Add counts and time of a world.
-    pub fn add(&mut self, simulation: SimulationKey, count: f64, time: f64) {
+    pub(crate) fn add(&mut self, simulation: SimulationKey, count: f64, time: f64) {
         if self.open.is_some_and(|(open, ..)| open != simulation) {
             self.close();
         }
@@ -70,7 +70,7 @@ impl Clustered {
     }
 
     /// As counts in a time, s; `None` without both. What is said all the time is said infinitely often in the time without it.
-    pub fn rate(&self) -> Option<Rate> {
+    pub(crate) fn rate(&self) -> Option<Rate> {
         let all = self.closed();
         if all.t <= 0.0 && all.n == 0.0 {
             return None;
@@ -93,7 +93,7 @@ impl Clustered {
     }
 
     /// As trials that succeeded; `None` without trials.
-    pub fn share(&self) -> Option<Share> {
+    pub(crate) fn share(&self) -> Option<Share> {
         let all = self.closed();
         if all.t <= 0.0 {
             return None;

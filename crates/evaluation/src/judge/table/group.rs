@@ -65,7 +65,7 @@ impl Length {
 
 impl Group {
     /// All groups that a task is in.
-    pub fn all(task: &Task) -> [Self; 9] {
+    pub(crate) fn all(task: &Task) -> [Self; 9] {
         let family = task.request.family;
         let Family { vessel, climate, gas, sensors, rows } = family;
         [
@@ -83,7 +83,7 @@ impl Group {
     }
 
     /// Whether the table for people shows it among the first rows.
-    pub fn is_of_one_axis(&self) -> bool {
+    pub(crate) fn is_of_one_axis(&self) -> bool {
         !matches!(self.of, Of::Place(..) | Of::Family(_))
     }
 }

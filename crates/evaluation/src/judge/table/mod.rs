@@ -98,7 +98,7 @@ impl Table {
     ///
     /// # Errors
     /// The journal cannot be read.
-    pub fn of(plan: &Plan, results: &mut Results) -> Result<Self, JudgeError> {
+    pub(crate) fn of(plan: &Plan, results: &mut Results) -> Result<Self, JudgeError> {
         let mut order: Vec<usize> = (0..plan.tasks.len()).collect();
         order.sort_by_key(|task| (SimulationKey::of(&plan.tasks[*task].request), *task));
         let thresholds = tune(plan, results, &order)?;

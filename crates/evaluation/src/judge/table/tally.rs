@@ -16,7 +16,7 @@ use crate::world::{FaultRow, Overlay, SimulationKey};
 
 /// Shares whose intervals go by simulation, and sums of squares.
 #[derive(Clone, Debug, Default)]
-pub struct CoverageTally {
+pub(crate) struct CoverageTally {
     /// Intervals that held the truth, of those stated.
     pub inside: Clustered,
     /// Sum over worlds.
@@ -25,7 +25,7 @@ pub struct CoverageTally {
 
 /// What came of the faults of one row.
 #[derive(Clone, Debug, Default)]
-pub struct FaultTally {
+pub(crate) struct FaultTally {
     /// Recognised, of worlds.
     pub recognised: Clustered,
     /// Worlds with a false loss.
@@ -38,7 +38,7 @@ pub struct FaultTally {
 
 /// What came of fast losses of one kind.
 #[derive(Clone, Debug, Default)]
-pub struct FastTally {
+pub(crate) struct FastTally {
     /// Told in time, of worlds in which nothing was told before.
     pub in_time: Clustered,
     /// Told at all after the onset.
@@ -51,7 +51,7 @@ pub struct FastTally {
 
 /// Sums of a candidate over a group.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub(crate) struct Tally {
     /// Worlds.
     pub worlds: u64,
     /// Worlds without a score.
@@ -94,14 +94,14 @@ pub struct Tally {
 
 impl Tally {
     /// Add a world that has no score.
-    pub fn add_failed(&mut self, task: &Task) {
+    pub(crate) fn add_failed(&mut self, task: &Task) {
         self.worlds += 1;
         self.failed += 1;
         self.simulations.insert(SimulationKey::of(&task.request));
     }
 
     /// Add a world.
-    pub fn add(&mut self, task: &Task, facts: &Facts, score: &Score) {
+    pub(crate) fn add(&mut self, task: &Task, facts: &Facts, score: &Score) {
         let simulation = SimulationKey::of(&task.request);
         self.worlds += 1;
         self.simulations.insert(simulation);

@@ -18,7 +18,7 @@ const BOUND_PATHS: u64 = 30;
 
 /// An ensemble to be drawn.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub(crate) struct Plan {
     pub chamber: Chamber,
     /// Of the truth, and of the filter.
     pub truth: ObserverSettings,
@@ -48,13 +48,13 @@ struct Bound {
 
 /// Efficiency of gas temperature and mass over the whole run.
 #[derive(Debug)]
-pub struct Efficiencies {
+pub(crate) struct Efficiencies {
     /// By the bound of each true path, and by the bound as published.
     pub along_paths: [Efficiency; 2],
     pub published: [Efficiency; 2],
 }
 
-pub struct Ensemble {
+pub(crate) struct Ensemble {
     plan: Plan,
     runs: Vec<Run>,
     times_s: Vec<f64>,
@@ -126,7 +126,7 @@ impl Bound {
 }
 
 impl Ensemble {
-    pub fn of(plan: &Plan) -> Self {
+    pub(crate) fn of(plan: &Plan) -> Self {
         let world = OwnWorld::new(plan.chamber, &plan.truth, plan.spread).unwrap();
         let prior = world.prior_covariance();
         let functionals = [world.map().gas, world.map().mass];
@@ -142,14 +142,14 @@ impl Ensemble {
     }
 
     /// Innovations of all runs.
-    pub fn nis(&self) -> NisAccumulator {
+    pub(crate) fn nis(&self) -> NisAccumulator {
         let mut all = NisAccumulator::default();
         self.runs.iter().for_each(|run| all.merge(&run.nis));
         all
     }
 
     /// Normalised errors squared of some states together, over the runs, at the fixed times.
-    pub fn nees(&self, states: &[usize]) -> EnsembleNees {
+    pub(crate) fn nees(&self, states: &[usize]) -> EnsembleNees {
         let mut nees = EnsembleNees::new(&self.times_s, states.len());
         for run in &self.runs {
             for (index, (error, p)) in run.at.iter().enumerate() {
@@ -161,13 +161,13 @@ impl Ensemble {
     }
 
     /// Indices of gas temperature and mass.
-    pub fn functionals(&self) -> [usize; 2] {
+    pub(crate) fn functionals(&self) -> [usize; 2] {
         self.functionals
     }
 
     /// Variances of gas temperature and mass, summed over the samples: mean of the bounds of the paths, and the bound as
     /// published on the same paths.
-    pub fn bounds(&self) -> ([f64; 2], [f64; 2]) {
+    pub(crate) fn bounds(&self) -> ([f64; 2], [f64; 2]) {
         let paths: Vec<&Bound> = self.runs.iter().filter_map(|run| run.bound.as_ref()).collect();
         let along =
             [0, 1].map(|w| paths.iter().map(|path| path.variances[w]).sum::<f64>() / paths.len() as f64);
@@ -187,7 +187,7 @@ impl Ensemble {
     }
 
     /// Efficiency by both bounds, with intervals of 95 %.
-    pub fn efficiencies(&self) -> Efficiencies {
+    pub(crate) fn efficiencies(&self) -> Efficiencies {
         let (along, published) = self.bounds();
         let of = |bounds: [f64; 2]| {
             [0, 1].map(|w| {

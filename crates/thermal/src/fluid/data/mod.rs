@@ -57,7 +57,7 @@ pub struct Melting {
 
 impl Melting {
     /// Melting pressure at a temperature, Pa.
-    pub fn pressure_pa(&self, temperature_k: f64) -> f64 {
+    pub(crate) fn pressure_pa(&self, temperature_k: f64) -> f64 {
         let ratio = temperature_k / self.temperature_k;
         self.pressure_pa + self.terms.iter().map(|&(a, t)| a * (ratio.powf(t) - 1.0)).sum::<f64>()
     }

@@ -50,7 +50,7 @@ pub struct OlchowySengers {
 
 impl OlchowySengers {
     /// Enhancement, W/(m K); `viscosity` in Pa s, `dp_drho_reference` in Pa m³/kg at the reference temperature.
-    pub fn conductivity_w_m_k<D: Real>(
+    pub(crate) fn conductivity_w_m_k<D: Real>(
         &self,
         state: &TransportState<D>,
         viscosity: D,

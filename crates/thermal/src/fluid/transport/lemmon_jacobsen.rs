@@ -38,7 +38,7 @@ pub struct Term {
 
 impl Term {
     /// A term in the order of the source's tables.
-    pub const fn new(n: f64, t: f64, d: u32, l: usize) -> Self {
+    pub(crate) const fn new(n: f64, t: f64, d: u32, l: usize) -> Self {
         Self { n, t, d, l }
     }
 }
@@ -70,13 +70,13 @@ pub struct LemmonJacobsenData {
 
 impl LemmonJacobsenData {
     /// Viscosity, Pa s.
-    pub fn viscosity_pa_s<D: Real>(&self, rho: D, t: D) -> D {
+    pub(crate) fn viscosity_pa_s<D: Real>(&self, rho: D, t: D) -> D {
         let delta = rho / self.reducing_density_kg_m3;
         (self.dilute_viscosity(t) + residual(self.viscosity, delta, self.ln_tau(t))) * 1e-6
     }
 
     /// Thermal conductivity without the critical enhancement, W/(m K).
-    pub fn conductivity_w_m_k<D: Real>(&self, rho: D, t: D) -> D {
+    pub(crate) fn conductivity_w_m_k<D: Real>(&self, rho: D, t: D) -> D {
         let ln_tau = self.ln_tau(t);
         let delta = rho / self.reducing_density_kg_m3;
         let mut sum = self.dilute_viscosity(t) * self.dilute_from_viscosity;

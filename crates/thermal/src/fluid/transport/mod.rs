@@ -53,7 +53,7 @@ pub enum Transport {
 impl Transport {
     /// Viscosity, Pa s. The critical enhancement of the viscosity, below 1 % except within 1 % of the
     /// critical temperature, is left out, as in the sources.
-    pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
+    pub(crate) fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::Hydrogen => hydrogen::viscosity_pa_s(density_kg_m3, temperature_k),
@@ -74,7 +74,7 @@ impl Transport {
     ///
     /// `viscosity` is that of the state, Pa s; `dp_drho_reference` is `(dp/drho)_T`, Pa m³/kg, at the same
     /// density and [`Self::reference_temperature_k`], ignored where that is `None`.
-    pub fn critical_enhancement_w_m_k<D: Real>(
+    pub(crate) fn critical_enhancement_w_m_k<D: Real>(
         &self,
         state: &TransportState<D>,
         viscosity: D,
@@ -92,7 +92,7 @@ impl Transport {
     /// Temperature from which on the critical enhancement is zero, K, and at which its reference derivative
     /// is to be taken. `None`: there is no such derivative; the enhancement of helium, zero from 12 K on,
     /// ignores it.
-    pub fn reference_temperature_k(&self) -> Option<f64> {
+    pub(crate) fn reference_temperature_k(&self) -> Option<f64> {
         match self {
             Transport::LemmonJacobsen(data) => Some(data.critical.reference_temperature_k),
             Transport::Hydrogen => Some(hydrogen::CRITICAL.reference_temperature_k),

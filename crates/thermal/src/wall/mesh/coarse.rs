@@ -24,7 +24,7 @@ impl Mesh {
     /// of the resolved mesh. Stretches have about equal outer areas; capacities, areas and shape factors add, the layers
     /// become one mixture, and between two nodes the half cells of the columns from middle to middle lie in series.
     /// There are never more nodes than columns.
-    pub fn coarse(geometry: &Geometry, nodes: usize) -> (Self, Vec<usize>) {
+    pub(crate) fn coarse(geometry: &Geometry, nodes: usize) -> (Self, Vec<usize>) {
         let fine = Self::of_mixture(geometry);
         let node_of = stretches_of_equal_area(&fine.columns, nodes);
         let count = node_of.last().map_or(0, |last| last + 1);

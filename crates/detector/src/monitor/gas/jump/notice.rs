@@ -69,7 +69,7 @@ impl Default for JumpWatch {
 impl JumpWatch {
     /// Take in a reading. `step` is the resolution of the transmitter; `part` the relative uncertainty of a change of the expected
     /// pressure. Returns the innovation before the reading if the reading is a jump.
-    pub fn notice(&mut self, now: Innovated, step: f64, part: f64) -> Option<f64> {
+    pub(crate) fn notice(&mut self, now: Innovated, step: f64, part: f64) -> Option<f64> {
         if !(now.reading.is_finite() && now.innovation.is_finite()) {
             return None;
         }
@@ -105,7 +105,7 @@ impl JumpWatch {
     }
 
     /// How much more than is considered the surroundings have done to it lately, at least 1.
-    pub fn excess(&self) -> f64 {
+    pub(crate) fn excess(&self) -> f64 {
         self.excess
     }
 
@@ -125,13 +125,13 @@ impl JumpWatch {
     }
 
     /// A jump was none, or the transmitter's: go on after this reading.
-    pub fn go_on(&mut self, last: Innovated) {
+    pub(crate) fn go_on(&mut self, last: Innovated) {
         self.forget();
         self.last = Some(last);
     }
 
     /// Forget the last reading, and the change that it was.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         (self.last, self.before, self.latest) = (None, f64::NAN, 0.0);
     }
 }

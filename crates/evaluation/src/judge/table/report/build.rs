@@ -36,7 +36,7 @@ pub(crate) fn noise_of(tally: &Tally) -> Option<Noise> {
 
 impl GroupReport {
     /// From the sums of a group; `noise` is the smallest of all candidates.
-    pub fn of(group: &Group, tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Self {
+    pub(crate) fn of(group: &Group, tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Self {
         let decides = tally.disagreements.rows > 0;
         Self {
             role: group.role,
