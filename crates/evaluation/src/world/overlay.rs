@@ -28,7 +28,7 @@ pub enum Overlay {
         within_s: f64,
         /// Onset, s.
         onset_s: f64,
-        /// Whether it goes on at its rate afterwards, until a twentieth of the gas is left.
+        /// Whether it goes on at its rate afterwards, until a fifth of the gas is left.
         goes_on: bool,
     },
     /// A discharge.
