@@ -1,7 +1,7 @@
 //! cylwatch tells a leaking gas cylinder from a cold one.
 //!
 //! This crate puts the workspace under one roof ([`thermal`], [`estimator`], [`detector`], [`evaluation`]) and adds what the program needs:
-//! logs as files ([`log`]), results as text and figures ([`report`]), gas properties ([`properties`]), the reproduction of
+//! logs as files ([`log`]), results as text and figures ([`report`]), gas properties (`properties`), the reproduction of
 //! the paper that it follows ([`reproduce`]).
 //!
 //! # Data flow

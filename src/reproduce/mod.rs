@@ -2,14 +2,14 @@
 //!
 //! | part | what |
 //! |---|---|
-//! | [`section_2`] | gas mass and heat capacities |
+//! | `section_2` | gas mass and heat capacities |
 //! | [`cylinder`] | scenarios 1 to 4 (figure 1), the pressure line of a tight cylinder |
-//! | [`table_1`], [`identification`] | table 1, figures 2 and 3 |
-//! | [`scheme`] | figures 4, 5, 7 as graphs that run; figures 6 and 8 by them |
-//! | [`methods`], [`mod@passage`] | figures 6 and 8 on a simulated cylinder |
-//! | [`drawn_cylinders`] | published, refitted, observer and bound on drawn cylinders |
+//! | [`table_1`], `identification` | table 1, figures 2 and 3 |
+//! | `scheme` | figures 4, 5, 7 as graphs that run; figures 6 and 8 by them |
+//! | `methods`, `passage` | figures 6 and 8 on a simulated cylinder |
+//! | `drawn_cylinders` | published, refitted, observer and bound on drawn cylinders |
 //! | [`blowdown`], [`measured`] | the model beside a measured blowdown |
-//! | [`mod@checks`], [`comparison`] | numbers and their references; paper, here, why they differ |
+//! | `checks`, `comparison` | numbers and their references; paper, here, why they differ |
 //!
 //! [`run`] computes, [`Reproduction::report`] is the report, [`Reproduction::files`] gives the files to write.
 pub mod blowdown;

@@ -86,7 +86,7 @@ impl Reproduction {
     }
 
     /// Everything in the order of the paper.
-    pub(crate) fn report(&self) -> Report {
+    pub fn report(&self) -> Report {
         self.report_with(&self.pictures())
     }
 

@@ -76,7 +76,7 @@ impl Tails {
     /// Check every number.
     ///
     /// # Errors
-    /// As [`Tail::validate`].
+    /// As `Tail::validate`.
     pub fn validate(&self) -> Result<(), DetectorError> {
         self.0.iter().try_for_each(Tail::validate)
     }

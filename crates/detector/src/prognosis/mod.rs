@@ -1,7 +1,7 @@
 //! The time that is left: until the pressure at 15 °C, and until the pressure at a stated temperature, reach a limit.
 //!
 //! * [`Contents`] turns a limit of the pressure at a temperature into a limit of the mass, by the equation of state in the vessel's volume:
-//!   160 bar at 15 °C or on the coldest night, 5 % of the pressure lost ([`Contents::limit_after_loss_kg`]).
+//!   160 bar at 15 °C or on the coldest night, 5 % of the pressure lost (`Contents::limit_after_loss_kg`).
 //! * [`MassAndLeak`] is what an observer knows: mass and leak rate, jointly normal.
 //! * [`Prognosis`] is the distribution of the time until the limit. The leak rate is not negative, so the normal
 //!   distribution is cut off there; the ratio of the two has no mean, so what is reported are quantiles ([`Passage`]),

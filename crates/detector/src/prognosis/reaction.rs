@@ -98,7 +98,7 @@ impl ReactionSettings {
     /// What is due. Of several operational limits (at 15 °C, on the coldest night) the first to be reached counts.
     ///
     /// # Errors
-    /// As [`ReactionSettings::validate`].
+    /// As `ReactionSettings::validate`.
     pub fn decide(
         &self,
         operational: &[Prognosis],

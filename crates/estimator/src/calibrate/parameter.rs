@@ -209,7 +209,7 @@ pub struct ParameterSpec {
     pub start: f64,
     /// What is known of it; `None`: nothing.
     pub prior: Option<Prior>,
-    /// Lowest and highest value; `None`: [`ParameterKind::usual_bounds`].
+    /// Lowest and highest value; `None`: `ParameterKind::usual_bounds`.
     pub bounds: Option<(f64, f64)>,
     /// Experiments that share it.
     pub scope: Scope,

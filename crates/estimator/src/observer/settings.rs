@@ -246,7 +246,7 @@ pub struct ObserverSettings {
     #[serde(default)]
     pub band: BandSettings,
     /// The bank: the first member gives the mass, the middle one of those with a leak rate the gas temperature, as long as the
-    /// freest member agrees. The last one may be [flowing](LeakHypothesis::flowing): with [`Engine::Extended`] it takes over in fast losses.
+    /// freest member agrees. The last one may be flowing: with [`Engine::Extended`] it takes over in fast losses.
     pub bank: Vec<LeakHypothesis>,
     /// Steps of the surroundings, with [`Engine::Extended`]; `None`: they only walk.
     #[serde(default)]

@@ -6,7 +6,7 @@
 //!
 //! `P_S(t) = P(t) + e_0(t)^2 + sum_v w_v (e_v(t) - e_0(t))^2`
 //!
-//! to its variance, with the nominal course 0 and the weights of [`Variant::weight`]; the worst case is `P(t) + max_v e_v(t)^2`. So model error is not
+//! to its variance, with the nominal course 0 and the weights of `Variant::weight`; the worst case is `P(t) + max_v e_v(t)^2`. So model error is not
 //! taken for information. A scenario that begins settled has three hours of rest before it.
 //!
 //! Assumes that the variants' errors add: each is small beside what it varies. Films that the observer learns are in `P` and among

@@ -15,7 +15,7 @@
 //!
 //! [`Sensor::predict`] is the static reading with its derivatives, for a filter; [`sample`] turns a trajectory into a
 //! [`crate::log::Log`] with everything that follows. The numbers `b, kappa, c, s` are [`Parameter`]s: known, or with a
-//! prior from which [`Sensor::draw`] takes one specimen ([`SensorTruth`]).
+//! prior from which `Sensor::draw` takes one specimen ([`SensorTruth`]).
 #[cfg(feature = "design")]
 mod exposure;
 #[cfg(feature = "design")]

@@ -146,7 +146,7 @@ impl SensorSuite {
         Self { sensors: self.sensors.iter().map(Sensor::ideal).collect() }
     }
 
-    /// One specimen of each sensor by [`Sensor::draw`]; a sensor's specimen depends on the seed and on its name alone.
+    /// One specimen of each sensor by `Sensor::draw`; a sensor's specimen depends on the seed and on its name alone.
     pub fn draw(&self, seed: u64) -> SuiteTruth {
         self.specimens(|sensor| sensor.draw(&mut stream(seed, &sensor.name, Purpose::Specimen)))
     }

@@ -6,7 +6,7 @@
 //! | detector | expected pressure | gas temperature | then |
 //! |---|---|---|---|
 //! | [`Threshold::published`] | published slope | published function of the shoulder | threshold, hold |
-//! | [`PressureError::refitted`] in a [`Threshold`] | real gas | gain 1, refitted pole | zero, threshold, hold |
+//! | `PressureError::refitted` in a [`Threshold`] | real gas | gain 1, refitted pole | zero, threshold, hold |
 //! | [`Threshold::raw_switch`] | the limit, whatever the temperature | none | threshold 0 |
 //! | [`Threshold::ideal_gas`] | `p_fill T/T_fill` | the shoulder | threshold, hold |
 //! | [`ErrorCusum`] | any | any | cumulative sum as if `e` were white |

@@ -54,7 +54,7 @@ impl Default for Campaign {
 
 impl Campaign {
     /// Cylinders that a fit and its cross-validation need: as many stretches of the slowest scale in each half as a tail is fitted to; `None`:
-    /// no number is enough, because a log has no whole stretch. `stretch` as in [`Record::stretch_h`].
+    /// no number is enough, because a log has no whole stretch. `stretch` as in `Record::stretch_h`.
     pub fn needed(&self, stretch: f64) -> Option<usize> {
         // The last hour may have lost its rows.
         let each = self.sensors.len() * ((self.length_s - HOUR_S) / longest_s(stretch)) as usize;

@@ -14,7 +14,7 @@ use crate::judge::table::Rate;
 pub struct FitSettings {
     /// Mean time between false alarms that the thresholds are for, s.
     pub mean_time_s: f64,
-    /// Length of the stretches, as in [`Record::stretch_h`].
+    /// Length of the stretches, as in `Record::stretch_h`.
     pub stretch: f64,
     /// Seed of the draws for intervals.
     pub seed: u64,

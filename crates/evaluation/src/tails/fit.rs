@@ -51,7 +51,7 @@ pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError>
     Ok(Tail { level, interval_s: stretch_s * sorted.len() as f64 / above as f64, scale, shape })
 }
 
-/// Fit to the records of leak-free cylinders; `stretch` as in [`Record::stretch_h`].
+/// Fit to the records of leak-free cylinders; `stretch` as in `Record::stretch_h`.
 ///
 /// # Errors
 /// As [`fit_one`].

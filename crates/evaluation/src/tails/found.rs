@@ -19,7 +19,7 @@ use crate::world::{Family, SimulationKey};
 /// Number of halves.
 pub(super) const FOLDS: usize = 2;
 
-/// False alarms at thresholds for a mean time, s, each cylinder by those fitted to the other half; `stretch` as in [`Record::stretch_h`].
+/// False alarms at thresholds for a mean time, s, each cylinder by those fitted to the other half; `stretch` as in `Record::stretch_h`.
 ///
 /// # Errors
 /// A half has too few stretches or nothing to fit to.

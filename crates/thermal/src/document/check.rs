@@ -85,7 +85,7 @@ pub fn fraction(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalErro
     within(path, value, (0.0, 1.0), "between 0 and 1", remedy)
 }
 
-/// A temperature in [`TEMPERATURE_RANGE_K`].
+/// A temperature in `TEMPERATURE_RANGE_K`.
 ///
 /// # Errors
 /// Any other value.
@@ -94,7 +94,7 @@ pub fn temperature_k(path: &str, value: f64) -> Result<f64, ThermalError> {
     within(path, value, TEMPERATURE_RANGE_K, bound, "check the unit, _degc or _k")
 }
 
-/// An absolute pressure in [`PRESSURE_RANGE_PA`].
+/// An absolute pressure in `PRESSURE_RANGE_PA`.
 ///
 /// # Errors
 /// Any other value.
@@ -109,7 +109,7 @@ pub fn pressure_pa(path: &str, value: f64) -> Result<f64, ThermalError> {
     )
 }
 
-/// A count of cells, `least` to [`CELLS_MAX`].
+/// A count of cells, `least` to `CELLS_MAX`.
 ///
 /// # Errors
 /// Any other value.

@@ -1,6 +1,6 @@
 //! The reduced model: a few wall nodes, the valve and one well-mixed gas node, in temperatures and gas mass.
 //!
-//! The same equations as [`crate::model::Model`] on a coarse wall ([`Mesh::coarse`]), with the same conduction, films and
+//! The same equations as [`crate::model::Model`] on a coarse wall (`Mesh::coarse`), with the same conduction, films and
 //! equation of state, but in the variables an observer estimates, with the inputs an observer does not know
 //! (air, sun, multipliers on films and capacity, outflow), and without allocation. States
 //! `x = [T_w,1 .. T_w,N | T_valve | T_gas | m]`:

@@ -1,7 +1,7 @@
 //! Rate and onset of a leak, with intervals, from what the observer says of every possible onset.
 //!
 //! For an onset at `nu_k` the observer has the rate `r_k` with standard deviation `s_k` ([`Observer::onsets`]), and the evidence knows what those are too small by
-//! ([`Evidence::error_sd`]) and what is considered for the surroundings. With a flat prior on the onset, and a rate that is uniform in its logarithm over
+//! (`Evidence::error_sd`) and what is considered for the surroundings. With a flat prior on the onset, and a rate that is uniform in its logarithm over
 //! four decades, the posterior is a mixture over the onsets of normal distributions cut off at zero,
 //!
 //! `p(r, nu_k) ~ dt_k s_k/max(r_k, s_k) exp(r_k^2/(2 s_k^2)) N(r; r_k, s_k^2)`,

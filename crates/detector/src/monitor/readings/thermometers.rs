@@ -13,7 +13,7 @@
 //! to what a jump is. Nor is it one where the surroundings may have made it: 0.44 of how far the nearer thermometer is from the gas, and of how far both went in one of the last three
 //! samples (see the observer's flowing member).
 //!
-//! What it was the [bank of causes](super::super::examination) tells from how far both are apart: an offset, or nothing that lasts. What the surroundings make of that, `x`, has the standard
+//! What it was the bank of causes tells from how far both are apart: an offset, or nothing that lasts. What the surroundings make of that, `x`, has the standard
 //! deviation 0.44 of how far the nearer one is from the gas and of how far both went within the time in which the cylinder follows: while a wall that lags cools, the shoulder stays warmer than the
 //! valve. Until it is told the thermometer is not used, and for an hour after an offset neither: if it reads the air, it shows by then. One that jumps by more than an offset can, or is
 //! restless while the other one is not and more so than usually, reads the air.

@@ -86,7 +86,7 @@ pub struct Disagreements {
     pub rows: u64,
     /// Rows with at least one contradiction.
     pub disagreeing: u64,
-    /// By rule, in the order of [`Rule::ALL`].
+    /// By rule, in the order of `Rule::ALL`.
     pub by_rule: [u64; 13],
 }
 

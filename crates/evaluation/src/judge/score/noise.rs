@@ -1,7 +1,7 @@
 //! What the freest mass does without a leak: the noise behind the shortest possible delay.
 //!
 //! From the second day on the mass is kept every 20 min, as a part of the true one, and an Ornstein-Uhlenbeck process is fitted
-//! ([`Noise::fit`]). A log of two years keeps 53 000 numbers.
+//! (`Noise::fit`). A log of two years keeps 53 000 numbers.
 use super::Moment;
 use crate::noise::{Noise, Residual};
 use crate::world::World;

@@ -12,7 +12,7 @@ use crate::judge::said::Decision;
 /// Time without a statement after which it counts anew, s.
 const APART_S: f64 = 3600.0;
 
-/// Time by verdict in the order of [`Class::ALL`], s.
+/// Time by verdict in the order of `Class::ALL`, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shares {
     /// While nothing has happened to the gas: first day, later.

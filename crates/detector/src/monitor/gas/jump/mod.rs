@@ -18,7 +18,7 @@
 //! ([`Observer::doubt_surroundings`](crate::estimator::observer::Observer::doubt_surroundings)).
 //!
 //! # Examined
-//! What it was a bank of causes tells ([`Examination`](crate::monitor::examination::Examination)): nothing, an offset, gas.
+//! What it was a bank of causes tells (`Examination`): nothing, an offset, gas.
 mod notice;
 
 pub use notice::{Innovated, JumpWatch, LONGEST_INTERVAL_S, USUAL_LARGEST};
