@@ -41,6 +41,8 @@ const USUALLY_S: f64 = 2.0 * DAY_S;
 const IN_GUSTS: f64 = 1.0 / 3.0;
 /// Steps of a reading in the difference of two second differences at most.
 const STEPS: f64 = 3.0;
+/// Time after which it is known how far both are usually apart, s.
+const KNOWN_S: f64 = 0.5 * HOUR_S;
 /// Samples that slopes are taken from.
 const SAMPLES: usize = 3;
 /// What both may have done while neither can be read, errors.
@@ -69,12 +71,33 @@ pub struct Pair {
     extremes_k: [(f64, f64); 2],
     /// The last samples: time, s, and readings, K.
     recent: VecDeque<(f64, [f64; 2])>,
-    /// First less second thermometer lately, K: what is in doubt counts little.
-    apart_k: Option<f64>,
+    usual: Usual,
     suspect: Option<Suspect>,
     /// Which one jumped last, and until when it is not used, s.
     probation: Option<(usize, f64)>,
     restless: Restlessness,
+}
+
+/// First less second thermometer lately: a mean in which what is in doubt counts little.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Usual {
+    apart_k: f64,
+    /// Time at rest that it is worth, and time that it was seen for, s.
+    worth_s: f64,
+    seen_s: f64,
+}
+
+impl Usual {
+    /// Take in a difference, K, that the surroundings may have done so much to, errors.
+    fn push(&mut self, interval_s: f64, apart_k: f64, doubt: f64) {
+        if apart_k.is_nan() {
+            return;
+        }
+        let worth_s = interval_s / (1.0 + doubt * doubt);
+        self.seen_s += interval_s;
+        self.worth_s = (self.worth_s + worth_s).min(LATELY_S);
+        self.apart_k += worth_s / self.worth_s.max(f64::MIN_POSITIVE) * (apart_k - self.apart_k);
+    }
 }
 
 /// A thermometer under suspicion.
@@ -147,7 +170,7 @@ impl Pair {
         let shown = match self.suspect.take() {
             Some(suspect) => self.follow(suspect, time_s, readings, doubt_k),
             None => {
-                self.learn(interval_s, readings[0] - readings[1], doubt_k);
+                self.usual.push(interval_s, readings[0] - readings[1], doubt_k / self.error_k);
                 None
             }
         };
@@ -215,16 +238,6 @@ impl Pair {
         moved.fold(self.moved_k, f64::max)
     }
 
-    /// Learn how far both are apart; what the surroundings may have done to it, K, is noise.
-    fn learn(&mut self, interval_s: f64, apart_k: f64, doubt_k: f64) {
-        if apart_k.is_nan() {
-            return;
-        }
-        let usual_k = self.apart_k.get_or_insert(apart_k);
-        let weight = 1.0 / (1.0 + (doubt_k / self.error_k).powi(2));
-        *usual_k -= (-weight * interval_s / LATELY_S).exp_m1() * (apart_k - *usual_k);
-    }
-
     fn look_for_a_jump(
         &mut self,
         (time_s, readings): (f64, [f64; 2]),
@@ -232,7 +245,7 @@ impl Pair {
         doubt_k: f64,
         memory_s: f64,
     ) {
-        let (Some(&(last_s, last)), Some(apart_k)) = (self.recent.back(), self.apart_k) else { return };
+        let Some(&(last_s, last)) = self.recent.back() else { return };
         let which = usize::from(second_k[1].abs() > second_k[0].abs());
         let (own_k, other_k) = (second_k[which], second_k[1 - which]);
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);
@@ -240,9 +253,9 @@ impl Pair {
             > (JUMP * self.error_k * minutes + self.steps_k).max(doubt_k);
         // Not so where one of them is no number.
         let alone = other_k.abs() < ALONE * own_k.abs() + STILL * self.error_k;
-        if jumps && alone {
+        if jumps && alone && self.usual.seen_s > KNOWN_S {
             let of_span = |of_k: f64| of_k / (SPAN * self.error_k);
-            let missing = -of_its_own(which, of_span(last[0] - last[1] - apart_k));
+            let missing = -of_its_own(which, of_span(last[0] - last[1] - self.usual.apart_k));
             let before = Before { missing, fresh: of_span(doubt_k), unseen: 0.0 };
             let examination =
                 Examination::new(Subject::Thermometer, time_s, before, memory_s, FarOff::default());
@@ -259,7 +272,7 @@ impl Pair {
         doubt_k: f64,
     ) -> Option<Lonely> {
         let (which, span_k) = (suspect.which, SPAN * self.error_k);
-        let off_k = of_its_own(which, readings[0] - readings[1] - self.apart_k?);
+        let off_k = of_its_own(which, readings[0] - readings[1] - self.usual.apart_k);
         let cause = suspect.examination.push(Compared {
             time_s,
             missing: -off_k / span_k,
@@ -273,7 +286,7 @@ impl Pair {
             }
             Cause::Spike | Cause::Passed | Cause::Unclear => None,
             Cause::Offset(by) => {
-                self.apart_k = None;
+                self.usual = Usual::default();
                 Some(Lonely::Shifted(which, by * span_k))
             }
             Cause::Flowing | Cause::Gas => Some(Lonely::Detached(which)),
