@@ -14,8 +14,9 @@
 //! samples (see the observer's flowing member).
 //!
 //! What it was the bank of causes tells from how far both are apart: an offset, or nothing that lasts. What the surroundings make of that, `x`, has the standard
-//! deviation 0.44 of how far the nearer one is from the gas and of how far both went within the time in which the cylinder follows: while a wall that lags cools, the shoulder stays warmer than the
-//! valve. Until it is told the thermometer is not used, and for an hour after an offset neither: if it reads the air, it shows by then. One that jumps by more than an offset can, or is
+//! deviation 0.44 of how far the nearer one is from the gas, or of how far either went within the time in which the cylinder follows (the suspected one since its jump), whichever is more:
+//! while a wall that lags cools, the shoulder stays warmer than the valve. How far both are usually apart is a mean over two hours in which each sample counts by the inverse of that variance;
+//! it is known half an hour after the first one. Until it is told the thermometer is not used, and for an hour after an offset neither: if it reads the air, it shows by then. One that jumps by more than an offset can, or is
 //! restless while the other one is not and more so than usually, reads the air.
 //!
 //! How often a jump is believed that is none, and one missed, the plans `tight.toml` and `fault.toml` (row T2) of `cylwatch-evaluation` measure; see `book/src/measured.md`.
@@ -213,7 +214,7 @@ impl Pair {
         if size.is_nan() { UNSEEN * self.error_k } else { size }
     }
 
-    /// How far they went lately at most, K, one that jumped since then. Extremes fade to the present readings.
+    /// How far the one that went farther did lately, K; one that is suspected, since its jump. Extremes fade to the present readings.
     fn went_k(&mut self, interval_s: f64, readings: [f64; 2], memory_s: f64) -> f64 {
         let share = -(-interval_s / memory_s).exp_m1();
         for ((low_k, high_k), reading_k) in self.extremes_k.iter_mut().zip(readings) {
