@@ -26,6 +26,7 @@ pub mod alarm;
 mod decision;
 mod event;
 mod examination;
+mod extremes;
 pub mod gas;
 pub mod intake;
 mod median;

@@ -30,6 +30,7 @@ use serde::{Deserialize, Serialize};
 use super::wander::Wander;
 use crate::estimator::observer::Flow;
 use crate::monitor::examination::FORGOTTEN_S;
+use crate::monitor::extremes::Extremes;
 
 /// Time constant with which extremes fade, s.
 const FADING_S: f64 = 2700.0;
@@ -175,9 +176,8 @@ impl Excursions {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct GasBounds {
     last_s: Option<f64>,
-    /// Extremes of the thermometers lately, K.
-    low_k: f64,
-    high_k: f64,
+    /// Of the thermometers lately, K.
+    extremes_k: Extremes,
     walls: Ratchet,
     excursions: Excursions,
     /// The same by the observer's flowing member, and when it last said something, s.
@@ -194,10 +194,10 @@ impl GasBounds {
             Contact::Wall => UNSEEN_WALL,
             Contact::Gas => UNSEEN_GAS,
         };
-        let drift_pa = seen.coefficient_pa_k * (self.high_k - self.low_k);
+        let drift_pa = seen.coefficient_pa_k * self.extremes_k.spread();
         let error_pa = DEVIATIONS * drift_pa.hypot(seen.noise_pa);
-        let least_kg = mass_kg(seen.pressure_pa - error_pa, (1.0 + unseen) * self.high_k);
-        let most_kg = mass_kg(seen.pressure_pa + error_pa, (1.0 - unseen) * self.low_k);
+        let least_kg = mass_kg(seen.pressure_pa - error_pa, (1.0 + unseen) * self.extremes_k.high);
+        let most_kg = mass_kg(seen.pressure_pa + error_pa, (1.0 - unseen) * self.extremes_k.low);
         if !(least_kg.is_finite() && most_kg.is_finite()) {
             return None;
         }
@@ -262,12 +262,10 @@ impl GasBounds {
         let (coldest_k, warmest_k) = seen.extremes_k;
         let Some(last_s) = self.last_s.replace(seen.time_s) else {
             let before = if seen.contact == Contact::Wall { UNSEEN_WALL } else { 0.0 };
-            (self.low_k, self.high_k) = ((1.0 - before) * coldest_k, (1.0 + before) * warmest_k);
+            self.extremes_k = Extremes { low: (1.0 - before) * coldest_k, high: (1.0 + before) * warmest_k };
             return;
         };
-        let kept = (-(seen.time_s - last_s) / FADING_S).exp();
-        self.low_k = coldest_k.min(coldest_k + kept * (self.low_k - coldest_k));
-        self.high_k = warmest_k.max(warmest_k + kept * (self.high_k - warmest_k));
+        self.extremes_k.follow(seen.extremes_k, (-(seen.time_s - last_s) / FADING_S).exp());
     }
 }
 

@@ -23,6 +23,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
+use super::of_its_own;
 use crate::monitor::median::{median, quantile};
 use crate::units::{DAY_S, HOUR_S};
 use calm::Calm;
@@ -193,7 +194,7 @@ impl Parity {
         if let Some(named) =
             self.named.filter(|named| named.steady && self.last_s - named.since_s > LASTING_S)
         {
-            return Some(Disturbance::Shifted(named.which, named.of_its_own(named.mean_k)));
+            return Some(Disturbance::Shifted(named.which, of_its_own(named.which, named.mean_k)));
         }
         if self.disturbed_s > HOUR_S && !self.told {
             self.told = true;
@@ -270,7 +271,7 @@ impl Parity {
     /// A thermometer that is off while the other one agrees with the pressure, and by how much, K.
     pub(crate) fn deviating(&self) -> Option<(usize, f64)> {
         let named = self.named.filter(|named| named.windows as usize >= LATEST)?;
-        Some((named.which, named.of_its_own(self.off_k())))
+        Some((named.which, of_its_own(named.which, self.off_k())))
     }
 
     /// How far the present difference is from the usual one beyond the usual deviations, K.
@@ -303,11 +304,6 @@ impl Named {
     /// Named for the first time, with the difference then, K.
     fn new(which: usize, since_s: f64, mean_k: f64) -> Self {
         Self { which, since_s, windows: 1, mean_k, steady: true }
-    }
-
-    /// How far it is off itself where the difference is, K.
-    fn of_its_own(&self, off_k: f64) -> f64 {
-        if self.which == 0 { off_k } else { -off_k }
     }
 
     /// After a further window, with the difference in it, K, which is steady within so much, K.
