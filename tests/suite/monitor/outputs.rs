@@ -136,3 +136,16 @@ fn a_step_of_none_tells_each_row_by_itself() {
     assert_eq!(told(&["--step-s", "0", "--lateness-s", "0"]), 7);
     assert_eq!(told(&[]), 2);
 }
+
+#[test]
+fn a_log_that_begins_in_a_tunnel_shows_no_refill() {
+    let folder = tempdir().unwrap();
+    for vessel in ["nitrogen-20l", "closed-bottle", "haque-i1"] {
+        let simulated = run(folder.path(), &["simulate", vessel, "tunnel-winter", "-o", "run.csv"]);
+        assert_eq!(simulated.code, Some(0), "{}", simulated.stderr);
+        let watched = run(folder.path(), &["monitor", vessel, "run.csv", "-o", "rows.csv"]);
+        // Too short to be told.
+        assert_eq!(watched.code, Some(3), "{vessel}: {}", watched.stderr);
+        assert!(!watched.stderr.contains("refill"), "{vessel}: {}", watched.stderr);
+    }
+}

@@ -18,9 +18,8 @@ const DEFAULT_MASS_SD: f64 = 0.01;
 const BODY_SD_K: f64 = 1.0;
 /// and wall, valve and gas of a settled one from each other: the turbulence of the air and a shoulder in the wind.
 const SETTLED_SD_K: f64 = 0.2;
-/// The same of wall and valve, and of the gas, of a cylinder that is not settled.
-const UNSETTLED_SD_K: f64 = 5.0;
-const UNSETTLED_GAS_SD_K: f64 = 5.0;
+/// The same of a cylinder that is not settled, K, beside how far its thermometers are apart: in a tunnel they read 10 K more than a wall that is 65 K colder than the air.
+pub const UNSETTLED_SD_K: f64 = 10.0;
 
 /// What is known of the cylinder at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,20 +77,19 @@ pub(super) struct Prior {
 #[derive(Clone, Copy)]
 struct Spread {
     common_k: f64,
-    wall_k: f64,
-    gas_k: f64,
+    each_k: f64,
 }
 
 impl Spread {
-    fn of(settled: bool, measured: bool) -> Self {
-        let common_k = match (measured, settled) {
-            (false, _) => ASSUMED_SD_K,
-            (true, true) => BODY_SD_K,
-            (true, false) => 0.0,
+    /// Of a cylinder whose thermometers, if there are any, are so far apart at first, K.
+    fn of(settled: bool, apart_k: Option<f64>) -> Self {
+        let common_k = match (apart_k, settled) {
+            (None, _) => ASSUMED_SD_K,
+            (Some(_), true) => BODY_SD_K,
+            (Some(_), false) => 0.0,
         };
-        let (wall_k, gas_k) =
-            if settled { (SETTLED_SD_K, SETTLED_SD_K) } else { (UNSETTLED_SD_K, UNSETTLED_GAS_SD_K) };
-        Self { common_k, wall_k, gas_k }
+        let unsettled_k = UNSETTLED_SD_K.hypot(apart_k.unwrap_or_default());
+        Self { common_k, each_k: if settled { SETTLED_SD_K } else { unsettled_k } }
     }
 
     /// Add what is common to the temperatures of wall, valve and gas.
@@ -114,32 +112,28 @@ pub(super) fn prior(
     vessel: &Vessel,
     readings: &[f64],
 ) -> Result<Prior, EstimatorError> {
-    let mean_of = |is_kind: fn(&SensorKind) -> bool| -> Option<f64> {
-        let values: Vec<f64> = sensors
-            .iter()
-            .zip(readings)
-            .filter(|(sensor, value)| is_kind(&sensor.kind) && value.is_finite())
-            .map(|(_, value)| *value)
-            .collect();
-        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    let first = |is_kind: fn(&SensorKind) -> bool| -> Option<(f64, f64)> {
+        let of_kind = sensors.iter().zip(readings).filter(|(sensor, _)| is_kind(&sensor.kind));
+        mean_and_range(of_kind.map(|(_, value)| *value).filter(|value| value.is_finite()))
     };
-    let surface = mean_of(|kind| matches!(kind, SensorKind::Surface { .. }));
-    let gas = mean_of(|kind| matches!(kind, SensorKind::Gas { .. }));
-    let air = mean_of(|kind| matches!(kind, SensorKind::Ambient));
-    let measured_k = surface.or(gas).or(air);
-    let body_k = measured_k.unwrap_or(ASSUMED_K);
-    let spread = Spread::of(commissioning.settled, measured_k.is_some());
+    let surface = first(|kind| matches!(kind, SensorKind::Surface { .. }));
+    let gas = first(|kind| matches!(kind, SensorKind::Gas { .. }));
+    let air = first(|kind| matches!(kind, SensorKind::Ambient));
+    let measured = surface.or(gas).or(air);
+    let [gas, air] = [gas, air].map(|of| of.map(|(mean_k, _)| mean_k));
+    let body_k = measured.map_or(ASSUMED_K, |(mean_k, _)| mean_k);
+    let spread = Spread::of(commissioning.settled, measured.map(|(_, apart_k)| apart_k));
     let mass_kg = commissioning.mass_kg(vessel, gas.unwrap_or(body_k))?;
     let mut mean = Vec::new();
     let mut sd = Vec::new();
     for kind in &states.kinds {
         let (of_mean, of_sd) = match *kind {
-            StateKind::Wall(_) | StateKind::Valve => (body_k, spread.wall_k),
-            StateKind::Gas => (gas.unwrap_or(body_k), spread.gas_k),
+            StateKind::Wall(_) | StateKind::Valve => (body_k, spread.each_k),
+            StateKind::Gas => (gas.unwrap_or(body_k), spread.each_k),
             StateKind::Mass => (mass_kg, commissioning.mass_sd * mass_kg),
             StateKind::Leak => (0.0, 0.0),
             StateKind::Air => {
-                (air.unwrap_or(body_k), settings.air.prior_sd.max(spread.common_k.max(spread.wall_k)))
+                (air.unwrap_or(body_k), settings.air.prior_sd.max(spread.common_k.max(spread.each_k)))
             }
             StateKind::OutsideFilm => (0.0, settings.ln_outside_film.prior_sd),
             StateKind::Sun => (0.0, settings.sun.prior_sd),
@@ -159,6 +153,13 @@ pub(super) fn prior(
     let mut covariance = DMatrix::from_diagonal(&DVector::from_vec(sd).map(|sd| sd * sd));
     spread.couple(states, &mut covariance);
     Ok(Prior { mean, covariance })
+}
+
+/// Mean and range of values, if there are any.
+fn mean_and_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let values: Vec<f64> = values.collect();
+    let [low, high] = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
+    Some((values.iter().sum::<f64>() / values.len() as f64, high - low))
 }
 
 /// What a lagging sensor shows at the start: its own reading, if it has one.
@@ -205,9 +206,12 @@ mod tests {
     #[test]
     fn a_cylinder_that_is_not_settled_may_have_any_temperatures() {
         let (Prior { covariance: p, .. }, states) = prior_of(false, &[280.0, 281.0, 2e7]);
-        assert_eq!((p[(0, 0)], p[(states.gas, states.gas)], p[(0, states.gas)]), (25.0, 25.0, 0.0));
+        // Ten kelvins, and one that the thermometers are apart.
+        let [wall, gas] = [0, states.gas].map(|state| p[(state, state)]);
+        assert_relative_eq!(wall, 101.0, max_relative = 1e-12);
+        assert_eq!((gas, p[(0, states.gas)]), (wall, 0.0));
         // Without a thermometer not even the level is known.
         let (Prior { covariance: p, .. }, _) = prior_of(false, &[f64::NAN, f64::NAN, 2e7]);
-        assert_eq!((p[(0, 0)], p[(0, states.gas)]), (425.0, 400.0));
+        assert_eq!((p[(0, 0)], p[(0, states.gas)]), (500.0, 400.0));
     }
 }

@@ -12,7 +12,9 @@
 //! gas after a tunnel, a twentieth at rest.
 //!
 //! What is smaller the observer's flowing member tells ([`Flow`]) in the same way, with the bounds `m -+ (2.2 sqrt(s^2 + w^2) + 0.003 m_full)` in place of those of the
-//! walls; `s` is the part of its standard deviation that comes and goes, `w` how far its mass usually is from that of the day before ([`super::wander`]). These bounds fade within hours, since what the observer has
+//! walls; `s` is the part of its standard deviation that comes and goes, `w` how far its mass usually is from that of the day before ([`super::wander`]). What has been learnt since a bound was set moves the mass
+//! as well: of two estimates of which the later one rests on all that the earlier one does, errors that stay differ by `P - P'` in their variance, and 2.2 standard deviations of that are added to the bound. A log that begins in
+//! the middle of a tunnel shows no refill while the observer finds out how cold the gas was. These bounds fade within hours, since what the observer has
 //! learnt of films and sensors changes from day to day.
 //!
 //! Readings far off must not count: bounds are believed that four rows in a row agree on, and more than twice as many as have lately been beyond the bounds and come back: two
@@ -80,28 +82,53 @@ pub(in crate::monitor) enum Certain {
     In,
 }
 
+/// A bound of the mass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Bound {
+    kg: f64,
+    /// What did not come and go of what was uncertain of the mass when it was set, standard deviation, kg.
+    sd_kg: f64,
+}
+
+impl Bound {
+    /// How far the mass may be beyond it by what has been learnt since, kg.
+    fn learnt_kg(&self, now_sd_kg: f64) -> f64 {
+        FLOW_DEVIATIONS * (self.sd_kg.powi(2) - now_sd_kg.powi(2)).max(0.0).sqrt()
+    }
+
+    /// Of which a part has been kept since, where it would be so much now.
+    fn faded(self, kept: f64, now: Self) -> Self {
+        let between = |bound: f64, now: f64| now + kept * (bound - now);
+        Self { kg: between(self.kg, now.kg), sd_kg: between(self.sd_kg, now.sd_kg) }
+    }
+}
+
 /// Bounds of the mass in the last rows, and the tightest ones so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Ratchet {
     /// Lower and upper bound, the latest ones first, kg.
     recent_kg: VecDeque<(f64, f64)>,
-    /// Highest lower and lowest upper bound, kg.
-    floor_kg: Option<f64>,
-    ceiling_kg: Option<f64>,
+    /// What does not come and go of what is uncertain of the mass, standard deviation, kg.
+    sd_kg: f64,
+    /// Highest lower and lowest upper bound.
+    floor: Option<Bound>,
+    ceiling: Option<Bound>,
 }
 
 impl Ratchet {
-    /// Take in the bounds of a row; those that so many rows in a row agree on may become the tightest ones, of which a part has been
+    /// Take in the bounds of a row, of a mass with this standard deviation that stays, kg; those that so many rows in a row agree on may become the tightest ones, of which a part has been
     /// kept since the last row.
-    fn push(&mut self, bounds_kg: (f64, f64), agreeing: usize, kept: f64) -> Option<Certain> {
+    fn push(&mut self, bounds_kg: (f64, f64), sd_kg: f64, agreeing: usize, kept: f64) -> Option<Certain> {
         self.recent_kg.push_front(bounds_kg);
         self.recent_kg.truncate(agreeing);
+        self.sd_kg = sd_kg;
         let certain = self.certain(agreeing);
         if let (None, Some((least_kg, most_kg))) = (certain, self.agreed(agreeing)) {
-            let faded = |bound_kg: f64, now_kg: f64| now_kg + kept * (bound_kg - now_kg);
-            self.floor_kg =
-                Some(self.floor_kg.map_or(least_kg, |floor| least_kg.max(faded(floor, least_kg))));
-            self.ceiling_kg = Some(self.ceiling_kg.map_or(most_kg, |top| most_kg.min(faded(top, most_kg))));
+            let [least, most] = [least_kg, most_kg].map(|kg| Bound { kg, sd_kg });
+            let floor = self.floor.map(|floor| floor.faded(kept, least));
+            self.floor = floor.filter(|floor| floor.kg > least_kg).or(Some(least));
+            let ceiling = self.ceiling.map(|ceiling| ceiling.faded(kept, most));
+            self.ceiling = ceiling.filter(|ceiling| ceiling.kg < most_kg).or(Some(most));
         }
         certain
     }
@@ -109,13 +136,20 @@ impl Ratchet {
     /// What the last rows agree on.
     fn certain(&self, rows: usize) -> Option<Certain> {
         let (least_kg, most_kg) = self.agreed(rows)?;
-        if most_kg < self.floor_kg? {
+        let (floor_kg, ceiling_kg) = self.tightest_kg()?;
+        if most_kg < floor_kg {
             Some(Certain::Out)
-        } else if least_kg > self.ceiling_kg? {
+        } else if least_kg > ceiling_kg {
             Some(Certain::In)
         } else {
             None
         }
+    }
+
+    /// The tightest bounds by what is known now, kg.
+    fn tightest_kg(&self) -> Option<(f64, f64)> {
+        let (floor, ceiling) = (self.floor?, self.ceiling?);
+        Some((floor.kg - floor.learnt_kg(self.sd_kg), ceiling.kg + ceiling.learnt_kg(self.sd_kg)))
     }
 
     /// Bounds that so many last rows agree on, kg.
@@ -127,9 +161,7 @@ impl Ratchet {
 
     /// Part of the gas that is certainly gone or has certainly come, against the bound that it is beyond; 0 if none.
     fn beyond(&self) -> f64 {
-        let (Some(now), Some(floor_kg), Some(ceiling_kg)) =
-            (self.recent_kg.front(), self.floor_kg, self.ceiling_kg)
-        else {
+        let (Some(now), Some((floor_kg, ceiling_kg))) = (self.recent_kg.front(), self.tightest_kg()) else {
             return 0.0;
         };
         ((floor_kg - now.1) / floor_kg).max((now.0 - ceiling_kg) / ceiling_kg).max(0.0)
@@ -137,8 +169,8 @@ impl Ratchet {
 
     fn gone(&mut self, way: Certain) {
         match way {
-            Certain::Out => self.floor_kg = None,
-            Certain::In => self.ceiling_kg = None,
+            Certain::Out => self.floor = None,
+            Certain::In => self.ceiling = None,
         }
     }
 }
@@ -202,7 +234,7 @@ impl GasBounds {
             return None;
         }
         let rows = ROWS.max(2 * self.excursions.lately(seen.time_s) + 1);
-        let certain = self.walls.push((least_kg, most_kg), rows, 1.0);
+        let certain = self.walls.push((least_kg, most_kg), 0.0, rows, 1.0);
         self.excursions.push(seen.time_s, self.walls.beyond() > 0.0, certain.is_some());
         certain
     }
@@ -219,10 +251,11 @@ impl GasBounds {
         let since_s = self.flow_s.replace(time_s).map_or(0.0, |last_s| time_s - last_s);
         let kept = (-since_s / FLOW_FADING_S).exp();
         let by_kg = self.comes_and_goes_kg(flow, full_kg) + FLOW_PART * full_kg;
+        let lasting_sd_kg = (flow.mass_sd_kg.powi(2) - flow.passing_sd_kg.powi(2)).max(0.0).sqrt();
         self.wander.push(since_s, flow.mass_kg / full_kg);
         // A tunnel of minutes between two rows shows in neither.
         let rows = if shaken > FLOW_PART { 2 } else { 1 };
-        let certain = self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), rows, kept);
+        let certain = self.flow.push((flow.mass_kg - by_kg, flow.mass_kg + by_kg), lasting_sd_kg, rows, kept);
         let calm = flow.considered_sd_kg <= FLOW_PART * full_kg;
         certain.filter(|&way| way == Certain::Out || calm)
     }
