@@ -2,6 +2,7 @@
 use super::number::above;
 use super::options::EXPERT;
 use super::unit_options::{Choice, Choices, Given};
+use crate::estimator::observer::commissioning::UNSETTLED_SD_K;
 use crate::estimator::observer::{Commissioning, ObserverSettings};
 use crate::thermal::units::{Dimension, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Fill;
@@ -27,10 +28,8 @@ impl Choices for FillQuantities {
 
 /// Standard deviation of the mass of a fill of known pressure and temperature, %: 1.7 K and 1.7 bar together at 200 bar.
 const MASS_SD_PERCENT: f64 = 1.0;
-/// Standard deviation of the gas temperature where the first row's readings stand for it, K: at rest, and in air that has
-/// just changed, which a sensor on the wall feels first.
+/// Standard deviation of the gas temperature where the first row's readings stand for it and the cylinder is at rest, K.
 const SETTLED_SD_K: f64 = 1.0;
-const UNSETTLED_SD_K: f64 = 5.0;
 /// Standard deviation of the air about the cylinder where it need not be at rest, K: a train may leave a tunnel.
 const UNSETTLED_AIR_SD_K: f64 = 20.0;
 

@@ -31,6 +31,17 @@ pub(super) fn first_rows(
             FillSource::Given(fill) => return Ok((rows, fill)),
             FillSource::FirstPressure => {
                 let pressure_pa = pressure.map_or(f64::NAN, |channel| row.readings[channel]);
+                if pressure_pa <= 0.0 {
+                    let (place, column) = (
+                        reader.place(&rows[rows.len() - 1]),
+                        pressure.map(|at| &reader.columns().readings[at]),
+                    );
+                    let header = column.map_or("pressure", |column| &column.header);
+                    bail!(
+                        "{place}: {header} reads nothing or less, and the gas there is is to follow from it: add \
+                         --map pressure_barg={header} if it counts from the air, or {REMEDY}"
+                    );
+                }
                 if pressure_pa.is_finite() {
                     return Ok((rows, Fill::Pressure { pressure_pa }));
                 }

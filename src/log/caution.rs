@@ -14,6 +14,8 @@ pub enum Kind {
     Stuck,
     /// A column without a usable reading.
     Silent,
+    /// A column whose unit is in doubt: another one fits.
+    Unit,
     /// A row that repeats the one above: left out.
     Repeated,
     /// A row that fills gaps of the one above at the same time: both were joined.
@@ -74,6 +76,7 @@ impl fmt::Display for Caution {
                  look at the sensor"
             ),
             Kind::Silent => write!(f, "{column} has no usable reading: look at the sensor and at the unit"),
+            Kind::Unit => write!(f, "{first}: {column} {detail}"),
             Kind::Repeated => write!(f, "{first}: the row repeats the one above; {rows} left out"),
             Kind::Joined => {
                 write!(f, "{first}: the row has the time of the one above; {rows} joined with it")

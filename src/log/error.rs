@@ -31,6 +31,25 @@ pub enum LogError {
         /// What to do.
         remedy: String,
     },
+    /// The readings of a column are in another unit than its name says.
+    #[error(
+        "{at}: {column} reads {values}, which no sensor on a cylinder shows in _{unit}; in _{fitting} they are \
+             usual: add {remedy}"
+    )]
+    Unit {
+        /// Place of the last of them.
+        at: String,
+        /// Column as written.
+        column: String,
+        /// Lowest and highest value.
+        values: String,
+        /// Unit of its name.
+        unit: &'static str,
+        /// Unit that fits.
+        fitting: &'static str,
+        /// What to write.
+        remedy: String,
+    },
     /// The bytes are no text.
     #[error("{at}: {what}: save the log as UTF-8 with line feeds")]
     NotUtf8 {

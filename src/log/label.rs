@@ -11,7 +11,7 @@ pub(in crate::log) struct Label<'a> {
 
 /// Words for units, in small letters, with the suffixes that agree with them, the likely one first. `bar` alone does not
 /// say from which zero it counts. A unit without suffixes is none that is read.
-const WORDS: [(&str, &[&str]); 57] = [
+const WORDS: [(&str, &[&str]); 71] = [
     ("°c", &["degc"]),
     ("ºc", &["degc"]),
     ("c", &["degc"]),
@@ -39,8 +39,8 @@ const WORDS: [(&str, &[&str]); 57] = [
     ("mbar", &["mbar"]),
     ("hpa", &["mbar"]),
     ("pa", &["pa"]),
-    ("kpa", &["kpa"]),
-    ("mpa", &["mpa"]),
+    ("kpa", &["kpa", "kpag"]),
+    ("mpa", &["mpa", "mpag"]),
     ("psi", &["psi", "psig"]),
     ("psia", &["psi"]),
     ("psig", &["psig"]),
@@ -56,8 +56,22 @@ const WORDS: [(&str, &[&str]); 57] = [
     ("kg/h", &["kg_h"]),
     ("kg/s", &["kg_s"]),
     ("g/s", &["g_s"]),
-    ("°f", &[]),
-    ("f", &[]),
+    ("°f", &["degf"]),
+    ("f", &["degf"]),
+    ("degf", &["degf"]),
+    ("deg f", &["degf"]),
+    ("fahrenheit", &["degf"]),
+    ("mpa(a)", &["mpa"]),
+    ("mpa(g)", &["mpag"]),
+    ("mpag", &["mpag"]),
+    ("kpa(a)", &["kpa"]),
+    ("kpa(g)", &["kpag"]),
+    ("kpag", &["kpag"]),
+    ("psi(a)", &["psi"]),
+    ("psi(g)", &["psig"]),
+    ("mbarg", &["mbarg"]),
+    ("inhg", &["inhg"]),
+    ("in hg", &["inhg"]),
     ("ms", &[]),
     ("atm", &[]),
     ("torr", &[]),
@@ -72,7 +86,8 @@ const WORDS: [(&str, &[&str]); 57] = [
 ];
 
 /// Units that are long enough to be one behind a name without brackets.
-const PLAIN: [&str; 11] = ["°c", "ºc", "bar", "bara", "barg", "mbar", "hpa", "kpa", "mpa", "psi", "psig"];
+const PLAIN: [&str; 14] =
+    ["°c", "ºc", "°f", "bar", "bara", "barg", "mbar", "hpa", "kpa", "mpa", "mpag", "psi", "psig", "inhg"];
 
 /// Suffixes of ours that agree with a unit as it is written; `None`: it is no word for a unit.
 pub(in crate::log) fn suffixes(word: &str) -> Option<&'static [&'static str]> {
@@ -169,7 +184,7 @@ mod tests {
             assert!(crate::thermal::units::UNITS.iter().any(|unit| unit.suffix == *suffix), "{suffix}");
         }
         assert_eq!(suffixes("Bar"), Some(&["bar", "barg"][..]));
-        assert_eq!(suffixes("°F"), Some(&[][..]));
+        assert_eq!(suffixes("torr"), Some(&[][..]));
         assert_eq!(suffixes("Pt100"), None);
     }
 }

@@ -32,6 +32,7 @@ mod row;
 mod sampling;
 mod stuck;
 mod time;
+mod unit_check;
 mod unpack;
 mod zone;
 

@@ -1,13 +1,15 @@
 //! The reader: rows of a source in the order of time, checked.
 use super::caution::{Caution, Cautions, Kind};
-use super::columns::{Columns, TimeForm};
+use super::columns::{Columns, TimeForm, ValueColumn};
 use super::csv::CsvSource;
 use super::inspect::{Survey, Tap};
 use super::row::{self, RawRow, Row, Truth};
 use super::sampling::Sampling;
 use super::stuck::StuckWatch;
+use super::unit_check::{Doubt, UnitCheck};
 use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Log};
+use crate::thermal::units::Unit;
 use std::io::Read;
 use std::path::Path;
 
@@ -62,6 +64,7 @@ pub struct LogReader {
     ranges: Vec<(f64, f64)>,
     /// Usable readings of every channel so far.
     usable: Vec<u64>,
+    units: Vec<UnitCheck>,
     /// The row that waits for another of its time.
     pending: Option<RawRow>,
     fetched: RawRow,
@@ -70,6 +73,8 @@ pub struct LogReader {
     sampling: Sampling,
     cautions: Cautions,
     any_order: bool,
+    /// Whether readings in another unit than their column's are told, not refused.
+    any_unit: bool,
     ended: bool,
 }
 
@@ -134,7 +139,8 @@ impl LogReader {
         let mut cautions = Cautions::default();
         let (source, columns, survey) = CsvSource::inspect(input, file, options, &mut cautions)?;
         let options = LogOptions { any_order: true, ..options.clone() };
-        Ok((Self::new(Source::Csv(Box::new(source)), columns, file, &options, cautions), survey))
+        let reader = Self::new(Source::Csv(Box::new(source)), columns, file, &options, cautions);
+        Ok((Self { any_unit: true, ..reader }, survey))
     }
 
     /// What counted the cells of a log that is inspected.
@@ -154,6 +160,7 @@ impl LogReader {
             source,
             ranges: channels.iter().map(|channel| options.range(channel.quantity)).collect(),
             usable: vec![0; count],
+            units: columns.readings.iter().map(|column| UnitCheck::new(column.unit)).collect(),
             pending: None,
             fetched: RawRow::default(),
             row: Row { time_s: 0.0, readings: vec![f64::NAN; count], truth: Truth::UNKNOWN, number: 0 },
@@ -161,6 +168,7 @@ impl LogReader {
             sampling: Sampling::default(),
             cautions,
             any_order: options.any_order,
+            any_unit: false,
             ended: false,
             columns,
             channels,
@@ -230,7 +238,7 @@ impl LogReader {
         if !found.map_err(|error| self.source.explained(error))? {
             return self.end().map(|()| None);
         }
-        self.screen();
+        self.screen()?;
         self.sampling.push(self.row.time_s);
         Ok(Some(&self.row))
     }
@@ -312,7 +320,7 @@ impl LogReader {
     }
 
     /// Takes impossible readings as missing and watches for those that stand still.
-    fn screen(&mut self) {
+    fn screen(&mut self) -> Result<(), LogError> {
         let row = &mut self.row;
         let place = || self.source.place(row.number);
         for (channel, value) in row.readings.iter_mut().enumerate() {
@@ -320,11 +328,16 @@ impl LogReader {
             if value.is_nan() {
                 continue;
             }
-            if (low..=high).contains(value) {
+            let is_usable = (low..=high).contains(value);
+            let doubt = self.units[channel].push(*value, is_usable);
+            if is_usable {
                 self.usable[channel] += 1;
                 continue;
             }
             let column = &self.columns.readings[channel];
+            if let Some(Doubt::Impossible(fitting)) = doubt.filter(|_| !self.any_unit) {
+                return Err(misread(column, &self.units[channel], fitting, place()));
+            }
             self.cautions.count(Kind::OutOfRange, &column.header, || {
                 let [value, low, high] = [*value, low, high].map(|si| tidy(column.unit.from_si(si)));
                 (place(), format!("{value} lies outside of {low} to {high}"))
@@ -337,10 +350,43 @@ impl LogReader {
             let value = || tidy(column.unit.from_si(row.readings[channel])).to_string();
             cautions.count(Kind::Stuck, &column.header, || (place(), value()));
         });
+        Ok(())
+    }
+
+    /// Says which unit fits a column better than its own.
+    ///
+    /// # Errors
+    /// None of its readings can be in its own.
+    fn doubt_units(&mut self) -> Result<(), LogError> {
+        for (column, check) in self.columns.readings.iter().zip(&self.units) {
+            let (fitting, what) = match check.judge() {
+                None => continue,
+                Some(Doubt::Impossible(fitting)) => {
+                    return Err(misread(column, check, fitting, self.file.clone()));
+                }
+                Some(Doubt::Unusual(fitting)) => (fitting, "no cylinder is usually so"),
+                Some(Doubt::Gauge(fitting)) => (fitting, "an absolute pressure is never below zero"),
+            };
+            self.cautions.count(Kind::Unit, &column.header, || {
+                let (low, high) = check.range();
+                let (unit, other) = (column.unit.suffix, fitting.suffix);
+                let remedy = renaming(column, fitting);
+                let detail = format!(
+                    "reads {} to {} in _{unit}, and {what}: if it is in _{other}, add {remedy}",
+                    tidy(low),
+                    tidy(high)
+                );
+                (self.file.clone(), detail)
+            });
+        }
+        Ok(())
     }
 
     /// Looks back over the whole log.
     fn end(&mut self) -> Result<(), LogError> {
+        if !self.any_unit {
+            self.doubt_units()?;
+        }
         let silent: Vec<&str> = self
             .columns
             .readings
@@ -364,6 +410,26 @@ impl LogReader {
         }
         Ok(())
     }
+}
+
+/// Readings of a column that are a cylinder's in another unit.
+fn misread(column: &ValueColumn<Channel>, check: &UnitCheck, fitting: &Unit, at: String) -> LogError {
+    let (low, high) = check.range();
+    LogError::Unit {
+        at,
+        column: column.header.clone(),
+        values: format!("{} to {}", tidy(low), tidy(high)),
+        unit: column.unit.suffix,
+        fitting: fitting.suffix,
+        remedy: renaming(column, fitting),
+    }
+}
+
+/// The option that gives a column another unit.
+fn renaming(column: &ValueColumn<Channel>, unit: &Unit) -> String {
+    let mapping = format!("{}_{}={}", column.meaning.name, unit.suffix, column.header);
+    let quote = if mapping.contains([' ', '[', '(']) { "'" } else { "" };
+    format!("--map {quote}{mapping}{quote}")
 }
 
 /// Whether a file's name says that it is Parquet.

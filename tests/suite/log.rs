@@ -129,12 +129,12 @@ fn a_sensor_range_is_narrower_where_it_is_given() {
 
 #[test]
 fn a_column_without_a_usable_reading_is_named_and_a_log_without_any_refused() {
-    let (_, cautions) = read(&format!("{HEAD}0,288,200\n1,289,201\n"));
+    let (_, cautions) = read(&format!("{HEAD}0,850,200\n1,850,201\n"));
     let said: Vec<String> = cautions.iter().map(Caution::to_string).collect();
     assert!(said[1].contains("shoulder_degc has no usable reading"), "{said:?}");
     refused(
-        "time_s,shoulder_degc\n0,288\n1,289\n",
-        &["log.csv has no row", "shoulder_degc = 288", "-100 to 200", "look at the unit"],
+        "time_s,shoulder_degc\n0,850\n1,850\n",
+        &["log.csv has no row", "shoulder_degc = 850", "-100 to 200", "look at the unit"],
     );
     refused(HEAD, &["no row with a reading of shoulder_degc, pressure_bar"]);
     refused(format!("{HEAD}0,,\n"), &["no row with a reading"]);

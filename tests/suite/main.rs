@@ -10,6 +10,7 @@ mod commission;
 mod estimate;
 mod examples;
 mod files;
+mod foreign_units;
 mod identify;
 mod inspect;
 mod log;

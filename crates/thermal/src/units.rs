@@ -26,6 +26,9 @@ pub const DAY_S: f64 = 24.0 * HOUR_S;
 pub const YEAR_S: f64 = 365.25 * DAY_S;
 
 const PSI_PA: f64 = 6_894.757_293_168_361;
+/// Conventional, at 0 °C.
+const INCH_OF_MERCURY_PA: f64 = 3_386.389;
+const KELVIN_PER_FAHRENHEIT: f64 = 5.0 / 9.0;
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -135,6 +138,10 @@ pub const UNITS: &[Unit] = {
         unit("barg", Pressure, 1e5, ATMOSPHERE_PA),
         unit("psi", Pressure, PSI_PA, 0.0),
         unit("psig", Pressure, PSI_PA, ATMOSPHERE_PA),
+        unit("kpag", Pressure, 1e3, ATMOSPHERE_PA),
+        unit("mpag", Pressure, 1e6, ATMOSPHERE_PA),
+        unit("mbarg", Pressure, 1e2, ATMOSPHERE_PA),
+        unit("inhg", Pressure, INCH_OF_MERCURY_PA, 0.0),
         unit("bar", PressureDifference, 1e5, 0.0),
         unit("pa", PressureDifference, 1.0, 0.0),
         unit("kpa", PressureDifference, 1e3, 0.0),
@@ -143,6 +150,7 @@ pub const UNITS: &[Unit] = {
         unit("psi", PressureDifference, PSI_PA, 0.0),
         unit("degc", Temperature, 1.0, ZERO_CELSIUS_K),
         unit("k", Temperature, 1.0, 0.0),
+        unit("degf", Temperature, KELVIN_PER_FAHRENHEIT, ZERO_CELSIUS_K - 32.0 * KELVIN_PER_FAHRENHEIT),
         unit("k", TemperatureDifference, 1.0, 0.0),
         unit("k_h", TemperatureRate, 1.0 / 3_600.0, 0.0),
         unit("k_s", TemperatureRate, 1.0, 0.0),

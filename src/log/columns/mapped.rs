@@ -26,7 +26,7 @@ pub(super) fn names(headers: &[String], mappings: &[Mapping]) -> Result<Vec<Opti
                 take(date, &|_| Ok("time".to_owned()))?;
                 take(clock, &|_| Ok(CLOCK.to_owned()))?;
             }
-            None => take(&mapping.theirs, &|header| with_unit(&mapping.ours, header))?,
+            None => take(&mapping.theirs, &|header| with_unit(&mapping.ours, header, &mapping.theirs))?,
         }
     }
     Ok(mapped)
@@ -54,13 +54,16 @@ fn position(headers: &[String], name: &str) -> Result<usize, String> {
 /// Our name with the unit of theirs where ours has none.
 ///
 /// # Errors
-/// Their unit is in brackets and another one than ours, or none that is read.
-fn with_unit(ours: &str, header: &str) -> Result<String, String> {
+/// Their unit is in brackets and another one than ours, or none that is read, and who names the column has left it out.
+fn with_unit(ours: &str, header: &str, theirs: &str) -> Result<String, String> {
     let Label { base, unit } = Label::of(header);
     let (Some(word), Some(suffixes)) = (unit, Label::of(header).suffixes()) else {
         return Ok(units::with_unit_of(ours, header));
     };
     let plain = crate::thermal::units::split(ours);
+    if plain.is_some() && header == theirs {
+        return Ok(ours.to_owned());
+    }
     let quantity = plain.map_or(ours, |(quantity, _)| quantity);
     let Some(first) = suffixes.first() else {
         return Err(format!("the column is in {word}, which is no unit that is read: convert it"));
@@ -70,7 +73,7 @@ fn with_unit(ours: &str, header: &str) -> Result<String, String> {
         None => Ok(format!("{ours}_{first}")),
         Some((_, unit)) if suffixes.contains(&unit.suffix) => Ok(ours.to_owned()),
         Some(_) => Err(format!(
-            "the header says {word}: write {quantity}_{first}={base}, or correct the header if it is wrong"
+            "the header says {word}: write {quantity}_{first}={base}, or, if the header is wrong, its whole name: {ours}={header}"
         )),
     }
 }

@@ -123,7 +123,7 @@ fn a_unit_that_is_missing_wrong_or_foreign_is_refused_with_the_right_one() {
         ("time_s,pressure_degc", "pressure_degc is in _degc, which is no unit of pressure: use one of _bar"),
         ("time_s,shoulder_c", "did you mean shoulder_degc?"),
         ("time_s,wall_top_celsius", "did you mean wall_top_degc?"),
-        ("time_s,shoulder_degf", "which is no unit of temperature: use one of _degc, _k"),
+        ("time_s,pressure_torr", "which is no unit of pressure: use one of _bar, _pa"),
         ("time_s,pressure_baar", "did you mean pressure_bar?"),
         ("time_s,pressure_hpa", "did you mean pressure_mbar?"),
         ("time_ms,shoulder_degc", "time_ms is in _ms, which is no unit of time"),
@@ -198,7 +198,7 @@ fn date_and_time_of_day_are_found_in_two_columns_and_in_one() {
 fn units_in_brackets_are_units_and_may_not_contradict_a_mapping() {
     let found = columns("time_s,Shoulder [°C],Pressure [bar],Valve (K)");
     assert_eq!(readings(&found).iter().map(|(_, _, unit)| *unit).collect::<Vec<_>>(), ["degc", "bar", "k"]);
-    let names = "Zeit [s],Druck [bar],T1 [°C],P2 [mbar],T3 [°F]";
+    let names = "Zeit [s],Druck [bar],T1 [°C],P2 [mbar],P3 [torr]";
     for maps in
         [["pressure_bar=Druck", "shoulder=T1"], ["pressure_barg=Druck [bar]", "shoulder_degc=T1 [°C]"]]
     {
@@ -213,7 +213,7 @@ fn units_in_brackets_are_units_and_may_not_contradict_a_mapping() {
     for (map, words) in [
         ("pressure_bar=P2", "the header says mbar: write pressure_mbar=P2"),
         ("shoulder_k=T1", "the header says °C: write shoulder_degc=T1"),
-        ("shoulder_degc=T3", "in °F, which is no unit that is read"),
+        ("pressure_bar=P3", "in torr, which is no unit that is read"),
         ("pressure_bar=T1", "the header says °C"),
     ] {
         let error = refusal(names, &["time_s=Zeit", map]);

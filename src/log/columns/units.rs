@@ -4,19 +4,21 @@ use crate::thermal::document::Problem;
 use crate::thermal::units::{self, Dimension, Unit};
 
 /// Endings that mean a unit and are none of ours, with ours where the numbers are the same.
-const FOREIGN: [(&str, Dimension, Option<&str>); 16] = [
+const FOREIGN: [(&str, Dimension, Option<&str>); 18] = [
     ("c", Dimension::Temperature, Some("degc")),
     ("celsius", Dimension::Temperature, Some("degc")),
     ("deg_c", Dimension::Temperature, Some("degc")),
     ("°c", Dimension::Temperature, Some("degc")),
     ("deg", Dimension::Temperature, Some("degc")),
     ("kelvin", Dimension::Temperature, Some("k")),
-    ("f", Dimension::Temperature, None),
-    ("degf", Dimension::Temperature, None),
-    ("fahrenheit", Dimension::Temperature, None),
+    ("f", Dimension::Temperature, Some("degf")),
+    ("deg_f", Dimension::Temperature, Some("degf")),
+    ("°f", Dimension::Temperature, Some("degf")),
+    ("fahrenheit", Dimension::Temperature, Some("degf")),
     ("hpa", Dimension::Pressure, Some("mbar")),
     ("bara", Dimension::Pressure, Some("bar")),
     ("psia", Dimension::Pressure, Some("psi")),
+    ("mpaa", Dimension::Pressure, Some("mpa")),
     ("atm", Dimension::Pressure, None),
     ("torr", Dimension::Pressure, None),
     ("ms", Dimension::Time, None),

@@ -1,11 +1,10 @@
 //! From the counts to the inspection: columns, times, oddities.
 use super::column::Column;
-use super::proposal::{by_range, propose};
+use super::proposal::propose;
 use super::*;
 use crate::log::columns::{self, TimeForm, TruthQuantity};
 use crate::log::label::Label;
 use crate::log::{Kind, Zone};
-use crate::thermal::units::{self, BAR_PA, Dimension};
 
 /// An interval longer than this many usual ones is a gap.
 const GAP: f64 = 5.0;
@@ -149,9 +148,6 @@ fn oddities(times: &Times, columns: &[ColumnReport]) -> Vec<String> {
             let percent = 100.0 * missing as f64 / (numbers + missing) as f64;
             said.push(format!("{header}: {percent:.0} % of the cells are empty"));
         }
-        if matches!(column.role, Role::Reading(..)) {
-            said.extend(unit_doubt(column).map(|doubt| format!("{header}: {doubt}")));
-        }
         let run = column.longest;
         if run.count > 30 && run.duration_s > LONG_RUN_S && column.range[0] < column.range[2] {
             let hours = run.duration_s / 3600.0;
@@ -167,26 +163,4 @@ fn oddities(times: &Times, columns: &[ColumnReport]) -> Vec<String> {
         }
     }
     said
-}
-
-/// Whether the values of a reading speak against its unit.
-fn unit_doubt(column: &ColumnReport) -> Option<String> {
-    let Role::Reading(_, suffix) = &column.role else { return None };
-    let [low, median, _] = column.range;
-    let doubt = |dimension: Dimension, far: bool| {
-        let other = by_range(dimension, column.range).filter(|other| far && other != suffix)?;
-        Some(format!(
-            "a median of {median} {suffix} is no usual one; in {other} it would be: look at the unit"
-        ))
-    };
-    if let Some(unit) = units::find(suffix, Dimension::Pressure) {
-        let bar = unit.to_si(median) / BAR_PA;
-        let starts_at_zero = unit.offset == 0.0 && (unit.to_si(low) / BAR_PA).abs() < 0.5 && bar > 5.0;
-        return doubt(Dimension::Pressure, !(0.5..700.0).contains(&bar)).or_else(|| {
-            starts_at_zero
-                .then(|| format!("falls to {low} {suffix}, less than the air: gauge pressure, or no reading"))
-        });
-    }
-    let kelvin = units::find(suffix, Dimension::Temperature)?.to_si(median);
-    doubt(Dimension::Temperature, !(183.0..423.0).contains(&kelvin))
 }

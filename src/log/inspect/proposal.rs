@@ -2,6 +2,7 @@
 use super::{ColumnReport, Role};
 use crate::log::header::is_value;
 use crate::log::label::{self, Label};
+use crate::log::unit_check::{GAS_PA, WALL_K, fitting};
 use crate::log::{Mapping, date};
 use crate::thermal::units::{self, Dimension};
 
@@ -31,6 +32,9 @@ const WORDS: [(&[&str], &str); 9] = [
     (&["druck", "pressure", "manometer", "press"], "pressure"),
     (&["temp", "pt100", "pt1000", "thermo"], "shoulder"),
 ];
+/// Pressure that none is below when it counts from nothing, and that one at rest is above, Pa.
+const NEARLY_NOTHING_PA: f64 = 0.5e5;
+const OFTEN_MORE_PA: f64 = 5e5;
 /// What thermometers without a place may be, in this order.
 const PLACES: [&str; 4] = ["shoulder", "valve", "wall_middle", "wall_bottom"];
 
@@ -63,6 +67,7 @@ pub(super) fn time(names: &[String], first: &[String]) -> Option<Mapping> {
 
 /// Gives every column that is set aside and may be something a proposal; no quantity twice.
 pub(super) fn propose(reports: &mut [ColumnReport]) {
+    reports.iter_mut().for_each(doubt_unit);
     let mut taken: Vec<String> = reports.iter().filter_map(|report| report.role.quantity()).collect();
     for is_likely in [true, false] {
         for k in 0..reports.len() {
@@ -78,6 +83,39 @@ pub(super) fn propose(reports: &mut [ColumnReport]) {
             }
         }
     }
+}
+
+/// Proposes another unit for a reading whose values speak against its own.
+fn doubt_unit(report: &mut ColumnReport) {
+    let Role::Reading(name, suffix) = &report.role else { return };
+    let Some((unit, why)) = doubt(suffix, report.range) else { return };
+    let mapping = Mapping { ours: format!("{name}_{unit}"), theirs: report.header.clone() };
+    report.proposal = Some(Proposal { mapping, is_likely: true, reason: why });
+}
+
+/// Which unit fits better than this one, and what speaks for it.
+fn doubt(suffix: &str, range: [f64; 3]) -> Option<(&'static str, String)> {
+    let dimension = dimension_of(suffix)?;
+    let unit = units::find(suffix, dimension)?;
+    let [low, median, high] = range;
+    if dimension == Dimension::Pressure && unit.offset == 0.0 && unit.to_si(low) < NEARLY_NOTHING_PA {
+        let other = gauge(unit.suffix);
+        let falls = unit.to_si(median) > OFTEN_MORE_PA && other != unit.suffix;
+        return falls.then(|| {
+            (other, format!("falls to {low} in _{suffix}, less than the air: gauge pressure, or no reading"))
+        });
+    }
+    let is_usual = match dimension {
+        Dimension::Temperature => WALL_K.contains(&unit.to_si(median)),
+        _ => GAS_PA.contains(&unit.to_si(median)),
+    };
+    let other =
+        fitting(dimension, [low, median, high]).filter(|other| !is_usual && other.suffix != suffix)?;
+    let name = other.suffix;
+    Some((
+        name,
+        format!("a median of {median} {suffix} in _{suffix} is none of a cylinder; in _{name} it is"),
+    ))
 }
 
 impl Role {
@@ -117,7 +155,7 @@ fn guess(report: &ColumnReport, by_name: bool, taken: &[String]) -> Option<(Stri
     }
     let unit = match label.suffixes() {
         Some(suffixes) => suffixes.iter().copied().find(|suffix| units::find(suffix, dimension).is_some())?,
-        None => by_range(dimension, report.range)?,
+        None => fitting(dimension, report.range)?.suffix,
     };
     let unit = if is_gauge(&report.header) { gauge(unit) } else { unit };
     let by = match (named.is_some() && is_place, label.suffixes()) {
@@ -140,29 +178,15 @@ fn gauge(unit: &'static str) -> &'static str {
     match unit {
         "bar" => "barg",
         "psi" => "psig",
+        "kpa" => "kpag",
+        "mpa" => "mpag",
+        "mbar" => "mbarg",
         other => other,
     }
 }
 
 fn dimension_of(suffix: &str) -> Option<Dimension> {
     [Dimension::Temperature, Dimension::Pressure].into_iter().find(|&of| units::find(suffix, of).is_some())
-}
-
-/// The unit in which a cylinder has such values.
-pub(super) fn by_range(dimension: Dimension, [low, median, high]: [f64; 3]) -> Option<&'static str> {
-    match dimension {
-        Dimension::Temperature if low >= -90.0 && high <= 150.0 => Some("degc"),
-        Dimension::Temperature if low >= 180.0 && high <= 430.0 => Some("k"),
-        Dimension::Pressure => match median {
-            5.0..700.0 => Some("bar"),
-            700.0..7e3 => Some("psi"),
-            7e3..7e4 => Some("kpa"),
-            7e4..7e5 => Some("mbar"),
-            7e5..7e7 => Some("pa"),
-            _ => None,
-        },
-        _ => None,
-    }
 }
 
 /// The name without unit, or with it where that alone is unique.
