@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::settings::ObserverSettings;
 use super::states::{StateKind, States};
 use crate::EstimatorError;
-use crate::sensor::{Sensor, SensorKind};
+use crate::log::Quantity;
+use crate::sensor::{Sensor, Site};
 use crate::thermal::vessel::Fill;
 use crate::thermal::vessel::Vessel;
 
@@ -114,18 +115,18 @@ pub(super) fn prior(
     vessel: &Vessel,
     readings: &[f64],
 ) -> Result<Prior, EstimatorError> {
-    let mean_of = |is_kind: fn(&SensorKind) -> bool| -> Option<f64> {
+    let mean_of = |is_it: fn(&Sensor) -> bool| -> Option<f64> {
         let values: Vec<f64> = sensors
             .iter()
             .zip(readings)
-            .filter(|(sensor, value)| is_kind(&sensor.kind) && value.is_finite())
+            .filter(|(sensor, value)| is_it(sensor) && value.is_finite())
             .map(|(_, value)| *value)
             .collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    let surface = mean_of(|kind| matches!(kind, SensorKind::Surface { .. }));
-    let gas = mean_of(|kind| matches!(kind, SensorKind::Gas { .. }));
-    let air = mean_of(|kind| matches!(kind, SensorKind::Ambient));
+    let surface = mean_of(Sensor::is_on_surface);
+    let gas = mean_of(|sensor| matches!(sensor.site(), Site::Gas(_)));
+    let air = mean_of(|sensor| sensor.site() == Site::Air);
     let measured_k = surface.or(gas).or(air);
     let body_k = measured_k.unwrap_or(ASSUMED_K);
     let spread = Spread::of(commissioning.settled, measured_k.is_some());
@@ -163,7 +164,7 @@ pub(super) fn prior(
 
 /// What a lagging sensor shows at the start: its own reading, if it has one.
 fn lagged(sensors: &[Sensor], readings: &[f64], sensor: usize, body_k: f64) -> (f64, f64) {
-    let pressure = matches!(sensors[sensor].kind, SensorKind::Pressure { .. });
+    let pressure = sensors[sensor].quantity() == Quantity::Pressure;
     let (assumed, sd) = if pressure { (2e7, 1e7) } else { (body_k, ASSUMED_SD_K) };
     let reading = readings[sensor];
     if reading.is_finite() { (reading, if pressure { 1e5 } else { 1.0 }) } else { (assumed, sd) }

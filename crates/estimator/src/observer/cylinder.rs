@@ -20,7 +20,7 @@ use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, Plant, StateSpace, parts};
-use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
+use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, Site};
 use crate::thermal::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 use noise::Parts;
@@ -356,8 +356,8 @@ impl Cylinder {
             for (node, by) in h[..states.wall].iter_mut().enumerate() {
                 *by += prediction.per_pressure * p.per_wall_k * self.model.mean_wall_per_node(x, node);
             }
-            h[electronics] += prediction.per_electronics;
         }
+        h[electronics] += prediction.per_electronics;
         for (by, state) in prediction.per_parameter.iter().zip(&states.parameters[sensor]) {
             if let Some(state) = state {
                 h[*state] += by;
@@ -404,13 +404,13 @@ impl Cylinder {
 }
 
 fn target(sensor: &Sensor, model: &ReducedModel, vessel: &Vessel) -> Result<Target, EstimatorError> {
-    Ok(match &sensor.kind {
-        SensorKind::Surface { place } => Target::Surface(model.surface(place).ok_or_else(|| {
+    Ok(match sensor.site() {
+        Site::Surface(place) => Target::Surface(model.surface(&place).ok_or_else(|| {
             EstimatorError::SensorPlace { name: sensor.name.clone(), vessel: vessel.name.clone() }
         })?),
-        SensorKind::Gas { .. } => Target::Gas,
-        SensorKind::Ambient => Target::Air,
-        SensorKind::Pressure { .. } => Target::Pressure,
+        Site::Gas(_) => Target::Gas,
+        Site::Air => Target::Air,
+        Site::Port => Target::Pressure,
     })
 }
 

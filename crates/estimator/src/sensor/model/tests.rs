@@ -1,6 +1,7 @@
 //! Readings by hand, derivatives by differences.
 use approx::assert_relative_eq;
 use cylwatch_thermal::sensor::SensorSpec;
+use cylwatch_thermal::units::ATMOSPHERE_PA;
 use proptest::prelude::*;
 
 use super::*;

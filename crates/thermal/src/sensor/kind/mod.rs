@@ -1,0 +1,181 @@
+//! Kinds of sensors. A file of this folder is the home of one: what a table may say about it, its checks, what it reads,
+//! its uncertain parameters and its typical numbers. The enums here list them.
+mod ambient;
+mod gas;
+mod pressure;
+mod surface;
+
+use super::place::{GasPlace, SurfacePlace};
+use super::reading::{Exposure, Prediction, Quantity, Site};
+pub use pressure::{ELECTRONICS_REFERENCE_K, PressureReference};
+#[cfg(feature = "files")]
+use {
+    super::{Parameter, SensorSpec, build::Table},
+    crate::ThermalError,
+    schemars::JsonSchema,
+    serde::{Deserialize, Serialize},
+};
+
+/// What a sensor reads, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SensorKind {
+    /// Temperature of the outer surface, or of the valve body.
+    Surface {
+        /// Where it sits.
+        place: SurfacePlace,
+    },
+    /// Gas pressure, by a transmitter at the valve.
+    Pressure {
+        /// What it counts from.
+        reference: PressureReference,
+        /// Upper end of its range, Pa, counted as it counts; `None`: it has no end.
+        full_scale_pa: Option<f64>,
+    },
+    /// Gas temperature inside.
+    Gas {
+        /// Where it hangs.
+        place: GasPlace,
+    },
+    /// Air temperature.
+    Ambient,
+}
+
+/// What a sensor reads, as a file says it.
+#[cfg(feature = "files")]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum KindChoice {
+    /// Temperature of the outer surface or of the valve body.
+    Surface,
+    /// Gas pressure.
+    Pressure,
+    /// Gas temperature inside.
+    Gas,
+    /// Air temperature.
+    Ambient,
+}
+
+/// What is true of every sensor of a kind.
+struct Kind {
+    quantity: Quantity,
+    /// Static reading with its derivatives; the parameters are in the order of a sensor's.
+    predict: fn(&SensorKind, &Exposure, &[f64]) -> Prediction,
+    #[cfg(feature = "files")]
+    stated: StatedKind,
+}
+
+/// A kind in files.
+#[cfg(feature = "files")]
+struct StatedKind {
+    /// As in `kind = surface`.
+    name: &'static str,
+    /// Keys of a table beyond those that every sensor of its quantity has.
+    keys: &'static [&'static str],
+    /// Whether a sensor of this name is of this kind unless its table says otherwise.
+    is_named: fn(&str) -> bool,
+    /// Names of its columns in a log, as `gas_<name>`.
+    columns: &'static [&'static str],
+    /// What it reads and where, checked.
+    build: fn(&Table<'_>) -> Result<SensorKind, ThermalError>,
+    /// Parameters beyond the offset, checked.
+    parameters: fn(&Table<'_>) -> Result<Vec<Parameter>, ThermalError>,
+    /// Lowest and highest value that can be a reading unless the table says otherwise.
+    plausible: fn(&SensorKind) -> (f64, f64),
+    /// Fills in typical numbers wherever the table says nothing.
+    typical: fn(&mut SensorSpec),
+}
+
+impl SensorKind {
+    fn kind(&self) -> &'static Kind {
+        match self {
+            Self::Surface { .. } => &surface::KIND,
+            Self::Pressure { .. } => &pressure::KIND,
+            Self::Gas { .. } => &gas::KIND,
+            Self::Ambient => &ambient::KIND,
+        }
+    }
+
+    /// Where it sits.
+    pub fn site(&self) -> Site {
+        match *self {
+            Self::Surface { place } => Site::Surface(place),
+            Self::Pressure { .. } => Site::Port,
+            Self::Gas { place } => Site::Gas(place),
+            Self::Ambient => Site::Air,
+        }
+    }
+
+    /// What it measures.
+    pub fn quantity(&self) -> Quantity {
+        self.kind().quantity
+    }
+
+    /// Static reading (before a lag, without drift and noise) with its derivatives. It is linear in the exposure for fixed
+    /// parameters, and linear in the parameters for a fixed exposure.
+    ///
+    /// # Shapes
+    /// `parameters`: one value for each of [`MountedSensor::parameters`](super::MountedSensor::parameters), in that order;
+    /// further ones are ignored.
+    ///
+    /// # Panics
+    /// With fewer values than parameters.
+    pub fn predict(&self, exposure: &Exposure, parameters: &[f64]) -> Prediction {
+        (self.kind().predict)(self, exposure, parameters)
+    }
+
+    /// Lowest and highest value that can be a reading unless its table says otherwise.
+    #[cfg(feature = "files")]
+    pub(super) fn plausible(&self) -> (f64, f64) {
+        (self.kind().stated.plausible)(self)
+    }
+}
+
+#[cfg(feature = "files")]
+impl KindChoice {
+    const ALL: [Self; 4] = [Self::Surface, Self::Ambient, Self::Pressure, Self::Gas];
+
+    fn kind(self) -> &'static Kind {
+        match self {
+            Self::Surface => &surface::KIND,
+            Self::Pressure => &pressure::KIND,
+            Self::Gas => &gas::KIND,
+            Self::Ambient => &ambient::KIND,
+        }
+    }
+
+    /// The kind that a sensor's name says: `pressure`, `ambient`, `gas_<number>`; else a surface.
+    pub(super) fn of_name(name: &str) -> Self {
+        Self::ALL.into_iter().find(|choice| (choice.kind().stated.is_named)(name)).unwrap_or(Self::Surface)
+    }
+
+    /// Names of columns in a log that say a sensor, with what it measures: whole ones as `shoulder`, or `gas_<name>` for
+    /// all that begin so.
+    pub fn columns() -> impl Iterator<Item = (&'static str, Quantity)> {
+        let of = |kind: &'static Kind| kind.stated.columns.iter().map(|name| (*name, kind.quantity));
+        Self::ALL.into_iter().flat_map(move |choice| of(choice.kind()))
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        self.kind().stated.name
+    }
+
+    pub(super) fn quantity(self) -> Quantity {
+        self.kind().quantity
+    }
+
+    pub(super) fn has_key(self, key: &str) -> bool {
+        self.kind().stated.keys.contains(&key)
+    }
+
+    pub(super) fn build(self, table: &Table<'_>) -> Result<SensorKind, ThermalError> {
+        (self.kind().stated.build)(table)
+    }
+
+    pub(super) fn parameters(self, table: &Table<'_>) -> Result<Vec<Parameter>, ThermalError> {
+        (self.kind().stated.parameters)(table)
+    }
+
+    pub(super) fn fill_typical(self, spec: &mut SensorSpec) {
+        (self.kind().stated.typical)(spec);
+    }
+}
