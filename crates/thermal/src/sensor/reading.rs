@@ -34,7 +34,7 @@ pub struct Exposure {
     pub air_k: f64,
     /// Gas pressure, Pa absolute.
     pub pressure_pa: f64,
-    /// Temperature of a transmitter's electronics, which is that of the valve, K.
+    /// Temperature of the valve, which the electronics of a transmitter have, K.
     pub electronics_k: f64,
 }
 
@@ -49,7 +49,7 @@ pub struct Prediction {
     pub per_air: f64,
     /// Derivative to the pressure.
     pub per_pressure: f64,
-    /// Derivative to the electronics' temperature.
+    /// Derivative to the electronics' temperature, that of the valve.
     pub per_electronics: f64,
     /// Derivatives to the parameters, in their order; 0 beyond the last one.
     pub per_parameter: [f64; MAX_PARAMETERS],

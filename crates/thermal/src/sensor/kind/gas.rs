@@ -9,7 +9,7 @@ use {
 
 /// Lowest and highest temperature in the gas that can be a reading, K: blowdown and fast filling.
 #[cfg(feature = "files")]
-const INSIDE_K: (f64, f64) = (93.15, 603.15);
+pub(super) const INSIDE_K: (f64, f64) = (93.15, 603.15);
 
 pub(super) const KIND: Kind = Kind {
     quantity: Quantity::Temperature,
@@ -43,8 +43,9 @@ fn cell_of(name: &str) -> Option<usize> {
     name.strip_prefix("gas_")?.parse().ok()
 }
 
+/// Where a sensor hangs: a cell, or a height.
 #[cfg(feature = "files")]
-fn place(table: &Table<'_>) -> Result<GasPlace, ThermalError> {
+pub(super) fn place(table: &Table<'_>) -> Result<GasPlace, ThermalError> {
     let spec = table.spec;
     if let Some(height_m) = table.height_m()? {
         if spec.cell.is_some() {
