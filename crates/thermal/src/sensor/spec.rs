@@ -111,9 +111,9 @@ impl SensorSpec {
         full
     }
 
-    /// Value and standard deviation of the coupling that its kind has.
-    pub fn coupling_mut(&mut self) -> [&mut Option<f64>; 2] {
-        [&mut self.air_coupling, &mut self.air_coupling_sd]
+    /// Value and standard deviation of its coupling; `None` for a kind that has none.
+    pub fn coupling_mut(&mut self) -> Option<[&mut Option<f64>; 2]> {
+        self.kind_or_default().coupling_mut(self)
     }
 
     /// Whether the table says how far the offset may be off.

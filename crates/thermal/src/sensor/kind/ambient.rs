@@ -19,6 +19,7 @@ pub(super) const KIND: Kind = Kind {
         columns: &["ambient"],
         build: |_| Ok(SensorKind::Ambient),
         parameters: |_| Ok(Vec::new()),
+        coupling: None,
         plausible: |_| super::surface::OUTSIDE_K,
         typical: |spec| {
             spec.noise_k.get_or_insert(0.05);

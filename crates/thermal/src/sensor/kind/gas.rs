@@ -27,6 +27,7 @@ pub(super) const KIND: Kind = Kind {
         columns: &["gas_<name>"],
         build: |table| Ok(SensorKind::Gas { place: place(table)? }),
         parameters: |_| Ok(Vec::new()),
+        coupling: None,
         plausible: |_| INSIDE_K,
         typical: |spec| {
             spec.noise_k.get_or_insert(0.1);

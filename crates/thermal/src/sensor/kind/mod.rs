@@ -79,6 +79,8 @@ struct StatedKind {
     build: fn(&Table<'_>) -> Result<SensorKind, ThermalError>,
     /// Parameters beyond the offset, checked.
     parameters: fn(&Table<'_>) -> Result<Vec<Parameter>, ThermalError>,
+    /// Where a table says the coupling and its standard deviation; `None`: it has none.
+    coupling: Option<fn(&mut SensorSpec) -> [&mut Option<f64>; 2]>,
     /// Lowest and highest value that can be a reading unless the table says otherwise.
     plausible: fn(&SensorKind) -> (f64, f64),
     /// Fills in typical numbers wherever the table says nothing.
@@ -173,6 +175,10 @@ impl KindChoice {
 
     pub(super) fn parameters(self, table: &Table<'_>) -> Result<Vec<Parameter>, ThermalError> {
         (self.kind().stated.parameters)(table)
+    }
+
+    pub(super) fn coupling_mut(self, spec: &mut SensorSpec) -> Option<[&mut Option<f64>; 2]> {
+        self.kind().stated.coupling.map(|coupling| coupling(spec))
     }
 
     pub(super) fn fill_typical(self, spec: &mut SensorSpec) {

@@ -78,6 +78,7 @@ pub(super) const KIND: Kind = Kind {
         columns: &["pressure"],
         build,
         parameters,
+        coupling: None,
         plausible: |kind| match *kind {
             SensorKind::Pressure { reference, full_scale_pa: Some(scale_pa) } => {
                 let zero_pa = reference.zero_pa();

@@ -43,6 +43,7 @@ pub(super) const KIND: Kind = Kind {
             )?;
             Ok(vec![Parameter::normal(ParameterKind::Coupling, coupling, sd)])
         },
+        coupling: Some(|spec| [&mut spec.air_coupling, &mut spec.air_coupling_sd]),
         plausible: |_| OUTSIDE_K,
         typical: |spec| {
             spec.noise_k.get_or_insert(0.05);
