@@ -185,3 +185,17 @@ impl KindChoice {
         (self.kind().stated.typical)(spec);
     }
 }
+
+#[cfg(all(test, feature = "files"))]
+mod tests {
+    use super::KindChoice;
+
+    #[test]
+    fn every_kind_of_the_schema_is_listed_under_its_name() {
+        let schema = serde_json::to_string(&schemars::schema_for!(KindChoice)).unwrap();
+        assert_eq!(schema.matches("\"const\"").count(), KindChoice::ALL.len(), "{schema}");
+        for choice in KindChoice::ALL {
+            assert_eq!(serde_json::to_value(choice).unwrap(), choice.name());
+        }
+    }
+}
