@@ -64,6 +64,9 @@ struct Kind {
     stated: StatedKind,
 }
 
+#[cfg(feature = "files")]
+type CouplingKeys = fn(&mut SensorSpec) -> [&mut Option<f64>; 2];
+
 /// A kind in files.
 #[cfg(feature = "files")]
 struct StatedKind {
@@ -80,7 +83,7 @@ struct StatedKind {
     /// Parameters beyond the offset, checked.
     parameters: fn(&Table<'_>) -> Result<Vec<Parameter>, ThermalError>,
     /// Where a table says the coupling and its standard deviation; `None`: it has none.
-    coupling: Option<fn(&mut SensorSpec) -> [&mut Option<f64>; 2]>,
+    coupling: Option<CouplingKeys>,
     /// Lowest and highest value that can be a reading unless the table says otherwise.
     plausible: fn(&SensorKind) -> (f64, f64),
     /// Fills in typical numbers wherever the table says nothing.
