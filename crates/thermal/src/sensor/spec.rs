@@ -24,6 +24,10 @@ pub struct SensorSpec {
     pub air_coupling: Option<f64>,
     /// Surface: standard deviation of the coupling, 0 by default.
     pub air_coupling_sd: Option<f64>,
+    /// Immersion: coupling to the valve through its stem, 0 (default) to 1: it reads `T_gas + coupling (T_valve - T_gas)`.
+    pub stem_coupling: Option<f64>,
+    /// Immersion: standard deviation of the coupling, 0 by default.
+    pub stem_coupling_sd: Option<f64>,
     /// Time constant of its first-order lag, 0 by default.
     pub lag_s: Option<f64>,
     /// Constant error of a temperature, 0 by default.
@@ -129,6 +133,7 @@ impl SensorSpec {
     pub(super) fn stated_keys(&self) -> impl Iterator<Item = (&'static str, KeyOf)> {
         use KeyOf::{Kind, Pressure, Temperature};
         let surface = Kind("it belongs to surface sensors");
+        let immersion = Kind("it belongs to immersion sensors");
         [
             ("place", self.place.is_some(), surface),
             (
@@ -139,6 +144,8 @@ impl SensorSpec {
             ("cell", self.cell.is_some(), Kind("it belongs to sensors in the gas")),
             ("air_coupling", self.air_coupling.is_some(), surface),
             ("air_coupling_sd", self.air_coupling_sd.is_some(), surface),
+            ("stem_coupling", self.stem_coupling.is_some(), immersion),
+            ("stem_coupling_sd", self.stem_coupling_sd.is_some(), immersion),
             ("offset_k", self.offset_k.is_some(), Temperature),
             ("offset_sd_k", self.offset_sd_k.is_some(), Temperature),
             ("offset_tolerance_k", self.offset_tolerance_k.is_some(), Temperature),

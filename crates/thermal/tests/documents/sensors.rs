@@ -146,3 +146,35 @@ fn a_height_in_the_gas_is_the_slab_around_it() {
         assert_eq!([0, 1, 5, 6].map(numbered), [None, Some(0), Some(4), None]);
     }
 }
+
+#[test]
+fn an_immersion_sensor_states_its_stem_and_hangs_as_a_gas_sensor_does() {
+    let stem = sensor(
+        "name = \"tank\"\nkind = \"immersion\"\nheight_mm = 750\nstem_coupling = 0.1\nstem_coupling_sd = 0.05\n\
+         class = \"A\"\nlag_s = 15",
+    );
+    let place = GasPlace::Height { height_m: 0.75 };
+    assert_eq!((stem.kind, stem.lag_s), (SensorKind::Immersion { place }, 15.0));
+    let coupling = parameter(&stem, ParameterKind::Coupling);
+    assert_eq!((coupling.mean, coupling.sd, coupling.law), (0.1, 0.05, Law::Normal));
+    let refused = |lines: &str| {
+        let document = format!("[[sensor]]\nname = \"gas_1\"\n{lines}");
+        scenario_with("film_w_m2_k = 8", &document).unwrap_err().to_string()
+    };
+    for (lines, words) in [
+        (
+            "stem_coupling = 0.1",
+            "stem_coupling cannot stand beside kind = gas: it belongs to immersion sensors",
+        ),
+        (
+            "kind = \"immersion\"\nair_coupling = 0.1",
+            "beside kind = immersion: it belongs to surface sensors",
+        ),
+        ("kind = \"immersion\"\nnoise_mbar = 1", "it belongs to pressure transmitters"),
+        ("kind = \"immersion\"\nstem_coupling = 1.1", "stem_coupling = 1.1 must be between 0 and 1"),
+        ("kind = \"immersion\"\nstem_coupling_sd = -1", "stem_coupling_sd = -1 must be between 0 and 1"),
+    ] {
+        let message = refused(lines);
+        assert!(message.contains(words), "{message}");
+    }
+}

@@ -2,6 +2,7 @@
 //! its uncertain parameters and its typical numbers. The enums here list them.
 mod ambient;
 mod gas;
+mod immersion;
 mod pressure;
 mod surface;
 
@@ -38,6 +39,11 @@ pub enum SensorKind {
     },
     /// Air temperature.
     Ambient,
+    /// Gas temperature inside, by a thermometer on a stem through the valve.
+    Immersion {
+        /// Where its tip is.
+        place: GasPlace,
+    },
 }
 
 /// What a sensor reads, as a file says it.
@@ -53,6 +59,8 @@ pub enum KindChoice {
     Gas,
     /// Air temperature.
     Ambient,
+    /// Gas temperature inside, on a stem through the valve.
+    Immersion,
 }
 
 /// What is true of every sensor of a kind.
@@ -97,6 +105,7 @@ impl SensorKind {
             Self::Pressure { .. } => &pressure::KIND,
             Self::Gas { .. } => &gas::KIND,
             Self::Ambient => &ambient::KIND,
+            Self::Immersion { .. } => &immersion::KIND,
         }
     }
 
@@ -105,7 +114,7 @@ impl SensorKind {
         match *self {
             Self::Surface { place } => Site::Surface(place),
             Self::Pressure { .. } => Site::Port,
-            Self::Gas { place } => Site::Gas(place),
+            Self::Gas { place } | Self::Immersion { place } => Site::Gas(place),
             Self::Ambient => Site::Air,
         }
     }
@@ -137,7 +146,7 @@ impl SensorKind {
 
 #[cfg(feature = "files")]
 impl KindChoice {
-    const ALL: [Self; 4] = [Self::Surface, Self::Ambient, Self::Pressure, Self::Gas];
+    const ALL: [Self; 5] = [Self::Surface, Self::Ambient, Self::Pressure, Self::Gas, Self::Immersion];
 
     fn kind(self) -> &'static Kind {
         match self {
@@ -145,6 +154,7 @@ impl KindChoice {
             Self::Pressure => &pressure::KIND,
             Self::Gas => &gas::KIND,
             Self::Ambient => &ambient::KIND,
+            Self::Immersion => &immersion::KIND,
         }
     }
 
