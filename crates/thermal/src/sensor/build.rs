@@ -1,7 +1,8 @@
 //! From `[[sensor]]` tables to checked sensors: what they have in common. What a kind has of its own is in its file.
+use super::kind::{Kind, StatedKind};
 use super::parameter::{Parameter, ParameterKind};
 use super::spec::{KeyOf, SensorSpec};
-use super::{CorrelatedNoise, KindChoice, MountedSensor, Pt100Class, Quantity, SensorKind};
+use super::{CorrelatedNoise, MountedSensor, Pt100Class, Quantity};
 use crate::ThermalError;
 use crate::document::check;
 use crate::units::ZERO_CELSIUS_K;
@@ -33,15 +34,15 @@ impl SensorSpec {
     /// [`ThermalError::Specification`] with the path of the first value that breaks a bound or does not belong to this
     /// kind of sensor.
     pub fn build(&self, path: &str) -> Result<MountedSensor, ThermalError> {
-        let choice = self.kind_or_default();
-        let table = Table { spec: self, path, is_pressure: choice.quantity() == Quantity::Pressure };
+        let Kind { quantity, stated, .. } = self.kind_or_default().kind();
+        let table = Table { spec: self, path, is_pressure: *quantity == Quantity::Pressure };
         table.name()?;
-        table.refuse_foreign(choice)?;
-        let kind = choice.build(&table)?;
+        table.refuse_foreign(stated)?;
+        let kind = (stated.build)(&table)?;
         let lag_s = table.lag_s()?;
         let offset = if table.is_pressure { table.offset_pa()? } else { table.offset_k()? };
         let mut parameters = vec![offset];
-        parameters.extend(choice.parameters(&table)?);
+        parameters.extend((stated.parameters)(&table)?);
         parameters[0].walk_per_sqrt_s = table.walk()?;
         Ok(MountedSensor {
             name: self.name.clone(),
@@ -54,7 +55,7 @@ impl SensorSpec {
             resolution: table.size("resolution_k", self.resolution_k)?
                 + table.size("resolution_pa", self.resolution_pa)?,
             dropout: table.fraction("dropout", self.dropout, "0.01 loses one reading of a hundred")?,
-            plausible: table.plausible(&kind)?,
+            plausible: table.plausible((stated.plausible)(&kind))?,
         })
     }
 }
@@ -83,7 +84,7 @@ impl Table<'_> {
     }
 
     /// Keys of other kinds mean nothing here; a silent one would look as if it did.
-    fn refuse_foreign(&self, choice: KindChoice) -> Result<(), ThermalError> {
+    fn refuse_foreign(&self, kind: &StatedKind) -> Result<(), ThermalError> {
         for (key, of) in self.spec.stated_keys() {
             let (is_own, remedy) = match of {
                 KeyOf::Temperature => (
@@ -93,11 +94,11 @@ impl Table<'_> {
                 KeyOf::Pressure => {
                     (self.is_pressure, "it belongs to pressure transmitters; a temperature takes _k")
                 }
-                KeyOf::Kind(remedy) => (choice.has_key(key), remedy),
+                KeyOf::Kind(remedy) => (kind.keys.contains(&key), remedy),
             };
             if !is_own {
-                let kind = format!("kind = {}", choice.name());
-                return Err(check::conflict(&self.at(key), &kind, remedy));
+                let stated = format!("kind = {}", kind.name);
+                return Err(check::conflict(&self.at(key), &stated, remedy));
             }
         }
         Ok(())
@@ -205,8 +206,7 @@ impl Table<'_> {
         }
     }
 
-    fn plausible(&self, kind: &SensorKind) -> Result<(f64, f64), ThermalError> {
-        let (low, high) = kind.plausible();
+    fn plausible(&self, (low, high): (f64, f64)) -> Result<(f64, f64), ThermalError> {
         if self.is_pressure {
             return Ok((low, high));
         }

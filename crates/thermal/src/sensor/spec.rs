@@ -111,13 +111,13 @@ impl SensorSpec {
     /// The table with the typical numbers of its kind wherever it says nothing.
     pub fn completed(&self) -> Self {
         let mut full = self.clone();
-        self.kind_or_default().fill_typical(&mut full);
+        (self.kind_or_default().kind().stated.typical)(&mut full);
         full
     }
 
     /// Value and standard deviation of its coupling; `None` for a kind that has none.
     pub fn coupling_mut(&mut self) -> Option<[&mut Option<f64>; 2]> {
-        self.kind_or_default().coupling_mut(self)
+        self.kind_or_default().kind().stated.coupling.map(|keys| keys(self))
     }
 
     /// Whether the table says how far the offset may be off.

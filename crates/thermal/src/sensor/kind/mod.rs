@@ -64,38 +64,38 @@ pub enum KindChoice {
 }
 
 /// What is true of every sensor of a kind.
-struct Kind {
-    quantity: Quantity,
+pub(super) struct Kind {
+    pub(super) quantity: Quantity,
     /// Static reading with its derivatives; the parameters are in the order of a sensor's.
-    predict: fn(&SensorKind, &Exposure, &[f64]) -> Prediction,
+    pub(super) predict: fn(&SensorKind, &Exposure, &[f64]) -> Prediction,
     #[cfg(feature = "files")]
-    stated: StatedKind,
+    pub(super) stated: StatedKind,
 }
 
 #[cfg(feature = "files")]
-type CouplingKeys = fn(&mut SensorSpec) -> [&mut Option<f64>; 2];
+pub(super) type CouplingKeys = fn(&mut SensorSpec) -> [&mut Option<f64>; 2];
 
 /// A kind in files.
 #[cfg(feature = "files")]
-struct StatedKind {
+pub(super) struct StatedKind {
     /// As in `kind = surface`.
-    name: &'static str,
+    pub(super) name: &'static str,
     /// Keys of a table beyond those that every sensor of its quantity has.
-    keys: &'static [&'static str],
+    pub(super) keys: &'static [&'static str],
     /// Whether a sensor of this name is of this kind unless its table says otherwise.
-    is_named: fn(&str) -> bool,
+    pub(super) is_named: fn(&str) -> bool,
     /// Names of its columns in a log, as `gas_<name>`.
-    columns: &'static [&'static str],
+    pub(super) columns: &'static [&'static str],
     /// What it reads and where, checked.
-    build: fn(&Table<'_>) -> Result<SensorKind, ThermalError>,
+    pub(super) build: fn(&Table<'_>) -> Result<SensorKind, ThermalError>,
     /// Parameters beyond the offset, checked.
-    parameters: fn(&Table<'_>) -> Result<Vec<Parameter>, ThermalError>,
+    pub(super) parameters: fn(&Table<'_>) -> Result<Vec<Parameter>, ThermalError>,
     /// Where a table says the coupling and its standard deviation; `None`: it has none.
-    coupling: Option<CouplingKeys>,
+    pub(super) coupling: Option<CouplingKeys>,
     /// Lowest and highest value that can be a reading unless the table says otherwise.
-    plausible: fn(&SensorKind) -> (f64, f64),
+    pub(super) plausible: fn(&SensorKind) -> (f64, f64),
     /// Fills in typical numbers wherever the table says nothing.
-    typical: fn(&mut SensorSpec),
+    pub(super) typical: fn(&mut SensorSpec),
 }
 
 impl SensorKind {
@@ -136,19 +136,13 @@ impl SensorKind {
     pub fn predict(&self, exposure: &Exposure, parameters: &[f64]) -> Prediction {
         (self.kind().predict)(self, exposure, parameters)
     }
-
-    /// Lowest and highest value that can be a reading unless its table says otherwise.
-    #[cfg(feature = "files")]
-    pub(super) fn plausible(&self) -> (f64, f64) {
-        (self.kind().stated.plausible)(self)
-    }
 }
 
 #[cfg(feature = "files")]
 impl KindChoice {
     const ALL: [Self; 5] = [Self::Surface, Self::Ambient, Self::Pressure, Self::Gas, Self::Immersion];
 
-    fn kind(self) -> &'static Kind {
+    pub(super) fn kind(self) -> &'static Kind {
         match self {
             Self::Surface => &surface::KIND,
             Self::Pressure => &pressure::KIND,
@@ -169,34 +163,6 @@ impl KindChoice {
         let of = |kind: &'static Kind| kind.stated.columns.iter().map(|name| (*name, kind.quantity));
         Self::ALL.into_iter().flat_map(move |choice| of(choice.kind()))
     }
-
-    pub(super) fn name(self) -> &'static str {
-        self.kind().stated.name
-    }
-
-    pub(super) fn quantity(self) -> Quantity {
-        self.kind().quantity
-    }
-
-    pub(super) fn has_key(self, key: &str) -> bool {
-        self.kind().stated.keys.contains(&key)
-    }
-
-    pub(super) fn build(self, table: &Table<'_>) -> Result<SensorKind, ThermalError> {
-        (self.kind().stated.build)(table)
-    }
-
-    pub(super) fn parameters(self, table: &Table<'_>) -> Result<Vec<Parameter>, ThermalError> {
-        (self.kind().stated.parameters)(table)
-    }
-
-    pub(super) fn coupling_mut(self, spec: &mut SensorSpec) -> Option<[&mut Option<f64>; 2]> {
-        self.kind().stated.coupling.map(|coupling| coupling(spec))
-    }
-
-    pub(super) fn fill_typical(self, spec: &mut SensorSpec) {
-        (self.kind().stated.typical)(spec);
-    }
 }
 
 #[cfg(all(test, feature = "files"))]
@@ -208,7 +174,7 @@ mod tests {
         let schema = serde_json::to_string(&schemars::schema_for!(KindChoice)).unwrap();
         assert_eq!(schema.matches("\"const\"").count(), KindChoice::ALL.len(), "{schema}");
         for choice in KindChoice::ALL {
-            assert_eq!(serde_json::to_value(choice).unwrap(), choice.name());
+            assert_eq!(serde_json::to_value(choice).unwrap(), choice.kind().stated.name);
         }
     }
 }
