@@ -1,6 +1,6 @@
 //! What a run's sensors read, for tables and figures.
 use crate::estimator::EstimatorError;
-use crate::estimator::log::Log;
+use crate::estimator::log::{Log, Quantity};
 use crate::estimator::sensor::{PressureReference, Sensor, SensorKind, SensorSuite, SuiteTruth, sample};
 use crate::thermal::trajectory::Trajectory;
 use crate::thermal::units::{ATMOSPHERE_PA, BAR_PA, ZERO_CELSIUS_K};
@@ -55,14 +55,12 @@ impl Readings {
 
 /// Name of a sensor's column and its readings in that column's unit: °C, bar, or bar above the atmosphere.
 pub(super) fn column(sensor: &Sensor, values: &[f64]) -> (String, Vec<f64>) {
-    let (unit, zero, factor) = match sensor.kind {
-        SensorKind::Pressure { reference: PressureReference::Absolute, .. } => ("bar", 0.0, BAR_PA),
-        SensorKind::Pressure { reference: PressureReference::Gauge { .. }, .. } => {
+    let (unit, zero, factor) = match (sensor.quantity(), sensor.kind) {
+        (Quantity::Temperature, _) => ("degc", ZERO_CELSIUS_K, 1.0),
+        (_, SensorKind::Pressure { reference: PressureReference::Gauge { .. }, .. }) => {
             ("barg", ATMOSPHERE_PA, BAR_PA)
         }
-        SensorKind::Surface { .. } | SensorKind::Gas { .. } | SensorKind::Ambient => {
-            ("degc", ZERO_CELSIUS_K, 1.0)
-        }
+        (Quantity::Pressure, _) => ("bar", 0.0, BAR_PA),
     };
     let values = values.iter().map(|value| (value - zero) / factor).collect();
     (format!("measured_{}_{unit}", sensor.name), values)

@@ -1,7 +1,8 @@
 //! A simulated run as columns, as JSON, as a figure, as a few lines for the terminal.
 use super::figure::{Figure, Item, Mark, Panel, style};
 use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Report, Table, number, readings};
-use crate::estimator::sensor::{Sensor, SensorKind};
+use crate::estimator::log::Quantity;
+use crate::estimator::sensor::{Sensor, Site};
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
@@ -79,7 +80,7 @@ pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
     let mut pressure: Vec<Item> = run.scenario.pressure_limits_pa.iter().map(limit).collect();
     pressure.push(Item::line("pressure", time, bar(&run.pressure_pa), style::PRESSURE));
     for (number, (sensor, values)) in readings.columns().enumerate() {
-        if let SensorKind::Pressure { .. } = sensor.kind {
+        if sensor.quantity() == Quantity::Pressure {
             let name = format!("sensor {}", sensor.name);
             pressure.push(Item::line(name, time, bar(&values), style::sensor("pressure", number)));
         }
@@ -106,7 +107,7 @@ pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
 fn air(run: &Trajectory, readings: &Readings) -> Vec<Item> {
     let mut items = vec![Item::line("air", &run.time_s, celsius(&run.ambient_k), style::AIR)];
     for (number, (sensor, values_k)) in readings.columns().enumerate() {
-        if sensor.kind == SensorKind::Ambient {
+        if sensor.site() == Site::Air {
             items.push(sensor_line(run, sensor, &values_k, style::sensor("ambient", number)));
         }
     }
@@ -135,10 +136,10 @@ fn bodies(run: &Trajectory, readings: &Readings) -> Vec<Item> {
         }
     }
     for (number, (sensor, values_k)) in readings.columns().enumerate() {
-        let place = match sensor.kind {
-            SensorKind::Surface { place } => place.as_str(),
-            SensorKind::Gas { .. } => "gas",
-            SensorKind::Pressure { .. } | SensorKind::Ambient => continue,
+        let place = match sensor.site() {
+            Site::Surface(place) => place.as_str(),
+            Site::Gas(_) => "gas",
+            Site::Air | Site::Port => continue,
         };
         items.push(sensor_line(run, sensor, &values_k, style::sensor(place, number)));
     }

@@ -1,13 +1,6 @@
 //! Recorded readings: one row per time, any value may be missing.
 
-/// What a channel measures; the unit of its values is SI.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Temperature, K.
-    Temperature,
-    /// Absolute pressure, Pa.
-    Pressure,
-}
+pub use cylwatch_thermal::sensor::Quantity;
 
 /// One column of a log.
 #[derive(Clone, Debug, PartialEq)]

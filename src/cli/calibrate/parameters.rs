@@ -3,7 +3,7 @@ use super::conditions::Conditions;
 use super::recording::Recording;
 use crate::estimator::calibrate::{ParameterKind, ParameterNameError, ParameterSpec, Prior};
 use crate::estimator::log::Quantity;
-use crate::estimator::sensor::{Parameter, Sensor, SensorKind, SurfacePlace};
+use crate::estimator::sensor::{Parameter, Sensor, Site, SurfacePlace};
 use crate::report::calibrate::shown_unit;
 use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
@@ -136,7 +136,7 @@ fn usual(subjects: &[Subject<'_>]) -> Vec<ParameterKind> {
     let has_pressure = any(&|subject| {
         subject.recording.sensors.iter().any(|sensor| sensor.quantity() == Quantity::Pressure)
     });
-    let on_valve = |sensor: &Sensor| sensor.kind == SensorKind::Surface { place: SurfacePlace::Valve };
+    let on_valve = |sensor: &Sensor| sensor.site() == Site::Surface(SurfacePlace::Valve);
     let has_valve =
         any(&|subject| subject.vessel.valve.is_some() && subject.recording.sensors.iter().any(on_valve));
     let mut kinds = vec![ParameterKind::OutsideFilm];

@@ -5,7 +5,7 @@ use crate::cli::options::LogArguments;
 use crate::cli::progress::Progress;
 use crate::cli::selection::Selection;
 use crate::estimator::log::{Channel, Log, Quantity};
-use crate::estimator::sensor::{Sensor, SensorKind};
+use crate::estimator::sensor::{Sensor, Site};
 use crate::thermal::units::ZERO_CELSIUS_K;
 use crate::thermal::vessel::Vessel;
 
@@ -40,13 +40,13 @@ pub(super) struct Recording {
 impl Reading<'_> {
     /// Reads a log.
     pub(super) fn read(&self, name: &str, vessel: &Vessel) -> anyhow::Result<Recording> {
-        let of_air = |sensor: &&Sensor| sensor.kind == SensorKind::Ambient;
+        let of_air = |sensor: &&Sensor| sensor.site() == Site::Air;
         let air_sensor = match self.sensors.and_then(|sensors| sensors.iter().find(of_air)) {
             Some(sensor) => sensor.clone(),
             None => Sensor::typical(AMBIENT)?,
         };
         let sensors = self.sensors.map(|sensors| {
-            let on_vessel = |sensor: &&Sensor| sensor.kind != SensorKind::Ambient;
+            let on_vessel = |sensor: &&Sensor| sensor.site() != Site::Air;
             sensors.iter().filter(on_vessel).cloned().collect::<Vec<_>>()
         });
         let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();

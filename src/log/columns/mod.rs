@@ -20,11 +20,17 @@ use super::caution::{Cautions, Kind};
 use super::label::Label;
 use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Quantity};
+use crate::estimator::sensor::KindChoice;
 use crate::thermal::document::Problem;
 use crate::thermal::units::{Dimension, Unit};
+use std::sync::LazyLock;
 
-/// Names of readings, for messages.
-pub(super) const KNOWN: &str = "shoulder, valve, ambient, pressure, wall_<place>, gas_<name>";
+/// Names of readings, for messages: whole ones before beginnings.
+static KNOWN: LazyLock<String> = LazyLock::new(|| {
+    let (beginnings, whole): (Vec<_>, Vec<_>) =
+        KindChoice::columns().map(|(name, _)| name).partition(|name| name.contains('<'));
+    [whole, beginnings].concat().join(", ")
+});
 
 /// Columns of a simulation that no observer has a use for.
 const SIMULATED_ONLY: [&str; 1] = ["heat_to_gas_w"];
@@ -171,7 +177,7 @@ fn found<'a>(
         let meaning = match meaning(name, &options.sensors) {
             _ if name == mapped::CLOCK => Meaning::Clock,
             Ok(Meaning::Unknown) if mapped.is_some() => {
-                return Err(refuse(format!("{name} is nothing that is read; known are time, {KNOWN}")));
+                return Err(refuse(format!("{name} is nothing that is read; known are time, {}", *KNOWN)));
             }
             Ok(meaning) => meaning,
             Err(problem) if mapped.is_some() => return Err(refuse(problem.to_string())),
@@ -254,8 +260,7 @@ fn meaning(name: &str, sensors: &[String]) -> Result<Meaning, Problem> {
     {
         return Ok(reading);
     }
-    for base in ["shoulder", "valve", "ambient", "pressure"] {
-        let dimension = if base == "pressure" { Dimension::Pressure } else { Dimension::Temperature };
+    for (base, dimension) in units::whole_names() {
         if let Some(unit) = units::of(plain, base, dimension)? {
             return Ok(reading(base, unit).unwrap_or(Meaning::Unknown));
         }
@@ -314,7 +319,7 @@ fn readings(
         }
     }
     if chosen.is_empty() {
-        return Err(LogError::NoReadings { at: at.to_owned(), known: KNOWN, columns: headers(found) });
+        return Err(LogError::NoReadings { at: at.to_owned(), known: &KNOWN, columns: headers(found) });
     }
     for (_, rank, column) in &chosen {
         if simulated && *rank == (false, false) && !is_sensor(&column.meaning.name, options) {

@@ -1,5 +1,6 @@
 //! Units at the end of a column's name, and what people write instead of them.
 use crate::estimator::log::Quantity;
+use crate::estimator::sensor::KindChoice;
 use crate::thermal::document::Problem;
 use crate::thermal::units::{self, Dimension, Unit};
 
@@ -24,6 +25,19 @@ const FOREIGN: [(&str, Dimension, Option<&str>); 18] = [
     ("ms", Dimension::Time, None),
     ("us", Dimension::Time, None),
 ];
+
+/// Names of columns of the kinds of sensors, and what a unit of theirs measures.
+fn names() -> impl Iterator<Item = (&'static str, Dimension)> {
+    KindChoice::columns().map(|(name, quantity)| match quantity {
+        Quantity::Temperature => (name, Dimension::Temperature),
+        Quantity::Pressure => (name, Dimension::Pressure),
+    })
+}
+
+/// Those that are one name, as `shoulder`.
+pub(super) fn whole_names() -> impl Iterator<Item = (&'static str, Dimension)> {
+    names().filter(|(name, _)| !name.contains('<'))
+}
 
 /// The quantity of a sensor's unit.
 pub(super) fn quantity(unit: &Unit) -> Option<Quantity> {
@@ -56,28 +70,30 @@ pub(super) fn of(name: &str, base: &str, dimension: Dimension) -> Result<Option<
     }
 }
 
-/// Name and unit of `wall_<place>` and `gas_<name>`.
+/// Name and unit of `wall_<place>`, `gas_<name>` and the like.
 ///
 /// # Errors
 /// As of [`of`]. Names that begin so and end in another quantity (`wall_thickness_mm`, `gas_type`) are other columns,
 /// but `wall_middle` is taken to lack its unit.
 pub(super) fn of_prefixed(name: &str) -> Result<Option<(&str, &'static Unit)>, Problem> {
-    let is_wall = name.strip_prefix("wall_").is_some_and(|place| !place.is_empty());
-    let is_gas = name.strip_prefix("gas_").is_some_and(|place| !place.is_empty());
-    if !is_wall && !is_gas {
+    let begins_so = |known: &str| {
+        let (beginning, _) = known.split_once('<')?;
+        name.strip_prefix(beginning).filter(|place| !place.is_empty())
+    };
+    let Some((_, dimension)) = names().find(|(known, _)| begins_so(known).is_some()) else {
         return Ok(None);
-    }
+    };
     if let Some((base, unit)) = units::split(name) {
         let is_place = base.len() > "wall".len() && base.contains('_');
-        return Ok((is_place && unit.dimension == Dimension::Temperature).then_some((base, unit)));
+        return Ok((is_place && unit.dimension == dimension).then_some((base, unit)));
     }
     if let Some((base, suffix)) = name.rsplit_once('_')
         && base.contains('_')
-        && let Some(nearest) = meant(suffix, Dimension::Temperature)
+        && let Some(nearest) = meant(suffix, dimension)
     {
-        return Err(wrong_unit(name, base, suffix, Dimension::Temperature, nearest));
+        return Err(wrong_unit(name, base, suffix, dimension, nearest));
     }
-    if is_wall { Err(no_unit(name, Dimension::Temperature)) } else { Ok(None) }
+    if name.starts_with("wall_") { Err(no_unit(name, dimension)) } else { Ok(None) }
 }
 
 /// Whether an ending that is no unit is meant as one; then the unit of ours that it may be, if there is one.
@@ -132,8 +148,8 @@ pub(super) fn with_unit_of(ours: &str, theirs: &str) -> String {
 pub(super) fn nearest(name: &str) -> Option<String> {
     let (base, unit) = units::split(name)?;
     quantity(unit)?;
-    let known = ["shoulder", "valve", "ambient", "pressure", "wall_middle"];
+    let known = whole_names().map(|(name, _)| name).chain(["wall_middle"]);
     let likeness = |candidate: &&str| strsim::jaro_winkler(base, candidate);
-    let best = known.into_iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+    let best = known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
     (likeness(&best) > 0.9).then(|| format!("{best}_{}", unit.suffix))
 }

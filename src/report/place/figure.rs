@@ -3,7 +3,7 @@ use super::outline::Outline;
 use super::{GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
 use crate::estimator::placement::Status;
 use crate::estimator::placement::study::{Failure, Front, Judged, Position};
-use crate::estimator::sensor::SensorKind;
+use crate::estimator::sensor::Site;
 use crate::report::figure::style::{self, Stroke};
 use crate::report::figure::{
     Cell, Column, Elevation, Figure, Grid, Horizontal, Item, Mark, Panel, Part, Picture, Place, Profile,
@@ -52,13 +52,13 @@ impl Placed<'_> {
     fn place(&self, sensor: usize, outline: &Outline) -> Place {
         let on_wall = |height_mm: f64| (outline.radius_mm(height_mm), height_mm);
         let half_mm = 0.5 * outline.top_mm();
-        let kind = self.candidates.list.get(sensor).map(|candidate| candidate.sensor.kind);
-        let at = match (self.study.heights_m.get(sensor).copied().flatten(), kind) {
+        let site = self.candidates.list.get(sensor).map(|candidate| candidate.sensor.site());
+        let at = match (self.study.heights_m.get(sensor).copied().flatten(), site) {
             (Some(height_m), _) => on_wall(MILLIMETRES * height_m),
-            (None, Some(SensorKind::Surface { .. })) => (outline.valve_radius_mm(), outline.valve_mm()),
-            (None, Some(SensorKind::Pressure { .. })) => (0.0, outline.top_mm()),
-            (None, Some(SensorKind::Ambient)) => (1.12 * outline.radius_mm(half_mm), 0.2 * half_mm),
-            (None, Some(SensorKind::Gas { .. }) | None) => (0.0, half_mm),
+            (None, Some(Site::Surface(_))) => (outline.valve_radius_mm(), outline.valve_mm()),
+            (None, Some(Site::Port)) => (0.0, outline.top_mm()),
+            (None, Some(Site::Air)) => (1.12 * outline.radius_mm(half_mm), 0.2 * half_mm),
+            (None, Some(Site::Gas(_)) | None) => (0.0, half_mm),
         };
         Place { at, name: self.name(sensor).to_owned() }
     }

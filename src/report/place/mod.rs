@@ -26,7 +26,7 @@ use super::number;
 use crate::estimator::log::Quantity;
 use crate::estimator::placement::study::Study;
 use crate::estimator::placement::{Candidates, Criterion, Status};
-use crate::estimator::sensor::{SensorKind, SurfacePlace};
+use crate::estimator::sensor::{Site, SurfacePlace};
 use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings};
 use crate::thermal::vessel::Vessel;
 
@@ -131,9 +131,9 @@ impl Placed<'_> {
 
     /// Whether a sensor sits on a place that the paper asks about: its name.
     fn asked_about(&self, sensor: usize) -> Option<&'static str> {
-        match self.candidates.list.get(sensor)?.sensor.kind {
-            SensorKind::Surface { place: SurfacePlace::Shoulder } => Some("shoulder"),
-            SensorKind::Surface { place: SurfacePlace::Valve } => Some("valve"),
+        match self.candidates.list.get(sensor)?.sensor.site() {
+            Site::Surface(SurfacePlace::Shoulder) => Some("shoulder"),
+            Site::Surface(SurfacePlace::Valve) => Some("valve"),
             _ => None,
         }
     }

@@ -1,7 +1,6 @@
 //! What each sensor is for.
 use crate::estimator::log::Quantity;
-use crate::estimator::sensor::Sensor;
-use crate::estimator::thermal::sensor::SensorKind;
+use crate::estimator::sensor::{Sensor, Site};
 
 /// Indices of sensors by what they tell of the cylinder.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,11 +16,10 @@ pub(super) struct Roles {
 impl Roles {
     pub(super) fn of(sensors: &[Sensor]) -> Self {
         let all = || sensors.iter().enumerate();
-        let surface = all().filter(|(_, sensor)| matches!(sensor.kind, SensorKind::Surface { .. }));
+        let surface = all().filter(|(_, sensor)| sensor.is_on_surface());
         let surface: Vec<usize> = surface.map(|(index, _)| index).collect();
-        let on_the_cylinder = |sensor: &Sensor| {
-            sensor.quantity() == Quantity::Temperature && !matches!(sensor.kind, SensorKind::Ambient)
-        };
+        let on_the_cylinder =
+            |sensor: &Sensor| sensor.quantity() == Quantity::Temperature && sensor.site() != Site::Air;
         Self {
             pressure: all()
                 .find(|(_, sensor)| sensor.quantity() == Quantity::Pressure)

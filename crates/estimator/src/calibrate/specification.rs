@@ -92,7 +92,9 @@ fn know(sensor: &mut SensorSpec, estimate: &Estimate, is_pressure: bool) {
             sensor.class = None;
         }
         ParameterKind::SensorCoupling { .. } => {
-            (sensor.air_coupling, sensor.air_coupling_sd) = (value, sd);
+            if let Some([of_value, of_sd]) = sensor.coupling_mut() {
+                (*of_value, *of_sd) = (value, sd);
+            }
         }
         ParameterKind::SensorSpan { .. } => (sensor.span_ratio, sensor.span_sd_ratio) = (value, sd),
         ParameterKind::SensorTemperatureCoefficient { .. } => {

@@ -16,7 +16,7 @@
 use super::band_settings::BandSettings;
 use super::settings::ObserverSettings;
 use super::states::States;
-use crate::sensor::{ParameterKind, Sensor, SensorKind};
+use crate::sensor::{ParameterKind, Sensor};
 
 /// The rule with its numbers for one cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl Band {
     pub(super) fn new(states: &States, sensors: &[Sensor], settings: &ObserverSettings) -> Self {
         let certainty_per_k2: f64 = sensors
             .iter()
-            .filter(|sensor| matches!(sensor.kind, SensorKind::Surface { .. }))
+            .filter(|sensor| sensor.is_on_surface())
             .flat_map(|sensor| sensor.parameters())
             .filter(|parameter| parameter.kind == ParameterKind::Offset)
             .map(|parameter| (parameter.sd * parameter.sd).recip())

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::settings::ObserverSettings;
 use super::states::{StateKind, States};
 use crate::EstimatorError;
-use crate::sensor::{Sensor, SensorKind};
+use crate::log::Quantity;
+use crate::sensor::{Sensor, Site};
 use crate::thermal::vessel::Fill;
 use crate::thermal::vessel::Vessel;
 
@@ -112,13 +113,13 @@ pub(super) fn prior(
     vessel: &Vessel,
     readings: &[f64],
 ) -> Result<Prior, EstimatorError> {
-    let first = |is_kind: fn(&SensorKind) -> bool| -> Option<(f64, f64)> {
-        let of_kind = sensors.iter().zip(readings).filter(|(sensor, _)| is_kind(&sensor.kind));
-        mean_and_range(of_kind.map(|(_, value)| *value).filter(|value| value.is_finite()))
+    let first = |is_it: fn(&Sensor) -> bool| -> Option<(f64, f64)> {
+        let readings = sensors.iter().zip(readings).filter(|(sensor, _)| is_it(sensor));
+        mean_and_range(readings.map(|(_, value)| *value).filter(|value| value.is_finite()))
     };
-    let surface = first(|kind| matches!(kind, SensorKind::Surface { .. }));
-    let gas = first(|kind| matches!(kind, SensorKind::Gas { .. }));
-    let air = first(|kind| matches!(kind, SensorKind::Ambient));
+    let surface = first(Sensor::is_on_surface);
+    let gas = first(|sensor| matches!(sensor.site(), Site::Gas(_)));
+    let air = first(|sensor| sensor.site() == Site::Air);
     let measured = surface.or(gas).or(air);
     let [gas, air] = [gas, air].map(|of| of.map(|(mean_k, _)| mean_k));
     let body_k = measured.map_or(ASSUMED_K, |(mean_k, _)| mean_k);
@@ -164,7 +165,7 @@ fn mean_and_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 /// What a lagging sensor shows at the start: its own reading, if it has one.
 fn lagged(sensors: &[Sensor], readings: &[f64], sensor: usize, body_k: f64) -> (f64, f64) {
-    let pressure = matches!(sensors[sensor].kind, SensorKind::Pressure { .. });
+    let pressure = sensors[sensor].quantity() == Quantity::Pressure;
     let (assumed, sd) = if pressure { (2e7, 1e7) } else { (body_k, ASSUMED_SD_K) };
     let reading = readings[sensor];
     if reading.is_finite() { (reading, if pressure { 1e5 } else { 1.0 }) } else { (assumed, sd) }

@@ -9,6 +9,7 @@ mod engine;
 mod lanes;
 mod linearity;
 mod noise;
+mod output;
 mod plant;
 mod structure;
 mod transition;
@@ -20,26 +21,16 @@ use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
 use crate::filter::{Linearisation, Plant, StateSpace, parts};
-use crate::sensor::{Exposure, MAX_PARAMETERS, Sensor, SensorKind};
-use crate::thermal::reduced::{Pressure, ReducedModel, SurfaceState, Unknowns, WarmStart};
+use crate::sensor::Sensor;
+use crate::thermal::reduced::{ReducedModel, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
 use noise::Parts;
+use output::{Target, reads_pressure};
 use structure::Structure;
 use transition::{Transition, Walking};
 
 /// What the gas temperature may be while gas is exchanged.
 const FREE_GAS_SD_K: f64 = 20.0;
-
-/// What a sensor looks at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Target {
-    /// A place on the surface.
-    Surface(SurfaceState),
-    /// The gas.
-    Gas,
-    Air,
-    Pressure,
-}
 
 /// The cylinder with its sensors in the variables of [`States`].
 #[derive(Clone, Debug)]
@@ -47,6 +38,8 @@ pub struct Cylinder {
     model: ReducedModel,
     sensors: Vec<Sensor>,
     targets: Vec<Target>,
+    /// Whether each sensor's reading depends on the gas pressure.
+    reads_pressure: Vec<bool>,
     states: States,
     settings: ObserverSettings,
     /// How each leading state walks.
@@ -88,32 +81,6 @@ struct Work {
 }
 
 impl Cylinder {
-    /// Variance of a sensor's noise, K² or Pa², for a member of such caution, Pa/K.
-    pub(super) fn noise_at_caution(&self, j: usize, x: &[f64], caution_pa_k: f64) -> f64 {
-        let error = &self.settings.model_error;
-        let states = &self.states;
-        let square = |v: f64| v * v;
-        let model = match self.targets[j] {
-            Target::Gas => square(error.gas_k),
-            Target::Surface(place) => {
-                let away_k = x[states.air] - self.surface_k(place, x);
-                square(error.surface_k) + square(error.surface_per_air_k * away_k)
-            }
-            Target::Air => square(error.air_k),
-            Target::Pressure => {
-                let wall_k = self.model.mean_wall_k(x);
-                let away_k = wall_k - x[states.gas];
-                let per_k2 = square(error.pressure_per_wall_k) + square(caution_pa_k);
-                square(error.pressure_pa) + per_k2 * square(away_k)
-            }
-        };
-        let again = (error.correlation_s / self.interval_s[j]).max(1.0);
-        let sensor = &self.sensors[j];
-        // A reading within the same step has the same rounding: a run of them tells hardly more than its first one.
-        let rounding = square(sensor.resolution) / 12.0 * f64::from(self.repeats[j]);
-        sensor.noise_variance() + rounding + model * again
-    }
-
     /// A vessel seen by sensors.
     ///
     /// # Errors
@@ -127,7 +94,7 @@ impl Cylinder {
         let model = ReducedModel::new(vessel, settings.wall_nodes, settings.film_w_m2_k);
         let states = States::new(&model, sensors, settings);
         let targets =
-            sensors.iter().map(|sensor| target(sensor, &model, vessel)).collect::<Result<_, _>>()?;
+            sensors.iter().map(|sensor| Target::of(sensor, &model, vessel)).collect::<Result<_, _>>()?;
         if let Some(twice) =
             sensors.iter().enumerate().find(|(i, s)| sensors[..*i].iter().any(|o| o.name == s.name))
         {
@@ -154,6 +121,7 @@ impl Cylinder {
             offsets: Vec::new(),
             loosened: vec![0.0; sensors.len()],
             nonlinear: Vec::new(),
+            reads_pressure: sensors.iter().map(reads_pressure).collect(),
             sensors: sensors.to_vec(),
             targets,
             states,
@@ -200,7 +168,7 @@ impl Cylinder {
 
     /// Whether a sensor reads the gas pressure.
     pub(crate) fn reads_pressure(&self, sensor: usize) -> bool {
-        self.targets[sensor] == Target::Pressure
+        self.reads_pressure[sensor]
     }
 
     /// Hold no member whose gas may flow.
@@ -293,79 +261,6 @@ impl Cylinder {
         Ok(())
     }
 
-    /// Temperature of a place on the surface, K.
-    fn surface_k(&self, place: SurfaceState, x: &[f64]) -> f64 {
-        let departure = self.states.valve.map_or(0.0, |valve| x[valve] - x[self.states.wall - 1]);
-        let sun_w = self.states.sun.map_or(0.0, |sun| x[sun]);
-        x[place.state] + place.valve_share * departure + place.sun_rise_k_w * sun_w
-    }
-
-    /// Reading of a sensor before its lag, with its gradient.
-    pub(super) fn static_reading(
-        &mut self,
-        sensor: usize,
-        x: &[f64],
-        gradient: Option<&mut [f64]>,
-    ) -> Result<f64, EstimatorError> {
-        let target = self.targets[sensor];
-        let pressure = match target {
-            Target::Pressure if gradient.is_some() => Some(self.model.pressure(&x[..self.model.states()])?),
-            Target::Pressure => Some(Pressure { pressure_pa: self.pressure_pa(x)?, ..Pressure::default() }),
-            _ => None,
-        };
-        let states = &self.states;
-        let electronics = states.valve.unwrap_or(states.wall - 1);
-        let exposure = Exposure {
-            body_k: match target {
-                Target::Surface(place) => self.surface_k(place, x),
-                Target::Gas => x[states.gas],
-                Target::Air | Target::Pressure => 0.0,
-            },
-            air_k: x[states.air],
-            pressure_pa: pressure.map_or(0.0, |p| p.pressure_pa),
-            electronics_k: x[electronics],
-        };
-        let object = &self.sensors[sensor];
-        let mut parameters: [f64; MAX_PARAMETERS] = object.means();
-        for (value, state) in parameters.iter_mut().zip(&states.parameters[sensor]) {
-            if let Some(state) = state {
-                *value = x[*state];
-            }
-        }
-        let prediction = object.predict(&exposure, &parameters);
-        let Some(h) = gradient else { return Ok(prediction.value) };
-        h.fill(0.0);
-        match target {
-            Target::Surface(place) => {
-                h[place.state] += prediction.per_body;
-                if let Some(valve) = states.valve {
-                    h[valve] += prediction.per_body * place.valve_share;
-                    h[states.wall - 1] -= prediction.per_body * place.valve_share;
-                }
-                if let Some(sun) = states.sun {
-                    h[sun] += prediction.per_body * place.sun_rise_k_w;
-                }
-            }
-            Target::Gas => h[states.gas] += prediction.per_body,
-            Target::Air | Target::Pressure => {}
-        }
-        h[states.air] += prediction.per_air;
-        if let Some(p) = pressure {
-            h[states.gas] += prediction.per_pressure * p.per_gas_k;
-            h[states.mass] += prediction.per_pressure * p.per_mass_kg;
-            for (node, by) in h[..states.wall].iter_mut().enumerate() {
-                *by += prediction.per_pressure * p.per_wall_k * self.model.mean_wall_per_node(x, node);
-            }
-            h[electronics] += prediction.per_electronics;
-        }
-        for (by, state) in prediction.per_parameter.iter().zip(&states.parameters[sensor]) {
-            if let Some(state) = state {
-                h[*state] += by;
-            }
-        }
-        Ok(prediction.value)
-    }
-
     /// One undivided step; its transition is in the work, and with `noise` its noise.
     fn step(&mut self, x: &mut [f64], h: f64, noise: bool) -> Result<(), EstimatorError> {
         self.linearise(x)?;
@@ -401,17 +296,6 @@ impl Cylinder {
         self.work.parts = Some(memory);
         outcome
     }
-}
-
-fn target(sensor: &Sensor, model: &ReducedModel, vessel: &Vessel) -> Result<Target, EstimatorError> {
-    Ok(match &sensor.kind {
-        SensorKind::Surface { place } => Target::Surface(model.surface(place).ok_or_else(|| {
-            EstimatorError::SensorPlace { name: sensor.name.clone(), vessel: vessel.name.clone() }
-        })?),
-        SensorKind::Gas { .. } => Target::Gas,
-        SensorKind::Ambient => Target::Air,
-        SensorKind::Pressure { .. } => Target::Pressure,
-    })
 }
 
 impl StateSpace for Cylinder {

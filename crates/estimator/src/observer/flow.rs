@@ -31,7 +31,6 @@ use super::Observer;
 use super::settings::FlowDoubt;
 use crate::EstimatorError;
 use crate::filter::Moments;
-use crate::sensor::SensorKind;
 
 /// Mass, gas temperature and rate where gas may flow. SI; `sd` is a standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -112,7 +111,7 @@ impl Observer {
     fn farthest_k(&self, from_k: f64) -> f64 {
         let readings = self.cylinder.sensors().iter().zip(&self.clock.last_reading);
         readings
-            .filter(|(sensor, _)| matches!(sensor.kind, SensorKind::Surface { .. }))
+            .filter(|(sensor, _)| sensor.is_on_surface())
             .map(|(_, reading)| (reading - from_k).abs())
             .fold(0.0, f64::max)
     }
@@ -127,7 +126,7 @@ impl Observer {
         (clock.moves_k, clock.interval_s) = ([0.0, clock.moves_k[0]], since_s);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
             let last = std::mem::replace(&mut clock.last_reading[sensor], reading);
-            if matches!(cylinder.sensors()[sensor].kind, SensorKind::Surface { .. }) {
+            if cylinder.sensors()[sensor].is_on_surface() {
                 // Not a number before the first reading.
                 clock.moves_k[0] = clock.moves_k[0].max((reading - last).abs());
                 clock.moved_k = clock.moved_k.max(clock.moves_k[0]);

@@ -28,7 +28,6 @@ use std::f64::consts::FRAC_2_PI;
 use super::Observer;
 use super::settings::AirStep;
 use crate::EstimatorError;
-use crate::sensor::SensorKind;
 
 impl Observer {
     /// Move on and take readings as the likeliest explanation has it.
@@ -113,7 +112,7 @@ impl Observer {
     fn surprise(&mut self, by_sd: f64, readings: &[f64]) -> Result<Option<f64>, EstimatorError> {
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
-            if matches!(self.cylinder.sensors()[sensor].kind, SensorKind::Surface { .. }) {
+            if self.cylinder.sensors()[sensor].is_on_surface() {
                 let (nu, s) =
                     self.bank.innovation_of_first(&mut self.cylinder, &mut self.work, (sensor, reading))?;
                 let in_sd = nu / s.sqrt();

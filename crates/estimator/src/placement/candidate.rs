@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::constraints::{Constraints, Group};
 use crate::EstimatorError;
-use crate::sensor::{Sensor, SensorKind, SensorSpec, SensorSuite, SensorsSpec, SurfacePlace};
+use crate::sensor::{Sensor, SensorSpec, SensorSuite, SensorsSpec, Site, SurfacePlace};
 use crate::thermal::document::{self, check};
 use crate::thermal::sensor::PLACES;
 use crate::thermal::vessel::Vessel;
@@ -126,10 +126,10 @@ impl Candidates {
                 let (name, vessel) = (sensor.name.clone(), vessel.name.clone());
                 return Err(EstimatorError::SensorMisfit { name, vessel, missing });
             }
-            let status = match sensor.kind {
-                SensorKind::Gas { .. } => Status::Forbidden,
-                SensorKind::Pressure { .. } => Status::Required,
-                SensorKind::Surface { .. } | SensorKind::Ambient => Status::Allowed,
+            let status = match sensor.site() {
+                Site::Gas(_) => Status::Forbidden,
+                Site::Port => Status::Required,
+                Site::Surface(_) | Site::Air => Status::Allowed,
             };
             let height_m = height_m(vessel, &mesh, sensor);
             Ok(Candidate { sensor: sensor.clone(), height_m, cost: 1.0, status })
@@ -302,7 +302,7 @@ pub fn candidates_schema() -> serde_json::Value {
 
 /// Height of a sensor above the outer bottom along the axis, m.
 fn height_m(vessel: &Vessel, mesh: &Mesh, sensor: &Sensor) -> Option<f64> {
-    let SensorKind::Surface { place } = sensor.kind else { return None };
+    let Site::Surface(place) = sensor.site() else { return None };
     match place {
         SurfacePlace::Height { height_m } => Some(height_m),
         SurfacePlace::Valve => None,

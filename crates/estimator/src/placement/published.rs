@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use self::first_order::{FirstOrder, Record};
 use crate::EstimatorError;
 use crate::identify::fit_percent;
-use crate::sensor::{Sensor, SensorKind, SensorSuite, SuiteTruth, sample};
+use crate::sensor::{Sensor, SensorSuite, Site, SuiteTruth, sample};
 use crate::thermal::scenario::presets;
 use crate::thermal::simulate::{SimulationSettings, simulate};
 use crate::thermal::trajectory::Trajectory;
@@ -272,8 +272,7 @@ pub fn published_scores(
     if settings.seeds == 0 {
         return Err(EstimatorError::PlacementSetting { setting: "seeds", value: 0.0, bound: "at least 1" });
     }
-    let is_thermometer =
-        |sensor: &&Sensor| matches!(sensor.kind, SensorKind::Surface { .. } | SensorKind::Gas { .. });
+    let is_thermometer = |sensor: &&Sensor| sensor.is_on_surface() || matches!(sensor.site(), Site::Gas(_));
     let suite = SensorSuite::try_new(sensors.iter().filter(is_thermometer).cloned().collect())?;
     let run = |name: &&str| {
         let scenario = presets::load(name)?;

@@ -1,5 +1,5 @@
 //! What a sensor on a simulated vessel is exposed to, at any time within the trajectory.
-use super::{Exposure, Prediction, Sensor, SensorKind, SurfacePlace};
+use super::{Exposure, Prediction, Sensor, Site, SurfacePlace};
 use crate::EstimatorError;
 use cylwatch_thermal::scenario::Series;
 use cylwatch_thermal::trajectory::Trajectory;
@@ -113,15 +113,13 @@ fn body_k(trajectory: &Trajectory, sensor: &Sensor) -> Result<Vec<f64>, Estimato
         return Err(EstimatorError::SensorMisfit { name, vessel, missing });
     }
     let column = |cells: &[Vec<f64>], cell: usize| cells.iter().map(|sample| sample[cell]).collect();
-    let found = match sensor.kind {
-        SensorKind::Surface { place: SurfacePlace::Valve } => trajectory.valve_k.clone(),
-        SensorKind::Surface { place } => {
+    let found = match sensor.site() {
+        Site::Surface(SurfacePlace::Valve) => trajectory.valve_k.clone(),
+        Site::Surface(place) => {
             place.column(&vessel.geometry, &mesh).map(|cell| column(&trajectory.wall_outer_k, cell))
         }
-        SensorKind::Gas { place } => {
-            place.cell(vessel, &mesh).map(|cell| column(&trajectory.gas_cells_k, cell))
-        }
-        SensorKind::Pressure { .. } | SensorKind::Ambient => Some(electronics_k(trajectory)),
+        Site::Gas(place) => place.cell(vessel, &mesh).map(|cell| column(&trajectory.gas_cells_k, cell)),
+        Site::Air | Site::Port => Some(electronics_k(trajectory)),
     };
     Ok(found.expect("a sensor that fits on the vessel has a place in its trajectory"))
 }
@@ -129,7 +127,7 @@ fn body_k(trajectory: &Trajectory, sensor: &Sensor) -> Result<Vec<f64>, Estimato
 /// Height of a surface sensor above the middle of the vessel, as a fraction; `None` for others, which have the
 /// scenario's air around them.
 fn above_middle(trajectory: &Trajectory, sensor: &Sensor) -> Option<f64> {
-    let SensorKind::Surface { place } = sensor.kind else { return None };
+    let Site::Surface(place) = sensor.site() else { return None };
     let geometry = &trajectory.vessel.geometry;
     place.above_middle(geometry, &Mesh::new(geometry))
 }

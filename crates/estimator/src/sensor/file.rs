@@ -1,5 +1,4 @@
 //! Files of sensors with their priors: `[[sensor]]` tables as in a scenario.
-use super::typical::completed;
 use super::{Sensor, SensorSuite};
 use crate::EstimatorError;
 use cylwatch_thermal::document;
@@ -21,7 +20,7 @@ impl SensorsSpec {
     /// # Errors
     /// [`EstimatorError::Thermal`] with the path of the first value that breaks a bound.
     pub fn build(&self) -> Result<SensorSuite, EstimatorError> {
-        let complete: Vec<SensorSpec> = self.sensor.iter().map(completed).collect();
+        let complete: Vec<SensorSpec> = self.sensor.iter().map(SensorSpec::completed).collect();
         SensorSuite::try_new(mounted(&complete, "sensor")?.iter().map(Sensor::from).collect())
     }
 

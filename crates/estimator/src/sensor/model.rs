@@ -1,48 +1,16 @@
 //! A sensor: its numbers, its static reading and the derivatives of that.
-use super::parameter::{MAX_PARAMETERS, Parameter, ParameterKind};
 #[cfg(feature = "design")]
 use crate::EstimatorError;
 use crate::log::Quantity;
 #[cfg(feature = "design")]
 use cylwatch_thermal::sensor::SensorSpec;
-use cylwatch_thermal::sensor::{CorrelatedNoise, MountedSensor, PressureReference, SensorKind};
-use cylwatch_thermal::units::ATMOSPHERE_PA;
-
-/// Temperature of the electronics at which a pressure transmitter has no temperature error, K: 15 °C.
-pub const ELECTRONICS_REFERENCE_K: f64 = 288.15;
+use cylwatch_thermal::sensor::{
+    CorrelatedNoise, Exposure, MAX_PARAMETERS, MountedSensor, Parameter, ParameterKind, Prediction,
+    SensorKind, Site,
+};
 
 /// Distance from an end of the range that counts as the end, relative to the range: what a logger rounds.
 const END_OF_RANGE: f64 = 1e-6;
-
-/// What a sensor is exposed to at an instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Exposure {
-    /// Temperature of surface, valve or gas at its place, K.
-    pub body_k: f64,
-    /// Air temperature, K.
-    pub air_k: f64,
-    /// Gas pressure, Pa absolute.
-    pub pressure_pa: f64,
-    /// Temperature of a transmitter's electronics, which is that of the valve, K.
-    pub electronics_k: f64,
-}
-
-/// A reading with its derivatives, in K or Pa.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Prediction {
-    /// Reading.
-    pub value: f64,
-    /// Derivative to the body's temperature.
-    pub per_body: f64,
-    /// Derivative to the air temperature.
-    pub per_air: f64,
-    /// Derivative to the pressure.
-    pub per_pressure: f64,
-    /// Derivative to the electronics' temperature.
-    pub per_electronics: f64,
-    /// Derivatives to the parameters, in their order; 0 beyond the last one.
-    pub per_parameter: [f64; MAX_PARAMETERS],
-}
 
 /// A sensor. Readings are in K or in Pa absolute, and so is everything here that has the unit of a reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,16 +37,6 @@ pub struct Sensor {
 
 impl From<&MountedSensor> for Sensor {
     fn from(mounted: &MountedSensor) -> Self {
-        use ParameterKind::{Coupling, Offset, Span, TemperatureCoefficient};
-        let mut parameters = vec![Parameter::new(Offset, mounted.offset).walking(mounted.walk_per_sqrt_s)];
-        match mounted.kind {
-            SensorKind::Surface { .. } => parameters.push(Parameter::new(Coupling, mounted.air_coupling)),
-            SensorKind::Pressure { .. } => parameters.extend([
-                Parameter::new(TemperatureCoefficient, mounted.temperature_coefficient_pa_k),
-                Parameter::new(Span, mounted.span),
-            ]),
-            SensorKind::Gas { .. } | SensorKind::Ambient => {}
-        }
         Self {
             name: mounted.name.clone(),
             kind: mounted.kind,
@@ -89,7 +47,7 @@ impl From<&MountedSensor> for Sensor {
             drift_per_s: mounted.drift_per_s,
             dropout: mounted.dropout,
             plausible: mounted.plausible,
-            parameters,
+            parameters: mounted.parameters.clone(),
         }
     }
 }
@@ -108,7 +66,7 @@ impl TryFrom<&SensorSpec> for Sensor {
 }
 
 impl Sensor {
-    /// Parameters: offset, then coupling (surface) or temperature coefficient and span (pressure).
+    /// Parameters: offset, then those of its kind.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
@@ -136,47 +94,7 @@ impl Sensor {
     /// # Panics
     /// With fewer values than parameters.
     pub fn predict(&self, exposure: &Exposure, parameters: &[f64]) -> Prediction {
-        let offset = parameters[0];
-        match self.kind {
-            SensorKind::Surface { .. } => {
-                let (kappa, t, air) = (parameters[1], exposure.body_k, exposure.air_k);
-                Prediction {
-                    value: t + kappa * (air - t) + offset,
-                    per_body: 1.0 - kappa,
-                    per_air: kappa,
-                    per_parameter: [1.0, air - t, 0.0],
-                    ..Prediction::default()
-                }
-            }
-            SensorKind::Gas { .. } => Prediction {
-                value: exposure.body_k + offset,
-                per_body: 1.0,
-                per_parameter: [1.0, 0.0, 0.0],
-                ..Prediction::default()
-            },
-            SensorKind::Ambient => Prediction {
-                value: exposure.air_k + offset,
-                per_air: 1.0,
-                per_parameter: [1.0, 0.0, 0.0],
-                ..Prediction::default()
-            },
-            SensorKind::Pressure { reference, .. } => {
-                let (zero_pa, recorded_zero_pa) = match reference {
-                    PressureReference::Absolute => (0.0, 0.0),
-                    PressureReference::Gauge { atmosphere_pa } => (atmosphere_pa, ATMOSPHERE_PA),
-                };
-                let (c, s) = (parameters[1], parameters[2]);
-                let warmer_k = exposure.electronics_k - ELECTRONICS_REFERENCE_K;
-                let counted_pa = exposure.pressure_pa - zero_pa;
-                Prediction {
-                    value: (1.0 + s) * counted_pa + offset + c * warmer_k + recorded_zero_pa,
-                    per_pressure: 1.0 + s,
-                    per_electronics: c,
-                    per_parameter: [1.0, warmer_k, counted_pa],
-                    ..Prediction::default()
-                }
-            }
-        }
+        self.kind.predict(exposure, parameters)
     }
 
     /// Variance of a reading's noise: white, correlated, and rounding to a step `d`, which is uniform in `±d/2`:
@@ -188,12 +106,17 @@ impl Sensor {
 
     /// What it measures.
     pub fn quantity(&self) -> Quantity {
-        match self.kind {
-            SensorKind::Pressure { .. } => Quantity::Pressure,
-            SensorKind::Surface { .. } | SensorKind::Gas { .. } | SensorKind::Ambient => {
-                Quantity::Temperature
-            }
-        }
+        self.kind.quantity()
+    }
+
+    /// Where it sits.
+    pub fn site(&self) -> Site {
+        self.kind.site()
+    }
+
+    /// Whether it is a thermometer on the wall or the valve.
+    pub fn is_on_surface(&self) -> bool {
+        self.quantity() == Quantity::Temperature && matches!(self.site(), Site::Surface(_))
     }
 
     /// Lowest and highest reading that can be one; a reading outside is a fault of the sensor.

@@ -2,9 +2,8 @@
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::parameter::{MAX_PARAMETERS, Parameter};
 use super::stream::{Purpose, stream};
-use super::{GasPlace, Law, Sensor, SensorKind, SurfacePlace};
+use super::{GasPlace, Law, MAX_PARAMETERS, Parameter, Sensor, Site, SurfacePlace};
 use crate::EstimatorError;
 use cylwatch_thermal::scenario::Scenario;
 use cylwatch_thermal::vessel::Vessel;
@@ -75,21 +74,19 @@ impl Sensor {
 
     /// The same with the vessel's mesh at hand.
     pub(super) fn misfit_on(&self, vessel: &Vessel, mesh: &Mesh) -> Option<String> {
-        match self.kind {
-            SensorKind::Surface { place: SurfacePlace::Valve } => {
-                vessel.valve.is_none().then(|| "a valve".to_owned())
-            }
-            SensorKind::Surface { place } => match (place.column(&vessel.geometry, mesh), place) {
+        match self.site() {
+            Site::Surface(SurfacePlace::Valve) => vessel.valve.is_none().then(|| "a valve".to_owned()),
+            Site::Surface(place) => match (place.column(&vessel.geometry, mesh), place) {
                 (Some(_), _) => None,
                 (None, SurfacePlace::Height { height_m }) => Some(format!("a wall at {height_m} m")),
                 (None, place) => Some(format!("a {}", place.as_str())),
             },
-            SensorKind::Gas { place } => match (place.cell(vessel, mesh), place) {
+            Site::Gas(place) => match (place.cell(vessel, mesh), place) {
                 (Some(_), _) => None,
                 (None, GasPlace::Cell { number }) => Some(format!("{number} gas cells")),
                 (None, GasPlace::Height { height_m }) => Some(format!("gas at {height_m} m")),
             },
-            SensorKind::Pressure { .. } | SensorKind::Ambient => None,
+            Site::Air | Site::Port => None,
         }
     }
 }

@@ -3,7 +3,7 @@ use cylwatch_estimator::filter::{Linearisation, StateSpace};
 use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::states::StateKind;
-use cylwatch_estimator::sensor::{ParameterKind, Sensor};
+use cylwatch_estimator::sensor::{ParameterKind, Sensor, read_sensors};
 use cylwatch_estimator::thermal::reduced::{ReducedModel, Unknowns};
 use cylwatch_estimator::thermal::sensor::{PressureReference, SensorKind};
 use cylwatch_estimator::thermal::vessel::presets;
@@ -23,6 +23,10 @@ fn sensors(lag_s: f64) -> Vec<Sensor> {
     let SensorKind::Pressure { full_scale_pa, .. } = sensors[5].kind else { panic!("a transmitter") };
     let reference = PressureReference::Gauge { atmosphere_pa: 95_000.0 };
     sensors[5].kind = SensorKind::Pressure { reference, full_scale_pa };
+    let (_, suite) =
+        read_sensors("[[sensor]]\nname = \"tip\"\nkind = \"immersion\"\ncell = 1", "tip.toml").unwrap();
+    sensors.extend_from_slice(suite.sensors());
+    sensors[6].lag_s = 2.0 * lag_s;
     sensors
 }
 
@@ -50,7 +54,7 @@ fn state(cylinder: &Cylinder, hot: bool) -> (Vec<f64>, Vec<f64>) {
         StateKind::Capacity => (at(0.05, 0.0), 0.1),
         StateKind::FilmSlope => (at(0.1, 0.0), 0.2),
         StateKind::ValveSun => (at(0.05, 0.0), 0.1),
-        StateKind::Lag { sensor: 0 } => (at(284.0, rest_k), 1.0),
+        StateKind::Lag { sensor: 0 | 6 } => (at(284.0, rest_k), 1.0),
         StateKind::Lag { .. } => (pressure_pa, 1e5),
         StateKind::Parameter { sensor, parameter } => {
             match cylinder.sensors()[sensor].parameters()[parameter].kind {

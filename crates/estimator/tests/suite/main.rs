@@ -14,6 +14,7 @@ mod equivalence_steady;
 mod horizon;
 mod identify;
 mod ill_conditioned;
+mod immersion;
 mod linear_model;
 mod placement;
 mod placement_cylinder;

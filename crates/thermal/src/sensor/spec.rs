@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Pt100Class;
+use super::{KindChoice, Pt100Class};
 
 /// A sensor. In a scenario it is ideal unless its errors are stated, and what is stated with a standard deviation, a
 /// tolerance or a class is drawn by the run's seed.
@@ -24,6 +24,10 @@ pub struct SensorSpec {
     pub air_coupling: Option<f64>,
     /// Surface: standard deviation of the coupling, 0 by default.
     pub air_coupling_sd: Option<f64>,
+    /// Immersion: coupling to the valve through its stem, 0 (default) to 1: it reads `T_gas + coupling (T_valve - T_gas)`.
+    pub stem_coupling: Option<f64>,
+    /// Immersion: standard deviation of the coupling, 0 by default.
+    pub stem_coupling_sd: Option<f64>,
     /// Time constant of its first-order lag, 0 by default.
     pub lag_s: Option<f64>,
     /// Constant error of a temperature, 0 by default.
@@ -87,16 +91,89 @@ pub struct SensorSpec {
     pub dropout: Option<f64>,
 }
 
-/// What a sensor reads.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
-pub enum KindChoice {
-    /// Temperature of the outer surface or of the valve body.
-    Surface,
-    /// Gas pressure.
+/// Which sensors have a key.
+#[derive(Clone, Copy)]
+pub(super) enum KeyOf {
+    /// All that measure a temperature.
+    Temperature,
+    /// All that measure a pressure.
     Pressure,
-    /// Gas temperature inside.
-    Gas,
-    /// Air temperature.
-    Ambient,
+    /// Those of the kinds that list it, and what to say to others.
+    Kind(&'static str),
+}
+
+impl SensorSpec {
+    /// What the sensor reads: as stated, or as its name says.
+    pub fn kind_or_default(&self) -> KindChoice {
+        self.kind.unwrap_or_else(|| KindChoice::of_name(&self.name))
+    }
+
+    /// The table with the typical numbers of its kind wherever it says nothing.
+    pub fn completed(&self) -> Self {
+        let mut full = self.clone();
+        (self.kind_or_default().kind().stated.typical)(&mut full);
+        full
+    }
+
+    /// Value and standard deviation of its coupling; `None` for a kind that has none.
+    pub fn coupling_mut(&mut self) -> Option<[&mut Option<f64>; 2]> {
+        self.kind_or_default().kind().stated.coupling.map(|keys| keys(self))
+    }
+
+    /// Whether the table says how far the offset may be off.
+    pub(super) fn says_offset(&self) -> bool {
+        self.class.is_some()
+            || self.offset_sd_k.is_some()
+            || self.offset_tolerance_k.is_some()
+            || self.offset_sd_pa.is_some()
+            || self.offset_tolerance_pa.is_some()
+    }
+
+    /// The stated keys that do not belong to every sensor.
+    pub(super) fn stated_keys(&self) -> impl Iterator<Item = (&'static str, KeyOf)> {
+        use KeyOf::{Kind, Pressure, Temperature};
+        let surface = Kind("it belongs to surface sensors");
+        let immersion = Kind("it belongs to immersion sensors");
+        [
+            ("place", self.place.is_some(), surface),
+            (
+                "height_m",
+                self.height_m.is_some(),
+                Kind("it belongs to sensors on the surface and in the gas"),
+            ),
+            ("cell", self.cell.is_some(), Kind("it belongs to sensors in the gas")),
+            ("air_coupling", self.air_coupling.is_some(), surface),
+            ("air_coupling_sd", self.air_coupling_sd.is_some(), surface),
+            ("stem_coupling", self.stem_coupling.is_some(), immersion),
+            ("stem_coupling_sd", self.stem_coupling_sd.is_some(), immersion),
+            ("offset_k", self.offset_k.is_some(), Temperature),
+            ("offset_sd_k", self.offset_sd_k.is_some(), Temperature),
+            ("offset_tolerance_k", self.offset_tolerance_k.is_some(), Temperature),
+            ("class", self.class.is_some(), Temperature),
+            ("noise_k", self.noise_k.is_some(), Temperature),
+            ("correlated_noise_k", self.correlated_noise_k.is_some(), Temperature),
+            ("resolution_k", self.resolution_k.is_some(), Temperature),
+            ("drift_k_s", self.drift_k_s.is_some(), Temperature),
+            ("walk_sd_k", self.walk_sd_k.is_some(), Temperature),
+            ("lowest_k", self.lowest_k.is_some(), Temperature),
+            ("highest_k", self.highest_k.is_some(), Temperature),
+            ("offset_pa", self.offset_pa.is_some(), Pressure),
+            ("offset_sd_pa", self.offset_sd_pa.is_some(), Pressure),
+            ("offset_tolerance_pa", self.offset_tolerance_pa.is_some(), Pressure),
+            ("span_ratio", self.span_ratio.is_some(), Pressure),
+            ("span_sd_ratio", self.span_sd_ratio.is_some(), Pressure),
+            ("temperature_coefficient_pa_k", self.temperature_coefficient_pa_k.is_some(), Pressure),
+            ("temperature_coefficient_sd_pa_k", self.temperature_coefficient_sd_pa_k.is_some(), Pressure),
+            ("noise_pa", self.noise_pa.is_some(), Pressure),
+            ("correlated_noise_pa", self.correlated_noise_pa.is_some(), Pressure),
+            ("resolution_pa", self.resolution_pa.is_some(), Pressure),
+            ("drift_pa_s", self.drift_pa_s.is_some(), Pressure),
+            ("walk_sd_pa", self.walk_sd_pa.is_some(), Pressure),
+            ("full_scale_pa", self.full_scale_pa.is_some(), Pressure),
+            ("gauge", self.gauge.is_some(), Pressure),
+            ("altitude_m", self.altitude_m.is_some(), Pressure),
+        ]
+        .into_iter()
+        .filter_map(|(key, stated, of)| stated.then_some((key, of)))
+    }
 }

@@ -24,7 +24,7 @@ fn each_fault_of_a_sensor_names_line_key_and_remedy() {
         ),
         (
             "name = \"a\"\nkind = \"presure\"",
-            "9: sensor kind = \"presure\" is not known, did you mean pressure?; choose one of surface, pressure, gas, ambient",
+            "9: sensor kind = \"presure\" is not known, did you mean pressure?; choose one of surface, pressure, gas, ambient, immersion",
         ),
         (
             "name = \"shoulder\"\nclass = \"D\"",

@@ -1,6 +1,8 @@
 //! What `[[sensor]]` tables become, and which cells stand for their places.
 use approx::assert_relative_eq;
-use cylwatch_thermal::sensor::{GasPlace, Law, MountedSensor, PressureReference, SensorKind, SurfacePlace};
+use cylwatch_thermal::sensor::{
+    GasPlace, Law, MountedSensor, Parameter, ParameterKind, PressureReference, SensorKind, SurfacePlace,
+};
 use cylwatch_thermal::vessel::{self, GasResolution, Stratification};
 use cylwatch_thermal::wall::geometry::Orientation;
 use cylwatch_thermal::wall::mesh::{Mesh, Section};
@@ -10,6 +12,10 @@ use super::scenario_with;
 fn sensor(lines: &str) -> MountedSensor {
     let scenario = scenario_with("film_w_m2_k = 8", &format!("[[sensor]]\n{lines}")).unwrap();
     scenario.sensors.into_iter().next().unwrap()
+}
+
+fn parameter(sensor: &MountedSensor, kind: ParameterKind) -> Parameter {
+    *sensor.parameter(kind).unwrap()
 }
 
 #[test]
@@ -34,11 +40,12 @@ fn names_say_kind_and_place() {
 
 #[test]
 fn a_sensor_of_which_nothing_is_said_is_ideal() {
-    let plain = sensor("name = \"shoulder\"");
-    let numbers = [plain.offset, plain.air_coupling, plain.span, plain.temperature_coefficient_pa_k];
-    assert!(numbers.iter().all(|stated| stated.value == 0.0 && stated.sd == 0.0));
-    let sizes = [plain.lag_s, plain.noise, plain.resolution, plain.drift_per_s, plain.walk_per_sqrt_s];
-    assert_eq!((sizes, plain.dropout, plain.correlated), ([0.0; 5], 0.0, None));
+    let (plain, transmitter) = (sensor("name = \"shoulder\""), sensor("name = \"pressure\""));
+    let numbers = plain.parameters.iter().chain(&transmitter.parameters);
+    assert!(numbers.clone().all(|of| (of.mean, of.sd, of.walk_per_sqrt_s) == (0.0, 0.0, 0.0)));
+    assert_eq!(numbers.count(), 5);
+    let sizes = [plain.lag_s, plain.noise, plain.resolution, plain.drift_per_s];
+    assert_eq!((sizes, plain.dropout, plain.correlated), ([0.0; 4], 0.0, None));
 }
 
 #[test]
@@ -50,17 +57,20 @@ fn numbers_of_a_pressure_transmitter_arrive_in_si() {
          correlated_noise_mbar = 3\ncorrelation_time_min = 2\nlag_s = 0.5\nfull_scale_bar = 250\n\
          gauge = true\ndropout = 0.01",
     );
-    assert_relative_eq!(transmitter.offset.value, -12_000.0, max_relative = 1e-14);
-    assert_relative_eq!(transmitter.offset.sd, 62_500.0 / 3.0_f64.sqrt(), max_relative = 1e-14);
-    assert_eq!(transmitter.offset.law, Law::Uniform);
-    assert_relative_eq!(transmitter.span.value, 2e-3, max_relative = 1e-14);
-    assert_relative_eq!(transmitter.span.sd, 5e-4, max_relative = 1e-14);
-    assert_relative_eq!(transmitter.temperature_coefficient_pa_k.value, 1_200.0, max_relative = 1e-14);
-    assert_relative_eq!(transmitter.temperature_coefficient_pa_k.sd, 2_500.0, max_relative = 1e-14);
+    use ParameterKind::{Offset, Span, TemperatureCoefficient};
+    let [offset, coefficient, span] =
+        [Offset, TemperatureCoefficient, Span].map(|kind| parameter(&transmitter, kind));
+    assert_relative_eq!(offset.mean, -12_000.0, max_relative = 1e-14);
+    assert_relative_eq!(offset.sd, 62_500.0 / 3.0_f64.sqrt(), max_relative = 1e-14);
+    assert_eq!(offset.law, Law::Uniform);
+    assert_relative_eq!(span.mean, 2e-3, max_relative = 1e-14);
+    assert_relative_eq!(span.sd, 5e-4, max_relative = 1e-14);
+    assert_relative_eq!(coefficient.mean, 1_200.0, max_relative = 1e-14);
+    assert_relative_eq!(coefficient.sd, 2_500.0, max_relative = 1e-14);
     assert_relative_eq!(transmitter.noise, 1_000.0, max_relative = 1e-14);
     assert_relative_eq!(transmitter.resolution, 500.0, max_relative = 1e-14);
     assert_relative_eq!(transmitter.drift_per_s, 1e-3, max_relative = 1e-14);
-    assert_relative_eq!(transmitter.walk_per_sqrt_s, 1e4 / 60.0, max_relative = 1e-14);
+    assert_relative_eq!(offset.walk_per_sqrt_s, 1e4 / 60.0, max_relative = 1e-14);
     let correlated = transmitter.correlated.unwrap();
     assert_relative_eq!(correlated.sd, 300.0, max_relative = 1e-14);
     assert_eq!((correlated.time_s, transmitter.lag_s, transmitter.dropout), (120.0, 0.5, 0.01));
@@ -78,10 +88,12 @@ fn numbers_of_a_temperature_arrive_in_si() {
         "name = \"shoulder\"\nair_coupling = 0.1\nair_coupling_sd = 0.04\noffset_k = 0.2\nclass = \"B\"\n\
          noise_k = 0.05\nresolution_k = 0.0625\ndrift_k_d = 0.0864\nlowest_degc = -60\nhighest_degc = 100",
     );
-    assert_eq!((strapped.air_coupling.value, strapped.air_coupling.sd), (0.1, 0.04));
+    let [offset, coupling] =
+        [ParameterKind::Offset, ParameterKind::Coupling].map(|kind| parameter(&strapped, kind));
+    assert_eq!((coupling.mean, coupling.sd), (0.1, 0.04));
     // Class B: 0.3 K and 0.005 K for each of 20 degC.
-    assert_relative_eq!(strapped.offset.sd, 0.4 / 3.0_f64.sqrt(), max_relative = 1e-14);
-    assert_eq!((strapped.offset.value, strapped.noise, strapped.resolution), (0.2, 0.05, 0.0625));
+    assert_relative_eq!(offset.sd, 0.4 / 3.0_f64.sqrt(), max_relative = 1e-14);
+    assert_eq!((offset.mean, strapped.noise, strapped.resolution), (0.2, 0.05, 0.0625));
     assert_relative_eq!(strapped.drift_per_s, 1e-6, max_relative = 1e-14);
     assert_relative_eq!(strapped.plausible.0, 213.15, max_relative = 1e-14);
     assert_relative_eq!(strapped.plausible.1, 373.15, max_relative = 1e-14);
@@ -132,5 +144,37 @@ fn a_height_in_the_gas_is_the_slab_around_it() {
         assert_eq!((cell(0.5 * below_m), cell(below_m + 1.01 * inner_m)), (None, None));
         let numbered = |number| GasPlace::Cell { number }.cell(&vessel, &mesh);
         assert_eq!([0, 1, 5, 6].map(numbered), [None, Some(0), Some(4), None]);
+    }
+}
+
+#[test]
+fn an_immersion_sensor_states_its_stem_and_hangs_as_a_gas_sensor_does() {
+    let stem = sensor(
+        "name = \"tank\"\nkind = \"immersion\"\nheight_mm = 750\nstem_coupling = 0.1\nstem_coupling_sd = 0.05\n\
+         class = \"A\"\nlag_s = 15",
+    );
+    let place = GasPlace::Height { height_m: 0.75 };
+    assert_eq!((stem.kind, stem.lag_s), (SensorKind::Immersion { place }, 15.0));
+    let coupling = parameter(&stem, ParameterKind::Coupling);
+    assert_eq!((coupling.mean, coupling.sd, coupling.law), (0.1, 0.05, Law::Normal));
+    let refused = |lines: &str| {
+        let document = format!("[[sensor]]\nname = \"gas_1\"\n{lines}");
+        scenario_with("film_w_m2_k = 8", &document).unwrap_err().to_string()
+    };
+    for (lines, words) in [
+        (
+            "stem_coupling = 0.1",
+            "stem_coupling cannot stand beside kind = gas: it belongs to immersion sensors",
+        ),
+        (
+            "kind = \"immersion\"\nair_coupling = 0.1",
+            "beside kind = immersion: it belongs to surface sensors",
+        ),
+        ("kind = \"immersion\"\nnoise_mbar = 1", "it belongs to pressure transmitters"),
+        ("kind = \"immersion\"\nstem_coupling = 1.1", "stem_coupling = 1.1 must be between 0 and 1"),
+        ("kind = \"immersion\"\nstem_coupling_sd = -1", "stem_coupling_sd = -1 must be between 0 and 1"),
+    ] {
+        let message = refused(lines);
+        assert!(message.contains(words), "{message}");
     }
 }

@@ -1,5 +1,6 @@
 //! The paper's scenarios on its cylinder.
 use cylwatch_thermal::scenario;
+use cylwatch_thermal::sensor::ParameterKind;
 use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::vessel::{self, GasResolution, Stratification};
@@ -50,11 +51,12 @@ fn shoulder_to_gas_has_nearly_the_published_pole() {
         .map(|name| {
             let trajectory = paper(name);
             let sensor = trajectory.scenario.sensors.iter().find(|s| s.name == "shoulder").unwrap();
+            let coupling = sensor.parameter(ParameterKind::Coupling).unwrap().mean;
             let wall = trajectory.surface_k("shoulder").unwrap();
             let reading = wall
                 .iter()
                 .zip(&trajectory.ambient_k)
-                .map(|(wall, air)| wall + sensor.air_coupling.value * (air - wall) - 273.15)
+                .map(|(wall, air)| wall + coupling * (air - wall) - 273.15)
                 .collect();
             (reading, trajectory.gas_mean_k.iter().map(|t| t - 273.15).collect())
         })

@@ -10,8 +10,7 @@ use super::disturbance::Undisturbed;
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Flow, Innovation, Quality};
-use crate::estimator::sensor::ParameterKind;
-use crate::estimator::thermal::sensor::SensorKind;
+use crate::estimator::sensor::{ParameterKind, Site};
 use crate::monitor::examination::{Before, Cause, Compared, Examination, NO_OFFSET, Subject};
 use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
 use crate::monitor::gas::jump::{Innovated, LONGEST_INTERVAL_S, USUAL_LARGEST};
@@ -212,7 +211,7 @@ impl Monitor {
             let readings = self.roles.thermometers.iter().map(|&sensor| (sensor, self.usable[sensor]));
             readings.filter(|(_, reading)| reading.is_finite())
         };
-        let in_gas = |sensor: usize| matches!(self.sensors[sensor].kind, SensorKind::Gas { .. });
+        let in_gas = |sensor: usize| matches!(self.sensors[sensor].site(), Site::Gas(_));
         let any_in_gas = usable().any(|(sensor, _)| in_gas(sensor));
         let counted = usable().filter(|&(sensor, _)| !any_in_gas || in_gas(sensor));
         let ends = (f64::INFINITY, f64::NEG_INFINITY);

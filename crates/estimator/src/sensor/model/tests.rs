@@ -1,6 +1,7 @@
 //! Readings by hand, derivatives by differences.
 use approx::assert_relative_eq;
 use cylwatch_thermal::sensor::SensorSpec;
+use cylwatch_thermal::units::ATMOSPHERE_PA;
 use proptest::prelude::*;
 
 use super::*;
@@ -19,13 +20,17 @@ fn pressure(change: impl FnOnce(&mut SensorSpec)) -> Sensor {
 }
 
 /// One of every kind, a gauge transmitter among them.
-fn every_kind() -> [Sensor; 6] {
+fn every_kind() -> [Sensor; 7] {
     let named = |name: &str| sensor(|spec| spec.name = name.into());
     let gauge = pressure(|spec| {
         spec.gauge = Some(true);
         spec.altitude_m = Some(1500.0);
     });
-    [named("shoulder"), named("valve"), named("gas_2"), named("ambient"), named("pressure"), gauge]
+    let immersion = sensor(|spec| {
+        spec.kind = Some(crate::sensor::KindChoice::Immersion);
+        spec.cell = Some(1);
+    });
+    [named("shoulder"), named("valve"), named("gas_2"), named("ambient"), named("pressure"), gauge, immersion]
 }
 
 #[test]
@@ -42,6 +47,14 @@ fn gas_and_air_sensors_read_what_they_are_in() {
     let [_, _, gas, ambient, ..] = every_kind();
     assert_eq!(gas.predict(&exposure, &[-0.5]).value, 249.5);
     assert_eq!(ambient.predict(&exposure, &[0.25]).value, 290.25);
+}
+
+#[test]
+fn an_immersion_sensor_reads_between_gas_and_valve() {
+    let exposure = Exposure { body_k: 290.0, electronics_k: 250.0, air_k: 200.0, ..Exposure::default() };
+    // A tenth of the 40 K to the valve, and 0.2 K too much.
+    let [.., immersion] = every_kind();
+    assert_relative_eq!(immersion.predict(&exposure, &[0.2, 0.1]).value, 286.2, max_relative = 1e-14);
 }
 
 #[test]
@@ -109,9 +122,9 @@ fn a_reading_at_the_full_scale_says_only_that_the_pressure_is_as_high() {
 fn quantities_and_parameters_are_those_of_the_kind() {
     use ParameterKind::{Coupling, Offset, Span, TemperatureCoefficient};
     let kinds = |sensor: &Sensor| sensor.parameters().iter().map(|p| p.kind).collect::<Vec<_>>();
-    let [shoulder, valve, gas, ambient, absolute, gauge] = every_kind();
-    for surface in [shoulder, valve] {
-        assert_eq!((surface.quantity(), kinds(&surface)), (Quantity::Temperature, vec![Offset, Coupling]));
+    let [shoulder, valve, gas, ambient, absolute, gauge, immersion] = every_kind();
+    for coupled in [shoulder, valve, immersion] {
+        assert_eq!((coupled.quantity(), kinds(&coupled)), (Quantity::Temperature, vec![Offset, Coupling]));
     }
     for single in [gas, ambient] {
         assert_eq!((single.quantity(), kinds(&single)), (Quantity::Temperature, vec![Offset]));

@@ -135,6 +135,29 @@ fn the_air_in_a_coupled_sensor_lags_like_the_air_and_its_surface_like_the_surfac
 }
 
 #[test]
+fn the_gas_and_the_valve_in_an_immersion_sensor_lag_each_like_itself() {
+    // A valve that is 40 K colder than the gas, and warms; by linearity as above.
+    let mut run = trajectory(STEP);
+    let valve_k = run.time_s.iter().map(|t| 253.15 + 1e-3 * t).collect();
+    run.valve_k = Some(valve_k);
+    let lagged = |name: &str, change: &dyn Fn(&mut SensorSpec)| {
+        let both = |spec: &mut SensorSpec| {
+            spec.lag_s = Some(70.0);
+            change(spec);
+        };
+        nominal(&run, sensor(name, both), 0)
+    };
+    let (gas, valve) = (lagged("gas_1", &|_| ()), lagged("valve", &|_| ()));
+    let immersed = lagged("gas_1", &|spec| {
+        (spec.kind, spec.stem_coupling) = (Some(crate::sensor::KindChoice::Immersion), Some(0.15));
+    });
+    for ((immersed, gas), valve) in immersed.iter().zip(&gas).zip(&valve) {
+        assert!((gas - valve).abs() > 30.0);
+        assert_relative_eq!(*immersed, 0.85 * gas + 0.15 * valve, max_relative = 1e-12);
+    }
+}
+
+#[test]
 fn a_surface_sensor_has_the_air_of_its_height_around_it() {
     let mut run = trajectory("");
     // 8 K more at the top than at the bottom from 1000 s on, nothing before.

@@ -1,5 +1,4 @@
 //! The numbers of a sensor that may be uncertain.
-use cylwatch_thermal::sensor::{Law, Stated};
 
 /// Most parameters of a sensor.
 pub const MAX_PARAMETERS: usize = 3;
@@ -9,12 +8,22 @@ pub const MAX_PARAMETERS: usize = 3;
 pub enum ParameterKind {
     /// Constant error `b`, in the unit of the reading.
     Offset,
-    /// Mounting coupling `kappa` to the air, 0 to 1.
+    /// Coupling `kappa` to what the sensor is mounted in, 0 to 1.
     Coupling,
     /// Error `c` of a pressure per kelvin of the transmitter, Pa/K.
     TemperatureCoefficient,
     /// Relative error `s` of the span.
     Span,
+}
+
+/// Distribution of an uncertain number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Law {
+    /// Normal.
+    #[default]
+    Normal,
+    /// Uniform between limits, which lie `sqrt(3)` standard deviations from the middle.
+    Uniform,
 }
 
 /// A parameter with its prior. Units are those of its kind.
@@ -33,18 +42,18 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// A parameter that does not walk, as stated.
-    pub(crate) fn new(kind: ParameterKind, stated: Stated) -> Self {
-        Self { kind, mean: stated.value, sd: stated.sd, walk_per_sqrt_s: 0.0, law: stated.law }
+    /// A constant, normal around a mean with a standard deviation.
+    pub fn normal(kind: ParameterKind, mean: f64, sd: f64) -> Self {
+        Self { kind, mean, sd, walk_per_sqrt_s: 0.0, law: Law::Normal }
     }
 
-    /// The same with a random walk.
-    pub(crate) fn walking(self, walk_per_sqrt_s: f64) -> Self {
-        Self { walk_per_sqrt_s, ..self }
+    /// A constant, anywhere within `limit` of the mean, as a tolerance or an accuracy class says; `sd = limit / sqrt(3)`.
+    pub fn within(kind: ParameterKind, mean: f64, limit: f64) -> Self {
+        Self { law: Law::Uniform, ..Self::normal(kind, mean, limit / 3.0_f64.sqrt()) }
     }
 
     /// Lowest and highest value that means something.
-    pub(crate) fn domain(&self) -> (f64, f64) {
+    pub fn domain(&self) -> (f64, f64) {
         match self.kind {
             ParameterKind::Coupling => (0.0, 1.0),
             ParameterKind::Offset | ParameterKind::TemperatureCoefficient | ParameterKind::Span => {
