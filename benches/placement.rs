@@ -9,7 +9,7 @@ use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify};
 use cylwatch_estimator::placement::search::{Method, Watch, search};
 use cylwatch_estimator::placement::{
-    Conditions, Constraints, GroupedProblem, Objective, Quantity, SitedCylinder,
+    Conditions, Constraints, GroupedProblem, InstrumentedCylinder, Objective, Quantity,
 };
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -31,8 +31,8 @@ fn problem(thermometers: usize, wall_nodes: usize) -> GroupedProblem {
     }
     sensors.push(Sensor::typical("pressure").expect("it is built in"));
     let member = settings.bank[0];
-    SitedCylinder::new(&vessel, &sensors, &settings, &member, &Conditions::default())
-        .and_then(|sited| sited.problem(Quantity::GasTemperature))
+    InstrumentedCylinder::new(&vessel, &sensors, &settings, &member, &Conditions::default())
+        .and_then(|cylinder| cylinder.problem(Quantity::GasTemperature))
         .expect("the conditions are a state of the gas")
 }
 

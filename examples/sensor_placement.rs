@@ -117,8 +117,8 @@ fn study((name, orientation): (&'static str, Orientation)) -> anyhow::Result<Att
     // The pressure alone knows nothing of the mass.
     candidates.groups.push(Group { fewest: 1, most: thermometers.len(), members: thermometers });
     let mut settings = StudySettings { sensors: 3, ..StudySettings::default() };
-    settings.site.observer.wall_nodes = WALL_NODES;
-    settings.site.observer.longest_step_s = LONGEST_STEP_S;
+    settings.steady.observer.wall_nodes = WALL_NODES;
+    settings.steady.observer.longest_step_s = LONGEST_STEP_S;
     let placement = Placement::new(&vessel, &candidates, &[scenario], &settings)?;
     let study = placement.run(&Watch::default())?;
     Ok(Attitude { name, vessel, candidates, study })
@@ -139,14 +139,14 @@ fn main() -> anyhow::Result<()> {
         println!("{}: best beside the pressure: {}", attitude.name, attitude.best().join(", then "));
         for place in THERMOMETERS {
             let position = attitude.position(place);
-            let certainty = position.and_then(|position| position.certainty);
+            let steady = position.and_then(|position| position.steady);
             let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
             rows.push(vec![
                 attitude.name.to_owned(),
                 place.to_owned(),
-                number(certainty.map(|of| of.gas_sd_k)),
+                number(steady.map(|of| of.gas_sd_k)),
                 number(position.and_then(|of| of.robust_k.first().copied())),
-                number(certainty.map(|of| 3.6e6 * of.smallest_leak_kg_s)),
+                number(steady.map(|of| 3.6e6 * of.smallest_leak_kg_s)),
             ]);
         }
     }

@@ -13,7 +13,9 @@ use std::time::Instant;
 
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
 use cylwatch_estimator::placement::search::{Method, Watch, search};
-use cylwatch_estimator::placement::{Conditions, Constraints, DetectionSettings, Quantity, SitedCylinder};
+use cylwatch_estimator::placement::{
+    Conditions, Constraints, DetectionSettings, InstrumentedCylinder, Quantity,
+};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 use cylwatch_evaluation::placement::{
@@ -58,10 +60,11 @@ impl Study {
 
     /// The best layouts by the gas temperature.
     fn best(&self, settings: &ObserverSettings, member: &LeakHypothesis) -> Vec<Vec<usize>> {
-        let sited =
-            SitedCylinder::new(&self.vessel, &self.candidates, settings, member, &self.conditions).unwrap();
+        let cylinder =
+            InstrumentedCylinder::new(&self.vessel, &self.candidates, settings, member, &self.conditions)
+                .unwrap();
         let constraints = Constraints { must: vec![NAMES.len() - 1], ..Constraints::of(4) };
-        let problem = sited.problem(Quantity::GasTemperature).unwrap();
+        let problem = cylinder.problem(Quantity::GasTemperature).unwrap();
         let found =
             search(&problem, &constraints, Method::Exhaustive, f64::INFINITY, &Watch::default()).unwrap();
         found.layouts.into_iter().take(BEST).map(|layout| layout.sensors).collect()

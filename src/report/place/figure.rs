@@ -74,9 +74,9 @@ impl Placed<'_> {
     }
 
     fn columns(&self, outline: &Outline) -> Vec<Column> {
-        let gas = |position: &Position| Some(position.certainty?.gas_sd_k);
+        let gas = |position: &Position| Some(position.steady?.gas_sd_k);
         let robust = |position: &Position| position.robust_k.first().copied();
-        let smallest = |position: &Position| Some(position.certainty?.smallest_leak_kg_s);
+        let smallest = |position: &Position| Some(position.steady?.smallest_leak_kg_s);
         let profile = |name: &str, unit, of: &dyn Fn(&Position) -> Option<f64>, stroke| {
             self.profile(name, unit, of, stroke, outline)
         };
@@ -135,7 +135,7 @@ impl Placed<'_> {
     /// Fronts of cost against certainty and against the delay, with the judged layouts behind them.
     fn costs(&self) -> Figure {
         let study = self.study;
-        let gas = |judged: &Judged| Some(judged.certainty.gas_sd_k);
+        let gas = |judged: &Judged| Some(judged.steady.gas_sd_k);
         let leak = GRAM_PER_HOUR.with_symbol(study.settings.leak_kg_s);
         let panels = vec![
             self.cost_panel("sd of the gas in K", KELVIN, &study.accuracy_front, &gas),

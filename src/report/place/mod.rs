@@ -71,7 +71,7 @@ const HOUR: Unit = Unit { symbol: "h", per_si: 1.0 / crate::report::HOUR_S };
 impl Unit {
     fn of(criterion: Criterion) -> Self {
         match criterion {
-            Criterion::GasTemperature | Criterion::Course(_) => KELVIN,
+            Criterion::GasTemperature | Criterion::Scenario(_) => KELVIN,
             Criterion::Mass => GRAM,
             Criterion::LeakRate | Criterion::SmallestLeak => GRAM_PER_HOUR,
         }

@@ -64,15 +64,15 @@ impl Placed<'_> {
             self.name(position.sensor).to_owned(),
             position.height_m.map_or(String::new(), height),
         ];
-        let Some(certainty) = &position.certainty else {
+        let Some(steady) = &position.steady else {
             cells.push("blind".into());
             return cells;
         };
         cells.extend([
-            KELVIN.number(certainty.gas_sd_k),
-            GRAM.number(certainty.mass_sd_kg),
-            GRAM_PER_HOUR.number(certainty.leak_sd_kg_s),
-            GRAM_PER_HOUR.number(certainty.smallest_leak_kg_s),
+            KELVIN.number(steady.gas_sd_k),
+            GRAM.number(steady.mass_sd_kg),
+            GRAM_PER_HOUR.number(steady.leak_sd_kg_s),
+            GRAM_PER_HOUR.number(steady.smallest_leak_kg_s),
             position.delay_s.map_or("never".into(), |delay_s| HOUR.number(delay_s)),
         ]);
         cells.extend(position.robust_k.iter().map(|&of| KELVIN.number(of)));

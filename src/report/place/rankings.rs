@@ -1,8 +1,8 @@
 //! The best layouts for each number of sensors, and the same and others by every number.
 use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
-use crate::estimator::placement::CourseNumber;
+use crate::estimator::placement::ScenarioMeasure;
 use crate::estimator::placement::search::Method;
-use crate::estimator::placement::study::{Judged, Numbered, Proof, Refused};
+use crate::estimator::placement::study::{BestLayouts, Infeasible, Judged, Proof};
 use crate::report::{Report, number};
 
 /// Layouts near the best that are named.
@@ -15,17 +15,17 @@ type Measure = (&'static str, Unit, fn(&Judged) -> Option<f64>);
 
 /// What the filter states of itself at rest.
 const STATED: [Measure; 3] = [
-    ("gas K", KELVIN, |of| Some(of.certainty.gas_sd_k)),
-    ("mass g", GRAM, |of| Some(of.certainty.mass_sd_kg)),
-    ("leak g/h", GRAM_PER_HOUR, |of| Some(of.certainty.leak_sd_kg_s)),
+    ("gas K", KELVIN, |of| Some(of.steady.gas_sd_k)),
+    ("mass g", GRAM, |of| Some(of.steady.mass_sd_kg)),
+    ("leak g/h", GRAM_PER_HOUR, |of| Some(of.steady.leak_sd_kg_s)),
 ];
 /// What a leak is found by.
-const SMALLEST: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.certainty.smallest_leak_kg_s));
+const SMALLEST: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.steady.smallest_leak_kg_s));
 const DELAY: Measure = ("delay h", HOUR, |of| of.delay_s);
 /// With model error, along the first scenario.
 const ROBUST: [Measure; 2] = [
-    ("robust K", KELVIN, |of| Some(CourseNumber::Schmidt.of(of.along.first()?))),
-    ("worst K", KELVIN, |of| Some(CourseNumber::WorstCase.of(of.along.first()?))),
+    ("robust K", KELVIN, |of| Some(ScenarioMeasure::Schmidt.of(of.scenarios.first()?))),
+    ("worst K", KELVIN, |of| Some(ScenarioMeasure::WorstCase.of(of.scenarios.first()?))),
 ];
 
 impl Placed<'_> {
@@ -37,7 +37,7 @@ impl Placed<'_> {
         let percent = number(100.0 * self.study.settings.within, DIGITS);
         let near = format!("within {percent} %");
         let header = ["sensors", "best layout", &value, "bound", "gap", "relaxed", "change", &near, "search"];
-        let row = |number: &Numbered| {
+        let row = |number: &BestLayouts| {
             let best = number.layouts.first();
             vec![
                 number.sensors.to_string(),
@@ -61,7 +61,7 @@ impl Placed<'_> {
     /// The first few that are as good as the best.
     fn near_best(&self) -> String {
         let unit = Unit::of(self.study.settings.criterion);
-        let line = |number: &Numbered| {
+        let line = |number: &BestLayouts| {
             let others = number.layouts.iter().skip(1).take(NAMED);
             let named: Vec<String> = others
                 .map(|layout| format!("{} ({})", self.chosen(&layout.sensors), unit.number(layout.value)))
@@ -76,7 +76,7 @@ impl Placed<'_> {
 
     /// Numbers of sensors without a layout.
     pub(super) fn refused(&self) -> Report {
-        let line = |of: &Refused| format!("no layout of {}: {}\n", of.sensors, of.reason);
+        let line = |of: &Infeasible| format!("no layout of {}: {}\n", of.sensors, of.reason);
         Report::default().text(self.study.refused.iter().map(line).collect::<String>())
     }
 
@@ -124,7 +124,7 @@ impl Placed<'_> {
 
     /// Where certainty and the smallest leak ask for different layouts: a small covariance alone finds no leak.
     pub(super) fn differences(&self) -> Report {
-        let line = |number: &Numbered| {
+        let line = |number: &BestLayouts| {
             let (_, unit, smallest) = SMALLEST;
             let finds = self.best_of(number.sensors, smallest)?;
             let least = smallest(finds)?;
@@ -167,18 +167,18 @@ impl Placed<'_> {
         let bests: Vec<&Judged> = bests.collect();
         let mut rows = Vec::new();
         for (scenario, name) in self.study.scenarios.iter().enumerate() {
-            for (judged, along) in
-                bests.iter().filter_map(|judged| Some((judged, judged.along.get(scenario)?)))
+            for (judged, accuracy) in
+                bests.iter().filter_map(|judged| Some((judged, judged.scenarios.get(scenario)?)))
             {
-                let errors = along.variants.iter();
+                let errors = accuracy.variants.iter();
                 let largest = errors.max_by(|a, b| a.gas_k.worst.total_cmp(&b.gas_k.worst));
                 rows.push(vec![
                     name.clone(),
                     judged.sensors.len().to_string(),
-                    KELVIN.number(along.gas_sd_k.mean),
-                    KELVIN.number(along.gas_sd_k.worst),
-                    KELVIN.number(along.gas_schmidt_k.mean),
-                    KELVIN.number(along.gas_worst_case_k.worst),
+                    KELVIN.number(accuracy.gas_sd_k.mean),
+                    KELVIN.number(accuracy.gas_sd_k.worst),
+                    KELVIN.number(accuracy.gas_schmidt_k.mean),
+                    KELVIN.number(accuracy.gas_worst_case_k.worst),
                     largest.map_or(String::new(), |of| of.variant.words()),
                     largest.map_or(String::new(), |of| KELVIN.number(of.gas_k.worst)),
                 ]);
@@ -197,7 +197,7 @@ fn share(of: Option<f64>) -> String {
 }
 
 /// How it was searched, and how much of it.
-fn searched(number: &Numbered) -> String {
+fn searched(number: &BestLayouts) -> String {
     let method = match number.method {
         Method::Exhaustive => "all",
         Method::BranchAndBound => "branch and bound",

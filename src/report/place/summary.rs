@@ -37,7 +37,7 @@ impl Placed<'_> {
     fn settings_text(&self) -> String {
         let study = self.study;
         let settings = &study.settings;
-        let (conditions, detection) = (&settings.site.conditions, &settings.site.detection);
+        let (conditions, detection) = (&settings.steady.conditions, &settings.steady.detection);
         let degc = |kelvin: f64| format!("{} °C", number(kelvin - ZERO_CELSIUS_K, 3));
         let partial = if self.is_partial() {
             "PARTIAL: the search was ended early, what is here is not all\n"

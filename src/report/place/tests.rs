@@ -1,11 +1,11 @@
 //! A study that was never run.
 use super::Placed;
-use crate::estimator::placement::course::{Summary, VariantError};
+use crate::estimator::placement::scenario::{Summary, VariantError};
 use crate::estimator::placement::search::{Layout, Method};
 use crate::estimator::placement::study::{
-    Bias, BiasSource, Failure, Front, Judged, Numbered, Point, Position, Proof, Study, StudySettings,
+    BestLayouts, Bias, BiasSource, Failure, Front, Judged, Point, Position, Proof, Study, StudySettings,
 };
-use crate::estimator::placement::{Along, Candidates, Certainty, Variant};
+use crate::estimator::placement::{Candidates, ScenarioAccuracy, SteadyAccuracy, Variant};
 use crate::evaluation::placement::ClosedLoopSettings;
 use crate::report::Provenance;
 use crate::thermal::vessel::{Vessel, presets};
@@ -31,8 +31,8 @@ impl Known {
     }
 }
 
-fn certainty(gas_sd_k: f64, leak: f64) -> Certainty {
-    Certainty {
+fn accuracy(gas_sd_k: f64, leak: f64) -> SteadyAccuracy {
+    SteadyAccuracy {
         gas_sd_k,
         mass_sd_kg: 0.01 * gas_sd_k,
         leak_sd_kg_s: 0.5 * leak * GRAM_PER_HOUR,
@@ -40,14 +40,14 @@ fn certainty(gas_sd_k: f64, leak: f64) -> Certainty {
     }
 }
 
-fn along() -> Along {
+fn scenario_accuracy() -> ScenarioAccuracy {
     let of = |mean: f64| Summary { mean, worst: 2.0 * mean };
     let variants = [Variant::Nominal, Variant::StratifiedGas].map(|variant| VariantError {
         variant,
         gas_k: of(1.0),
         mass_kg: of(0.01),
     });
-    Along {
+    ScenarioAccuracy {
         scenario: "a tunnel".into(),
         gas_sd_k: of(0.4),
         mass_sd_kg: of(0.01),
@@ -59,13 +59,13 @@ fn along() -> Along {
     }
 }
 
-fn judged(sensors: &[usize], certainty: Certainty, delay_h: Option<f64>) -> Judged {
+fn judged(sensors: &[usize], steady: SteadyAccuracy, delay_h: Option<f64>) -> Judged {
     Judged {
         sensors: sensors.to_vec(),
         cost: sensors.len() as f64,
-        certainty,
+        steady,
         delay_s: delay_h.map(|hours| 3600.0 * hours),
-        along: vec![along()],
+        scenarios: vec![scenario_accuracy()],
     }
 }
 
@@ -77,7 +77,7 @@ fn known() -> Known {
         (of("middle"), of("shoulder"), of("valve"), of("gas_1"), of("pressure"));
     let layouts = [(vec![middle, pressure], 2.0), (vec![shoulder, pressure], 2.01)]
         .map(|(sensors, leak)| Layout { sensors, value: leak * GRAM_PER_HOUR });
-    let number = Numbered {
+    let number = BestLayouts {
         sensors: 2,
         bound: layouts[0].value,
         layouts: layouts.to_vec(),
@@ -94,7 +94,7 @@ fn known() -> Known {
         complete: true,
         compared: 16,
     };
-    let failure = |sensor, without: Option<Certainty>, unseen: Option<&str>, found| Failure {
+    let failure = |sensor, without: Option<SteadyAccuracy>, unseen: Option<&str>, found| Failure {
         sensor,
         unseen: unseen.map(str::to_owned),
         without,
@@ -105,10 +105,10 @@ fn known() -> Known {
         gas_k: 0.5,
         mass_kg: 0.02,
     };
-    let position = |sensor: usize, certainty| Position {
+    let position = |sensor: usize, steady| Position {
         sensor,
         height_m: candidates.list[sensor].height_m,
-        certainty,
+        steady,
         delay_s: None,
         robust_k: vec![0.7],
     };
@@ -120,14 +120,14 @@ fn known() -> Known {
         settings: StudySettings { sensors: 2, ..StudySettings::default() },
         numbers: vec![number],
         judged: vec![
-            judged(&[middle, pressure], certainty(0.31, 4.0), Some(12.0)),
-            judged(&[shoulder, pressure], certainty(0.35, 3.2), None),
+            judged(&[middle, pressure], accuracy(0.31, 4.0), Some(12.0)),
+            judged(&[shoulder, pressure], accuracy(0.35, 3.2), None),
         ],
         accuracy_front: front(0.31),
         delay_front: front(12.0 * 3600.0),
         failures: vec![
             failure(middle, None, Some("air_k"), 0.2),
-            failure(pressure, Some(certainty(1.5, 40.0)), None, 0.3e5),
+            failure(pressure, Some(accuracy(1.5, 40.0)), None, 0.3e5),
         ],
         biases: vec![Bias {
             source: BiasSource::Offset(middle),
@@ -137,9 +137,9 @@ fn known() -> Known {
             leak_kg_s: [0.0, GRAM_PER_HOUR, 0.0],
         }],
         positions: vec![
-            position(middle, Some(certainty(0.31, 4.0))),
-            position(shoulder, Some(certainty(0.35, 3.2))),
-            position(valve, Some(certainty(0.5, 9.0))),
+            position(middle, Some(accuracy(0.31, 4.0))),
+            position(shoulder, Some(accuracy(0.35, 3.2))),
+            position(valve, Some(accuracy(0.5, 9.0))),
             position(gas, None),
         ],
         refused: Vec::new(),

@@ -10,8 +10,8 @@
 //! nothing tells it from the mass, which is therefore that against the filling. What a candidate
 //! brings (offset, coupling, lag) belongs to it alone ([`GroupedProblem`]).
 //!
-//! Assumes that wall, gas and surroundings have come to rest at the conditions: the steady state of an observer in a course says the scenario's
-//! covariance. The certainty is the observer's own, with the errors that it supposes of its model.
+//! Assumes that wall, gas and surroundings have come to rest at the conditions:
+//! the covariance along a scenario is that of the observer run through it. The accuracy is the observer's own, with the errors that it supposes of its model.
 use nalgebra::{DMatrix, DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 
@@ -62,7 +62,7 @@ impl Conditions {
     /// chapter 6) of a film that goes with the cubic root.
     ///
     /// # Errors
-    /// As [`SitedCylinder::new`].
+    /// As [`InstrumentedCylinder::new`].
     pub fn at_typical_difference(
         self,
         vessel: &Vessel,
@@ -73,8 +73,8 @@ impl Conditions {
         const START_K: f64 = 0.1;
         let mut conditions = Self { apart_k: START_K, ..self };
         for _ in 0..ITERATIONS {
-            let sited = SitedCylinder::new(vessel, &[], settings, &settings.bank[0], &conditions)?;
-            conditions.apart_k = TYPICAL * sited.wall_to_gas_sd_k();
+            let cylinder = InstrumentedCylinder::new(vessel, &[], settings, &settings.bank[0], &conditions)?;
+            conditions.apart_k = TYPICAL * cylinder.wall_to_gas_sd_k();
         }
         Ok(conditions)
     }
@@ -94,7 +94,7 @@ pub enum Quantity {
 
 /// The linearised cylinder with all candidates.
 #[derive(Clone, Debug)]
-pub struct SitedCylinder {
+pub struct InstrumentedCylinder {
     /// Of the states that are kept.
     names: Vec<String>,
     kinds: Vec<StateKind>,
@@ -108,7 +108,7 @@ pub struct SitedCylinder {
     sun_drive: Option<DVector<f64>>,
 }
 
-impl SitedCylinder {
+impl InstrumentedCylinder {
     /// A vessel with candidates, as one member of the observer's bank sees it.
     ///
     /// # Errors

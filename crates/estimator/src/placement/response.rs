@@ -21,7 +21,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::GroupedProblem;
-use super::cylinder::{Quantity, SitedCylinder};
+use super::cylinder::{InstrumentedCylinder, Quantity};
 use crate::EstimatorError;
 use crate::filter::{SteadyState, steady_state};
 
@@ -75,7 +75,7 @@ impl Passage {
     }
 }
 
-impl SitedCylinder {
+impl InstrumentedCylinder {
     /// Response of the filter that reads a layout.
     ///
     /// # Errors

@@ -94,9 +94,9 @@ pub enum Requirement {
     Undecidable,
     /// Less certain: no leak where there is none; a leak is found, or it is said that it cannot be known.
     Degraded,
-    /// Said at commissioning, or harmless: no leak where there is none; a leak is found, or there is a warning.
+    /// Statement at commissioning, or harmless: no leak where there is none; a leak is found, or there is a warning.
     Warned,
-    /// Said by an event of its kind: no leak where there is none.
+    /// Statement by an event of its kind: no leak where there is none.
     Recognised,
     /// Found as a leak.
     Found,

@@ -21,8 +21,8 @@ pub mod journal;
 pub mod measures;
 pub mod plan;
 pub mod run;
-pub mod said;
 pub mod score;
+pub mod statement;
 pub mod table;
 pub mod watch;
 

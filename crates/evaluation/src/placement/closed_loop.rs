@@ -80,16 +80,16 @@ pub fn confirm(
     watch: &Watch,
 ) -> Result<ClosedLoop, EvaluationError> {
     let ClosedLoopSettings { matched: own, mismatched: drawn, first_seed } = *settings;
-    let (candidates, site) = (placement.candidates().sensors(), placement.site().settings());
-    let quiet = calm(&site.observer, &site.conditions);
-    let at_quiet = site.conditions.at_typical_difference(placement.vessel(), &quiet)?;
-    let (first, slow) = placement.site().members();
+    let (candidates, steady) = (placement.candidates().sensors(), placement.steady().settings());
+    let quiet = calm(&steady.observer, &steady.conditions);
+    let at_quiet = steady.conditions.at_typical_difference(placement.vessel(), &quiet)?;
+    let (first, slow) = placement.steady().members();
     let claim = |quiet_world: bool, member| Claim {
         vessel: placement.vessel(),
         candidates: &candidates,
-        settings: if quiet_world { &quiet } else { &site.observer },
+        settings: if quiet_world { &quiet } else { &steady.observer },
         member,
-        conditions: if quiet_world { &at_quiet } else { &site.conditions },
+        conditions: if quiet_world { &at_quiet } else { &steady.conditions },
         layouts,
     };
     let of_seeds = |seeds| ConfirmSettings { first_seed, seeds, ..ConfirmSettings::default() };
@@ -102,14 +102,15 @@ pub fn confirm(
     };
     if own > 0 {
         found.matched = matched(&claim(true, first), &of_seeds(own), watch, &|_| ())?.layouts;
-        let detection = &site.detection;
+        let detection = &steady.detection;
         found.matched_leaks = detected_matched(&claim(true, slow), &of_seeds(own), detection, watch)?;
     }
     if drawn > 0 {
         let settings = ConfirmSettings { duration_s: MISMATCHED_S, ..of_seeds(drawn) };
         found.mismatched = mismatched(&claim(false, first), &settings, watch, &|_| ())?.layouts;
         let settings = ConfirmSettings { burn_in_s: LEARNING_S, ..settings };
-        found.mismatched_leaks = detected_mismatched(&claim(false, slow), &settings, &site.detection, watch)?;
+        found.mismatched_leaks =
+            detected_mismatched(&claim(false, slow), &settings, &steady.detection, watch)?;
     }
     found.partial = watch.stop.load(Ordering::Relaxed);
     Ok(found)

@@ -19,8 +19,8 @@ pub struct Watched {
 /// # Errors
 /// What the monitor refuses.
 pub fn watch(world: &World, settings: &MonitorSettings) -> Result<Watched, EvaluationError> {
-    let told = &world.told;
-    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
+    let data = &world.operator_data;
+    let mut monitor = Monitor::new(&data.vessel, &data.sensors, &data.commissioning, settings)?;
     let mut record = Record::default();
     for (stamp_s, readings) in world.log.rows() {
         for output in monitor.step(stamp_s, readings)? {

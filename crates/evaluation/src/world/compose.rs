@@ -10,8 +10,8 @@ use super::sensors::{SensorDraw, seed_of_set};
 use super::simulation::Simulated;
 use super::truth::Truth;
 use super::{
-    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, SteadyLeak, Told, World,
-    WorldError, disturbed, faulty,
+    Drawn, FaultRow, Happening, HappeningKind, OperatorData, Overlay, Request, SimulationKey, SteadyLeak,
+    World, WorldError, disturbed, faulty,
 };
 use crate::random::Purpose;
 
@@ -49,10 +49,10 @@ fn world(simulated: &Simulated, request: &Request, rows: Rows) -> Result<World, 
     let truth = truth(simulated, &rows.time_s, leak.as_ref())?;
     let sensors = SensorDraw::draw(family.sensors, simulated.nominal.full_scale_pa, seed);
     let log = readings(simulated, &sensors, &rows, &truth, seed);
-    let spec = sensors.told(family.sensors);
+    let spec = sensors.data_sheets(family.sensors);
     let suite: SensorSuite = spec.build()?;
     let happenings = happenings(simulated, request, &rows, leak.as_ref());
-    let told = Told {
+    let operator_data = OperatorData {
         vessel: simulated.nominal.vessel.clone(),
         sensors: suite.sensors().to_vec(),
         sensors_spec: spec,
@@ -62,7 +62,7 @@ fn world(simulated: &Simulated, request: &Request, rows: Rows) -> Result<World, 
     let world = World {
         request: *request,
         simulation: SimulationKey::of(request),
-        told,
+        operator_data,
         log,
         historical: Vec::new(),
         power_cycles: Vec::new(),
@@ -221,6 +221,6 @@ fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SteadyLeak
 
 /// Announced discharges by the clock of the log, s.
 fn announced(happenings: &[Happening], rows: &Rows) -> Vec<(f64, f64)> {
-    let told = happenings.iter().filter(|happening| happening.announced);
-    told.map(|happening| (rows.stamp(happening.start_s), rows.stamp(happening.end_s))).collect()
+    let announced = happenings.iter().filter(|happening| happening.announced);
+    announced.map(|happening| (rows.stamp(happening.start_s), rows.stamp(happening.end_s))).collect()
 }

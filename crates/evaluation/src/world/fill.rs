@@ -13,7 +13,7 @@ use crate::random::{Purpose, Random};
 const STATED_SD: f64 = 0.005;
 const WRONG_SHARE: f64 = 1.0 / 6.0;
 const WRONG_BY: f64 = 0.025;
-const TOLD_SD: f64 = 0.012;
+const STATED_MASS_SD: f64 = 0.012;
 const OPERATING_SHARE: f64 = 0.25;
 /// Operation before the log where the cylinder is not settled, s: four time constants of the wall and more.
 const LEAD_S: f64 = 6.0 * 3600.0;
@@ -56,6 +56,6 @@ impl FillDraw {
     /// What is told of it.
     pub(super) fn commissioning(&self) -> Commissioning {
         let told = Commissioning::filled(self.stated_pa, QUOTED_K);
-        Commissioning { mass_sd: TOLD_SD, settled: self.lead_s == 0.0, ..told }
+        Commissioning { mass_sd: STATED_MASS_SD, settled: self.lead_s == 0.0, ..told }
     }
 }

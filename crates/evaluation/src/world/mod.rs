@@ -2,7 +2,7 @@
 //!
 //! A [`Request`] decides a [`World`] on every machine, around the nominal vessel of its kind or around an own one ([`NominalVessel`]): the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
 //! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
-//! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
+//! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`OperatorData`] and the rows of the log, one by one.
 //!
 //! Published cases, whose air changes at stated times, have their cylinders in [`chamber`].
 pub mod chamber;
@@ -16,6 +16,7 @@ mod faulty;
 mod fill;
 mod flows;
 mod gas;
+mod operator_data;
 mod overlay;
 mod process;
 mod reading;
@@ -27,7 +28,6 @@ mod simulation;
 mod slow;
 #[cfg(test)]
 pub(crate) mod statistics;
-mod told;
 mod truth;
 mod vessel;
 
@@ -45,11 +45,11 @@ pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
 pub use fill::FillDraw;
 pub use flows::SteadyLeak;
 pub use gas::GasDraw;
+pub use operator_data::OperatorData;
 pub use overlay::{FaultRow, Leak, Overlay};
 pub use sensors::{SensorDraw, Thermometer, Transmitter};
 pub(crate) use simulation::Run;
 pub use simulation::{CylinderDraw, Simulated, SimulationKey};
-pub use told::Told;
 pub use truth::{Happening, HappeningKind, Regime, Truth};
 pub use vessel::{NominalVessel, VesselDraw};
 
@@ -88,7 +88,7 @@ pub struct World {
     /// The simulation behind it: worlds with equal keys are not independent of each other.
     pub simulation: SimulationKey,
     /// What a candidate may know beforehand.
-    pub told: Told,
+    pub operator_data: OperatorData,
     /// Rows in the order in which they arrive, with their stamps: channels `shoulder`, `valve`, `pressure`.
     pub log: Log,
     /// Rows that say that they are replayed from a store, by index; empty unless a fault replays.

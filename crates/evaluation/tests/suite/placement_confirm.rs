@@ -3,14 +3,14 @@ use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use std::sync::atomic::Ordering;
 
 use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
+use cylwatch_estimator::observer::{Innovation, LeakHypothesis, ObserverSettings};
 use cylwatch_estimator::placement::search::Watch;
 use cylwatch_estimator::placement::{Conditions, DetectionSettings};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 use cylwatch_evaluation::EvaluationError;
 use cylwatch_evaluation::placement::{
-    Claim, ConfirmSettings, Confirmation, Recorder, calm, detected_matched, matched, mismatched,
+    Claim, ConfirmSettings, Confirmation, InnovationSink, calm, detected_matched, matched, mismatched,
 };
 use cylwatch_evaluation::world::SteadyLeak;
 
@@ -98,25 +98,34 @@ fn the_same_seeds_give_the_same_numbers_and_other_seeds_others() {
     assert_eq!(alone.layouts[0], first.layouts[1]);
 }
 
+/// Innovations of the pressure from half a day on, in standard deviations.
+#[derive(Default)]
+struct Pressure(Vec<f64>);
+
+impl InnovationSink for Pressure {
+    fn record(&mut self, time_s: f64, innovations: &[Innovation]) {
+        if time_s >= 0.5 * DAY_S {
+            self.0.push(innovations[1].nu / innovations[1].s.sqrt());
+        }
+    }
+}
+
 /// Every innovation of the last hours is there to be searched for a leak; a leak that no member expects pulls those of the pressure down.
 #[test]
 fn innovations_show_a_leak_in_both_worlds() {
     let case = Case::quiet(&[&[1, 3]]);
     let leak = Some(SteadyLeak { rate_kg_s: 20e-3 / HOUR_S, onset_s: 0.5 * DAY_S });
-    let listen = |_| Recorder::from(0.5 * DAY_S);
+    let sink = |_| Pressure::default();
     let watch = Watch::default();
     let pressure_sum = |settings: &ConfirmSettings, is_matched: bool| {
         let found = if is_matched {
-            matched(&case.claim(), settings, &watch, &listen).unwrap()
+            matched(&case.claim(), settings, &watch, &sink).unwrap()
         } else {
-            mismatched(&case.claim(), settings, &watch, &listen).unwrap()
+            mismatched(&case.claim(), settings, &watch, &sink).unwrap()
         };
         assert_eq!(found.runs.len(), 2);
-        let of = |run: &Recorder| -> f64 {
-            assert_eq!((run.time_s[0], run.innovations.len()), (0.5 * DAY_S, 73));
-            run.innovations.iter().map(|row| row[1].nu / row[1].s.sqrt()).sum()
-        };
-        let sums: f64 = found.runs.iter().map(|run| of(&run.heard)).sum();
+        assert!(found.runs.iter().all(|run| run.sink.0.len() == 73));
+        let sums: f64 = found.runs.iter().flat_map(|run| &run.sink.0).sum();
         (sums, found.layouts[0].mass_kg.rms)
     };
     for is_matched in [true, false] {

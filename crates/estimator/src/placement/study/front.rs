@@ -60,22 +60,22 @@ impl Placement {
                 |of: &Judged| Some(Point { sensors: of.sensors.clone(), cost: of.cost, value: value(of)? });
             judged.iter().filter_map(point).collect::<Vec<_>>()
         };
-        let mut by_gas = of_judged(&|of| Some(of.certainty.gas_sd_k));
+        let mut by_gas = of_judged(&|of| Some(of.steady.gas_sd_k));
         let mut by_delay = of_judged(&|of| of.delay_s);
         if !complete || watch.stop.load(std::sync::atomic::Ordering::Relaxed) {
             return Ok((Front::of(by_gas, false), Front::of(by_delay, false)));
         }
-        let worth = Criterion::GasTemperature.worth(&self.site, &self.courses)?;
+        let objective = Criterion::GasTemperature.objective(&self.steady, &self.scenarios)?;
         for sensors in numbers {
             let constraints = self.constraints(sensors);
             // A number that no layout can have adds nothing.
-            let Ok(found) = search(&worth, &constraints, Method::Exhaustive, f64::INFINITY, watch) else {
+            let Ok(found) = search(&objective, &constraints, Method::Exhaustive, f64::INFINITY, watch) else {
                 continue;
             };
             let delays: Vec<Option<f64>> = found
                 .layouts
                 .par_iter()
-                .map(|layout| self.site.delay_s(&layout.sensors, self.settings.leak_kg_s))
+                .map(|layout| self.steady.delay_s(&layout.sensors, self.settings.leak_kg_s))
                 .collect::<Result<_, _>>()?;
             for (layout, delay_s) in found.layouts.into_iter().zip(delays) {
                 let cost = constraints.cost(&layout.sensors);

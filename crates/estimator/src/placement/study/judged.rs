@@ -4,12 +4,12 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALL_LAYOUTS, JUDGED, Numbered, Placement, Proof};
+use super::{ALL_LAYOUTS, BestLayouts, JUDGED, Placement, Proof};
 use crate::EstimatorError;
-use crate::placement::course::Along;
 use crate::placement::criterion::Criterion;
+use crate::placement::scenario::ScenarioAccuracy;
 use crate::placement::search::{Method, Watch, search};
-use crate::placement::site::Certainty;
+use crate::placement::steady::SteadyAccuracy;
 
 /// A layout by every number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,22 +19,24 @@ pub struct Judged {
     /// Its cost.
     pub cost: f64,
     /// At rest.
-    pub certainty: Certainty,
+    #[serde(rename = "certainty")]
+    pub steady: SteadyAccuracy,
     /// Time until the leak of the settings is found, s; `None`: never.
     pub delay_s: Option<f64>,
     /// Along each scenario.
-    pub along: Vec<Along>,
+    #[serde(rename = "along")]
+    pub scenarios: Vec<ScenarioAccuracy>,
 }
 
 impl Judged {
-    /// The number of a criterion, in SI; `None` for a course where there is none.
+    /// The number of a criterion, in SI; `None` for a measure of a scenario where there is none.
     pub fn number(&self, criterion: Criterion) -> Option<f64> {
         Some(match criterion {
-            Criterion::GasTemperature => self.certainty.gas_sd_k,
-            Criterion::Mass => self.certainty.mass_sd_kg,
-            Criterion::LeakRate => self.certainty.leak_sd_kg_s,
-            Criterion::SmallestLeak => self.certainty.smallest_leak_kg_s,
-            Criterion::Course(number) => number.of(self.along.first()?),
+            Criterion::GasTemperature => self.steady.gas_sd_k,
+            Criterion::Mass => self.steady.mass_sd_kg,
+            Criterion::LeakRate => self.steady.leak_sd_kg_s,
+            Criterion::SmallestLeak => self.steady.smallest_leak_kg_s,
+            Criterion::Scenario(measure) => measure.of(self.scenarios.first()?),
         })
     }
 }
@@ -48,16 +50,20 @@ impl Placement {
         Ok(Judged {
             sensors: layout.to_vec(),
             cost: layout.iter().map(|&index| self.candidates.list[index].cost).sum(),
-            certainty: self.site.certainty(layout)?,
-            delay_s: self.site.delay_s(layout, self.settings.leak_kg_s)?,
-            along: self.courses.iter().map(|course| course.along(layout)).collect::<Result<_, _>>()?,
+            steady: self.steady.accuracy(layout)?,
+            delay_s: self.steady.delay_s(layout, self.settings.leak_kg_s)?,
+            scenarios: self
+                .scenarios
+                .iter()
+                .map(|scenario| scenario.accuracy(layout))
+                .collect::<Result<_, _>>()?,
         })
     }
 
     /// The best by the criterion, then those that are best by another number, for each number of sensors.
     pub(super) fn judge_all(
         &self,
-        numbers: &[Numbered],
+        numbers: &[BestLayouts],
         watch: &Watch,
     ) -> Result<Vec<Judged>, EstimatorError> {
         let mut judged = Vec::new();
@@ -86,9 +92,9 @@ impl Placement {
         sensors: usize,
         watch: &Watch,
     ) -> Result<Option<Vec<usize>>, EstimatorError> {
-        let worth = criterion.worth(&self.site, &self.courses)?;
+        let objective = criterion.objective(&self.steady, &self.scenarios)?;
         let method = if self.layouts(sensors) <= ALL_LAYOUTS { Method::Exhaustive } else { Method::Greedy };
-        let found = search(&worth, &self.constraints(sensors), method, 0.0, watch)?;
+        let found = search(&objective, &self.constraints(sensors), method, 0.0, watch)?;
         Ok(found.best().map(|best| best.sensors.clone()))
     }
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Moment;
 use crate::detector::prognosis::Reaction;
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 use crate::world::World;
 
 /// Ways to contradict oneself.
@@ -120,13 +120,13 @@ pub struct Agreement {
 impl Agreement {
     /// Of a candidate that decides for a leak from a probability of `level` on.
     pub(crate) fn new(world: &World, level: f64) -> Self {
-        let announced = world.told.announced.clone();
+        let announced = world.operator_data.announced.clone();
         Self { level, announced, loss_said: false, counts: Disagreements::default() }
     }
 
     /// Take a decision.
     pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
-        let stamp_s = moment.said.stamp_s;
+        let stamp_s = moment.statement.stamp_s;
         // An announced discharge may be seen a while after its end.
         let announced = self
             .announced

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
-use crate::judge::said::Estimated;
+use crate::judge::statement::Estimated;
 use crate::world::{Overlay, World};
 
 /// Shortest time between two judged statements, s.
@@ -75,7 +75,7 @@ impl Coverage {
             return;
         }
         self.last_s = Some(moment.now_s);
-        let (truth, row, estimates) = (&world.truth, moment.row, &moment.said.estimates);
+        let (truth, row, estimates) = (&world.truth, moment.row, &moment.statement.estimates);
         let whole_kg = truth.mass_kg[0];
         let mut judge = |quantity: Quantity, estimated: &Option<Estimated>, truth: f64, unit: f64| {
             if let Some(estimated) = estimated {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 use crate::world::{Overlay, World};
 
 /// Part of the gas after whose loss a fast loss must be told.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use super::Moment;
 use crate::fault::Requirement;
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 use crate::world::{FaultRow, HappeningKind, Overlay, World};
 
 /// Time within which an exchange of gas must be recognised, s.

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::judge::said::Innovation;
+use crate::judge::statement::Innovation;
 use crate::world::Regime;
 
 /// Lags, s.

@@ -27,7 +27,7 @@ use self::innovation::{Innovations, Whiteness};
 use self::noise::FreeMass;
 use self::verdict::{Episodes, Shares, Verdicts};
 use super::measures::Trace;
-use super::said::Said;
+use super::statement::Statement;
 use crate::noise::Noise;
 use crate::world::{Overlay, World};
 
@@ -80,7 +80,7 @@ pub enum Gas {
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
     /// What is said.
-    pub said: &'a Said,
+    pub statement: &'a Statement,
     /// True time at which it is said, s.
     pub now_s: f64,
     /// Time since the statement before, s, at most an hour.
@@ -131,13 +131,13 @@ impl<'a> Scorer<'a> {
     }
 
     /// Take a statement that is said at the true time `now_s` about the row of an index.
-    pub(crate) fn take(&mut self, now_s: f64, row: usize, said: &Said) {
+    pub(crate) fn take(&mut self, now_s: f64, row: usize, statement: &Statement) {
         let truth = &self.world.truth;
         let step_s = self.last_s.map_or(0.0, |last_s| (now_s - last_s).clamp(0.0, LONGEST_STEP_S));
         self.last_s = Some(now_s);
         let time_s = truth.time_s[row];
         let moment = Moment {
-            said,
+            statement,
             now_s,
             step_s,
             row,
@@ -145,7 +145,7 @@ impl<'a> Scorer<'a> {
             gas: gas_at(&self.world.request.overlay, time_s),
         };
         self.score.said += 1;
-        if let Some(decision) = &said.decision {
+        if let Some(decision) = &statement.decision {
             self.verdicts.take(&moment, decision);
             self.agreement.take(&moment, decision);
             if let Some(detecting) = &mut self.detecting {
@@ -161,7 +161,7 @@ impl<'a> Scorer<'a> {
                 fault.take(&moment, decision);
             }
         }
-        if let Some(statistic) = said.statistic {
+        if let Some(statistic) = statement.statistic {
             if statistic.is_finite() {
                 self.first_told_s.get_or_insert(now_s);
             }
@@ -170,7 +170,7 @@ impl<'a> Scorer<'a> {
         self.score.coverage.take(&moment, self.world);
         // Spikes and exchanges of gas are no question of the noise.
         let steady = matches!(self.world.request.overlay, Overlay::Nothing | Overlay::Leak { .. });
-        let innovation = said.innovation.filter(|_| steady);
+        let innovation = statement.innovation.filter(|_| steady);
         self.whiteness.take(&mut self.score.innovations, time_s, truth.regime[row], innovation);
         self.free_mass.take(&moment, self.world);
     }

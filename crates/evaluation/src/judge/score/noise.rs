@@ -18,7 +18,9 @@ pub struct FreeMass {
 impl FreeMass {
     /// Take a statement.
     pub(crate) fn take(&mut self, moment: &Moment<'_>, world: &World) {
-        let Some(mass_kg) = moment.said.free_mass_kg.filter(|mass_kg| mass_kg.is_finite()) else { return };
+        let Some(mass_kg) = moment.statement.free_mass_kg.filter(|mass_kg| mass_kg.is_finite()) else {
+            return;
+        };
         let due = self.kept.last().is_none_or(|last| moment.now_s >= last.time_s + SETTLED_S);
         if moment.period == 1 && due {
             let value = mass_kg / world.truth.mass_kg[moment.row];

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 
 /// Time without a statement after which it counts anew, s.
 const APART_S: f64 = 3600.0;

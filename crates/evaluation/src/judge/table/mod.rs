@@ -36,7 +36,7 @@ pub const TABLE: [&str; 2] = ["table.md", "table.json"];
 /// Failure of a candidate that is not judged at all.
 const NO_THRESHOLD: &str = "no threshold: it says a number in fewer than five tight worlds that tune; give it more of them, or more time in each";
 /// Failures that are told one by one.
-const TOLD_FAILURES: usize = 10;
+const LISTED_FAILURES: usize = 10;
 
 /// What the table is of.
 #[derive(Clone, Debug, Serialize)]
@@ -186,7 +186,7 @@ fn add(
 
 /// Keep the first failures, with the request that makes the world again.
 fn note(failures: &mut Vec<String>, plan: &Plan, task: usize, reason: &str) {
-    if failures.len() < TOLD_FAILURES {
+    if failures.len() < LISTED_FAILURES {
         let request = &plan.tasks[task].request;
         let Request { family, seed, set, length_s, overlay } = request;
         failures.push(format!("{family} seed {seed} set {set}, {length_s} s, {overlay:?}: {reason}"));

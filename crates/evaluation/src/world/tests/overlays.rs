@@ -119,7 +119,7 @@ fn a_refill_adds_its_part_and_a_discharge_is_told_only_if_it_is_announced() {
         let world = generate(&base.with(discharge)).unwrap();
         assert_eq!(world.happenings[0].announced, announced);
         let told: Vec<(f64, f64)> = if announced { vec![(3600.0, 3660.0)] } else { Vec::new() };
-        assert_eq!(world.told.announced, told);
+        assert_eq!(world.operator_data.announced, told);
     }
 }
 

@@ -9,7 +9,7 @@ pub const BAND_95: f64 = 1.959_963_984_540_054;
 
 /// All that a candidate says. What it does not know it leaves out.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Said {
+pub struct Statement {
     /// Stamp of the row that it is about, s: a candidate may hold rows back.
     pub stamp_s: f64,
     /// What it decides; `None`: it decides nothing, and is judged as an estimator.
