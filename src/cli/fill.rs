@@ -36,7 +36,7 @@ const UNSETTLED_AIR_SD_K: f64 = 20.0;
 
 /// A fill that is the transmitter's own first reading is off by what the transmitter is. The observer takes that reading once more: the prior
 /// is so much wider that it does not count twice.
-const READ_AGAIN: f64 = 3.0;
+const DOUBLE_USE_FACTOR: f64 = 3.0;
 
 /// Fill as given.
 #[derive(Clone, Debug, Args)]
@@ -115,7 +115,7 @@ impl GivenFill {
             (Fill::Pressure { pressure_pa }, None) if read_sd_pa > 0.0 => {
                 let more =
                     Commissioning { fill: Fill::Pressure { pressure_pa: pressure_pa + read_sd_pa }, ..one };
-                READ_AGAIN * (more.mass_kg(vessel, first_k)? - mass_kg)
+                DOUBLE_USE_FACTOR * (more.mass_kg(vessel, first_k)? - mass_kg)
             }
             _ => 0.0,
         };

@@ -2,7 +2,7 @@
 use super::quantities::Quantities;
 use crate::cli::format::Format;
 use crate::cli::number::{at_least, within};
-use crate::cli::options::{EXPERT, LogArguments, MORE, OUTPUT, ViewArguments};
+use crate::cli::options::{EXPERT, HELP_FOOTER, LogArguments, OUTPUT, ViewArguments};
 use crate::estimator::identify::{
     DeadTime, ErrorModel, Gain, InitialState, InputCourse, Settings, StartMethod, Structure,
 };
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 /// Arguments of `identify`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = EXAMPLES)]
+#[command(after_help = HELP_FOOTER, after_long_help = EXAMPLES)]
 pub(crate) struct IdentifyArguments {
     /// Log: a CSV or Parquet file, or - for CSV on stdin.
     pub log: String,

@@ -1,8 +1,8 @@
 //! The raw arguments of `monitor`.
 use crate::cli::fill::GivenFill;
 use crate::cli::options::{
-    DataArguments, EXPERT, FalseAlarmArguments, LogArguments, MORE, OUTPUT, SensorArguments, VesselAndLog,
-    ViewArguments,
+    DataArguments, EXPERT, FalseAlarmArguments, HELP_FOOTER, LogArguments, OUTPUT, SensorArguments,
+    VesselAndLog, ViewArguments,
 };
 use crate::cli::unit_options::{Choice, Choices, Given};
 use crate::report::monitor;
@@ -32,7 +32,7 @@ impl Choices for MonitorQuantities {
 
 /// Arguments of `monitor`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = help())]
+#[command(after_help = HELP_FOOTER, after_long_help = help())]
 pub(crate) struct MonitorArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,

@@ -6,21 +6,21 @@ use crate::estimator::placement::study::{BestLayouts, Infeasible, Judged, Proof}
 use crate::report::{Report, number};
 
 /// Layouts near the best that are named.
-const NAMED: usize = 3;
+const LISTED_LAYOUTS: usize = 3;
 /// What a ranking may differ by and still be one, relative.
-const EQUAL: f64 = 1e-3;
+const TIE_TOLERANCE: f64 = 1e-3;
 
 /// A number that layouts are judged by: its column, and its SI value.
 type Measure = (&'static str, Unit, fn(&Judged) -> Option<f64>);
 
 /// What the filter states of itself at rest.
-const STATED: [Measure; 3] = [
+const COVARIANCE_MEASURES: [Measure; 3] = [
     ("gas K", KELVIN, |of| Some(of.steady.gas_sd_k)),
     ("mass g", GRAM, |of| Some(of.steady.mass_sd_kg)),
     ("leak g/h", GRAM_PER_HOUR, |of| Some(of.steady.leak_sd_kg_s)),
 ];
 /// What a leak is found by.
-const SMALLEST: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.steady.smallest_leak_kg_s));
+const LEAK_MEASURE: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.steady.smallest_leak_kg_s));
 const DELAY: Measure = ("delay h", HOUR, |of| of.delay_s);
 /// With model error, along the first scenario.
 const ROBUST: [Measure; 2] = [
@@ -62,11 +62,11 @@ impl Placed<'_> {
     fn near_best(&self) -> String {
         let unit = Unit::of(self.study.settings.criterion);
         let line = |number: &BestLayouts| {
-            let others = number.layouts.iter().skip(1).take(NAMED);
+            let others = number.layouts.iter().skip(1).take(LISTED_LAYOUTS);
             let named: Vec<String> = others
                 .map(|layout| format!("{} ({})", self.chosen(&layout.sensors), unit.number(layout.value)))
                 .collect();
-            let more = number.layouts.len().saturating_sub(1 + NAMED);
+            let more = number.layouts.len().saturating_sub(1 + LISTED_LAYOUTS);
             let more = if more > 0 { format!("; {more} more") } else { String::new() };
             (!named.is_empty()).then(|| format!("  {}: {}{more}\n", number.sensors, named.join("; ")))
         };
@@ -83,8 +83,8 @@ impl Placed<'_> {
     /// Layouts by every number, the best of each number of sensors marked.
     pub(super) fn judged_layouts(&self) -> Report {
         let study = self.study;
-        let mut measures: Vec<Measure> = STATED.to_vec();
-        measures.extend([SMALLEST, DELAY]);
+        let mut measures: Vec<Measure> = COVARIANCE_MEASURES.to_vec();
+        measures.extend([LEAK_MEASURE, DELAY]);
         if !study.scenarios.is_empty() {
             measures.extend(ROBUST);
         }
@@ -125,14 +125,14 @@ impl Placed<'_> {
     /// Where certainty and the smallest leak ask for different layouts: a small covariance alone finds no leak.
     pub(super) fn differences(&self) -> Report {
         let line = |number: &BestLayouts| {
-            let (_, unit, smallest) = SMALLEST;
+            let (_, unit, smallest) = LEAK_MEASURE;
             let finds = self.best_of(number.sensors, smallest)?;
             let least = smallest(finds)?;
             let mut parts = Vec::new();
-            for (name, _, stated) in STATED {
+            for (name, _, stated) in COVARIANCE_MEASURES {
                 let knows = self.best_of(number.sensors, stated)?;
                 let found = smallest(knows)?;
-                if found > least * (1.0 + EQUAL) {
+                if found > least * (1.0 + TIE_TOLERANCE) {
                     let what = name.split(' ').next().unwrap_or(name);
                     let more = 100.0 * (found / least - 1.0);
                     parts.push(format!(

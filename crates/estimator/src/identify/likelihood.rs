@@ -36,9 +36,9 @@ const HALVINGS: usize = 12;
 /// A relative step this small is the last: the differences do not resolve a smaller one.
 const LAST_STEP: f64 = 1e-10;
 /// Near the maximum a step that is not below this share of the one before it is rounding.
-const SHRINKING: f64 = 0.5;
+const CONTRACTION_RATIO: f64 = 0.5;
 /// A gain of the logarithm of the likelihood this small is a ten-thousandth of a standard deviation.
-const RESOLVED: f64 = 1e-8;
+const LOG_LIKELIHOOD_TOLERANCE: f64 = 1e-8;
 
 /// Innovation and its variance of every reading.
 type Innovations = Vec<(f64, f64)>;
@@ -77,8 +77,8 @@ impl Likelihood<'_> {
             free.iter().zip(step.iter()).for_each(|(&i, &step)| full[i] = step);
             let last = std::mem::replace(&mut size, relative(&full, &theta));
             // Half the decrease that the step promises; too small a one drowns in the rounding of the cost.
-            let close = -0.5 * gradient.dot(&step) <= RESOLVED;
-            if size <= LAST_STEP || (close && size > SHRINKING * last) {
+            let close = -0.5 * gradient.dot(&step) <= LOG_LIKELIHOOD_TOLERANCE;
+            if size <= LAST_STEP || (close && size > CONTRACTION_RATIO * last) {
                 let covariance = invert(&information).ok_or_else(|| self.undetermined(&theta))?;
                 let covariance = spread_out(&covariance, &free, theta.len());
                 return Ok(Maximum { theta, covariance, iterations });

@@ -26,7 +26,7 @@ use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 
 /// Departure of a state from itself over an interval, relative, within which it does not move.
-const STANDS: f64 = 1e-12;
+const CONSTANT_TOLERANCE: f64 = 1e-12;
 
 /// Where the cylinder stands, and how often it is read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -132,7 +132,8 @@ impl InstrumentedCylinder {
         for state in m..n {
             (f[(state, state)], q[(state, state)]) = cylinder.slow_process(state).over(conditions.interval_s);
         }
-        let is_known = |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < STANDS;
+        let is_known =
+            |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < CONSTANT_TOLERANCE;
         let kept: Vec<usize> = (0..n).filter(|&state| !is_known(state)).collect();
         let States { kinds, names, leak, sun, .. } = cylinder.state_map();
         let scales: Vec<f64> = kept.iter().map(|&state| scale(&kinds[state], candidates)).collect();

@@ -10,11 +10,11 @@ use super::statement::Statement;
 use crate::world::{Snapshot, World};
 
 /// Rows between two looks at the clock.
-const CHUNK: usize = 256;
+const ROWS_PER_CHUNK: usize = 256;
 /// How far back the row of a statement is looked for: rows that a candidate may hold back.
-const HELD_BACK: usize = 20_000;
+const MAX_DELAYED_ROWS: usize = 20_000;
 /// Interval at which a device stores its state, s.
-const KEPT_S: f64 = 3600.0;
+const SNAPSHOT_INTERVAL_S: f64 = 3600.0;
 
 /// What came of it.
 #[derive(Debug)]
@@ -77,10 +77,10 @@ impl Watching<'_> {
         let keeps = self.world.power_cycles.iter().any(|(_, snapshot)| *snapshot == Snapshot::Old);
         let mut kept_s = f64::NEG_INFINITY;
         let mut cycles = self.world.power_cycles.iter().peekable();
-        for begin_row in (0..rows).step_by(CHUNK) {
-            let end_row = rows.min(begin_row + CHUNK);
+        for begin_row in (0..rows).step_by(ROWS_PER_CHUNK) {
+            let end_row = rows.min(begin_row + ROWS_PER_CHUNK);
             for row in begin_row..end_row {
-                if keeps && self.now_s >= kept_s + KEPT_S {
+                if keeps && self.now_s >= kept_s + SNAPSHOT_INTERVAL_S {
                     run.keep()?;
                     kept_s = self.now_s;
                 }
@@ -116,7 +116,7 @@ impl Watching<'_> {
     fn score(&mut self) {
         let stamps = &self.world.log.time_s;
         for (arrived, now_s, statement) in self.statements.drain(..) {
-            let oldest = arrived.saturating_sub(HELD_BACK);
+            let oldest = arrived.saturating_sub(MAX_DELAYED_ROWS);
             let row = (oldest..=arrived).rev().find(|row| stamps[*row] == statement.stamp_s);
             // A statement about no row of the log is about the last one.
             self.scorer.take(now_s, row.unwrap_or(arrived), &statement);

@@ -19,11 +19,11 @@ use crate::EvaluationError;
 use crate::world::SimulationKey;
 
 /// Part of the stretches that the tail is fitted to.
-const PART: f64 = 0.1;
+const TAIL_PART: f64 = 0.1;
 /// Fewest peaks above the level.
-const FEWEST: usize = 20;
+const MIN_PEAKS: usize = 20;
 /// Fewest stretches.
-pub(super) const STRETCHES: usize = (FEWEST as f64 / PART) as usize;
+pub(super) const STRETCHES: usize = (MIN_PEAKS as f64 / TAIL_PART) as usize;
 /// Largest shape either way.
 const SHAPE: f64 = 0.25;
 /// Draws for an interval.
@@ -40,7 +40,7 @@ pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError>
         return Err(EvaluationError::TooFewStretches { found: sorted.len(), needed });
     }
     sorted.sort_by(f64::total_cmp);
-    let above = (sorted.len() as f64 * PART) as usize;
+    let above = (sorted.len() as f64 * TAIL_PART) as usize;
     let level = sorted[sorted.len() - above - 1];
     let excess: Vec<f64> = sorted[sorted.len() - above..].iter().map(|value| value - level).collect();
     let mean = excess.iter().sum::<f64>() / excess.len() as f64;

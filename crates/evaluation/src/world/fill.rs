@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use crate::random::{Purpose, Random};
 
 const STATED_SD: f64 = 0.005;
-const WRONG_SHARE: f64 = 1.0 / 6.0;
-const WRONG_BY: f64 = 0.025;
+const MISSTATED_SHARE: f64 = 1.0 / 6.0;
+const MISSTATEMENT: f64 = 0.025;
 const STATED_MASS_SD: f64 = 0.012;
 const OPERATING_SHARE: f64 = 0.25;
 /// Operation before the log where the cylinder is not settled, s: four time constants of the wall and more.
@@ -37,8 +37,8 @@ impl FillDraw {
         let random = &mut Random::new(seed, Purpose::WorldFill);
         let pressure_pa = random.uniform(range_pa);
         let error = STATED_SD * random.normal();
-        let is_wrong = random.happens(WRONG_SHARE);
-        let stated_pa = pressure_pa * (1.0 + error) / if is_wrong { 1.0 - WRONG_BY } else { 1.0 };
+        let is_wrong = random.happens(MISSTATED_SHARE);
+        let stated_pa = pressure_pa * (1.0 + error) / if is_wrong { 1.0 - MISSTATEMENT } else { 1.0 };
         let lead_s = if random.happens(OPERATING_SHARE) { LEAD_S } else { 0.0 };
         Self { pressure_pa, stated_pa, is_wrong, lead_s }
     }

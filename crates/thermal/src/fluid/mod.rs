@@ -95,7 +95,7 @@ const DENSEST: f64 = 1.35;
 const DENSEST_CUBIC: f64 = 0.98;
 
 /// Pressures, Pa, and densities, kg/m³, below this lose their digits in products; they count as not positive.
-const THINNEST: f64 = 1e-200;
+const UNDERFLOW_LIMIT: f64 = 1e-200;
 
 impl Fluid {
     /// A fluid with its reference equation.
@@ -264,7 +264,7 @@ impl Fluid {
 
     fn check_density(&self, density_kg_m3: f64) -> Result<(), ThermalError> {
         let highest_kg_m3 = self.domain().highest_density_kg_m3;
-        if density_kg_m3 > THINNEST && density_kg_m3 <= highest_kg_m3 {
+        if density_kg_m3 > UNDERFLOW_LIMIT && density_kg_m3 <= highest_kg_m3 {
             return Ok(());
         }
         Err(ThermalError::DensityOutside { fluid: self.name(), density_kg_m3, highest_kg_m3 })
@@ -273,7 +273,7 @@ impl Fluid {
     /// Pressure inside the range and below the melting line; the ideal gas does not freeze.
     fn check_pressure(&self, pressure_pa: f64, temperature_k: f64) -> Result<(), ThermalError> {
         let highest_pa = self.domain().highest_pressure_pa;
-        if !(pressure_pa > THINNEST && pressure_pa <= highest_pa) {
+        if !(pressure_pa > UNDERFLOW_LIMIT && pressure_pa <= highest_pa) {
             return Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa });
         }
         let melting_pa = self.data.melting.pressure_pa(temperature_k);

@@ -18,7 +18,7 @@ const MAX_ITERATIONS: usize = 60;
 /// Relative length of the last Newton step; the error after it is about its square, a rounding.
 const TOLERANCE: f64 = 1e-8;
 /// Relative change over which the slopes of the last solution may lead to the next one.
-const NEAR: f64 = 0.05;
+const WARM_START_RANGE: f64 = 0.05;
 
 /// State of the node with the derivatives of its volume.
 #[derive(Clone, Copy, Debug)]
@@ -188,7 +188,7 @@ impl WellMixed {
         let Some(last) = self.last.get() else { return (self.volume.volume_m3, self.start_k) };
         let from = (last.node.volume_m3, last.node.state.temperature_k);
         let to = last.along(inputs);
-        let is_near = |to: f64, from: f64| (to - from).abs() <= NEAR * from;
+        let is_near = |to: f64, from: f64| (to - from).abs() <= WARM_START_RANGE * from;
         if is_near(to.0, from.0) && is_near(to.1, from.1) { to } else { from }
     }
 

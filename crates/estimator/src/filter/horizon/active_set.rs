@@ -13,7 +13,7 @@ use super::settings::Loss;
 use super::window::Path;
 
 /// Violation of a row, in its posterior standard deviations, that is left alone.
-const SLACK: f64 = 1e-8;
+const VIOLATION_TOLERANCE: f64 = 1e-8;
 /// Violation relative to the magnitudes in a row that may be rounding.
 const ROUNDING: f64 = 1e-12;
 /// Violation relative to the magnitudes in a row that nothing can move which makes the problem infeasible.
@@ -21,7 +21,7 @@ const INFEASIBLE: f64 = 1e-9;
 /// Posterior standard deviation of a row, relative to those of its states, up to which nothing can move it.
 const FIXED: f64 = 1e-12;
 /// Overshoot of the loss's bend, relative, that is left alone.
-const BEND: f64 = 1e-9;
+const BEND_TOLERANCE: f64 = 1e-9;
 
 /// The program and where its rows and suspects come from.
 pub(super) struct ActiveSet<'a> {
@@ -83,7 +83,8 @@ impl<'a> ActiveSet<'a> {
         for (i, interval) in self.problem.intervals.iter().enumerate() {
             for reading in &interval.readings {
                 let residual = interval.residual_after(reading, &step.x[i + 1]);
-                let suspect = reading.weight < 1.0 || residual.abs() > self.program.delta * (1.0 + BEND);
+                let suspect =
+                    reading.weight < 1.0 || residual.abs() > self.program.delta * (1.0 + BEND_TOLERANCE);
                 if suspect && !self.suspects.contains(&(i, reading.output)) {
                     let a = interval.gradient.column(reading.output);
                     let derivative = self.problem.sweep.derivative_at(a.as_slice(), i + 1);
@@ -131,7 +132,7 @@ impl<'a> ActiveSet<'a> {
             let infeasible = excess > INFEASIBLE * magnitude;
             return if infeasible { Err(FallbackReason::Infeasible) } else { Ok(()) };
         }
-        if excess <= SLACK * sd {
+        if excess <= VIOLATION_TOLERANCE * sd {
             return Ok(());
         }
         let scaled: Vec<f64> = derivative.iter().map(|d| d / sd).collect();

@@ -16,7 +16,7 @@ use crate::filter::StateSpace;
 /// Least share of a full step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
 /// Share of the predicted decrease that a step must reach.
-const SUFFICIENT: f64 = 1e-4;
+const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// Relative rounding error of a cost.
 const ROUNDING: f64 = 1e-12;
 
@@ -110,7 +110,7 @@ impl GaussNewton<'_> {
             let path = window.path.towards(&proposed.resolution.step, alpha);
             let against = (self.constraints, self.settings.loss);
             if let Ok(merit) = proposed.merit.trial(model, window, &path, against) {
-                let decrease = SUFFICIENT * alpha * (proposed.current - proposed.predicted);
+                let decrease = SUFFICIENT_DECREASE * alpha * (proposed.current - proposed.predicted);
                 if merit <= proposed.current - decrease + ROUNDING * proposed.current {
                     return self.keep_inside(window, proposed, path, alpha, merit);
                 }

@@ -108,7 +108,7 @@ struct Shortlist {
 
 impl Shortlist {
     /// Longest list before those that have fallen behind are dropped.
-    const LONG: usize = 4096;
+    const MAX_LIST: usize = 4096;
 
     fn new(within: f64) -> Self {
         Self { within, best: f64::INFINITY, layouts: Vec::new() }
@@ -126,7 +126,7 @@ impl Shortlist {
         self.best = self.best.min(value);
         if value <= self.limit() {
             self.layouts.push(Layout { sensors: sensors.to_vec(), value });
-            if self.layouts.len() >= Self::LONG {
+            if self.layouts.len() >= Self::MAX_LIST {
                 self.prune();
             }
         }

@@ -13,7 +13,7 @@ use crate::placement::steady::SteadyAccuracy;
 use crate::sensor::ParameterKind;
 
 /// A fault that a workshop should be able to find: 1 K, 1 bar.
-const FAULT: [f64; 2] = [1.0, 1e5];
+const REQUIRED_FAULT: [f64; 2] = [1.0, 1e5];
 /// Difference of air and wall that a coupling error is told at, K.
 const COUPLED_K: f64 = 10.0;
 /// Times after which a bias is told, s.
@@ -86,7 +86,7 @@ impl Placement {
             let nearest = others.map(|other| (other, beside(other))).min_by(|a, b| a.1.total_cmp(&b.1));
             let (nearest, left) = nearest.unwrap_or((0, all));
             let isolated = if left > 0.0 { detection.smallest(left) } else { f64::INFINITY };
-            let fault = FAULT[usize::from(self.is_pressure(sensor))];
+            let fault = REQUIRED_FAULT[usize::from(self.is_pressure(sensor))];
             let others: Vec<usize> = layout.iter().copied().filter(|other| *other != sensor).collect();
             let without = self.steady().accuracy(&others);
             let unseen = match &without {

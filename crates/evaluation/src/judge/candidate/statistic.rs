@@ -14,7 +14,7 @@ use crate::thermal::vessel::Fill;
 use crate::world::OperatorData;
 
 /// How long the refitted detectors learn their error, s.
-const LEARNT_S: f64 = 4.0 * 86_400.0;
+const LEARNING_S: f64 = 4.0 * 86_400.0;
 /// Debouncing of the refitted detector, s.
 const HOLD_S: f64 = 3600.0;
 /// Limit of the switch as a part of the filling.
@@ -51,11 +51,11 @@ impl Candidate for Statistics {
             Which::IdealGas => (of(Threshold::ideal_gas(filling)), scale),
             Which::Switch => (of(Threshold::raw_switch(SWITCH * filling.pressure_pa)), scale),
             Which::Refitted => {
-                (of(Threshold::new(refitted()?).held_for(HOLD_S).zeroed_over(LEARNT_S)), scale)
+                (of(Threshold::new(refitted()?).held_for(HOLD_S).zeroed_over(LEARNING_S)), scale)
             }
             // A cumulative sum counts standard deviations.
             Which::Textbook => {
-                let mut cusum = ErrorCusum::learning(refitted()?, LEARNT_S);
+                let mut cusum = ErrorCusum::learning(refitted()?, LEARNING_S);
                 (Box::new(move |reading| cusum.update(reading)) as Detector, 1.0)
             }
         };

@@ -9,7 +9,7 @@ use crate::judge::statement::Estimated;
 use crate::world::{Overlay, World};
 
 /// Shortest time between two judged statements, s.
-const APART_S: f64 = 110.0;
+const MIN_SPACING_S: f64 = 110.0;
 
 /// Quantities in the order of the cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -71,7 +71,7 @@ impl Coverage {
     /// Take what is estimated at a row.
     pub(crate) fn take(&mut self, moment: &Moment<'_>, world: &World) {
         let fault = matches!(world.request.overlay, Overlay::Fault { .. });
-        if fault || self.last_s.is_some_and(|last_s| moment.now_s - last_s < APART_S) {
+        if fault || self.last_s.is_some_and(|last_s| moment.now_s - last_s < MIN_SPACING_S) {
             return;
         }
         self.last_s = Some(moment.now_s);

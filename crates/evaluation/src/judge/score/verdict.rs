@@ -10,7 +10,7 @@ use crate::judge::measures::Class;
 use crate::judge::statement::Decision;
 
 /// Time without a statement after which it counts anew, s.
-const APART_S: f64 = 3600.0;
+const EPISODE_GAP_S: f64 = 3600.0;
 
 /// Time by verdict in the order of `Class::ALL`, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ impl Counting {
             self.episode.at_risk_s[moment.period] += moment.step_s;
             return;
         }
-        let fresh = self.said_until_s.is_none_or(|until_s| moment.now_s - until_s > APART_S);
+        let fresh = self.said_until_s.is_none_or(|until_s| moment.now_s - until_s > EPISODE_GAP_S);
         self.episode.count[moment.period] += u64::from(fresh);
         self.said_until_s = Some(moment.now_s);
     }

@@ -20,7 +20,7 @@ use crate::world::{FaultRow, Regime};
 /// Percent of all.
 const PERCENT: f64 = 100.0;
 /// Part of the leaks that must be found for the smallest leak.
-const FOUND: f64 = 0.95;
+const REQUIRED_DETECTION: f64 = 0.95;
 /// Horizons of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
@@ -85,8 +85,9 @@ fn leaks(tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Option<L
         return None;
     }
     let within = |horizon: Horizon| Detection::against_rate(&groups, horizon.seconds());
-    let smallest =
-        |horizon: Horizon| SmallestLeak::of(&within(horizon), FOUND).map(|leak| leak.times(PERCENT));
+    let smallest = |horizon: Horizon| {
+        SmallestLeak::of(&within(horizon), REQUIRED_DETECTION).map(|leak| leak.times(PERCENT))
+    };
     let row = |(index, (part_per_h, runs)): (usize, &(f64, Vec<_>))| {
         let delay = Delay::of(runs);
         let bound_s =
