@@ -21,14 +21,6 @@ pub(crate) const FILL_TEMPERATURE_K: f64 = 288.15;
 /// Volume of the cylinder, m³.
 pub(crate) const VOLUME_M3: f64 = 0.02;
 
-/// Text of a built-in scenario.
-///
-/// # Errors
-/// There is none of this name.
-pub(crate) fn text_of(name: &'static str) -> Result<&'static str, ReproduceError> {
-    scenario::presets::text(name).ok_or(ReproduceError::Scenario { name })
-}
-
 /// A simulated scenario.
 #[derive(Clone, Debug)]
 pub struct ScenarioRun {

@@ -71,12 +71,6 @@ pub enum ReproduceError {
         /// Its name.
         name: &'static str,
     },
-    /// A scenario that must be built in.
-    #[error("there is no built-in scenario {name}: the program is damaged, install it again")]
-    Scenario {
-        /// Its name.
-        name: &'static str,
-    },
     /// No cylinders to draw.
     #[error("0 cylinders are drawn: at least 1 is needed")]
     NoCylinders,
@@ -219,14 +213,13 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
 /// Records of everything that is embedded and read by [`run`].
 pub fn inputs() -> Vec<Input> {
     let vessels = [VESSEL, "nitrogen-20l-paper", "closed-bottle", "haque-i1"]
-        .map(|name| ("vessel", name, vessel::presets::text(name)));
+        .map(|name| ("vessel", name, vessel::presets::FILES.text(name)));
     let mut names = SCENARIOS.to_vec();
     names.extend(["tunnel-step", "leak-after-tunnel", "bottle-step", "haque-i1"]);
-    let scenarios = names.into_iter().map(|name| ("scenario", name, scenario::presets::text(name)));
-    let presets = vessels
-        .into_iter()
-        .chain(scenarios)
-        .filter_map(|(kind, name, text)| Some(Input::of(format!("preset {kind} {name}"), text?.as_bytes())));
+    let scenarios = names.into_iter().map(|name| ("scenario", name, scenario::presets::FILES.text(name)));
+    let presets = vessels.into_iter().chain(scenarios).filter_map(|(kind, name, text)| {
+        Some(Input::of(format!("preset {kind} {name}"), text.ok()?.as_bytes()))
+    });
     presets.chain(measured::FILES.iter().map(|(name, text)| Input::of(*name, text.as_bytes()))).collect()
 }
 

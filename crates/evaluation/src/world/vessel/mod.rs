@@ -69,7 +69,7 @@ impl VesselKind {
             |text, fill_bar, full_scale_bar, inlet_m| Entry { text, fill_bar, full_scale_bar, inlet_m };
         match self {
             Self::Nitrogen20 => {
-                let text = presets::text("nitrogen-20l").unwrap_or_default();
+                let text = presets::FILES.text("nitrogen-20l").unwrap_or_default();
                 entry(text, (180.0, 200.0), 250.0, 0.006)
             }
             Self::Argon50 => entry(include_str!("argon-50l.toml"), (270.0, 300.0), 400.0, 0.006),
