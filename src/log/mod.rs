@@ -16,7 +16,7 @@
 //! fewer cells than the header are refused with file, line, value and remedy ([`LogError`]).
 mod caution;
 mod cell;
-pub mod columns;
+pub(crate) mod columns;
 mod csv;
 mod date;
 mod error;
@@ -38,7 +38,8 @@ mod zone;
 pub use caution::{Caution, Kind};
 pub use error::LogError;
 pub use mapping::Mapping;
-pub use reader::{LogReader, is_parquet};
+pub use reader::LogReader;
+pub(crate) use reader::is_parquet;
 pub use row::{Row, Truth};
 pub use sampling::Sampling;
 pub use unpack::Packing;

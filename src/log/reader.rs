@@ -367,7 +367,7 @@ impl LogReader {
 }
 
 /// Whether a file's name says that it is Parquet.
-pub fn is_parquet(path: &Path) -> bool {
+pub(crate) fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 

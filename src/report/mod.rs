@@ -17,14 +17,21 @@ mod page;
 pub mod place;
 mod provenance;
 mod readings;
-pub mod simulation;
+pub(crate) mod simulation;
 mod table;
 
 pub use content::{Block, Report};
-pub use page::Page;
-pub use provenance::{Fingerprint, Input, Provenance, digest, quoted};
+pub(crate) use page::Page;
+pub(crate) use provenance::Fingerprint;
+pub(crate) use provenance::digest;
+pub(crate) use provenance::quoted;
+pub use provenance::{Input, Provenance};
 pub use readings::Readings;
-pub use table::{Cell, Column, Digits, Field, RowFormat, Rows, Table, Values, aligned, number, rounded};
+pub(crate) use table::Field;
+pub(crate) use table::RowFormat;
+pub(crate) use table::Rows;
+pub(crate) use table::rounded;
+pub use table::{Cell, Column, Digits, Table, Values, aligned, number};
 
 /// g in a kg.
 pub(crate) const GRAM: f64 = 1e3;

@@ -13,11 +13,11 @@
 //! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
 pub mod baseline;
-pub mod error;
+mod error;
 pub mod fault;
 pub mod judge;
 pub mod matched;
-pub mod noise;
+mod noise;
 pub mod placement;
 mod random;
 pub mod tails;

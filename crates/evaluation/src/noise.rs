@@ -34,7 +34,7 @@ const WIDTH: f64 = 1e-6;
 
 /// A value of a series and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Residual {
+pub(crate) struct Residual {
     /// Time, s.
     pub time_s: f64,
     /// Value in its own unit.

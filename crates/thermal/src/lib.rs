@@ -32,7 +32,7 @@
 //! ```
 #[cfg(feature = "files")]
 pub mod document;
-pub mod error;
+mod error;
 pub mod flow;
 pub mod fluid;
 #[cfg(feature = "simulate")]

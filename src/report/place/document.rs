@@ -83,7 +83,7 @@ impl Placed<'_> {
 
 /// All that layouts at rest are judged by: of the member that gives gas temperature and leak rate, and of that which gives the
 /// mass. Rows of a matrix are arrays. A state in SI is its number in the matrices times its scale.
-pub fn matrices(placement: &Placement, provenance: &Provenance) -> Value {
+pub(crate) fn matrices(placement: &Placement, provenance: &Provenance) -> Value {
     let candidates: Vec<&str> =
         placement.candidates().list.iter().map(|candidate| &*candidate.sensor.name).collect();
     json!({

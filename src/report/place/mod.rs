@@ -20,7 +20,7 @@ mod places;
 mod rankings;
 mod summary;
 
-pub use document::matrices;
+pub(crate) use document::matrices;
 
 use super::number;
 use crate::estimator::log::Quantity;

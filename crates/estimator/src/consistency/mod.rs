@@ -29,9 +29,10 @@ pub use band::{Band, Significance};
 pub use coverage::Coverage;
 pub use nees::{EnsembleNees, NeesAt, NeesJudgement, normalised_error_squared};
 pub use nis::NisAccumulator;
+pub use normality::Lilliefors;
+pub(crate) use normality::Normality;
 #[cfg(test)]
 pub(crate) use normality::lilliefors;
-pub use normality::{Lilliefors, Normality};
 pub use report::{ConsistencyReport, Finding, NisReport, OutputReport};
 pub use run::RunConsistency;
 pub use whiteness::Whiteness;

@@ -59,7 +59,7 @@ pub(super) fn p_value(distance: f64, n: f64) -> f64 {
 
 /// Values of a run to be tested for normality, thinned evenly so that they never take more than a fixed room.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Normality {
+pub(crate) struct Normality {
     pub(super) kept: Vec<f64>,
     capacity: usize,
     /// Every `stride`-th value is kept.

@@ -21,7 +21,7 @@ const EXCLUSION_THRESHOLD: f64 = 30.0;
 const MIN_VARIANCE_RATIO: f64 = 0.25;
 
 /// Mean and variance.
-pub type Moments = (f64, f64);
+pub(crate) type Moments = (f64, f64);
 
 /// Mean and variance of a mixture, weight `w` of the first part.
 pub(crate) fn mixture(w: f64, one: Moments, other: Moments) -> Moments {

@@ -49,5 +49,6 @@ pub use identified::{Caution, Derived, Estimate, Identified, Interval, Pole};
 pub use method::{ErrorModel, InputCourse, Method, Settings, StartMethod};
 pub use model::Model;
 pub use run::identify;
-pub use statistics::{Residuals, Statistics, fit_percent};
+pub(crate) use statistics::fit_percent;
+pub use statistics::{Residuals, Statistics};
 pub use structure::{DeadTime, Gain, InitialState, Parameter, Structure};

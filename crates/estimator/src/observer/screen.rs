@@ -15,7 +15,7 @@ const STUCK_PULL_SD: f64 = 20.0;
 
 /// What is wrong with a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub(super) enum Fault {
     /// Outside what the sensor can read, or at the end of it.
     Implausible,
     /// The same as long before, while the cylinder moved on.

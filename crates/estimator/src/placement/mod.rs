@@ -40,9 +40,7 @@ mod steady;
 pub mod study;
 mod threshold;
 
-pub use candidate::{
-    Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
-};
+pub use candidate::{Candidate, Candidates, Status, candidates_schema, read_candidates};
 pub use constraints::{Constraints, Group};
 pub use criterion::Criterion;
 pub use cylinder::{Conditions, InstrumentedCylinder, Quantity};
@@ -54,6 +52,8 @@ pub use published::{
     Specimens, Spread, published_scores,
 };
 pub use response::{DetectionSettings, Disturbance, Response};
-pub use scenario::{ScenarioAccuracy, ScenarioAnalysis, ScenarioMeasure, ScenarioObjective, Variant};
-pub use steady::{SmallestLeak, SteadyAccuracy, SteadyAnalysis, SteadySettings};
+
+pub use scenario::{ScenarioAccuracy, ScenarioAnalysis, ScenarioMeasure, Variant};
+
+pub use steady::{SteadyAccuracy, SteadyAnalysis, SteadySettings};
 pub use threshold::signature_threshold_sd;

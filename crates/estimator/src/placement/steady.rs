@@ -179,7 +179,7 @@ impl SteadyAnalysis {
 /// The smallest leak as an objective: its square, kg²/s², the variance that stands for it. It has no relaxation, hence no certificate: every
 /// layout has to be looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct SmallestLeak<'a>(pub &'a SteadyAnalysis);
+pub(super) struct SmallestLeak<'a>(pub &'a SteadyAnalysis);
 
 impl Objective for SmallestLeak<'_> {
     fn candidates(&self) -> usize {

@@ -13,7 +13,7 @@ const DUPLICATE_WITHIN_S: f64 = 600.0;
 const REPLAYED_AFTER_S: f64 = 300.0;
 
 /// 1 January 2026 in seconds since 1970: a clock that falls back to 1970 loses this and what has passed since.
-pub const EPOCH_S: f64 = 1_767_225_600.0;
+pub(crate) const EPOCH_S: f64 = 1_767_225_600.0;
 
 impl Fault {
     /// Change how rows arrive.

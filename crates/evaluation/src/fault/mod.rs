@@ -15,7 +15,7 @@ mod table;
 
 use serde::{Deserialize, Serialize};
 
-pub use self::arrival::EPOCH_S;
+pub(crate) use self::arrival::EPOCH_S;
 pub use self::reading::{DeadCode, MixUp};
 pub use self::record::{Arrival, Record, Snapshot, Step};
 pub(crate) use self::table::TABLE_FULL_SCALE_PA;

@@ -13,15 +13,15 @@
 //!
 //! The table depends on the plan and the program alone: not on threads, the order of finishing, or kills.
 pub mod candidate;
-pub mod clock;
-pub mod cost;
-pub mod entry;
+mod clock;
+mod cost;
+mod entry;
 mod error;
-pub mod journal;
+mod journal;
 pub mod measures;
 pub mod plan;
 pub mod run;
-pub mod score;
+mod score;
 pub mod statement;
 pub mod table;
 pub mod watch;

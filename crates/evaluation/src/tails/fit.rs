@@ -33,7 +33,7 @@ const DRAWS: usize = 400;
 ///
 /// # Errors
 /// Too few stretches, or values that do not vary.
-pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError> {
+pub(super) fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError> {
     let mut sorted: Vec<f64> = largest.iter().copied().filter(|value| value.is_finite()).collect();
     let needed = STRETCHES;
     if sorted.len() < needed {
@@ -55,7 +55,7 @@ pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError>
 ///
 /// # Errors
 /// As [`fit_one`].
-pub fn fit(records: &[&Record], stretch: f64) -> Result<Tails, EvaluationError> {
+pub(super) fn fit(records: &[&Record], stretch: f64) -> Result<Tails, EvaluationError> {
     let peaks: Vec<Peaks> = records.iter().map(|record| peaks(record, stretch)).collect();
     fit_peaks(&peaks.iter().collect::<Vec<_>>(), stretch)
 }
@@ -80,7 +80,7 @@ fn fit_peaks(peaks: &[&Peaks], stretch: f64) -> Result<Tails, EvaluationError> {
 ///
 /// # Errors
 /// As [`fit`], or the time is not positive.
-pub fn interval(
+pub(super) fn interval(
     watched: &[Watched],
     stretch: f64,
     mean_time_s: f64,

@@ -23,7 +23,7 @@ pub(super) const FOLDS: usize = 2;
 ///
 /// # Errors
 /// A half has too few stretches or nothing to fit to.
-pub fn found(watched: &[Watched], stretch: f64, mean_time_s: f64) -> Result<Rate, EvaluationError> {
+pub(super) fn found(watched: &[Watched], stretch: f64, mean_time_s: f64) -> Result<Rate, EvaluationError> {
     let over_after_s = MonitorSettings::default().leak_over_after_s;
     let folds = folds(watched);
     let mut counted = Clustered::default();

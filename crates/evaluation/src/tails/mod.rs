@@ -12,7 +12,6 @@ mod watched;
 
 pub use campaign::{Campaign, watch_all};
 pub use commissioned::{Commissioned, CommissionedScale, FitSettings, commission};
-pub use fit::{fit, fit_one, interval};
-pub use found::found;
-pub use record::{Alarms, Record};
+
+pub use record::Record;
 pub use watched::{Watched, watch};

@@ -10,7 +10,7 @@
 //! the checked functions refuse what is outside the domain or two-phase. Near the critical point (within 0.5 %
 //! of the critical temperature below it) phases are not told apart, and states in question are refused.
 mod data;
-pub mod helmholtz;
+mod helmholtz;
 mod ideal_gas;
 mod peng_robinson;
 mod root;
@@ -19,7 +19,7 @@ mod solve;
 mod state;
 #[cfg(test)]
 mod tests;
-pub mod transport;
+mod transport;
 
 pub use saturation::Saturation;
 pub use state::State;

@@ -11,14 +11,14 @@
 //! evaluation, and exactly too for the Jacobian, so that an implicit integrator keeps it to rounding.
 mod faces;
 mod gas;
-pub mod grid;
+mod grid;
 mod initial;
 pub mod inputs;
 mod jacobian;
 pub mod layout;
 mod output;
-pub mod stratified;
-pub mod well_mixed;
+mod stratified;
+mod well_mixed;
 
 use std::cell::RefCell;
 
@@ -39,8 +39,7 @@ use layout::Layout;
 use stratified::{Stratified, WallAction};
 use well_mixed::WellMixed;
 
-pub use jacobian::Assembly;
-pub use output::Output;
+pub(crate) use output::Output;
 
 /// The system of equations of one vessel with one set of flows.
 #[derive(Debug)]

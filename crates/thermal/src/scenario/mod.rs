@@ -6,13 +6,13 @@ mod build;
 mod flows;
 pub mod presets;
 mod read;
-pub mod series;
+pub(crate) mod series;
 mod signal;
 pub mod spec;
 
 pub use read::{read_scenario, schema};
 pub use series::Series;
-pub use spec::ScenarioSpec;
+pub(crate) use spec::ScenarioSpec;
 
 use crate::flow::Flow;
 use crate::sensor::MountedSensor;

@@ -30,7 +30,7 @@ use super::statement::Statement;
 use crate::world::{OperatorData, Snapshot};
 
 pub use monitored::monitor;
-pub use observed::observer;
+pub(crate) use observed::observer;
 
 /// A row as it arrives.
 #[derive(Clone, Copy, Debug)]

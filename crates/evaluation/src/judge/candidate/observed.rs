@@ -13,7 +13,7 @@ use crate::world::OperatorData;
 ///
 /// # Errors
 /// A setting that it does not have.
-pub fn observer(settings: &Value) -> Result<Arc<dyn Candidate>, JudgeError> {
+pub(crate) fn observer(settings: &Value) -> Result<Arc<dyn Candidate>, JudgeError> {
     Ok(Arc::new(Observers { settings: overlaid(&ObserverSettings::default(), settings)? }))
 }
 

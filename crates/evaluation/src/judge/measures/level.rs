@@ -39,7 +39,7 @@ pub struct AlarmLevel {
 ///
 /// # Errors
 /// Times are not positive, or fewer than five runs have a value.
-pub fn alarm_level(
+pub(crate) fn alarm_level(
     largest: &[f64],
     length_s: f64,
     between_alarms_s: f64,

@@ -16,12 +16,18 @@ mod trace;
 
 pub use class::Class;
 pub use delay::Delay;
-pub use detection::{Detection, Horizon, Proportion};
-pub use level::{AlarmLevel, alarm_level};
-pub use run::{Run, by_rate};
+pub(crate) use detection::Detection;
+pub(crate) use detection::Horizon;
+pub(crate) use detection::Proportion;
+pub use level::AlarmLevel;
+pub(crate) use level::alarm_level;
+pub use run::Run;
+pub(crate) use run::by_rate;
 pub use smallest::{Reached, SmallestLeak};
-pub use survival::{Observed, Survival};
-pub use trace::{Highest, Trace};
+pub(crate) use survival::Observed;
+pub(crate) use survival::Survival;
+
+pub use trace::Trace;
 
 /// Confidence of every interval that is not asked for at another one.
 pub const CONFIDENCE: f64 = 0.95;

@@ -16,7 +16,8 @@ use sha2::{Digest, Sha256};
 pub use document::{CandidateDocument, GroupDocument, OverlayDocument, PlanDocument};
 pub use expand::{Task, Unit};
 pub use extent::Extent;
-pub use pattern::{Axis, Pattern};
+pub use pattern::Axis;
+pub(crate) use pattern::Pattern;
 
 use super::JudgeError;
 use super::candidate::{Candidate, Registry};

@@ -12,7 +12,7 @@ use crate::world::World;
 /// Ways to contradict oneself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Rule {
+pub(crate) enum Rule {
     /// The probability is no number between 0 and 1.
     NoProbability,
     /// The verdict is tight, and the probability of a leak is at or above the decision's level.
@@ -109,7 +109,7 @@ impl AddAssign<&Self> for Disagreements {
 
 /// Counts them.
 #[derive(Clone, Debug)]
-pub struct Agreement {
+pub(crate) struct Agreement {
     level: f64,
     /// Announced discharges by the log's clock, s.
     announced: Vec<(f64, f64)>,

@@ -20,7 +20,7 @@ const RECOGNISED_S: f64 = 3.0 * 3600.0;
 
 /// The truth of a leak that was laid over.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeakFacts {
+pub(crate) struct LeakFacts {
     /// Part of the gas per hour.
     pub part_per_h: f64,
     /// The same as loss of the pressure at 15 °C, Pa/s, at the beginning.
@@ -40,7 +40,7 @@ pub struct Detected {
 
 /// A leak while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct Detecting {
+pub(crate) struct Detecting {
     onset_s: f64,
     detected: Detected,
     /// Since when a loss is being said, s.
@@ -120,7 +120,7 @@ pub struct Exchanged {
 
 /// An exchange of gas while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct ExchangeWatch {
+pub(crate) struct ExchangeWatch {
     outcome: Exchanged,
     onset_s: f64,
 }
@@ -151,7 +151,7 @@ impl ExchangeWatch {
 
 /// A fast loss while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct FastLossWatch {
+pub(crate) struct FastLossWatch {
     outcome: FastLoss,
     onset_s: f64,
     /// By then it must be told, s.

@@ -44,7 +44,7 @@ pub struct FaultOutcome {
 
 /// A fault while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct FaultWatch {
+pub(crate) struct FaultWatch {
     row: FaultRow,
     onset_s: f64,
     leak_onset_s: Option<f64>,

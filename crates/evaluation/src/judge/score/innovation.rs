@@ -11,7 +11,7 @@ use crate::judge::statement::Innovation;
 use crate::world::Regime;
 
 /// Lags, s.
-pub const LAGS_S: [f64; 2] = [60.0, 600.0];
+pub(crate) const LAGS_S: [f64; 2] = [60.0, 600.0];
 /// How far two innovations may be from the lag, in parts of it.
 const LAG_TOLERANCE: f64 = 0.25;
 
@@ -40,7 +40,7 @@ pub struct RegimeSums {
 }
 
 /// Sums by regime, in the order of [`Regime::ALL`].
-pub type Innovations = [RegimeSums; 5];
+pub(crate) type Innovations = [RegimeSums; 5];
 
 impl Pairs {
     /// Autocorrelation; `None` without pairs.
@@ -74,7 +74,7 @@ impl RegimeSums {
 
 /// The last innovations: time, s, and `z`.
 #[derive(Clone, Debug, Default)]
-pub struct Whiteness {
+pub(crate) struct Whiteness {
     last: VecDeque<(f64, f64)>,
 }
 

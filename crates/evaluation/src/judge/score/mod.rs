@@ -9,13 +9,13 @@
 //! | [`agreement`] | rows in which the statements contradict each other |
 //! | [`fault`] | a row of the fault table: recognised, or not |
 //! | [`noise`] | what the freest mass does without a leak: behind the shortest possible delay |
-pub mod agreement;
-pub mod coverage;
-pub mod detection;
-pub mod fault;
-pub mod innovation;
-pub mod noise;
-pub mod verdict;
+pub(crate) mod agreement;
+pub(crate) mod coverage;
+pub(crate) mod detection;
+pub(super) mod fault;
+pub(crate) mod innovation;
+pub(crate) mod noise;
+pub(crate) mod verdict;
 
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,7 @@ use crate::noise::Noise;
 use crate::world::{Overlay, World};
 
 /// The first day, in which candidates learn, is reported apart.
-pub const FIRST_DAY_S: f64 = 86_400.0;
+pub(super) const FIRST_DAY_S: f64 = 86_400.0;
 /// Longest time for which a statement counts when no row follows, s.
 const LONGEST_STEP_S: f64 = 3600.0;
 
@@ -67,7 +67,7 @@ pub struct Score {
 
 /// What has happened to the gas at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gas {
+pub(crate) enum Gas {
     /// Nothing yet.
     Tight,
     /// Gas is or was being lost.
@@ -78,7 +78,7 @@ pub enum Gas {
 
 /// A statement, and what is true at its row.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub(crate) struct Moment<'a> {
     /// What is said.
     pub statement: &'a Statement,
     /// True time at which it is said, s.
@@ -94,7 +94,7 @@ pub struct Moment<'a> {
 }
 
 /// Scores the statements of one candidate in one world.
-pub struct Scorer<'a> {
+pub(super) struct Scorer<'a> {
     world: &'a World,
     last_s: Option<f64>,
     score: Score,
@@ -198,7 +198,7 @@ impl<'a> Scorer<'a> {
 }
 
 /// What an overlay has done to the gas at a true time, s.
-pub fn gas_at(overlay: &Overlay, time_s: f64) -> Gas {
+pub(super) fn gas_at(overlay: &Overlay, time_s: f64) -> Gas {
     match *overlay {
         Overlay::Leak { onset_s, .. } | Overlay::FastLoss { onset_s, .. } if time_s >= onset_s => Gas::Lost,
         Overlay::Discharge { onset_s, .. } | Overlay::Refill { onset_s, .. } if time_s >= onset_s => {

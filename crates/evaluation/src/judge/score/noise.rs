@@ -7,11 +7,11 @@ use crate::noise::{Noise, Residual};
 use crate::world::World;
 
 /// Interval of the masses that are kept, s.
-pub const SETTLED_S: f64 = 1200.0;
+pub(crate) const SETTLED_S: f64 = 1200.0;
 
 /// The masses that are kept.
 #[derive(Clone, Debug, Default)]
-pub struct FreeMass {
+pub(crate) struct FreeMass {
     kept: Vec<Residual>,
 }
 

@@ -64,7 +64,7 @@ impl Counting {
 
 /// Verdicts while they are counted.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Verdicts {
+pub(crate) struct Verdicts {
     shares: Shares,
     last: Option<Class>,
     loss: Counting,

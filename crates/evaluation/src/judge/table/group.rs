@@ -9,7 +9,7 @@ use crate::world::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind
 
 /// Worlds of one role, and what they have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Group {
+pub(crate) struct Group {
     /// What their families are for.
     pub role: Role,
     /// What they have in common.
@@ -18,7 +18,7 @@ pub struct Group {
 
 /// What the worlds of a group have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Of {
+pub(crate) enum Of {
     /// Nothing.
     All,
     /// Their vessel.
@@ -41,7 +41,7 @@ pub enum Of {
 
 /// Lengths of logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-pub enum Length {
+pub(crate) enum Length {
     /// Up to 2 d.
     Days,
     /// Up to 30 d.

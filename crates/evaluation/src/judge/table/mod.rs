@@ -15,7 +15,8 @@ use serde::Serialize;
 
 pub(crate) use self::clustered::Clustered;
 pub use self::clustered::{Rate, Share};
-pub use self::group::{Group, Length, Of};
+pub(crate) use self::group::Group;
+
 pub use self::report::{
     CandidateReport, CoverageRow, DisagreementReport, FastRow, FaultRowReport, GroupReport, InnovationRow,
     LeakRow, Leaks, Tight,
