@@ -17,21 +17,16 @@ mod page;
 pub mod place;
 mod provenance;
 mod readings;
-pub(crate) mod simulation;
+pub mod simulation;
 mod table;
 
 pub use content::{Block, Report};
 pub(crate) use page::Page;
-pub(crate) use provenance::Fingerprint;
-pub(crate) use provenance::digest;
-pub(crate) use provenance::quoted;
+pub(crate) use provenance::{Fingerprint, digest, quoted};
 pub use provenance::{Input, Provenance};
 pub use readings::Readings;
-pub(crate) use table::Field;
-pub(crate) use table::RowFormat;
-pub(crate) use table::Rows;
-pub(crate) use table::rounded;
 pub use table::{Cell, Column, Digits, Table, Values, aligned, number};
+pub(crate) use table::{Field, RowFormat, Rows, rounded};
 
 /// g in a kg.
 pub(crate) const GRAM: f64 = 1e3;

@@ -239,7 +239,7 @@ pub(crate) const CAPTION: &str = "Temperatures; how wall, valve and sensors diff
                            the gas mass where it changes. Lines named sensor are readings.";
 
 /// The run in a few lines for people.
-pub(crate) fn summary(run: &Trajectory) -> Report {
+pub fn summary(run: &Trajectory) -> Report {
     let report = Report::new(title(run));
     let (Some(&first), Some(&last)) = (run.pressure_pa.first(), run.pressure_pa.last()) else {
         return report;

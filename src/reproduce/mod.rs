@@ -11,7 +11,7 @@
 //! | [`blowdown`], [`measured`] | the model beside a measured blowdown |
 //! | `checks`, `comparison` | numbers and their references; paper, here, why they differ |
 //!
-//! [`run`] computes, [`Reproduction::report`] is the report, [`Reproduction::files`] gives the files to write.
+//! `run` computes, `Reproduction::report` is the report, `Reproduction::files` gives the files to write.
 pub mod blowdown;
 pub(crate) mod checks;
 mod comparison;
@@ -78,7 +78,7 @@ pub enum ReproduceError {
 
 /// How the paper is rebuilt.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// Of the simulations of built-in scenarios.
     pub simulation: SimulationSettings,
     /// Seed of everything random.
@@ -96,7 +96,7 @@ impl Default for Settings {
 
 /// Everything that was computed.
 #[derive(Clone, Debug)]
-pub struct Reproduction {
+pub(crate) struct Reproduction {
     /// Gas mass and heat capacities.
     pub(crate) section_2: Section2,
     /// Scenarios 1 to 4 of the paper.
@@ -157,7 +157,10 @@ const DRAWN: f64 = 12.0;
 ///
 /// # Errors
 /// A simulation, an identification or a detector fails.
-pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<Reproduction, ReproduceError> {
+pub(crate) fn run(
+    settings: &Settings,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<Reproduction, ReproduceError> {
     let all = 12.0 * QUICK + DRAWN * (Chamber::SCENARIOS.len() + 1 + LEAKS_G_H.len()) as f64;
     let mut work = Work { done: 0.0, all, progress };
     let simulation = &settings.simulation;
@@ -211,7 +214,7 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
 }
 
 /// Records of everything that is embedded and read by [`run`].
-pub fn inputs() -> Vec<Input> {
+pub(crate) fn inputs() -> Vec<Input> {
     let vessels = [VESSEL, "nitrogen-20l-paper", "closed-bottle", "haque-i1"]
         .map(|name| ("vessel", name, vessel::presets::FILES.text(name)));
     let mut names = SCENARIOS.to_vec();

@@ -158,7 +158,7 @@ impl Reproduction {
     }
 
     /// Everything in the order of the paper.
-    pub fn report(&self) -> Report {
+    pub(crate) fn report(&self) -> Report {
         self.report_with(&self.pictures())
     }
 

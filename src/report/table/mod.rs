@@ -18,8 +18,7 @@ mod terminal;
 
 pub(crate) use digits::rounded;
 pub use digits::{Digits, number};
-pub(crate) use rows::RowFormat;
-pub(crate) use rows::Rows;
+pub(crate) use rows::{RowFormat, Rows};
 pub use terminal::aligned;
 pub(super) use terminal::{hanging, wrapped};
 

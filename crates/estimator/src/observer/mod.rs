@@ -64,7 +64,6 @@ pub use observability::{Combination, Observability};
 pub(crate) use roles::middle_slow;
 use roles::{flowing, freest, held, thermometer};
 pub(crate) use scale::Scale;
-
 pub use screen::FaultCount;
 pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSettings, Walk};
 pub use signature::Onset;

@@ -52,8 +52,6 @@ pub use published::{
     Specimens, Spread, published_scores,
 };
 pub use response::{DetectionSettings, Disturbance, Response};
-
 pub use scenario::{ScenarioAccuracy, ScenarioAnalysis, ScenarioMeasure, Variant};
-
 pub use steady::{SteadyAccuracy, SteadyAnalysis, SteadySettings};
 pub use threshold::signature_threshold_sd;

@@ -352,7 +352,7 @@ fn at_rest(trajectory: &Trajectory, specimens: &[Specimen]) -> Vec<f64> {
 
 /// A measure of a scenario as an objective: its square, K². It has no relaxation, hence no certificate.
 #[derive(Clone, Copy, Debug)]
-pub struct ScenarioObjective<'a> {
+pub(crate) struct ScenarioObjective<'a> {
     /// The scenario.
     pub scenario: &'a ScenarioAnalysis,
     /// The measure.

@@ -193,7 +193,7 @@ impl Journal {
 
 /// Results of the worlds that were finished at a time, read one by one.
 #[derive(Debug)]
-pub struct Results {
+pub(crate) struct Results {
     path: PathBuf,
     file: File,
     places: BTreeMap<usize, (u64, usize)>,

@@ -1,8 +1,8 @@
 //! Runs a plan: simulates its worlds on all threads, lets the candidates watch, writes journal and tables.
 //!
-//! Threads claim the simulations of a plan one after the other, in its order. What is finished is in the journal ([`super::journal`]); a run
+//! Threads claim the simulations of a plan one after the other, in its order. What is finished is in the journal; a run
 //! that was killed goes on with what is missing. The table is made from the journal alone, in an order of its own, and now and then while
-//! the run goes on. Times of computing stand in a file of their own ([`super::cost`]), so that the table is reproducible.
+//! the run goes on. Times of computing stand in a file of their own, so that the table is reproducible.
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -5,7 +5,7 @@ use crate::detector::prognosis::Reaction;
 use super::measures::Class;
 
 /// Half width of a 95 % interval in standard deviations.
-pub const BAND_95: f64 = 1.959_963_984_540_054;
+pub(crate) const BAND_95: f64 = 1.959_963_984_540_054;
 
 /// All that a candidate says. What it does not know it leaves out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,7 +92,7 @@ pub struct Innovation {
 }
 
 /// A value with a normal interval.
-pub fn normal(value: f64, sd: f64) -> Estimated {
+pub(crate) fn normal(value: f64, sd: f64) -> Estimated {
     let half = BAND_95 * sd;
     Estimated { value, interval: sd.is_finite().then_some((value - half, value + half)) }
 }

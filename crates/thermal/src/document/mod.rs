@@ -33,7 +33,7 @@ use value::ValueReader;
 
 /// Where a value stands and how it was written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub(crate) struct Place {
     /// Line, from 1.
     pub line: usize,
     /// Key as written.

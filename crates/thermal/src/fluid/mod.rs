@@ -1,7 +1,7 @@
 //! Equations of state and transport properties of gases.
 //!
-//! A [`Fluid`] is a gas with the equation that describes it: the fluid's reference equation ([`helmholtz`]), the
-//! ideal gas, or Peng-Robinson (`peng_robinson`), all behind [`helmholtz::HelmholtzEnergy`] and all with
+//! A [`Fluid`] is a gas with the equation that describes it: the fluid's reference equation (`helmholtz`), the
+//! ideal gas, or Peng-Robinson (`peng_robinson`), all behind `helmholtz::HelmholtzEnergy` and all with
 //! the ideal part (heat capacity) of the reference equation. Every property of a [`State`] follows from one Helmholtz
 //! energy, so no two of them can disagree. Numbers are generic over [`Real`]: with dual numbers every property comes with exact derivatives.
 //!

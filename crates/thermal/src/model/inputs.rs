@@ -99,7 +99,7 @@ impl InputPieces {
 
 /// Times at which an input jumps or bends, or a flow may start or stop, s: increasing, inside `(0, duration)`,
 /// with the duration as the last.
-pub fn edges_s(scenario: &Scenario) -> Vec<f64> {
+pub(crate) fn edges_s(scenario: &Scenario) -> Vec<f64> {
     let surroundings = &scenario.surroundings;
     let mut edges: Vec<f64> =
         surroundings.air_k.edges_s().chain(surroundings.film.signal().edges_s()).collect();

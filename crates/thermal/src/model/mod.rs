@@ -1,9 +1,9 @@
 //! The coupled model: wall cells, valve, gas and ledger as one system of ordinary differential equations.
 //!
-//! * Wall and valve cells: `C dx/dt = sum of heat flows`, conduction by [`crate::wall::conduction`].
+//! * Wall and valve cells: `C dx/dt = sum of heat flows`, conduction by `wall::conduction`.
 //! * Inner faces: film to the gas cells in contact, outer faces: film, radiation and sun, both through half
 //!   a wall cell whose surface temperature is solved ([`crate::transfer`]).
-//! * Gas: [`well_mixed`] (one node) or [`stratified`] (stacked cells).
+//! * Gas: `well_mixed` (one node) or `stratified` (stacked cells).
 //! * Ledger: heat, enthalpy, mass and work that cross the boundary, integrated beside the states.
 //!
 //! Every flow leaves one balance and enters another with the same number, so mass and energy are conserved by

@@ -1,6 +1,6 @@
 //! What happens to a cylinder: fill, surroundings, flows, events, duration.
 //!
-//! [`ScenarioSpec`] is the raw content of a scenario file; [`ScenarioSpec::build`] checks it (and reads the
+//! `ScenarioSpec` is the raw content of a scenario file; `ScenarioSpec::build` checks it (and reads the
 //! CSV files it names) and gives a [`Scenario`].
 mod build;
 mod flows;

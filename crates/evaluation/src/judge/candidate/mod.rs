@@ -96,7 +96,7 @@ pub trait CandidateRun {
 }
 
 /// Makes a candidate from the settings of a plan.
-pub type Kind = fn(&Value) -> Result<Arc<dyn Candidate>, JudgeError>;
+pub(crate) type Kind = fn(&Value) -> Result<Arc<dyn Candidate>, JudgeError>;
 
 /// Kinds of candidates by name.
 #[derive(Clone, Debug)]

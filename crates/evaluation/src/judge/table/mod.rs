@@ -16,7 +16,6 @@ use serde::Serialize;
 pub(crate) use self::clustered::Clustered;
 pub use self::clustered::{Rate, Share};
 pub(crate) use self::group::Group;
-
 pub use self::report::{
     CandidateReport, CoverageRow, DisagreementReport, FastRow, FaultRowReport, GroupReport, InnovationRow,
     LeakRow, Leaks, Tight,
@@ -33,7 +32,7 @@ use crate::noise::Noise;
 use crate::world::{Overlay, Request, SimulationKey};
 
 /// Names of the files of the table.
-pub const TABLE: [&str; 2] = ["table.md", "table.json"];
+pub(crate) const TABLE: [&str; 2] = ["table.md", "table.json"];
 /// Failure of a candidate that is not judged at all.
 const NO_THRESHOLD: &str = "no threshold: it says a number in fewer than five tight worlds that tune; give it more of them, or more time in each";
 /// Failures that are told one by one.
@@ -79,7 +78,7 @@ pub struct Table {
 ///
 /// # Errors
 /// The journal cannot be read, or a file not be written.
-pub fn write(plan: &Plan, results: &mut Results, folder: &Path) -> Result<Table, JudgeError> {
+pub(crate) fn write(plan: &Plan, results: &mut Results, folder: &Path) -> Result<Table, JudgeError> {
     let table = Table::of(plan, results)?;
     let texts = [table.to_markdown(), table.to_json()?];
     for (name, text) in TABLE.into_iter().zip(texts) {

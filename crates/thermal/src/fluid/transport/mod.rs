@@ -20,8 +20,7 @@ mod lemmon_jacobsen;
 mod tests;
 
 pub(crate) use critical::OlchowySengers;
-pub(crate) use lemmon_jacobsen::LemmonJacobsenData;
-pub(crate) use lemmon_jacobsen::Term;
+pub(crate) use lemmon_jacobsen::{LemmonJacobsenData, Term};
 
 use crate::fluid::Real;
 
