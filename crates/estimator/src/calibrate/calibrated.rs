@@ -13,7 +13,6 @@ use super::solution::Solution;
 use super::solve::{SearchStep, search_watched};
 use super::uncertainty::covariance;
 use super::{CalibrateError, ChannelResiduals, Identifiability, ParameterKind, Scope};
-use crate::sensor::Sensor;
 
 /// A parameter as found, in its unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -251,15 +250,6 @@ impl Calibrated {
         let mut setup = self.fit.cases[0].base.clone();
         setup.scenario = scenario.clone();
         Ok(setup.with(&specs, &values, experiment)?.scenario)
-    }
-
-    /// The sensors of an experiment with their numbers as found.
-    ///
-    /// # Errors
-    /// [`CalibrateError::ScopeUnknown`] for an experiment that took no part.
-    pub fn calibrated_sensors(&self, experiment: usize) -> Result<Vec<Sensor>, CalibrateError> {
-        let values = self.fit.values(&self.solution.z);
-        Ok(self.case(experiment)?.base.sensors_with(&self.fit.specs, &values, experiment))
     }
 
     fn case(&self, experiment: usize) -> Result<&super::fit::Case, CalibrateError> {

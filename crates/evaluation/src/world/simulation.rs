@@ -220,11 +220,6 @@ impl Simulated {
         leak.part_per_h * self.samples.mass_kg[0] * (end_s - leak.onset_s).max(0.0) / 3600.0
     }
 
-    /// Times at which the air begins to jump, s from the start of the log.
-    pub fn jumps_s(&self) -> impl Iterator<Item = f64> + '_ {
-        self.jumps_s.iter().map(|t| t - self.drawn.fill.lead_s)
-    }
-
     /// Whether a request fits this simulation.
     pub(super) fn check(&self, request: &Request) -> Result<(), WorldError> {
         let same_overlay = request.overlay.simulated_part(request.length_s) == self.overlay;

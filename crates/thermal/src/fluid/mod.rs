@@ -155,11 +155,6 @@ impl Fluid {
         self.data.reference
     }
 
-    /// Molar mass, kg/mol.
-    pub fn molar_mass_kg_mol(&self) -> f64 {
-        self.data.molar_mass_kg_mol
-    }
-
     /// Specific gas constant of the equation, J/(kg K).
     pub fn specific_gas_constant_j_kg_k(&self) -> f64 {
         self.data.gas_constant_j_mol_k / self.data.molar_mass_kg_mol

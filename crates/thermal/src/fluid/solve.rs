@@ -92,20 +92,6 @@ impl Fluid {
         Err(ThermalError::TooDense { fluid: self.name(), pressure_pa, highest_kg_m3 })
     }
 
-    /// The same with derivatives.
-    ///
-    /// # Errors
-    /// As [`Fluid::density_from_pressure_temperature`].
-    pub fn density_from_pressure_temperature_lifted<D: Real>(
-        &self,
-        pressure_pa: D,
-        temperature_k: D,
-    ) -> Result<D, ThermalError> {
-        let rho = self.density_from_pressure_temperature(pressure_pa.re(), temperature_k.re())?;
-        let fixed = self.state(D::from(rho), temperature_k);
-        Ok(-(fixed.pressure_pa - pressure_pa) / fixed.dp_drho_pa_m3_kg.re() + rho)
-    }
-
     /// Temperature, K, at a density, kg/m³, and internal energy, J/kg; `guess_k` speeds it up and has no other effect.
     /// The phase is not checked.
     ///
