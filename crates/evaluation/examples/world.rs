@@ -81,8 +81,8 @@ fn say(world: &World, took_s: f64) {
         temperature_k - 273.15
     );
     eprintln!("settled at the start: {}", world.operator_data.commissioning.settled);
-    for happening in &world.happenings {
-        eprintln!("{happening:?}");
+    for event in &world.events {
+        eprintln!("{event:?}");
     }
     eprintln!("{:#?}", world.drawn);
 }

@@ -53,7 +53,7 @@ impl Placed<'_> {
         let criterion = self.study.settings.criterion;
         document.insert("provenance".into(), provenance.to_json());
         document.insert("partial".into(), json!(self.is_partial()));
-        let words = json!({ "name": criterion.as_str(), "words": criterion.words(), "unit": Unit::of(criterion).symbol });
+        let words = json!({ "name": criterion.as_str(), "words": criterion.description(), "unit": Unit::of(criterion).symbol });
         document.insert("criterion".into(), words);
         document.insert("best".into(), self.study.numbers.iter().map(|number| self.best(number)).collect());
         if let Ok(Value::Object(mut study)) = serde_json::to_value(self.study) {

@@ -33,7 +33,7 @@ impl Placed<'_> {
             Some(best) => format!(
                 "Best {} sensors by the {}, and one anywhere{partial}",
                 best.sensors.len(),
-                self.study.settings.criterion.words()
+                self.study.settings.criterion.description()
             ),
             None => format!("One sensor anywhere{partial}"),
         };

@@ -79,7 +79,7 @@ impl Placed<'_> {
             };
             lines.push_str(&format!(
                 "  {:16} {mean:+.2} % [{low:+.2}, {high:+.2}], better with {:.0} % of the specimens: {verdict}\n",
-                record.words(),
+                record.description(),
                 100.0 * duel.share
             ));
         }

@@ -52,7 +52,7 @@ impl Placed<'_> {
             ]
         };
         let rows: Vec<Vec<String>> = self.study.numbers.iter().map(row).collect();
-        let title = format!("Best layouts by the {}", criterion.words());
+        let title = format!("Best layouts by the {}", criterion.description());
         let explained = "gap: of the best to what the search or the relaxation proves; relaxed: to the convex relaxation \
                          alone; change: against one sensor less";
         Report::default().explained_rows(title, &header, rows, explained).remark(self.near_best())
@@ -179,7 +179,7 @@ impl Placed<'_> {
                     KELVIN.number(accuracy.gas_sd_k.worst),
                     KELVIN.number(accuracy.gas_schmidt_k.mean),
                     KELVIN.number(accuracy.gas_worst_case_k.worst),
-                    largest.map_or(String::new(), |of| of.variant.words()),
+                    largest.map_or(String::new(), |of| of.variant.description()),
                     largest.map_or(String::new(), |of| KELVIN.number(of.gas_k.worst)),
                 ]);
             }

@@ -74,7 +74,7 @@ impl Placed<'_> {
             study.vessel,
             study.candidates.len(),
             settings.sensors,
-            settings.criterion.words(),
+            settings.criterion.description(),
             degc(conditions.body_k),
             BAR.with_symbol(pressure_pa),
             degc(filled_k),

@@ -268,7 +268,7 @@ impl From<&Estimate> for FittedParameter {
         let part_of = match &estimate.parameter {
             ParameterKind::DischargeCoefficient { .. } => PartOf::Scenario,
             kind if kind.is_of_experiment() => PartOf::Scenario,
-            kind if kind.stage() == Stage::Course => PartOf::Vessel,
+            kind if kind.stage() == Stage::Simulation => PartOf::Vessel,
             _ => PartOf::Sensor,
         };
         Self {

@@ -19,7 +19,7 @@ use super::problem::Problem;
 use super::response::respond;
 use super::schedule::Schedule;
 use super::solve::{Search, Solution, relative};
-use super::{Hold, IdentifyError, InitialState, InputCourse, Parameter};
+use super::{Hold, IdentifyError, InitialState, InputModel, Parameter};
 use crate::EstimatorError;
 use crate::filter::{ExtendedKalman, StateSpace, StepError, UdFactors};
 use crate::least_squares::{invert, solve};
@@ -48,7 +48,7 @@ type Innovations = Vec<(f64, f64)>;
 pub(super) struct Likelihood<'a> {
     pub search: Search<'a>,
     pub variances: Variances,
-    pub course: InputCourse,
+    pub input_model: InputModel,
 }
 
 /// The maximum: parameters with the logarithm of the intensity last, their covariance.
@@ -148,11 +148,11 @@ impl Likelihood<'_> {
         let Problem { input_time: t, u, .. } = self.search.problem;
         let noise = self.variances.input;
         let steps = u.windows(2).zip(t.windows(2)).map(|(u, t)| (u[1] - u[0], t[1] - t[0]));
-        let (sum, noisy, count) = match self.course {
-            InputCourse::RandomWalk => steps.fold((0.0, 0.0, 0.0), |(sum, noisy, count), (du, dt)| {
+        let (sum, noisy, count) = match self.input_model {
+            InputModel::RandomWalk => steps.fold((0.0, 0.0, 0.0), |(sum, noisy, count), (du, dt)| {
                 (sum + du * du / dt, noisy + 2.0 * noise / dt, count + 1.0)
             }),
-            InputCourse::IntegratedRandomWalk => {
+            InputModel::IntegratedRandomWalk => {
                 let slopes: Vec<(f64, f64)> = steps.map(|(du, dt)| (du / dt, dt)).collect();
                 slopes.windows(2).fold((0.0, 0.0, 0.0), |(sum, noisy, count), pair| {
                     let (change, dt) = (pair[1].0 - pair[0].0, 0.5 * (pair[0].1 + pair[1].1));

@@ -46,7 +46,7 @@ pub use comparison::Comparison;
 pub use data::{Data, Hold};
 pub use error::IdentifyError;
 pub use identified::{Caution, Derived, Estimate, Identified, Interval, Pole};
-pub use method::{ErrorModel, InputCourse, Method, Settings, StartMethod};
+pub use method::{ErrorModel, InputModel, Method, Settings, StartMethod};
 pub use model::Model;
 pub use run::identify;
 pub(crate) use statistics::fit_percent;

@@ -55,8 +55,8 @@ impl Criterion {
         }
     }
 
-    /// Words for people.
-    pub fn words(self) -> &'static str {
+    /// Description for reports.
+    pub fn description(self) -> &'static str {
         match self {
             Self::GasTemperature => "sd of the mean gas temperature",
             Self::Mass => "sd of the gas mass",

@@ -71,8 +71,8 @@ impl Variant {
         }
     }
 
-    /// Words for people.
-    pub fn words(&self) -> String {
+    /// Description for reports.
+    pub fn description(&self) -> String {
         match self {
             Self::Nominal => "as stated".into(),
             Self::OutsideFilm(factor) => format!("outside film x {factor}"),

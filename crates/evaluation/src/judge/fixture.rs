@@ -18,8 +18,8 @@ use super::statement::{Decision, Estimated, Estimates, Innovation, Statement, no
 use super::table::{GroupReport, Table};
 use crate::detector::prognosis::Reaction;
 use crate::world::{
-    Family, Happening, HappeningKind, OperatorData, Overlay, Regime, Request, SimulationKey, Truth, World,
-    WorldError, generate,
+    Family, OperatorData, Overlay, Regime, Request, SimulationKey, Truth, World, WorldError, WorldEvent,
+    WorldEventKind, generate,
 };
 
 /// Gas of every toy world, kg.
@@ -83,14 +83,14 @@ pub(super) fn world(request: &Request) -> World {
         Overlay::Discharge { onset_s, within_s, announced: true, .. } => vec![(onset_s, onset_s + within_s)],
         _ => Vec::new(),
     };
-    world.happenings = request.overlay.leak().map(|leak| happening(leak.onset_s)).into_iter().collect();
+    world.events = request.overlay.leak().map(|leak| event(leak.onset_s)).into_iter().collect();
     (world.request, world.simulation) = (*request, SimulationKey::of(request));
     world
 }
 
-fn happening(start_s: f64) -> Happening {
-    let (kind, end_s) = (HappeningKind::Leak, f64::MAX);
-    Happening { kind, start_s, end_s, lost_kg: 0.1, announced: false }
+fn event(start_s: f64) -> WorldEvent {
+    let (kind, end_s) = (WorldEventKind::Leak, f64::MAX);
+    WorldEvent { kind, start_s, end_s, lost_kg: 0.1, announced: false }
 }
 
 /// Part of the gas that is lost at a time.

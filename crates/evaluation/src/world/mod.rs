@@ -50,7 +50,7 @@ pub use overlay::{FaultRow, Leak, Overlay};
 pub use sensors::{SensorDraw, Thermometer, Transmitter};
 pub(crate) use simulation::Run;
 pub use simulation::{CylinderDraw, Simulated, SimulationKey};
-pub use truth::{Happening, HappeningKind, Regime, Truth};
+pub use truth::{Regime, Truth, WorldEvent, WorldEventKind};
 pub use vessel::{NominalVessel, VesselDraw};
 
 /// Everything that decides a world.
@@ -100,7 +100,7 @@ pub struct World {
     /// What really happened at every row of the log.
     pub truth: Truth,
     /// What was done, in the order of its beginning.
-    pub happenings: Vec<Happening>,
+    pub events: Vec<WorldEvent>,
     /// What was drawn.
     pub drawn: Drawn,
 }

@@ -60,7 +60,7 @@ impl Rule {
     ];
 
     /// Words for a table.
-    pub(crate) const fn words(self) -> &'static str {
+    pub(crate) const fn description(self) -> &'static str {
         match self {
             Self::NoProbability => "probability is none",
             Self::TightButProbable => "tight, but a leak is probable",
@@ -92,9 +92,10 @@ pub struct Disagreements {
 
 impl Disagreements {
     /// Which rules are broken, and in how many rows.
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         let broken = Rule::ALL.into_iter().zip(self.by_rule).filter(|(_, count)| *count > 0);
-        let words: Vec<String> = broken.map(|(rule, count)| format!("{} ({count})", rule.words())).collect();
+        let words: Vec<String> =
+            broken.map(|(rule, count)| format!("{} ({count})", rule.description())).collect();
         words.join("; ")
     }
 }

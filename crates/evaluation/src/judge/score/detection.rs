@@ -40,14 +40,14 @@ pub struct Detected {
 
 /// A leak while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Detecting {
+pub(crate) struct LeakWatch {
     onset_s: f64,
     detected: Detected,
     /// Since when a loss is being said, s.
     since_s: Option<f64>,
 }
 
-impl Detecting {
+impl LeakWatch {
     /// The truth of the leak of a world; `None`: it has none.
     pub(crate) fn facts(world: &World) -> Option<LeakFacts> {
         let Overlay::Leak { part_per_h, onset_s } = world.request.overlay else { return None };

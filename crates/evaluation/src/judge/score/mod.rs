@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use self::agreement::{Agreement, Disagreements};
 use self::coverage::Coverage;
-use self::detection::{Detected, Detecting, ExchangeWatch, Exchanged, FastLoss, FastLossWatch};
+use self::detection::{Detected, ExchangeWatch, Exchanged, FastLoss, FastLossWatch, LeakWatch};
 use self::fault::{FaultOutcome, FaultWatch};
 use self::innovation::{Innovations, Whiteness};
 use self::noise::FreeMass;
@@ -99,7 +99,7 @@ pub(super) struct Scorer<'a> {
     last_s: Option<f64>,
     score: Score,
     verdicts: Verdicts,
-    detecting: Option<Detecting>,
+    detecting: Option<LeakWatch>,
     fast_loss: Option<FastLossWatch>,
     exchange: Option<ExchangeWatch>,
     fault: Option<FaultWatch>,
@@ -118,7 +118,7 @@ impl<'a> Scorer<'a> {
             last_s: None,
             score: Score::default(),
             verdicts: Verdicts::default(),
-            detecting: Detecting::of(world),
+            detecting: LeakWatch::of(world),
             fast_loss: FastLossWatch::of(world),
             exchange: ExchangeWatch::of(world),
             fault: FaultWatch::of(world),

@@ -45,12 +45,12 @@ pub struct Episodes {
 
 /// Episodes while they are counted.
 #[derive(Clone, Copy, Debug, Default)]
-struct Counting {
+struct EpisodeCounter {
     episode: Episode,
     said_until_s: Option<f64>,
 }
 
-impl Counting {
+impl EpisodeCounter {
     fn take(&mut self, moment: &Moment<'_>, said: bool) {
         if !said {
             self.episode.at_risk_s[moment.period] += moment.step_s;
@@ -67,10 +67,10 @@ impl Counting {
 pub(crate) struct Verdicts {
     shares: Shares,
     last: Option<Class>,
-    loss: Counting,
-    leak: Counting,
-    exchange: Counting,
-    sensor_fault: Counting,
+    loss: EpisodeCounter,
+    leak: EpisodeCounter,
+    exchange: EpisodeCounter,
+    sensor_fault: EpisodeCounter,
 }
 
 impl Verdicts {

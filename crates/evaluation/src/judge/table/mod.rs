@@ -173,7 +173,7 @@ fn add(
             }
             Ok(mut score) => {
                 if let Some(found) = score.disagreements.filter(|found| found.disagreeing > 0) {
-                    note(&mut reports[candidate].contradictions, plan, index, &found.words());
+                    note(&mut reports[candidate].contradictions, plan, index, &found.description());
                 }
                 if let Some(tuned) = thresholds[candidate] {
                     at_threshold(&mut score, tuned.level.threshold, &facts, &task.request.overlay);

@@ -82,7 +82,7 @@ fn mass_and_energy_are_balanced_in_every_vessel_and_a_tight_one_keeps_its_gas() 
         let world = simulated.world(&request).unwrap();
         let (first, last) = (world.truth.mass_kg[0], world.truth.mass_kg[world.truth.mass_kg.len() - 1]);
         assert!((last / first - 1.0).abs() < 1e-9, "{vessel}: {first} kg, {last} kg");
-        assert!(world.happenings.is_empty());
+        assert!(world.events.is_empty());
     }
 }
 
