@@ -13,8 +13,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use super::monitored::MonitoredCylinder;
 use super::record::Record;
-use super::watched::Watched;
 use crate::EvaluationError;
 use crate::world::SimulationKey;
 
@@ -81,14 +81,14 @@ fn fit_peaks(peaks: &[&Peaks], stretch: f64) -> Result<Tails, EvaluationError> {
 /// # Errors
 /// As [`fit`], or the time is not positive.
 pub(super) fn interval(
-    watched: &[Watched],
+    monitored: &[MonitoredCylinder],
     stretch: f64,
     mean_time_s: f64,
     seed: u64,
 ) -> Result<[(f64, f64); Scale::ALL.len()], EvaluationError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut of_simulations: BTreeMap<SimulationKey, Peaks> = BTreeMap::new();
-    for Watched { request, record } in watched {
+    for MonitoredCylinder { request, record } in monitored {
         let all = of_simulations.entry(SimulationKey::of(request)).or_default();
         all.iter_mut().zip(peaks(record, stretch)).for_each(|(all, of_set)| all.extend(of_set));
     }

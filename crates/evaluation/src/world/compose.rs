@@ -11,7 +11,7 @@ use super::simulation::Simulated;
 use super::truth::Truth;
 use super::{
     Drawn, FaultRow, OperatorData, Overlay, Request, SimulationKey, SteadyLeak, World, WorldError,
-    WorldEvent, WorldEventKind, disturbed, faulty,
+    WorldEvent, WorldEventKind, cylinder_fault, data_fault,
 };
 use crate::random::Purpose;
 
@@ -85,7 +85,7 @@ fn rows(request: &Request, seed: u64) -> Rows {
         return Rows::draw(request.family.rows, request.length_s, seed, false);
     };
     let mut rows = Rows::draw(request.family.rows, request.length_s, seed, true);
-    if let Some(away_s) = disturbed::away_s(row, request.seed) {
+    if let Some(away_s) = cylinder_fault::away_s(row, request.seed) {
         rows.remove((onset_s, onset_s + away_s));
     }
     rows
@@ -100,10 +100,10 @@ fn with_fault(
     (row, onset_s): (FaultRow, f64),
     seed: u64,
 ) -> Result<World, WorldError> {
-    let Some(fault) = faulty::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else {
+    let Some(fault) = data_fault::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else {
         return Ok(world);
     };
-    let faulty = faulty::inject(&fault, &world.log, rows, &world.truth, onset_s, seed)?;
+    let faulty = data_fault::inject(&fault, &world.log, rows, &world.truth, onset_s, seed)?;
     world.truth = truth(simulated, &faulty.time_s, leak)?;
     (world.log, world.historical, world.power_cycles) = (faulty.log, faulty.historical, faulty.power_cycles);
     world.fault = Some(fault);

@@ -8,11 +8,11 @@
 pub mod chamber;
 mod climate;
 mod compose;
+mod cylinder_fault;
+mod data_fault;
 mod disturbance;
-mod disturbed;
 mod error;
 mod family;
-mod faulty;
 mod fill;
 mod flows;
 mod gas;
@@ -25,7 +25,7 @@ mod rows;
 mod samples;
 mod sensors;
 mod simulation;
-mod slow;
+mod slow_leak;
 #[cfg(test)]
 pub(crate) mod statistics;
 mod truth;

@@ -3,7 +3,7 @@ use super::{family, request};
 use crate::fault::Fault;
 use crate::world::{
     Family, FaultRow, Leak, Overlay, Request, Simulated, SteadyLeak, VesselKind, World, WorldEventKind,
-    compose, faulty, generate,
+    compose, data_fault, generate,
 };
 use cylwatch_thermal::units::DAY_S;
 use cylwatch_thermal::units::HOUR_S;
@@ -176,7 +176,7 @@ fn a_fault_of_data_leaves_the_rows_before_its_onset_and_the_cylinder_alone() {
 fn pressures_of_the_fault_table_are_parts_of_the_transmitters_range() {
     for row in FaultRow::ALL.into_iter().filter(|row| row.is_of_data()) {
         for seed in 0..20 {
-            let (table, tank) = (row.draw(seed).unwrap(), faulty::draw(row, 10e5, seed).unwrap());
+            let (table, tank) = (row.draw(seed).unwrap(), data_fault::draw(row, 10e5, seed).unwrap());
             let size = |fault: &Fault| match fault {
                 Fault::Offset { sensor, by } if sensor == "pressure" => Some(*by),
                 Fault::Drift { sensor, per_s } if sensor == "pressure" => Some(*per_s),
