@@ -7,7 +7,7 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify};
-use cylwatch_estimator::placement::search::{Method, Watch, search};
+use cylwatch_estimator::placement::search::{Method, SearchControl, search};
 use cylwatch_estimator::placement::{
     Conditions, Constraints, GroupedProblem, InstrumentedCylinder, Objective, Quantity,
 };
@@ -47,12 +47,12 @@ fn searches(criterion: &mut Criterion) {
     let few = problem(40, 6);
     let three = beside_pressure(&few, 3);
     group.bench_function("3 of 40, exhaustive, 9880 layouts", |bench| {
-        bench.iter(|| search(black_box(&few), &three, Method::Exhaustive, 0.02, &Watch::default()));
+        bench.iter(|| search(black_box(&few), &three, Method::Exhaustive, 0.02, &SearchControl::default()));
     });
     let many = problem(1000, 6);
     let five = beside_pressure(&many, 5);
     group.bench_function("5 of 1000, greedy with swaps", |bench| {
-        bench.iter(|| search(black_box(&many), &five, Method::Greedy, 0.02, &Watch::default()));
+        bench.iter(|| search(black_box(&many), &five, Method::Greedy, 0.02, &SearchControl::default()));
     });
     group.bench_function("5 of 1000, certificate", |bench| {
         bench.iter(|| certify(black_box(&many), &five, &CertificateSettings::default()));

@@ -8,7 +8,7 @@
 //! but it matters little: the middle is the better place standing and lying. `cylwatch place` takes every place.
 #![allow(clippy::print_stdout)]
 
-use cylwatch::estimator::placement::search::Watch;
+use cylwatch::estimator::placement::search::SearchControl;
 use cylwatch::estimator::placement::study::{Placement, Position, Study, StudySettings};
 use cylwatch::estimator::placement::{Candidates, Group};
 use cylwatch::estimator::sensor::Sensor;
@@ -120,7 +120,7 @@ fn study((name, orientation): (&'static str, Orientation)) -> anyhow::Result<Att
     settings.steady.observer.wall_nodes = WALL_NODES;
     settings.steady.observer.longest_step_s = LONGEST_STEP_S;
     let placement = Placement::new(&vessel, &candidates, &[scenario], &settings)?;
-    let study = placement.run(&Watch::default())?;
+    let study = placement.run(&SearchControl::default())?;
     Ok(Attitude { name, vessel, candidates, study })
 }
 

@@ -13,7 +13,7 @@ use super::output::Target;
 use super::progress::Progress;
 use super::result::{Contents, Destination};
 use super::views::Views;
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::study::{Placement, Study, StudySettings};
 use crate::estimator::placement::{Candidates, Status, read_candidates};
 use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings, confirm_study};
@@ -89,13 +89,13 @@ fn study(
     deadline: Option<Instant>,
     progress: (&Progress, Option<f64>),
 ) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
-    let watch = Watch::default();
-    watch.stop.store(stop::is_due(deadline), Ordering::Relaxed);
+    let control = SearchControl::default();
+    control.stop.store(stop::is_due(deadline), Ordering::Relaxed);
     std::thread::scope(|scope| {
         let (done, ended) = channel();
-        let watch = &watch;
-        scope.spawn(move || stop::attend(watch, deadline, progress, &ended));
-        let found = judged(placement, runs, watch);
+        let control = &control;
+        scope.spawn(move || stop::attend(control, deadline, progress, &ended));
+        let found = judged(placement, runs, control);
         drop(done);
         found
     })
@@ -104,10 +104,10 @@ fn study(
 fn judged(
     placement: &Placement,
     runs: &ClosedLoopSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
-    let study = placement.run(watch)?;
-    let closed_loop = confirm_study(placement, &study, runs, watch)?;
+    let study = placement.run(control)?;
+    let closed_loop = confirm_study(placement, &study, runs, control)?;
     Ok((study, closed_loop))
 }
 

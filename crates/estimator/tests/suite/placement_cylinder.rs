@@ -5,7 +5,7 @@ use cylwatch_estimator::filter::{Linearisation, Plant, StateSpace, UdFactors};
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify};
-use cylwatch_estimator::placement::search::{Found, Method, Watch, search};
+use cylwatch_estimator::placement::search::{Method, SearchControl, SearchResult, search};
 use cylwatch_estimator::placement::{
     Conditions, Constraints, GroupedProblem, InstrumentedCylinder, Objective, Quantity,
 };
@@ -173,8 +173,9 @@ fn searches_on_the_cylinder_agree_and_the_bound_holds() {
     let problem = instrumented(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
     for count in 2..=4 {
         let constraints = Constraints { must: vec![pressure], ..Constraints::of(count) };
-        let find =
-            |method| -> Found { search(&problem, &constraints, method, 0.02, &Watch::default()).unwrap() };
+        let find = |method| -> SearchResult {
+            search(&problem, &constraints, method, 0.02, &SearchControl::default()).unwrap()
+        };
         let (all, bounded) = (find(Method::Exhaustive), find(Method::BranchAndBound));
         assert_eq!(all.layouts, bounded.layouts);
         let best = all.best().unwrap();

@@ -1,7 +1,7 @@
 //! Candidates, scenarios and the study on the 20 L cylinder.
 use approx::assert_relative_eq;
 use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::placement::search::{Method, Watch};
+use cylwatch_estimator::placement::search::{Method, SearchControl};
 use cylwatch_estimator::placement::study::{BiasSource, Placement, Proof, Study, StudySettings};
 use cylwatch_estimator::placement::{
     Candidates, Criterion, Objective, PublishedRecord, Quantity, ScenarioAnalysis, ScenarioMeasure, Status,
@@ -156,7 +156,7 @@ fn study(
     scenarios: &[&str],
 ) -> Result<Study, EstimatorError> {
     let scenarios: Vec<_> = scenarios.iter().map(|name| scenario::presets::load(name).unwrap()).collect();
-    Placement::new(&vessel(), candidates, &scenarios, &settings)?.run(&Watch::default())
+    Placement::new(&vessel(), candidates, &scenarios, &settings)?.run(&SearchControl::default())
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn the_bound_is_near_the_best_layout_of_the_cylinder() {
         let settings = StudySettings { sensors, criterion, ..StudySettings::default() };
         let candidates = all();
         let placement = Placement::new(&vessel(), &candidates, &[], &settings).unwrap();
-        let numbers = placement.numbers(&Watch::default()).unwrap();
+        let numbers = placement.numbers(&SearchControl::default()).unwrap();
         assert_eq!(numbers.len(), sensors - 1);
         for (number, most) in numbers.iter().zip([0.25, 0.25, 0.25, 0.10]) {
             let gap = number.relaxation_gap().unwrap();
@@ -306,8 +306,8 @@ fn what_cannot_be_is_refused_with_its_reason() {
 fn a_study_that_is_stopped_says_so() {
     let candidates = few();
     let placement = Placement::new(&vessel(), &candidates, &[], &StudySettings::default()).unwrap();
-    let watch = Watch::default();
-    watch.stop.store(true, std::sync::atomic::Ordering::Relaxed);
-    let study = placement.run(&watch).unwrap();
+    let control = SearchControl::default();
+    control.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    let study = placement.run(&control).unwrap();
     assert!(study.partial && study.numbers.is_empty() && study.failures.is_empty());
 }

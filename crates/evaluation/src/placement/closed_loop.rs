@@ -9,7 +9,7 @@ use super::{
     mismatched,
 };
 use crate::EvaluationError;
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::study::{JUDGED, Placement, Study};
 
 /// Length of a mismatched run, and what of it the observer learns in, s.
@@ -57,12 +57,12 @@ pub fn confirm_study(
     placement: &Placement,
     study: &Study,
     settings: &ClosedLoopSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<Option<ClosedLoop>, EvaluationError> {
     match study.numbers.last() {
         Some(most) if !study.partial && settings.matched + settings.mismatched > 0 => {
             let best = most.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone());
-            confirm(placement, &best.collect::<Vec<_>>(), settings, watch).map(Some)
+            confirm(placement, &best.collect::<Vec<_>>(), settings, control).map(Some)
         }
         _ => Ok(None),
     }
@@ -77,7 +77,7 @@ pub fn confirm(
     placement: &Placement,
     layouts: &[Vec<usize>],
     settings: &ClosedLoopSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<ClosedLoop, EvaluationError> {
     let ClosedLoopSettings { matched: own, mismatched: drawn, first_seed } = *settings;
     let (candidates, steady) = (placement.candidates().sensors(), placement.steady().settings());
@@ -101,17 +101,17 @@ pub fn confirm(
         partial: false,
     };
     if own > 0 {
-        found.matched = matched(&claim(true, first), &of_seeds(own), watch, &|_| ())?.layouts;
+        found.matched = matched(&claim(true, first), &of_seeds(own), control, &|_| ())?.layouts;
         let detection = &steady.detection;
-        found.matched_leaks = detected_matched(&claim(true, slow), &of_seeds(own), detection, watch)?;
+        found.matched_leaks = detected_matched(&claim(true, slow), &of_seeds(own), detection, control)?;
     }
     if drawn > 0 {
         let settings = ConfirmSettings { duration_s: MISMATCHED_S, ..of_seeds(drawn) };
-        found.mismatched = mismatched(&claim(false, first), &settings, watch, &|_| ())?.layouts;
+        found.mismatched = mismatched(&claim(false, first), &settings, control, &|_| ())?.layouts;
         let settings = ConfirmSettings { burn_in_s: LEARNING_S, ..settings };
         found.mismatched_leaks =
-            detected_mismatched(&claim(false, slow), &settings, &steady.detection, watch)?;
+            detected_mismatched(&claim(false, slow), &settings, &steady.detection, control)?;
     }
-    found.partial = watch.stop.load(Ordering::Relaxed);
+    found.partial = control.stop.load(Ordering::Relaxed);
     Ok(found)
 }

@@ -14,7 +14,7 @@ use super::{Claim, ConfirmSettings, Confirmation, InnovationSink, matched, misma
 use crate::EvaluationError;
 use crate::estimator::observer::{Innovation, ObserverSettings};
 use crate::estimator::placement::cylinder::{InstrumentedCylinder, Quantity};
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::{DetectionSettings, Disturbance};
 use crate::world::SteadyLeak;
 
@@ -80,13 +80,13 @@ pub fn detected_matched(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
     detection: &DetectionSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<Vec<Detected>, EvaluationError> {
     let (candidates, known) = constants_known(claim.candidates, claim.settings);
     let cylinder =
         InstrumentedCylinder::new(claim.vessel, &candidates, &known, claim.member, claim.conditions)?;
     detected(claim, settings, detection, &cylinder, &|claim, settings, predictions| {
-        matched(claim, settings, watch, &|id| statistic(claim, settings, &predictions[id.layout])).map(sums)
+        matched(claim, settings, control, &|id| statistic(claim, settings, &predictions[id.layout])).map(sums)
     })
 }
 
@@ -98,7 +98,7 @@ pub fn detected_mismatched(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
     detection: &DetectionSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<Vec<Detected>, EvaluationError> {
     let alone = ObserverSettings { bank: vec![*claim.member], ..claim.settings.clone() };
     let claim = Claim { settings: &alone, ..*claim };
@@ -110,7 +110,7 @@ pub fn detected_mismatched(
         claim.conditions,
     )?;
     detected(&claim, settings, detection, &cylinder, &|claim, settings, predictions| {
-        mismatched(claim, settings, watch, &|id| statistic(claim, settings, &predictions[id.layout]))
+        mismatched(claim, settings, control, &|id| statistic(claim, settings, &predictions[id.layout]))
             .map(sums)
     })
 }

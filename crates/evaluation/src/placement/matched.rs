@@ -26,7 +26,7 @@ use crate::estimator::filter::{Linearisation, Plant, StateSpace};
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::{BandSettings, Commissioning, ObserverSettings, Walk};
 use crate::estimator::placement::cylinder::{Conditions, InstrumentedCylinder, state_at};
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::sensor::Sensor;
 
 /// Stream of the constants, which are drawn for all seeds together.
@@ -154,14 +154,14 @@ fn cylinder_of(
     Ok(cylinder)
 }
 
-/// Errors in worlds that are the observer's own model. Set `stop` of the watch to end with the seeds that are done.
+/// Errors in worlds that are the observer's own model. Set `stop` of the control to end with the seeds that are done.
 ///
 /// # Errors
 /// A setting is out of its bounds, a layout names no candidate, or the truth leaves what the gas's equation knows.
 pub fn matched<L: InnovationSink>(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
-    watch: &Watch,
+    control: &SearchControl,
     sink: &(impl Fn(RunId) -> L + Sync),
 ) -> Result<Confirmation<L>, EvaluationError> {
     let rows = Rows::new(claim, settings)?;
@@ -175,7 +175,7 @@ pub fn matched<L: InnovationSink>(
     rng.set_stream(CONSTANTS);
     let draws = matched_draws(seeds, motion.drawn.len(), &mut rng);
     let of_seed = |index: usize| -> Result<Option<TrialResult<L>>, EvaluationError> {
-        if watch.stop.load(Ordering::Relaxed) {
+        if control.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let seed = settings.first_seed + index as u64;

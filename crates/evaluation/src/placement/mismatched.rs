@@ -10,7 +10,7 @@ use crate::EvaluationError;
 use crate::estimator::observer::Commissioning;
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::placement::cylinder::InstrumentedCylinder;
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::sensor::{SensorSuite, sample_at};
 use crate::world::{Family, NominalVessel, Overlay, Request, RowPattern, Run};
 
@@ -23,7 +23,7 @@ use crate::world::{Family, NominalVessel, Overlay, Request, RowPattern, Run};
 pub fn mismatched<L: InnovationSink>(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
-    watch: &Watch,
+    control: &SearchControl,
     sink: &(impl Fn(RunId) -> L + Sync),
 ) -> Result<Confirmation<L>, EvaluationError> {
     let rows = Rows::new(claim, settings)?;
@@ -43,7 +43,7 @@ pub fn mismatched<L: InnovationSink>(
     let pattern = if rows.interval_s < 60.0 { RowPattern::TenSeconds } else { RowPattern::Minute };
     let family = Family { rows: pattern, ..Family::usual() };
     let of_seed = |seed: u64| -> Result<Option<TrialResult<L>>, EvaluationError> {
-        if watch.stop.load(Ordering::Relaxed) {
+        if control.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let request = Request::tight(family, seed, settings.duration_s).with(overlay);

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::observer::{Innovation, LeakHypothesis, ObserverSettings};
-use cylwatch_estimator::placement::search::Watch;
+use cylwatch_estimator::placement::search::SearchControl;
 use cylwatch_estimator::placement::{Conditions, DetectionSettings};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
@@ -49,7 +49,7 @@ impl Case {
     }
 
     fn matched(&self, settings: &ConfirmSettings) -> Confirmation<()> {
-        matched(&self.claim(), settings, &Watch::default(), &|_| ()).unwrap()
+        matched(&self.claim(), settings, &SearchControl::default(), &|_| ()).unwrap()
     }
 }
 
@@ -116,12 +116,12 @@ fn innovations_show_a_leak_in_both_worlds() {
     let case = Case::quiet(&[&[1, 3]]);
     let leak = Some(SteadyLeak { rate_kg_s: 20e-3 / HOUR_S, onset_s: 0.5 * DAY_S });
     let sink = |_| Pressure::default();
-    let watch = Watch::default();
+    let control = SearchControl::default();
     let pressure_sum = |settings: &ConfirmSettings, is_matched: bool| {
         let found = if is_matched {
-            matched(&case.claim(), settings, &watch, &sink).unwrap()
+            matched(&case.claim(), settings, &control, &sink).unwrap()
         } else {
-            mismatched(&case.claim(), settings, &watch, &sink).unwrap()
+            mismatched(&case.claim(), settings, &control, &sink).unwrap()
         };
         assert_eq!(found.runs.len(), 2);
         assert!(found.runs.iter().all(|run| run.sink.0.len() == 73));
@@ -142,7 +142,7 @@ fn drawn_cylinders_in_weather_are_judged_too() {
     let case = Case::quiet(&[&[0, 1, 3]]);
     let usual = ObserverSettings::default();
     let claim = Claim { settings: &usual, ..case.claim() };
-    let found = mismatched(&claim, &days(1.0), &Watch::default(), &|_| ()).unwrap();
+    let found = mismatched(&claim, &days(1.0), &SearchControl::default(), &|_| ()).unwrap();
     let of = &found.layouts[0];
     assert!(of.gas_k.rms < 2.0 && of.mass_kg.rms < 0.05 && of.leak_kg_s.is_some(), "{of:?}");
     assert!(of.gas_k.coverage > 0.5 && !found.partial);
@@ -151,12 +151,12 @@ fn drawn_cylinders_in_weather_are_judged_too() {
 #[test]
 fn what_is_stopped_says_so_and_what_cannot_be_is_refused() {
     let case = Case::quiet(&[&[1, 3]]);
-    let watch = Watch::default();
-    watch.stop.store(true, Ordering::Relaxed);
-    let found = matched(&case.claim(), &days(1.0), &watch, &|_| ()).unwrap();
+    let control = SearchControl::default();
+    control.stop.store(true, Ordering::Relaxed);
+    let found = matched(&case.claim(), &days(1.0), &control, &|_| ()).unwrap();
     assert!(found.partial && found.layouts.is_empty() && found.runs.is_empty());
     let refused = |settings: ConfirmSettings, case: &Case| {
-        matched(&case.claim(), &settings, &Watch::default(), &|_| ()).unwrap_err().to_string()
+        matched(&case.claim(), &settings, &SearchControl::default(), &|_| ()).unwrap_err().to_string()
     };
     for (settings, part) in [
         (seeds(0), "seeds = 0"),
@@ -169,7 +169,7 @@ fn what_is_stopped_says_so_and_what_cannot_be_is_refused() {
     }
     assert!(refused(seeds(1), &Case::quiet(&[&[9]])).contains("candidate 9"));
     let empty = Case::quiet(&[&[]]);
-    let error = matched(&empty.claim(), &seeds(1), &Watch::default(), &|_| ()).unwrap_err();
+    let error = matched(&empty.claim(), &seeds(1), &SearchControl::default(), &|_| ()).unwrap_err();
     assert!(matches!(error, EvaluationError::Estimator(EstimatorError::NoSensors)), "{error}");
 }
 
@@ -181,7 +181,7 @@ fn the_smallest_leak_is_near_the_predicted_one() {
     case.member = case.settings.bank[2];
     let run = |case: &Case, settings: ConfirmSettings| {
         let detection = DetectionSettings::default();
-        detected_matched(&case.claim(), &settings, &detection, &Watch::default()).unwrap()
+        detected_matched(&case.claim(), &settings, &detection, &SearchControl::default()).unwrap()
     };
     let found = run(&case, seeds(40));
     for of in &found {

@@ -4,13 +4,13 @@
 //! converged, and linear constraints hold after every full step.
 use nalgebra::DMatrix;
 
-use super::constraint::{Constraint, Spot};
+use super::constraint::{Constraint, StageRow};
 use super::merit::{Merit, linear_cost};
 use super::outcome::{HorizonError, HorizonStatus};
 use super::problem::{Resolution, WindowProblem};
 use super::settings::{HorizonSettings, Loss};
 use super::sweep::Sweep;
-use super::window::{Path, Window};
+use super::window::{Window, WindowTrajectory};
 use crate::filter::StateSpace;
 
 /// Least share of a full step that is tried.
@@ -53,7 +53,7 @@ struct Proposed {
 
 /// Where a line search ends.
 struct Searched {
-    path: Path,
+    path: WindowTrajectory,
     full: bool,
     /// Merit there, if it is sufficiently lower.
     merit: Option<f64>,
@@ -66,7 +66,7 @@ impl GaussNewton<'_> {
         model: &mut M,
         window: &mut Window,
         sweep: &mut Sweep,
-        likely: &[Spot],
+        likely: &[StageRow],
     ) -> Result<Iterated, HorizonError<M::Error>> {
         let mut likely = likely.to_vec();
         let (mut qp_solves, mut qp_iterations) = (0, 0);
@@ -88,7 +88,7 @@ impl GaussNewton<'_> {
         unreachable!("the loop ends at the last iteration")
     }
 
-    fn propose(&self, window: &Window, sweep: &mut Sweep, likely: &[Spot]) -> Proposed {
+    fn propose(&self, window: &Window, sweep: &mut Sweep, likely: &[StageRow]) -> Proposed {
         let Window { arrival, intervals, path } = window;
         sweep.factorise(intervals, path, &arrival.mean, &arrival.root);
         let spread = spread(&sweep.newest_covariance());
@@ -127,7 +127,7 @@ impl GaussNewton<'_> {
         &self,
         window: &Window,
         proposed: &Proposed,
-        path: Path,
+        path: WindowTrajectory,
         alpha: f64,
         merit: f64,
     ) -> Searched {

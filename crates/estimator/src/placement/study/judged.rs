@@ -8,7 +8,7 @@ use super::{ALL_LAYOUTS, BestLayouts, JUDGED, Placement, Proof};
 use crate::EstimatorError;
 use crate::placement::criterion::Criterion;
 use crate::placement::scenario::ScenarioAccuracy;
-use crate::placement::search::{Method, Watch, search};
+use crate::placement::search::{Method, SearchControl, search};
 use crate::placement::steady::SteadyAccuracy;
 
 /// A layout by every number.
@@ -64,7 +64,7 @@ impl Placement {
     pub(super) fn judge_all(
         &self,
         numbers: &[BestLayouts],
-        watch: &Watch,
+        control: &SearchControl,
     ) -> Result<Vec<Judged>, EstimatorError> {
         let mut judged = Vec::new();
         for number in numbers {
@@ -73,10 +73,10 @@ impl Placement {
             // What the search has proven needs no second one.
             let is_known = |of: &Criterion| *of == self.settings.criterion && number.proof == Proof::Search;
             for criterion in Criterion::AT_REST.into_iter().filter(|of| !is_known(of)) {
-                if watch.stop.load(Ordering::Relaxed) {
+                if control.stop.load(Ordering::Relaxed) {
                     break;
                 }
-                let best = self.best_by(criterion, number.sensors, watch)?;
+                let best = self.best_by(criterion, number.sensors, control)?;
                 layouts.extend(best.filter(|best| !layouts.contains(best)));
             }
             let of_number: Vec<Judged> =
@@ -90,11 +90,11 @@ impl Placement {
         &self,
         criterion: Criterion,
         sensors: usize,
-        watch: &Watch,
+        control: &SearchControl,
     ) -> Result<Option<Vec<usize>>, EstimatorError> {
         let objective = criterion.objective(&self.steady, &self.scenarios)?;
         let method = if self.layouts(sensors) <= ALL_LAYOUTS { Method::Exhaustive } else { Method::Greedy };
-        let found = search(&objective, &self.constraints(sensors), method, 0.0, watch)?;
+        let found = search(&objective, &self.constraints(sensors), method, 0.0, control)?;
         Ok(found.best().map(|best| best.sensors.clone()))
     }
 }

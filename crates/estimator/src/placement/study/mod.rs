@@ -31,7 +31,7 @@ use super::certificate::{CertificateSettings, certify};
 use super::constraints::Constraints;
 use super::criterion::Criterion;
 use super::scenario::ScenarioAnalysis;
-use super::search::{Layout, Method, Watch, search};
+use super::search::{Layout, Method, SearchControl, search};
 use super::steady::{SteadyAnalysis, SteadySettings};
 use crate::EstimatorError;
 use crate::thermal::scenario::Scenario;
@@ -284,15 +284,15 @@ impl Placement {
         self.settings.method.unwrap_or(usual)
     }
 
-    /// Run the study. What is stopped by the watch is left out and said to be partial.
+    /// Run the study. What is stopped by the control is left out and said to be partial.
     ///
     /// # Errors
     /// The constraints contradict each other, or no layout sees what it should: the state is named.
-    pub fn run(&self, watch: &Watch) -> Result<Study, EstimatorError> {
-        let (numbers, refused) = self.numbers_and_infeasible(watch)?;
-        let judged = self.judge_all(&numbers, watch)?;
-        let (accuracy_front, delay_front) = self.fronts(&judged, watch)?;
-        let going = || !watch.stop.load(Ordering::Relaxed);
+    pub fn run(&self, control: &SearchControl) -> Result<Study, EstimatorError> {
+        let (numbers, refused) = self.numbers_and_infeasible(control)?;
+        let judged = self.judge_all(&numbers, control)?;
+        let (accuracy_front, delay_front) = self.fronts(&judged, control)?;
+        let going = || !control.stop.load(Ordering::Relaxed);
         let (failures, biases) = match numbers.last() {
             Some(most) if going() => {
                 let best = &most.layouts[0].sensors;
@@ -326,13 +326,13 @@ impl Placement {
     ///
     /// # Errors
     /// As [`Placement::run`].
-    pub fn numbers(&self, watch: &Watch) -> Result<Vec<BestLayouts>, EstimatorError> {
-        Ok(self.numbers_and_infeasible(watch)?.0)
+    pub fn numbers(&self, control: &SearchControl) -> Result<Vec<BestLayouts>, EstimatorError> {
+        Ok(self.numbers_and_infeasible(control)?.0)
     }
 
     fn numbers_and_infeasible(
         &self,
-        watch: &Watch,
+        control: &SearchControl,
     ) -> Result<(Vec<BestLayouts>, Vec<Infeasible>), EstimatorError> {
         let most = self.settings.sensors;
         let at_any_cost = self.candidates.constraints(most, f64::INFINITY);
@@ -340,7 +340,7 @@ impl Placement {
         let mut numbers: Vec<BestLayouts> = Vec::new();
         let mut errors = Vec::new();
         for sensors in self.sensors() {
-            match self.best_layouts(sensors, watch) {
+            match self.best_layouts(sensors, control) {
                 Ok(Some(mut number)) => {
                     let before = numbers.last().map(|before| before.layouts[0].value);
                     number.marginal = before.map(|before| number.layouts[0].value / before - 1.0);
@@ -350,7 +350,7 @@ impl Placement {
                 // Fewer or more may do: what is dear may not be, what is few may not see.
                 Err(error) => errors.push((sensors, error)),
             }
-            if watch.stop.load(Ordering::Relaxed) {
+            if control.stop.load(Ordering::Relaxed) {
                 return Ok((numbers, Vec::new()));
             }
         }
@@ -363,15 +363,19 @@ impl Placement {
     }
 
     /// `None`: it was stopped before any layout was looked at.
-    fn best_layouts(&self, sensors: usize, watch: &Watch) -> Result<Option<BestLayouts>, EstimatorError> {
+    fn best_layouts(
+        &self,
+        sensors: usize,
+        control: &SearchControl,
+    ) -> Result<Option<BestLayouts>, EstimatorError> {
         let constraints = self.constraints(sensors);
         let criterion = self.settings.criterion;
         let objective = criterion.objective(&self.steady, &self.scenarios)?;
         let method = self.method(sensors);
         // The objective is the square of the number that people read.
         let within = (1.0 + self.settings.within).powi(2) - 1.0;
-        let found = search(&objective, &constraints, method, within, watch)?;
-        let is_stopped = watch.stop.load(Ordering::Relaxed);
+        let found = search(&objective, &constraints, method, within, control)?;
+        let is_stopped = control.stop.load(Ordering::Relaxed);
         if found.layouts.is_empty() {
             return if is_stopped { Ok(None) } else { Err(self.nothing_found(&constraints)) };
         }
@@ -423,7 +427,7 @@ impl Placement {
     /// A layout that is allowed, whatever it is worth.
     fn cheapest_allowed(&self, constraints: &Constraints) -> Option<Vec<usize>> {
         let costs = super::search::Costs(&constraints.costs);
-        let found = search(&costs, constraints, Method::Greedy, 0.0, &Watch::default()).ok()?;
+        let found = search(&costs, constraints, Method::Greedy, 0.0, &SearchControl::default()).ok()?;
         found.best().map(|best| best.sensors.clone())
     }
 }
