@@ -15,13 +15,13 @@ pub struct Measured {
     /// Pressure, bar.
     pub pressure_bar: Curve,
     /// Warmest gas thermocouple, K.
-    pub gas_high_k: Curve,
+    pub(crate) gas_high_k: Curve,
     /// Coldest gas thermocouple, K.
-    pub gas_low_k: Curve,
+    pub(crate) gas_low_k: Curve,
     /// Upper edge of the inner-wall temperatures, K.
     pub wall_high_k: Curve,
     /// Lower edge of the inner-wall temperatures, K.
-    pub wall_low_k: Curve,
+    pub(crate) wall_low_k: Curve,
 }
 
 /// The embedded files with their names, for the record of what was read.

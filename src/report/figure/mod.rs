@@ -135,7 +135,7 @@ pub struct Stretch {
     /// What it is, for the legend.
     pub name: String,
     /// Colour.
-    pub color: style::Rgb,
+    pub(crate) color: style::Rgb,
 }
 
 /// A marked instant.

@@ -36,7 +36,7 @@ impl Rgb {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Colour.
-    pub color: Rgb,
+    pub(crate) color: Rgb,
     /// Width.
     pub width: f64,
     /// Lengths drawn and left out in turn; empty: a full line.

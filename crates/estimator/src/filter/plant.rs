@@ -42,7 +42,7 @@ pub struct StepTransition {
     /// Noise covariance that all members share: (leading, leading), upper triangle.
     pub noise: DMatrix<f64>,
     /// Noise covariance by each source of [`Plant::intensities`], per unit of its intensity.
-    pub by_source: Vec<DMatrix<f64>>,
+    pub(crate) by_source: Vec<DMatrix<f64>>,
     linear: Linearisation,
 }
 

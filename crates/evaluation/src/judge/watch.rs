@@ -22,9 +22,9 @@ pub struct Watched {
     /// The score, or why there is none.
     pub score: Result<Score, String>,
     /// Time that the candidate took, s.
-    pub candidate_s: f64,
+    pub(crate) candidate_s: f64,
     /// Time that scoring took, s.
-    pub scoring_s: f64,
+    pub(crate) scoring_s: f64,
 }
 
 /// Let a candidate watch a world. A candidate that fails or panics has no score; the others go on.

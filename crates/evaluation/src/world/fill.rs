@@ -24,11 +24,11 @@ pub struct FillDraw {
     /// Real pressure at 15 °C, Pa.
     pub pressure_pa: f64,
     /// Stated pressure at 15 °C, Pa.
-    pub stated_pa: f64,
+    pub(crate) stated_pa: f64,
     /// Whether it is stated wrong on top of its usual error.
     pub is_wrong: bool,
     /// Operation before the log begins, s; 0: the cylinder begins settled.
-    pub lead_s: f64,
+    pub(crate) lead_s: f64,
 }
 
 impl FillDraw {

@@ -27,7 +27,7 @@ pub struct GasDraw {
     /// Mixing of the core.
     pub core_mixing: f64,
     /// Factor on both where the exchange along the axis is off.
-    pub off_by: f64,
+    pub(crate) off_by: f64,
 }
 
 impl GasDraw {

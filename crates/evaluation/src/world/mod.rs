@@ -94,7 +94,7 @@ pub struct World {
     /// Rows that say that they are replayed from a store, by index; empty unless a fault replays.
     pub historical: Vec<usize>,
     /// Power cycles, each after a row of this index, and the snapshot that the monitor finds.
-    pub power_cycles: Vec<(usize, Snapshot)>,
+    pub(crate) power_cycles: Vec<(usize, Snapshot)>,
     /// The fault of data that is in the rows.
     pub fault: Option<Fault>,
     /// What really happened at every row of the log.

@@ -50,7 +50,7 @@ pub struct Thermometer {
     /// Time constant, s; 0: none.
     pub lag_s: f64,
     /// Time constant as stated, s.
-    pub stated_lag_s: f64,
+    pub(crate) stated_lag_s: f64,
     /// Standard deviation of the noise, K.
     pub noise_k: f64,
     /// Step of a reading, K.

@@ -16,7 +16,7 @@ pub struct Truth {
     /// Mass of the gas in the stated volume, kg.
     pub mass_kg: Vec<f64>,
     /// Mass of the gas itself, kg.
-    pub mass_absolute_kg: Vec<f64>,
+    pub(crate) mass_absolute_kg: Vec<f64>,
     /// Pressure of the gas, Pa.
     pub pressure_pa: Vec<f64>,
     /// Pressure that this mass has at 15 °C in the true vessel, Pa.
