@@ -13,7 +13,7 @@ use cylwatch::estimator::placement::study::{Placement, Position, Study, StudySet
 use cylwatch::estimator::placement::{Candidates, Group};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::evaluation::placement::ClosedLoopSettings;
-use cylwatch::report::place::Placed;
+use cylwatch::report::place::PlacementReport;
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::scenario;
 use cylwatch::thermal::vessel::{GasResolution, Stratification, Vessel, presets};
@@ -67,8 +67,8 @@ pub(crate) struct Attitude {
 
 impl Attitude {
     /// The study as it is shown.
-    pub(crate) fn placed(&self) -> Placed<'_> {
-        Placed {
+    pub(crate) fn report(&self) -> PlacementReport<'_> {
+        PlacementReport {
             study: &self.study,
             candidates: &self.candidates,
             vessel: &self.vessel,
@@ -132,7 +132,7 @@ fn main() -> anyhow::Result<()> {
     let provenance = Provenance { command, inputs: Vec::new(), seed: None };
     let mut rows = Vec::new();
     for attitude in &attitudes {
-        let picture = attitude.placed().figure();
+        let picture = attitude.report().figure();
         let file = format!("sensor-placement-{}", attitude.name);
         std::fs::write(folder.join(format!("{file}.svg")), picture.to_svg(&provenance)?)?;
         std::fs::write(folder.join(format!("{file}.png")), picture.to_png(&provenance)?)?;

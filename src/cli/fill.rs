@@ -1,7 +1,7 @@
 //! Options that say what is known of the cylinder at the first row of a log.
 use super::number::above;
 use super::options::EXPERT;
-use super::unit_options::{Choice, Choices, Given};
+use super::unit_options::{Choice, Choices, QuantityArguments};
 use crate::estimator::observer::{Commissioning, ObserverSettings};
 use crate::thermal::units::{Dimension, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Fill;
@@ -42,7 +42,7 @@ const DOUBLE_USE_FACTOR: f64 = 3.0;
 #[derive(Clone, Debug, Args)]
 pub(super) struct GivenFill {
     #[command(flatten)]
-    given: Given<FillQuantities>,
+    given: QuantityArguments<FillQuantities>,
 
     /// Standard deviation of the gas mass of the fill, in % [default: 1; where the temperature is that of the first row, the
     /// effect of 5 K is added, of 1 K with --settled].

@@ -17,7 +17,7 @@ use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::study::{Placement, Study, StudySettings};
 use crate::estimator::placement::{Candidates, Status, read_candidates};
 use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings, confirm_study};
-use crate::report::place::{CAPTION, Placed, matrices};
+use crate::report::place::{CAPTION, PlacementReport, matrices};
 use crate::report::{Provenance, Report};
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Res
     };
     let (study, closed_loop) = study(&placement, &options.runs, deadline, (&progress, expected))?;
     drop(progress);
-    let placed = Placed {
+    let placed = PlacementReport {
         study: &study,
         candidates: &candidates,
         vessel: &vessel,
@@ -127,7 +127,7 @@ impl Options {
 
     fn write(
         &self,
-        placed: &Placed,
+        placed: &PlacementReport,
         placement: &Placement,
         (inputs, provenance): (&Inputs, &Provenance),
         messages: &Messages,

@@ -167,7 +167,7 @@ fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or
             assert!(middle.smallest_leak_kg_s < 0.7 * other.smallest_leak_kg_s, "{name}, {place}");
         }
         assert_eq!(attitude.best().len(), 2);
-        assert!(attitude.placed().figure().title.contains("20 L"));
+        assert!(attitude.report().figure().title.contains("20 L"));
     }
 }
 

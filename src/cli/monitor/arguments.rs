@@ -4,7 +4,7 @@ use crate::cli::options::{
     DataArguments, EXPERT, FalseAlarmArguments, HELP_FOOTER, LogArguments, OUTPUT, SensorArguments,
     VesselAndLog, ViewArguments,
 };
-use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::report::monitor;
 use crate::thermal::units::Dimension;
 use clap::Args;
@@ -37,7 +37,7 @@ pub(crate) struct MonitorArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,
     #[command(flatten)]
-    pub given: Given<MonitorQuantities>,
+    pub given: QuantityArguments<MonitorQuantities>,
     #[command(flatten)]
     pub false_alarms: FalseAlarmArguments,
     /// Continue from FILE if it exists, and save the state to it.

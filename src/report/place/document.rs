@@ -1,6 +1,6 @@
 //! A study as CSV, a row for each judged layout, and as JSON with all that is known; the matrices behind it.
-use super::{Placed, Unit};
-use crate::estimator::placement::study::{BestLayouts, Judged, Placement};
+use super::{PlacementReport, Unit};
+use crate::estimator::placement::study::{BestLayouts, EvaluatedLayout, Placement};
 use crate::estimator::placement::{CandidateOutput, InstrumentedCylinder, ScenarioMeasure};
 use crate::report::{Digits, GRAM, GRAM_PER_HOUR, Provenance, Table};
 use crate::thermal::units::HOUR_S;
@@ -9,14 +9,14 @@ use serde_json::{Map, Value, json};
 /// Significant digits of the numbers.
 const DIGITS: Digits = Digits::Significant(8);
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// A row for each judged layout; an empty cell is a leak that is never found.
     pub(crate) fn table(&self) -> Table {
         let judged = &self.study.judged;
         let mut table = Table::new();
         table.push_integers("sensors", judged.iter().map(|one| one.sensors.len()));
         table.push_texts("layout", judged.iter().map(|one| self.names(&one.sensors)));
-        let mut push = |name: &str, value: &dyn Fn(&Judged) -> f64| {
+        let mut push = |name: &str, value: &dyn Fn(&EvaluatedLayout) -> f64| {
             table.push(name, DIGITS, judged.iter().map(value));
         };
         push("cost", &|one| one.cost);
@@ -32,7 +32,8 @@ impl Placed<'_> {
                 ("robust_mean_k", ScenarioMeasure::Schmidt),
                 ("robust_worst_k", ScenarioMeasure::WorstCase),
             ] {
-                let value = |one: &Judged| one.scenarios.get(scenario).map_or(f64::NAN, |of| measure.of(of));
+                let value =
+                    |one: &EvaluatedLayout| one.scenarios.get(scenario).map_or(f64::NAN, |of| measure.of(of));
                 push(&format!("{name}_{}", scenario + 1), &value);
             }
         }

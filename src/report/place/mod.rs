@@ -40,7 +40,7 @@ const DIGITS: usize = 3;
 
 /// A study with what it is of.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<'a> {
+pub struct PlacementReport<'a> {
     /// The study.
     pub study: &'a Study,
     /// Its candidates.
@@ -88,7 +88,7 @@ impl Unit {
     }
 }
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Whether study or runs were stopped before their end.
     pub(crate) fn is_partial(&self) -> bool {
         self.study.partial || self.closed_loop.is_some_and(|found| found.partial)

@@ -1,10 +1,10 @@
 //! The same places by the paper's own measure, beside the observer's.
-use super::{GRAM_PER_HOUR, KELVIN, Placed};
+use super::{GRAM_PER_HOUR, KELVIN, PlacementReport};
 use crate::estimator::placement::study::PublishedComparison;
 use crate::estimator::placement::{PublishedRecord, PublishedScore, Spread};
 use crate::report::{Report, number};
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Each thermometer by the fit of a first-order model, and by what the observer knows with it.
     pub(super) fn by_paper(&self) -> Report {
         let Some(by_paper) = &self.study.published else { return Report::default() };

@@ -1,10 +1,10 @@
 //! What accuracy costs, and one thermometer at each place.
-use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
+use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, PlacementReport, Unit};
 use crate::estimator::placement::Status;
 use crate::estimator::placement::study::{Front, Position};
 use crate::report::{Report, number};
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Layouts that none is better than at their cost.
     pub(super) fn fronts(&self) -> Report {
         let study = self.study;

@@ -1,8 +1,8 @@
 //! The best layouts for each number of sensors, and the same and others by every number.
-use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
+use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, PlacementReport, Unit};
 use crate::estimator::placement::ScenarioMeasure;
 use crate::estimator::placement::search::Method;
-use crate::estimator::placement::study::{BestLayouts, Infeasible, Judged, Proof};
+use crate::estimator::placement::study::{BestLayouts, EvaluatedLayout, Infeasible, Proof};
 use crate::report::{Report, number};
 
 /// Layouts near the best that are named.
@@ -11,7 +11,7 @@ const LISTED_LAYOUTS: usize = 3;
 const TIE_TOLERANCE: f64 = 1e-3;
 
 /// A number that layouts are judged by: its column, and its SI value.
-type Measure = (&'static str, Unit, fn(&Judged) -> Option<f64>);
+type Measure = (&'static str, Unit, fn(&EvaluatedLayout) -> Option<f64>);
 
 /// What the filter states of itself at rest.
 const COVARIANCE_MEASURES: [Measure; 3] = [
@@ -28,7 +28,7 @@ const ROBUST: [Measure; 2] = [
     ("worst K", KELVIN, |of| Some(ScenarioMeasure::WorstCase.of(of.scenarios.first()?))),
 ];
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// For each number of sensors the best by the criterion, and what it cannot fall below.
     pub(super) fn best_layouts(&self) -> Report {
         let criterion = self.study.settings.criterion;
@@ -91,7 +91,7 @@ impl Placed<'_> {
         let mut header = vec!["n", "layout"];
         header.extend(measures.iter().map(|(name, ..)| *name));
         header.push("cost");
-        let row = |judged: &Judged| {
+        let row = |judged: &EvaluatedLayout| {
             let mut cells = vec![judged.sensors.len().to_string(), self.chosen(&judged.sensors)];
             for (_, unit, of) in &measures {
                 let best = self.best_of(judged.sensors.len(), *of).and_then(of);
@@ -116,7 +116,7 @@ impl Placed<'_> {
     }
 
     /// Best of so many sensors by a number.
-    fn best_of(&self, sensors: usize, of: fn(&Judged) -> Option<f64>) -> Option<&Judged> {
+    fn best_of(&self, sensors: usize, of: fn(&EvaluatedLayout) -> Option<f64>) -> Option<&EvaluatedLayout> {
         let same = self.study.judged.iter().filter(|judged| judged.sensors.len() == sensors);
         let with = same.filter_map(|judged| Some((of(judged)?, judged)));
         with.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, judged)| judged)
@@ -164,7 +164,7 @@ impl Placed<'_> {
             let best = number.layouts.first()?;
             self.study.judged.iter().find(|judged| judged.sensors == best.sensors)
         });
-        let bests: Vec<&Judged> = bests.collect();
+        let bests: Vec<&EvaluatedLayout> = bests.collect();
         let mut rows = Vec::new();
         for (scenario, name) in self.study.scenarios.iter().enumerate() {
             for (judged, accuracy) in

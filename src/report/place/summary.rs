@@ -1,10 +1,10 @@
 //! A study as a report: its settings, then one table after the other.
-use super::{BAR, GRAM_PER_HOUR, HOUR, Placed};
+use super::{BAR, GRAM_PER_HOUR, HOUR, PlacementReport};
 use crate::report::{Report, number};
 use crate::thermal::units::DAY_S;
 use crate::thermal::units::ZERO_CELSIUS_K;
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// The settings, then one table after the other.
     pub(crate) fn summary(&self) -> Report {
         let mut report = Report::new("").text(self.settings_text());

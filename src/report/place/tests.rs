@@ -1,9 +1,10 @@
 //! A study that was never run.
-use super::Placed;
+use super::PlacementReport;
 use crate::estimator::placement::scenario::{Summary, VariantError};
 use crate::estimator::placement::search::{Layout, Method};
 use crate::estimator::placement::study::{
-    BestLayouts, Bias, BiasSource, Failure, Front, Judged, Point, Position, Proof, Study, StudySettings,
+    BestLayouts, Bias, BiasSource, EvaluatedLayout, Failure, Front, Point, Position, Proof, Study,
+    StudySettings,
 };
 use crate::estimator::placement::{Candidates, ScenarioAccuracy, SteadyAccuracy, Variant};
 use crate::evaluation::placement::ClosedLoopSettings;
@@ -20,8 +21,8 @@ struct Known {
 }
 
 impl Known {
-    fn placed(&self) -> Placed<'_> {
-        Placed {
+    fn report(&self) -> PlacementReport<'_> {
+        PlacementReport {
             study: &self.study,
             candidates: &self.candidates,
             vessel: &self.vessel,
@@ -59,8 +60,8 @@ fn scenario_accuracy() -> ScenarioAccuracy {
     }
 }
 
-fn judged(sensors: &[usize], steady: SteadyAccuracy, delay_h: Option<f64>) -> Judged {
-    Judged {
+fn judged(sensors: &[usize], steady: SteadyAccuracy, delay_h: Option<f64>) -> EvaluatedLayout {
+    EvaluatedLayout {
         sensors: sensors.to_vec(),
         cost: sensors.len() as f64,
         steady,
@@ -156,7 +157,7 @@ fn provenance() -> Provenance {
 #[test]
 fn words_name_the_best_its_proof_and_where_the_rankings_differ_within_110_characters() {
     let known = known();
-    let text = known.placed().text();
+    let text = known.report().text();
     let plain = text.split_whitespace().collect::<Vec<_>>().join(" ");
     for expected in [
         "every layout has: pressure",
@@ -181,7 +182,7 @@ fn words_name_the_best_its_proof_and_where_the_rankings_differ_within_110_charac
 #[test]
 fn places_stand_from_the_top_down_with_shoulder_and_valve_marked() {
     let known = known();
-    let text = known.placed().text();
+    let text = known.report().text();
     let table = text.split("anywhere\n").nth(1).unwrap();
     let names: Vec<&str> = table
         .lines()
@@ -197,7 +198,7 @@ fn places_stand_from_the_top_down_with_shoulder_and_valve_marked() {
 fn a_partial_study_says_so_first_and_an_empty_one_still_makes_text_and_picture() {
     let mut known = known();
     known.study.partial = true;
-    assert!(known.placed().text().starts_with("PARTIAL"));
+    assert!(known.report().text().starts_with("PARTIAL"));
     let empty = Study {
         numbers: vec![],
         judged: vec![],
@@ -209,15 +210,15 @@ fn a_partial_study_says_so_first_and_an_empty_one_still_makes_text_and_picture()
         ..known.study.clone()
     };
     known.study = empty;
-    assert!(known.placed().text().contains("No layout was looked at"));
-    assert!(known.placed().figure().to_svg(&provenance()).unwrap().contains("height along the axis"));
-    assert_eq!(known.placed().document(&provenance())["partial"], true);
+    assert!(known.report().text().contains("No layout was looked at"));
+    assert!(known.report().figure().to_svg(&provenance()).unwrap().contains("height along the axis"));
+    assert_eq!(known.report().document(&provenance())["partial"], true);
 }
 
 #[test]
 fn columns_have_a_row_for_each_judged_layout_and_leave_what_never_happens_empty() {
     let known = known();
-    let csv = known.placed().csv(&provenance());
+    let csv = known.report().csv(&provenance());
     let lines: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), 3);
     assert!(lines.iter().all(|line| line.split(',').count() == lines[0].split(',').count()), "{lines:?}");
@@ -228,7 +229,7 @@ fn columns_have_a_row_for_each_judged_layout_and_leave_what_never_happens_empty(
 #[test]
 fn json_has_the_best_by_name_and_the_study_in_si() {
     let known = known();
-    let document = known.placed().document(&provenance());
+    let document = known.report().document(&provenance());
     assert_eq!(document["best"][0]["names"][0], "middle");
     assert!((document["best"][0]["value"].as_f64().unwrap() - 2.0).abs() < 1e-9);
     assert_eq!(document["criterion"]["unit"], "g/h");
@@ -240,7 +241,7 @@ fn json_has_the_best_by_name_and_the_study_in_si() {
 #[test]
 fn the_picture_names_places_levels_and_what_is_unseen() {
     let known = known();
-    let svg = known.placed().figure().to_svg(&provenance()).unwrap();
+    let svg = known.report().figure().to_svg(&provenance()).unwrap();
     for words in ["middle", "shoulder", "valve", "air_k", "smallest leak in g/h", "cost of a layout", "never"]
     {
         assert!(svg.contains(words), "{words} is missing");

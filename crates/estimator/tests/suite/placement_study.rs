@@ -219,7 +219,7 @@ fn posterior_and_leak_rank_middle_and_shoulder_apart_from_what_the_gas_says() {
     // Beside the valve the middle is a little better for the gas temperature and far better for a leak.
     let candidates = all();
     let placement = Placement::new(&vessel(), &candidates, &[], &StudySettings::default()).unwrap();
-    let judge = |name| placement.judge(&layout(&candidates, &[name, "valve", "pressure"])).unwrap();
+    let judge = |name| placement.evaluate(&layout(&candidates, &[name, "valve", "pressure"])).unwrap();
     let (middle, shoulder) = (judge("middle"), judge("shoulder"));
     let ratio = |criterion| middle.number(criterion).unwrap() / shoulder.number(criterion).unwrap();
     let (gas, leak) = (ratio(Criterion::GasTemperature), ratio(Criterion::SmallestLeak));

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::EvaluationError;
 use crate::estimator::placement::search::SearchControl;
-use crate::estimator::placement::study::{JUDGED, Placement, Study};
+use crate::estimator::placement::study::{LAYOUTS_EVALUATED, Placement, Study};
 
 /// Length of a mismatched run, and what of it the observer learns in, s.
 const MISMATCHED_S: f64 = 8.0 * DAY_S;
@@ -61,7 +61,7 @@ pub fn confirm_study(
 ) -> Result<Option<ClosedLoop>, EvaluationError> {
     match study.numbers.last() {
         Some(most) if !study.partial && settings.matched + settings.mismatched > 0 => {
-            let best = most.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone());
+            let best = most.layouts.iter().take(LAYOUTS_EVALUATED).map(|layout| layout.sensors.clone());
             confirm(placement, &best.collect::<Vec<_>>(), settings, control).map(Some)
         }
         _ => Ok(None),

@@ -2,7 +2,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALL_LAYOUTS, Judged, Placement};
+use super::{ALL_LAYOUTS, EvaluatedLayout, Placement};
 use crate::EstimatorError;
 use crate::placement::criterion::Criterion;
 use crate::placement::search::{Method, SearchControl, search};
@@ -54,14 +54,15 @@ impl Placement {
     /// Cost against gas temperature, and against the delay of the leak.
     pub(super) fn fronts(
         &self,
-        judged: &[Judged],
+        judged: &[EvaluatedLayout],
         control: &SearchControl,
     ) -> Result<(Front, Front), EstimatorError> {
         let numbers = self.sensors();
         let complete = numbers.clone().map(|sensors| self.layouts(sensors)).sum::<f64>() <= ALL_LAYOUTS;
-        let of_judged = |value: &dyn Fn(&Judged) -> Option<f64>| {
-            let point =
-                |of: &Judged| Some(Point { sensors: of.sensors.clone(), cost: of.cost, value: value(of)? });
+        let of_judged = |value: &dyn Fn(&EvaluatedLayout) -> Option<f64>| {
+            let point = |of: &EvaluatedLayout| {
+                Some(Point { sensors: of.sensors.clone(), cost: of.cost, value: value(of)? })
+            };
             judged.iter().filter_map(point).collect::<Vec<_>>()
         };
         let mut by_gas = of_judged(&|of| Some(of.steady.gas_sd_k));

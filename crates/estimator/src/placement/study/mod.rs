@@ -1,12 +1,12 @@
 //! The study: which layouts are best, what the next sensor is worth, what is lost with one, and where on the wall it matters.
 //!
-//! Layouts are searched by one [`Criterion`], but never ranked by one alone: what is found is judged by all ([`Judged`]), beside the
+//! Layouts are searched by one [`Criterion`], but never ranked by one alone: what is found is judged by all ([`EvaluatedLayout`]), beside the
 //! best layouts by the other numbers. Each part says of itself what it is:
 //!
 //! | part | what it says |
 //! |---|---|
 //! | [`BestLayouts`] | best layouts of so many sensors, bound and gap, what the last sensor brought |
-//! | [`Judged`] | a layout by every number, and by every scenario |
+//! | [`EvaluatedLayout`] | a layout by every number, and by every scenario |
 //! | [`Front`] | layouts that none is better than at their cost |
 //! | [`Failure`] | what is left without a sensor, and how large a fault of it is found and told from all others |
 //! | [`Bias`] | what a sensor's offset, its mounting and the sun do to the estimates |
@@ -14,9 +14,9 @@
 //! | [`PublishedComparison`] | the same positions by the paper's measure |
 //!
 //! A study that is stopped keeps what it has and says that it is partial.
+mod evaluated;
 mod failure;
 mod front;
-mod judged;
 mod position;
 mod published;
 
@@ -37,16 +37,16 @@ use crate::EstimatorError;
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
 
+pub use evaluated::EvaluatedLayout;
 pub use failure::{Bias, BiasSource, Failure};
 pub use front::{Front, Point};
-pub use judged::Judged;
 pub use position::Position;
 pub use published::PublishedComparison;
 
 /// Layouts up to which all are looked at if no method is asked for.
 const ALL_LAYOUTS: f64 = 20_000.0;
 /// Layouts by one criterion that are judged by all others, for each number of sensors.
-pub const JUDGED: usize = 5;
+pub const LAYOUTS_EVALUATED: usize = 5;
 
 /// What is asked of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -180,7 +180,7 @@ pub struct Study {
     /// Numbers of sensors for which there is no layout.
     pub refused: Vec<Infeasible>,
     /// Layouts by every number: the best by the criterion first, for each number of sensors.
-    pub judged: Vec<Judged>,
+    pub judged: Vec<EvaluatedLayout>,
     /// Cost against the standard deviation of the gas temperature.
     pub accuracy_front: Front,
     /// Cost against the delay of the leak.
@@ -290,7 +290,7 @@ impl Placement {
     /// The constraints contradict each other, or no layout sees what it should: the state is named.
     pub fn run(&self, control: &SearchControl) -> Result<Study, EstimatorError> {
         let (numbers, refused) = self.numbers_and_infeasible(control)?;
-        let judged = self.judge_all(&numbers, control)?;
+        let judged = self.evaluate_all(&numbers, control)?;
         let (accuracy_front, delay_front) = self.fronts(&judged, control)?;
         let going = || !control.stop.load(Ordering::Relaxed);
         let (failures, biases) = match numbers.last() {

@@ -35,7 +35,7 @@ impl Placement {
             layout.push(sensor);
             layout.sort_unstable();
             let height_m = list[sensor].height_m;
-            let Ok(judged) = self.judge(&layout) else {
+            let Ok(judged) = self.evaluate(&layout) else {
                 return Position { sensor, height_m, steady: None, delay_s: None, robust_k: Vec::new() };
             };
             Position {

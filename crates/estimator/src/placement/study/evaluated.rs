@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALL_LAYOUTS, BestLayouts, JUDGED, Placement, Proof};
+use super::{ALL_LAYOUTS, BestLayouts, LAYOUTS_EVALUATED, Placement, Proof};
 use crate::EstimatorError;
 use crate::placement::criterion::Criterion;
 use crate::placement::scenario::ScenarioAccuracy;
@@ -13,7 +13,7 @@ use crate::placement::steady::SteadyAccuracy;
 
 /// A layout by every number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Judged {
+pub struct EvaluatedLayout {
     /// Indices of its candidates, increasing.
     pub sensors: Vec<usize>,
     /// Its cost.
@@ -28,7 +28,7 @@ pub struct Judged {
     pub scenarios: Vec<ScenarioAccuracy>,
 }
 
-impl Judged {
+impl EvaluatedLayout {
     /// The number of a criterion, in SI; `None` for a measure of a scenario where there is none.
     pub fn number(&self, criterion: Criterion) -> Option<f64> {
         Some(match criterion {
@@ -46,8 +46,8 @@ impl Placement {
     ///
     /// # Errors
     /// [`EstimatorError::Unseen`]: it does not see every state.
-    pub fn judge(&self, layout: &[usize]) -> Result<Judged, EstimatorError> {
-        Ok(Judged {
+    pub fn evaluate(&self, layout: &[usize]) -> Result<EvaluatedLayout, EstimatorError> {
+        Ok(EvaluatedLayout {
             sensors: layout.to_vec(),
             cost: layout.iter().map(|&index| self.candidates.list[index].cost).sum(),
             steady: self.steady.accuracy(layout)?,
@@ -61,15 +61,15 @@ impl Placement {
     }
 
     /// The best by the criterion, then those that are best by another number, for each number of sensors.
-    pub(super) fn judge_all(
+    pub(super) fn evaluate_all(
         &self,
         numbers: &[BestLayouts],
         control: &SearchControl,
-    ) -> Result<Vec<Judged>, EstimatorError> {
+    ) -> Result<Vec<EvaluatedLayout>, EstimatorError> {
         let mut judged = Vec::new();
         for number in numbers {
             let mut layouts: Vec<Vec<usize>> =
-                number.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone()).collect();
+                number.layouts.iter().take(LAYOUTS_EVALUATED).map(|layout| layout.sensors.clone()).collect();
             // What the search has proven needs no second one.
             let is_known = |of: &Criterion| *of == self.settings.criterion && number.proof == Proof::Search;
             for criterion in Criterion::AT_REST.into_iter().filter(|of| !is_known(of)) {
@@ -79,8 +79,8 @@ impl Placement {
                 let best = self.best_by(criterion, number.sensors, control)?;
                 layouts.extend(best.filter(|best| !layouts.contains(best)));
             }
-            let of_number: Vec<Judged> =
-                layouts.par_iter().map(|layout| self.judge(layout)).collect::<Result<_, _>>()?;
+            let of_number: Vec<EvaluatedLayout> =
+                layouts.par_iter().map(|layout| self.evaluate(layout)).collect::<Result<_, _>>()?;
             judged.extend(of_number);
         }
         Ok(judged)
