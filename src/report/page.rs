@@ -24,7 +24,7 @@ impl Page<'_> {
     ///
     /// # Errors
     /// A picture cannot be drawn.
-    pub(crate) fn to_html(&self) -> Result<String, ReportError> {
+    pub(crate) fn to_html(self) -> Result<String, ReportError> {
         let blocks = self.report.blocks.iter().enumerate().map(|(k, block)| element(k, block));
         let blocks = blocks.collect::<Result<Vec<Markup>, ReportError>>()?;
         let page = html! {

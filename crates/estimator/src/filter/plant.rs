@@ -151,7 +151,7 @@ pub trait Plant: StateSpace + Clone + Debug {
         Pattern::new(&vec![(0..self.states()).collect(); self.leading()])
     }
 
-    /// Intensity of each source of [`StepTransition::by_source`] for a member with this hypothesis: ([`SOURCES`](Self::SOURCES)).
+    /// Intensity of each source of `StepTransition::by_source` for a member with this hypothesis: ([`SOURCES`](Self::SOURCES)).
     fn intensities(&self, _hypothesis: &Self::Hypothesis, _intensities: &mut [f64]) {}
 
     /// Whether a member with this hypothesis is linearised before others.

@@ -101,7 +101,7 @@ fn longest_s(stretch: f64) -> f64 {
 /// `progress` is told the part that is done.
 ///
 /// # Errors
-/// A simulation that fails, or as [`watch`].
+/// A simulation that fails, or as [`monitor`](super::monitor).
 pub fn monitor_all(
     nominal: &NominalVessel,
     requests: &[Request],
