@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use cylwatch_estimator::identify::{
-    Data, Hold, InitialState, InputCourse, Method, Settings, StartMethod, Structure, identify,
+    Data, Hold, InitialState, InputModel, Method, Settings, StartMethod, Structure, identify,
 };
 use dsmc::system_identification::iv::srivc;
 use rand::SeedableRng;
@@ -99,7 +99,7 @@ fn beside_dsmc(c: &mut Criterion) {
     let likely = Method::MaximumLikelihood {
         input_variance: 1e-4,
         output_variance: 0.09,
-        course: InputCourse::RandomWalk,
+        input_model: InputModel::RandomWalk,
     };
     run(c, "600 samples, likelihood", &data, &free, &likely, plain);
     let start = srivc::Initialization::StateVariableFilter(0.005);

@@ -7,9 +7,9 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use cylwatch_estimator::observer::ObserverSettings;
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify};
-use cylwatch_estimator::placement::search::{Method, Watch, search};
+use cylwatch_estimator::placement::search::{Method, SearchControl, search};
 use cylwatch_estimator::placement::{
-    Conditions, Constraints, GroupedProblem, Objective, Quantity, SitedCylinder,
+    Conditions, Constraints, GroupedProblem, InstrumentedCylinder, Objective, Quantity,
 };
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::presets;
@@ -31,8 +31,8 @@ fn problem(thermometers: usize, wall_nodes: usize) -> GroupedProblem {
     }
     sensors.push(Sensor::typical("pressure").expect("it is built in"));
     let member = settings.bank[0];
-    SitedCylinder::new(&vessel, &sensors, &settings, &member, &Conditions::default())
-        .and_then(|sited| sited.problem(Quantity::GasTemperature))
+    InstrumentedCylinder::new(&vessel, &sensors, &settings, &member, &Conditions::default())
+        .and_then(|cylinder| cylinder.problem(Quantity::GasTemperature))
         .expect("the conditions are a state of the gas")
 }
 
@@ -47,12 +47,12 @@ fn searches(criterion: &mut Criterion) {
     let few = problem(40, 6);
     let three = beside_pressure(&few, 3);
     group.bench_function("3 of 40, exhaustive, 9880 layouts", |bench| {
-        bench.iter(|| search(black_box(&few), &three, Method::Exhaustive, 0.02, &Watch::default()));
+        bench.iter(|| search(black_box(&few), &three, Method::Exhaustive, 0.02, &SearchControl::default()));
     });
     let many = problem(1000, 6);
     let five = beside_pressure(&many, 5);
     group.bench_function("5 of 1000, greedy with swaps", |bench| {
-        bench.iter(|| search(black_box(&many), &five, Method::Greedy, 0.02, &Watch::default()));
+        bench.iter(|| search(black_box(&many), &five, Method::Greedy, 0.02, &SearchControl::default()));
     });
     group.bench_function("5 of 1000, certificate", |bench| {
         bench.iter(|| certify(black_box(&many), &five, &CertificateSettings::default()));

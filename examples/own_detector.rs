@@ -6,10 +6,10 @@
 //! shoulder's temperatures. It needs no filling and no model. The judge sets its threshold on some cylinders and judges it on others.
 #![allow(clippy::print_stdout)]
 
-use cylwatch::evaluation::judge::candidate::{Candidate, Contender, Registry, Row};
+use cylwatch::evaluation::judge::candidate::{Candidate, CandidateRun, Registry, Row};
 use cylwatch::evaluation::judge::run::{RunSettings, Simulator, run as judge};
-use cylwatch::evaluation::judge::{JudgeError, plan::Plan, said::Said, table::Table};
-use cylwatch::evaluation::world::Told;
+use cylwatch::evaluation::judge::{JudgeError, plan::Plan, statement::Statement, table::Table};
+use cylwatch::evaluation::world::OperatorData;
 use cylwatch::report::bench_detector::summary;
 use cylwatch::thermal::units::DAY_S;
 use std::collections::VecDeque;
@@ -31,8 +31,8 @@ pub(crate) struct Watching {
 const SLOPE_PA_K: f64 = 0.992e5;
 
 impl Candidate for DayBefore {
-    fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError> {
-        let column = |name: &str| told.sensors.iter().position(|sensor| sensor.name == name);
+    fn start(&self, data: &OperatorData) -> Result<Box<dyn CandidateRun>, JudgeError> {
+        let column = |name: &str| data.sensors.iter().position(|sensor| sensor.name == name);
         let columns = ["shoulder", "pressure"].map(|name| column(name).expect("every world has both"));
         Ok(Box::new(Watching { columns, past: VecDeque::new() }))
     }
@@ -43,8 +43,8 @@ impl Candidate for DayBefore {
     }
 }
 
-impl Contender for Watching {
-    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+impl CandidateRun for Watching {
+    fn step(&mut self, row: &Row<'_>, statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         let [shoulder_k, pressure_pa] = self.columns.map(|column| row.readings[column]);
         // A missing reading leaves the state as it is.
         if !(pressure_pa.is_finite() && shoulder_k.is_finite()) {
@@ -53,7 +53,11 @@ impl Contender for Watching {
         self.past.push_back([row.stamp_s, shoulder_k, pressure_pa]);
         while let Some(&[_, k, pa]) = self.past.front().filter(|past| row.stamp_s - past[0] >= DAY_S) {
             let missing_pa = pa + SLOPE_PA_K * (shoulder_k - k) - pressure_pa;
-            said.push(Said { stamp_s: row.stamp_s, statistic: Some(missing_pa), ..Said::default() });
+            statements.push(Statement {
+                stamp_s: row.stamp_s,
+                statistic: Some(missing_pa),
+                ..Statement::default()
+            });
             self.past.pop_front();
         }
         Ok(())

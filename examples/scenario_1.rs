@@ -28,7 +28,7 @@ pub(crate) fn run() -> anyhow::Result<Vec<Fall>> {
 }
 
 fn fall(air_degc: i32) -> anyhow::Result<Fall> {
-    let preset = scenario::presets::text("shock-cold").context("no such scenario")?;
+    let preset = scenario::presets::FILES.text("shock-cold").context("no such scenario")?;
     let text = preset.replace("to_degc = -25", &format!("to_degc = {air_degc}"));
     let scenario = scenario::read_scenario(&text, "shock-cold, changed", &scenario::presets::table)?;
     let vessel = vessel::presets::load("nitrogen-20l")?;

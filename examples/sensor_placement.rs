@@ -8,12 +8,12 @@
 //! but it matters little: the middle is the better place standing and lying. `cylwatch place` takes every place.
 #![allow(clippy::print_stdout)]
 
-use cylwatch::estimator::placement::search::Watch;
+use cylwatch::estimator::placement::search::SearchControl;
 use cylwatch::estimator::placement::study::{Placement, Position, Study, StudySettings};
 use cylwatch::estimator::placement::{Candidates, Group};
 use cylwatch::estimator::sensor::Sensor;
 use cylwatch::evaluation::placement::ClosedLoopSettings;
-use cylwatch::report::place::Placed;
+use cylwatch::report::place::PlacementReport;
 use cylwatch::report::{Provenance, aligned};
 use cylwatch::thermal::scenario;
 use cylwatch::thermal::vessel::{GasResolution, Stratification, Vessel, presets};
@@ -67,8 +67,8 @@ pub(crate) struct Attitude {
 
 impl Attitude {
     /// The study as it is shown.
-    pub(crate) fn placed(&self) -> Placed<'_> {
-        Placed {
+    pub(crate) fn report(&self) -> PlacementReport<'_> {
+        PlacementReport {
             study: &self.study,
             candidates: &self.candidates,
             vessel: &self.vessel,
@@ -117,10 +117,10 @@ fn study((name, orientation): (&'static str, Orientation)) -> anyhow::Result<Att
     // The pressure alone knows nothing of the mass.
     candidates.groups.push(Group { fewest: 1, most: thermometers.len(), members: thermometers });
     let mut settings = StudySettings { sensors: 3, ..StudySettings::default() };
-    settings.site.observer.wall_nodes = WALL_NODES;
-    settings.site.observer.longest_step_s = LONGEST_STEP_S;
+    settings.steady.observer.wall_nodes = WALL_NODES;
+    settings.steady.observer.longest_step_s = LONGEST_STEP_S;
     let placement = Placement::new(&vessel, &candidates, &[scenario], &settings)?;
-    let study = placement.run(&Watch::default())?;
+    let study = placement.run(&SearchControl::default())?;
     Ok(Attitude { name, vessel, candidates, study })
 }
 
@@ -132,21 +132,21 @@ fn main() -> anyhow::Result<()> {
     let provenance = Provenance { command, inputs: Vec::new(), seed: None };
     let mut rows = Vec::new();
     for attitude in &attitudes {
-        let picture = attitude.placed().figure();
+        let picture = attitude.report().figure();
         let file = format!("sensor-placement-{}", attitude.name);
         std::fs::write(folder.join(format!("{file}.svg")), picture.to_svg(&provenance)?)?;
         std::fs::write(folder.join(format!("{file}.png")), picture.to_png(&provenance)?)?;
         println!("{}: best beside the pressure: {}", attitude.name, attitude.best().join(", then "));
         for place in THERMOMETERS {
             let position = attitude.position(place);
-            let certainty = position.and_then(|position| position.certainty);
+            let steady = position.and_then(|position| position.steady);
             let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
             rows.push(vec![
                 attitude.name.to_owned(),
                 place.to_owned(),
-                number(certainty.map(|of| of.gas_sd_k)),
+                number(steady.map(|of| of.gas_sd_k)),
                 number(position.and_then(|of| of.robust_k.first().copied())),
-                number(certainty.map(|of| 3.6e6 * of.smallest_leak_kg_s)),
+                number(steady.map(|of| 3.6e6 * of.smallest_leak_kg_s)),
             ]);
         }
     }

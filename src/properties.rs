@@ -5,7 +5,7 @@ use crate::thermal::fluid::{Fluid, State};
 
 /// The two quantities that fix a state, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Given {
+pub(crate) enum FixedQuantities {
     /// Temperature, K, and absolute pressure, Pa.
     TemperaturePressure(f64, f64),
     /// Temperature, K, and density, kg/m³.
@@ -81,11 +81,11 @@ const EXPANSION: Property =
 ///
 /// # Errors
 /// The state is outside the equation of state, or two-phase, or does not exist.
-pub(crate) fn evaluate(fluid: &Fluid, given: Given) -> Result<Properties, PropertyError> {
+pub(crate) fn evaluate(fluid: &Fluid, given: FixedQuantities) -> Result<Properties, PropertyError> {
     let (density, temperature) = match given {
-        Given::TemperaturePressure(t, p) => (fluid.density_from_pressure_temperature(p, t)?, t),
-        Given::TemperatureDensity(t, rho) => (rho, t),
-        Given::PressureDensity(p, rho) => (rho, temperature_k(fluid, p, rho)?),
+        FixedQuantities::TemperaturePressure(t, p) => (fluid.density_from_pressure_temperature(p, t)?, t),
+        FixedQuantities::TemperatureDensity(t, rho) => (rho, t),
+        FixedQuantities::PressureDensity(p, rho) => (rho, temperature_k(fluid, p, rho)?),
     };
     Ok(Properties {
         state: fluid.checked_state(density, temperature)?,

@@ -120,11 +120,11 @@ pub(super) fn run(arguments: BenchDetectorArguments, messages: &Messages) -> any
 
 /// The built-in plans with their titles.
 fn list() -> anyhow::Result<String> {
-    let row = |(name, text): (&str, &str)| {
+    let row = |(name, text): &(&str, &str)| {
         let plan = Plan::parse(text, name, &Registry::default(), &[])?;
-        anyhow::Ok(vec![name.to_owned(), plan.document.title])
+        anyhow::Ok(vec![(*name).to_owned(), plan.document.title])
     };
-    let rows: Vec<Vec<String>> = presets::all().map(row).collect::<anyhow::Result<_>>()?;
+    let rows: Vec<Vec<String>> = presets::FILES.files.iter().map(row).collect::<anyhow::Result<_>>()?;
     Ok(aligned(&["name", "what"], &rows))
 }
 

@@ -10,7 +10,7 @@ use super::output::Target;
 use super::progress::Progress;
 use crate::detector::evidence::Tails;
 use crate::detector::monitor::MonitorSettings;
-use crate::evaluation::tails::{Campaign, FitSettings, commission, watch_all};
+use crate::evaluation::tails::{Campaign, FitSettings, commission, monitor_all};
 use crate::evaluation::world::NominalVessel;
 use crate::report::commission::{CommissionedVessel, VesselMark, Worlds, intention};
 use crate::report::{Provenance, quoted};
@@ -58,9 +58,9 @@ fn simulate(
     let progress = Progress::new(messages);
     let show = |part: f64| progress.show("simulating cylinders", part);
     let requests = options.campaign.requests();
-    let watched = watch_all(nominal, &requests, &MonitorSettings::default(), &show)?;
+    let monitored = monitor_all(nominal, &requests, &MonitorSettings::default(), &show)?;
     progress.show("fitting", 1.0);
-    Ok(commission(&watched, &options.fit)?)
+    Ok(commission(&monitored, &options.fit)?)
 }
 
 /// The command line of a monitor with these thresholds.

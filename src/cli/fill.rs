@@ -1,8 +1,7 @@
 //! Options that say what is known of the cylinder at the first row of a log.
 use super::number::above;
 use super::options::EXPERT;
-use super::unit_options::{Choice, Choices, Given};
-use crate::estimator::observer::commissioning::UNSETTLED_SD_K;
+use super::unit_options::{Choice, Choices, QuantityArguments};
 use crate::estimator::observer::{Commissioning, ObserverSettings};
 use crate::thermal::units::{Dimension, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Fill;
@@ -35,13 +34,13 @@ const UNSETTLED_AIR_SD_K: f64 = 20.0;
 
 /// A fill that is the transmitter's own first reading is off by what the transmitter is. The observer takes that reading once more: the prior
 /// is so much wider that it does not count twice.
-const READ_AGAIN: f64 = 3.0;
+const DOUBLE_USE_FACTOR: f64 = 3.0;
 
 /// Fill as given.
 #[derive(Clone, Debug, Args)]
 pub(super) struct GivenFill {
     #[command(flatten)]
-    given: Given<FillQuantities>,
+    given: QuantityArguments<FillQuantities>,
 
     /// Standard deviation of the gas mass of the fill, in % [default: 1; where the temperature is that of the first row, the
     /// effect of 5 K is added, of 1 K with --settled].
@@ -105,7 +104,7 @@ impl GivenFill {
         let mass_kg = one.mass_kg(vessel, first_k)?;
         let of_temperature_kg = match (fill, self.mass_sd_percent) {
             (Fill::Pressure { .. }, None) => {
-                let sd_k = if self.settled { SETTLED_SD_K } else { UNSETTLED_SD_K };
+                let sd_k = if self.settled { SETTLED_SD_K } else { Commissioning::UNSETTLED_SD_K };
                 0.5 * (one.mass_kg(vessel, first_k - sd_k)? - one.mass_kg(vessel, first_k + sd_k)?)
             }
             _ => 0.0,
@@ -114,7 +113,7 @@ impl GivenFill {
             (Fill::Pressure { pressure_pa }, None) if read_sd_pa > 0.0 => {
                 let more =
                     Commissioning { fill: Fill::Pressure { pressure_pa: pressure_pa + read_sd_pa }, ..one };
-                READ_AGAIN * (more.mass_kg(vessel, first_k)? - mass_kg)
+                DOUBLE_USE_FACTOR * (more.mass_kg(vessel, first_k)? - mass_kg)
             }
             _ => 0.0,
         };

@@ -25,15 +25,11 @@ pub(super) struct InitArguments {
 /// Writes `vessel.toml`, `scenario.toml` and the tables it names; files that are there stay as they are.
 pub(super) fn run(arguments: InitArguments, messages: &Messages) -> anyhow::Result<()> {
     let folder = &arguments.folder;
-    // Loading says which name is unknown, and which would be right.
-    vessel::presets::load(&arguments.vessel)?;
-    scenario::presets::load(&arguments.scenario)?;
-    let text = |text: Option<&str>| text.unwrap_or_default().to_owned();
-    let vessel = text(vessel::presets::text(&arguments.vessel));
-    let scenario = text(scenario::presets::text(&arguments.scenario));
-    let mut files = tables(&scenario)?;
-    files.insert("vessel.toml".into(), vessel);
-    files.insert("scenario.toml".into(), scenario);
+    let vessel = vessel::presets::FILES.text(&arguments.vessel)?;
+    let scenario = scenario::presets::FILES.text(&arguments.scenario)?;
+    let mut files = tables(scenario)?;
+    files.insert("vessel.toml".into(), vessel.into());
+    files.insert("scenario.toml".into(), scenario.into());
     for name in files.keys() {
         let path = folder.join(name);
         if path.symlink_metadata().is_ok() {

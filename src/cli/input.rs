@@ -6,9 +6,10 @@ use crate::evaluation::judge::plan::{self, Plan};
 use crate::log::inspect::Inspector;
 use crate::log::{LogError, LogOptions, LogReader, is_parquet};
 use crate::report::{Fingerprint, Input, Provenance};
+use crate::thermal::document::Presets;
 use crate::thermal::scenario::{self, Scenario};
 use crate::thermal::vessel::{self, Vessel, VesselSpec};
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{Read, Seek};
@@ -77,8 +78,7 @@ impl Inputs {
         name: &str,
         messages: &Messages,
     ) -> anyhow::Result<(VesselSpec, Vessel, Input)> {
-        let document =
-            self.document("vessel", name, vessel::presets::text, vessel::presets::names().collect())?;
+        let document = self.document(name, &vessel::presets::FILES, "simulate")?;
         let (specification, vessel) = vessel::read_specification(&document.text, &document.shown)?;
         vessel.doubts().iter().for_each(|doubt| messages.caution(doubt));
         let origin = self.records.borrow().last().cloned().context("what was read is recorded")?;
@@ -92,8 +92,7 @@ impl Inputs {
 
     /// A scenario by file name, by built-in name, or from stdin; the tables it names lie beside it.
     pub(super) fn scenario(&self, name: &str) -> anyhow::Result<Scenario> {
-        let document =
-            self.document("scenario", name, scenario::presets::text, scenario::presets::names().collect())?;
+        let document = self.document(name, &scenario::presets::FILES, "simulate")?;
         if document.built_in {
             let table = |file: &str| {
                 let text = scenario::presets::table(file)?;
@@ -116,8 +115,7 @@ impl Inputs {
 
     /// A plan of the judge by file name, by built-in name, or from stdin; `left_out` as in `climate=desert`.
     pub(super) fn plan(&self, name: &str, left_out: &[String]) -> anyhow::Result<Plan> {
-        let Document { text, shown, .. } =
-            self.document("plan", name, plan::presets::text, plan::presets::names().collect())?;
+        let Document { text, shown, .. } = self.document(name, &plan::presets::FILES, "bench-detector")?;
         Ok(Plan::parse(&text, &shown, &Registry::default(), left_out)?)
     }
 
@@ -190,18 +188,13 @@ impl Inputs {
         Some(record)
     }
 
-    fn document(
-        &self,
-        kind: &str,
-        name: &str,
-        preset: fn(&str) -> Option<&'static str>,
-        known: Vec<&'static str>,
-    ) -> anyhow::Result<Document> {
+    /// A document by file name, by built-in name, or from stdin; `listed_by` is the command that lists the built-in ones.
+    fn document(&self, name: &str, presets: &Presets, listed_by: &str) -> anyhow::Result<Document> {
         let path = Path::new(name);
         if name == "-" || (path.exists() && !path.is_dir()) {
             return Ok(Document { text: self.read(name)?, shown: shown(name), built_in: false });
         }
-        let Some(text) = preset(name) else { bail!("{}", neither(kind, name, &known)) };
+        let text = presets.text(name).map_err(|_| unknown(name, presets, listed_by))?;
         let preset = format!("preset {name}");
         self.records.borrow_mut().push(Input::of(&preset, text.as_bytes()));
         self.sources.borrow_mut().push((preset, text.to_owned()));
@@ -291,15 +284,15 @@ pub(super) fn shown(name: &str) -> String {
     if name == "-" { "stdin".to_owned() } else { name.to_owned() }
 }
 
-/// The message for a name that is neither a file nor built in.
-fn neither(kind: &str, name: &str, known: &[&str]) -> String {
+/// The error for a name that is neither that of a file nor of a preset.
+fn unknown(name: &str, presets: &Presets, listed_by: &str) -> anyhow::Error {
+    let kind = presets.kind;
     let stem = Path::new(name).file_stem().map_or(name.into(), |stem| stem.to_string_lossy());
     let likeness = |candidate: &str| strsim::jaro_winkler(&stem, candidate);
-    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let nearest = presets.names().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     let nearest = nearest.map_or(String::new(), |nearest| format!(", the nearest is {nearest}"));
-    let lists = if kind == "plan" { "bench-detector" } else { "simulate" };
-    format!(
+    anyhow!(
         "{name} is neither a {kind} file nor a built-in {kind}{nearest}: give the path of a TOML file, or a name \
-         that `cylwatch {lists} --list` shows"
+         that `cylwatch {listed_by} --list` shows"
     )
 }

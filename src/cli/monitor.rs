@@ -7,7 +7,7 @@ use super::output::Target;
 use super::progress::Progress;
 use super::selection::{self, Selection};
 use super::start;
-use super::views::{Made, Views};
+use super::views::{RenderedViews, Views};
 use crate::detector::monitor::Outcome;
 use crate::log::{LogOptions, Row};
 use crate::report::monitor::Summary;

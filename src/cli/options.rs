@@ -13,7 +13,7 @@ pub(super) const INPUT: &str = "Input";
 /// Heading of what comes out.
 pub(super) const OUTPUT: &str = "Output";
 /// Last line of a short help.
-pub(super) const MORE: &str = "All options, columns and examples: --help";
+pub(super) const HELP_FOOTER: &str = "All options, columns and examples: --help";
 
 /// Leaves expert options out of the short help of a command and its subcommands.
 pub(super) fn without_experts(command: Command) -> Command {

@@ -143,7 +143,7 @@ impl Appended {
 const BUFFER: usize = 1 << 16;
 
 /// What waits longer in the buffer of a stream goes out with the next piece, for whoever watches a pipe.
-const PATIENCE: Duration = Duration::from_millis(200);
+const FLUSH_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A result that is written piece by piece. A file appears with [`Stream::finish`]; dropped before, it leaves nothing.
 pub(super) struct Stream {
@@ -180,7 +180,7 @@ impl Stream {
     pub(super) fn write(&mut self, text: &str) -> anyhow::Result<()> {
         let failed = || format!("{} cannot be written", self.shown);
         self.writer.write_all(text.as_bytes()).with_context(failed)?;
-        if self.flushed.elapsed() > PATIENCE {
+        if self.flushed.elapsed() > FLUSH_INTERVAL {
             self.writer.flush().with_context(failed)?;
             self.flushed = Instant::now();
         }

@@ -13,11 +13,11 @@ use super::output::Target;
 use super::progress::Progress;
 use super::result::{Contents, Destination};
 use super::views::Views;
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::study::{Placement, Study, StudySettings};
 use crate::estimator::placement::{Candidates, Status, read_candidates};
 use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings, confirm_study};
-use crate::report::place::{CAPTION, Placed, matrices};
+use crate::report::place::{CAPTION, PlacementReport, matrices};
 use crate::report::{Provenance, Report};
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Res
     };
     let (study, closed_loop) = study(&placement, &options.runs, deadline, (&progress, expected))?;
     drop(progress);
-    let placed = Placed {
+    let placed = PlacementReport {
         study: &study,
         candidates: &candidates,
         vessel: &vessel,
@@ -89,13 +89,13 @@ fn study(
     deadline: Option<Instant>,
     progress: (&Progress, Option<f64>),
 ) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
-    let watch = Watch::default();
-    watch.stop.store(stop::is_due(deadline), Ordering::Relaxed);
+    let control = SearchControl::default();
+    control.stop.store(stop::is_due(deadline), Ordering::Relaxed);
     std::thread::scope(|scope| {
         let (done, ended) = channel();
-        let watch = &watch;
-        scope.spawn(move || stop::attend(watch, deadline, progress, &ended));
-        let found = judged(placement, runs, watch);
+        let control = &control;
+        scope.spawn(move || stop::attend(control, deadline, progress, &ended));
+        let found = judged(placement, runs, control);
         drop(done);
         found
     })
@@ -104,10 +104,10 @@ fn study(
 fn judged(
     placement: &Placement,
     runs: &ClosedLoopSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
-    let study = placement.run(watch)?;
-    let closed_loop = confirm_study(placement, &study, runs, watch)?;
+    let study = placement.run(control)?;
+    let closed_loop = confirm_study(placement, &study, runs, control)?;
     Ok((study, closed_loop))
 }
 
@@ -127,7 +127,7 @@ impl Options {
 
     fn write(
         &self,
-        placed: &Placed,
+        placed: &PlacementReport,
         placement: &Placement,
         (inputs, provenance): (&Inputs, &Provenance),
         messages: &Messages,

@@ -5,7 +5,7 @@ use super::message::Messages;
 use super::options::{DataArguments, ReportArguments};
 use super::output::Target;
 use super::states;
-use super::states::GivenQuantities;
+use super::states::Quantities;
 use super::views::Views;
 use crate::properties::{self, Properties};
 use crate::report::{Provenance, Report};
@@ -34,7 +34,7 @@ pub(super) struct PropertiesArguments {
     pub fluid: String,
     /// The two quantities that fix the state.
     #[command(flatten)]
-    pub given: GivenQuantities,
+    pub given: Quantities,
     /// CSV file with a state a row, or - for stdin: any two of temperature, pressure, density with unit suffixes.
     #[arg(long, value_name = "FILE")]
     pub states: Option<PathBuf>,

@@ -169,10 +169,10 @@ fn data(
 /// The built-in vessels and scenarios with the names that their files give them.
 fn list() -> anyhow::Result<String> {
     let mut rows = Vec::new();
-    for name in vessel::presets::names() {
+    for name in vessel::presets::FILES.names() {
         rows.push(vec!["vessel".to_owned(), name.to_owned(), vessel::presets::load(name)?.name]);
     }
-    for name in scenario::presets::names() {
+    for name in scenario::presets::FILES.names() {
         rows.push(vec!["scenario".to_owned(), name.to_owned(), scenario::presets::load(name)?.name]);
     }
     Ok(aligned(&["kind", "name", "what"], &rows))

@@ -1,7 +1,7 @@
 //! Quantities that fix a state, from options (`--pressure-bar 200`) or from the columns of a CSV file.
 use super::message::Messages;
-use super::unit_options::{Choice, Choices, Given as GivenOptions, Quantity};
-use crate::properties::Given;
+use super::unit_options::{Choice, Choices, Quantity, QuantityArguments};
+use crate::properties::FixedQuantities;
 use crate::thermal::units::{self, Dimension, Unit};
 use anyhow::{Context, anyhow, bail};
 use clap::Arg;
@@ -23,11 +23,11 @@ impl Choices for StateQuantities {
 }
 
 /// The quantities given as options.
-pub(super) type GivenQuantities = GivenOptions<StateQuantities>;
+pub(super) type Quantities = QuantityArguments<StateQuantities>;
 
-impl GivenQuantities {
+impl Quantities {
     /// The state that exactly two quantities fix.
-    pub(super) fn state(&self) -> anyhow::Result<Given> {
+    pub(super) fn state(&self) -> anyhow::Result<FixedQuantities> {
         let names: Vec<&str> = self.quantities.iter().map(|q| q.name.as_str()).collect();
         if self.quantities.len() != 2 || self.quantities[0].dimension == self.quantities[1].dimension {
             let found = if names.is_empty() { "none".to_owned() } else { names.join(" and ") };
@@ -41,13 +41,13 @@ impl GivenQuantities {
 }
 
 /// The state of two or three quantities; temperature and pressure go before density. `None`: fewer than two.
-fn from_quantities(given: &[Quantity]) -> anyhow::Result<Option<Given>> {
+fn from_quantities(given: &[Quantity]) -> anyhow::Result<Option<FixedQuantities>> {
     let si = |dimension| given.iter().find(|q| q.dimension == dimension).map(Quantity::si).transpose();
     let found = (si(Dimension::Temperature)?, si(Dimension::Pressure)?, si(Dimension::Density)?);
     Ok(match found {
-        (Some(t), Some(p), _) => Some(Given::TemperaturePressure(t, p)),
-        (Some(t), None, Some(rho)) => Some(Given::TemperatureDensity(t, rho)),
-        (None, Some(p), Some(rho)) => Some(Given::PressureDensity(p, rho)),
+        (Some(t), Some(p), _) => Some(FixedQuantities::TemperaturePressure(t, p)),
+        (Some(t), None, Some(rho)) => Some(FixedQuantities::TemperatureDensity(t, rho)),
+        (None, Some(p), Some(rho)) => Some(FixedQuantities::PressureDensity(p, rho)),
         _ => None,
     })
 }
@@ -58,7 +58,7 @@ pub(super) struct Row {
     /// Line, from 1.
     pub line: u64,
     /// What it says.
-    pub given: Given,
+    pub given: FixedQuantities,
 }
 
 /// A column of the file that says something about the state.
@@ -145,7 +145,7 @@ fn columns(header: &csv::StringRecord, messages: &Messages, file: &str) -> anyho
     Ok(known)
 }
 
-fn row(record: &csv::StringRecord, columns: &[Known]) -> anyhow::Result<Given> {
+fn row(record: &csv::StringRecord, columns: &[Known]) -> anyhow::Result<FixedQuantities> {
     let mut given = Vec::new();
     for column in columns {
         let text = record.get(column.index).unwrap_or_default();

@@ -109,13 +109,13 @@ pub(super) trait Choices {
 
 /// Quantities given as options, each in any unit of its dimension.
 #[derive(Clone, Debug)]
-pub(super) struct Given<C> {
+pub(super) struct QuantityArguments<C> {
     /// In the order of the choices.
     pub quantities: Vec<Quantity>,
     choices: PhantomData<C>,
 }
 
-impl<C: Choices> Given<C> {
+impl<C: Choices> QuantityArguments<C> {
     /// Quantities of an option's name that measure something of this kind.
     pub(super) fn of<'a>(&'a self, option: &str, dimension: Dimension) -> impl Iterator<Item = &'a Quantity> {
         let start = format!("--{option}-");
@@ -146,7 +146,7 @@ impl<C: Choices> Given<C> {
     }
 }
 
-impl<C: Choices> Args for Given<C> {
+impl<C: Choices> Args for QuantityArguments<C> {
     fn augment_args(command: Command) -> Command {
         augment::<C>(command)
     }
@@ -156,7 +156,7 @@ impl<C: Choices> Args for Given<C> {
     }
 }
 
-impl<C: Choices> FromArgMatches for Given<C> {
+impl<C: Choices> FromArgMatches for QuantityArguments<C> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         Ok(Self { quantities: given(matches, C::CHOICES), choices: PhantomData })
     }

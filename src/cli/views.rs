@@ -64,8 +64,8 @@ impl Views {
         report: impl FnOnce(Picture) -> Report,
         sources: Vec<(String, String)>,
         provenance: &Provenance,
-    ) -> anyhow::Result<Made<'_>> {
-        let mut made = Made::default();
+    ) -> anyhow::Result<RenderedViews<'_>> {
+        let mut made = RenderedViews::default();
         if !self.is_any_requested() {
             return Ok(made);
         }
@@ -91,8 +91,8 @@ impl Views {
         report: impl FnOnce() -> Report,
         sources: Vec<(String, String)>,
         provenance: &Provenance,
-    ) -> anyhow::Result<Made<'_>> {
-        let mut made = Made::default();
+    ) -> anyhow::Result<RenderedViews<'_>> {
+        let mut made = RenderedViews::default();
         if let Some(target) = &self.report {
             made.files.push((target, page(report(), sources, provenance)?));
         }
@@ -102,11 +102,11 @@ impl Views {
 
 /// Views that are made and wait to be written.
 #[derive(Debug, Default)]
-pub(super) struct Made<'a> {
+pub(super) struct RenderedViews<'a> {
     files: Vec<(&'a Target, Vec<u8>)>,
 }
 
-impl Made<'_> {
+impl RenderedViews<'_> {
     /// Writes them.
     pub(super) fn write(&self) -> anyhow::Result<()> {
         self.files.iter().try_for_each(|(target, bytes)| target.write(bytes))

@@ -1,7 +1,7 @@
 //! Logs as files: recorded readings, row by row, checked while they are read.
 //!
 //! A [`LogReader`] streams: whatever the length of the log, it holds two rows, one buffer and a few counters. Names of
-//! columns say what they are and in which unit ([`columns`]); everything becomes SI as it enters.
+//! columns say what they are and in which unit (`columns`); everything becomes SI as it enters.
 //!
 //! **Missing values** (empty, `NaN`, `NA`, `null`, `-`) are NaN in a [`Row`] and no fault. A reading that cannot be one
 //! (text, infinite, outside of the [range](LogOptions)) is taken as missing and counted in a [`Caution`], so that a
@@ -16,7 +16,7 @@
 //! fewer cells than the header are refused with file, line, value and remedy ([`LogError`]).
 mod caution;
 mod cell;
-pub mod columns;
+pub(crate) mod columns;
 mod csv;
 mod date;
 mod error;
@@ -39,7 +39,8 @@ mod zone;
 pub use caution::{Caution, Kind};
 pub use error::LogError;
 pub use mapping::Mapping;
-pub use reader::{LogReader, is_parquet};
+pub use reader::LogReader;
+pub(crate) use reader::is_parquet;
 pub use row::{Row, Truth};
 pub use sampling::Sampling;
 pub use unpack::Packing;

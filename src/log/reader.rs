@@ -433,7 +433,7 @@ fn renaming(column: &ValueColumn<Channel>, unit: &Unit) -> String {
 }
 
 /// Whether a file's name says that it is Parquet.
-pub fn is_parquet(path: &Path) -> bool {
+pub(crate) fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 

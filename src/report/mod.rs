@@ -21,10 +21,12 @@ pub mod simulation;
 mod table;
 
 pub use content::{Block, Report};
-pub use page::Page;
-pub use provenance::{Fingerprint, Input, Provenance, digest, quoted};
+pub(crate) use page::Page;
+pub(crate) use provenance::{Fingerprint, digest, quoted};
+pub use provenance::{Input, Provenance};
 pub use readings::Readings;
-pub use table::{Cell, Column, Digits, Field, RowFormat, Rows, Table, Values, aligned, number, rounded};
+pub use table::{Cell, Column, Digits, Table, Values, aligned, number};
+pub(crate) use table::{Field, RowFormat, Rows, rounded};
 
 /// g in a kg.
 pub(crate) const GRAM: f64 = 1e3;

@@ -12,7 +12,7 @@ const STYLE: &str = include_str!("page.css");
 
 /// A page.
 #[derive(Clone, Copy, Debug)]
-pub struct Page<'a> {
+pub(crate) struct Page<'a> {
     /// What it says.
     pub report: &'a Report,
     /// Where it comes from.
@@ -24,7 +24,7 @@ impl Page<'_> {
     ///
     /// # Errors
     /// A picture cannot be drawn.
-    pub fn to_html(&self) -> Result<String, ReportError> {
+    pub(crate) fn to_html(self) -> Result<String, ReportError> {
         let blocks = self.report.blocks.iter().enumerate().map(|(k, block)| element(k, block));
         let blocks = blocks.collect::<Result<Vec<Markup>, ReportError>>()?;
         let page = html! {

@@ -39,7 +39,7 @@ impl Input {
 
 /// SHA-256 of an input that is read piece by piece.
 #[derive(Clone, Debug, Default)]
-pub struct Fingerprint(Sha256);
+pub(crate) struct Fingerprint(Sha256);
 
 impl Fingerprint {
     /// Takes in a piece.
@@ -90,12 +90,12 @@ impl Provenance {
 }
 
 /// A short hash of a text.
-pub fn digest(text: &str) -> String {
+pub(crate) fn digest(text: &str) -> String {
     Input::of("", text.as_bytes()).sha256[..12].to_owned()
 }
 
 /// A word of a command line, quoted so that a shell reads it as one.
-pub fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()

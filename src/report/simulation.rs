@@ -19,7 +19,7 @@ fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
 }
 
 /// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
-pub fn table(run: &Trajectory, readings: &Readings) -> Table {
+pub(crate) fn table(run: &Trajectory, readings: &Readings) -> Table {
     let mut table = Table::new();
     table.push("time_s", DIGITS, run.time_s.iter().copied());
     table.push("ambient_degc", DIGITS, celsius(&run.ambient_k));
@@ -64,14 +64,14 @@ pub(crate) fn event_name(event: &Event) -> String {
 }
 
 /// Title of a run: what happened to what.
-pub fn title(run: &Trajectory) -> String {
+pub(crate) fn title(run: &Trajectory) -> String {
     let (scenario, vessel) = (&run.scenario.name, &run.vessel.name);
     let title = if scenario == vessel { scenario.clone() } else { format!("{scenario} \u{2013} {vessel}") };
     title.replace("degC", "°C").replace(" -", " \u{2212}")
 }
 
 /// Temperatures, how they differ from the gas, pressure, and the gas mass where it changes.
-pub fn figure(run: &Trajectory, readings: &Readings) -> Figure {
+pub(crate) fn figure(run: &Trajectory, readings: &Readings) -> Figure {
     let time = &run.time_s;
     let limit = |&limit_pa: &f64| Item::Limit {
         name: format!("limit {} bar", number(limit_pa / BAR_PA, 6)),
@@ -179,12 +179,12 @@ pub(crate) fn remarks(run: &Trajectory) -> Vec<String> {
 }
 
 /// Size of a residual: two digits, or 0.
-pub fn residual(value: f64) -> String {
+pub(crate) fn residual(value: f64) -> String {
     if value == 0.0 { "0".into() } else { format!("{:.1e}", value.abs()) }
 }
 
 /// The run as a JSON document: provenance, columns, events, ledger, what the solver did.
-pub fn document(run: &Trajectory, readings: &Readings, provenance: &Provenance) -> Value {
+pub(crate) fn document(run: &Trajectory, readings: &Readings, provenance: &Provenance) -> Value {
     let event = |event: &Event| {
         json!({
             "time_s": event.time_s,
@@ -205,7 +205,7 @@ pub fn document(run: &Trajectory, readings: &Readings, provenance: &Provenance) 
 }
 
 /// Mass and energy balance as JSON.
-pub fn ledger(run: &Trajectory) -> Value {
+pub(crate) fn ledger(run: &Trajectory) -> Value {
     let ledger = &run.ledger;
     json!({
         "mass_start_kg": ledger.mass_start_kg,
@@ -222,7 +222,7 @@ pub fn ledger(run: &Trajectory) -> Value {
 }
 
 /// Counters of the solver as JSON.
-pub fn statistics(run: &Trajectory) -> Value {
+pub(crate) fn statistics(run: &Trajectory) -> Value {
     let s = &run.statistics;
     json!({
         "states": s.states,

@@ -22,7 +22,7 @@ pub const DURATION_S: f64 = 100.5;
 pub const SAMPLE_S: f64 = 0.05;
 
 /// Simulations that [`study`] runs.
-pub fn runs() -> usize {
+pub(crate) fn runs() -> usize {
     3 + evaluations(COEFFICIENTS, COEFFICIENT_WIDTH)
 }
 
@@ -93,7 +93,7 @@ pub struct Blowdown {
 }
 
 /// Times of the table of curves, s.
-pub fn times_s() -> impl Iterator<Item = f64> {
+pub(crate) fn times_s() -> impl Iterator<Item = f64> {
     (0..=100).map(f64::from)
 }
 
@@ -151,7 +151,7 @@ fn stacked(
 }
 
 /// Largest or smallest of the cells at each time, K.
-pub fn extreme(cells_k: &[Vec<f64>], pick: fn(f64, f64) -> f64) -> Vec<f64> {
+pub(crate) fn extreme(cells_k: &[Vec<f64>], pick: fn(f64, f64) -> f64) -> Vec<f64> {
     cells_k.iter().map(|sample| sample.iter().copied().reduce(pick).unwrap_or(f64::NAN)).collect()
 }
 

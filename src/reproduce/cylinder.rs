@@ -10,9 +10,9 @@ use crate::thermal::vessel;
 use std::time::Instant;
 
 /// Scenarios 1 to 4 of the paper, by their built-in names.
-pub const SCENARIOS: [&str; 4] = ["shock-cold", "tunnel-winter", "ramp-warm", "cool-down"];
+pub(crate) const SCENARIOS: [&str; 4] = ["shock-cold", "tunnel-winter", "ramp-warm", "cool-down"];
 /// Built-in vessel of the scenarios.
-pub const VESSEL: &str = "nitrogen-20l";
+pub(crate) const VESSEL: &str = "nitrogen-20l";
 
 /// Pressure of a full cylinder at 15 °C, Pa.
 pub(crate) const FILL_PRESSURE_PA: f64 = 200e5;
@@ -21,17 +21,9 @@ pub(crate) const FILL_TEMPERATURE_K: f64 = 288.15;
 /// Volume of the cylinder, m³.
 pub(crate) const VOLUME_M3: f64 = 0.02;
 
-/// Text of a built-in scenario.
-///
-/// # Errors
-/// There is none of this name.
-pub(crate) fn text_of(name: &'static str) -> Result<&'static str, ReproduceError> {
-    scenario::presets::text(name).ok_or(ReproduceError::Scenario { name })
-}
-
 /// A simulated scenario.
 #[derive(Clone, Debug)]
-pub struct ScenarioRun {
+pub(crate) struct ScenarioRun {
     /// Built-in name.
     pub name: &'static str,
     /// The run.
@@ -46,7 +38,7 @@ pub struct ScenarioRun {
 ///
 /// # Errors
 /// The simulation's.
-pub fn simulated(
+pub(crate) fn simulated(
     vessel: &str,
     name: &'static str,
     settings: &SimulationSettings,
@@ -62,7 +54,7 @@ pub fn simulated(
 
 /// What the equation of state says about a tight, rigid, full cylinder.
 #[derive(Clone, Debug)]
-pub struct TightCylinder {
+pub(crate) struct TightCylinder {
     /// Gas mass, kg.
     pub mass_kg: f64,
     /// Gas mass that the ideal gas gives, kg.
@@ -90,7 +82,7 @@ pub(crate) const SLOPE_OF_PAPER_BAR_K: f64 = 0.8457;
 ///
 /// # Errors
 /// The gas's; none for nitrogen in this range.
-pub fn tight() -> Result<TightCylinder, ReproduceError> {
+pub(crate) fn tight() -> Result<TightCylinder, ReproduceError> {
     let real = Fluid::named("nitrogen")?;
     let ideal = real.clone().with_equation(Equation::IdealGas);
     let density =

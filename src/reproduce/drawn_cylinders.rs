@@ -5,7 +5,7 @@
 //!
 //! **Bound** of the gas temperature: the posterior Cramér-Rao bound along paths of the observer's own model with its prior
 //! ([`matched`](crate::evaluation::matched)); of the pressure that is missing: the same times `dp/dT` at the filling. Of a leak: what the innovations of the
-//! steady observer at rest tell of it ([`Site`]), which knows no tunnel. No truth here comes from those models, so a bound is what
+//! steady observer at rest tell of it ([`SteadyAnalysis`]), which knows no tunnel. No truth here comes from those models, so a bound is what
 //! could be hoped for, not what must hold.
 //!
 //! **Thresholds** of the two detectors without an observer: the lowest at which they are silent in the same passage on as many tight
@@ -14,7 +14,7 @@ use super::ReproduceError;
 use super::cylinder::VESSEL;
 use super::methods::{MethodRun, Plan, run_methods};
 use crate::estimator::observer::ObserverSettings;
-use crate::estimator::placement::{Disturbance, Site, SiteSettings};
+use crate::estimator::placement::{Disturbance, SteadyAnalysis, SteadySettings};
 use crate::estimator::sensor::Sensor;
 use crate::evaluation::matched::{least_errors, mass_member, settings};
 use crate::evaluation::world::SteadyLeak;
@@ -292,14 +292,14 @@ fn bar_per_kg(nominal: &Vessel) -> Result<f64, ReproduceError> {
 /// rate, kg/s, after a time, s.
 fn leak_bounds(nominal: &Vessel, rate_kg_s: f64, after_s: f64) -> Result<(Option<f64>, f64), ReproduceError> {
     let sensors = SENSORS.into_iter().map(Sensor::typical).collect::<Result<Vec<_>, _>>()?;
-    let mut settings = SiteSettings { observer: ObserverSettings::default(), ..SiteSettings::default() };
+    let mut settings = SteadySettings { observer: ObserverSettings::default(), ..SteadySettings::default() };
     settings.conditions.interval_s = SAMPLE_S;
     // Half of the leaks are found by then.
     settings.detection.power_sd = 0.0;
-    let site = Site::new(nominal, &sensors, &settings)?;
+    let steady = SteadyAnalysis::new(nominal, &sensors, &settings)?;
     let layout = [0, 1, 2];
-    let delay_s = site.delay_s(&layout, rate_kg_s)?;
+    let delay_s = steady.delay_s(&layout, rate_kg_s)?;
     let samples = (after_s / SAMPLE_S) as u64;
-    let information = site.response(&layout, &[Disturbance::Leak])?.information(samples)[(0, 0)];
+    let information = steady.response(&layout, &[Disturbance::Leak])?.information(samples)[(0, 0)];
     Ok((delay_s.map(|delay_s| delay_s / 60.0), 1.0 / information.sqrt()))
 }

@@ -74,8 +74,8 @@ pub(super) fn figure_3(study: &Identification) -> Picture {
 
 /// Errors of a start at zero, K, without those that would flatten all others.
 fn clipped(errors: &[f64]) -> Vec<f64> {
-    const SHOWN_K: f64 = 4.0;
-    errors.iter().map(|error| if error.abs() <= SHOWN_K { *error } else { f64::NAN }).collect()
+    const CLIP_K: f64 = 4.0;
+    errors.iter().map(|error| if error.abs() <= CLIP_K { *error } else { f64::NAN }).collect()
 }
 
 /// Figure 6: the tunnel, by the paper's scheme, and on a simulated cylinder.

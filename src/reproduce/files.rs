@@ -21,7 +21,7 @@ impl Reproduction {
     ///
     /// # Errors
     /// A figure cannot be drawn.
-    pub fn files(&self, provenance: &Provenance) -> Result<Vec<File>, ReportError> {
+    pub(crate) fn files(&self, provenance: &Provenance) -> Result<Vec<File>, ReportError> {
         let mut files = Vec::new();
         let pictures = self.pictures();
         for (name, picture) in &pictures {

@@ -15,17 +15,17 @@ pub struct Measured {
     /// Pressure, bar.
     pub pressure_bar: Curve,
     /// Warmest gas thermocouple, K.
-    pub gas_high_k: Curve,
+    pub(crate) gas_high_k: Curve,
     /// Coldest gas thermocouple, K.
-    pub gas_low_k: Curve,
+    pub(crate) gas_low_k: Curve,
     /// Upper edge of the inner-wall temperatures, K.
     pub wall_high_k: Curve,
     /// Lower edge of the inner-wall temperatures, K.
-    pub wall_low_k: Curve,
+    pub(crate) wall_low_k: Curve,
 }
 
 /// The embedded files with their names, for the record of what was read.
-pub const FILES: [(&str, &str); 5] = [
+pub(crate) const FILES: [(&str, &str); 5] = [
     ("data/haque_i1/pressure.csv", include_str!("../../data/haque_i1/pressure.csv")),
     ("data/haque_i1/gas_high.csv", include_str!("../../data/haque_i1/gas_high.csv")),
     ("data/haque_i1/gas_low.csv", include_str!("../../data/haque_i1/gas_low.csv")),
@@ -68,7 +68,7 @@ impl Curve {
 }
 
 /// Value at `t` of a curve through points, linear between them and constant beyond.
-pub fn interpolated(times: &[f64], values: &[f64], t: f64) -> f64 {
+pub(crate) fn interpolated(times: &[f64], values: &[f64], t: f64) -> f64 {
     let next = times.partition_point(|&time| time <= t);
     match next {
         0 => values.first().copied().unwrap_or(f64::NAN),

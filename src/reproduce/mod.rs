@@ -11,7 +11,7 @@
 //! | [`blowdown`], [`measured`] | the model beside a measured blowdown |
 //! | `checks`, `comparison` | numbers and their references; paper, here, why they differ |
 //!
-//! [`run`] computes, [`Reproduction::report`] is the report, [`Reproduction::files`] gives the files to write.
+//! `run` computes, `Reproduction::report` is the report, `Reproduction::files` gives the files to write.
 pub mod blowdown;
 pub(crate) mod checks;
 mod comparison;
@@ -71,12 +71,6 @@ pub enum ReproduceError {
         /// Its name.
         name: &'static str,
     },
-    /// A scenario that must be built in.
-    #[error("there is no built-in scenario {name}: the program is damaged, install it again")]
-    Scenario {
-        /// Its name.
-        name: &'static str,
-    },
     /// No cylinders to draw.
     #[error("0 cylinders are drawn: at least 1 is needed")]
     NoCylinders,
@@ -84,7 +78,7 @@ pub enum ReproduceError {
 
 /// How the paper is rebuilt.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// Of the simulations of built-in scenarios.
     pub simulation: SimulationSettings,
     /// Seed of everything random.
@@ -102,7 +96,7 @@ impl Default for Settings {
 
 /// Everything that was computed.
 #[derive(Clone, Debug)]
-pub struct Reproduction {
+pub(crate) struct Reproduction {
     /// Gas mass and heat capacities.
     pub(crate) section_2: Section2,
     /// Scenarios 1 to 4 of the paper.
@@ -163,7 +157,10 @@ const DRAWN: f64 = 12.0;
 ///
 /// # Errors
 /// A simulation, an identification or a detector fails.
-pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<Reproduction, ReproduceError> {
+pub(crate) fn run(
+    settings: &Settings,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<Reproduction, ReproduceError> {
     let all = 12.0 * QUICK + DRAWN * (Chamber::SCENARIOS.len() + 1 + LEAKS_G_H.len()) as f64;
     let mut work = Work { done: 0.0, all, progress };
     let simulation = &settings.simulation;
@@ -217,16 +214,15 @@ pub fn run(settings: &Settings, progress: &mut dyn FnMut(&str, f64)) -> Result<R
 }
 
 /// Records of everything that is embedded and read by [`run`].
-pub fn inputs() -> Vec<Input> {
+pub(crate) fn inputs() -> Vec<Input> {
     let vessels = [VESSEL, "nitrogen-20l-paper", "closed-bottle", "haque-i1"]
-        .map(|name| ("vessel", name, vessel::presets::text(name)));
+        .map(|name| ("vessel", name, vessel::presets::FILES.text(name)));
     let mut names = SCENARIOS.to_vec();
     names.extend(["tunnel-step", "leak-after-tunnel", "bottle-step", "haque-i1"]);
-    let scenarios = names.into_iter().map(|name| ("scenario", name, scenario::presets::text(name)));
-    let presets = vessels
-        .into_iter()
-        .chain(scenarios)
-        .filter_map(|(kind, name, text)| Some(Input::of(format!("preset {kind} {name}"), text?.as_bytes())));
+    let scenarios = names.into_iter().map(|name| ("scenario", name, scenario::presets::FILES.text(name)));
+    let presets = vessels.into_iter().chain(scenarios).filter_map(|(kind, name, text)| {
+        Some(Input::of(format!("preset {kind} {name}"), text.ok()?.as_bytes()))
+    });
     presets.chain(measured::FILES.iter().map(|(name, text)| Input::of(*name, text.as_bytes()))).collect()
 }
 

@@ -7,6 +7,7 @@ use super::{Reproduction, checks, comparison, figures};
 use crate::report::figure::{Part, Picture};
 use crate::report::{Report, simulation};
 use crate::thermal::units::BAR_PA;
+use Section::{Figure, Heading, Results, Text};
 
 /// What a method states about the cylinder of figure 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,77 @@ pub(crate) struct LeakStatement {
     /// Time to the limit from the end on, h.
     pub left_h: Option<f64>,
 }
+
+/// A part of the report.
+enum Section {
+    /// A paragraph.
+    Text(&'static str),
+    /// A heading with its paragraph.
+    Heading(&'static str, &'static str),
+    /// Tables, with what explains them.
+    Results(fn(&Reproduction, Report) -> Report),
+    /// A picture by the name of its file, with its caption.
+    Figure(&'static str, &'static str),
+}
+
+const DRAWN_CAPTION: &str = "One of the drawn cylinders. The band is what the observer states of itself.";
+
+/// The report, in the order of the paper.
+const SECTIONS: &[Section] = &[
+    Text(LEAD),
+    Results(Reproduction::gas),
+    Figure(
+        "tight-cylinder",
+        "Pressure of a tight, rigid cylinder filled to 200 bar at 15 °C. The published slope belongs to a fill of 175 bar.",
+    ),
+    Heading("Figure 1: scenario 2, a tunnel in winter", FIGURE_1),
+    Figure(
+        "tunnel-winter",
+        "The quantities of the paper\u{2019}s figure 1, computed: ambient, shoulder, valve, wall, gas, pressure. Broken lines are what sensors read that feel 15 % of the air.",
+    ),
+    Results(Reproduction::table_1),
+    Figure(
+        "figure-2",
+        "From a start at 0 °C the published function needs half an hour; afterwards its gain leaves an error of its own.",
+    ),
+    Results(Reproduction::figure_3),
+    Figure("figure-3", "Errors beyond 4 K, of the start at zero, are left out."),
+    Heading("Figures 4, 5 and 7: data flow", FIGURE_4),
+    Figure(
+        "figure-4-5-7",
+        "Each box is a stage of the program, and what is drawn is what computed figures 6 and 8.",
+    ),
+    Heading("Figure 6: into the tunnel", FIGURE_6),
+    Figure(
+        "figure-6",
+        "Above the paper\u{2019}s scheme, below a simulated cylinder that is unknown to all methods. Both are tight.",
+    ),
+    Results(Reproduction::figure_8),
+    Figure(
+        "figure-8",
+        "Rings are alarms. Refitted and observer are zeroed on the ten minutes before the tunnel, the published one is not.",
+    ),
+    Results(Reproduction::drawn),
+    Figure("observer-scenario-1", DRAWN_CAPTION),
+    Figure("observer-scenario-2", DRAWN_CAPTION),
+    Figure("observer-scenario-3", DRAWN_CAPTION),
+    Figure("observer-scenario-4", DRAWN_CAPTION),
+    Results(Reproduction::drawn_leaks),
+    Heading("The model against measurement and other programs", MEASURED),
+    Figure(
+        "blowdown-i1",
+        "The only measurement here: nitrogen from 150 bar through an orifice. The 20 L cylinder\u{2019}s chamber curves are not published as data.",
+    ),
+    Results(Reproduction::checks),
+    Results(Reproduction::balances),
+    Figure("shock-cold", ""),
+    Figure("ramp-warm", ""),
+    Figure("cool-down", ""),
+    Figure("bottle-step", ""),
+    Heading("Paper, here, and why they differ", ""),
+    Results(Reproduction::comparisons),
+    Text(LIMITS),
+];
 
 impl Reproduction {
     /// Statements of the methods about the simulated cylinder of figure 8. The first two alarm at 1.1 times the error that lasted in the same passage of
@@ -86,116 +158,57 @@ impl Reproduction {
     }
 
     /// Everything in the order of the paper.
-    pub fn report(&self) -> Report {
+    pub(crate) fn report(&self) -> Report {
         self.report_with(&self.pictures())
     }
 
     /// The report with pictures that are made.
     pub(super) fn report_with(&self, pictures: &[(String, Picture)]) -> Report {
-        let show = |report: Report, name: &str, caption: &str| match pictures
-            .iter()
-            .find(|(found, _)| found == name)
-        {
-            Some((_, picture)) => report.picture(picture.clone(), caption),
-            None => report,
-        };
-        let mut report = Report::new("The paper rebuilt, and what an observer adds").text(LEAD);
-        report = self.gas(report);
-        report = show(
-            report,
-            "tight-cylinder",
-            "Pressure of a tight, rigid cylinder filled to 200 bar at 15 °C. The published slope belongs to a fill of 175 bar.",
-        );
-        report = report.heading("Figure 1: scenario 2, a tunnel in winter").text(FIGURE_1);
-        report = show(
-            report,
-            "tunnel-winter",
-            "The quantities of the paper\u{2019}s figure 1, computed: ambient, shoulder, valve, wall, gas, pressure. Broken lines are what sensors read that feel 15 % of the air.",
-        );
-        report = self.table_1(report);
-        report = show(
-            report,
-            "figure-2",
-            "From a start at 0 °C the published function needs half an hour; afterwards its gain leaves an error of its own.",
-        );
-        report = self.figure_3(report);
-        report = show(report, "figure-3", "Errors beyond 4 K, of the start at zero, are left out.");
-        report = report.heading("Figures 4, 5 and 7: data flow").text(FIGURE_4);
-        report = show(
-            report,
-            "figure-4-5-7",
-            "Each box is a stage of the program, and what is drawn is what computed figures 6 and 8.",
-        );
-        report = report.heading("Figure 6: into the tunnel").text(FIGURE_6);
-        report = show(
-            report,
-            "figure-6",
-            "Above the paper\u{2019}s scheme, below a simulated cylinder that is unknown to all methods. Both are tight.",
-        );
-        report = self.figure_8(report);
-        report = show(
-            report,
-            "figure-8",
-            "Rings are alarms. Refitted and observer are zeroed on the ten minutes before the tunnel, the published one is not.",
-        );
-        report = self.drawn(report);
-        for k in 1..=self.drawn_cylinders.len() {
-            report = show(
-                report,
-                &format!("observer-scenario-{k}"),
-                "One of the drawn cylinders. The band is what the observer states of itself.",
-            );
-        }
-        report = self.drawn_leaks(report);
-        report = report.heading("The model against measurement and other programs").text(MEASURED);
-        report = show(
-            report,
-            "blowdown-i1",
-            "The only measurement here: nitrogen from 150 bar through an orifice. The 20 L cylinder\u{2019}s chamber curves are not published as data.",
-        );
-        let table = checks::checks(self);
-        report = report.rows(
-            "Numbers beside their references",
-            &checks::HEADER,
-            table.iter().map(checks::Check::cells).collect(),
-        );
-        let (header, lines) = checks::scenarios(self);
-        report = report.rows("Scenarios: ends, solver, balances", &header, lines);
-        for name in ["shock-cold", "ramp-warm", "cool-down", "bottle-step"] {
-            report = show(report, name, "");
-        }
-        report
-            .heading("Paper, here, and why they differ")
-            .rows(
-                "",
-                &comparison::HEADER,
-                comparison::comparisons(self).iter().map(comparison::Comparison::cells).collect(),
-            )
-            .text(LIMITS)
+        let title = Report::new("The paper rebuilt, and what an observer adds");
+        SECTIONS.iter().fold(title, |report, section| match *section {
+            Text(paragraph) => report.text(paragraph),
+            Heading(words, paragraph) => report.heading(words).text(paragraph),
+            Results(results) => results(self, report),
+            Figure(name, caption) => match pictures.iter().find(|(known, _)| known == name) {
+                Some((_, picture)) => report.picture(picture.clone(), caption),
+                None => report,
+            },
+        })
+    }
+
+    fn checks(&self, report: Report) -> Report {
+        let rows = checks::checks(self).iter().map(checks::Check::cells).collect();
+        report.rows("Numbers beside their references", &checks::HEADER, rows)
+    }
+
+    fn balances(&self, report: Report) -> Report {
+        let (header, rows) = checks::scenarios(self);
+        report.rows("Scenarios: ends, solver, balances", &header, rows)
+    }
+
+    fn comparisons(&self, report: Report) -> Report {
+        let rows = comparison::comparisons(self).iter().map(comparison::Comparison::cells).collect();
+        report.rows("", &comparison::HEADER, rows)
     }
 
     /// What a terminal shows: the numbers that compare.
     pub(crate) fn text(&self) -> String {
-        let mut report = Report::new("");
-        report = self.table_1(report);
-        report = self.figure_8(report);
-        report = self.drawn(report);
-        report = self.drawn_leaks(report);
-        let table = checks::checks(self);
-        report = report.rows(
-            "Numbers beside their references",
-            &checks::HEADER,
-            table.iter().map(checks::Check::cells).collect(),
-        );
-        let answers = comparison::comparisons(self)
-            .into_iter()
-            .map(|answer| vec![answer.what.to_owned(), answer.paper, answer.here]);
-        report = report.rows(
-            "Paper and here; why they differ stands in the report",
-            &["what", "paper", "here"],
-            answers.collect(),
-        );
+        let results =
+            [Self::table_1, Self::figure_8, Self::drawn, Self::drawn_leaks, Self::checks, Self::answers];
+        let mut report = results.into_iter().fold(Report::new(""), |report, results| results(self, report));
         report.blocks.retain(|block| !matches!(block, crate::report::Block::Text(_)));
         report.to_text()
+    }
+
+    /// The comparison without its reasons.
+    fn answers(&self, report: Report) -> Report {
+        let rows = comparison::comparisons(self)
+            .into_iter()
+            .map(|answer| vec![answer.what.to_owned(), answer.paper, answer.here]);
+        report.rows(
+            "Paper and here; why they differ stands in the report",
+            &["what", "paper", "here"],
+            rows.collect(),
+        )
     }
 }

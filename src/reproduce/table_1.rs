@@ -7,7 +7,6 @@
 //!
 //! Mounting and outside film are assumed, the measured curves are not published.
 use super::ReproduceError;
-use super::cylinder::text_of;
 use crate::estimator::identify::{
     Comparison, Data, Gain, Hold, Identified, IdentifyError, InitialState, Method, Model, Settings,
     Structure, identify, published,
@@ -74,7 +73,7 @@ pub struct Record {
 impl Record {
     /// A built-in scenario on the paper's cylinder, with the shoulder's and the valve's share of the way to the air.
     pub fn simulated(name: &'static str, couplings: [f64; 2]) -> Result<Self, ReproduceError> {
-        let mut text = text_of(name)?.to_owned();
+        let mut text = scenario::presets::FILES.text(name)?.to_owned();
         let preset = format!("air_coupling = {COUPLING}");
         for coupling in couplings {
             text = text.replacen(&preset, &format!("air_coupling = {coupling:.3}"), 1);

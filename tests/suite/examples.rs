@@ -157,7 +157,7 @@ fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or
     for attitude in sensor_placement::run().unwrap() {
         let of = |place: &str| {
             let position = attitude.position(place).unwrap();
-            (position.certainty.unwrap(), position.robust_k[0])
+            (position.steady.unwrap(), position.robust_k[0])
         };
         let (middle, robust_k) = of("middle");
         for place in ["shoulder", "valve"] {
@@ -167,22 +167,22 @@ fn a_thermometer_at_the_middle_knows_gas_and_leak_better_than_one_at_shoulder_or
             assert!(middle.smallest_leak_kg_s < 0.7 * other.smallest_leak_kg_s, "{name}, {place}");
         }
         assert_eq!(attitude.best().len(), 2);
-        assert!(attitude.placed().figure().title.contains("20 L"));
+        assert!(attitude.report().figure().title.contains("20 L"));
     }
 }
 
 #[test]
 fn a_detector_of_ones_own_is_judged_beside_the_papers_and_finds_a_large_leak() {
-    use cylwatch::evaluation::judge::candidate::{Contender, Row};
+    use cylwatch::evaluation::judge::candidate::{CandidateRun, Row};
     // A tight cylinder that warms by 10 K from one day to the next misses nothing; one that has lost a bar misses it.
     let missing_pa = |shoulder_k, pressure_bar: f64| {
         let mut detector = own_detector::Watching { columns: [1, 0], past: VecDeque::new() };
-        let mut said = Vec::new();
+        let mut statements = Vec::new();
         for (stamp_s, readings) in [(0.0, [200e5, 288.15]), (86_400.0, [1e5 * pressure_bar, shoulder_k])] {
-            detector.step(&Row { stamp_s, readings: &readings, historical: false }, &mut said).unwrap();
+            detector.step(&Row { stamp_s, readings: &readings, historical: false }, &mut statements).unwrap();
         }
-        assert_eq!(said.len(), 1);
-        said[0].statistic.unwrap()
+        assert_eq!(statements.len(), 1);
+        statements[0].statistic.unwrap()
     };
     assert_abs_diff_eq!(missing_pa(298.15, 209.92), 0.0, epsilon = 1.0);
     assert_abs_diff_eq!(missing_pa(288.15, 199.0), 1e5, epsilon = 1.0);

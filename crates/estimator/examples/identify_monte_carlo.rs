@@ -6,7 +6,7 @@
 //! deviation of one run, and the share of 95 % intervals that hold the truth with Wilson's 95 % interval.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 use cylwatch_estimator::consistency::Significance;
-use cylwatch_estimator::identify::{InputCourse, Method};
+use cylwatch_estimator::identify::{InputModel, Method};
 
 #[path = "../tests/suite/identify/noisy.rs"]
 mod noisy;
@@ -54,9 +54,9 @@ fn main() {
         let input_variance = case.variances().0;
         line(case, runs, "compensated instr.", |_| Method::CompensatedInstruments { input_variance });
         line(case, runs, "second sensor", |second| Method::SecondSensor { input: second.to_vec() });
-        line(case, runs, "likelihood, walk", |_| case.likely(InputCourse::RandomWalk));
+        line(case, runs, "likelihood, walk", |_| case.likely(InputModel::RandomWalk));
         if matches!(case.course, noisy::Course::Day) {
-            line(case, runs, "likelihood, smooth", |_| case.likely(InputCourse::IntegratedRandomWalk));
+            line(case, runs, "likelihood, smooth", |_| case.likely(InputModel::IntegratedRandomWalk));
         }
     }
 }

@@ -4,9 +4,9 @@
 use nalgebra::{DMatrix, DVector};
 
 /// First damping, the one below which there is none, and how many times the first one leaves no hope.
-const FIRST: f64 = 1e-3;
-const NONE: f64 = 1e-9;
-const HOPELESS: f64 = 1e12;
+const INITIAL_DAMPING: f64 = 1e-3;
+const MIN_DAMPING: f64 = 1e-9;
+const MAX_DAMPING: f64 = 1e12;
 
 /// Share of the diagonal that is added to the normal equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,12 +17,12 @@ pub(crate) struct Damping {
 
 impl Damping {
     pub(crate) fn first() -> Self {
-        Self::starting_at(FIRST)
+        Self::starting_at(INITIAL_DAMPING)
     }
 
     /// Another first damping.
     pub(crate) fn starting_at(share: f64) -> Self {
-        Self { share, last: HOPELESS * share.max(FIRST) }
+        Self { share, last: MAX_DAMPING * share.max(INITIAL_DAMPING) }
     }
 
     pub(crate) fn share(self) -> f64 {
@@ -31,12 +31,12 @@ impl Damping {
 
     /// After a step that helped.
     pub(crate) fn relax(&mut self) {
-        self.share = if self.share < NONE { 0.0 } else { 0.1 * self.share };
+        self.share = if self.share < MIN_DAMPING { 0.0 } else { 0.1 * self.share };
     }
 
     /// After a step that did not.
     pub(crate) fn tighten(&mut self) {
-        self.share = (10.0 * self.share).max(FIRST);
+        self.share = (10.0 * self.share).max(INITIAL_DAMPING);
     }
 
     pub(crate) fn is_hopeless(self) -> bool {

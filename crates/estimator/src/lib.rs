@@ -39,7 +39,7 @@ pub mod calibrate;
 mod cone;
 #[cfg(feature = "design")]
 pub mod consistency;
-pub mod error;
+mod error;
 pub mod filter;
 #[cfg(feature = "design")]
 pub mod identify;

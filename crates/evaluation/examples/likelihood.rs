@@ -110,8 +110,8 @@ fn watch_all(worlds: &[World], settings: &ObserverSettings) -> Result<Vec<Watche
 }
 
 fn watch(world: &World, settings: &ObserverSettings) -> Result<Watched, Failure> {
-    let told = &world.told;
-    let mut observer = Observer::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
+    let data = &world.operator_data;
+    let mut observer = Observer::new(&data.vessel, &data.sensors, &data.commissioning, settings)?;
     let mut watched = Watched::default();
     let begun_s = world.log.time_s.first().copied().unwrap_or_default();
     for (row, (time_s, readings)) in world.log.rows().enumerate() {

@@ -12,8 +12,10 @@ use cylwatch_thermal::units::DAY_S;
 use std::time::Instant;
 
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
-use cylwatch_estimator::placement::search::{Method, Watch, search};
-use cylwatch_estimator::placement::{Conditions, Constraints, DetectionSettings, Quantity, SitedCylinder};
+use cylwatch_estimator::placement::search::{Method, SearchControl, search};
+use cylwatch_estimator::placement::{
+    Conditions, Constraints, DetectionSettings, InstrumentedCylinder, Quantity,
+};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 use cylwatch_evaluation::placement::{
@@ -58,12 +60,14 @@ impl Study {
 
     /// The best layouts by the gas temperature.
     fn best(&self, settings: &ObserverSettings, member: &LeakHypothesis) -> Vec<Vec<usize>> {
-        let sited =
-            SitedCylinder::new(&self.vessel, &self.candidates, settings, member, &self.conditions).unwrap();
+        let cylinder =
+            InstrumentedCylinder::new(&self.vessel, &self.candidates, settings, member, &self.conditions)
+                .unwrap();
         let constraints = Constraints { must: vec![NAMES.len() - 1], ..Constraints::of(4) };
-        let problem = sited.problem(Quantity::GasTemperature).unwrap();
+        let problem = cylinder.problem(Quantity::GasTemperature).unwrap();
         let found =
-            search(&problem, &constraints, Method::Exhaustive, f64::INFINITY, &Watch::default()).unwrap();
+            search(&problem, &constraints, Method::Exhaustive, f64::INFINITY, &SearchControl::default())
+                .unwrap();
         found.layouts.into_iter().take(BEST).map(|layout| layout.sensors).collect()
     }
 }
@@ -152,7 +156,8 @@ fn main() {
         let layouts = study.best(&quiet, &member);
         let settings = ConfirmSettings { seeds, ..ConfirmSettings::default() };
         let found =
-            matched(&study.claim(&quiet, &member, &layouts), &settings, &Watch::default(), &|_| ()).unwrap();
+            matched(&study.claim(&quiet, &member, &layouts), &settings, &SearchControl::default(), &|_| ())
+                .unwrap();
         println!("matched, {title}: {seeds} seeds, {:.0} s", begun.elapsed().as_secs_f64());
         table(&found.layouts);
     }
@@ -161,10 +166,10 @@ fn main() {
     let layouts = study.best(&quiet, &slow);
     let settings = ConfirmSettings { seeds, ..ConfirmSettings::default() };
     let detection = DetectionSettings::default();
-    let watch = Watch::default();
+    let control = SearchControl::default();
     let begun = Instant::now();
     let found =
-        detected_matched(&study.claim(&quiet, &slow, &layouts), &settings, &detection, &watch).unwrap();
+        detected_matched(&study.claim(&quiet, &slow, &layouts), &settings, &detection, &control).unwrap();
     println!("matched, smallest leak: {seeds} seeds, {:.0} s", begun.elapsed().as_secs_f64());
     leaks(&found);
     study.linearise_for(&usual);
@@ -173,23 +178,24 @@ fn main() {
     let settings =
         ConfirmSettings { seeds: mismatched_seeds, duration_s: 8.0 * DAY_S, ..ConfirmSettings::default() };
     let found =
-        mismatched(&study.claim(&usual, &mass, &layouts), &settings, &Watch::default(), &|_| ()).unwrap();
+        mismatched(&study.claim(&usual, &mass, &layouts), &settings, &SearchControl::default(), &|_| ())
+            .unwrap();
     println!("mismatched, railway weeks: {mismatched_seeds} seeds, {:.0} s", begun.elapsed().as_secs_f64());
     table(&found.layouts);
     let settings = ConfirmSettings { burn_in_s: 5.0 * DAY_S, ..settings };
     let found =
-        detected_mismatched(&study.claim(&usual, &slow, &layouts), &settings, &detection, &watch).unwrap();
+        detected_mismatched(&study.claim(&usual, &slow, &layouts), &settings, &detection, &control).unwrap();
     println!("mismatched, smallest leak: {mismatched_seeds} seeds");
     leaks(&found);
     // The paper's question: one thermometer beside the pressure, at each place.
     let singles: Vec<Vec<usize>> = (0..5).map(|place| vec![place, NAMES.len() - 1]).collect();
     let seeds = 2 * mismatched_seeds;
     let settings = ConfirmSettings { seeds, burn_in_s: 3.0 * DAY_S, ..settings };
-    let found = mismatched(&study.claim(&usual, &mass, &singles), &settings, &watch, &|_| ()).unwrap();
+    let found = mismatched(&study.claim(&usual, &mass, &singles), &settings, &control, &|_| ()).unwrap();
     println!("one thermometer, railway weeks: {seeds} seeds");
     table(&found.layouts);
     let settings = ConfirmSettings { burn_in_s: 5.0 * DAY_S, ..settings };
     let found =
-        detected_mismatched(&study.claim(&usual, &slow, &singles), &settings, &detection, &watch).unwrap();
+        detected_mismatched(&study.claim(&usual, &slow, &singles), &settings, &detection, &control).unwrap();
     leaks(&found);
 }

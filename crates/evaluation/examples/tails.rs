@@ -13,7 +13,7 @@ use cylwatch_detector::evidence::{Scale, Tails};
 use cylwatch_detector::monitor::MonitorSettings;
 use cylwatch_evaluation::judge::candidate::Registry;
 use cylwatch_evaluation::judge::plan::{Plan, Role, Unit};
-use cylwatch_evaluation::tails::{CommissionedScale, FitSettings, Watched, commission, watch};
+use cylwatch_evaluation::tails::{CommissionedScale, FitSettings, MonitoredCylinder, commission, monitor};
 use cylwatch_evaluation::world::{NominalVessel, Simulated};
 use rayon::prelude::*;
 
@@ -30,8 +30,8 @@ fn main() -> Result<(), Fault> {
     let (tanks, cylinders): (Vec<Unit>, Vec<Unit>) = plan.units().into_iter().partition(is_tank);
     for (title, units) in [("Cylinders", cylinders), ("Tanks", tanks)] {
         let of = units.par_iter().with_max_len(1).map(|unit| of_simulation(&plan, unit));
-        let watched: Vec<Vec<Watched>> = of.collect::<Result<_, Fault>>()?;
-        print(title, &watched.into_iter().flatten().collect::<Vec<_>>())?;
+        let monitored: Vec<Vec<MonitoredCylinder>> = of.collect::<Result<_, Fault>>()?;
+        print(title, &monitored.into_iter().flatten().collect::<Vec<_>>())?;
     }
     Ok(())
 }
@@ -42,19 +42,19 @@ fn is_tank(unit: &Unit) -> bool {
     unit.simulated.family.vessel.nominal().is_ok_and(of_tanks)
 }
 
-fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<Watched>, Fault> {
+fn of_simulation(plan: &Plan, unit: &Unit) -> Result<Vec<MonitoredCylinder>, Fault> {
     let (simulated, settings) = (Simulated::run(&unit.simulated)?, MonitorSettings::default());
     let tasks = unit.tasks.iter().map(|&task| &plan.tasks[task]).filter(|task| task.role == Role::Tune);
-    tasks.map(|task| Ok(watch(&simulated.world(&task.request)?, &settings)?)).collect()
+    tasks.map(|task| Ok(monitor(&simulated.world(&task.request)?, &settings)?)).collect()
 }
 
-fn print(title: &str, watched: &[Watched]) -> Result<(), Fault> {
-    if watched.is_empty() {
+fn print(title: &str, monitored: &[MonitoredCylinder]) -> Result<(), Fault> {
+    if monitored.is_empty() {
         return Ok(());
     }
     let mut out = std::io::stdout();
     writeln!(out, "{title}\n")?;
-    let found = commission(watched, &FitSettings { mean_time_s: YEARS * YEAR_S, stretch: 1.0, seed: 1 })?;
+    let found = commission(monitored, &FitSettings { mean_time_s: YEARS * YEAR_S, stretch: 1.0, seed: 1 })?;
     for CommissionedScale { tail, .. } in found.scales {
         let (level, interval_s, scale, shape) = (tail.level, tail.interval_s, tail.scale, tail.shape);
         writeln!(
@@ -62,11 +62,11 @@ fn print(title: &str, watched: &[Watched]) -> Result<(), Fault> {
             "    Tail {{ level: {level:.4}, interval_s: {interval_s:.4e}, scale: {scale:.4}, shape: {shape:.3} }},"
         )?;
     }
-    let years = watched.iter().map(|watched| watched.request.length_s).sum::<f64>() / YEAR_S;
+    let years = monitored.iter().map(|monitored| monitored.request.length_s).sum::<f64>() / YEAR_S;
     writeln!(
         out,
         "\nThresholds of one false alarm in {YEARS} years, from {years:.1} years of {} logs\n",
-        watched.len()
+        monitored.len()
     )?;
     for of in found.scales {
         let (low, high) = of.threshold_interval;
@@ -79,17 +79,18 @@ fn print(title: &str, watched: &[Watched]) -> Result<(), Fault> {
         "\nFalse alarms in ten years, out of sample: {:.2} ({low:.2} to {high:.2}), {} in {:.1} years",
         rate.per_ten_years, rate.count, rate.cylinder_years
     )?;
-    let part = |watched: &Watched| {
-        let largest = watched.record.largest();
+    let part = |monitored: &MonitoredCylinder| {
+        let largest = monitored.record.largest();
         Scale::ALL
             .map(|scale| largest[scale as usize] / found.scales[scale as usize].threshold)
             .into_iter()
             .fold(0.0, f64::max)
     };
-    let mut highest: Vec<(f64, &Watched)> = watched.iter().map(|watched| (part(watched), watched)).collect();
+    let mut highest: Vec<(f64, &MonitoredCylinder)> =
+        monitored.iter().map(|monitored| (part(monitored), monitored)).collect();
     highest.sort_by(|a, b| b.0.total_cmp(&a.0));
     writeln!(out, "\nClosest to a threshold\n")?;
-    for (part, Watched { request, record }) in highest.iter().take(SHOWN) {
+    for (part, MonitoredCylinder { request, record }) in highest.iter().take(SHOWN) {
         writeln!(out, "{part:.2} {} {}: {:.2?}", request.family, request.seed, record.largest())?;
     }
     writeln!(out)?;

@@ -51,9 +51,9 @@ const WEEKS: [Week; 11] = [
     Week { name: "gas in layers", layers: true, ..USUAL },
 ];
 
-/// What was said: rows after the first day, and whatever was told in all of the log.
+/// Counts: rows after the first day, and whatever was told in all of the log.
 #[derive(Default)]
-struct Said {
+struct Counts {
     rows: usize,
     tight: usize,
     exchanges: usize,
@@ -67,11 +67,11 @@ fn main() -> Result<(), Failure> {
         "| week | tight after the first day, worst of {seeds} sets of sensors | exchanges | sensor faults | leaks |"
     );
     println!("|---|---:|---:|---:|---:|");
-    let weeks: Vec<Vec<Said>> =
+    let weeks: Vec<Vec<Counts>> =
         WEEKS.par_iter().map(|week| watched(week, seeds)).collect::<Result<_, _>>()?;
     for (week, sets) in WEEKS.iter().zip(weeks) {
         let worst = sets.iter().map(|of| of.tight as f64 / of.rows as f64).fold(1.0, f64::min);
-        let sum = |of: fn(&Said) -> usize| sets.iter().map(of).sum::<usize>();
+        let sum = |of: fn(&Counts) -> usize| sets.iter().map(of).sum::<usize>();
         println!(
             "| {} | {:.1} % | {} | {} | {} |",
             week.name,
@@ -85,7 +85,7 @@ fn main() -> Result<(), Failure> {
 }
 
 /// One simulation, read by each set of sensors.
-fn watched(week: &Week, seeds: u64) -> Result<Vec<Said>, Failure> {
+fn watched(week: &Week, seeds: u64) -> Result<Vec<Counts>, Failure> {
     let mut vessel = presets::load("nitrogen-20l")?;
     let told = vessel.clone();
     if week.layers {
@@ -96,7 +96,7 @@ fn watched(week: &Week, seeds: u64) -> Result<Vec<Said>, Failure> {
     let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| ())?;
     let rows = (scenario.duration_s / week.interval_s) as usize;
     let times_s: Vec<f64> = (0..=rows).map(|row| week.interval_s * row as f64).collect();
-    (1..=seeds).map(|seed| said(&told, &sample_at(&run, &suite.draw(seed), &times_s, seed)?)).collect()
+    (1..=seeds).map(|seed| counts(&told, &sample_at(&run, &suite.draw(seed), &times_s, seed)?)).collect()
 }
 
 /// The preset with this week's sun, wind and tunnels.
@@ -118,25 +118,25 @@ fn changed(week: &Week) -> Result<Scenario, Failure> {
 }
 
 /// What the monitor says of a log, with typical sensors of the names in it.
-fn said(vessel: &Vessel, log: &Log) -> Result<Said, Failure> {
+fn counts(vessel: &Vessel, log: &Log) -> Result<Counts, Failure> {
     let sensors: Vec<Sensor> =
         log.channels.iter().map(|channel| Sensor::typical(&channel.name)).collect::<Result<_, _>>()?;
     let filled = Commissioning { settled: false, ..Commissioning::filled(200e5, 288.15) };
     let mut monitor = Monitor::new(vessel, &sensors, &filled, &MonitorSettings::default())?;
-    let mut said = Said::default();
+    let mut counts = Counts::default();
     for (time_s, readings) in log.rows() {
         for output in monitor.step(time_s, readings)? {
             let count =
                 |is: fn(&EventKind) -> bool| output.events.iter().filter(|event| is(&event.kind)).count();
-            said.exchanges += count(|kind| matches!(kind, EventKind::Discharge(_) | EventKind::Refill(_)));
-            said.faults +=
+            counts.exchanges += count(|kind| matches!(kind, EventKind::Discharge(_) | EventKind::Refill(_)));
+            counts.faults +=
                 count(|kind| matches!(kind, EventKind::Sensor { health, .. } if *health != Health::Good));
-            said.leaks += count(|kind| matches!(kind, EventKind::LeakFound(_)));
+            counts.leaks += count(|kind| matches!(kind, EventKind::LeakFound(_)));
             if time_s > DAY_S {
-                said.rows += 1;
-                said.tight += usize::from(output.decision.verdict == Verdict::Tight);
+                counts.rows += 1;
+                counts.tight += usize::from(output.decision.verdict == Verdict::Tight);
             }
         }
     }
-    Ok(said)
+    Ok(counts)
 }

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(folder)?;
     std::fs::write(folder.join("log.csv"), log(&world)?)?;
     std::fs::write(folder.join("vessel.toml"), world.request.family.vessel.text())?;
-    std::fs::write(folder.join("sensors.toml"), world.told.sensors_spec.to_toml()?)?;
+    std::fs::write(folder.join("sensors.toml"), world.operator_data.sensors_spec.to_toml()?)?;
     say(&world, took_s);
     Ok(())
 }
@@ -73,16 +73,16 @@ fn log(world: &World) -> Result<String, std::fmt::Error> {
 /// What is not in the files, on standard error.
 #[allow(clippy::print_stderr, reason = "an example that is run by hand")]
 fn say(world: &World, took_s: f64) {
-    let Fill::Settled { pressure_pa, temperature_k } = world.told.commissioning.fill else { return };
+    let Fill::Settled { pressure_pa, temperature_k } = world.operator_data.commissioning.fill else { return };
     eprintln!("{} rows in {took_s:.2} s", world.log.time_s.len());
     eprintln!(
         "--fill-pressure-bar {:.3} --fill-temperature-degc {}",
         pressure_pa / 1e5,
         temperature_k - 273.15
     );
-    eprintln!("settled at the start: {}", world.told.commissioning.settled);
-    for happening in &world.happenings {
-        eprintln!("{happening:?}");
+    eprintln!("settled at the start: {}", world.operator_data.commissioning.settled);
+    for event in &world.events {
+        eprintln!("{event:?}");
     }
     eprintln!("{:#?}", world.drawn);
 }

@@ -9,15 +9,15 @@
 //! | [`matched`] | worlds that are the observer's own model, and the bound that no estimator goes below there |
 //! | [`fault`] | faults put into good rows, and what a monitor must make of them |
 //! | [`baseline`] | the paper's detector and others without an observer, to compare with |
-//! | [`noise`] | noise of a series without a leak, and the shortest delay in it |
+//! | `noise` | noise of a series without a leak, and the shortest delay in it |
 //! | [`judge`] | runs candidates on worlds and writes the table by family |
 //! | [`placement`] | whether layouts of sensors achieve what is predicted of them |
 pub mod baseline;
-pub mod error;
+mod error;
 pub mod fault;
 pub mod judge;
 pub mod matched;
-pub mod noise;
+mod noise;
 pub mod placement;
 mod random;
 pub mod tails;

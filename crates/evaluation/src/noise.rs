@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::estimator::minimum::golden_section;
 
 /// Fewest values that tell their noise.
-const FEWEST: usize = 50;
+const MIN_SAMPLES: usize = 50;
 /// Correlation time below which a series is white, in median intervals: neighbours correlate by `e^-5`.
 const WHITE: f64 = 0.2;
 /// Points of the first search over the correlation time.
@@ -34,7 +34,7 @@ const WIDTH: f64 = 1e-6;
 
 /// A value of a series and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Residual {
+pub(crate) struct Residual {
     /// Time, s.
     pub time_s: f64,
     /// Value in its own unit.
@@ -94,7 +94,7 @@ impl Noise {
 /// Whether values are enough, finite, in order, and vary.
 fn is_series(series: &[Residual]) -> bool {
     let finite = |residual: &Residual| residual.value.is_finite() && residual.time_s.is_finite();
-    series.len() >= FEWEST
+    series.len() >= MIN_SAMPLES
         && series.iter().all(finite)
         && series.windows(2).all(|pair| pair[1].time_s > pair[0].time_s)
         && series.iter().any(|residual| residual.value != series[0].value)

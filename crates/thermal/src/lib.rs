@@ -2,7 +2,7 @@
 //! leaks and other flows, and the adaptive implicit simulation of all of them together.
 //!
 //! Data flow, one type per arrow:
-//! [`vessel::VesselSpec`] and [`scenario::ScenarioSpec`] are what a file says; validated they become a
+//! [`vessel::VesselSpec`] and `scenario::ScenarioSpec` are what a file says; validated they become a
 //! [`vessel::Vessel`] and a [`scenario::Scenario`]; [`simulate::simulate`] turns the pair into a
 //! [`trajectory::Trajectory`]. All signatures are SI, with the unit in the name.
 //!
@@ -32,7 +32,7 @@
 //! ```
 #[cfg(feature = "files")]
 pub mod document;
-pub mod error;
+mod error;
 pub mod flow;
 pub mod fluid;
 #[cfg(feature = "simulate")]

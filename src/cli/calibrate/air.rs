@@ -4,7 +4,7 @@
 //! by [`CUT`] variances of the noise. A step of the air is a cut, too, and stays as steep as it was read.
 
 /// Fall of the sum of squares, in variances of the noise, that is no chance: two numbers and a place among a day of readings.
-const CUT: f64 = 30.0;
+const SIGNIFICANT_FALL: f64 = 30.0;
 
 /// Knots of the pieces' lines: each point belongs to one piece, whose ends are the first and the last of its points.
 /// `least_sd` is the least noise, as of readings that are rounded.
@@ -14,7 +14,7 @@ pub(super) fn drawn(points: &[(f64, f64)], least_sd: f64) -> Vec<(f64, f64)> {
     let mut knots = Vec::new();
     let mut waiting = vec![(0, points.len())];
     while let Some((from, to)) = waiting.pop() {
-        match sums.cut(from, to, CUT * variance) {
+        match sums.cut(from, to, SIGNIFICANT_FALL * variance) {
             // The first half is next.
             Some(place) => waiting.extend([(place, to), (from, place)]),
             None => knots.extend(sums.line(points, from, to)),

@@ -3,14 +3,14 @@ use super::quantities::Quantities;
 use crate::cli::fill::GivenFill;
 use crate::cli::number::at_least;
 use crate::cli::options::{
-    EXPERT, LogArguments, MORE, OUTPUT, SensorArguments, SolverArguments, ViewArguments,
+    EXPERT, HELP_FOOTER, LogArguments, OUTPUT, SensorArguments, SolverArguments, ViewArguments,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `calibrate`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = EXAMPLES)]
+#[command(after_help = HELP_FOOTER, after_long_help = EXAMPLES)]
 pub(crate) struct CalibrateArguments {
     /// Vessel to begin with: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,

@@ -1,5 +1,5 @@
 //! Options of `calibrate` that have a unit: film, wind, gaps.
-use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::thermal::units::Dimension;
 
 /// What can be given.
@@ -24,7 +24,7 @@ impl Choices for QuantityOptions {
 }
 
 /// Quantities as given.
-pub(super) type Quantities = Given<QuantityOptions>;
+pub(super) type Quantities = QuantityArguments<QuantityOptions>;
 
 impl Quantities {
     /// Film coefficient, W/(m² K).

@@ -1,7 +1,7 @@
 //! The raw arguments of `commission`.
 use crate::cli::number::{above, at_least};
 use crate::cli::options::FalseAlarmArguments;
-use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::evaluation::tails::Campaign;
 use crate::evaluation::world::{Climate, GasKind, RowPattern, SensorClass};
 use crate::thermal::units::Dimension;
@@ -40,7 +40,7 @@ pub(crate) struct CommissionArguments {
     pub output: PathBuf,
     /// Pressures.
     #[command(flatten)]
-    pub pressures: Given<CommissionQuantities>,
+    pub pressures: QuantityArguments<CommissionQuantities>,
     /// Climates, gone through in turn as all lists; a kind that is named twice comes twice as often.
     #[arg(long = "climate", value_name = "LIST", value_delimiter = ',', value_parser = kinds(Climate::ALL, Climate::key),
         default_value = listed(&Campaign::default().climates))]

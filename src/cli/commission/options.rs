@@ -7,7 +7,7 @@ use crate::thermal::vessel::Vessel;
 /// Usual fill, Pa.
 const FILL_PA: f64 = 200.0 * BAR_PA;
 /// Stretches of a rehearsal, of the usual ones: none is longer than an hour.
-const REHEARSED: f64 = 1e-3;
+const REHEARSAL_PART: f64 = 1e-3;
 
 /// Options that passed all checks that need no vessel.
 pub(super) struct Options {
@@ -26,7 +26,7 @@ impl Options {
         let data = Target::checked(Some(&output), &[Path::new(&vessel)])?;
         let CommissionArguments { cylinders, days, seed, .. } = arguments;
         let mean_time_s = arguments.false_alarms.mean_time_s();
-        let stretch = if arguments.rehearsal { REHEARSED } else { 1.0 };
+        let stretch = if arguments.rehearsal { REHEARSAL_PART } else { 1.0 };
         let length_s = days * DAY_S;
         let campaign = Campaign { climates, gases, sensors, rows, cylinders, length_s, seed };
         check(&campaign, stretch)?;

@@ -1,7 +1,7 @@
 //! The raw arguments of `estimate`.
 use crate::cli::fill::GivenFill;
 use crate::cli::options::{
-    DataArguments, EXPERT, LogArguments, MORE, SensorArguments, VesselAndLog, ViewArguments,
+    DataArguments, EXPERT, HELP_FOOTER, LogArguments, SensorArguments, VesselAndLog, ViewArguments,
 };
 use crate::estimator::EstimatorError;
 use crate::estimator::observer::Engine;
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 /// Arguments of `estimate`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = estimate_help())]
+#[command(after_help = HELP_FOOTER, after_long_help = estimate_help())]
 pub(crate) struct EstimateArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,

@@ -1,7 +1,7 @@
 //! The loop's body: a row in, an estimate out, everything else counted.
 use super::*;
 use crate::cli::row_stream::RowStream;
-use crate::cli::views::Made;
+use crate::cli::views::RenderedViews;
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::Truth;
@@ -107,7 +107,7 @@ impl<'a> Rows<'a> {
                 };
                 options.views.make(picture, with, inputs.sources(), &provenance)?
             }
-            None => Made::default(),
+            None => RenderedViews::default(),
         };
         let learned = options.learned_out.as_ref().zip(observer.learned());
         views.write()?;

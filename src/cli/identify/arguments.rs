@@ -2,16 +2,16 @@
 use super::quantities::Quantities;
 use crate::cli::format::Format;
 use crate::cli::number::{at_least, within};
-use crate::cli::options::{EXPERT, LogArguments, MORE, OUTPUT, ViewArguments};
+use crate::cli::options::{EXPERT, HELP_FOOTER, LogArguments, OUTPUT, ViewArguments};
 use crate::estimator::identify::{
-    DeadTime, ErrorModel, Gain, InitialState, InputCourse, Settings, StartMethod, Structure,
+    DeadTime, ErrorModel, Gain, InitialState, InputModel, Settings, StartMethod, Structure,
 };
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Arguments of `identify`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = EXAMPLES)]
+#[command(after_help = HELP_FOOTER, after_long_help = EXAMPLES)]
 pub(crate) struct IdentifyArguments {
     /// Log: a CSV or Parquet file, or - for CSV on stdin.
     pub log: String,
@@ -65,7 +65,7 @@ pub(crate) struct IdentifyArguments {
     pub quantities: Quantities,
     /// Model of the true input, for the method maximum-likelihood.
     #[arg(long, value_enum, default_value = "random-walk", help_heading = EXPERT)]
-    pub course: CourseName,
+    pub course: InputModelName,
     /// Error model behind the intervals of output-error and refined-instruments.
     #[arg(long, value_enum, default_value = "judged", help_heading = EXPERT)]
     pub errors: ErrorsName,
@@ -128,18 +128,18 @@ pub(crate) enum HoldName {
 
 /// Course of the true input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum CourseName {
+pub enum InputModelName {
     /// Random walk.
     RandomWalk,
     /// Integrated random walk: smooth.
     IntegratedRandomWalk,
 }
 
-impl From<CourseName> for InputCourse {
-    fn from(name: CourseName) -> Self {
+impl From<InputModelName> for InputModel {
+    fn from(name: InputModelName) -> Self {
         match name {
-            CourseName::RandomWalk => Self::RandomWalk,
-            CourseName::IntegratedRandomWalk => Self::IntegratedRandomWalk,
+            InputModelName::RandomWalk => Self::RandomWalk,
+            InputModelName::IntegratedRandomWalk => Self::IntegratedRandomWalk,
         }
     }
 }

@@ -2,13 +2,13 @@
 use super::arguments::{HoldName, IdentifyArguments, MethodName};
 use super::record::base_name;
 use super::{Quantities, Record};
-use crate::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputCourse, Method, Structure};
+use crate::estimator::identify::{DeadTime, Gain, Hold, InitialState, InputModel, Method, Structure};
 use anyhow::{Context, bail};
 
 /// A method that has what it needs, apart from the data.
 pub(super) struct Choice {
     method: MethodName,
-    course: InputCourse,
+    input_model: InputModel,
     /// How the input runs between its samples.
     pub hold: Hold,
 }
@@ -45,7 +45,7 @@ impl Choice {
             HoldName::First => Hold::First,
             HoldName::Zero => Hold::Zero,
         };
-        Ok(Self { method: *method, course: arguments.course.into(), hold })
+        Ok(Self { method: *method, input_model: arguments.course.into(), hold })
     }
 
     /// The method for a record.
@@ -70,7 +70,7 @@ impl Choice {
             MethodName::MaximumLikelihood => Method::MaximumLikelihood {
                 input_variance: input()?,
                 output_variance: output()?,
-                course: self.course,
+                input_model: self.input_model,
             },
         })
     }

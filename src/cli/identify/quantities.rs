@@ -1,5 +1,5 @@
 //! Options of `identify` that have a unit: dead times, gaps, noises.
-use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::report::identify::Signal;
 use crate::thermal::units::{BAR_PA, Dimension};
 use anyhow::bail;
@@ -43,7 +43,7 @@ impl Choices for QuantityOptions {
 }
 
 /// Quantities as given.
-pub(super) type Quantities = Given<QuantityOptions>;
+pub(super) type Quantities = QuantityArguments<QuantityOptions>;
 
 impl Quantities {
     /// Known and longest dead time, s.

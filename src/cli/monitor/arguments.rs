@@ -1,10 +1,10 @@
 //! The raw arguments of `monitor`.
 use crate::cli::fill::GivenFill;
 use crate::cli::options::{
-    DataArguments, EXPERT, FalseAlarmArguments, LogArguments, MORE, OUTPUT, SensorArguments, VesselAndLog,
-    ViewArguments,
+    DataArguments, EXPERT, FalseAlarmArguments, HELP_FOOTER, LogArguments, OUTPUT, SensorArguments,
+    VesselAndLog, ViewArguments,
 };
-use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::report::monitor;
 use crate::thermal::units::Dimension;
 use clap::Args;
@@ -32,12 +32,12 @@ impl Choices for MonitorQuantities {
 
 /// Arguments of `monitor`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = help())]
+#[command(after_help = HELP_FOOTER, after_long_help = help())]
 pub(crate) struct MonitorArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,
     #[command(flatten)]
-    pub given: Given<MonitorQuantities>,
+    pub given: QuantityArguments<MonitorQuantities>,
     #[command(flatten)]
     pub false_alarms: FalseAlarmArguments,
     /// Continue from FILE if it exists, and save the state to it.

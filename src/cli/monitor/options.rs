@@ -3,7 +3,7 @@ use super::arguments::MonitorArguments;
 use super::*;
 use crate::cli::options::LogArguments;
 use crate::cli::output::check_distinct;
-use crate::cli::unit_options::Given;
+use crate::cli::unit_options::QuantityArguments;
 use crate::detector::monitor::intake::IntakeSettings;
 use crate::report::monitor::OperatingLimits;
 use crate::thermal::units::DAY_S;
@@ -98,7 +98,7 @@ impl Options {
     }
 }
 
-fn limits(given: &Given<super::arguments::MonitorQuantities>) -> anyhow::Result<OperatingLimits> {
+fn limits(given: &QuantityArguments<super::arguments::MonitorQuantities>) -> anyhow::Result<OperatingLimits> {
     Ok(OperatingLimits {
         limit_pa: given.si("limit", Dimension::Pressure)?.unwrap_or(160.0 * BAR_PA),
         coldest_k: given.si("coldest", Dimension::Temperature)?.unwrap_or(ZERO_CELSIUS_K - 25.0),

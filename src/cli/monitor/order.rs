@@ -5,8 +5,8 @@
 use anyhow::bail;
 
 /// Rows that are looked at before a log is refused, and the part of them that may step back.
-const FEWEST: u64 = 20;
-const PART: u64 = 10;
+const MIN_ROWS: u64 = 20;
+const BACKWARD_PART: u64 = 10;
 
 /// Counts rows that step back in time.
 pub(super) struct Order {
@@ -27,7 +27,7 @@ impl Order {
         self.rows += 1;
         self.back += u64::from(time_s < self.last_s - self.lateness_s);
         self.last_s = time_s;
-        if self.rows >= FEWEST && self.back * PART > self.rows {
+        if self.rows >= MIN_ROWS && self.back * BACKWARD_PART > self.rows {
             let (back, rows, lateness_s) = (self.back, self.rows, self.lateness_s);
             bail!(
                 "{place}: {back} of {rows} rows are earlier than the row before them by more than --lateness-s \

@@ -268,7 +268,7 @@ impl<'a> Session<'a> {
                 };
                 options.views.make(picture, with, inputs.sources(), &provenance)?
             }
-            None => Made::default(),
+            None => RenderedViews::default(),
         };
         views.write()?;
         self.save(log)?;

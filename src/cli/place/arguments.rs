@@ -1,7 +1,7 @@
 //! The raw arguments of `place`.
 use super::quantities::Quantities;
 use crate::cli::number::at_least;
-use crate::cli::options::{DataArguments, EXPERT, FalseAlarmArguments, MORE, OUTPUT, ViewArguments};
+use crate::cli::options::{DataArguments, EXPERT, FalseAlarmArguments, HELP_FOOTER, OUTPUT, ViewArguments};
 use crate::estimator::placement::Criterion;
 use crate::estimator::placement::search::Method;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Arguments of `place`.
 #[derive(Debug, Args)]
-#[command(after_help = MORE, after_long_help = HELP)]
+#[command(after_help = HELP_FOOTER, after_long_help = HELP)]
 pub(crate) struct PlaceArguments {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,

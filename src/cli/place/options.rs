@@ -3,7 +3,7 @@ use super::*;
 use crate::cli::output::check_distinct;
 use crate::estimator::placement::search::Method;
 use crate::estimator::placement::{
-    Criterion, DetectionSettings, PublishedSettings, SiteSettings, signature_threshold_sd,
+    Criterion, DetectionSettings, PublishedSettings, SteadySettings, signature_threshold_sd,
 };
 use crate::report::number;
 use std::path::Path;
@@ -77,7 +77,7 @@ fn settings(arguments: &PlaceArguments, at_rest_only: bool) -> anyhow::Result<St
     if arguments.confirm == 1 {
         bail!("--confirm 1: at least 2 runs have a spread");
     }
-    if at_rest_only && matches!(criterion, Criterion::Course(_)) {
+    if at_rest_only && matches!(criterion, Criterion::Scenario(_)) {
         bail!("--criterion {word} is a number along a scenario: name one with --scenario");
     }
     let method = arguments.method.map(Method::from);
@@ -88,7 +88,7 @@ fn settings(arguments: &PlaceArguments, at_rest_only: bool) -> anyhow::Result<St
         );
     }
     Ok(StudySettings {
-        site: site(arguments)?,
+        steady: steady(arguments)?,
         sensors: arguments.sensors,
         budget: arguments.budget.unwrap_or(f64::INFINITY),
         criterion,
@@ -109,8 +109,8 @@ fn runs(arguments: &PlaceArguments) -> ClosedLoopSettings {
 }
 
 /// Where the cylinder rests, and when a leak counts as found.
-fn site(arguments: &PlaceArguments) -> anyhow::Result<SiteSettings> {
-    let usual = SiteSettings::default();
+fn steady(arguments: &PlaceArguments) -> anyhow::Result<SteadySettings> {
+    let usual = SteadySettings::default();
     let conditions = arguments.quantities.conditions()?;
     let within_s = arguments.quantities.within_s()?.unwrap_or(usual.detection.within_s);
     if within_s < conditions.interval_s {
@@ -122,5 +122,5 @@ fn site(arguments: &PlaceArguments) -> anyhow::Result<SiteSettings> {
     observer.wall_nodes = arguments.wall_nodes.unwrap_or(observer.wall_nodes);
     let threshold_sd = signature_threshold_sd(within_s, conditions.interval_s, between_false_alarms_s)?;
     let detection = DetectionSettings { within_s, threshold_sd, ..usual.detection };
-    Ok(SiteSettings { observer, conditions, detection })
+    Ok(SteadySettings { observer, conditions, detection })
 }

@@ -1,5 +1,5 @@
 //! Options of `place` that have a unit: where the cylinder stands, what is to be found, how long is searched.
-use crate::cli::unit_options::{Choice, Choices, Given};
+use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::estimator::placement::Conditions;
 use crate::thermal::units::Dimension;
 use std::time::Duration;
@@ -40,7 +40,7 @@ impl Choices for QuantityOptions {
 }
 
 /// Quantities as given.
-pub(super) type Quantities = Given<QuantityOptions>;
+pub(super) type Quantities = QuantityArguments<QuantityOptions>;
 
 impl Quantities {
     /// Where the cylinder rests and how often it is read.

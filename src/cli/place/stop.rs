@@ -1,6 +1,6 @@
 //! What ends a search early: Ctrl-C and the time limit. Meanwhile the progress is shown.
 use crate::cli::progress::Progress;
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::search::SearchControl;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -29,17 +29,17 @@ pub(super) fn is_due(deadline: Option<Instant>) -> bool {
 
 /// Shows what has been looked at, and stops the search when it is due, until the other end of the channel is gone.
 pub(super) fn attend(
-    watch: &Watch,
+    control: &SearchControl,
     deadline: Option<Instant>,
     (progress, expected): (&Progress, Option<f64>),
     ended: &Receiver<()>,
 ) {
     while ended.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
         if is_due(deadline) {
-            watch.stop.store(true, Ordering::Relaxed);
+            control.stop.store(true, Ordering::Relaxed);
             progress.say("ending with what there is");
         } else {
-            let evaluated = watch.evaluated.load(Ordering::Relaxed);
+            let evaluated = control.evaluated.load(Ordering::Relaxed);
             match expected {
                 Some(expected) if (evaluated as f64) < expected => {
                     progress.show("searching layouts", evaluated as f64 / expected);

@@ -4,7 +4,7 @@ use super::sketch::Sketch;
 use crate::thermal::units::HOUR_S;
 
 /// Longest intervals that are kept.
-const KEPT: usize = 20;
+const LISTED_INTERVALS: usize = 20;
 
 /// An interval between two rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ impl Clock {
     }
 
     fn keep(&mut self, interval: Interval) {
-        if self.longest.len() < KEPT {
+        if self.longest.len() < LISTED_INTERVALS {
             self.longest.push(interval);
         } else if let Some(shortest) =
             self.longest.iter_mut().min_by(|a, b| a.length_s.total_cmp(&b.length_s))

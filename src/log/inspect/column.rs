@@ -6,13 +6,13 @@ use crate::log::cell::Cell;
 /// Largest jumps that are kept.
 const JUMPS: usize = 8;
 /// A change between two rows is a jump from so many usual ones on: ten times what 95 of 100 changes stay below.
-const JUMP: f64 = 10.0;
+const JUMP_RATIO: f64 = 10.0;
 /// ... and from so many steps of the resolution on.
 const JUMP_STEPS: f64 = 10.0;
 /// Values below which nothing is usual yet.
-const FEW: u64 = 50;
+const MIN_VALUES: u64 = 50;
 /// What is left of a change when the next value has undone it, for a spike.
-const UNDONE: f64 = 0.3;
+const SPIKE_REMAINDER: f64 = 0.3;
 
 /// A change between two neighbours that is much larger than usual.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,13 +97,13 @@ impl Column {
 
     /// Jumps in the order of their lines.
     pub(super) fn jumps(&self) -> Vec<Jump> {
-        if self.numbers < FEW {
+        if self.numbers < MIN_VALUES {
             return Vec::new();
         }
-        let usual = self.changes.quantile(0.95).max(self.step() * JUMP_STEPS / JUMP);
+        let usual = self.changes.quantile(0.95).max(self.step() * JUMP_STEPS / JUMP_RATIO);
         let all = self.jumps.iter().chain(self.pending.as_ref().map(|(jump, _)| jump));
         let mut jumps: Vec<Jump> =
-            all.filter(|jump| (jump.to - jump.from).abs() > JUMP * usual).cloned().collect();
+            all.filter(|jump| (jump.to - jump.from).abs() > JUMP_RATIO * usual).cloned().collect();
         jumps.sort_by_key(|jump| jump.line);
         jumps
     }
@@ -138,7 +138,7 @@ impl Column {
             self.smallest = self.smallest.min(size);
         }
         if let Some((mut jump, back)) = self.pending.take() {
-            jump.is_spike = (to - back).abs() < UNDONE * (jump.to - jump.from).abs();
+            jump.is_spike = (to - back).abs() < SPIKE_REMAINDER * (jump.to - jump.from).abs();
             let is_return = jump.is_spike;
             self.keep(jump);
             if is_return {

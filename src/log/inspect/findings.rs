@@ -9,7 +9,7 @@ use crate::log::{Kind, Zone};
 /// An interval longer than this many usual ones is a gap.
 const GAP: f64 = 5.0;
 /// Share of empty cells from which on a column is named.
-const MANY_MISSING: f64 = 0.2;
+const MISSING_SHARE: f64 = 0.2;
 /// A value that stays for longer than this, s, is named.
 const LONG_RUN_S: f64 = 6.0 * 3600.0;
 
@@ -144,7 +144,7 @@ fn oddities(times: &Times, columns: &[ColumnReport]) -> Vec<String> {
     for column in columns.iter().filter(|column| !matches!(column.role, Role::Time | Role::Simulated)) {
         let header = &column.header;
         let (numbers, missing, _) = column.cells;
-        if numbers > 0 && missing as f64 > MANY_MISSING * (numbers + missing) as f64 {
+        if numbers > 0 && missing as f64 > MISSING_SHARE * (numbers + missing) as f64 {
             let percent = 100.0 * missing as f64 / (numbers + missing) as f64;
             said.push(format!("{header}: {percent:.0} % of the cells are empty"));
         }

@@ -1,7 +1,7 @@
 //! Quantiles of a column in memory that does not grow.
 
 /// Values that are kept.
-const KEPT: usize = 4096;
+const SAMPLE_SIZE: usize = 4096;
 
 /// Every value up to 4096, then every second, fourth, eighth ... one: a systematic sample in the order of time.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ impl Sketch {
     /// Takes in a value.
     pub(super) fn push(&mut self, value: f64) {
         if self.seen.is_multiple_of(self.stride) {
-            if self.values.len() == KEPT {
+            if self.values.len() == SAMPLE_SIZE {
                 let mut number = 0;
                 self.values.retain(|_| {
                     number += 1;
@@ -58,6 +58,6 @@ mod tests {
         assert_eq!((sketch.quantile(0.0), sketch.quantile(0.5), sketch.quantile(1.0)), (0.0, 50.0, 100.0));
         (0..1_000_000).for_each(|k| sketch.push(f64::from(k % 1000)));
         assert!((sketch.quantile(0.5) - 500.0).abs() < 20.0);
-        assert!(sketch.values.len() <= KEPT);
+        assert!(sketch.values.len() <= SAMPLE_SIZE);
     }
 }

@@ -8,7 +8,7 @@ use crate::report::figure::Item;
 use crate::report::figure::style::Stroke;
 
 /// Most buckets: more than a figure has columns of pixels.
-const MOST: usize = 4096;
+const MAX_BUCKETS: usize = 4096;
 
 /// Several curves against one time.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ impl DecimatedCurves {
                 self.extremes.extend(values.map(|value| Extremes::of(time_s, value)));
             }
         }
-        if self.spans.len() > MOST {
+        if self.spans.len() > MAX_BUCKETS {
             self.widen(time_s);
         }
     }
@@ -82,7 +82,7 @@ impl DecimatedCurves {
     /// Makes the buckets so wide that half of the most suffice.
     fn widen(&mut self, end_s: f64) {
         let duration_s = end_s - self.start_s;
-        self.width_s = (2.0 * self.width_s).max(duration_s / (MOST / 2) as f64);
+        self.width_s = (2.0 * self.width_s).max(duration_s / (MAX_BUCKETS / 2) as f64);
         let mut kept = 0;
         for index in 1..self.spans.len() {
             let number = |span: (f64, f64)| bucket(self.start_s, self.width_s, span.0);
@@ -207,11 +207,11 @@ mod tests {
     #[test]
     fn up_to_the_limit_every_point_is_there() {
         let mut curves = DecimatedCurves::new(2);
-        for k in 0..MOST {
+        for k in 0..MAX_BUCKETS {
             curves.push(k as f64, [(k % 3) as f64, f64::NAN]);
         }
         let (time_s, values) = curves.line(0);
-        assert_eq!((time_s.len(), time_s[100], values[100]), (MOST, 100.0, 1.0));
+        assert_eq!((time_s.len(), time_s[100], values[100]), (MAX_BUCKETS, 100.0, 1.0));
         assert!(curves.has(0) && !curves.has(1));
     }
 
@@ -222,14 +222,14 @@ mod tests {
             let spike = if k == 1_234_567 { 99.0 } else { 0.0 };
             curves.push(1e9 + 10.0 * f64::from(k), [spike + f64::from(k % 2)]);
         }
-        assert!(curves.spans.len() <= MOST && curves.extremes.len() <= MOST);
+        assert!(curves.spans.len() <= MAX_BUCKETS && curves.extremes.len() <= MAX_BUCKETS);
         let (time_s, values) = curves.line(0);
         assert!(time_s.windows(2).all(|pair| pair[0] < pair[1]));
         let spike = values.iter().position(|&value| value == 100.0).unwrap();
         assert_eq!(time_s[spike], 1e9 + 12_345_670.0);
         assert_eq!(curves.span_s(), Some((1e9, 1e9 + 29_999_990.0)));
         // Memory is used: not fewer buckets than a figure has columns.
-        assert!(curves.spans.len() > MOST / 4);
+        assert!(curves.spans.len() > MAX_BUCKETS / 4);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::{Item, Panel};
 const MARGIN: f64 = 0.5;
 
 /// A correlation at some lags as stems, with the band in which 99 % of chance values lie: `-bound` to `bound`.
-pub fn correlation(name: &str, lags: &[f64], values: &[f64], bound: f64) -> Panel {
+pub(crate) fn correlation(name: &str, lags: &[f64], values: &[f64], bound: f64) -> Panel {
     let percent: Vec<f64> = values.iter().map(|value| 100.0 * value).collect();
     let ends =
         lags.first().zip(lags.last()).map_or([0.0, 1.0], |(first, last)| [first - MARGIN, last + MARGIN]);

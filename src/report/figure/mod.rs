@@ -19,7 +19,7 @@ mod strip;
 pub mod style;
 mod ticks;
 
-pub use correlation::correlation;
+pub(crate) use correlation::correlation;
 pub use diagram::{Arrow, Diagram, Form, Node};
 pub use elevation::{Column, Elevation, Place, Profile, Shape};
 pub use grid::{Cell, Grid};
@@ -135,7 +135,7 @@ pub struct Stretch {
     /// What it is, for the legend.
     pub name: String,
     /// Colour.
-    pub color: style::Rgb,
+    pub(crate) color: style::Rgb,
 }
 
 /// A marked instant.

@@ -36,7 +36,7 @@ impl Rgb {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Colour.
-    pub color: Rgb,
+    pub(crate) color: Rgb,
     /// Width.
     pub width: f64,
     /// Lengths drawn and left out in turn; empty: a full line.
@@ -66,7 +66,7 @@ pub const VALVE: Stroke = stroke(Rgb::PURPLE, 1.8, &[1.8, 2.2]);
 /// Pressure.
 pub const PRESSURE: Stroke = stroke(Rgb::BLUE, 2.2, &[]);
 /// A limit.
-pub const LIMIT: Stroke = stroke(Rgb::VERMILLION, 1.3, &[6.0, 3.0]);
+pub(crate) const LIMIT: Stroke = stroke(Rgb::VERMILLION, 1.3, &[6.0, 3.0]);
 /// An event.
 pub(crate) const EVENT: Stroke = stroke(Rgb::GREY, 1.0, &[2.0, 2.0]);
 /// First curve of a comparison.
@@ -80,7 +80,7 @@ pub(crate) const FOURTH: Stroke = stroke(Rgb::PURPLE, 1.8, &[8.0, 2.5, 1.8, 2.5]
 /// Middle of a measured band.
 pub(crate) const MIDDLE: Stroke = stroke(Rgb(70, 70, 70), 1.2, &[1.5, 2.5]);
 /// A model over readings.
-pub const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
+pub(crate) const MODEL: Stroke = stroke(Rgb::BLACK, 1.2, &[5.0, 3.0]);
 /// Measured points.
 pub(crate) const MEASURED: Stroke = stroke(Rgb::BLACK, 1.2, &[]);
 
@@ -89,7 +89,7 @@ pub(crate) const AT_REST: Stroke = stroke(Rgb::BLUE, 1.8, &[]);
 /// The same with model error.
 pub(crate) const ROBUST: Stroke = stroke(Rgb::VERMILLION, 1.8, &[8.0, 3.0]);
 /// What a reference that no vehicle has would give.
-pub const REFERENCE: Stroke = stroke(Rgb::GREY, 1.6, &[1.5, 3.0]);
+pub(crate) const REFERENCE: Stroke = stroke(Rgb::GREY, 1.6, &[1.5, 3.0]);
 /// A place that was chosen.
 pub(crate) const CHOSEN: Stroke = stroke(Rgb::VERMILLION, 2.0, &[]);
 /// Layouts that others are better than.
@@ -105,7 +105,7 @@ pub(crate) const BRASS: Rgb = Rgb(222, 196, 120);
 pub(crate) const BOUND: Stroke = stroke(Rgb::GREY, 2.6, &[1.5, 3.0]);
 
 /// Stroke of a detector in a comparison, the one that is proposed first.
-pub fn detector(number: usize) -> Stroke {
+pub(crate) fn detector(number: usize) -> Stroke {
     const STROKES: [Stroke; 6] = [
         stroke(Rgb::BLACK, 2.4, &[]),
         stroke(Rgb::ORANGE, 1.8, &[]),
@@ -118,7 +118,7 @@ pub fn detector(number: usize) -> Stroke {
 }
 
 /// Stroke of a sensor: thin, in the colour of the place where it sits, with a dash of its own by its number.
-pub fn sensor(place: &str, number: usize) -> Stroke {
+pub(crate) fn sensor(place: &str, number: usize) -> Stroke {
     const DASHES: [&[f64]; 3] = [&[1.2, 3.2], &[12.0, 2.5], &[6.0, 2.0, 1.2, 2.0, 1.2, 2.0]];
     let color = match place {
         "shoulder" => SHOULDER.color,
@@ -131,7 +131,7 @@ pub fn sensor(place: &str, number: usize) -> Stroke {
 }
 
 /// Stroke of a sensor's innovations: thin and full, since noise would blur dashes.
-pub fn innovation(name: &str, number: usize) -> Stroke {
+pub(crate) fn innovation(name: &str, number: usize) -> Stroke {
     const OTHERS: [Rgb; 3] = [Rgb::SKY, Rgb::ORANGE, Rgb::GREY];
     let color = match name {
         "shoulder" => SHOULDER.color,
@@ -172,7 +172,7 @@ pub(crate) const BOTTOM: f64 = 50.0;
 /// Distance between panels.
 pub(crate) const GAP: f64 = 20.0;
 /// Size of tick labels, legends and remarks.
-pub const SMALL: f64 = 12.0;
+pub(crate) const SMALL: f64 = 12.0;
 /// Size of axis names.
 pub(crate) const NORMAL: f64 = 13.0;
 /// Size of the title.

@@ -12,7 +12,7 @@ const NAME: usize = 26;
 /// Significant digits of a value.
 const DIGITS: usize = 6;
 /// Jumps, gaps and cautions of one kind that are listed.
-const LISTED: usize = 12;
+const MAX_LISTED: usize = 12;
 
 /// All of it.
 pub(crate) fn text(inspection: &Inspection) -> String {
@@ -132,7 +132,7 @@ fn times(times: &Times) -> Vec<(&'static str, String)> {
         let gap = |gap: &crate::log::inspect::Interval| {
             format!("{} from {} on (line {})", duration(gap.length_s), clock.text(gap.begin_s), gap.line)
         };
-        let gaps: Vec<String> = times.gaps.iter().take(LISTED).map(gap).collect();
+        let gaps: Vec<String> = times.gaps.iter().take(MAX_LISTED).map(gap).collect();
         say("gaps", if gaps.is_empty() { "none".to_owned() } else { gaps.join("\n") });
     }
     if let (count @ 1.., Some(first)) = times.steps_back {
@@ -207,11 +207,11 @@ fn list(text: &mut String, title: &str, items: &[String]) {
         return;
     }
     text.push_str(&format!("\n{title}\n"));
-    for item in items.iter().take(LISTED) {
+    for item in items.iter().take(MAX_LISTED) {
         text.push_str(&hanging(item, "  ", "    "));
     }
-    if items.len() > LISTED {
-        text.push_str(&format!("  and {} more, all of them with --format json\n", items.len() - LISTED));
+    if items.len() > MAX_LISTED {
+        text.push_str(&format!("  and {} more, all of them with --format json\n", items.len() - MAX_LISTED));
     }
 }
 

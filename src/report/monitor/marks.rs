@@ -4,7 +4,7 @@ use crate::detector::monitor::{Event, EventKind};
 use crate::report::figure::Mark;
 
 /// Most marks that a figure can name without covering itself.
-const MOST: usize = 12;
+const MAX_MARKS: usize = 12;
 
 /// The first marks of a run; more would hide the curves.
 #[derive(Clone, Debug, Default)]
@@ -48,7 +48,7 @@ impl Marks {
     }
 
     fn push(&mut self, at: f64, name: &str) {
-        if self.0.len() < MOST {
+        if self.0.len() < MAX_MARKS {
             self.0.push(Mark { at, name: name.to_owned() });
         }
     }

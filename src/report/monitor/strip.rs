@@ -4,7 +4,7 @@ use crate::report::figure::Stretch;
 use crate::report::figure::style::Rgb;
 
 /// Most stretches that are kept: more than a figure has columns.
-const MOST: usize = 2048;
+const MAX_STRETCHES: usize = 2048;
 
 /// Verdicts one after the other. When there are too many stretches, those shorter than a column are joined with the one before, and
 /// the worse verdict of the two stands: a leak is never too short to be seen.
@@ -28,7 +28,7 @@ impl VerdictStrip {
         if appearance(last.2) != appearance(verdict) {
             self.stretches.push((time_s, time_s, verdict));
         }
-        if self.stretches.len() > MOST {
+        if self.stretches.len() > MAX_STRETCHES {
             self.thin();
         }
     }
@@ -36,7 +36,7 @@ impl VerdictStrip {
     /// Joins what is shorter than one of `MOST / 2` columns.
     fn thin(&mut self) {
         let (Some(first), Some(last)) = (self.stretches.first(), self.stretches.last()) else { return };
-        let (start_s, width_s) = (first.0, (last.1 - first.0) / (MOST / 2) as f64);
+        let (start_s, width_s) = (first.0, (last.1 - first.0) / (MAX_STRETCHES / 2) as f64);
         let column = |time_s: f64| ((time_s - start_s) / width_s) as u64;
         self.stretches.dedup_by(|next, kept| {
             let joined = appearance(next.2) == appearance(kept.2) || column(next.0) == column(kept.0);
@@ -115,7 +115,7 @@ mod tests {
                 _ => Verdict::Unknown(Reason::NoPressure),
             };
             strip.push(60.0 * f64::from(k), verdict);
-            assert!(strip.stretches.len() <= MOST);
+            assert!(strip.stretches.len() <= MAX_STRETCHES);
         }
         assert!(strip.stretches.windows(2).all(|pair| pair[0].1 <= pair[1].0));
         let leaks: Vec<_> = strip.stretches.iter().filter(|stretch| stretch.2 == Verdict::Leak).collect();

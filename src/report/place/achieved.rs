@@ -1,9 +1,9 @@
 //! What the best layouts achieve in Monte Carlo runs, beside what is predicted.
-use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit};
+use super::{GRAM, GRAM_PER_HOUR, KELVIN, PlacementReport, Unit};
 use crate::evaluation::placement::{Achieved, Confirmed, Detected};
 use crate::report::Report;
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Errors and smallest leaks in the observer's own world, then in drawn ones.
     pub(super) fn achieved(&self) -> Report {
         let Some(closed_loop) = self.closed_loop else { return Report::default() };

@@ -1,7 +1,7 @@
 //! A study as CSV, a row for each judged layout, and as JSON with all that is known; the matrices behind it.
-use super::{Placed, Unit};
-use crate::estimator::placement::study::{Judged, Numbered, Placement};
-use crate::estimator::placement::{CandidateOutput, CourseNumber, SitedCylinder};
+use super::{PlacementReport, Unit};
+use crate::estimator::placement::study::{BestLayouts, EvaluatedLayout, Placement};
+use crate::estimator::placement::{CandidateOutput, InstrumentedCylinder, ScenarioMeasure};
 use crate::report::{Digits, GRAM, GRAM_PER_HOUR, Provenance, Table};
 use crate::thermal::units::HOUR_S;
 use serde_json::{Map, Value, json};
@@ -9,30 +9,31 @@ use serde_json::{Map, Value, json};
 /// Significant digits of the numbers.
 const DIGITS: Digits = Digits::Significant(8);
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// A row for each judged layout; an empty cell is a leak that is never found.
     pub(crate) fn table(&self) -> Table {
         let judged = &self.study.judged;
         let mut table = Table::new();
         table.push_integers("sensors", judged.iter().map(|one| one.sensors.len()));
         table.push_texts("layout", judged.iter().map(|one| self.names(&one.sensors)));
-        let mut push = |name: &str, value: &dyn Fn(&Judged) -> f64| {
+        let mut push = |name: &str, value: &dyn Fn(&EvaluatedLayout) -> f64| {
             table.push(name, DIGITS, judged.iter().map(value));
         };
         push("cost", &|one| one.cost);
-        push("gas_sd_k", &|one| one.certainty.gas_sd_k);
-        push("mass_sd_g", &|one| GRAM * one.certainty.mass_sd_kg);
-        push("leak_sd_g_h", &|one| GRAM_PER_HOUR * one.certainty.leak_sd_kg_s);
-        push("smallest_leak_g_h", &|one| GRAM_PER_HOUR * one.certainty.smallest_leak_kg_s);
+        push("gas_sd_k", &|one| one.steady.gas_sd_k);
+        push("mass_sd_g", &|one| GRAM * one.steady.mass_sd_kg);
+        push("leak_sd_g_h", &|one| GRAM_PER_HOUR * one.steady.leak_sd_kg_s);
+        push("smallest_leak_g_h", &|one| GRAM_PER_HOUR * one.steady.smallest_leak_kg_s);
         push("delay_h", &|one| one.delay_s.map_or(f64::NAN, |delay_s| delay_s / HOUR_S));
         for scenario in 0..self.study.scenarios.len() {
-            for (name, number) in [
-                ("course_mean_k", CourseNumber::Mean),
-                ("course_worst_k", CourseNumber::Worst),
-                ("robust_mean_k", CourseNumber::Schmidt),
-                ("robust_worst_k", CourseNumber::WorstCase),
+            for (name, measure) in [
+                ("course_mean_k", ScenarioMeasure::Mean),
+                ("course_worst_k", ScenarioMeasure::Worst),
+                ("robust_mean_k", ScenarioMeasure::Schmidt),
+                ("robust_worst_k", ScenarioMeasure::WorstCase),
             ] {
-                let value = |one: &Judged| one.along.get(scenario).map_or(f64::NAN, |along| number.of(along));
+                let value =
+                    |one: &EvaluatedLayout| one.scenarios.get(scenario).map_or(f64::NAN, |of| measure.of(of));
                 push(&format!("{name}_{}", scenario + 1), &value);
             }
         }
@@ -53,7 +54,7 @@ impl Placed<'_> {
         let criterion = self.study.settings.criterion;
         document.insert("provenance".into(), provenance.to_json());
         document.insert("partial".into(), json!(self.is_partial()));
-        let words = json!({ "name": criterion.as_str(), "words": criterion.words(), "unit": Unit::of(criterion).symbol });
+        let words = json!({ "name": criterion.as_str(), "words": criterion.description(), "unit": Unit::of(criterion).symbol });
         document.insert("criterion".into(), words);
         document.insert("best".into(), self.study.numbers.iter().map(|number| self.best(number)).collect());
         if let Ok(Value::Object(mut study)) = serde_json::to_value(self.study) {
@@ -67,7 +68,7 @@ impl Placed<'_> {
         Value::Object(document)
     }
 
-    fn best(&self, number: &Numbered) -> Value {
+    fn best(&self, number: &BestLayouts) -> Value {
         let per_si = Unit::of(self.study.settings.criterion).per_si;
         let best = number.layouts.first();
         json!({
@@ -83,19 +84,19 @@ impl Placed<'_> {
 
 /// All that layouts at rest are judged by: of the member that gives gas temperature and leak rate, and of that which gives the
 /// mass. Rows of a matrix are arrays. A state in SI is its number in the matrices times its scale.
-pub fn matrices(placement: &Placement, provenance: &Provenance) -> Value {
+pub(crate) fn matrices(placement: &Placement, provenance: &Provenance) -> Value {
     let candidates: Vec<&str> =
         placement.candidates().list.iter().map(|candidate| &*candidate.sensor.name).collect();
     json!({
         "provenance": provenance.to_json(),
         "candidates": candidates,
-        "interval_s": placement.site().settings().conditions.interval_s,
-        "gas_temperature_and_leak_rate": member(placement.site().slow()),
-        "mass": member(placement.site().first()),
+        "interval_s": placement.steady().settings().conditions.interval_s,
+        "gas_temperature_and_leak_rate": member(placement.steady().slow()),
+        "mass": member(placement.steady().first()),
     })
 }
 
-fn member(of: &SitedCylinder) -> Value {
+fn member(of: &InstrumentedCylinder) -> Value {
     let [transition, process_noise] = [of.transition(), of.process_noise()].map(|matrix| {
         let rows = matrix.row_iter().map(|row| row.iter().copied().collect::<Vec<f64>>());
         rows.collect::<Vec<_>>()

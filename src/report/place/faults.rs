@@ -1,9 +1,9 @@
 //! Sensors that are lost or wrong, and unknown errors.
-use super::{GRAM, GRAM_PER_HOUR, KELVIN, Placed, Unit, WATT};
+use super::{GRAM, GRAM_PER_HOUR, KELVIN, PlacementReport, Unit, WATT};
 use crate::estimator::placement::study::{Bias, BiasSource, Failure};
 use crate::report::Report;
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// The layout that failures are of.
     fn of_layout(&self) -> String {
         let layout: Vec<usize> = self.study.failures.iter().map(|failure| failure.sensor).collect();

@@ -1,8 +1,8 @@
 //! A study as a picture: one thermometer at each place beside the cylinder, what accuracy costs, what a failure costs.
 use super::outline::Outline;
-use super::{GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
+use super::{GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, PlacementReport, Unit};
 use crate::estimator::placement::Status;
-use crate::estimator::placement::study::{Failure, Front, Judged, Position};
+use crate::estimator::placement::study::{EvaluatedLayout, Failure, Front, Position};
 use crate::estimator::sensor::Site;
 use crate::report::figure::style::{self, Stroke};
 use crate::report::figure::{
@@ -10,7 +10,7 @@ use crate::report::figure::{
 };
 use crate::thermal::wall::geometry::Orientation;
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Places beside the cylinder, cost, failures; parts that a partial study lacks are left out.
     pub fn figure(&self) -> Picture {
         let mut parts = vec![Part::Elevation(self.map())];
@@ -33,7 +33,7 @@ impl Placed<'_> {
             Some(best) => format!(
                 "Best {} sensors by the {}, and one anywhere{partial}",
                 best.sensors.len(),
-                self.study.settings.criterion.words()
+                self.study.settings.criterion.description()
             ),
             None => format!("One sensor anywhere{partial}"),
         };
@@ -74,9 +74,9 @@ impl Placed<'_> {
     }
 
     fn columns(&self, outline: &Outline) -> Vec<Column> {
-        let gas = |position: &Position| Some(position.certainty?.gas_sd_k);
+        let gas = |position: &Position| Some(position.steady?.gas_sd_k);
         let robust = |position: &Position| position.robust_k.first().copied();
-        let smallest = |position: &Position| Some(position.certainty?.smallest_leak_kg_s);
+        let smallest = |position: &Position| Some(position.steady?.smallest_leak_kg_s);
         let profile = |name: &str, unit, of: &dyn Fn(&Position) -> Option<f64>, stroke| {
             self.profile(name, unit, of, stroke, outline)
         };
@@ -135,7 +135,7 @@ impl Placed<'_> {
     /// Fronts of cost against certainty and against the delay, with the judged layouts behind them.
     fn costs(&self) -> Figure {
         let study = self.study;
-        let gas = |judged: &Judged| Some(judged.certainty.gas_sd_k);
+        let gas = |judged: &EvaluatedLayout| Some(judged.steady.gas_sd_k);
         let leak = GRAM_PER_HOUR.with_symbol(study.settings.leak_kg_s);
         let panels = vec![
             self.cost_panel("sd of the gas in K", KELVIN, &study.accuracy_front, &gas),
@@ -152,7 +152,7 @@ impl Placed<'_> {
         quantity: &str,
         unit: Unit,
         front: &Front,
-        of: &dyn Fn(&Judged) -> Option<f64>,
+        of: &dyn Fn(&EvaluatedLayout) -> Option<f64>,
     ) -> Panel {
         let judged: Vec<(f64, f64)> = self
             .study

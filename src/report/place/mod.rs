@@ -20,7 +20,7 @@ mod places;
 mod rankings;
 mod summary;
 
-pub use document::matrices;
+pub(crate) use document::matrices;
 
 use super::number;
 use crate::estimator::log::Quantity;
@@ -40,7 +40,7 @@ const DIGITS: usize = 3;
 
 /// A study with what it is of.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<'a> {
+pub struct PlacementReport<'a> {
     /// The study.
     pub study: &'a Study,
     /// Its candidates.
@@ -71,7 +71,7 @@ const HOUR: Unit = Unit { symbol: "h", per_si: 1.0 / crate::report::HOUR_S };
 impl Unit {
     fn of(criterion: Criterion) -> Self {
         match criterion {
-            Criterion::GasTemperature | Criterion::Course(_) => KELVIN,
+            Criterion::GasTemperature | Criterion::Scenario(_) => KELVIN,
             Criterion::Mass => GRAM,
             Criterion::LeakRate | Criterion::SmallestLeak => GRAM_PER_HOUR,
         }
@@ -88,7 +88,7 @@ impl Unit {
     }
 }
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Whether study or runs were stopped before their end.
     pub(crate) fn is_partial(&self) -> bool {
         self.study.partial || self.closed_loop.is_some_and(|found| found.partial)

@@ -1,10 +1,10 @@
 //! The same places by the paper's own measure, beside the observer's.
-use super::{GRAM_PER_HOUR, KELVIN, Placed};
-use crate::estimator::placement::study::ByPaper;
+use super::{GRAM_PER_HOUR, KELVIN, PlacementReport};
+use crate::estimator::placement::study::PublishedComparison;
 use crate::estimator::placement::{PublishedRecord, PublishedScore, Spread};
 use crate::report::{Report, number};
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Each thermometer by the fit of a first-order model, and by what the observer knows with it.
     pub(super) fn by_paper(&self) -> Report {
         let Some(by_paper) = &self.study.published else { return Report::default() };
@@ -27,12 +27,12 @@ impl Placed<'_> {
         };
         let gas_sd_k = |name: &str| {
             let of_name = self.study.positions.iter().find(|of| self.name(of.sensor) == name);
-            of_name.and_then(|of| of.certainty)
+            of_name.and_then(|of| of.steady)
         };
         let known = |score: &PublishedScore| gas_sd_k(&score.name);
         let row = |score: &PublishedScore| {
-            let certainty = known(score);
-            let ahead = certainty.map(|own| {
+            let steady = known(score);
+            let ahead = steady.map(|own| {
                 let others = by_paper.scores.iter().filter_map(known);
                 1 + others.filter(|other| other.smallest_leak_kg_s < own.smallest_leak_kg_s).count()
             });
@@ -44,8 +44,8 @@ impl Placed<'_> {
                 number(mse(score, validated), 2),
                 number(score.time_constant_s.mean, 3),
                 (1 + better(score)).to_string(),
-                certainty.map_or(String::new(), |of| KELVIN.number(of.gas_sd_k)),
-                certainty.map_or(String::new(), |of| GRAM_PER_HOUR.number(of.smallest_leak_kg_s)),
+                steady.map_or(String::new(), |of| KELVIN.number(of.gas_sd_k)),
+                steady.map_or(String::new(), |of| GRAM_PER_HOUR.number(of.smallest_leak_kg_s)),
                 ahead.map_or(String::new(), |rank| rank.to_string()),
             ]
         };
@@ -62,7 +62,7 @@ impl Placed<'_> {
     }
 
     /// The paper's question: is the valve the better place than the shoulder?
-    fn question(&self, by_paper: &ByPaper) -> String {
+    fn question(&self, by_paper: &PublishedComparison) -> String {
         if by_paper.valve_against_shoulder.is_empty() {
             return String::new();
         }
@@ -79,13 +79,13 @@ impl Placed<'_> {
             };
             lines.push_str(&format!(
                 "  {:16} {mean:+.2} % [{low:+.2}, {high:+.2}], better with {:.0} % of the specimens: {verdict}\n",
-                record.words(),
+                record.description(),
                 100.0 * duel.share
             ));
         }
         let of = |name: &str| {
             let place = self.study.positions.iter().find(|of| self.name(of.sensor) == name)?;
-            place.certainty
+            place.steady
         };
         if let (Some(valve), Some(shoulder)) = (of("valve"), of("shoulder")) {
             let more = |valve: f64, shoulder: f64| 100.0 * (valve / shoulder - 1.0);

@@ -1,10 +1,10 @@
 //! What accuracy costs, and one thermometer at each place.
-use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, Placed, Unit};
+use super::{GRAM, GRAM_PER_HOUR, HOUR, KELVIN, MILLIMETRES, PlacementReport, Unit};
 use crate::estimator::placement::Status;
 use crate::estimator::placement::study::{Front, Position};
 use crate::report::{Report, number};
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// Layouts that none is better than at their cost.
     pub(super) fn fronts(&self) -> Report {
         let study = self.study;
@@ -64,15 +64,15 @@ impl Placed<'_> {
             self.name(position.sensor).to_owned(),
             position.height_m.map_or(String::new(), height),
         ];
-        let Some(certainty) = &position.certainty else {
+        let Some(steady) = &position.steady else {
             cells.push("blind".into());
             return cells;
         };
         cells.extend([
-            KELVIN.number(certainty.gas_sd_k),
-            GRAM.number(certainty.mass_sd_kg),
-            GRAM_PER_HOUR.number(certainty.leak_sd_kg_s),
-            GRAM_PER_HOUR.number(certainty.smallest_leak_kg_s),
+            KELVIN.number(steady.gas_sd_k),
+            GRAM.number(steady.mass_sd_kg),
+            GRAM_PER_HOUR.number(steady.leak_sd_kg_s),
+            GRAM_PER_HOUR.number(steady.smallest_leak_kg_s),
             position.delay_s.map_or("never".into(), |delay_s| HOUR.number(delay_s)),
         ]);
         cells.extend(position.robust_k.iter().map(|&of| KELVIN.number(of)));

@@ -1,34 +1,34 @@
 //! The best layouts for each number of sensors, and the same and others by every number.
-use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, Placed, Unit};
-use crate::estimator::placement::CourseNumber;
+use super::{DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, PlacementReport, Unit};
+use crate::estimator::placement::ScenarioMeasure;
 use crate::estimator::placement::search::Method;
-use crate::estimator::placement::study::{Judged, Numbered, Proof, Refused};
+use crate::estimator::placement::study::{BestLayouts, EvaluatedLayout, Infeasible, Proof};
 use crate::report::{Report, number};
 
 /// Layouts near the best that are named.
-const NAMED: usize = 3;
+const LISTED_LAYOUTS: usize = 3;
 /// What a ranking may differ by and still be one, relative.
-const EQUAL: f64 = 1e-3;
+const TIE_TOLERANCE: f64 = 1e-3;
 
 /// A number that layouts are judged by: its column, and its SI value.
-type Measure = (&'static str, Unit, fn(&Judged) -> Option<f64>);
+type Measure = (&'static str, Unit, fn(&EvaluatedLayout) -> Option<f64>);
 
 /// What the filter states of itself at rest.
-const STATED: [Measure; 3] = [
-    ("gas K", KELVIN, |of| Some(of.certainty.gas_sd_k)),
-    ("mass g", GRAM, |of| Some(of.certainty.mass_sd_kg)),
-    ("leak g/h", GRAM_PER_HOUR, |of| Some(of.certainty.leak_sd_kg_s)),
+const COVARIANCE_MEASURES: [Measure; 3] = [
+    ("gas K", KELVIN, |of| Some(of.steady.gas_sd_k)),
+    ("mass g", GRAM, |of| Some(of.steady.mass_sd_kg)),
+    ("leak g/h", GRAM_PER_HOUR, |of| Some(of.steady.leak_sd_kg_s)),
 ];
 /// What a leak is found by.
-const SMALLEST: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.certainty.smallest_leak_kg_s));
+const LEAK_MEASURE: Measure = ("finds g/h", GRAM_PER_HOUR, |of| Some(of.steady.smallest_leak_kg_s));
 const DELAY: Measure = ("delay h", HOUR, |of| of.delay_s);
 /// With model error, along the first scenario.
 const ROBUST: [Measure; 2] = [
-    ("robust K", KELVIN, |of| Some(CourseNumber::Schmidt.of(of.along.first()?))),
-    ("worst K", KELVIN, |of| Some(CourseNumber::WorstCase.of(of.along.first()?))),
+    ("robust K", KELVIN, |of| Some(ScenarioMeasure::Schmidt.of(of.scenarios.first()?))),
+    ("worst K", KELVIN, |of| Some(ScenarioMeasure::WorstCase.of(of.scenarios.first()?))),
 ];
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// For each number of sensors the best by the criterion, and what it cannot fall below.
     pub(super) fn best_layouts(&self) -> Report {
         let criterion = self.study.settings.criterion;
@@ -37,7 +37,7 @@ impl Placed<'_> {
         let percent = number(100.0 * self.study.settings.within, DIGITS);
         let near = format!("within {percent} %");
         let header = ["sensors", "best layout", &value, "bound", "gap", "relaxed", "change", &near, "search"];
-        let row = |number: &Numbered| {
+        let row = |number: &BestLayouts| {
             let best = number.layouts.first();
             vec![
                 number.sensors.to_string(),
@@ -52,7 +52,7 @@ impl Placed<'_> {
             ]
         };
         let rows: Vec<Vec<String>> = self.study.numbers.iter().map(row).collect();
-        let title = format!("Best layouts by the {}", criterion.words());
+        let title = format!("Best layouts by the {}", criterion.description());
         let explained = "gap: of the best to what the search or the relaxation proves; relaxed: to the convex relaxation \
                          alone; change: against one sensor less";
         Report::default().explained_rows(title, &header, rows, explained).remark(self.near_best())
@@ -61,12 +61,12 @@ impl Placed<'_> {
     /// The first few that are as good as the best.
     fn near_best(&self) -> String {
         let unit = Unit::of(self.study.settings.criterion);
-        let line = |number: &Numbered| {
-            let others = number.layouts.iter().skip(1).take(NAMED);
+        let line = |number: &BestLayouts| {
+            let others = number.layouts.iter().skip(1).take(LISTED_LAYOUTS);
             let named: Vec<String> = others
                 .map(|layout| format!("{} ({})", self.chosen(&layout.sensors), unit.number(layout.value)))
                 .collect();
-            let more = number.layouts.len().saturating_sub(1 + NAMED);
+            let more = number.layouts.len().saturating_sub(1 + LISTED_LAYOUTS);
             let more = if more > 0 { format!("; {more} more") } else { String::new() };
             (!named.is_empty()).then(|| format!("  {}: {}{more}\n", number.sensors, named.join("; ")))
         };
@@ -76,22 +76,22 @@ impl Placed<'_> {
 
     /// Numbers of sensors without a layout.
     pub(super) fn refused(&self) -> Report {
-        let line = |of: &Refused| format!("no layout of {}: {}\n", of.sensors, of.reason);
+        let line = |of: &Infeasible| format!("no layout of {}: {}\n", of.sensors, of.reason);
         Report::default().text(self.study.refused.iter().map(line).collect::<String>())
     }
 
     /// Layouts by every number, the best of each number of sensors marked.
     pub(super) fn judged_layouts(&self) -> Report {
         let study = self.study;
-        let mut measures: Vec<Measure> = STATED.to_vec();
-        measures.extend([SMALLEST, DELAY]);
+        let mut measures: Vec<Measure> = COVARIANCE_MEASURES.to_vec();
+        measures.extend([LEAK_MEASURE, DELAY]);
         if !study.scenarios.is_empty() {
             measures.extend(ROBUST);
         }
         let mut header = vec!["n", "layout"];
         header.extend(measures.iter().map(|(name, ..)| *name));
         header.push("cost");
-        let row = |judged: &Judged| {
+        let row = |judged: &EvaluatedLayout| {
             let mut cells = vec![judged.sensors.len().to_string(), self.chosen(&judged.sensors)];
             for (_, unit, of) in &measures {
                 let best = self.best_of(judged.sensors.len(), *of).and_then(of);
@@ -116,7 +116,7 @@ impl Placed<'_> {
     }
 
     /// Best of so many sensors by a number.
-    fn best_of(&self, sensors: usize, of: fn(&Judged) -> Option<f64>) -> Option<&Judged> {
+    fn best_of(&self, sensors: usize, of: fn(&EvaluatedLayout) -> Option<f64>) -> Option<&EvaluatedLayout> {
         let same = self.study.judged.iter().filter(|judged| judged.sensors.len() == sensors);
         let with = same.filter_map(|judged| Some((of(judged)?, judged)));
         with.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, judged)| judged)
@@ -124,15 +124,15 @@ impl Placed<'_> {
 
     /// Where certainty and the smallest leak ask for different layouts: a small covariance alone finds no leak.
     pub(super) fn differences(&self) -> Report {
-        let line = |number: &Numbered| {
-            let (_, unit, smallest) = SMALLEST;
+        let line = |number: &BestLayouts| {
+            let (_, unit, smallest) = LEAK_MEASURE;
             let finds = self.best_of(number.sensors, smallest)?;
             let least = smallest(finds)?;
             let mut parts = Vec::new();
-            for (name, _, stated) in STATED {
+            for (name, _, stated) in COVARIANCE_MEASURES {
                 let knows = self.best_of(number.sensors, stated)?;
                 let found = smallest(knows)?;
-                if found > least * (1.0 + EQUAL) {
+                if found > least * (1.0 + TIE_TOLERANCE) {
                     let what = name.split(' ').next().unwrap_or(name);
                     let more = 100.0 * (found / least - 1.0);
                     parts.push(format!(
@@ -164,22 +164,22 @@ impl Placed<'_> {
             let best = number.layouts.first()?;
             self.study.judged.iter().find(|judged| judged.sensors == best.sensors)
         });
-        let bests: Vec<&Judged> = bests.collect();
+        let bests: Vec<&EvaluatedLayout> = bests.collect();
         let mut rows = Vec::new();
         for (scenario, name) in self.study.scenarios.iter().enumerate() {
-            for (judged, along) in
-                bests.iter().filter_map(|judged| Some((judged, judged.along.get(scenario)?)))
+            for (judged, accuracy) in
+                bests.iter().filter_map(|judged| Some((judged, judged.scenarios.get(scenario)?)))
             {
-                let errors = along.variants.iter();
+                let errors = accuracy.variants.iter();
                 let largest = errors.max_by(|a, b| a.gas_k.worst.total_cmp(&b.gas_k.worst));
                 rows.push(vec![
                     name.clone(),
                     judged.sensors.len().to_string(),
-                    KELVIN.number(along.gas_sd_k.mean),
-                    KELVIN.number(along.gas_sd_k.worst),
-                    KELVIN.number(along.gas_schmidt_k.mean),
-                    KELVIN.number(along.gas_worst_case_k.worst),
-                    largest.map_or(String::new(), |of| of.variant.words()),
+                    KELVIN.number(accuracy.gas_sd_k.mean),
+                    KELVIN.number(accuracy.gas_sd_k.worst),
+                    KELVIN.number(accuracy.gas_schmidt_k.mean),
+                    KELVIN.number(accuracy.gas_worst_case_k.worst),
+                    largest.map_or(String::new(), |of| of.variant.description()),
                     largest.map_or(String::new(), |of| KELVIN.number(of.gas_k.worst)),
                 ]);
             }
@@ -197,7 +197,7 @@ fn share(of: Option<f64>) -> String {
 }
 
 /// How it was searched, and how much of it.
-fn searched(number: &Numbered) -> String {
+fn searched(number: &BestLayouts) -> String {
     let method = match number.method {
         Method::Exhaustive => "all",
         Method::BranchAndBound => "branch and bound",

@@ -1,10 +1,10 @@
 //! A study as a report: its settings, then one table after the other.
-use super::{BAR, GRAM_PER_HOUR, HOUR, Placed};
+use super::{BAR, GRAM_PER_HOUR, HOUR, PlacementReport};
 use crate::report::{Report, number};
 use crate::thermal::units::DAY_S;
 use crate::thermal::units::ZERO_CELSIUS_K;
 
-impl Placed<'_> {
+impl PlacementReport<'_> {
     /// The settings, then one table after the other.
     pub(crate) fn summary(&self) -> Report {
         let mut report = Report::new("").text(self.settings_text());
@@ -37,7 +37,7 @@ impl Placed<'_> {
     fn settings_text(&self) -> String {
         let study = self.study;
         let settings = &study.settings;
-        let (conditions, detection) = (&settings.site.conditions, &settings.site.detection);
+        let (conditions, detection) = (&settings.steady.conditions, &settings.steady.detection);
         let degc = |kelvin: f64| format!("{} °C", number(kelvin - ZERO_CELSIUS_K, 3));
         let partial = if self.is_partial() {
             "PARTIAL: the search was ended early, what is here is not all\n"
@@ -74,7 +74,7 @@ impl Placed<'_> {
             study.vessel,
             study.candidates.len(),
             settings.sensors,
-            settings.criterion.words(),
+            settings.criterion.description(),
             degc(conditions.body_k),
             BAR.with_symbol(pressure_pa),
             degc(filled_k),

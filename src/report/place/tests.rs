@@ -1,11 +1,12 @@
 //! A study that was never run.
-use super::Placed;
-use crate::estimator::placement::course::{Summary, VariantError};
+use super::PlacementReport;
+use crate::estimator::placement::scenario::{Summary, VariantError};
 use crate::estimator::placement::search::{Layout, Method};
 use crate::estimator::placement::study::{
-    Bias, BiasSource, Failure, Front, Judged, Numbered, Point, Position, Proof, Study, StudySettings,
+    BestLayouts, Bias, BiasSource, EvaluatedLayout, Failure, Front, Point, Position, Proof, Study,
+    StudySettings,
 };
-use crate::estimator::placement::{Along, Candidates, Certainty, Variant};
+use crate::estimator::placement::{Candidates, ScenarioAccuracy, SteadyAccuracy, Variant};
 use crate::evaluation::placement::ClosedLoopSettings;
 use crate::report::Provenance;
 use crate::thermal::vessel::{Vessel, presets};
@@ -20,8 +21,8 @@ struct Known {
 }
 
 impl Known {
-    fn placed(&self) -> Placed<'_> {
-        Placed {
+    fn report(&self) -> PlacementReport<'_> {
+        PlacementReport {
             study: &self.study,
             candidates: &self.candidates,
             vessel: &self.vessel,
@@ -31,8 +32,8 @@ impl Known {
     }
 }
 
-fn certainty(gas_sd_k: f64, leak: f64) -> Certainty {
-    Certainty {
+fn accuracy(gas_sd_k: f64, leak: f64) -> SteadyAccuracy {
+    SteadyAccuracy {
         gas_sd_k,
         mass_sd_kg: 0.01 * gas_sd_k,
         leak_sd_kg_s: 0.5 * leak * GRAM_PER_HOUR,
@@ -40,14 +41,14 @@ fn certainty(gas_sd_k: f64, leak: f64) -> Certainty {
     }
 }
 
-fn along() -> Along {
+fn scenario_accuracy() -> ScenarioAccuracy {
     let of = |mean: f64| Summary { mean, worst: 2.0 * mean };
     let variants = [Variant::Nominal, Variant::StratifiedGas].map(|variant| VariantError {
         variant,
         gas_k: of(1.0),
         mass_kg: of(0.01),
     });
-    Along {
+    ScenarioAccuracy {
         scenario: "a tunnel".into(),
         gas_sd_k: of(0.4),
         mass_sd_kg: of(0.01),
@@ -59,13 +60,13 @@ fn along() -> Along {
     }
 }
 
-fn judged(sensors: &[usize], certainty: Certainty, delay_h: Option<f64>) -> Judged {
-    Judged {
+fn judged(sensors: &[usize], steady: SteadyAccuracy, delay_h: Option<f64>) -> EvaluatedLayout {
+    EvaluatedLayout {
         sensors: sensors.to_vec(),
         cost: sensors.len() as f64,
-        certainty,
+        steady,
         delay_s: delay_h.map(|hours| 3600.0 * hours),
-        along: vec![along()],
+        scenarios: vec![scenario_accuracy()],
     }
 }
 
@@ -77,7 +78,7 @@ fn known() -> Known {
         (of("middle"), of("shoulder"), of("valve"), of("gas_1"), of("pressure"));
     let layouts = [(vec![middle, pressure], 2.0), (vec![shoulder, pressure], 2.01)]
         .map(|(sensors, leak)| Layout { sensors, value: leak * GRAM_PER_HOUR });
-    let number = Numbered {
+    let number = BestLayouts {
         sensors: 2,
         bound: layouts[0].value,
         layouts: layouts.to_vec(),
@@ -94,7 +95,7 @@ fn known() -> Known {
         complete: true,
         compared: 16,
     };
-    let failure = |sensor, without: Option<Certainty>, unseen: Option<&str>, found| Failure {
+    let failure = |sensor, without: Option<SteadyAccuracy>, unseen: Option<&str>, found| Failure {
         sensor,
         unseen: unseen.map(str::to_owned),
         without,
@@ -105,10 +106,10 @@ fn known() -> Known {
         gas_k: 0.5,
         mass_kg: 0.02,
     };
-    let position = |sensor: usize, certainty| Position {
+    let position = |sensor: usize, steady| Position {
         sensor,
         height_m: candidates.list[sensor].height_m,
-        certainty,
+        steady,
         delay_s: None,
         robust_k: vec![0.7],
     };
@@ -120,14 +121,14 @@ fn known() -> Known {
         settings: StudySettings { sensors: 2, ..StudySettings::default() },
         numbers: vec![number],
         judged: vec![
-            judged(&[middle, pressure], certainty(0.31, 4.0), Some(12.0)),
-            judged(&[shoulder, pressure], certainty(0.35, 3.2), None),
+            judged(&[middle, pressure], accuracy(0.31, 4.0), Some(12.0)),
+            judged(&[shoulder, pressure], accuracy(0.35, 3.2), None),
         ],
         accuracy_front: front(0.31),
         delay_front: front(12.0 * 3600.0),
         failures: vec![
             failure(middle, None, Some("air_k"), 0.2),
-            failure(pressure, Some(certainty(1.5, 40.0)), None, 0.3e5),
+            failure(pressure, Some(accuracy(1.5, 40.0)), None, 0.3e5),
         ],
         biases: vec![Bias {
             source: BiasSource::Offset(middle),
@@ -137,9 +138,9 @@ fn known() -> Known {
             leak_kg_s: [0.0, GRAM_PER_HOUR, 0.0],
         }],
         positions: vec![
-            position(middle, Some(certainty(0.31, 4.0))),
-            position(shoulder, Some(certainty(0.35, 3.2))),
-            position(valve, Some(certainty(0.5, 9.0))),
+            position(middle, Some(accuracy(0.31, 4.0))),
+            position(shoulder, Some(accuracy(0.35, 3.2))),
+            position(valve, Some(accuracy(0.5, 9.0))),
             position(gas, None),
         ],
         refused: Vec::new(),
@@ -156,7 +157,7 @@ fn provenance() -> Provenance {
 #[test]
 fn words_name_the_best_its_proof_and_where_the_rankings_differ_within_110_characters() {
     let known = known();
-    let text = known.placed().text();
+    let text = known.report().text();
     let plain = text.split_whitespace().collect::<Vec<_>>().join(" ");
     for expected in [
         "every layout has: pressure",
@@ -181,7 +182,7 @@ fn words_name_the_best_its_proof_and_where_the_rankings_differ_within_110_charac
 #[test]
 fn places_stand_from_the_top_down_with_shoulder_and_valve_marked() {
     let known = known();
-    let text = known.placed().text();
+    let text = known.report().text();
     let table = text.split("anywhere\n").nth(1).unwrap();
     let names: Vec<&str> = table
         .lines()
@@ -197,7 +198,7 @@ fn places_stand_from_the_top_down_with_shoulder_and_valve_marked() {
 fn a_partial_study_says_so_first_and_an_empty_one_still_makes_text_and_picture() {
     let mut known = known();
     known.study.partial = true;
-    assert!(known.placed().text().starts_with("PARTIAL"));
+    assert!(known.report().text().starts_with("PARTIAL"));
     let empty = Study {
         numbers: vec![],
         judged: vec![],
@@ -209,15 +210,15 @@ fn a_partial_study_says_so_first_and_an_empty_one_still_makes_text_and_picture()
         ..known.study.clone()
     };
     known.study = empty;
-    assert!(known.placed().text().contains("No layout was looked at"));
-    assert!(known.placed().figure().to_svg(&provenance()).unwrap().contains("height along the axis"));
-    assert_eq!(known.placed().document(&provenance())["partial"], true);
+    assert!(known.report().text().contains("No layout was looked at"));
+    assert!(known.report().figure().to_svg(&provenance()).unwrap().contains("height along the axis"));
+    assert_eq!(known.report().document(&provenance())["partial"], true);
 }
 
 #[test]
 fn columns_have_a_row_for_each_judged_layout_and_leave_what_never_happens_empty() {
     let known = known();
-    let csv = known.placed().csv(&provenance());
+    let csv = known.report().csv(&provenance());
     let lines: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), 3);
     assert!(lines.iter().all(|line| line.split(',').count() == lines[0].split(',').count()), "{lines:?}");
@@ -228,7 +229,7 @@ fn columns_have_a_row_for_each_judged_layout_and_leave_what_never_happens_empty(
 #[test]
 fn json_has_the_best_by_name_and_the_study_in_si() {
     let known = known();
-    let document = known.placed().document(&provenance());
+    let document = known.report().document(&provenance());
     assert_eq!(document["best"][0]["names"][0], "middle");
     assert!((document["best"][0]["value"].as_f64().unwrap() - 2.0).abs() < 1e-9);
     assert_eq!(document["criterion"]["unit"], "g/h");
@@ -240,7 +241,7 @@ fn json_has_the_best_by_name_and_the_study_in_si() {
 #[test]
 fn the_picture_names_places_levels_and_what_is_unseen() {
     let known = known();
-    let svg = known.placed().figure().to_svg(&provenance()).unwrap();
+    let svg = known.report().figure().to_svg(&provenance()).unwrap();
     for words in ["middle", "shoulder", "valve", "air_k", "smallest leak in g/h", "cost of a layout", "never"]
     {
         assert!(svg.contains(words), "{words} is missing");

@@ -34,7 +34,7 @@ impl Digits {
 }
 
 /// A value with so many significant digits.
-pub fn rounded(value: f64, digits: usize) -> f64 {
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.max(1) - 1).parse().unwrap_or(value)
 }
 

@@ -16,8 +16,9 @@ mod parquet;
 mod rows;
 mod terminal;
 
-pub use digits::{Digits, number, rounded};
-pub use rows::{RowFormat, Rows};
+pub(crate) use digits::rounded;
+pub use digits::{Digits, number};
+pub(crate) use rows::{RowFormat, Rows};
 pub use terminal::aligned;
 pub(super) use terminal::{hanging, wrapped};
 
@@ -96,7 +97,7 @@ impl<'a> Cell<'a> {
 }
 
 /// How a record gives a cell of a column.
-pub enum Source<R> {
+pub(crate) enum Source<R> {
     /// A number with its precision; NaN is a missing one.
     Number(Digits, fn(&R) -> f64),
     /// A text; an empty one is missing.
@@ -104,7 +105,7 @@ pub enum Source<R> {
 }
 
 /// Declaration of a column of records `R`.
-pub struct Field<R> {
+pub(crate) struct Field<R> {
     /// Name, which ends in the unit.
     pub name: &'static str,
     /// Its cells.

@@ -7,7 +7,7 @@ use serde_json::{Serializer, json};
 
 /// Format of streamed rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowFormat {
+pub(crate) enum RowFormat {
     /// Comma-separated cells.
     Csv,
     /// Arrays inside one JSON document.
@@ -15,7 +15,7 @@ pub enum RowFormat {
 }
 
 /// Turns records into text, one by one; memory is reused from row to row.
-pub struct Rows<R> {
+pub(crate) struct Rows<R> {
     fields: Vec<Field<R>>,
     /// Precision of each column; of texts it is not used.
     digits: Vec<Digits>,

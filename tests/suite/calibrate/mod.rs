@@ -54,7 +54,7 @@ struct Log(Vec<Vec<String>>);
 impl Log {
     /// Records a course.
     fn recorded(folder: &Path, fill_bar: u32, end_degc: i32, seed: u32) -> Self {
-        let plain = cylwatch::thermal::vessel::presets::text("nitrogen-20l").unwrap();
+        let plain = cylwatch::thermal::vessel::presets::FILES.text("nitrogen-20l").unwrap();
         let contact = format!("contact_w_k = {}", 8.0 * CONTACT);
         let truth = plain
             .replace(

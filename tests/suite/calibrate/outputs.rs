@@ -99,7 +99,7 @@ fn an_offset_of_the_air_that_is_certain_is_taken_off_and_not_fitted() {
 fn a_wall_of_few_cells_and_a_volume_off_the_contour_are_said() {
     let folder = tempdir().unwrap();
     log(folder.path());
-    let plain = vessel::presets::text("nitrogen-20l").unwrap();
+    let plain = vessel::presets::FILES.text("nitrogen-20l").unwrap();
     let coarse = plain.replace("volume_l = 20.0", "volume_l = 22.5").replace("cells = 6", "cells = 2");
     let coarse = coarse.replace("cells = 3", "cells = 1").replace("cells = 2", "cells = 1");
     std::fs::write(folder.path().join("coarse.toml"), coarse).unwrap();
@@ -216,7 +216,7 @@ fn a_log_with_foreign_names_dates_and_a_known_mass_needs_no_pressure() {
 fn a_vessel_without_a_valve_joins_in_what_it_has() {
     let folder = tempdir().unwrap();
     log(folder.path()).without("valve_degc").write(folder.path(), "b.csv");
-    let plain = vessel::presets::text("nitrogen-20l").unwrap();
+    let plain = vessel::presets::FILES.text("nitrogen-20l").unwrap();
     let (before, rest) = plain.split_once("[valve]").unwrap();
     let (_, after) = rest.split_once("[surface]").unwrap();
     std::fs::write(folder.path().join("bare.toml"), format!("{before}[surface]{after}")).unwrap();

@@ -47,7 +47,7 @@ fn the_calibrated_vessel_predicts_a_scenario_that_nobody_recorded() {
     let folder = tempdir().unwrap();
     log(folder.path());
     calibrate(folder.path(), &["log.csv", "-o", "new.toml"]);
-    let plain = cylwatch::thermal::vessel::presets::text("nitrogen-20l").unwrap();
+    let plain = cylwatch::thermal::vessel::presets::FILES.text("nitrogen-20l").unwrap();
     let truth = plain
         .replace("[inside_film]", &format!("film_factor = {OUTSIDE}\n[inside_film]\nmultiplier = {INSIDE}"))
         .replace("contact_w_k = 8", &format!("contact_w_k = {}", 8.0 * CONTACT));

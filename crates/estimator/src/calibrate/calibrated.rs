@@ -3,17 +3,14 @@ use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::scenario::Scenario;
 use cylwatch_thermal::vessel::Vessel;
 use nalgebra::DMatrix;
-use serde::Serialize;
 
 use super::fit::Fit;
 use super::identifiability::{check_determined, identifiability};
-use super::parameter::Stage;
 use super::residuals::{channel_residuals, check_misfit};
 use super::solution::Solution;
 use super::solve::{SearchStep, search_watched};
 use super::uncertainty::covariance;
 use super::{CalibrateError, ChannelResiduals, Identifiability, ParameterKind, Scope};
-use crate::sensor::Sensor;
 
 /// A parameter as found, in its unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,59 +60,6 @@ pub struct Calibrated {
     pub iterations: usize,
     pub(super) fit: Fit,
     pub(super) solution: Solution,
-}
-
-/// Where a parameter belongs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PartOf {
-    /// The vessel.
-    Vessel,
-    /// What happens to it.
-    Scenario,
-    /// A sensor.
-    Sensor,
-}
-
-/// One line of a [`Record`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FittedParameter {
-    /// Name.
-    pub name: String,
-    /// Where it belongs; only the vessel's change the vessel.
-    pub part_of: PartOf,
-    /// Value, in its unit.
-    pub value: f64,
-    /// Standard deviation.
-    pub sd: f64,
-    /// Lower end of its interval.
-    pub low: f64,
-    /// Upper end of its interval.
-    pub high: f64,
-}
-
-/// What was fitted, from which logs, and when.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Record {
-    /// The vessel's name.
-    pub vessel: String,
-    /// Everything that was fitted for it.
-    pub fitted: Vec<FittedParameter>,
-    /// Sources of the experiments.
-    pub sources: Vec<String>,
-    /// When, as the caller states it.
-    pub calibrated_at: String,
-    /// Probability with which an interval holds the truth.
-    pub confidence: f64,
-}
-
-/// A vessel with fitted properties.
-#[derive(Clone, Debug)]
-pub struct CalibratedVessel {
-    /// The vessel.
-    pub vessel: Vessel,
-    /// Where its properties come from.
-    pub record: Record,
 }
 
 /// Search, then judge.
@@ -196,31 +140,8 @@ impl Calibrated {
         DMatrix::from_fn(c.nrows(), c.ncols(), |i, j| c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt())
     }
 
-    /// The vessel of an experiment (0 is the first) with what was fitted, and a record of it. `calibrated_at` is the
-    /// time to be recorded, e.g. of RFC 3339. The factors hold for any vessel of the same kind: a smaller one takes them as well.
-    ///
-    /// # Errors
-    /// [`CalibrateError::ScopeUnknown`] for an experiment that took no part.
-    pub fn calibrated_vessel(
-        &self,
-        experiment: usize,
-        calibrated_at: &str,
-    ) -> Result<CalibratedVessel, CalibrateError> {
-        let case = self.case(experiment)?;
-        let vessel = self.applied(experiment, &case.base.vessel);
-        let concerned = self.estimates.iter().filter(|estimate| estimate.scope.contains(experiment));
-        let sources = self.fit.cases.iter().map(|case| case.source.clone()).collect();
-        let record = Record {
-            vessel: vessel.name.clone(),
-            fitted: concerned.map(FittedParameter::from).collect(),
-            sources,
-            calibrated_at: calibrated_at.to_owned(),
-            confidence: self.fit.settings.confidence,
-        };
-        Ok(CalibratedVessel { vessel, record })
-    }
-
-    /// Another vessel with the factors that were fitted to the vessel of an experiment.
+    /// A vessel with the factors that were fitted to the vessel of an experiment (0 is the first). They hold for any vessel of the same
+    /// kind: a smaller one takes them as well.
     pub fn applied(&self, experiment: usize, vessel: &Vessel) -> Vessel {
         let mut vessel = vessel.clone();
         for estimate in self.estimates.iter().filter(|estimate| estimate.scope.contains(experiment)) {
@@ -251,43 +172,5 @@ impl Calibrated {
         let mut setup = self.fit.cases[0].base.clone();
         setup.scenario = scenario.clone();
         Ok(setup.with(&specs, &values, experiment)?.scenario)
-    }
-
-    /// The sensors of an experiment with their numbers as found.
-    ///
-    /// # Errors
-    /// [`CalibrateError::ScopeUnknown`] for an experiment that took no part.
-    pub fn calibrated_sensors(&self, experiment: usize) -> Result<Vec<Sensor>, CalibrateError> {
-        let values = self.fit.values(&self.solution.z);
-        Ok(self.case(experiment)?.base.sensors_with(&self.fit.specs, &values, experiment))
-    }
-
-    fn case(&self, experiment: usize) -> Result<&super::fit::Case, CalibrateError> {
-        self.fit.cases.iter().find(|case| case.experiment == experiment).ok_or_else(|| {
-            CalibrateError::ScopeUnknown {
-                parameter: "calibrated vessel".into(),
-                experiment,
-                experiments: self.fit.cases.len(),
-            }
-        })
-    }
-}
-
-impl From<&Estimate> for FittedParameter {
-    fn from(estimate: &Estimate) -> Self {
-        let part_of = match &estimate.parameter {
-            ParameterKind::DischargeCoefficient { .. } => PartOf::Scenario,
-            kind if kind.is_of_experiment() => PartOf::Scenario,
-            kind if kind.stage() == Stage::Course => PartOf::Vessel,
-            _ => PartOf::Sensor,
-        };
-        Self {
-            name: estimate.parameter.to_string(),
-            part_of,
-            value: estimate.value,
-            sd: estimate.sd,
-            low: estimate.interval.0,
-            high: estimate.interval.1,
-        }
     }
 }

@@ -22,7 +22,7 @@ pub struct Experiment {
 }
 
 /// Spread over noise below which a channel does not move.
-const STILL: f64 = 3.0;
+const EXCITATION_RATIO: f64 = 3.0;
 
 /// Usable readings of one channel.
 #[derive(Clone, Debug)]
@@ -93,5 +93,5 @@ impl Experiment {
 /// Some channel must move.
 pub(super) fn check_excitation<'a>(columns: impl Iterator<Item = &'a Column>) -> Result<(), CalibrateError> {
     let ratio = columns.map(|column| column.moments().1 / column.sigma).fold(0.0, f64::max);
-    if ratio > STILL { Ok(()) } else { Err(CalibrateError::NoExcitation { ratio }) }
+    if ratio > EXCITATION_RATIO { Ok(()) } else { Err(CalibrateError::NoExcitation { ratio }) }
 }

@@ -15,7 +15,7 @@ use super::uncertainty::{of_free, prior_information};
 use super::{CalibrateError, ParameterKind};
 
 /// Components of an eigenvector below this share of its largest one are left out of its name.
-const PART: f64 = 0.25;
+const COMPONENT_SHARE: f64 = 0.25;
 
 /// Smallest eigenvalue: beyond so many widths nothing is known at all.
 const LEAST_INFORMATION: f64 = 1e-12;
@@ -105,7 +105,7 @@ fn combination(fit: &Fit, free: &[usize], vector: &[f64], deviation: f64) -> Com
         .iter()
         .zip(vector)
         .map(|(&i, v)| (i, v / largest))
-        .filter(|(_, share)| share.abs() >= PART)
+        .filter(|(_, share)| share.abs() >= COMPONENT_SHARE)
         .collect();
     parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     let names = parts.iter().map(|&(i, _)| fit.specs[i].kind.clone()).collect();

@@ -10,7 +10,7 @@ use super::uncertainty::{of_free, prior_information};
 use crate::least_squares::solve;
 
 /// Cells that each cell becomes, along the wall and through it.
-const FINER: usize = 2;
+const REFINEMENT: usize = 2;
 
 impl Calibrated {
     /// How far each parameter would move with twice as many wall cells along and through the wall, in its standard deviations;
@@ -22,7 +22,7 @@ impl Calibrated {
         }
         let mut fine = fit.clone();
         for case in &mut fine.cases {
-            case.base.vessel.geometry = case.base.vessel.geometry.refined(FINER);
+            case.base.vessel.geometry = case.base.vessel.geometry.refined(REFINEMENT);
         }
         let finer = fine.evaluate(&solution.z).ok()?;
         let change = DVector::from_iterator(

@@ -40,7 +40,7 @@ mod specification;
 mod uncertainty;
 mod validation;
 
-pub use calibrated::{Calibrated, CalibratedVessel, Estimate, FittedParameter, PartOf, Record};
+pub use calibrated::{Calibrated, Estimate};
 pub use error::CalibrateError;
 pub use experiment::Experiment;
 pub use identifiability::{Combination, Identifiability};

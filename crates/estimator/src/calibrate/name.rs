@@ -4,7 +4,7 @@ use std::str::FromStr;
 use super::ParameterKind;
 
 /// Names without an object.
-const PLAIN: [(&str, ParameterKind); 9] = [
+const GLOBAL_NAMES: [(&str, ParameterKind); 9] = [
     ("outside-film", ParameterKind::OutsideFilm),
     ("inside-film", ParameterKind::InsideFilm),
     ("wall-capacity", ParameterKind::WallCapacity),
@@ -17,7 +17,7 @@ const PLAIN: [(&str, ParameterKind); 9] = [
 ];
 
 /// Names that are followed by a colon and the name of a sensor or a flow.
-const OF_OBJECT: [&str; 6] =
+const OBJECT_NAMES: [&str; 6] =
     ["coupling", "lag", "offset", "span", "temperature-coefficient", "discharge-coefficient"];
 
 /// A name that no parameter has.
@@ -53,7 +53,7 @@ impl ParameterKind {
             Self::SensorTemperatureCoefficient { sensor } => of("temperature-coefficient", sensor),
             Self::DischargeCoefficient { flow } => of("discharge-coefficient", flow),
             plain => {
-                let named = PLAIN.iter().find(|(_, kind)| kind == plain);
+                let named = GLOBAL_NAMES.iter().find(|(_, kind)| kind == plain);
                 named.map_or_else(|| plain.to_string(), |(name, _)| (*name).to_owned())
             }
         }
@@ -61,8 +61,8 @@ impl ParameterKind {
 
     /// All names; those of a sensor's or a flow's number end in a colon.
     pub fn names() -> impl Iterator<Item = String> {
-        let plain = PLAIN.iter().map(|(name, _)| (*name).to_owned());
-        plain.chain(OF_OBJECT.iter().map(|name| format!("{name}:")))
+        let plain = GLOBAL_NAMES.iter().map(|(name, _)| (*name).to_owned());
+        plain.chain(OBJECT_NAMES.iter().map(|name| format!("{name}:")))
     }
 
     /// Unit of its value in SI; `1` for factors.
@@ -86,14 +86,14 @@ impl FromStr for ParameterKind {
             Some((word, object)) => (word, Some(object.to_owned()).filter(|object| !object.is_empty())),
             None => (text, None),
         };
-        if let (Some((_, kind)), None) = (PLAIN.iter().find(|(name, _)| *name == text), &object) {
+        if let (Some((_, kind)), None) = (GLOBAL_NAMES.iter().find(|(name, _)| *name == text), &object) {
             return Ok(kind.clone());
         }
         let unknown = || {
             let known = Self::names().collect::<Vec<_>>().join(", ");
             ParameterNameError::Unknown { name: text.to_owned(), known }
         };
-        if !OF_OBJECT.contains(&word) {
+        if !OBJECT_NAMES.contains(&word) {
             return Err(unknown());
         }
         let is_flow = word == "discharge-coefficient";

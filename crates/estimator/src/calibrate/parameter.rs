@@ -62,7 +62,7 @@ pub enum ParameterKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stage {
     /// The simulation.
-    Course,
+    Simulation,
     /// The sensors' readings.
     Reading,
 }
@@ -75,16 +75,16 @@ impl ParameterKind {
             | Self::SensorSpan { .. }
             | Self::SensorLag { .. }
             | Self::SensorTemperatureCoefficient { .. } => Stage::Reading,
-            _ => Stage::Course,
+            _ => Stage::Simulation,
         }
     }
 
-    /// Whether it is sought as its logarithm. What acts on the course and is not is the shift of a temperature, K.
+    /// Whether it is sought as its logarithm. What acts on the simulation and is not is the shift of a temperature, K.
     pub fn is_positive(&self) -> bool {
         match self {
             Self::InitialTemperature | Self::AirOffset => false,
             Self::SensorLag { .. } => true,
-            other => other.stage() == Stage::Course,
+            other => other.stage() == Stage::Simulation,
         }
     }
 

@@ -13,7 +13,7 @@ use crate::least_squares::invert;
 const TRIALS: usize = 12;
 
 /// Share of the rise at which the end of the interval is found.
-const CLOSE: f64 = 0.02;
+const RISE_TOLERANCE: f64 = 0.02;
 
 /// A profile, in the parameter's unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,7 @@ impl Calibrated {
             let rise = self.rise_at(parameter, z)? / factor;
             points.push((z, rise));
             let root = rise.max(0.0).sqrt();
-            if (root / quantile - 1.0).abs() < 0.5 * CLOSE {
+            if (root / quantile - 1.0).abs() < 0.5 * RISE_TOLERANCE {
                 return Ok((z, true));
             }
             if root < quantile {

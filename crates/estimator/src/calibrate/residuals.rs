@@ -7,10 +7,10 @@ use crate::consistency::Whiteness;
 const LAGS: usize = 20;
 
 /// Two-sided normal quantile below which an autocorrelation counts as none.
-const NO_CORRELATION: f64 = 1.96;
+const CORRELATION_QUANTILE: f64 = 1.96;
 
 /// A deviation of so many standard deviations of the noise is no chance.
-const NO_CHANCE: f64 = 5.0;
+const SIGNIFICANT_SD: f64 = 5.0;
 
 /// What is left of one channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +71,7 @@ fn autocorrelation_time(r: &[f64]) -> f64 {
         return 1.0;
     }
     let correlation = |lag: usize| r[lag..].iter().zip(r).map(|(a, b)| a * b).sum::<f64>() / square;
-    let least = NO_CORRELATION / (n as f64).sqrt();
+    let least = CORRELATION_QUANTILE / (n as f64).sqrt();
     1.0 + 2.0 * (1..n / 2).map(correlation).take_while(|&rho| rho > least).sum::<f64>()
 }
 
@@ -80,7 +80,7 @@ pub(super) fn check_misfit(fit: &Fit, channels: &[ChannelResiduals]) -> Result<(
     let columns = fit.cases.iter().flat_map(|case| &case.columns);
     for (channel, column) in channels.iter().zip(columns) {
         let spread = column.moments().1;
-        if channel.rms >= spread && channel.rms_over_noise > NO_CHANCE {
+        if channel.rms >= spread && channel.rms_over_noise > SIGNIFICANT_SD {
             let (experiment, channel_name) = (channel.experiment.clone(), channel.channel.clone());
             let deviation = channel.rms;
             return Err(CalibrateError::Misfit { experiment, channel: channel_name, deviation, spread });

@@ -52,7 +52,7 @@ pub(super) fn sensitivities(
 /// Relative error of a parameter's derivatives.
 pub(super) fn relative_error(fit: &Fit, parameter: usize) -> f64 {
     match fit.specs[parameter].kind.stage() {
-        Stage::Course => RELATIVE_ERROR,
+        Stage::Simulation => RELATIVE_ERROR,
         Stage::Reading => 0.0,
     }
 }
@@ -76,7 +76,7 @@ fn tasks<'a>(fit: &'a Fit, held: &[bool]) -> Vec<Task<'a>> {
             |&parameter: &usize| !held[parameter] && fit.specs[parameter].scope.contains(case.experiment);
         let (course, reading): (Vec<usize>, Vec<usize>) = (0..fit.specs.len())
             .filter(concerned)
-            .partition(|&parameter| fit.specs[parameter].kind.stage() == Stage::Course);
+            .partition(|&parameter| fit.specs[parameter].kind.stage() == Stage::Simulation);
         let size = course.len().div_ceil(parts).max(1);
         for parameters in course.chunks(size).map(<[usize]>::to_vec).chain([reading]) {
             tasks.push(Task { parameters, case, index, first_row });
@@ -93,7 +93,7 @@ impl Task<'_> {
     fn columns(&self, fit: &Fit, z: &[f64], here: &Evaluation) -> Result<Vec<Column>, CalibrateError> {
         match self.parameters.first() {
             None => Ok(Vec::new()),
-            Some(&first) if fit.specs[first].kind.stage() == Stage::Course => self.of_course(fit, z),
+            Some(&first) if fit.specs[first].kind.stage() == Stage::Simulation => self.of_course(fit, z),
             Some(_) => self.of_readings(fit, z, &here.courses[self.index]),
         }
     }
@@ -104,7 +104,7 @@ impl Task<'_> {
         let setup = |z: &[f64]| self.case.base.with(&fit.specs, &fit.values(z), self.case.experiment);
         let run = || -> Result<Vec<[Trajectory; 2]>, EstimatorError> {
             let side = |parameter: usize, by: f64| {
-                setup(&beside(z, parameter, by)).map(|Setup { vessel, scenario, .. }| (vessel, scenario))
+                setup(&shifted(z, parameter, by)).map(|Setup { vessel, scenario, .. }| (vessel, scenario))
             };
             let neighbours: Vec<Neighbours> = self
                 .parameters
@@ -142,7 +142,7 @@ impl Task<'_> {
                 ParameterKind::SensorLag { .. } => HALF_DISTANCE,
                 kind => kind.usual_width(self.case.base.is_of_pressure(kind)),
             };
-            let readings = |by: f64| fit.readings(self.case, &fit.values(&beside(z, parameter, by)), course);
+            let readings = |by: f64| fit.readings(self.case, &fit.values(&shifted(z, parameter, by)), course);
             Ok((parameter, central(&readings(-half)?, &readings(half)?, half)))
         };
         self.parameters.iter().map(column).collect()
@@ -155,7 +155,7 @@ fn half_distance(kind: &ParameterKind) -> f64 {
 }
 
 /// Coordinates with one of them moved.
-fn beside(z: &[f64], parameter: usize, by: f64) -> Vec<f64> {
+fn shifted(z: &[f64], parameter: usize, by: f64) -> Vec<f64> {
     let mut z = z.to_vec();
     z[parameter] += by;
     z

@@ -169,8 +169,8 @@ mod tests {
 
     #[test]
     fn a_written_and_read_vessel_has_the_factors_of_the_calibrated_one() {
-        for name in presets::names() {
-            let (spec, vessel) = read_specification(presets::text(name).unwrap(), name).unwrap();
+        for name in presets::FILES.names() {
+            let (spec, vessel) = read_specification(presets::FILES.text(name).unwrap(), name).unwrap();
             for (k, kind) in KINDS.iter().enumerate() {
                 let factor = 1.03 + 0.01 * k as f64;
                 let (mut changed, mut expected) = (spec.clone(), vessel.clone());

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | are the innovations as large as stated? | [`NisAccumulator`]: mean of `nu^2/S` | one run, over time |
 //! | are they independent? | [`Whiteness`]: autocorrelation | one run, over time |
-//! | are they normal? | [`Normality`]: Lilliefors' test | one run, over time |
+//! | are they normal? | `Normality`: Lilliefors' test | one run, over time |
 //! | are the errors as large as stated? | [`EnsembleNees`]: mean of `e^T P^-1 e` | many runs, at fixed times |
 //! | does the band hold the truth? | [`Coverage`] | either, with independent samples only |
 //!
@@ -29,9 +29,10 @@ pub use band::{Band, Significance};
 pub use coverage::Coverage;
 pub use nees::{EnsembleNees, NeesAt, NeesJudgement, normalised_error_squared};
 pub use nis::NisAccumulator;
+pub use normality::Lilliefors;
+pub(crate) use normality::Normality;
 #[cfg(test)]
 pub(crate) use normality::lilliefors;
-pub use normality::{Lilliefors, Normality};
 pub use report::{ConsistencyReport, Finding, NisReport, OutputReport};
 pub use run::RunConsistency;
 pub use whiteness::Whiteness;

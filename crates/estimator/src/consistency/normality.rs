@@ -11,7 +11,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::{Finding, Significance};
 
 /// Fewest values that a distribution is judged by.
-const FEWEST: usize = 8;
+const MIN_SAMPLES: usize = 8;
 /// Largest probability that the formula gives.
 const LARGEST_P: f64 = 0.1;
 
@@ -30,7 +30,7 @@ pub struct Lilliefors {
 /// values, without spread, or with values that are not finite.
 pub(crate) fn lilliefors(sample: &[f64]) -> Option<Lilliefors> {
     let n = sample.len() as f64;
-    if sample.len() < FEWEST || sample.iter().any(|value| !value.is_finite()) {
+    if sample.len() < MIN_SAMPLES || sample.iter().any(|value| !value.is_finite()) {
         return None;
     }
     let mean = sample.iter().sum::<f64>() / n;
@@ -59,7 +59,7 @@ pub(super) fn p_value(distance: f64, n: f64) -> f64 {
 
 /// Values of a run to be tested for normality, thinned evenly so that they never take more than a fixed room.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Normality {
+pub(crate) struct Normality {
     pub(super) kept: Vec<f64>,
     capacity: usize,
     /// Every `stride`-th value is kept.
@@ -77,7 +77,7 @@ impl Default for Normality {
 impl Normality {
     /// Room for `capacity` values, at least eight; the test is made with half of them or more once there were so many.
     pub(crate) fn with_capacity(capacity: usize) -> Self {
-        let capacity = capacity.max(FEWEST);
+        let capacity = capacity.max(MIN_SAMPLES);
         Self { kept: Vec::with_capacity(capacity), capacity, stride: 1, seen: 0 }
     }
 

@@ -14,14 +14,14 @@
 //! A member that is excluded begins anew from the freest one ([`Bank::replace`](super::Bank::replace)).
 
 /// Prior probability that a member is right.
-const PRIOR: f64 = 0.9999;
+const PRIOR_PROBABILITY: f64 = 0.9999;
 /// `d^2` beyond which a member is excluded: five and a half standard deviations.
-const EXCLUDED: f64 = 30.0;
+const EXCLUSION_THRESHOLD: f64 = 30.0;
 /// Least variance of the difference relative to that of the free member.
-const LEAST_PART: f64 = 0.25;
+const MIN_VARIANCE_RATIO: f64 = 0.25;
 
 /// Mean and variance.
-pub type Moments = (f64, f64);
+pub(crate) type Moments = (f64, f64);
 
 /// Mean and variance of a mixture, weight `w` of the first part.
 pub(crate) fn mixture(w: f64, one: Moments, other: Moments) -> Moments {
@@ -38,19 +38,19 @@ pub struct Belief {
 impl Belief {
     /// By the moments of one quantity of a member and of the freest one.
     pub fn of(member: Moments, free: Moments) -> Self {
-        let variance = (free.1 - member.1).max(LEAST_PART * free.1);
+        let variance = (free.1 - member.1).max(MIN_VARIANCE_RATIO * free.1);
         Self { square: (free.0 - member.0).powi(2) / variance }
     }
 
     /// Probability that the member is right.
     pub(crate) fn weight(self) -> f64 {
-        let odds = PRIOR / (1.0 - PRIOR) * (-0.5 * self.square).exp();
+        let odds = PRIOR_PROBABILITY / (1.0 - PRIOR_PROBABILITY) * (-0.5 * self.square).exp();
         odds / (1.0 + odds)
     }
 
     /// Whether it is beyond five and a half standard deviations.
     pub fn is_excluded(self) -> bool {
-        self.square > EXCLUDED
+        self.square > EXCLUSION_THRESHOLD
     }
 
     /// Mixture of what both say of one quantity.
@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn members_that_agree_leave_the_prior() {
         let belief = Belief::of((4.4, 1e-6), (4.4, 1e-5));
-        assert_relative_eq!(belief.weight(), PRIOR, max_relative = 1e-12);
+        assert_relative_eq!(belief.weight(), PRIOR_PROBABILITY, max_relative = 1e-12);
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub struct StepTransition {
     /// Noise covariance that all members share: (leading, leading), upper triangle.
     pub noise: DMatrix<f64>,
     /// Noise covariance by each source of [`Plant::intensities`], per unit of its intensity.
-    pub by_source: Vec<DMatrix<f64>>,
+    pub(crate) by_source: Vec<DMatrix<f64>>,
     linear: Linearisation,
 }
 
@@ -151,7 +151,7 @@ pub trait Plant: StateSpace + Clone + Debug {
         Pattern::new(&vec![(0..self.states()).collect(); self.leading()])
     }
 
-    /// Intensity of each source of [`StepTransition::by_source`] for a member with this hypothesis: ([`SOURCES`](Self::SOURCES)).
+    /// Intensity of each source of `StepTransition::by_source` for a member with this hypothesis: ([`SOURCES`](Self::SOURCES)).
     fn intensities(&self, _hypothesis: &Self::Hypothesis, _intensities: &mut [f64]) {}
 
     /// Whether a member with this hypothesis is linearised before others.

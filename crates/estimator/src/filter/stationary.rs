@@ -32,13 +32,13 @@ mod steady;
 /// Share of the standard deviations within which a covariance counts as that of the steady state.
 const SETTLED: f64 = 0.1;
 /// Least noise variance with which the steady gain is used, as a share of that which it supposes, the most.
-const QUIET: f64 = 0.2;
+const MIN_NOISE_RATIO: f64 = 0.2;
 /// Complete samples out of the steady state after which it is sought anew.
 const PATIENCE: u32 = 60;
 /// Relative difference within which two intervals are the same.
 const SAME_INTERVAL: f64 = 1e-6;
 /// Equal intervals in a row that make them the usual one.
-const USUAL: u32 = 3;
+const EQUAL_INTERVALS: u32 = 3;
 
 /// Where the covariance given the constants is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +108,7 @@ impl Stationary {
     pub(super) fn begin(&mut self, p: &mut UdFactors, dt_s: f64) {
         let run = if is_same(dt_s, self.latest.0) { self.latest.1.saturating_add(1) } else { 1 };
         self.latest = (dt_s, run);
-        if run == USUAL && !is_same(dt_s, self.usual_s) {
+        if run == EQUAL_INTERVALS && !is_same(dt_s, self.usual_s) {
             self.unsettle(p);
             (self.usual_s, self.steady, self.waited) = (dt_s, None, 0);
         }
@@ -168,7 +168,7 @@ impl Stationary {
 
     /// Gain of a reading with noise of variance `r`; moves the covariance where it is not that of the steady state.
     pub(super) fn update(&mut self, p: &mut UdFactors, output: usize, h: &[f64], r: f64, gain: &mut [f64]) {
-        let usual = |steady: &Steady| r <= steady.r[output] && r >= QUIET * steady.r[output];
+        let usual = |steady: &Steady| r <= steady.r[output] && r >= MIN_NOISE_RATIO * steady.r[output];
         let within = self.phase == Phase::Within(output);
         match &self.steady {
             Some(steady) if within && usual(steady) => {

@@ -12,9 +12,9 @@ const FASTEST: f64 = 10.0;
 /// A pole slower than this share of the record's rate is an integrator.
 const SLOWEST: f64 = 0.02;
 /// A relative error of the simulation below this leaves no doubt about the direction.
-const GOOD: f64 = 1e-3;
+const NEGLIGIBLE_ERROR: f64 = 1e-3;
 /// The model from output to input must be wrong by less than this share of the model asked for.
-const BETTER: f64 = 0.5;
+const REVERSE_ERROR_RATIO: f64 = 0.5;
 
 /// Poles must be within what samples and record can show.
 pub(super) fn check_poles(problem: &Problem, k: &Coefficients) -> Result<(), IdentifyError> {
@@ -92,7 +92,7 @@ pub(super) fn check_direction(
 ) -> Result<(), IdentifyError> {
     let backward = Structure::new(structure.order, structure.zeros).with_offset();
     let parameters = backward.parameters().len();
-    if error < GOOD {
+    if error < NEGLIGIBLE_ERROR {
         return Ok(());
     }
     let Ok(problem) = Problem::new(&data.swapped(), None, settings.longest_gap_s, parameters) else {
@@ -102,7 +102,7 @@ pub(super) fn check_direction(
         return Ok(());
     };
     let opposite = (best.sse / problem.samples() as f64).sqrt();
-    if opposite < BETTER * error {
+    if opposite < REVERSE_ERROR_RATIO * error {
         let percent = |error: f64| 100.0 * (1.0 - error);
         return Err(IdentifyError::Acausal {
             forward_percent: percent(error),

@@ -19,7 +19,7 @@ use super::problem::Problem;
 use super::response::respond;
 use super::schedule::Schedule;
 use super::solve::{Search, Solution, relative};
-use super::{Hold, IdentifyError, InitialState, InputCourse, Parameter};
+use super::{Hold, IdentifyError, InitialState, InputModel, Parameter};
 use crate::EstimatorError;
 use crate::filter::{ExtendedKalman, StateSpace, StepError, UdFactors};
 use crate::least_squares::{invert, solve};
@@ -36,9 +36,9 @@ const HALVINGS: usize = 12;
 /// A relative step this small is the last: the differences do not resolve a smaller one.
 const LAST_STEP: f64 = 1e-10;
 /// Near the maximum a step that is not below this share of the one before it is rounding.
-const SHRINKING: f64 = 0.5;
+const CONTRACTION_RATIO: f64 = 0.5;
 /// A gain of the logarithm of the likelihood this small is a ten-thousandth of a standard deviation.
-const RESOLVED: f64 = 1e-8;
+const LOG_LIKELIHOOD_TOLERANCE: f64 = 1e-8;
 
 /// Innovation and its variance of every reading.
 type Innovations = Vec<(f64, f64)>;
@@ -48,7 +48,7 @@ type Innovations = Vec<(f64, f64)>;
 pub(super) struct Likelihood<'a> {
     pub search: Search<'a>,
     pub variances: Variances,
-    pub course: InputCourse,
+    pub input_model: InputModel,
 }
 
 /// The maximum: parameters with the logarithm of the intensity last, their covariance.
@@ -77,8 +77,8 @@ impl Likelihood<'_> {
             free.iter().zip(step.iter()).for_each(|(&i, &step)| full[i] = step);
             let last = std::mem::replace(&mut size, relative(&full, &theta));
             // Half the decrease that the step promises; too small a one drowns in the rounding of the cost.
-            let close = -0.5 * gradient.dot(&step) <= RESOLVED;
-            if size <= LAST_STEP || (close && size > SHRINKING * last) {
+            let close = -0.5 * gradient.dot(&step) <= LOG_LIKELIHOOD_TOLERANCE;
+            if size <= LAST_STEP || (close && size > CONTRACTION_RATIO * last) {
                 let covariance = invert(&information).ok_or_else(|| self.undetermined(&theta))?;
                 let covariance = spread_out(&covariance, &free, theta.len());
                 return Ok(Maximum { theta, covariance, iterations });
@@ -148,11 +148,11 @@ impl Likelihood<'_> {
         let Problem { input_time: t, u, .. } = self.search.problem;
         let noise = self.variances.input;
         let steps = u.windows(2).zip(t.windows(2)).map(|(u, t)| (u[1] - u[0], t[1] - t[0]));
-        let (sum, noisy, count) = match self.course {
-            InputCourse::RandomWalk => steps.fold((0.0, 0.0, 0.0), |(sum, noisy, count), (du, dt)| {
+        let (sum, noisy, count) = match self.input_model {
+            InputModel::RandomWalk => steps.fold((0.0, 0.0, 0.0), |(sum, noisy, count), (du, dt)| {
                 (sum + du * du / dt, noisy + 2.0 * noise / dt, count + 1.0)
             }),
-            InputCourse::IntegratedRandomWalk => {
+            InputModel::IntegratedRandomWalk => {
                 let slopes: Vec<(f64, f64)> = steps.map(|(du, dt)| (du / dt, dt)).collect();
                 slopes.windows(2).fold((0.0, 0.0, 0.0), |(sum, noisy, count), pair| {
                     let (change, dt) = (pair[1].0 - pair[0].0, 0.5 * (pair[0].1 + pair[1].1));

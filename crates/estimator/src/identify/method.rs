@@ -3,10 +3,10 @@ use serde::{Deserialize, Serialize};
 
 use super::IdentifyError;
 
-/// How the true input wanders from sample to sample.
+/// Stochastic model of the true input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum InputCourse {
+pub enum InputModel {
     /// Random walk: steps of a variance proportional to the interval.
     #[default]
     RandomWalk,
@@ -46,8 +46,9 @@ pub enum Method {
         input_variance: f64,
         /// Variance of the output sensor's noise, in the output's unit squared.
         output_variance: f64,
-        /// How the true input wanders.
-        course: InputCourse,
+        /// Model of the true input.
+        #[serde(rename = "course")]
+        input_model: InputModel,
     },
 }
 

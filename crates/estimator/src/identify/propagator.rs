@@ -11,15 +11,15 @@ use nalgebra::{SMatrix, SVector};
 /// Largest 1-norm of `F h` where the series are summed.
 const BASE_NORM: f64 = 0.5;
 /// The first term left out is below this.
-const LEFT_OUT: f64 = 2e-17;
+const TRUNCATION_ERROR: f64 = 2e-17;
 /// As many terms are enough for the largest norm: 0.5^15/15! = 2e-17.
 const TERMS: i32 = 14;
 
 /// Intervals within this share of each other count as one.
-const SAME: f64 = 1e-13;
+const INTERVAL_TOLERANCE: f64 = 1e-13;
 
 /// Propagators held for intervals that come back.
-const HELD: usize = 8;
+const CACHED_INTERVALS: usize = 8;
 
 /// The system over one interval.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +59,7 @@ impl<const D: usize> Propagator<D> {
 /// Terms of the series for a norm.
 fn terms(norm: f64) -> i32 {
     let (mut left_out, mut terms) = (norm, 0);
-    while left_out > LEFT_OUT && terms < TERMS {
+    while left_out > TRUNCATION_ERROR && terms < TERMS {
         terms += 1;
         left_out *= norm / f64::from(terms + 1);
     }
@@ -78,12 +78,12 @@ pub(super) struct Propagators<const D: usize> {
 
 impl<const D: usize> Propagators<D> {
     pub(super) fn new(f: SMatrix<f64, D, D>, g: SVector<f64, D>) -> Self {
-        Self { f, g, held: Vec::with_capacity(HELD), latest: 0, next: 0 }
+        Self { f, g, held: Vec::with_capacity(CACHED_INTERVALS), latest: 0, next: 0 }
     }
 
     /// The system over an interval.
     pub(super) fn over(&mut self, interval: f64) -> &Propagator<D> {
-        let same = |held: &Propagator<D>| (held.interval - interval).abs() <= SAME * interval;
+        let same = |held: &Propagator<D>| (held.interval - interval).abs() <= INTERVAL_TOLERANCE * interval;
         if !self.held.get(self.latest).is_some_and(same) {
             self.latest = match self.held.iter().position(same) {
                 Some(index) => index,
@@ -95,7 +95,7 @@ impl<const D: usize> Propagators<D> {
 
     fn hold(&mut self, propagator: Propagator<D>) -> usize {
         let index = self.next;
-        self.next = (index + 1) % HELD;
+        self.next = (index + 1) % CACHED_INTERVALS;
         match self.held.get_mut(index) {
             Some(old) => *old = propagator,
             None => self.held.push(propagator),

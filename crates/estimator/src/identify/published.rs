@@ -14,7 +14,7 @@ pub(crate) const NUMERATOR_PER_S: f64 = 0.003121;
 /// Its pole, 1/s.
 pub const POLE_PER_S: f64 = 0.003021;
 /// Published slope of the pressure, Pa/K.
-pub const SLOPE_PA_K: f64 = 0.8457e5;
+pub(crate) const SLOPE_PA_K: f64 = 0.8457e5;
 
 /// The published model, °C to °C.
 pub fn model() -> Model {

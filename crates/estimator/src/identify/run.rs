@@ -115,13 +115,13 @@ fn estimate(search: &Search<'_>, start: Vec<f64>, method: &Method) -> Result<Fou
             let scheme = Scheme::CompensatedInstruments(scaled(input_variance, 0.0).input);
             correlated(search, compensated(search, start, scheme)?)
         }
-        Method::MaximumLikelihood { input_variance, output_variance, course } => {
+        Method::MaximumLikelihood { input_variance, output_variance, input_model } => {
             let variances = scaled(input_variance, output_variance);
             let first = match search.parametrisation.structure.dead_time {
                 DeadTime::Free(_) => search.output_error(start)?,
                 _ => compensated(search, start, Scheme::CompensatedInstruments(variances.input))?,
             };
-            most_likely(search, &Likelihood { search: *search, variances, course }, &first)
+            most_likely(search, &Likelihood { search: *search, variances, input_model }, &first)
         }
     }
 }

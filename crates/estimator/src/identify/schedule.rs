@@ -5,7 +5,7 @@
 use super::{Hold, problem::Problem};
 
 /// Instants within this share of the median interval count as one.
-const SAME: f64 = 1e-10;
+const INTERVAL_TOLERANCE: f64 = 1e-10;
 
 /// A part of the record with straight input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ impl Schedule {
         let mut cursor = Cursor {
             problem,
             dead_time,
-            tolerance: SAME * problem.interval(),
+            tolerance: INTERVAL_TOLERANCE * problem.interval(),
             time: 0.0,
             left: 0,
             next: 0,

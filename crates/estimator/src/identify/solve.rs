@@ -15,13 +15,13 @@ const ROUNDING: f64 = 1e-8;
 
 /// Steps of instrumental variables before another method, and the relative step that needs none.
 const FIRST_STEPS: usize = 4;
-const NEAR: f64 = 1e-3;
+const CONVERGENCE_RANGE: f64 = 1e-3;
 
 /// Halvings of a step that leaves the stable models.
 const HALVINGS: usize = 30;
 
 /// Parameters below this size, in the record's units, are compared with it rather than with themselves.
-const SMALL: f64 = 0.1;
+const SCALE_FLOOR: f64 = 0.1;
 
 /// Where an iteration ended.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub(super) struct Solution {
 
 /// Relative size of a step.
 pub(super) fn relative(step: &DVector<f64>, theta: &[f64]) -> f64 {
-    step.iter().zip(theta).map(|(step, theta)| step.abs() / theta.abs().max(SMALL)).fold(0.0, f64::max)
+    step.iter().zip(theta).map(|(step, theta)| step.abs() / theta.abs().max(SCALE_FLOOR)).fold(0.0, f64::max)
 }
 
 /// A problem with the structure that is sought.
@@ -163,7 +163,7 @@ impl Search<'_> {
         for _ in 0..FIRST_STEPS {
             let Some(step) = solve(&here.matrix, &here.rhs) else { break };
             let moved = self.moved(&theta, &step, 1.0);
-            if relative(&step, &theta) < NEAR || !self.stable(&moved) {
+            if relative(&step, &theta) < CONVERGENCE_RANGE || !self.stable(&moved) {
                 break;
             }
             let trial = self.at(&moved, scheme);

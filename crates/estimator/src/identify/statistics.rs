@@ -71,7 +71,7 @@ impl Statistics {
 }
 
 /// Fit by the normalised root mean square, %: 100 without errors, 0 for the mean of the output, negative for worse.
-pub fn fit_percent(output: &[f64], errors: &[f64]) -> f64 {
+pub(crate) fn fit_percent(output: &[f64], errors: &[f64]) -> f64 {
     let mean = output.iter().sum::<f64>() / output.len() as f64;
     let spread: f64 = output.iter().map(|y| (y - mean).powi(2)).sum();
     100.0 * (1.0 - (errors.iter().map(|e| e * e).sum::<f64>() / spread).sqrt())

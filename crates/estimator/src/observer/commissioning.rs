@@ -19,8 +19,6 @@ const DEFAULT_MASS_SD: f64 = 0.01;
 const BODY_SD_K: f64 = 1.0;
 /// and wall, valve and gas of a settled one from each other: the turbulence of the air and a shoulder in the wind.
 const SETTLED_SD_K: f64 = 0.2;
-/// The same of a cylinder that is not settled, K, beside how far its thermometers are apart: in a tunnel they read 10 K more than a wall that is 65 K colder than the air.
-pub const UNSETTLED_SD_K: f64 = 10.0;
 
 /// What is known of the cylinder at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +32,10 @@ pub struct Commissioning {
 }
 
 impl Commissioning {
+    /// How far what thermometers on the wall first read may be from wall, valve and gas of a cylinder that is not settled, K, beside how far they are apart: in a tunnel they
+    /// read 10 K more than a wall that is 65 K colder than the air.
+    pub const UNSETTLED_SD_K: f64 = 10.0;
+
     /// A settled cylinder that was filled to a pressure at a temperature.
     pub fn filled(pressure_pa: f64, temperature_k: f64) -> Self {
         let fill = Fill::Settled { pressure_pa, temperature_k };
@@ -89,7 +91,7 @@ impl Spread {
             (Some(_), true) => BODY_SD_K,
             (Some(_), false) => 0.0,
         };
-        let unsettled_k = UNSETTLED_SD_K.hypot(apart_k.unwrap_or_default());
+        let unsettled_k = Commissioning::UNSETTLED_SD_K.hypot(apart_k.unwrap_or_default());
         Self { common_k, each_k: if settled { SETTLED_SD_K } else { unsettled_k } }
     }
 

@@ -23,9 +23,9 @@ mod band;
 mod band_settings;
 mod checkpoint;
 mod clock;
-pub mod commissioning;
+mod commissioning;
 pub mod cylinder;
-pub mod engine;
+mod engine;
 mod estimate;
 mod events;
 mod flow;
@@ -34,7 +34,7 @@ mod observability;
 mod roles;
 mod scale;
 mod screen;
-pub mod settings;
+mod settings;
 mod signature;
 mod smoother;
 mod snapshot;
@@ -63,8 +63,8 @@ pub use learned::Learned;
 pub use observability::{Combination, Observability};
 pub(crate) use roles::middle_slow;
 use roles::{flowing, freest, held, thermometer};
-pub use scale::Scale;
-pub use screen::{Fault, FaultCount};
+pub(crate) use scale::Scale;
+pub use screen::FaultCount;
 pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSettings, Walk};
 pub use signature::Onset;
 use signature::Onsets;
@@ -76,7 +76,7 @@ const REFERENCE_AFTER_S: f64 = 86_400.0;
 /// Time after an exchange of gas during which mass and gas stay free, s.
 const SETTLE_S: f64 = 1200.0;
 /// Part of the gas that may flow between two rows while gas is exchanged: for more the linearised equations do not hold.
-const MUCH: f64 = 0.15;
+const MAX_EXCHANGE_PART: f64 = 0.15;
 /// Innovation of a pressure beyond which gas has flowed by more than the linearised equations bear, in variances: as a part of the usual
 /// gate, and while gas is exchanged.
 const FLOW_GATE: f64 = 0.25;
@@ -338,7 +338,7 @@ impl Observer {
         }
         if let Some(flowing) = self.flowing.filter(|_| self.clock.exchange == Exchange::Open) {
             // Much of the gas may go out within the interval, or as much come in, and cools or warms what is there.
-            let much_kg = MUCH * self.cylinder.settings().free_mass_sd_kg;
+            let much_kg = MAX_EXCHANGE_PART * self.cylinder.settings().free_mass_sd_kg;
             let rate_sd_kg_s = much_kg / dt_s;
             self.bank.set_variance(flowing, self.cylinder.state_map().leak, rate_sd_kg_s * rate_sd_kg_s);
         }

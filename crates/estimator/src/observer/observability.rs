@@ -10,13 +10,13 @@ use nalgebra::DMatrix;
 use super::states::States;
 
 /// Part of the prior variance that must be left for a combination to count as not learnt.
-const NOT_LEARNT: f64 = 0.5;
+const UNLEARNT_PART: f64 = 0.5;
 /// Correlation from which two states count as not separated.
 const NOT_SEPARATED: f64 = 0.9;
 /// Weight from which a state is named in a combination,
-const NAMED: f64 = 0.2;
+const MIN_WEIGHT: f64 = 0.2;
 /// and the part of what is left of its variance that the combination makes, from which it is named too.
-const EXPLAINED: f64 = 0.25;
+const MIN_EXPLAINED_PART: f64 = 0.25;
 
 /// A combination of constants that the data have not determined.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,13 +49,13 @@ impl Observability {
         let name = |i: usize| states.names[chosen[i]].clone();
         let eigen = scaled.clone().symmetric_eigen();
         let mut undetermined: Vec<Combination> = (0..k)
-            .filter(|&e| eigen.eigenvalues[e] > NOT_LEARNT)
+            .filter(|&e| eigen.eigenvalues[e] > UNLEARNT_PART)
             .map(|e| {
                 let mut terms: Vec<(String, f64)> = (0..k)
                     .map(|i| (i, eigen.eigenvectors[(i, e)]))
                     .filter(|&(i, weight)| {
                         let part = eigen.eigenvalues[e] * weight * weight;
-                        weight.abs() > NAMED || part > EXPLAINED * scaled[(i, i)]
+                        weight.abs() > MIN_WEIGHT || part > MIN_EXPLAINED_PART * scaled[(i, i)]
                     })
                     .map(|(i, weight)| (name(i), weight))
                     .collect();

@@ -19,7 +19,7 @@ const REFERENCE_PA: f64 = 200.695_061_065_238e5;
 
 /// Ratios of a fill to the reference: 1 for `nitrogen-20l` at 200 bar and 15 °C.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub(crate) struct Scale {
     /// Of the masses.
     pub mass: f64,
     /// Of the pressures at 15 °C.

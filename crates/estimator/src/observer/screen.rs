@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 use crate::sensor::Sensor;
 
 /// Identical readings in a row from which a sensor may be stuck.
-const IN_A_ROW: u32 = 10;
+const STUCK_READINGS: u32 = 10;
 /// Standard deviations of a sensor's noise by which stuck readings have pulled the estimate.
-const PULLED: f64 = 20.0;
+const STUCK_PULL_SD: f64 = 20.0;
 
 /// What is wrong with a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub(super) enum Fault {
     /// Outside what the sensor can read, or at the end of it.
     Implausible,
     /// The same as long before, while the cylinder moved on.
@@ -57,7 +57,7 @@ struct Limits {
 impl Limits {
     fn of(sensor: &Sensor) -> Self {
         let (low, high) = sensor.usable_range();
-        let pull = PULLED * sensor.noise_variance().sqrt();
+        let pull = STUCK_PULL_SD * sensor.noise_variance().sqrt();
         Self { low, high, pull, half_step: 0.5 * sensor.resolution }
     }
 }
@@ -93,7 +93,7 @@ impl Screen {
             (self.latest, self.in_a_row, self.pulled) = (reading, 1, 0.0);
         }
         // A sensor without noise of its own tells nothing by standing still.
-        if self.in_a_row >= IN_A_ROW && self.limits.pull > 0.0 && self.pulled.abs() > self.limits.pull {
+        if self.in_a_row >= STUCK_READINGS && self.limits.pull > 0.0 && self.pulled.abs() > self.limits.pull {
             self.count.stuck += 1;
             return Some(Fault::Stuck);
         }

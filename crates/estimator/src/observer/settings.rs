@@ -202,7 +202,7 @@ pub struct FlowDoubt {
 }
 
 /// Settings of the cylinder's observer. SI. Masses, leak rates and pressures are stated for the full 20 L nitrogen cylinder; an
-/// observer takes them as parts of its own fill ([`super::Scale`]).
+/// observer takes them as parts of its own fill.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObserverSettings {
     /// Filter that every member of the bank runs.

@@ -36,11 +36,11 @@ use crate::filter::{Plant, StateSpace, StepRecord};
 use crate::numbers;
 
 /// Interval between possible onsets, s.
-const EVERY_S: f64 = 600.0;
+const ONSET_INTERVAL_S: f64 = 600.0;
 /// Age beyond which an onset is given up, s.
 const LONGEST_S: f64 = 60.0 * 86_400.0;
 /// Largest ratio of the ages of two onsets between which one is thinned out.
-const RATIO: f64 = 1.7;
+const ONSET_AGE_RATIO: f64 = 1.7;
 /// Standard deviations up to which an innovation counts in full.
 const BOUND: f64 = 2.0;
 /// Standard deviations from which the member is compensated for a leak.
@@ -166,7 +166,7 @@ impl Onsets {
         if self.due_s.is_some_and(|due_s| time_s < due_s) {
             return;
         }
-        self.due_s = Some(time_s + EVERY_S);
+        self.due_s = Some(time_s + ONSET_INTERVAL_S);
         while self.sums.first().is_some_and(|oldest| time_s - oldest.since_s > LONGEST_S) {
             self.remove(0, n);
         }
@@ -183,7 +183,7 @@ impl Onsets {
         while index + 1 < self.sums.len() {
             let age_s = |index: usize| time_s - self.sums[index].since_s;
             let stays = self.likeliest().is_some_and(|likeliest| likeliest.abs_diff(index) <= 1);
-            if !stays && age_s(index - 1) < RATIO * age_s(index + 1) {
+            if !stays && age_s(index - 1) < ONSET_AGE_RATIO * age_s(index + 1) {
                 self.remove(index, n);
             } else {
                 index += 1;

@@ -56,7 +56,7 @@ pub struct Candidates {
 
 /// Raw content of a file of candidates.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema, PartialEq)]
-pub struct CandidatesSpec {
+pub(super) struct CandidatesSpec {
     /// Sensors that could be there; all places of the vessel by default.
     #[serde(default)]
     pub sensor: Vec<SensorSpec>,
@@ -72,7 +72,7 @@ pub struct CandidatesSpec {
 
 /// Rule for a candidate.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq)]
-pub struct RuleSpec {
+pub(super) struct RuleSpec {
     /// Name of the candidate.
     pub sensor: String,
     /// Its cost, 1 by default.
@@ -83,7 +83,7 @@ pub struct RuleSpec {
 
 /// Rule for a group.
 #[derive(Clone, Debug, Deserialize, JsonSchema, PartialEq)]
-pub struct GroupSpec {
+pub(super) struct GroupSpec {
     /// Names of the candidates.
     pub members: Vec<String>,
     /// Fewest of them, 0 by default.

@@ -1,9 +1,9 @@
 //! What layouts are ranked by.
 use serde::{Deserialize, Serialize};
 
-use super::course::{AlongCourse, Course, CourseNumber};
 use super::objective::{Objective, Relaxed};
-use super::site::{Site, SmallestLeak};
+use super::scenario::{ScenarioAnalysis, ScenarioMeasure, ScenarioObjective};
+use super::steady::{SmallestLeak, SteadyAnalysis};
 use super::{GroupedProblem, Quantity};
 use crate::EstimatorError;
 
@@ -19,8 +19,9 @@ pub enum Criterion {
     LeakRate,
     /// Smallest leak that is found in time, kg/s.
     SmallestLeak,
-    /// A number of the gas temperature along the first scenario, K.
-    Course(CourseNumber),
+    /// A measure of the gas temperature along the first scenario, K.
+    #[serde(rename = "course")]
+    Scenario(ScenarioMeasure),
 }
 
 impl Criterion {
@@ -34,10 +35,10 @@ impl Criterion {
         Self::Mass,
         Self::LeakRate,
         Self::SmallestLeak,
-        Self::Course(CourseNumber::Mean),
-        Self::Course(CourseNumber::Worst),
-        Self::Course(CourseNumber::Schmidt),
-        Self::Course(CourseNumber::WorstCase),
+        Self::Scenario(ScenarioMeasure::Mean),
+        Self::Scenario(ScenarioMeasure::Worst),
+        Self::Scenario(ScenarioMeasure::Schmidt),
+        Self::Scenario(ScenarioMeasure::WorstCase),
     ];
 
     /// One word.
@@ -47,24 +48,24 @@ impl Criterion {
             Self::Mass => "mass",
             Self::LeakRate => "leak-rate",
             Self::SmallestLeak => "smallest-leak",
-            Self::Course(CourseNumber::Mean) => "course-mean",
-            Self::Course(CourseNumber::Worst) => "course-worst",
-            Self::Course(CourseNumber::Schmidt) => "robust-mean",
-            Self::Course(CourseNumber::WorstCase) => "robust-worst",
+            Self::Scenario(ScenarioMeasure::Mean) => "course-mean",
+            Self::Scenario(ScenarioMeasure::Worst) => "course-worst",
+            Self::Scenario(ScenarioMeasure::Schmidt) => "robust-mean",
+            Self::Scenario(ScenarioMeasure::WorstCase) => "robust-worst",
         }
     }
 
-    /// Words for people.
-    pub fn words(self) -> &'static str {
+    /// Description for reports.
+    pub fn description(self) -> &'static str {
         match self {
             Self::GasTemperature => "sd of the mean gas temperature",
             Self::Mass => "sd of the gas mass",
             Self::LeakRate => "sd of the leak rate",
             Self::SmallestLeak => "smallest leak found in time",
-            Self::Course(CourseNumber::Mean) => "mean sd of the gas temperature along the scenario",
-            Self::Course(CourseNumber::Worst) => "largest sd of the gas temperature along the scenario",
-            Self::Course(CourseNumber::Schmidt) => "mean sd of the gas temperature with model error",
-            Self::Course(CourseNumber::WorstCase) => {
+            Self::Scenario(ScenarioMeasure::Mean) => "mean sd of the gas temperature along the scenario",
+            Self::Scenario(ScenarioMeasure::Worst) => "largest sd of the gas temperature along the scenario",
+            Self::Scenario(ScenarioMeasure::Schmidt) => "mean sd of the gas temperature with model error",
+            Self::Scenario(ScenarioMeasure::WorstCase) => {
                 "largest error of the gas temperature in the worst variant"
             }
         }
@@ -75,62 +76,62 @@ impl Criterion {
         matches!(self, Self::GasTemperature | Self::Mass | Self::LeakRate)
     }
 
-    /// What is searched for.
+    /// Its objective for a search.
     ///
     /// # Errors
-    /// [`EstimatorError::PlacementConstraints`]: a number of a course, but there is none.
-    pub(super) fn worth<'a>(
+    /// [`EstimatorError::PlacementConstraints`]: a measure of a scenario, but there is none.
+    pub(super) fn objective<'a>(
         self,
-        site: &'a Site,
-        courses: &'a [Course],
-    ) -> Result<Worth<'a>, EstimatorError> {
+        steady: &'a SteadyAnalysis,
+        scenarios: &'a [ScenarioAnalysis],
+    ) -> Result<CriterionObjective<'a>, EstimatorError> {
         let quantity = match self {
             Self::GasTemperature => Quantity::GasTemperature,
             Self::Mass => Quantity::Mass,
             Self::LeakRate => Quantity::LeakRate,
-            Self::SmallestLeak => return Ok(Worth::Leak(SmallestLeak(site))),
-            Self::Course(number) => {
+            Self::SmallestLeak => return Ok(CriterionObjective::SmallestLeak(SmallestLeak(steady))),
+            Self::Scenario(measure) => {
                 let what = format!("the criterion {} is that of a scenario; name one", self.as_str());
-                let course = courses.first().ok_or(EstimatorError::PlacementConstraints { what })?;
-                return Ok(Worth::Along(AlongCourse { course, number }, site));
+                let scenario = scenarios.first().ok_or(EstimatorError::PlacementConstraints { what })?;
+                return Ok(CriterionObjective::Scenario(ScenarioObjective { scenario, measure }, steady));
             }
         };
-        Ok(Worth::Steady(site.problem(quantity)))
+        Ok(CriterionObjective::Steady(steady.problem(quantity)))
     }
 }
 
 /// The square of a criterion as an objective.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Worth<'a> {
+pub(super) enum CriterionObjective<'a> {
     Steady(&'a GroupedProblem),
-    Leak(SmallestLeak<'a>),
-    /// Of layouts that see every state at rest: a course ends before what is not seen has grown.
-    Along(AlongCourse<'a>, &'a Site),
+    SmallestLeak(SmallestLeak<'a>),
+    /// Of layouts that observe every state at rest: a scenario ends before the error of an unobserved one has grown.
+    Scenario(ScenarioObjective<'a>, &'a SteadyAnalysis),
 }
 
-impl Objective for Worth<'_> {
+impl Objective for CriterionObjective<'_> {
     fn candidates(&self) -> usize {
         match self {
             Self::Steady(of) => of.candidates(),
-            Self::Leak(of) => of.candidates(),
-            Self::Along(of, _) => of.candidates(),
+            Self::SmallestLeak(of) => of.candidates(),
+            Self::Scenario(of, _) => of.candidates(),
         }
     }
 
     fn value(&self, layout: &[usize]) -> f64 {
         match self {
             Self::Steady(of) => of.value(layout),
-            Self::Leak(of) => of.value(layout),
-            Self::Along(_, site) if site.certainty(layout).is_err() => f64::INFINITY,
-            Self::Along(of, _) => of.value(layout),
+            Self::SmallestLeak(of) => of.value(layout),
+            Self::Scenario(_, steady) if steady.accuracy(layout).is_err() => f64::INFINITY,
+            Self::Scenario(of, _) => of.value(layout),
         }
     }
 
     fn relaxed(&self, weights: &[f64]) -> Option<Relaxed> {
         match self {
             Self::Steady(of) => of.relaxed(weights),
-            Self::Leak(of) => of.relaxed(weights),
-            Self::Along(of, _) => of.relaxed(weights),
+            Self::SmallestLeak(of) => of.relaxed(weights),
+            Self::Scenario(of, _) => of.relaxed(weights),
         }
     }
 }

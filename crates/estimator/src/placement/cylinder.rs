@@ -10,8 +10,8 @@
 //! nothing tells it from the mass, which is therefore that against the filling. What a candidate
 //! brings (offset, coupling, lag) belongs to it alone ([`GroupedProblem`]).
 //!
-//! Assumes that wall, gas and surroundings have come to rest at the conditions: the steady state of an observer in a course says the scenario's
-//! covariance. The certainty is the observer's own, with the errors that it supposes of its model.
+//! Assumes that wall, gas and surroundings have come to rest at the conditions:
+//! the covariance along a scenario is that of the observer run through it. The accuracy is the observer's own, with the errors that it supposes of its model.
 use nalgebra::{DMatrix, DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 
 /// Departure of a state from itself over an interval, relative, within which it does not move.
-const STANDS: f64 = 1e-12;
+const CONSTANT_TOLERANCE: f64 = 1e-12;
 
 /// Where the cylinder stands, and how often it is read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,7 +62,7 @@ impl Conditions {
     /// chapter 6) of a film that goes with the cubic root.
     ///
     /// # Errors
-    /// As [`SitedCylinder::new`].
+    /// As [`InstrumentedCylinder::new`].
     pub fn at_typical_difference(
         self,
         vessel: &Vessel,
@@ -73,8 +73,8 @@ impl Conditions {
         const START_K: f64 = 0.1;
         let mut conditions = Self { apart_k: START_K, ..self };
         for _ in 0..ITERATIONS {
-            let sited = SitedCylinder::new(vessel, &[], settings, &settings.bank[0], &conditions)?;
-            conditions.apart_k = TYPICAL * sited.wall_to_gas_sd_k();
+            let cylinder = InstrumentedCylinder::new(vessel, &[], settings, &settings.bank[0], &conditions)?;
+            conditions.apart_k = TYPICAL * cylinder.wall_to_gas_sd_k();
         }
         Ok(conditions)
     }
@@ -94,7 +94,7 @@ pub enum Quantity {
 
 /// The linearised cylinder with all candidates.
 #[derive(Clone, Debug)]
-pub struct SitedCylinder {
+pub struct InstrumentedCylinder {
     /// Of the states that are kept.
     names: Vec<String>,
     kinds: Vec<StateKind>,
@@ -108,7 +108,7 @@ pub struct SitedCylinder {
     sun_drive: Option<DVector<f64>>,
 }
 
-impl SitedCylinder {
+impl InstrumentedCylinder {
     /// A vessel with candidates, as one member of the observer's bank sees it.
     ///
     /// # Errors
@@ -132,7 +132,8 @@ impl SitedCylinder {
         for state in m..n {
             (f[(state, state)], q[(state, state)]) = cylinder.slow_process(state).over(conditions.interval_s);
         }
-        let is_known = |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < STANDS;
+        let is_known =
+            |state: usize| q[(state, state)] == 0.0 && (f[(state, state)] - 1.0).abs() < CONSTANT_TOLERANCE;
         let kept: Vec<usize> = (0..n).filter(|&state| !is_known(state)).collect();
         let States { kinds, names, leak, sun, .. } = cylinder.state_map();
         let scales: Vec<f64> = kept.iter().map(|&state| scale(&kinds[state], candidates)).collect();

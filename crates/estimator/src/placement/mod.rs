@@ -8,15 +8,15 @@
 //!
 //! | part | what it does |
 //! |---|---|
-//! | [`SitedCylinder`] | the observer's own equations with every candidate on the cylinder |
+//! | [`InstrumentedCylinder`] | the observer's own equations with every candidate on the cylinder |
 //! | [`LinearProblem`], [`GroupedProblem`] | value, relaxed value and gradient; candidates with states of their own |
 //! | [`Constraints`] | how many, at what cost, which together |
 //! | [`search`] | every layout; branch and bound; greedy with swaps |
 //! | [`certificate`] | what no layout can fall below |
 //! | [`Candidates`] | places on a vessel with sensors, costs and rules |
-//! | [`Site`], [`Response`] | a layout at rest: certainty, smallest leak, delay, biases, faults |
+//! | [`SteadyAnalysis`], [`Response`] | a layout at rest: accuracy, smallest leak, delay, biases, faults |
 //! | [`signature_threshold_sd`] | when a leak counts as found, from the rate of false alarms |
-//! | [`Course`] | a layout along a scenario, with model error as consider parameters |
+//! | [`ScenarioAnalysis`] | a layout along a scenario, with model error as consider parameters |
 //! | [`study`] | the study that puts all of it together |
 //! | [`published_scores`] | each position by itself, by the paper's own measure |
 //!
@@ -27,7 +27,6 @@
 mod candidate;
 pub mod certificate;
 mod constraints;
-pub mod course;
 mod criterion;
 pub mod cylinder;
 mod grouped;
@@ -35,18 +34,16 @@ mod objective;
 mod problem;
 mod published;
 mod response;
+pub mod scenario;
 pub mod search;
-mod site;
+mod steady;
 pub mod study;
 mod threshold;
 
-pub use candidate::{
-    Candidate, Candidates, CandidatesSpec, GroupSpec, RuleSpec, Status, candidates_schema, read_candidates,
-};
+pub use candidate::{Candidate, Candidates, Status, candidates_schema, read_candidates};
 pub use constraints::{Constraints, Group};
-pub use course::{Along, AlongCourse, Course, CourseNumber, Variant};
 pub use criterion::Criterion;
-pub use cylinder::{Conditions, Quantity, SitedCylinder};
+pub use cylinder::{Conditions, InstrumentedCylinder, Quantity};
 pub use grouped::GroupedProblem;
 pub use objective::{Objective, Relaxed};
 pub use problem::{CandidateOutput, LinearProblem};
@@ -55,5 +52,6 @@ pub use published::{
     Specimens, Spread, published_scores,
 };
 pub use response::{DetectionSettings, Disturbance, Response};
-pub use site::{Certainty, Site, SiteSettings, SmallestLeak};
+pub use scenario::{ScenarioAccuracy, ScenarioAnalysis, ScenarioMeasure, Variant};
+pub use steady::{SteadyAccuracy, SteadyAnalysis, SteadySettings};
 pub use threshold::signature_threshold_sd;

@@ -12,12 +12,12 @@ const SOLVED: f64 = 1e-6;
 /// Samples after which a variance that still grows is not seen: a day of minutes.
 const DAY_SAMPLES: usize = 1440;
 /// Return of a state towards itself within a sample that is none.
-const STAYS: f64 = 1e-9;
+const CONSTANT_TOLERANCE: f64 = 1e-9;
 /// Variance of a state from which on it may be one that nobody sees: states are of a size near one.
-const SUSPECT: f64 = 10.0;
+const UNOBSERVED_VARIANCE: f64 = 10.0;
 /// Doublings of samples after which an error is forgotten, eight years of minutes, and what may be left of its variance.
-const FORGETTING: usize = 22;
-const FORGOTTEN: f64 = 1e-3;
+const FORGETTING_DOUBLINGS: usize = 22;
+const REMAINING_VARIANCE: f64 = 1e-3;
 /// Growth of the sum, relative, below which it has settled.
 const SETTLED: f64 = 1e-14;
 
@@ -103,7 +103,7 @@ impl LinearProblem {
             }
             p = 0.5 * (&p + p.transpose());
         }
-        let stays = |state: usize| self.transition[(state, state)] > 1.0 - STAYS;
+        let stays = |state: usize| self.transition[(state, state)] > 1.0 - CONSTANT_TOLERANCE;
         (0..n).map(|i| if stays(i) { p[(i, i)] / halfway[i] - 1.0 } else { 0.0 }).collect()
     }
 
@@ -167,7 +167,7 @@ impl LinearProblem {
         let next = &self.transition * updated * self.transition.transpose() + &self.process_noise;
         (next - predicted).norm() <= SOLVED * predicted.norm()
             && updated.diagonal().min() >= 0.0
-            && (updated.diagonal().max() < SUSPECT || self.forgets(information, predicted))
+            && (updated.diagonal().max() < UNOBSERVED_VARIANCE || self.forgets(information, predicted))
     }
 
     /// Whether the filter forgets an error of the size of its own covariance: one that nobody sees stays for ever.
@@ -175,10 +175,10 @@ impl LinearProblem {
         let n = predicted.nrows();
         let left = (DMatrix::identity(n, n) + predicted * information).try_inverse();
         let Some(mut power) = left.map(|left| left * &self.transition) else { return false };
-        for _ in 0..FORGETTING {
+        for _ in 0..FORGETTING_DOUBLINGS {
             power = &power * &power;
         }
-        (&power * predicted * power.transpose()).norm() <= FORGOTTEN * predicted.norm()
+        (&power * predicted * power.transpose()).norm() <= REMAINING_VARIANCE * predicted.norm()
     }
 
     /// Variance of the functional after an update with a layout, reading by reading.

@@ -66,8 +66,8 @@ impl PublishedRecord {
         Self::CoolDown,
     ];
 
-    /// Words for people.
-    pub fn words(self) -> &'static str {
+    /// Description for reports.
+    pub fn description(self) -> &'static str {
         match self {
             Self::Identification => "scenarios 1 + 2",
             Self::Validation => "scenarios 3 + 4",

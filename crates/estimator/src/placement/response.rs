@@ -21,7 +21,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::GroupedProblem;
-use super::cylinder::{Quantity, SitedCylinder};
+use super::cylinder::{InstrumentedCylinder, Quantity};
 use crate::EstimatorError;
 use crate::filter::{SteadyState, steady_state};
 
@@ -53,17 +53,17 @@ pub struct Response {
     /// What the innovations see of errors and disturbances, divided by their covariance: (m, n + u).
     seen: DMatrix<f64>,
     /// Sums over `2^m` samples, and the states after them.
-    doublings: Vec<Passage>,
+    doublings: Vec<SampleBlock>,
 }
 
-/// Samples in a row: the sum of information and the transition, of errors and disturbances: (n + u, n + u).
+/// A block of samples: the sum of information and the transition, of errors and disturbances: (n + u, n + u).
 #[derive(Clone, Debug)]
-struct Passage {
+struct SampleBlock {
     information: DMatrix<f64>,
     transition: DMatrix<f64>,
 }
 
-impl Passage {
+impl SampleBlock {
     fn none(size: usize) -> Self {
         Self { information: DMatrix::zeros(size, size), transition: DMatrix::identity(size, size) }
     }
@@ -75,7 +75,7 @@ impl Passage {
     }
 }
 
-impl SitedCylinder {
+impl InstrumentedCylinder {
     /// Response of the filter that reads a layout.
     ///
     /// # Errors
@@ -122,7 +122,7 @@ impl SitedCylinder {
         let whitened = steady.innovation.clone().cholesky().map(|root| root.solve(&seen));
         let whitened = whitened.ok_or_else(|| self.unseen_error(layout))?;
         let information = seen.transpose() * &whitened;
-        let mut doublings = vec![Passage { information, transition }];
+        let mut doublings = vec![SampleBlock { information, transition }];
         for _ in 0..DOUBLINGS {
             let last = &doublings[doublings.len() - 1];
             doublings.push(last.then(last));
@@ -142,10 +142,10 @@ impl SitedCylinder {
 }
 
 impl Response {
-    fn passage(&self, samples: u64) -> Passage {
+    fn passage(&self, samples: u64) -> SampleBlock {
         let size = self.doublings[0].transition.nrows();
         let taken = self.doublings.iter().enumerate().filter(|(power, _)| samples >> power & 1 == 1);
-        taken.fold(Passage::none(size), |so_far, (_, passage)| so_far.then(passage))
+        taken.fold(SampleBlock::none(size), |so_far, (_, passage)| so_far.then(passage))
     }
 
     fn errors(&self) -> usize {
@@ -161,7 +161,7 @@ impl Response {
     /// Fewest samples whose information on a disturbance reaches an amount; `None`: two years do not.
     pub fn samples_to(&self, disturbance: usize, needed: f64) -> Option<u64> {
         let at = self.errors() + disturbance;
-        let mut so_far = Passage::none(self.doublings[0].transition.nrows());
+        let mut so_far = SampleBlock::none(self.doublings[0].transition.nrows());
         let mut samples = 0;
         for (power, passage) in self.doublings.iter().enumerate().rev() {
             let further = so_far.then(passage);

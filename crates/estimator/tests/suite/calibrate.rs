@@ -3,6 +3,6 @@ mod assumed;
 mod blowdown;
 mod coverage;
 mod cylinder;
+mod joint;
 mod refusals;
 mod study;
-mod together;

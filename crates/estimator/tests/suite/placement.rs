@@ -1,7 +1,7 @@
 //! Sensor placement on random systems: searches against each other, gradients against differences, bounds against the optimum.
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify, window::window_bound};
-use cylwatch_estimator::placement::search::{Found, Method, Watch, search};
+use cylwatch_estimator::placement::search::{Method, SearchControl, SearchResult, search};
 use cylwatch_estimator::placement::{CandidateOutput, Constraints, Group, LinearProblem, Objective};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -30,8 +30,8 @@ fn system(seed: u64) -> LinearProblem {
     LinearProblem::new(f, &root * root.transpose(), functional, outputs).unwrap()
 }
 
-fn find(problem: &LinearProblem, constraints: &Constraints, method: Method) -> Found {
-    search(problem, constraints, method, 0.02, &Watch::default()).unwrap()
+fn find(problem: &LinearProblem, constraints: &Constraints, method: Method) -> SearchResult {
+    search(problem, constraints, method, 0.02, &SearchControl::default()).unwrap()
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn what_cannot_be_seen_is_worth_nothing_and_contradictions_are_refused() {
         assert!(found.best().unwrap().sensors.contains(&0), "{method:?}");
         let blind = Constraints { forbidden: vec![0], ..Constraints::of(2) };
         assert!(find(&problem, &blind, method).best().is_none());
-        let refused = search(&problem, &Constraints::of(9), method, 0.0, &Watch::default());
+        let refused = search(&problem, &Constraints::of(9), method, 0.0, &SearchControl::default());
         assert!(matches!(refused, Err(EstimatorError::PlacementConstraints { .. })));
     }
     // Each by itself is possible, all together are not.
@@ -185,8 +185,8 @@ fn what_cannot_be_seen_is_worth_nothing_and_contradictions_are_refused() {
 #[test]
 fn a_search_that_is_stopped_says_so() {
     let problem = system(3);
-    let watch = Watch::default();
-    watch.stop.store(true, std::sync::atomic::Ordering::Relaxed);
-    let found = search(&problem, &Constraints::of(3), Method::Exhaustive, 0.02, &watch).unwrap();
+    let control = SearchControl::default();
+    control.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    let found = search(&problem, &Constraints::of(3), Method::Exhaustive, 0.02, &control).unwrap();
     assert!(found.partial && found.bound.is_none());
 }

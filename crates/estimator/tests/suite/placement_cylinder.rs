@@ -1,13 +1,13 @@
-//! Sensor placement on the cylinder: the criterion is the observer's own certainty, and the searches work on it.
+//! Sensor placement on the cylinder: the criterion is the observer's own accuracy, and the searches work on it.
 use approx::assert_relative_eq;
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::filter::{Linearisation, Plant, StateSpace, UdFactors};
 use cylwatch_estimator::observer::cylinder::Cylinder;
 use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
 use cylwatch_estimator::placement::certificate::{CertificateSettings, certify};
-use cylwatch_estimator::placement::search::{Found, Method, Watch, search};
+use cylwatch_estimator::placement::search::{Method, SearchControl, SearchResult, search};
 use cylwatch_estimator::placement::{
-    Conditions, Constraints, GroupedProblem, Objective, Quantity, SitedCylinder,
+    Conditions, Constraints, GroupedProblem, InstrumentedCylinder, Objective, Quantity,
 };
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
@@ -29,8 +29,8 @@ fn candidates(names: &[&str]) -> Vec<Sensor> {
     names.iter().map(|name| Sensor::typical(name).unwrap()).collect()
 }
 
-fn sited(sensors: &[Sensor], member: &LeakHypothesis) -> SitedCylinder {
-    SitedCylinder::new(&vessel(), sensors, &settings(), member, &Conditions::default()).unwrap()
+fn instrumented(sensors: &[Sensor], member: &LeakHypothesis) -> InstrumentedCylinder {
+    InstrumentedCylinder::new(&vessel(), sensors, &settings(), member, &Conditions::default()).unwrap()
 }
 
 fn member() -> LeakHypothesis {
@@ -49,11 +49,11 @@ fn layout(names: &[&str]) -> Vec<usize> {
 
 #[test]
 fn a_layout_is_worth_what_the_cylinder_with_its_sensors_alone_is_worth() {
-    let all = sited(&candidates(&NAMES), &member());
+    let all = instrumented(&candidates(&NAMES), &member());
     for names in [&["shoulder", "valve", "pressure"][..], &["pressure"], &["bottom", "ambient", "pressure"]] {
         let layout = layout(names);
         let own: Vec<&str> = layout.iter().map(|&candidate| NAMES[candidate]).collect();
-        let alone = sited(&candidates(&own), &member());
+        let alone = instrumented(&candidates(&own), &member());
         let everybody: Vec<usize> = (0..own.len()).collect();
         for quantity in [Quantity::GasTemperature, Quantity::Mass] {
             let problem = all.problem(quantity).unwrap();
@@ -76,18 +76,18 @@ fn the_observers_filter_stays_in_the_steady_state() {
     let sensors = candidates(&["shoulder", "valve", "pressure"]);
     // The leak rate walks: every state of the cylinder is one of the problem.
     let member = LeakHypothesis::walking_rate(0.02);
-    let sited = sited(&sensors, &member);
-    let n = sited.names().len();
-    let scales = nalgebra::DVector::from_column_slice(sited.scales());
-    let problem = sited.problem(Quantity::LeakRate).unwrap();
+    let instrumented = instrumented(&sensors, &member);
+    let n = instrumented.names().len();
+    let scales = nalgebra::DVector::from_column_slice(instrumented.scales());
+    let problem = instrumented.problem(Quantity::LeakRate).unwrap();
     let mut information = DMatrix::zeros(n, n);
     for of in problem.whole().outputs() {
         information.ger(1.0 / of.variance, &of.gradient, &of.gradient, 1.0);
     }
     let before = cylwatch_estimator::filter::steady_prediction(
-        sited.transition(),
+        instrumented.transition(),
         &information,
-        sited.process_noise(),
+        instrumented.process_noise(),
     )
     .unwrap();
 
@@ -99,12 +99,12 @@ fn the_observers_filter_stays_in_the_steady_state() {
     // All states but the transmitter's constant offset are in the problem.
     let names = &cylinder.state_map().names;
     let kept: Vec<usize> =
-        sited.names().iter().map(|name| names.iter().position(|of| of == name).unwrap()).collect();
+        instrumented.names().iter().map(|name| names.iter().position(|of| of == name).unwrap()).collect();
     assert_eq!(kept.len() + 1, n, "{names:?}");
     let mut before_all = DMatrix::zeros(n, n);
     let mut point = vec![0.0; n];
     for (i, &state) in kept.iter().enumerate() {
-        point[state] = sited.point()[i];
+        point[state] = instrumented.point()[i];
         for (j, &other) in kept.iter().enumerate() {
             before_all[(state, other)] = before[(i, j)] * scales[i] * scales[j];
         }
@@ -139,7 +139,7 @@ fn the_observers_filter_stays_in_the_steady_state() {
 
 #[test]
 fn without_a_pressure_the_mass_is_not_seen_and_named() {
-    let all = sited(&candidates(&NAMES), &member());
+    let all = instrumented(&candidates(&NAMES), &member());
     let blind = layout(&["shoulder", "valve", "ambient"]);
     assert_eq!(all.problem(Quantity::Mass).unwrap().value(&blind), f64::INFINITY);
     assert_eq!(all.unseen(&blind), Some("mass_kg"));
@@ -150,7 +150,7 @@ fn without_a_pressure_the_mass_is_not_seen_and_named() {
 #[test]
 fn a_sensor_more_and_a_finer_sensor_never_know_less() {
     let mut sensors = candidates(&NAMES);
-    let problem = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
+    let problem = instrumented(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
     let value = |problem: &GroupedProblem, names: &[&str]| problem.value(&layout(names)).sqrt();
     let order = ["pressure", "shoulder", "valve", "middle", "bottom", "ambient"];
     let values: Vec<f64> = (1..=order.len()).map(|count| value(&problem, &order[..count])).collect();
@@ -159,7 +159,7 @@ fn a_sensor_more_and_a_finer_sensor_never_know_less() {
     assert!((0.2..0.7).contains(&values[1]) && values[5] < 0.6 * values[1], "{values:?}");
     let before = value(&problem, &["pressure", "shoulder"]);
     sensors[index("shoulder")].noise_sd *= 10.0;
-    let coarse = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
+    let coarse = instrumented(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
     assert!(value(&coarse, &["pressure", "shoulder"]) > before);
     assert_relative_eq!(value(&coarse, &["pressure", "valve"]), value(&problem, &["pressure", "valve"]));
 }
@@ -170,11 +170,12 @@ fn searches_on_the_cylinder_agree_and_the_bound_holds() {
         [0.1, 0.25, 0.4, 0.55].iter().map(|at| Sensor::typical_at_height(*at).unwrap()).collect();
     sensors.extend(candidates(&["shoulder", "valve", "pressure"]));
     let pressure = sensors.len() - 1;
-    let problem = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
+    let problem = instrumented(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
     for count in 2..=4 {
         let constraints = Constraints { must: vec![pressure], ..Constraints::of(count) };
-        let find =
-            |method| -> Found { search(&problem, &constraints, method, 0.02, &Watch::default()).unwrap() };
+        let find = |method| -> SearchResult {
+            search(&problem, &constraints, method, 0.02, &SearchControl::default()).unwrap()
+        };
         let (all, bounded) = (find(Method::Exhaustive), find(Method::BranchAndBound));
         assert_eq!(all.layouts, bounded.layouts);
         let best = all.best().unwrap();
@@ -196,7 +197,7 @@ fn the_relaxed_criterion_is_convex_and_its_gradient_is_that_of_differences() {
     // One of them lags: a state of its own that the wall drives.
     let mut sensors = candidates(&["shoulder", "valve", "middle", "bottom", "pressure"]);
     sensors[2].lag_s = 40.0;
-    let problem = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
+    let problem = instrumented(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
     let value = |weights: &[f64]| problem.relaxed(weights).unwrap().value;
     let at = [0.3, 0.7, 0.5, 0.2, 1.0];
     let relaxed = problem.relaxed(&at).unwrap();
@@ -230,7 +231,7 @@ fn candidates_alike_share_their_weight() {
         sensor.name = format!("wall_{number}");
     }
     sensors.extend(candidates(&["pressure"]));
-    let problem = sited(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
+    let problem = instrumented(&sensors, &member()).problem(Quantity::GasTemperature).unwrap();
     let at = |weights: [f64; 5]| problem.relaxed(&weights).unwrap();
     let (spread, one) = (at([0.2, 0.3, 0.1, 0.4, 1.0]), at([0.6, 0.0, 0.0, 0.4, 1.0]));
     assert_relative_eq!(spread.value, one.value, max_relative = 1e-9);

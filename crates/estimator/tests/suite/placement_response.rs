@@ -3,16 +3,16 @@ use approx::assert_relative_eq;
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::filter::steady_state;
 use cylwatch_estimator::placement::{
-    Candidates, DetectionSettings, Disturbance, Quantity, Response, Site, SiteSettings,
+    Candidates, DetectionSettings, Disturbance, Quantity, Response, SteadyAnalysis, SteadySettings,
 };
 use cylwatch_estimator::thermal::vessel::presets;
 use nalgebra::{DMatrix, DVector};
 
-fn site() -> (Candidates, Site) {
+fn analysis() -> (Candidates, SteadyAnalysis) {
     let vessel = presets::load("nitrogen-20l").unwrap();
     let candidates = Candidates::of_vessel(&vessel).unwrap();
-    let site = Site::new(&vessel, &candidates.sensors(), &SiteSettings::default()).unwrap();
-    (candidates, site)
+    let analysis = SteadyAnalysis::new(&vessel, &candidates.sensors(), &SteadySettings::default()).unwrap();
+    (candidates, analysis)
 }
 
 fn layout(candidates: &Candidates, names: &[&str]) -> Vec<usize> {
@@ -22,8 +22,13 @@ fn layout(candidates: &Candidates, names: &[&str]) -> Vec<usize> {
 }
 
 /// Means of the innovations and the error after the last update, sample by sample, of a reading that is off by one.
-fn one_by_one(site: &Site, layout: &[usize], candidate: usize, samples: usize) -> (f64, DVector<f64>) {
-    let problem = site.problem(Quantity::LeakRate).of_layout(layout);
+fn one_by_one(
+    analysis: &SteadyAnalysis,
+    layout: &[usize],
+    candidate: usize,
+    samples: usize,
+) -> (f64, DVector<f64>) {
+    let problem = analysis.problem(Quantity::LeakRate).of_layout(layout);
     let (n, m) = (problem.transition().nrows(), layout.len());
     let h = DMatrix::from_fn(m, n, |i, j| problem.outputs()[i].gradient[j]);
     let r = DVector::from_fn(m, |i, _| problem.outputs()[i].variance);
@@ -44,13 +49,13 @@ fn one_by_one(site: &Site, layout: &[usize], candidate: usize, samples: usize) -
 
 #[test]
 fn sums_by_doubling_are_those_of_the_samples() {
-    let (candidates, site) = site();
+    let (candidates, analysis) = analysis();
     let layout = layout(&candidates, &["shoulder", "valve", "pressure"]);
     let shoulder = candidates.index("shoulder").unwrap();
-    let response = site.response(&layout, &[Disturbance::Reading { candidate: shoulder }]).unwrap();
-    let functional = site.problem(Quantity::GasTemperature).of_layout(&layout).functional().clone();
+    let response = analysis.response(&layout, &[Disturbance::Reading { candidate: shoulder }]).unwrap();
+    let functional = analysis.problem(Quantity::GasTemperature).of_layout(&layout).functional().clone();
     for samples in [1, 2, 37, 600] {
-        let (information, after) = one_by_one(&site, &layout, shoulder, samples);
+        let (information, after) = one_by_one(&analysis, &layout, shoulder, samples);
         assert_relative_eq!(response.information(samples as u64)[(0, 0)], information, max_relative = 1e-8);
         let bias_k = response.bias(Quantity::GasTemperature, samples as u64)[0];
         assert_relative_eq!(bias_k, -functional.dot(&after), max_relative = 1e-6, epsilon = 1e-9);
@@ -61,11 +66,11 @@ fn sums_by_doubling_are_those_of_the_samples() {
 /// after the samples is the inverse of prior and information.
 #[test]
 fn the_information_of_a_leak_is_what_a_filter_with_a_state_for_it_learns() {
-    let (candidates, site) = site();
+    let (candidates, analysis) = analysis();
     let layout = layout(&candidates, &["middle", "pressure"]);
-    let problem = site.problem(Quantity::LeakRate).of_layout(&layout);
-    let leak = site.slow().names().iter().position(|name| name.starts_with("leak")).unwrap();
-    let states = site.problem(Quantity::LeakRate).states_of(&layout);
+    let problem = analysis.problem(Quantity::LeakRate).of_layout(&layout);
+    let leak = analysis.slow().names().iter().position(|name| name.starts_with("leak")).unwrap();
+    let states = analysis.problem(Quantity::LeakRate).states_of(&layout);
     let leak = states.iter().position(|state| *state == leak).unwrap();
     // A second rate beside the one that walks: constant, of unknown size, in the units of its scale.
     let n = states.len();
@@ -96,38 +101,38 @@ fn the_information_of_a_leak_is_what_a_filter_with_a_state_for_it_learns() {
         p = &left * &p * left.transpose() + &k * DMatrix::from_diagonal(&r) * k.transpose();
         p = &f * p * f.transpose() + &q;
     }
-    let scale =
-        site.slow().scales()[site.slow().names().iter().position(|of| of.starts_with("leak")).unwrap()];
-    let information = site.response(&layout, &[Disturbance::Leak]).unwrap().information(samples)[(0, 0)];
+    let scale = analysis.slow().scales()
+        [analysis.slow().names().iter().position(|of| of.starts_with("leak")).unwrap()];
+    let information = analysis.response(&layout, &[Disturbance::Leak]).unwrap().information(samples)[(0, 0)];
     assert_relative_eq!(1.0 / p[(n, n)] - 1.0 / prior, information * scale * scale, max_relative = 1e-4);
 }
 
 #[test]
 fn the_delay_is_when_the_information_suffices() {
-    let (candidates, site) = site();
+    let (candidates, analysis) = analysis();
     let layout = layout(&candidates, &["shoulder", "valve", "pressure"]);
-    let smallest = site.smallest_leak_kg_s(&layout).unwrap();
-    let within_s = site.settings().detection.within_s;
+    let smallest = analysis.smallest_leak_kg_s(&layout).unwrap();
+    let within_s = analysis.settings().detection.within_s;
     // The smallest leak of a day is found after a day, a larger one sooner, a smaller one later.
-    assert_relative_eq!(site.delay_s(&layout, smallest).unwrap().unwrap(), within_s, max_relative = 1e-3);
+    assert_relative_eq!(analysis.delay_s(&layout, smallest).unwrap().unwrap(), within_s, max_relative = 1e-3);
     let delays: Vec<f64> =
-        [4.0, 2.0, 1.0, 0.95].map(|by| site.delay_s(&layout, by * smallest).unwrap().unwrap()).to_vec();
+        [4.0, 2.0, 1.0, 0.95].map(|by| analysis.delay_s(&layout, by * smallest).unwrap().unwrap()).to_vec();
     assert!(delays.is_sorted() && delays[0] > 0.0, "{delays:?}");
-    let response: Response = site.response(&layout, &[Disturbance::Leak]).unwrap();
+    let response: Response = analysis.response(&layout, &[Disturbance::Leak]).unwrap();
     let needed = (DetectionSettings::default().needed_sd() / (3.0 * smallest)).powi(2);
     let samples = response.samples_to(0, needed).unwrap();
     let information = |samples| response.information(samples)[(0, 0)];
     assert!(information(samples) >= needed && information(samples - 1) < needed);
     // The member follows a leak that lasts, so that in the end innovations tell no more of a tiny one.
-    assert_eq!(site.delay_s(&layout, 1e-6 * smallest).unwrap(), None);
+    assert_eq!(analysis.delay_s(&layout, 1e-6 * smallest).unwrap(), None);
 }
 
 /// In a trial a middle thermometer found leaks some 30 % smaller than one on the shoulder; with the film at the difference that noise makes it
 /// is 20 %.
 #[test]
 fn the_middle_finds_smaller_leaks_than_the_shoulder() {
-    let (candidates, site) = site();
-    let smallest = |names: &[&str]| site.smallest_leak_kg_s(&layout(&candidates, names)).unwrap();
+    let (candidates, analysis) = analysis();
+    let smallest = |names: &[&str]| analysis.smallest_leak_kg_s(&layout(&candidates, names)).unwrap();
     let (middle, shoulder) =
         (smallest(&["middle", "valve", "pressure"]), smallest(&["shoulder", "valve", "pressure"]));
     println!("smallest leak in a day: middle {} g/h, shoulder {} g/h", 3.6e6 * middle, 3.6e6 * shoulder);
@@ -140,11 +145,11 @@ fn a_finer_wall_says_the_same_of_a_place() {
     let vessel = presets::load("nitrogen-20l").unwrap();
     let candidates = Candidates::of_vessel(&vessel).unwrap();
     let gas_sd_k = |wall_nodes| {
-        let mut settings = SiteSettings::default();
+        let mut settings = SteadySettings::default();
         settings.observer.wall_nodes = wall_nodes;
-        let site = Site::new(&vessel, &candidates.sensors(), &settings).unwrap();
+        let analysis = SteadyAnalysis::new(&vessel, &candidates.sensors(), &settings).unwrap();
         ["bottom", "middle", "shoulder", "valve"]
-            .map(|name| site.certainty(&layout(&candidates, &[name, "pressure"])).unwrap().gas_sd_k)
+            .map(|name| analysis.accuracy(&layout(&candidates, &[name, "pressure"])).unwrap().gas_sd_k)
     };
     let (vehicle, usual, fine) = (gas_sd_k(2), gas_sd_k(6), gas_sd_k(12));
     println!("{vehicle:?} {usual:?} {fine:?}");
@@ -156,7 +161,7 @@ fn a_finer_wall_says_the_same_of_a_place() {
 
 #[test]
 fn what_is_not_seen_is_named() {
-    let (candidates, site) = site();
-    let error = site.certainty(&layout(&candidates, &["shoulder", "valve"])).unwrap_err();
+    let (candidates, analysis) = analysis();
+    let error = analysis.accuracy(&layout(&candidates, &["shoulder", "valve"])).unwrap_err();
     assert!(matches!(&error, EstimatorError::Unseen { state } if state == "mass_kg"), "{error}");
 }

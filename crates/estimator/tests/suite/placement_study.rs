@@ -1,11 +1,11 @@
-//! Candidates, courses and the study on the 20 L cylinder.
+//! Candidates, scenarios and the study on the 20 L cylinder.
 use approx::assert_relative_eq;
 use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::placement::search::{Method, Watch};
+use cylwatch_estimator::placement::search::{Method, SearchControl};
 use cylwatch_estimator::placement::study::{BiasSource, Placement, Proof, Study, StudySettings};
 use cylwatch_estimator::placement::{
-    Candidates, Course, CourseNumber, Criterion, Objective, PublishedRecord, Quantity, Site, SiteSettings,
-    Status, Variant, read_candidates,
+    Candidates, Criterion, Objective, PublishedRecord, Quantity, ScenarioAnalysis, ScenarioMeasure, Status,
+    SteadyAnalysis, SteadySettings, Variant, read_candidates,
 };
 use cylwatch_estimator::thermal::scenario;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
@@ -114,33 +114,40 @@ fn what_is_wrong_in_a_file_is_told_with_line_and_remedy() {
     }
 }
 
-fn course(candidates: &Candidates, name: &str) -> Course {
+fn analysis(candidates: &Candidates, name: &str) -> ScenarioAnalysis {
     let scenario = scenario::presets::load(name).unwrap();
-    Course::new(&vessel(), &scenario, &candidates.sensors(), &SiteSettings::default().observer).unwrap()
+    ScenarioAnalysis::new(&vessel(), &scenario, &candidates.sensors(), &SteadySettings::default().observer)
+        .unwrap()
 }
 
 #[test]
 fn model_error_adds_to_what_the_filter_states() {
     let candidates = few();
-    let course = course(&candidates, "shock-cold");
-    let along = course.along(&layout(&candidates, &["middle", "pressure"])).unwrap();
+    let scenario = analysis(&candidates, "shock-cold");
+    let accuracy = scenario.accuracy(&layout(&candidates, &["middle", "pressure"])).unwrap();
     assert!(
-        along.gas_schmidt_k.mean > along.gas_sd_k.mean && along.gas_schmidt_k.worst > along.gas_sd_k.worst
+        accuracy.gas_schmidt_k.mean > accuracy.gas_sd_k.mean
+            && accuracy.gas_schmidt_k.worst > accuracy.gas_sd_k.worst
     );
-    assert!(along.gas_worst_case_k.worst > along.gas_sd_k.worst);
-    assert_eq!(along.variants.len(), Variant::ALL.len());
-    let of = |wanted: Variant| along.variants.iter().find(|of| of.variant == wanted).unwrap().gas_k.mean;
+    assert!(accuracy.gas_worst_case_k.worst > accuracy.gas_sd_k.worst);
+    assert_eq!(accuracy.variants.len(), Variant::ALL.len());
+    let of = |wanted: Variant| accuracy.variants.iter().find(|of| of.variant == wanted).unwrap().gas_k.mean;
     // A coupling that is larger than supposed and one that is smaller are wrong in different directions.
     assert!(
         (of(Variant::Couplings(1.0)) - of(Variant::Couplings(-1.0))).abs() > 0.01,
         "{:?}",
-        along.variants
+        accuracy.variants
     );
     // In well-mixed gas the attitude is all one, in stratified gas it is not.
-    assert!((of(Variant::OtherAttitude) - of(Variant::StratifiedGas)).abs() > 1e-3, "{:?}", along.variants);
+    assert!(
+        (of(Variant::OtherAttitude) - of(Variant::StratifiedGas)).abs() > 1e-3,
+        "{:?}",
+        accuracy.variants
+    );
     // A second thermometer leaves less of it.
-    let more = course.along(&layout(&candidates, &["bottom", "middle", "shoulder", "pressure"])).unwrap();
-    assert!(more.gas_sd_k.mean < along.gas_sd_k.mean);
+    let more =
+        scenario.accuracy(&layout(&candidates, &["bottom", "middle", "shoulder", "pressure"])).unwrap();
+    assert!(more.gas_sd_k.mean < accuracy.gas_sd_k.mean);
 }
 
 fn study(
@@ -149,7 +156,7 @@ fn study(
     scenarios: &[&str],
 ) -> Result<Study, EstimatorError> {
     let scenarios: Vec<_> = scenarios.iter().map(|name| scenario::presets::load(name).unwrap()).collect();
-    Placement::new(&vessel(), candidates, &scenarios, &settings)?.run(&Watch::default())
+    Placement::new(&vessel(), candidates, &scenarios, &settings)?.run(&SearchControl::default())
 }
 
 #[test]
@@ -187,7 +194,7 @@ fn a_study_holds_together() {
         assert_eq!(failure.without.is_none(), failure.sensor == pressure);
         assert_eq!(failure.unseen.as_deref() == Some("mass_kg"), failure.sensor == pressure);
         if let Some(without) = failure.without {
-            let with = study.judged.iter().find(|of| of.sensors.len() == 4).unwrap().certainty;
+            let with = study.judged.iter().find(|of| of.sensors.len() == 4).unwrap().steady;
             assert!(without.leak_sd_kg_s >= with.leak_sd_kg_s);
         }
     }
@@ -212,14 +219,15 @@ fn posterior_and_leak_rank_middle_and_shoulder_apart_from_what_the_gas_says() {
     // Beside the valve the middle is a little better for the gas temperature and far better for a leak.
     let candidates = all();
     let placement = Placement::new(&vessel(), &candidates, &[], &StudySettings::default()).unwrap();
-    let judge = |name| placement.judge(&layout(&candidates, &[name, "valve", "pressure"])).unwrap();
+    let judge = |name| placement.evaluate(&layout(&candidates, &[name, "valve", "pressure"])).unwrap();
     let (middle, shoulder) = (judge("middle"), judge("shoulder"));
     let ratio = |criterion| middle.number(criterion).unwrap() / shoulder.number(criterion).unwrap();
     let (gas, leak) = (ratio(Criterion::GasTemperature), ratio(Criterion::SmallestLeak));
     println!("middle over shoulder: gas temperature {gas:.3}, smallest leak {leak:.3}");
     assert!(leak < gas && leak < 0.85);
     assert!(
-        middle.delay_s < shoulder.delay_s && middle.number(Criterion::Course(CourseNumber::Mean)).is_none()
+        middle.delay_s < shoulder.delay_s
+            && middle.number(Criterion::Scenario(ScenarioMeasure::Mean)).is_none()
     );
 }
 
@@ -230,7 +238,7 @@ fn the_bound_is_near_the_best_layout_of_the_cylinder() {
         let settings = StudySettings { sensors, criterion, ..StudySettings::default() };
         let candidates = all();
         let placement = Placement::new(&vessel(), &candidates, &[], &settings).unwrap();
-        let numbers = placement.numbers(&Watch::default()).unwrap();
+        let numbers = placement.numbers(&SearchControl::default()).unwrap();
         assert_eq!(numbers.len(), sensors - 1);
         for (number, most) in numbers.iter().zip([0.25, 0.25, 0.25, 0.10]) {
             let gap = number.relaxation_gap().unwrap();
@@ -253,12 +261,12 @@ fn a_pressure_alone_has_no_steady_state_whatever_the_vessel() {
     for (name, nodes) in [("nitrogen-20l", 6), ("nitrogen-20l", 3), ("nitrogen-20l-paper", 6)] {
         let vessel = presets::load(name).unwrap();
         let candidates = Candidates::of_vessel(&vessel).unwrap();
-        let mut settings = SiteSettings::default();
+        let mut settings = SteadySettings::default();
         settings.observer.wall_nodes = nodes;
-        let site = Site::new(&vessel, &candidates.sensors(), &settings).unwrap();
+        let steady = SteadyAnalysis::new(&vessel, &candidates.sensors(), &settings).unwrap();
         let alone = [candidates.index("pressure").unwrap()];
         for quantity in [Quantity::GasTemperature, Quantity::Mass, Quantity::LeakRate] {
-            let value = site.problem(quantity).value(&alone);
+            let value = steady.problem(quantity).value(&alone);
             assert_eq!(value, f64::INFINITY, "{name}, {nodes} nodes, {quantity:?}");
         }
     }
@@ -285,7 +293,7 @@ fn what_cannot_be_is_refused_with_its_reason() {
             },
             "too close",
         ),
-        (|_, settings| settings.criterion = Criterion::Course(CourseNumber::Mean), "scenario"),
+        (|_, settings| settings.criterion = Criterion::Scenario(ScenarioMeasure::Mean), "scenario"),
         (|candidates, _| candidates.list.iter_mut().for_each(|of| of.status = Status::Required), "required"),
     ];
     for (change, part) in changes {
@@ -298,8 +306,8 @@ fn what_cannot_be_is_refused_with_its_reason() {
 fn a_study_that_is_stopped_says_so() {
     let candidates = few();
     let placement = Placement::new(&vessel(), &candidates, &[], &StudySettings::default()).unwrap();
-    let watch = Watch::default();
-    watch.stop.store(true, std::sync::atomic::Ordering::Relaxed);
-    let study = placement.run(&watch).unwrap();
+    let control = SearchControl::default();
+    control.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    let study = placement.run(&control).unwrap();
     assert!(study.partial && study.numbers.is_empty() && study.failures.is_empty());
 }

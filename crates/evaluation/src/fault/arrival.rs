@@ -7,13 +7,13 @@ use super::{Arrival, Fault, Record, Snapshot, Step};
 use crate::EvaluationError;
 
 /// Time within which a row comes for the second time, s.
-const TWICE_WITHIN_S: f64 = 600.0;
+const DUPLICATE_WITHIN_S: f64 = 600.0;
 
 /// Time after a connection stands again at which the store is replayed, s: live rows come first.
 const REPLAYED_AFTER_S: f64 = 300.0;
 
 /// 1 January 2026 in seconds since 1970: a clock that falls back to 1970 loses this and what has passed since.
-pub const EPOCH_S: f64 = 1_767_225_600.0;
+pub(crate) const EPOCH_S: f64 = 1_767_225_600.0;
 
 impl Fault {
     /// Change how rows arrive.
@@ -92,7 +92,7 @@ fn twice(record: &mut Record, onset_s: f64, share: f64, mut random: ChaCha8Rng) 
     let mut keyed = Vec::new();
     for (time_s, step) in timed(record) {
         if time_s >= onset_s && random.random::<f64>() < share {
-            keyed.push((time_s + TWICE_WITHIN_S * random.random::<f64>(), step.clone()));
+            keyed.push((time_s + DUPLICATE_WITHIN_S * random.random::<f64>(), step.clone()));
         }
         keyed.push((time_s, step));
     }

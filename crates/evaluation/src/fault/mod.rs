@@ -15,8 +15,8 @@ mod table;
 
 use serde::{Deserialize, Serialize};
 
-pub use self::arrival::EPOCH_S;
-pub use self::reading::{DeadCode, MixUp};
+pub(crate) use self::arrival::EPOCH_S;
+pub use self::reading::{DeadCode, UnitConfusion};
 pub use self::record::{Arrival, Record, Snapshot, Step};
 pub(crate) use self::table::TABLE_FULL_SCALE_PA;
 pub use self::table::{Requirement, TableRow};
@@ -112,7 +112,7 @@ pub enum Fault {
         /// Sensors.
         sensors: Vec<String>,
         /// Which for which.
-        mix_up: MixUp,
+        mix_up: UnitConfusion,
     },
     /// A thermometer hangs in the air, from the onset on; the record must have `ambient`.
     Detached {

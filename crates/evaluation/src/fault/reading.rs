@@ -57,7 +57,7 @@ impl DeadCode {
 /// A unit taken for another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum MixUp {
+pub enum UnitConfusion {
     /// Degrees Celsius read as kelvin.
     CelsiusAsKelvin,
     /// Kelvin read as degrees Celsius.
@@ -76,7 +76,7 @@ pub enum MixUp {
     GaugeAsAbsolute,
 }
 
-impl MixUp {
+impl UnitConfusion {
     /// All of them.
     pub(crate) const ALL: [Self; 8] = [
         Self::CelsiusAsKelvin,
@@ -228,7 +228,7 @@ impl Column<'_> {
         Ok(())
     }
 
-    fn mistake(&mut self, sensors: &[String], mix_up: MixUp) -> Result<(), EvaluationError> {
+    fn mistake(&mut self, sensors: &[String], mix_up: UnitConfusion) -> Result<(), EvaluationError> {
         for sensor in sensors {
             self.index = self.record.sensor(sensor)?;
             self.always(|reading| mix_up.taken(reading));

@@ -27,7 +27,7 @@ pub struct Arrival {
     /// Time as stamped, s.
     pub stamp_s: f64,
     /// Time at which it was measured, s: what the stamp would be with a good clock.
-    pub measured_s: f64,
+    pub(crate) measured_s: f64,
     /// Readings, SI, NaN where missing.
     pub readings: Vec<f64>,
     /// Whether the row says that it is replayed from a store.

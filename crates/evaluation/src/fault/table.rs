@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::{DeadCode, EPOCH_S, Fault, MixUp, Snapshot};
+use super::{DeadCode, EPOCH_S, Fault, Snapshot, UnitConfusion};
 
 /// Full scale of the transmitter that the relative errors of the table are of, Pa.
 pub(crate) const TABLE_FULL_SCALE_PA: f64 = 250.0 * BAR_PA;
@@ -94,9 +94,9 @@ pub enum Requirement {
     Undecidable,
     /// Less certain: no leak where there is none; a leak is found, or it is said that it cannot be known.
     Degraded,
-    /// Said at commissioning, or harmless: no leak where there is none; a leak is found, or there is a warning.
+    /// Statement at commissioning, or harmless: no leak where there is none; a leak is found, or there is a warning.
     Warned,
-    /// Said by an event of its kind: no leak where there is none.
+    /// Statement by an event of its kind: no leak where there is none.
     Recognised,
     /// Found as a leak.
     Found,
@@ -236,7 +236,7 @@ impl Draw {
 
     /// One time in nine the thermometers have each other's place, else a unit is wrong.
     fn mistake(&mut self) -> Fault {
-        let Some(&mix_up) = MixUp::ALL.get(self.0.random_range(0..=MixUp::ALL.len())) else {
+        let Some(&mix_up) = UnitConfusion::ALL.get(self.0.random_range(0..=UnitConfusion::ALL.len())) else {
             return Fault::Swapped { first: "shoulder".into(), second: "valve".into() };
         };
         let sensors: &[&str] = if mix_up.is_of_pressure() { &["pressure"] } else { &["shoulder", "valve"] };

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 /// Runs from a beginning.
 #[derive(Clone, Copy, Debug)]
-pub struct Clock {
+pub(super) struct Clock {
     begin: Instant,
     begin_on_core_s: Option<f64>,
 }

@@ -14,13 +14,13 @@ use serde::{Deserialize, Serialize};
 use super::JudgeError;
 
 /// Name of the file of times.
-pub const TIMES: &str = "times.jsonl";
+pub(super) const TIMES: &str = "times.jsonl";
 /// Names of the files of costs.
-pub const COST: [&str; 2] = ["cost.md", "cost.json"];
+pub(super) const COST: [&str; 2] = ["cost.md", "cost.json"];
 
 /// Times of one world, s.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Times {
+pub(super) struct Times {
     /// Index of the world.
     pub world: usize,
     /// Length of the log.
@@ -41,7 +41,7 @@ pub struct Times {
 
 /// What a cylinder-year costs, s.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct CostOfYear {
+pub(super) struct CostOfYear {
     /// Cylinder-years.
     pub cylinder_years: f64,
     /// Rows of a year on average.
@@ -58,7 +58,7 @@ pub struct CostOfYear {
 
 /// The file of times.
 #[derive(Debug)]
-pub struct Costs {
+pub(super) struct Costs {
     path: PathBuf,
     file: File,
 }

@@ -6,7 +6,7 @@ use super::score::detection::LeakFacts;
 
 /// Facts of a world and scores of its candidates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub(super) struct Entry {
     /// What is true of it; or why it could not be made.
     pub facts: Result<Facts, String>,
     /// Scores in the order of the task's candidates; or why there is none.
@@ -15,7 +15,7 @@ pub struct Entry {
 
 /// What is true of a world, beside its request.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Facts {
+pub(crate) struct Facts {
     /// Rows.
     pub rows: u64,
     /// True time from the first row to the last one, s.

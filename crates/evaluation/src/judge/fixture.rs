@@ -10,16 +10,16 @@ use rand_distr::StandardNormal;
 use serde_json::Value;
 
 use super::JudgeError;
-use super::candidate::{Candidate, Contender, Kind, Registry, Row};
+use super::candidate::{Candidate, CandidateRun, Kind, Registry, Row};
 use super::measures::Class;
 use super::plan::Plan;
 use super::run::{RunSettings, Source, run};
-use super::said::{Decision, Estimated, Estimates, Innovation, Said, normal};
+use super::statement::{Decision, Estimated, Estimates, Innovation, Statement, normal};
 use super::table::{GroupReport, Table};
 use crate::detector::prognosis::Reaction;
 use crate::world::{
-    Family, Happening, HappeningKind, Overlay, Regime, Request, SimulationKey, Told, Truth, World,
-    WorldError, generate,
+    Family, OperatorData, Overlay, Regime, Request, SimulationKey, Truth, World, WorldError, WorldEvent,
+    WorldEventKind, generate,
 };
 
 /// Gas of every toy world, kg.
@@ -79,18 +79,18 @@ pub(super) fn world(request: &Request) -> World {
         .flat_map(|row| [truth.gas_mean_k[row], truth.outflow_kg_s[row], truth.mass_kg[row]])
         .collect();
     (world.historical, world.power_cycles, world.fault) = (Vec::new(), Vec::new(), None);
-    world.told.announced = match request.overlay {
+    world.operator_data.announced = match request.overlay {
         Overlay::Discharge { onset_s, within_s, announced: true, .. } => vec![(onset_s, onset_s + within_s)],
         _ => Vec::new(),
     };
-    world.happenings = request.overlay.leak().map(|leak| happening(leak.onset_s)).into_iter().collect();
+    world.events = request.overlay.leak().map(|leak| event(leak.onset_s)).into_iter().collect();
     (world.request, world.simulation) = (*request, SimulationKey::of(request));
     world
 }
 
-fn happening(start_s: f64) -> Happening {
-    let (kind, end_s) = (HappeningKind::Leak, f64::MAX);
-    Happening { kind, start_s, end_s, lost_kg: 0.1, announced: false }
+fn event(start_s: f64) -> WorldEvent {
+    let (kind, end_s) = (WorldEventKind::Leak, f64::MAX);
+    WorldEvent { kind, start_s, end_s, lost_kg: 0.1, announced: false }
 }
 
 /// Part of the gas that is lost at a time.
@@ -106,7 +106,7 @@ fn lost_part(overlay: &Overlay, t: f64) -> f64 {
 }
 
 /// What a candidate of the tests says, from the truth.
-type Say = fn(&mut ChaCha8Rng, &Row<'_>) -> Said;
+type Say = fn(&mut ChaCha8Rng, &Row<'_>) -> Statement;
 
 /// A candidate of the tests.
 pub(super) struct Toy {
@@ -117,7 +117,7 @@ pub(super) struct Toy {
 struct Saying(Say, ChaCha8Rng, u64);
 
 impl Candidate for Toy {
-    fn start(&self, _: &Told) -> Result<Box<dyn Contender>, JudgeError> {
+    fn start(&self, _: &OperatorData) -> Result<Box<dyn CandidateRun>, JudgeError> {
         Ok(Box::new(Saying(self.say, ChaCha8Rng::seed_from_u64(0), 0)))
     }
 
@@ -126,14 +126,14 @@ impl Candidate for Toy {
     }
 }
 
-impl Contender for Saying {
-    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+impl CandidateRun for Saying {
+    fn step(&mut self, row: &Row<'_>, statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         // Worlds of other readings have other errors.
         self.2 = self.2.wrapping_mul(31).wrapping_add(row.readings[0].to_bits() ^ row.readings[2].to_bits());
         if row.stamp_s == 0.0 {
             self.1 = ChaCha8Rng::seed_from_u64(self.2);
         }
-        said.push(Said { stamp_s: row.stamp_s, ..(self.0)(&mut self.1, row) });
+        statements.push(Statement { stamp_s: row.stamp_s, ..(self.0)(&mut self.1, row) });
         Ok(())
     }
 }
@@ -163,12 +163,12 @@ pub(super) fn decided(class: Class) -> Decision {
     }
 }
 
-fn always(class: Class) -> Said {
-    Said { decision: Some(decided(class)), ..Said::default() }
+fn always(class: Class) -> Statement {
+    Statement { decision: Some(decided(class)), ..Statement::default() }
 }
 
 /// States the truth, exactly.
-fn perfect(_: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
+fn perfect(_: &mut ChaCha8Rng, row: &Row<'_>) -> Statement {
     let exact = |value: f64| Some(Estimated { value, interval: Some((value - 1e-9, value + 1e-9)) });
     let lost = row.readings[2] < WHOLE_KG || row.readings[1] > 0.0;
     let estimates = Estimates {
@@ -177,11 +177,11 @@ fn perfect(_: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
         leak_kg_s: exact(row.readings[1]),
         onset_s: None,
     };
-    Said { estimates, ..always(if lost { Class::Leak } else { Class::Tight }) }
+    Statement { estimates, ..always(if lost { Class::Leak } else { Class::Tight }) }
 }
 
 /// States the truth with normal errors that it knows, and innovations that are white and as large as stated.
-fn honest(random: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
+fn honest(random: &mut ChaCha8Rng, row: &Row<'_>) -> Statement {
     let mut draw = |value: f64, sd: f64| {
         let error: f64 = random.sample(StandardNormal);
         Some(normal(value + sd * error, sd))
@@ -194,33 +194,33 @@ fn honest(random: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
     };
     let free: f64 = random.sample(StandardNormal);
     let nu: f64 = random.sample(StandardNormal);
-    Said {
+    Statement {
         estimates,
         innovation: Some(Innovation { nu: 3.0 * nu, s: 9.0 }),
         free_mass_kg: Some(row.readings[2] + 0.02 * free),
-        ..Said::default()
+        ..Statement::default()
     }
 }
 
 /// Finds a leak when a thousandth of the gas is lost.
-fn lawful(_: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
+fn lawful(_: &mut ChaCha8Rng, row: &Row<'_>) -> Statement {
     always(if row.readings[2] < WHOLE_KG * (1.0 - 1e-3) { Class::Leak } else { Class::Tight })
 }
 
 /// Tight, and probably leaking, in every tenth row.
-fn contradictory(_: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
-    let mut said = always(Class::Tight);
+fn contradictory(_: &mut ChaCha8Rng, row: &Row<'_>) -> Statement {
+    let mut statement = always(Class::Tight);
     if ((row.stamp_s / 120.0) as u64).is_multiple_of(10) {
-        said.decision = Some(Decision { leak_probability: Some(0.99), ..decided(Class::Tight) });
+        statement.decision = Some(Decision { leak_probability: Some(0.99), ..decided(Class::Tight) });
     }
-    said
+    statement
 }
 
 /// Lost mass as a statistic.
-fn lost_mass(random: &mut ChaCha8Rng, row: &Row<'_>) -> Said {
+fn lost_mass(random: &mut ChaCha8Rng, row: &Row<'_>) -> Statement {
     let error: f64 = random.sample(StandardNormal);
     let lost = 1.0 - row.readings[2] / WHOLE_KG;
-    Said { statistic: Some(lost + 1e-5 * error), ..Said::default() }
+    Statement { statistic: Some(lost + 1e-5 * error), ..Statement::default() }
 }
 
 /// Kinds of the tests.

@@ -20,14 +20,14 @@ use super::JudgeError;
 use super::plan::hex;
 
 /// Name of the journal in its folder.
-pub const JOURNAL: &str = "journal.jsonl";
+pub(super) const JOURNAL: &str = "journal.jsonl";
 const BEFORE_SUM: &str = "{\"sum\":\"";
 const BEFORE_ENTRY: &str = "\",\"entry\":";
 const DIGITS: usize = 16;
 
 /// What the results are of.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Binding {
+pub(super) struct Binding {
     /// Hash of the plan.
     pub plan: String,
     /// Version of the program, and the beginning of its file's hash.
@@ -49,7 +49,7 @@ struct Number {
 
 /// A journal that is open for writing.
 #[derive(Debug)]
-pub struct Journal {
+pub(super) struct Journal {
     path: PathBuf,
     file: File,
     /// Begin and length of each world's entry, bytes.
@@ -193,7 +193,7 @@ impl Journal {
 
 /// Results of the worlds that were finished at a time, read one by one.
 #[derive(Debug)]
-pub struct Results {
+pub(crate) struct Results {
     path: PathBuf,
     file: File,
     places: BTreeMap<usize, (u64, usize)>,

@@ -1,8 +1,8 @@
 //! Runs a plan: simulates its worlds on all threads, lets the candidates watch, writes journal and tables.
 //!
-//! Threads claim the simulations of a plan one after the other, in its order. What is finished is in the journal ([`super::journal`]); a run
+//! Threads claim the simulations of a plan one after the other, in its order. What is finished is in the journal; a run
 //! that was killed goes on with what is missing. The table is made from the journal alone, in an order of its own, and now and then while
-//! the run goes on. Times of computing stand in a file of their own ([`super::cost`]), so that the table is reproducible.
+//! the run goes on. Times of computing stand in a file of their own, so that the table is reproducible.
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -16,7 +16,7 @@ use super::entry::{Entry, Facts};
 use super::journal::{Binding, Journal};
 use super::plan::{Plan, Unit};
 use super::score::Score;
-use super::score::detection::Detecting;
+use super::score::detection::LeakWatch;
 use super::table::{self, Table};
 use super::watch::{watch, words_of};
 use crate::world::{Request, Simulated, World, WorldError};
@@ -229,7 +229,7 @@ impl<S: Source> Running<'_, S> {
         let length_s = last_s - first_s;
         times.cylinder_s = length_s;
         times.rows = world.log.time_s.len() as u64;
-        let facts = Facts { rows: times.rows, length_s, leak: Detecting::facts(world) };
+        let facts = Facts { rows: times.rows, length_s, leak: LeakWatch::facts(world) };
         let mut scores = Vec::new();
         for &candidate in &self.plan.tasks[task].candidates {
             let named = &self.plan.candidates[candidate];

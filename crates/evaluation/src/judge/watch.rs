@@ -3,18 +3,18 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::JudgeError;
-use super::candidate::{Candidate, Contender, Row};
+use super::candidate::{Candidate, CandidateRun, Row};
 use super::clock::Clock;
-use super::said::Said;
 use super::score::{Score, Scorer};
+use super::statement::Statement;
 use crate::world::{Snapshot, World};
 
 /// Rows between two looks at the clock.
-const CHUNK: usize = 256;
+const ROWS_PER_CHUNK: usize = 256;
 /// How far back the row of a statement is looked for: rows that a candidate may hold back.
-const HELD_BACK: usize = 20_000;
+const MAX_DELAYED_ROWS: usize = 20_000;
 /// Interval at which a device stores its state, s.
-const KEPT_S: f64 = 3600.0;
+const SNAPSHOT_INTERVAL_S: f64 = 3600.0;
 
 /// What came of it.
 #[derive(Debug)]
@@ -22,9 +22,9 @@ pub struct Watched {
     /// The score, or why there is none.
     pub score: Result<Score, String>,
     /// Time that the candidate took, s.
-    pub candidate_s: f64,
+    pub(crate) candidate_s: f64,
     /// Time that scoring took, s.
-    pub scoring_s: f64,
+    pub(crate) scoring_s: f64,
 }
 
 /// Let a candidate watch a world. A candidate that fails or panics has no score; the others go on.
@@ -32,7 +32,7 @@ pub fn watch(world: &World, candidate: &dyn Candidate) -> Watched {
     let mut watching = Watching {
         world,
         scorer: Scorer::new(world, candidate.decision_level()),
-        said: Vec::new(),
+        statements: Vec::new(),
         now_s: f64::NEG_INFINITY,
         candidate_s: 0.0,
         scoring_s: 0.0,
@@ -62,7 +62,7 @@ struct Watching<'a> {
     world: &'a World,
     scorer: Scorer<'a>,
     /// Statements of a chunk, with the last row that had arrived and the time of its arrival, s.
-    said: Vec<(usize, f64, Said)>,
+    statements: Vec<(usize, f64, Statement)>,
     now_s: f64,
     candidate_s: f64,
     scoring_s: f64,
@@ -71,28 +71,29 @@ struct Watching<'a> {
 impl Watching<'_> {
     fn run(&mut self, candidate: &dyn Candidate) -> Result<(), JudgeError> {
         let mut clock = Clock::begin();
-        let mut contender = candidate.start(&self.world.told)?;
+        let mut run = candidate.start(&self.world.operator_data)?;
         let rows = self.world.log.time_s.len();
         let historical: BTreeSet<usize> = self.world.historical.iter().copied().collect();
         let keeps = self.world.power_cycles.iter().any(|(_, snapshot)| *snapshot == Snapshot::Old);
         let mut kept_s = f64::NEG_INFINITY;
         let mut cycles = self.world.power_cycles.iter().peekable();
-        for begin_row in (0..rows).step_by(CHUNK) {
-            let end_row = rows.min(begin_row + CHUNK);
+        for begin_row in (0..rows).step_by(ROWS_PER_CHUNK) {
+            let end_row = rows.min(begin_row + ROWS_PER_CHUNK);
             for row in begin_row..end_row {
-                if keeps && self.now_s >= kept_s + KEPT_S {
-                    contender.keep()?;
+                if keeps && self.now_s >= kept_s + SNAPSHOT_INTERVAL_S {
+                    run.keep()?;
                     kept_s = self.now_s;
                 }
-                self.step(&mut *contender, row, historical.contains(&row))?;
+                self.step(&mut *run, row, historical.contains(&row))?;
                 while let Some((_, snapshot)) = cycles.next_if(|(after, _)| *after <= row) {
-                    contender.power_cycle(*snapshot)?;
+                    run.power_cycle(*snapshot)?;
                 }
             }
             if end_row == rows {
-                let mut said = Vec::new();
-                contender.finish(&mut said)?;
-                self.said.extend(said.into_iter().map(|said| (rows - 1, self.now_s, said)));
+                let mut statements = Vec::new();
+                run.finish(&mut statements)?;
+                self.statements
+                    .extend(statements.into_iter().map(|statement| (rows - 1, self.now_s, statement)));
             }
             self.candidate_s += clock.lap_s();
             self.score();
@@ -101,29 +102,24 @@ impl Watching<'_> {
         Ok(())
     }
 
-    fn step(
-        &mut self,
-        contender: &mut dyn Contender,
-        row: usize,
-        historical: bool,
-    ) -> Result<(), JudgeError> {
+    fn step(&mut self, run: &mut dyn CandidateRun, row: usize, historical: bool) -> Result<(), JudgeError> {
         let (log, truth) = (&self.world.log, &self.world.truth);
         self.now_s = self.now_s.max(truth.time_s[row]);
-        let mut said = Vec::new();
+        let mut statements = Vec::new();
         let readings = log.row(row);
-        contender.step(&Row { stamp_s: log.time_s[row], readings, historical }, &mut said)?;
-        self.said.extend(said.into_iter().map(|said| (row, self.now_s, said)));
+        run.step(&Row { stamp_s: log.time_s[row], readings, historical }, &mut statements)?;
+        self.statements.extend(statements.into_iter().map(|statement| (row, self.now_s, statement)));
         Ok(())
     }
 
     /// Score the statements of a chunk.
     fn score(&mut self) {
         let stamps = &self.world.log.time_s;
-        for (arrived, now_s, said) in self.said.drain(..) {
-            let oldest = arrived.saturating_sub(HELD_BACK);
-            let row = (oldest..=arrived).rev().find(|row| stamps[*row] == said.stamp_s);
+        for (arrived, now_s, statement) in self.statements.drain(..) {
+            let oldest = arrived.saturating_sub(MAX_DELAYED_ROWS);
+            let row = (oldest..=arrived).rev().find(|row| stamps[*row] == statement.stamp_s);
             // A statement about no row of the log is about the last one.
-            self.scorer.take(now_s, row.unwrap_or(arrived), &said);
+            self.scorer.take(now_s, row.unwrap_or(arrived), &statement);
         }
     }
 }

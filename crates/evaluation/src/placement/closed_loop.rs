@@ -9,8 +9,8 @@ use super::{
     mismatched,
 };
 use crate::EvaluationError;
-use crate::estimator::placement::search::Watch;
-use crate::estimator::placement::study::{JUDGED, Placement, Study};
+use crate::estimator::placement::search::SearchControl;
+use crate::estimator::placement::study::{LAYOUTS_EVALUATED, Placement, Study};
 
 /// Length of a mismatched run, and what of it the observer learns in, s.
 const MISMATCHED_S: f64 = 8.0 * DAY_S;
@@ -57,12 +57,12 @@ pub fn confirm_study(
     placement: &Placement,
     study: &Study,
     settings: &ClosedLoopSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<Option<ClosedLoop>, EvaluationError> {
     match study.numbers.last() {
         Some(most) if !study.partial && settings.matched + settings.mismatched > 0 => {
-            let best = most.layouts.iter().take(JUDGED).map(|layout| layout.sensors.clone());
-            confirm(placement, &best.collect::<Vec<_>>(), settings, watch).map(Some)
+            let best = most.layouts.iter().take(LAYOUTS_EVALUATED).map(|layout| layout.sensors.clone());
+            confirm(placement, &best.collect::<Vec<_>>(), settings, control).map(Some)
         }
         _ => Ok(None),
     }
@@ -77,19 +77,19 @@ pub fn confirm(
     placement: &Placement,
     layouts: &[Vec<usize>],
     settings: &ClosedLoopSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<ClosedLoop, EvaluationError> {
     let ClosedLoopSettings { matched: own, mismatched: drawn, first_seed } = *settings;
-    let (candidates, site) = (placement.candidates().sensors(), placement.site().settings());
-    let quiet = calm(&site.observer, &site.conditions);
-    let at_quiet = site.conditions.at_typical_difference(placement.vessel(), &quiet)?;
-    let (first, slow) = placement.site().members();
+    let (candidates, steady) = (placement.candidates().sensors(), placement.steady().settings());
+    let quiet = calm(&steady.observer, &steady.conditions);
+    let at_quiet = steady.conditions.at_typical_difference(placement.vessel(), &quiet)?;
+    let (first, slow) = placement.steady().members();
     let claim = |quiet_world: bool, member| Claim {
         vessel: placement.vessel(),
         candidates: &candidates,
-        settings: if quiet_world { &quiet } else { &site.observer },
+        settings: if quiet_world { &quiet } else { &steady.observer },
         member,
-        conditions: if quiet_world { &at_quiet } else { &site.conditions },
+        conditions: if quiet_world { &at_quiet } else { &steady.conditions },
         layouts,
     };
     let of_seeds = |seeds| ConfirmSettings { first_seed, seeds, ..ConfirmSettings::default() };
@@ -101,16 +101,17 @@ pub fn confirm(
         partial: false,
     };
     if own > 0 {
-        found.matched = matched(&claim(true, first), &of_seeds(own), watch, &|_| ())?.layouts;
-        let detection = &site.detection;
-        found.matched_leaks = detected_matched(&claim(true, slow), &of_seeds(own), detection, watch)?;
+        found.matched = matched(&claim(true, first), &of_seeds(own), control, &|_| ())?.layouts;
+        let detection = &steady.detection;
+        found.matched_leaks = detected_matched(&claim(true, slow), &of_seeds(own), detection, control)?;
     }
     if drawn > 0 {
         let settings = ConfirmSettings { duration_s: MISMATCHED_S, ..of_seeds(drawn) };
-        found.mismatched = mismatched(&claim(false, first), &settings, watch, &|_| ())?.layouts;
+        found.mismatched = mismatched(&claim(false, first), &settings, control, &|_| ())?.layouts;
         let settings = ConfirmSettings { burn_in_s: LEARNING_S, ..settings };
-        found.mismatched_leaks = detected_mismatched(&claim(false, slow), &settings, &site.detection, watch)?;
+        found.mismatched_leaks =
+            detected_mismatched(&claim(false, slow), &settings, &steady.detection, control)?;
     }
-    found.partial = watch.stop.load(Ordering::Relaxed);
+    found.partial = control.stop.load(Ordering::Relaxed);
     Ok(found)
 }

@@ -9,12 +9,12 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::matched::told;
-use super::{Claim, ConfirmSettings, Confirmation, Listener, matched, mismatched};
+use super::matched::constants_known;
+use super::{Claim, ConfirmSettings, Confirmation, InnovationSink, matched, mismatched};
 use crate::EvaluationError;
 use crate::estimator::observer::{Innovation, ObserverSettings};
-use crate::estimator::placement::cylinder::{Quantity, SitedCylinder};
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::cylinder::{InstrumentedCylinder, Quantity};
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::{DetectionSettings, Disturbance};
 use crate::world::SteadyLeak;
 
@@ -54,15 +54,15 @@ struct Statistic<'a> {
     sum: f64,
 }
 
-impl Listener for Statistic<'_> {
-    fn hear(&mut self, time_s: f64, innovations: &[Innovation]) {
+impl InnovationSink for Statistic<'_> {
+    fn record(&mut self, time_s: f64, innovations: &[Innovation]) {
         let row = ((time_s - self.onset_s) / self.interval_s).round();
         if row < 0.0 {
             return;
         }
         let Some(weights) = self.weights.get(row as usize) else { return };
-        let heard = weights.iter().zip(innovations).filter(|(_, innovation)| innovation.nu.is_finite());
-        self.sum += heard.map(|(weight, innovation)| weight * innovation.nu).sum::<f64>();
+        let known = weights.iter().zip(innovations).filter(|(_, innovation)| innovation.nu.is_finite());
+        self.sum += known.map(|(weight, innovation)| weight * innovation.nu).sum::<f64>();
     }
 }
 
@@ -80,12 +80,13 @@ pub fn detected_matched(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
     detection: &DetectionSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<Vec<Detected>, EvaluationError> {
-    let (candidates, known) = told(claim.candidates, claim.settings);
-    let sited = SitedCylinder::new(claim.vessel, &candidates, &known, claim.member, claim.conditions)?;
-    detected(claim, settings, detection, &sited, &|claim, settings, predictions| {
-        matched(claim, settings, watch, &|id| listener(claim, settings, &predictions[id.layout])).map(sums)
+    let (candidates, known) = constants_known(claim.candidates, claim.settings);
+    let cylinder =
+        InstrumentedCylinder::new(claim.vessel, &candidates, &known, claim.member, claim.conditions)?;
+    detected(claim, settings, detection, &cylinder, &|claim, settings, predictions| {
+        matched(claim, settings, control, &|id| statistic(claim, settings, &predictions[id.layout])).map(sums)
     })
 }
 
@@ -97,18 +98,24 @@ pub fn detected_mismatched(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
     detection: &DetectionSettings,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Result<Vec<Detected>, EvaluationError> {
     let alone = ObserverSettings { bank: vec![*claim.member], ..claim.settings.clone() };
     let claim = Claim { settings: &alone, ..*claim };
-    let sited =
-        SitedCylinder::new(claim.vessel, claim.candidates, claim.settings, claim.member, claim.conditions)?;
-    detected(&claim, settings, detection, &sited, &|claim, settings, predictions| {
-        mismatched(claim, settings, watch, &|id| listener(claim, settings, &predictions[id.layout])).map(sums)
+    let cylinder = InstrumentedCylinder::new(
+        claim.vessel,
+        claim.candidates,
+        claim.settings,
+        claim.member,
+        claim.conditions,
+    )?;
+    detected(&claim, settings, detection, &cylinder, &|claim, settings, predictions| {
+        mismatched(claim, settings, control, &|id| statistic(claim, settings, &predictions[id.layout]))
+            .map(sums)
     })
 }
 
-fn listener<'a>(claim: &Claim<'_>, settings: &ConfirmSettings, prediction: &'a Prediction) -> Statistic<'a> {
+fn statistic<'a>(claim: &Claim<'_>, settings: &ConfirmSettings, prediction: &'a Prediction) -> Statistic<'a> {
     Statistic {
         weights: &prediction.weights,
         onset_s: settings.burn_in_s,
@@ -120,7 +127,7 @@ fn listener<'a>(claim: &Claim<'_>, settings: &ConfirmSettings, prediction: &'a P
 /// The sum of each run, layout by layout.
 fn sums(confirmation: Confirmation<Statistic<'_>>) -> Vec<Vec<f64>> {
     let mut sums = vec![Vec::new(); confirmation.layouts.len()];
-    confirmation.runs.iter().for_each(|run| sums[run.id.layout].push(run.heard.sum));
+    confirmation.runs.iter().for_each(|run| sums[run.id.layout].push(run.sink.sum));
     sums
 }
 
@@ -132,13 +139,13 @@ fn detected(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
     detection: &DetectionSettings,
-    sited: &SitedCylinder,
+    cylinder: &InstrumentedCylinder,
     runs: &Runs<'_>,
 ) -> Result<Vec<Detected>, EvaluationError> {
     let samples = detection.samples(claim.conditions.interval_s);
-    let problem = sited.problem(Quantity::LeakRate)?;
+    let problem = cylinder.problem(Quantity::LeakRate)?;
     let predict = |layout: &Vec<usize>| {
-        let response = sited.response(&problem, layout, &[Disturbance::Leak])?;
+        let response = cylinder.response(&problem, layout, &[Disturbance::Leak])?;
         let smallest_kg_s = detection.smallest(response.information(samples)[(0, 0)]);
         Ok(Prediction { weights: response.weights(0, samples), smallest_kg_s })
     };

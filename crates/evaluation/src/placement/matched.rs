@@ -4,7 +4,7 @@
 //! observer takes them for, and moves by its own nonlinear equations; its process noise is that of the linearisation there. Readings have the
 //! noise that the observer supposes, model error included.
 //!
-//! What nothing tells in the steady state, and what [`SitedCylinder`] therefore leaves out, is known here to truth and observer: constants that
+//! What nothing tells in the steady state, and what [`InstrumentedCylinder`] therefore leaves out, is known here to truth and observer: constants that
 //! never change, above all a transmitter's offset. All draws are normal, also where a sensor's own law is another one.
 //!
 //! # Validity
@@ -19,14 +19,14 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use super::draws::matched_draws;
-use super::jury::{Begin, Jury, Present, Verdict, confirmation};
-use super::{Claim, ConfirmSettings, Confirmation, Listener, Rows, RunId};
+use super::trial::{Trial, TrialResult, TrialStart, TrueState, confirmation};
+use super::{Claim, ConfirmSettings, Confirmation, InnovationSink, Rows, RunId};
 use crate::EvaluationError;
 use crate::estimator::filter::{Linearisation, Plant, StateSpace};
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::{BandSettings, Commissioning, ObserverSettings, Walk};
-use crate::estimator::placement::cylinder::{Conditions, SitedCylinder, state_at};
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::cylinder::{Conditions, InstrumentedCylinder, state_at};
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::sensor::Sensor;
 
 /// Stream of the constants, which are drawn for all seeds together.
@@ -53,21 +53,24 @@ pub fn calm(settings: &ObserverSettings, conditions: &Conditions) -> ObserverSet
 }
 
 /// The candidates and the settings with everything known that never changes.
-pub(super) fn told(candidates: &[Sensor], settings: &ObserverSettings) -> (Vec<Sensor>, ObserverSettings) {
+pub(super) fn constants_known(
+    candidates: &[Sensor],
+    settings: &ObserverSettings,
+) -> (Vec<Sensor>, ObserverSettings) {
     let stands = |walk: &Walk| walk.per_sqrt_s == 0.0 && walk.memory_s.is_none();
-    let tell = |sensor: &Sensor| {
-        let mut told = sensor.clone();
+    let with_known = |sensor: &Sensor| {
+        let mut sensor_known = sensor.clone();
         for parameter in sensor.parameters() {
             if stands(&settings.walk_of(parameter, sensor.quantity()))
-                && let Some(known) = told.parameter_mut(parameter.kind)
+                && let Some(known) = sensor_known.parameter_mut(parameter.kind)
             {
                 known.sd = 0.0;
             }
         }
-        told
+        sensor_known
     };
     let known = |walk: Walk| if stands(&walk) { Walk::constant(0.0) } else { walk };
-    let told = ObserverSettings {
+    let settings_known = ObserverSettings {
         ln_outside_film: known(settings.ln_outside_film),
         ln_inside_film: known(settings.ln_inside_film),
         ln_capacity: known(settings.ln_capacity),
@@ -76,7 +79,7 @@ pub(super) fn told(candidates: &[Sensor], settings: &ObserverSettings) -> (Vec<S
         sun: known(settings.sun),
         ..settings.clone()
     };
-    (candidates.iter().map(tell).collect(), told)
+    (candidates.iter().map(with_known).collect(), settings_known)
 }
 
 /// How a truth moves and begins.
@@ -151,27 +154,28 @@ fn cylinder_of(
     Ok(cylinder)
 }
 
-/// Errors in worlds that are the observer's own model. Set `stop` of the watch to end with the seeds that are done.
+/// Errors in worlds that are the observer's own model. Set `stop` of the control to end with the seeds that are done.
 ///
 /// # Errors
 /// A setting is out of its bounds, a layout names no candidate, or the truth leaves what the gas's equation knows.
-pub fn matched<L: Listener>(
+pub fn matched<L: InnovationSink>(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
-    watch: &Watch,
-    listen: &(impl Fn(RunId) -> L + Sync),
+    control: &SearchControl,
+    sink: &(impl Fn(RunId) -> L + Sync),
 ) -> Result<Confirmation<L>, EvaluationError> {
     let rows = Rows::new(claim, settings)?;
-    let (candidates, told) = told(claim.candidates, claim.settings);
-    let sited = SitedCylinder::new(claim.vessel, &candidates, &told, claim.member, claim.conditions)?;
-    let observed = ObserverSettings { bank: vec![*claim.member], band: BandSettings::NONE, ..told };
+    let (candidates, known) = constants_known(claim.candidates, claim.settings);
+    let cylinder =
+        InstrumentedCylinder::new(claim.vessel, &candidates, &known, claim.member, claim.conditions)?;
+    let observed = ObserverSettings { bank: vec![*claim.member], band: BandSettings::NONE, ..known };
     let motion = Motion::new(&mut cylinder_of(claim, &candidates, &observed)?, claim, settings)?;
     let seeds = settings.seeds as usize;
     let mut rng = ChaCha12Rng::seed_from_u64(settings.first_seed);
     rng.set_stream(CONSTANTS);
     let draws = matched_draws(seeds, motion.drawn.len(), &mut rng);
-    let of_seed = |index: usize| -> Result<Option<Verdict<L>>, EvaluationError> {
-        if watch.stop.load(Ordering::Relaxed) {
+    let of_seed = |index: usize| -> Result<Option<TrialResult<L>>, EvaluationError> {
+        if control.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let seed = settings.first_seed + index as u64;
@@ -181,24 +185,24 @@ pub fn matched<L: Listener>(
             motion: &motion,
             rng: ChaCha12Rng::seed_from_u64(seed),
         };
-        let begin = Begin { seed, settled: true };
-        let mut jury = Jury::new(claim, &candidates, &observed, begin, listen)?;
+        let start = TrialStart { seed, settled: true };
+        let mut trial = Trial::new(claim, &candidates, &observed, start, sink)?;
         let mut readings = vec![f64::NAN; candidates.len()];
         for row in 0..rows.count {
             let time_s = row as f64 * rows.interval_s;
             if row > 0 {
                 world.advance(rows.interval_s)?;
             }
-            let leak_kg_s = world.lose(settings, time_s, if row > 0 { rows.interval_s } else { 0.0 });
+            let leak_kg_s = world.apply_leak(settings, time_s, if row > 0 { rows.interval_s } else { 0.0 });
             world.read(&mut readings)?;
-            jury.hear(time_s, &readings, &world.present(leak_kg_s), rows.is_judged(row))?;
+            trial.step(time_s, &readings, &world.true_state(leak_kg_s), rows.is_judged(row))?;
         }
-        Ok(Some(jury.verdict()))
+        Ok(Some(trial.finish()))
     };
-    let verdicts: Vec<Option<Verdict<L>>> =
+    let trials: Vec<Option<TrialResult<L>>> =
         (0..seeds).into_par_iter().map(of_seed).collect::<Result<_, _>>()?;
-    let partial = verdicts.iter().any(Option::is_none);
-    Ok(confirmation(claim, &sited, verdicts.into_iter().flatten().collect(), partial))
+    let partial = trials.iter().any(Option::is_none);
+    Ok(confirmation(claim, &cylinder, trials.into_iter().flatten().collect(), partial))
 }
 
 /// One truth.
@@ -216,8 +220,8 @@ impl World<'_> {
         Ok(())
     }
 
-    /// Take away what a leak lets out in the interval before a time; its rate then, kg/s.
-    fn lose(&mut self, settings: &ConfirmSettings, time_s: f64, interval_s: f64) -> f64 {
+    /// Take away the gas that leaks in the interval before a time; its rate then, kg/s.
+    fn apply_leak(&mut self, settings: &ConfirmSettings, time_s: f64, interval_s: f64) -> f64 {
         let Some(leak) = settings.leak else { return 0.0 };
         let open_s = (time_s - leak.onset_s).clamp(0.0, interval_s);
         self.x[self.cylinder.state_map().mass] -= leak.rate_kg_s * open_s;
@@ -233,9 +237,9 @@ impl World<'_> {
         Ok(())
     }
 
-    fn present(&self, leak_kg_s: f64) -> Present {
+    fn true_state(&self, leak_kg_s: f64) -> TrueState {
         let states = self.cylinder.state_map();
         let [gas_k, mass_kg, own_kg_s] = [states.gas, states.mass, states.leak].map(|state| self.x[state]);
-        Present { gas_k, mass_kg, leak_kg_s: own_kg_s + leak_kg_s }
+        TrueState { gas_k, mass_kg, leak_kg_s: own_kg_s + leak_kg_s }
     }
 }

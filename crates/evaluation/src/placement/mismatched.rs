@@ -4,13 +4,13 @@ use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use super::jury::{Begin, Jury, Present, Verdict, confirmation};
-use super::{Claim, ConfirmSettings, Confirmation, Listener, Rows, RunId};
+use super::trial::{Trial, TrialResult, TrialStart, TrueState, confirmation};
+use super::{Claim, ConfirmSettings, Confirmation, InnovationSink, Rows, RunId};
 use crate::EvaluationError;
 use crate::estimator::observer::Commissioning;
 use crate::estimator::observer::cylinder::Cylinder;
-use crate::estimator::placement::cylinder::SitedCylinder;
-use crate::estimator::placement::search::Watch;
+use crate::estimator::placement::cylinder::InstrumentedCylinder;
+use crate::estimator::placement::search::SearchControl;
 use crate::estimator::sensor::{SensorSuite, sample_at};
 use crate::world::{Family, NominalVessel, Overlay, Request, RowPattern, Run};
 
@@ -20,15 +20,15 @@ use crate::world::{Family, NominalVessel, Overlay, Request, RowPattern, Run};
 ///
 /// # Errors
 /// A setting is out of its bounds, a layout names no candidate, a candidate has no place on the vessel, or a simulation fails.
-pub fn mismatched<L: Listener>(
+pub fn mismatched<L: InnovationSink>(
     claim: &Claim<'_>,
     settings: &ConfirmSettings,
-    watch: &Watch,
-    listen: &(impl Fn(RunId) -> L + Sync),
+    control: &SearchControl,
+    sink: &(impl Fn(RunId) -> L + Sync),
 ) -> Result<Confirmation<L>, EvaluationError> {
     let rows = Rows::new(claim, settings)?;
     let Claim { vessel, candidates, conditions, .. } = *claim;
-    let sited = SitedCylinder::new(vessel, candidates, claim.settings, claim.member, conditions)?;
+    let cylinder = InstrumentedCylinder::new(vessel, candidates, claim.settings, claim.member, conditions)?;
     let suite = SensorSuite::try_new(candidates.to_vec())?;
     let (pressure_pa, temperature_k) = conditions.filling;
     let mass_kg = Commissioning::filled(pressure_pa, temperature_k).mass_kg(vessel, temperature_k)?;
@@ -42,8 +42,8 @@ pub fn mismatched<L: Listener>(
     });
     let pattern = if rows.interval_s < 60.0 { RowPattern::TenSeconds } else { RowPattern::Minute };
     let family = Family { rows: pattern, ..Family::usual() };
-    let of_seed = |seed: u64| -> Result<Option<Verdict<L>>, EvaluationError> {
-        if watch.stop.load(Ordering::Relaxed) {
+    let of_seed = |seed: u64| -> Result<Option<TrialResult<L>>, EvaluationError> {
+        if control.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let request = Request::tight(family, seed, settings.duration_s).with(overlay);
@@ -59,22 +59,22 @@ pub fn mismatched<L: Listener>(
             let weight = (t_s - known_s[next - 1]) / (known_s[next] - known_s[next - 1]);
             values[next - 1] + weight * (values[next] - values[next - 1])
         };
-        let begin = Begin { seed, settled: drawn.fill.lead_s == 0.0 };
-        let mut jury = Jury::new(claim, candidates, claim.settings, begin, listen)?;
+        let start = TrialStart { seed, settled: drawn.fill.lead_s == 0.0 };
+        let mut trial = Trial::new(claim, candidates, claim.settings, start, sink)?;
         for (row, (time_s, readings)) in log.rows().enumerate() {
             let log_s = row as f64 * rows.interval_s;
             let leak = settings.leak.filter(|leak| log_s >= leak.onset_s);
-            let present = Present {
+            let true_state = TrueState {
                 gas_k: at(&trajectory.gas_mean_k, time_s),
                 mass_kg: at(&trajectory.mass_kg, time_s) / drawn.vessel.volume,
                 leak_kg_s: leak.map_or(0.0, |leak| leak.rate_kg_s),
             };
-            jury.hear(log_s, readings, &present, rows.is_judged(row))?;
+            trial.step(log_s, readings, &true_state, rows.is_judged(row))?;
         }
-        Ok(Some(jury.verdict()))
+        Ok(Some(trial.finish()))
     };
     let seeds = settings.first_seed..settings.first_seed + settings.seeds;
-    let verdicts: Vec<Option<Verdict<L>>> = seeds.into_par_iter().map(of_seed).collect::<Result<_, _>>()?;
-    let partial = verdicts.iter().any(Option::is_none);
-    Ok(confirmation(claim, &sited, verdicts.into_iter().flatten().collect(), partial))
+    let trials: Vec<Option<TrialResult<L>>> = seeds.into_par_iter().map(of_seed).collect::<Result<_, _>>()?;
+    let partial = trials.iter().any(Option::is_none);
+    Ok(confirmation(claim, &cylinder, trials.into_iter().flatten().collect(), partial))
 }

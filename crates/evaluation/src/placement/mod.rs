@@ -19,11 +19,11 @@
 mod closed_loop;
 mod detection;
 mod draws;
-mod jury;
-mod listener;
 mod matched;
 mod mismatched;
+mod sink;
 mod tally;
+mod trial;
 
 use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
@@ -39,9 +39,9 @@ use crate::world::SteadyLeak;
 
 pub use closed_loop::{ClosedLoop, ClosedLoopSettings, confirm, confirm_study};
 pub use detection::{Detected, detected_matched, detected_mismatched};
-pub use listener::{Listener, Recorder, RunId};
 pub use matched::{calm, matched};
 pub use mismatched::mismatched;
+pub use sink::{InnovationSink, RunId};
 
 /// What is to be confirmed.
 #[derive(Clone, Copy, Debug)]
@@ -135,13 +135,13 @@ pub struct Confirmed {
     pub leak_kg_s: Option<Achieved>,
 }
 
-/// One observer's run and what its listener heard.
+/// One observer's run with the sink of its innovations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run<L> {
     /// Which run.
     pub id: RunId,
-    /// The listener after it.
-    pub heard: L,
+    /// The sink after it.
+    pub sink: L,
 }
 
 /// All that came of it.

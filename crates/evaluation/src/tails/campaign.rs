@@ -6,10 +6,10 @@ use cylwatch_thermal::units::HOUR_S;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::cross_validation::FOLDS;
 use super::fit::STRETCHES;
-use super::found::FOLDS;
+use super::monitored::{MonitoredCylinder, monitor};
 use super::record::Record;
-use super::watched::{Watched, watch};
 use crate::EvaluationError;
 use crate::world::{
     Climate, Family, GasKind, NominalVessel, Request, RowPattern, SensorClass, Simulated, SimulationKey,
@@ -67,7 +67,7 @@ impl Campaign {
         HOUR_S + longest_s(stretch)
     }
 
-    /// What is to be watched, cylinder by cylinder. The kind of vessel is only a name. Seeds are far from those of plans that judge.
+    /// What is to be monitored, cylinder by cylinder. The kind of vessel is only a name. Seeds are far from those of plans that judge.
     pub fn requests(&self) -> Vec<Request> {
         let around: Vec<_> = self.around().collect();
         let of_cylinder = |cylinder: usize| {
@@ -101,26 +101,26 @@ fn longest_s(stretch: f64) -> f64 {
 /// `progress` is told the part that is done.
 ///
 /// # Errors
-/// A simulation that fails, or as [`watch`].
-pub fn watch_all(
+/// A simulation that fails, or as [`monitor`](super::monitor).
+pub fn monitor_all(
     nominal: &NominalVessel,
     requests: &[Request],
     settings: &MonitorSettings,
     progress: &(dyn Fn(f64) + Sync),
-) -> Result<Vec<Watched>, EvaluationError> {
+) -> Result<Vec<MonitoredCylinder>, EvaluationError> {
     let done = AtomicUsize::new(0);
     let one = |requests_of_it: &[Request]| {
         let simulated = Simulated::around(nominal.clone(), &requests_of_it[0])?;
-        let watched = requests_of_it.iter().map(|request| watch(&simulated.world(request)?, settings));
-        let watched = watched.collect::<Result<Vec<_>, EvaluationError>>()?;
-        let done = done.fetch_add(watched.len(), Ordering::Relaxed) + watched.len();
+        let monitored = requests_of_it.iter().map(|request| monitor(&simulated.world(request)?, settings));
+        let monitored = monitored.collect::<Result<Vec<_>, EvaluationError>>()?;
+        let done = done.fetch_add(monitored.len(), Ordering::Relaxed) + monitored.len();
         progress(done as f64 / requests.len() as f64);
-        Ok(watched)
+        Ok(monitored)
     };
     let shared = |a: &Request, b: &Request| SimulationKey::of(a) == SimulationKey::of(b);
     let simulations: Vec<&[Request]> = requests.chunk_by(shared).collect();
-    let watched = simulations.into_par_iter().with_max_len(1).map(one);
-    Ok(watched.collect::<Result<Vec<_>, EvaluationError>>()?.concat())
+    let monitored = simulations.into_par_iter().with_max_len(1).map(one);
+    Ok(monitored.collect::<Result<Vec<_>, EvaluationError>>()?.concat())
 }
 
 #[cfg(test)]
@@ -168,7 +168,7 @@ mod tests {
         let settings = MonitorSettings::default();
         let of = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| watch_all(&nominal, &campaign.requests(), &settings, &|_| ())).unwrap()
+            pool.install(|| monitor_all(&nominal, &campaign.requests(), &settings, &|_| ())).unwrap()
         };
         assert_eq!(of(1), of(3));
     }

@@ -2,10 +2,10 @@
 use cylwatch_detector::evidence::{Scale, Tail, Tails};
 use serde::{Deserialize, Serialize};
 
+use super::cross_validation::false_alarm_rate;
 use super::fit::{fit, interval};
-use super::found::found;
+use super::monitored::MonitoredCylinder;
 use super::record::Record;
-use super::watched::Watched;
 use crate::EvaluationError;
 use crate::judge::table::Rate;
 
@@ -61,19 +61,25 @@ impl Commissioned {
 ///
 /// # Errors
 /// Too few cylinders, or statistics that do not vary.
-pub fn commission(watched: &[Watched], settings: &FitSettings) -> Result<Commissioned, EvaluationError> {
+pub fn commission(
+    monitored: &[MonitoredCylinder],
+    settings: &FitSettings,
+) -> Result<Commissioned, EvaluationError> {
     let &FitSettings { mean_time_s, stretch, seed } = settings;
-    let records: Vec<&Record> = watched.iter().map(|watched| &watched.record).collect();
+    let records: Vec<&Record> = monitored.iter().map(|monitored| &monitored.record).collect();
     let tails = fit(&records, stretch)?;
     let thresholds = tails.thresholds(mean_time_s)?;
-    let intervals = interval(watched, stretch, mean_time_s, seed)?;
+    let intervals = interval(monitored, stretch, mean_time_s, seed)?;
     let of = |scale: Scale| CommissionedScale {
         scale,
         tail: tails.0[scale as usize],
         threshold: thresholds.of(scale),
         threshold_interval: intervals[scale as usize],
     };
-    Ok(Commissioned { scales: Scale::ALL.map(of), false_alarms: found(watched, stretch, mean_time_s)? })
+    Ok(Commissioned {
+        scales: Scale::ALL.map(of),
+        false_alarms: false_alarm_rate(monitored, stretch, mean_time_s)?,
+    })
 }
 
 #[cfg(test)]
@@ -84,14 +90,14 @@ mod tests {
     const MEAN_TIME_S: f64 = 3652.5 * 86_400.0;
 
     /// Five days of stretches whose peaks fall off exponentially, scale by scale larger.
-    fn watched(seed: u64) -> Watched {
+    fn monitored(seed: u64) -> MonitoredCylinder {
         let mut record = Record::default();
         for hour in 0..5 * 24_u32 {
             let even = f64::from(hour).mul_add(0.618_034, seed as f64 * 0.414_213_6).fract();
             let peak = -(1.0 - even).ln();
             record.update(3600.0 * f64::from(hour), &[1.0, 2.0, 3.0, 4.0, 5.0].map(|scale| scale * peak));
         }
-        Watched { request: Request::tight(Family::usual(), seed, 5.0 * 86_400.0), record }
+        MonitoredCylinder { request: Request::tight(Family::usual(), seed, 5.0 * 86_400.0), record }
     }
 
     fn settings() -> FitSettings {
@@ -100,8 +106,8 @@ mod tests {
 
     #[test]
     fn thresholds_are_those_of_the_tails_and_lie_within_their_intervals() {
-        let watched: Vec<Watched> = (0..8).map(watched).collect();
-        let found = commission(&watched, &settings()).unwrap();
+        let monitored: Vec<MonitoredCylinder> = (0..8).map(monitored).collect();
+        let found = commission(&monitored, &settings()).unwrap();
         let thresholds = found.tails().unwrap().thresholds(MEAN_TIME_S).unwrap();
         for (of, factor) in found.scales.iter().zip([1.0, 2.0, 3.0, 4.0, 5.0]) {
             let (low, high) = of.threshold_interval;
@@ -111,7 +117,7 @@ mod tests {
             let expected = factor * (5.0 * MEAN_TIME_S / 3600.0).ln();
             assert!((of.threshold / expected - 1.0).abs() < 0.5, "{of:?} {expected}");
         }
-        assert_eq!(commission(&watched, &settings()).unwrap(), found, "the same seed, the same draws");
+        assert_eq!(commission(&monitored, &settings()).unwrap(), found, "the same seed, the same draws");
         let json = serde_json::to_string(&found).unwrap();
         assert_eq!(serde_json::from_str::<Commissioned>(&json).unwrap().tails().unwrap().0.len(), 5);
     }
@@ -119,24 +125,28 @@ mod tests {
     /// Another set of sensors on the same cylinder tells little more of the tails.
     #[test]
     fn intervals_are_those_of_cylinders_however_many_sets_of_sensors_each_has() {
-        let cylinders: Vec<Watched> = (0..8).map(watched).collect();
-        let width = |watched: &[Watched]| {
-            let (low, high) = commission(watched, &settings()).unwrap().scales[0].threshold_interval;
+        let cylinders: Vec<MonitoredCylinder> = (0..8).map(monitored).collect();
+        let width = |monitored: &[MonitoredCylinder]| {
+            let (low, high) = commission(monitored, &settings()).unwrap().scales[0].threshold_interval;
             high - low
         };
-        let sets = |cylinder: &Watched| {
+        let sets = |cylinder: &MonitoredCylinder| {
             (0..4)
-                .map(|set| Watched { request: Request { set, ..cylinder.request }, ..cylinder.clone() })
+                .map(|set| MonitoredCylinder {
+                    request: Request { set, ..cylinder.request },
+                    ..cylinder.clone()
+                })
                 .collect()
         };
-        let of_sets: Vec<Watched> = cylinders.iter().flat_map::<Vec<Watched>, _>(sets).collect();
+        let of_sets: Vec<MonitoredCylinder> =
+            cylinders.iter().flat_map::<Vec<MonitoredCylinder>, _>(sets).collect();
         assert!(width(&of_sets) > 0.8 * width(&cylinders), "{} {}", width(&of_sets), width(&cylinders));
     }
 
     #[test]
     fn scales_in_another_order_and_tails_that_are_none_are_refused() {
-        let watched: Vec<Watched> = (0..8).map(watched).collect();
-        let found = commission(&watched, &settings()).unwrap();
+        let monitored: Vec<MonitoredCylinder> = (0..8).map(monitored).collect();
+        let found = commission(&monitored, &settings()).unwrap();
         let mut exchanged = found.clone();
         exchanged.scales.swap(0, 1);
         assert!(matches!(exchanged.tails(), Err(EvaluationError::Scales)));

@@ -13,17 +13,17 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use super::monitored::MonitoredCylinder;
 use super::record::Record;
-use super::watched::Watched;
 use crate::EvaluationError;
 use crate::world::SimulationKey;
 
 /// Part of the stretches that the tail is fitted to.
-const PART: f64 = 0.1;
+const TAIL_PART: f64 = 0.1;
 /// Fewest peaks above the level.
-const FEWEST: usize = 20;
+const MIN_PEAKS: usize = 20;
 /// Fewest stretches.
-pub(super) const STRETCHES: usize = (FEWEST as f64 / PART) as usize;
+pub(super) const STRETCHES: usize = (MIN_PEAKS as f64 / TAIL_PART) as usize;
 /// Largest shape either way.
 const SHAPE: f64 = 0.25;
 /// Draws for an interval.
@@ -33,14 +33,14 @@ const DRAWS: usize = 400;
 ///
 /// # Errors
 /// Too few stretches, or values that do not vary.
-pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError> {
+pub(super) fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError> {
     let mut sorted: Vec<f64> = largest.iter().copied().filter(|value| value.is_finite()).collect();
     let needed = STRETCHES;
     if sorted.len() < needed {
         return Err(EvaluationError::TooFewStretches { found: sorted.len(), needed });
     }
     sorted.sort_by(f64::total_cmp);
-    let above = (sorted.len() as f64 * PART) as usize;
+    let above = (sorted.len() as f64 * TAIL_PART) as usize;
     let level = sorted[sorted.len() - above - 1];
     let excess: Vec<f64> = sorted[sorted.len() - above..].iter().map(|value| value - level).collect();
     let mean = excess.iter().sum::<f64>() / excess.len() as f64;
@@ -55,7 +55,7 @@ pub fn fit_one(largest: &[f64], stretch_s: f64) -> Result<Tail, EvaluationError>
 ///
 /// # Errors
 /// As [`fit_one`].
-pub fn fit(records: &[&Record], stretch: f64) -> Result<Tails, EvaluationError> {
+pub(super) fn fit(records: &[&Record], stretch: f64) -> Result<Tails, EvaluationError> {
     let peaks: Vec<Peaks> = records.iter().map(|record| peaks(record, stretch)).collect();
     fit_peaks(&peaks.iter().collect::<Vec<_>>(), stretch)
 }
@@ -80,15 +80,15 @@ fn fit_peaks(peaks: &[&Peaks], stretch: f64) -> Result<Tails, EvaluationError> {
 ///
 /// # Errors
 /// As [`fit`], or the time is not positive.
-pub fn interval(
-    watched: &[Watched],
+pub(super) fn interval(
+    monitored: &[MonitoredCylinder],
     stretch: f64,
     mean_time_s: f64,
     seed: u64,
 ) -> Result<[(f64, f64); Scale::ALL.len()], EvaluationError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut of_simulations: BTreeMap<SimulationKey, Peaks> = BTreeMap::new();
-    for Watched { request, record } in watched {
+    for MonitoredCylinder { request, record } in monitored {
         let all = of_simulations.entry(SimulationKey::of(request)).or_default();
         all.iter_mut().zip(peaks(record, stretch)).for_each(|(all, of_set)| all.extend(of_set));
     }

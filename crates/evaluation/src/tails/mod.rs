@@ -1,18 +1,16 @@
 //! How high the evidence rises without a leak, and the thresholds that follow for a vessel.
 //!
-//! The monitor runs over leak-free worlds ([`Campaign`], [`watch_all`]). The largest values of its statistics ([`Record`]) give their tails ([`fit`]), and
+//! The monitor runs over leak-free worlds ([`Campaign`], [`monitor_all`]). The largest values of its statistics ([`Record`]) give their tails (`fit`), and
 //! these the thresholds of a mean time between false alarms. [`commission`] finds both for a vessel, and the rate of false alarms that such
-//! thresholds have in cylinders that they were not fitted to ([`found`]).
+//! thresholds have in cylinders that they were not fitted to (`cross_validation`).
 mod campaign;
 mod commissioned;
+mod cross_validation;
 mod fit;
-mod found;
+mod monitored;
 mod record;
-mod watched;
 
-pub use campaign::{Campaign, watch_all};
+pub use campaign::{Campaign, monitor_all};
 pub use commissioned::{Commissioned, CommissionedScale, FitSettings, commission};
-pub use fit::{fit, fit_one, interval};
-pub use found::found;
-pub use record::{Alarms, Record};
-pub use watched::{Watched, watch};
+pub use monitored::{MonitoredCylinder, monitor};
+pub use record::Record;

@@ -14,7 +14,7 @@ pub struct Record {
 
 /// Alarms of a cylinder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Alarms {
+pub(crate) struct Alarms {
     /// How many began.
     pub count: u64,
     /// Hours with samples in which none stood, or one began.

@@ -10,8 +10,8 @@ use super::sensors::{SensorDraw, seed_of_set};
 use super::simulation::Simulated;
 use super::truth::Truth;
 use super::{
-    Drawn, FaultRow, Happening, HappeningKind, Overlay, Request, SimulationKey, SteadyLeak, Told, World,
-    WorldError, disturbed, faulty,
+    Drawn, FaultRow, OperatorData, Overlay, Request, SimulationKey, SteadyLeak, World, WorldError,
+    WorldEvent, WorldEventKind, cylinder_fault, data_fault,
 };
 use crate::random::Purpose;
 
@@ -49,26 +49,26 @@ fn world(simulated: &Simulated, request: &Request, rows: Rows) -> Result<World, 
     let truth = truth(simulated, &rows.time_s, leak.as_ref())?;
     let sensors = SensorDraw::draw(family.sensors, simulated.nominal.full_scale_pa, seed);
     let log = readings(simulated, &sensors, &rows, &truth, seed);
-    let spec = sensors.told(family.sensors);
+    let spec = sensors.data_sheets(family.sensors);
     let suite: SensorSuite = spec.build()?;
-    let happenings = happenings(simulated, request, &rows, leak.as_ref());
-    let told = Told {
+    let events = events(simulated, request, &rows, leak.as_ref());
+    let operator_data = OperatorData {
         vessel: simulated.nominal.vessel.clone(),
         sensors: suite.sensors().to_vec(),
         sensors_spec: spec,
         commissioning: simulated.drawn.fill.commissioning(),
-        announced: announced(&happenings, &rows),
+        announced: announced(&events, &rows),
     };
     let world = World {
         request: *request,
         simulation: SimulationKey::of(request),
-        told,
+        operator_data,
         log,
         historical: Vec::new(),
         power_cycles: Vec::new(),
         fault: None,
         truth,
-        happenings,
+        events,
         drawn: Drawn { cylinder: simulated.drawn, sensors },
     };
     match request.overlay {
@@ -85,7 +85,7 @@ fn rows(request: &Request, seed: u64) -> Rows {
         return Rows::draw(request.family.rows, request.length_s, seed, false);
     };
     let mut rows = Rows::draw(request.family.rows, request.length_s, seed, true);
-    if let Some(away_s) = disturbed::away_s(row, request.seed) {
+    if let Some(away_s) = cylinder_fault::away_s(row, request.seed) {
         rows.remove((onset_s, onset_s + away_s));
     }
     rows
@@ -100,10 +100,10 @@ fn with_fault(
     (row, onset_s): (FaultRow, f64),
     seed: u64,
 ) -> Result<World, WorldError> {
-    let Some(fault) = faulty::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else {
+    let Some(fault) = data_fault::draw(row, world.drawn.sensors.pressure.full_scale_pa, seed) else {
         return Ok(world);
     };
-    let faulty = faulty::inject(&fault, &world.log, rows, &world.truth, onset_s, seed)?;
+    let faulty = data_fault::inject(&fault, &world.log, rows, &world.truth, onset_s, seed)?;
     world.truth = truth(simulated, &faulty.time_s, leak)?;
     (world.log, world.historical, world.power_cycles) = (faulty.log, faulty.historical, faulty.power_cycles);
     world.fault = Some(fault);
@@ -174,26 +174,26 @@ fn readings(simulated: &Simulated, sensors: &SensorDraw, rows: &Rows, truth: &Tr
     scene.read(sensors, &times_s, rows.stamp_s.clone(), &truth.pressure_pa)
 }
 
-fn happenings(
+fn events(
     simulated: &Simulated,
     request: &Request,
     rows: &Rows,
     leak: Option<&SteadyLeak>,
-) -> Vec<Happening> {
-    let mut all: Vec<Happening> =
-        rows.gaps_s.iter().map(|&gap| Happening::of_rows(HappeningKind::Gap, gap)).collect();
-    all.extend(rows.clock.map(|(at_s, _)| Happening::of_rows(HappeningKind::ClockStep, (at_s, at_s))));
+) -> Vec<WorldEvent> {
+    let mut all: Vec<WorldEvent> =
+        rows.gaps_s.iter().map(|&gap| WorldEvent::of_rows(WorldEventKind::Gap, gap)).collect();
+    all.extend(rows.clock.map(|(at_s, _)| WorldEvent::of_rows(WorldEventKind::ClockStep, (at_s, at_s))));
     all.extend(of_overlay(simulated, request, leak));
     all.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     all
 }
 
 /// What the overlay does to the cylinder and its sensors.
-fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SteadyLeak>) -> Vec<Happening> {
+fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SteadyLeak>) -> Vec<WorldEvent> {
     let samples = &simulated.samples;
     let mass_kg = |t_s: f64| samples.at(&samples.mass_kg, t_s + simulated.drawn.fill.lead_s);
     let simulated_kg = mass_kg(0.0) - mass_kg(request.length_s);
-    let happening = |kind, start_s, flow: &str, lost_kg: f64| Happening {
+    let event = |kind, start_s, flow: &str, lost_kg: f64| WorldEvent {
         kind,
         start_s,
         end_s: simulated.closed_s(flow),
@@ -205,22 +205,22 @@ fn of_overlay(simulated: &Simulated, request: &Request, slow: Option<&SteadyLeak
             Some(slow) => slow.lost_kg(request.length_s),
             None => simulated.lost_by_kg(&leak, request.length_s),
         };
-        (lost_kg, happening(HappeningKind::Leak, leak.onset_s, LEAK, lost_kg))
+        (lost_kg, event(WorldEventKind::Leak, leak.onset_s, LEAK, lost_kg))
     });
     let (kind, start_s, flow) = match request.overlay {
         Overlay::Nothing | Overlay::Leak { .. } => return leak.into_iter().map(|(_, leak)| leak).collect(),
-        Overlay::FastLoss { onset_s, .. } => (HappeningKind::FastLoss, onset_s, FAST_LOSS),
-        Overlay::Discharge { onset_s, .. } => (HappeningKind::Discharge, onset_s, DISCHARGE),
-        Overlay::Refill { onset_s, .. } => (HappeningKind::Refill, onset_s, REFILL),
-        Overlay::Fault { row, onset_s, .. } => (HappeningKind::Fault(row), onset_s, ""),
+        Overlay::FastLoss { onset_s, .. } => (WorldEventKind::FastLoss, onset_s, FAST_LOSS),
+        Overlay::Discharge { onset_s, .. } => (WorldEventKind::Discharge, onset_s, DISCHARGE),
+        Overlay::Refill { onset_s, .. } => (WorldEventKind::Refill, onset_s, REFILL),
+        Overlay::Fault { row, onset_s, .. } => (WorldEventKind::Fault(row), onset_s, ""),
     };
     let beside_kg = if slow.is_some() { 0.0 } else { leak.as_ref().map_or(0.0, |(lost_kg, _)| *lost_kg) };
-    let own = happening(kind, start_s, flow, simulated_kg - beside_kg);
+    let own = event(kind, start_s, flow, simulated_kg - beside_kg);
     std::iter::once(own).chain(leak.map(|(_, leak)| leak)).collect()
 }
 
 /// Announced discharges by the clock of the log, s.
-fn announced(happenings: &[Happening], rows: &Rows) -> Vec<(f64, f64)> {
-    let told = happenings.iter().filter(|happening| happening.announced);
-    told.map(|happening| (rows.stamp(happening.start_s), rows.stamp(happening.end_s))).collect()
+fn announced(events: &[WorldEvent], rows: &Rows) -> Vec<(f64, f64)> {
+    let announced = events.iter().filter(|event| event.announced);
+    announced.map(|event| (rows.stamp(event.start_s), rows.stamp(event.end_s))).collect()
 }

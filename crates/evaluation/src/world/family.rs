@@ -191,20 +191,6 @@ impl Family {
         }
     }
 
-    /// The usual family and every one that differs from it in a single axis: a first look at everything.
-    pub fn around_usual() -> Vec<Self> {
-        let usual = Self::usual();
-        let mut all = vec![usual];
-        all.extend(VesselKind::ALL.iter().map(|&vessel| Self { vessel, ..usual }));
-        all.extend(Climate::ALL.iter().map(|&climate| Self { climate, ..usual }));
-        all.extend(GasKind::ALL.iter().map(|&gas| Self { gas, ..usual }));
-        all.extend(SensorClass::ALL.iter().map(|&sensors| Self { sensors, ..usual }));
-        all.extend(RowPattern::ALL.iter().map(|&rows| Self { rows, ..usual }));
-        all.sort_unstable();
-        all.dedup();
-        all
-    }
-
     /// Text key.
     pub fn key(&self) -> String {
         self.to_string()
@@ -261,22 +247,5 @@ mod tests {
         assert!(error.to_string().contains("vessel/climate/gas/sensors/rows"), "{error}");
         let error = "nitrogen-20l/winter/mixed/class-b/60s".parse::<Family>().unwrap_err();
         assert!(error.to_string().contains("winter") && error.to_string().contains("railway"), "{error}");
-    }
-
-    #[test]
-    fn families_around_the_usual_one_differ_in_at_most_one_axis_and_hold_every_kind() {
-        let usual = Family::usual();
-        let families = Family::around_usual();
-        assert_eq!(families.len(), 1 + 6 + 9 + 3 + 4 + 4);
-        for family in families {
-            let differing = [
-                family.vessel != usual.vessel,
-                family.climate != usual.climate,
-                family.gas != usual.gas,
-                family.sensors != usual.sensors,
-                family.rows != usual.rows,
-            ];
-            assert!(differing.iter().filter(|differs| **differs).count() <= 1, "{family}");
-        }
     }
 }

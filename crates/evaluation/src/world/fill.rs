@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 use crate::random::{Purpose, Random};
 
 const STATED_SD: f64 = 0.005;
-const WRONG_SHARE: f64 = 1.0 / 6.0;
-const WRONG_BY: f64 = 0.025;
-const TOLD_SD: f64 = 0.012;
+const MISSTATED_SHARE: f64 = 1.0 / 6.0;
+const MISSTATEMENT: f64 = 0.025;
+const STATED_MASS_SD: f64 = 0.012;
 const OPERATING_SHARE: f64 = 0.25;
 /// Operation before the log where the cylinder is not settled, s: four time constants of the wall and more.
 const LEAD_S: f64 = 6.0 * 3600.0;
@@ -24,11 +24,11 @@ pub struct FillDraw {
     /// Real pressure at 15 °C, Pa.
     pub pressure_pa: f64,
     /// Stated pressure at 15 °C, Pa.
-    pub stated_pa: f64,
+    pub(crate) stated_pa: f64,
     /// Whether it is stated wrong on top of its usual error.
     pub is_wrong: bool,
     /// Operation before the log begins, s; 0: the cylinder begins settled.
-    pub lead_s: f64,
+    pub(crate) lead_s: f64,
 }
 
 impl FillDraw {
@@ -37,8 +37,8 @@ impl FillDraw {
         let random = &mut Random::new(seed, Purpose::WorldFill);
         let pressure_pa = random.uniform(range_pa);
         let error = STATED_SD * random.normal();
-        let is_wrong = random.happens(WRONG_SHARE);
-        let stated_pa = pressure_pa * (1.0 + error) / if is_wrong { 1.0 - WRONG_BY } else { 1.0 };
+        let is_wrong = random.happens(MISSTATED_SHARE);
+        let stated_pa = pressure_pa * (1.0 + error) / if is_wrong { 1.0 - MISSTATEMENT } else { 1.0 };
         let lead_s = if random.happens(OPERATING_SHARE) { LEAD_S } else { 0.0 };
         Self { pressure_pa, stated_pa, is_wrong, lead_s }
     }
@@ -56,6 +56,6 @@ impl FillDraw {
     /// What is told of it.
     pub(super) fn commissioning(&self) -> Commissioning {
         let told = Commissioning::filled(self.stated_pa, QUOTED_K);
-        Commissioning { mass_sd: TOLD_SD, settled: self.lead_s == 0.0, ..told }
+        Commissioning { mass_sd: STATED_MASS_SD, settled: self.lead_s == 0.0, ..told }
     }
 }

@@ -15,12 +15,12 @@ use crate::thermal::vessel::Vessel;
 
 const DISCHARGE_COEFFICIENT: f64 = 0.8;
 /// Pressure at which a loss that goes on stops, of that of the fill.
-const LEFT: f64 = 0.2;
+const REMAINING_PRESSURE: f64 = 0.2;
 /// Source of a refill: this much above the fill.
 const SOURCE: f64 = 1.1;
 const SOURCE_K: f64 = 288.15;
 /// Temperature that an orifice is sized for, K.
-const SIZED_K: f64 = 288.15;
+const SIZING_TEMPERATURE_K: f64 = 288.15;
 
 /// Names of the flows of overlays; processes of the fault table have others.
 pub(super) const LEAK: &str = "steady leak";
@@ -97,7 +97,7 @@ impl Filled<'_> {
 
     /// Pressure at which what goes on stops, Pa.
     fn least_pa(&self) -> f64 {
-        (LEFT * self.pressure_pa).max(1.5 * ATMOSPHERE_PA)
+        (REMAINING_PRESSURE * self.pressure_pa).max(1.5 * ATMOSPHERE_PA)
     }
 
     fn loss(
@@ -125,8 +125,9 @@ impl Filled<'_> {
 
     /// Bore that loses a part of the gas within a time, m.
     fn bore_m(&self, part: f64, within_s: f64) -> Result<f64, WorldError> {
-        let density = self.vessel.fluid.density_from_pressure_temperature(self.pressure_pa, SIZED_K)?;
-        let stagnation: State<f64> = self.vessel.fluid.checked_state(density, SIZED_K)?;
+        let density =
+            self.vessel.fluid.density_from_pressure_temperature(self.pressure_pa, SIZING_TEMPERATURE_K)?;
+        let stagnation: State<f64> = self.vessel.fluid.checked_state(density, SIZING_TEMPERATURE_K)?;
         let flux = mass_flux(&self.vessel.fluid, &stagnation, ATMOSPHERE_PA)?.mass_flux_kg_m2_s;
         let rate_kg_s = -self.mass_kg * (1.0 - part).ln() / within_s;
         let area_m2 = rate_kg_s / (DISCHARGE_COEFFICIENT * flux);

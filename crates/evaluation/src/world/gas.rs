@@ -13,11 +13,11 @@ use crate::random::{Purpose, Random};
 
 const EXCHANGE_LENGTH_DIAMETERS: (f64, f64) = (0.7, 1.4);
 const CORE_MIXING: (f64, f64) = (0.02, 0.1);
-const OFF_BY: (f64, f64) = (1.0 / 3.0, 3.0);
+const MISFIT_FACTOR: (f64, f64) = (1.0 / 3.0, 3.0);
 const STACKED_CELLS: usize = 4;
 const COARSE_CELLS: usize = 3;
 /// Time in which heat passes a layer of one cell, s.
-const PASSES_WITHIN_S: f64 = 20.0;
+const LAYER_TIME_S: f64 = 20.0;
 
 /// What is drawn for stacked gas; without effect on well-mixed gas.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct GasDraw {
     /// Mixing of the core.
     pub core_mixing: f64,
     /// Factor on both where the exchange along the axis is off.
-    pub off_by: f64,
+    pub(crate) off_by: f64,
 }
 
 impl GasDraw {
@@ -37,7 +37,7 @@ impl GasDraw {
         Self {
             exchange_length_diameters: random.uniform(EXCHANGE_LENGTH_DIAMETERS),
             core_mixing: random.uniform(CORE_MIXING),
-            off_by: random.by_logarithm(OFF_BY),
+            off_by: random.by_logarithm(MISFIT_FACTOR),
         }
     }
 }
@@ -50,7 +50,7 @@ impl GasKind {
             return;
         }
         vessel.geometry.cylinder_cells = vessel.geometry.cylinder_cells.min(COARSE_CELLS);
-        for layer in vessel.geometry.layers.iter_mut().filter(|layer| passing_s(layer) < PASSES_WITHIN_S) {
+        for layer in vessel.geometry.layers.iter_mut().filter(|layer| passing_s(layer) < LAYER_TIME_S) {
             layer.cells = 1;
         }
         let off_by = if self == Self::AxialExchange { draw.off_by } else { 1.0 };

@@ -2,20 +2,21 @@
 //!
 //! A [`Request`] decides a [`World`] on every machine, around the nominal vessel of its kind or around an own one ([`NominalVessel`]): the cylinder and what surrounds it are drawn and simulated ([`Simulated`]), then
 //! sensors, rows, slow leaks and faults are laid over the simulation. The truth is the finite-volume simulation of
-//! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`Told`] and the rows of the log, one by one.
+//! [`cylwatch_thermal`], never the reduced model of an observer. A candidate is given [`OperatorData`] and the rows of the log, one by one.
 //!
 //! Published cases, whose air changes at stated times, have their cylinders in [`chamber`].
 pub mod chamber;
 mod climate;
 mod compose;
+mod cylinder_fault;
+mod data_fault;
 mod disturbance;
-mod disturbed;
 mod error;
 mod family;
-mod faulty;
 mod fill;
 mod flows;
 mod gas;
+mod operator_data;
 mod overlay;
 mod process;
 mod reading;
@@ -24,10 +25,9 @@ mod rows;
 mod samples;
 mod sensors;
 mod simulation;
-mod slow;
+mod slow_leak;
 #[cfg(test)]
 pub(crate) mod statistics;
-mod told;
 mod truth;
 mod vessel;
 
@@ -45,12 +45,12 @@ pub use family::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind};
 pub use fill::FillDraw;
 pub use flows::SteadyLeak;
 pub use gas::GasDraw;
+pub use operator_data::OperatorData;
 pub use overlay::{FaultRow, Leak, Overlay};
 pub use sensors::{SensorDraw, Thermometer, Transmitter};
 pub(crate) use simulation::Run;
 pub use simulation::{CylinderDraw, Simulated, SimulationKey};
-pub use told::Told;
-pub use truth::{Happening, HappeningKind, Regime, Truth};
+pub use truth::{Regime, Truth, WorldEvent, WorldEventKind};
 pub use vessel::{NominalVessel, VesselDraw};
 
 /// Everything that decides a world.
@@ -88,19 +88,19 @@ pub struct World {
     /// The simulation behind it: worlds with equal keys are not independent of each other.
     pub simulation: SimulationKey,
     /// What a candidate may know beforehand.
-    pub told: Told,
+    pub operator_data: OperatorData,
     /// Rows in the order in which they arrive, with their stamps: channels `shoulder`, `valve`, `pressure`.
     pub log: Log,
     /// Rows that say that they are replayed from a store, by index; empty unless a fault replays.
     pub historical: Vec<usize>,
     /// Power cycles, each after a row of this index, and the snapshot that the monitor finds.
-    pub power_cycles: Vec<(usize, Snapshot)>,
+    pub(crate) power_cycles: Vec<(usize, Snapshot)>,
     /// The fault of data that is in the rows.
     pub fault: Option<Fault>,
     /// What really happened at every row of the log.
     pub truth: Truth,
     /// What was done, in the order of its beginning.
-    pub happenings: Vec<Happening>,
+    pub events: Vec<WorldEvent>,
     /// What was drawn.
     pub drawn: Drawn,
 }

@@ -26,7 +26,7 @@ use crate::random::{Purpose, Random};
 const CLASS_A_K: f64 = 0.19;
 const CLASS_B_K: f64 = 0.4;
 const COUPLING: (f64, f64) = (0.05, 0.15);
-const TOLD_COUPLING: (f64, f64) = (0.1, 0.04);
+const STATED_COUPLING: (f64, f64) = (0.1, 0.04);
 const FINE_K: f64 = 0.01;
 /// Step and noise of a transmitter, of its range.
 const FINE_RANGE: f64 = 4e-5;
@@ -50,7 +50,7 @@ pub struct Thermometer {
     /// Time constant, s; 0: none.
     pub lag_s: f64,
     /// Time constant as stated, s.
-    pub stated_lag_s: f64,
+    pub(crate) stated_lag_s: f64,
     /// Standard deviation of the noise, K.
     pub noise_k: f64,
     /// Step of a reading, K.
@@ -104,13 +104,13 @@ impl SensorDraw {
     }
 
     /// What the data sheets say, in the order of the log's channels.
-    pub(super) fn told(&self, class: SensorClass) -> SensorsSpec {
+    pub(super) fn data_sheets(&self, class: SensorClass) -> SensorsSpec {
         let surface = |name: &str, specimen: &Thermometer| SensorSpec {
             name: name.into(),
             kind: Some(KindChoice::Surface),
             class: Some(if class == SensorClass::ClassA { Pt100Class::A } else { Pt100Class::B }),
-            air_coupling: Some(TOLD_COUPLING.0),
-            air_coupling_sd: Some(TOLD_COUPLING.1),
+            air_coupling: Some(STATED_COUPLING.0),
+            air_coupling_sd: Some(STATED_COUPLING.1),
             noise_k: Some(specimen.noise_k),
             resolution_k: Some(specimen.resolution_k),
             lag_s: (specimen.stated_lag_s > 0.0).then_some(specimen.stated_lag_s),

@@ -7,7 +7,7 @@ use cylwatch_thermal::vessel::Vessel;
 use serde::{Deserialize, Serialize};
 
 use super::climate::{self, Span};
-use super::disturbed::{self, Disturbed};
+use super::cylinder_fault::{self, CylinderFault};
 use super::fill::FillDraw;
 use super::flows::{Filled, LEAK};
 use super::gas::GasDraw;
@@ -62,11 +62,11 @@ pub struct CylinderDraw {
 impl CylinderDraw {
     fn draw(key: &SimulationKey, fill_pa: (f64, f64), overlay: &Overlay) -> Self {
         let fill = FillDraw::draw(fill_pa, key.seed);
-        let is_low = matches!(overlay, Overlay::Fault { row, .. } if disturbed::begins_low(*row));
+        let is_low = matches!(overlay, Overlay::Fault { row, .. } if cylinder_fault::begins_low(*row));
         Self {
             vessel: VesselDraw::draw(key.seed),
             gas: GasDraw::draw(key.seed),
-            fill: if is_low { fill.part(disturbed::BEFORE_REFILL) } else { fill },
+            fill: if is_low { fill.part(cylinder_fault::BEFORE_REFILL) } else { fill },
         }
     }
 }
@@ -89,7 +89,7 @@ fn simulate_with(
     match *overlay {
         Overlay::Fault { row, onset_s, .. } => {
             let (seed, onset_s) = (key.seed, onset_s + lead_s);
-            Disturbed { row, inlet_m, vessel, seed, fill_pa: pressure_pa, onset_s }
+            CylinderFault { row, inlet_m, vessel, seed, fill_pa: pressure_pa, onset_s }
                 .simulate(scenario, &settings)
         }
         _ => Ok(simulate(vessel, &scenario, &settings, &mut |_| ())?),
@@ -218,11 +218,6 @@ impl Simulated {
     pub(super) fn lost_by_kg(&self, leak: &Leak, t_s: f64) -> f64 {
         let end_s = self.closed_s(LEAK).min(t_s);
         leak.part_per_h * self.samples.mass_kg[0] * (end_s - leak.onset_s).max(0.0) / 3600.0
-    }
-
-    /// Times at which the air begins to jump, s from the start of the log.
-    pub fn jumps_s(&self) -> impl Iterator<Item = f64> + '_ {
-        self.jumps_s.iter().map(|t| t - self.drawn.fill.lead_s)
     }
 
     /// Whether a request fits this simulation.

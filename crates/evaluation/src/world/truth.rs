@@ -16,7 +16,7 @@ pub struct Truth {
     /// Mass of the gas in the stated volume, kg.
     pub mass_kg: Vec<f64>,
     /// Mass of the gas itself, kg.
-    pub mass_absolute_kg: Vec<f64>,
+    pub(crate) mass_absolute_kg: Vec<f64>,
     /// Pressure of the gas, Pa.
     pub pressure_pa: Vec<f64>,
     /// Pressure that this mass has at 15 °C in the true vessel, Pa.
@@ -58,9 +58,9 @@ impl Regime {
 
 /// Something that was done to the cylinder, its sensors or its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Happening {
+pub struct WorldEvent {
     /// What.
-    pub kind: HappeningKind,
+    pub kind: WorldEventKind,
     /// True time at which it begins, s from the start of the log.
     pub start_s: f64,
     /// True time at which it ends, s; beyond the last row: it goes on.
@@ -71,9 +71,9 @@ pub struct Happening {
     pub announced: bool,
 }
 
-impl Happening {
+impl WorldEvent {
     /// Something that happens to the rows alone.
-    pub(super) const fn of_rows(kind: HappeningKind, (start_s, end_s): (f64, f64)) -> Self {
+    pub(super) const fn of_rows(kind: WorldEventKind, (start_s, end_s): (f64, f64)) -> Self {
         Self { kind, start_s, end_s, lost_kg: 0.0, announced: false }
     }
 }
@@ -81,7 +81,7 @@ impl Happening {
 /// What was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum HappeningKind {
+pub enum WorldEventKind {
     /// A leak.
     Leak,
     /// A fast loss of gas that nobody ordered.

@@ -1,7 +1,6 @@
 //! Logs that begin where nobody chose: at the mouth of a tunnel, with walls and gas tens of kelvins from what the thermometers read.
 use cylwatch_detector::monitor::{EventKind, Monitor, MonitorSettings};
 use cylwatch_estimator::observer::Commissioning;
-use cylwatch_estimator::observer::commissioning::UNSETTLED_SD_K;
 use cylwatch_estimator::thermal::vessel::Fill;
 use cylwatch_evaluation::world::{Request, World, generate};
 use cylwatch_thermal::units::HOUR_S;
@@ -29,13 +28,13 @@ fn exchanges(world: &World, from: usize) -> Vec<EventKind> {
     let [pressure_pa, first_k] = [first[2], 0.5 * (first[0] + first[1])];
     let filled = Commissioning {
         fill: Fill::Pressure { pressure_pa },
-        mass_sd: (UNSETTLED_SD_K / first_k).hypot(0.01),
+        mass_sd: (Commissioning::UNSETTLED_SD_K / first_k).hypot(0.01),
         settled: false,
     };
     let mut settings = MonitorSettings::default();
     settings.observer.air.prior_sd = 20.0;
-    let told = &world.told;
-    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &filled, &settings).unwrap();
+    let known = &world.operator_data;
+    let mut monitor = Monitor::new(&known.vessel, &known.sensors, &filled, &settings).unwrap();
     let rows = (from..from + ROWS).map(|row| (world.log.time_s[row], readings(row)));
     let outputs = rows.flat_map(|(time_s, row)| monitor.step(time_s, row).unwrap());
     let events = outputs.flat_map(|output| output.events.into_iter().map(|event| event.kind));

@@ -42,8 +42,8 @@ fn leaking() -> &'static [Row] {
 }
 
 fn observer() -> Observer {
-    let told = &tight_world().told;
-    Observer::new(&told.vessel, &told.sensors, &told.commissioning, &observer_settings()).unwrap()
+    let data = &tight_world().operator_data;
+    Observer::new(&data.vessel, &data.sensors, &data.commissioning, &observer_settings()).unwrap()
 }
 
 fn evidence() -> Evidence {

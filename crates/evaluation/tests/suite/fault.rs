@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use cylwatch_evaluation::EvaluationError;
 use cylwatch_evaluation::fault::{
-    Arrival, DeadCode, Fault, MixUp, Record, Requirement, Snapshot, Step, TableRow,
+    Arrival, DeadCode, Fault, Record, Requirement, Snapshot, Step, TableRow, UnitConfusion,
 };
 
 const ROWS: usize = 3000;
@@ -60,7 +60,7 @@ fn all() -> Vec<Fault> {
         dead("pressure", DeadCode::Minus999),
         Fault::Lost { sensors: vec!["shoulder".into(), "valve".into()], lasting_s: HOUR_S },
         Fault::Swapped { first: "shoulder".into(), second: "valve".into() },
-        Fault::Units { sensors: vec![sensor()], mix_up: MixUp::GaugeAsAbsolute },
+        Fault::Units { sensors: vec![sensor()], mix_up: UnitConfusion::GaugeAsAbsolute },
         Fault::Detached { sensor: "shoulder".into(), noise_k: 0.3 },
         Fault::Pulses { sensor: sensor(), height_pa: 1e4, mean_s: 300.0 },
         Fault::Gap { lasting_s: HOUR_S },
@@ -204,14 +204,14 @@ fn mixed_up_units_give_the_known_numbers() {
     let close =
         |value: f64, expected: f64| assert!((value / expected - 1.0).abs() < 1e-6, "{value} {expected}");
     // 280 K are 6.85 degC, which are 44.33 degF; 190 bar are 19 000 kPa and 2755.72 psi.
-    close(read(MixUp::CelsiusAsKelvin, "shoulder", 0), 6.85);
-    close(read(MixUp::KelvinAsCelsius, "shoulder", 0), 553.15);
-    close(read(MixUp::FahrenheitAsCelsius, "shoulder", 0), 273.15 + 44.33);
-    close(read(MixUp::KilopascalAsBar, "pressure", 2), 19_000e5);
-    close(read(MixUp::BarAsKilopascal, "pressure", 2), 1.9e5);
-    close(read(MixUp::PsiAsBar, "pressure", 2), 2755.717_e5);
-    close(read(MixUp::BarAsPsi, "pressure", 2), 13.100_039e5);
-    close(read(MixUp::GaugeAsAbsolute, "pressure", 2), 188.986_75e5);
+    close(read(UnitConfusion::CelsiusAsKelvin, "shoulder", 0), 6.85);
+    close(read(UnitConfusion::KelvinAsCelsius, "shoulder", 0), 553.15);
+    close(read(UnitConfusion::FahrenheitAsCelsius, "shoulder", 0), 273.15 + 44.33);
+    close(read(UnitConfusion::KilopascalAsBar, "pressure", 2), 19_000e5);
+    close(read(UnitConfusion::BarAsKilopascal, "pressure", 2), 1.9e5);
+    close(read(UnitConfusion::PsiAsBar, "pressure", 2), 2755.717_e5);
+    close(read(UnitConfusion::BarAsPsi, "pressure", 2), 13.100_039e5);
+    close(read(UnitConfusion::GaugeAsAbsolute, "pressure", 2), 188.986_75e5);
 }
 
 #[test]

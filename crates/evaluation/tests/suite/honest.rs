@@ -16,10 +16,10 @@ use cylwatch_evaluation::world::{Climate, Family, Overlay, Request, VesselKind, 
 
 /// All outputs of a monitor over a world, every one of which must agree with itself and with the leak alarm.
 fn watched(world: &World) -> Vec<Output> {
-    let told = &world.told;
+    let data = &world.operator_data;
     let settings = MonitorSettings::default();
-    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, &settings).unwrap();
-    told.announced.iter().for_each(|(from_s, until_s)| monitor.announce(*from_s, *until_s));
+    let mut monitor = Monitor::new(&data.vessel, &data.sensors, &data.commissioning, &settings).unwrap();
+    data.announced.iter().for_each(|(from_s, until_s)| monitor.announce(*from_s, *until_s));
     watched_by(&mut monitor, world.log.rows())
 }
 
@@ -142,10 +142,11 @@ fn a_fast_loss_is_a_loss_within_minutes_and_an_announced_discharge_is_none() {
 fn without_a_thermometer_nothing_is_told_and_no_gas_is_exchanged() {
     let world = world("nitrogen-20l/railway/mixed/class-b/60s", 7, 2.0 * DAY_S, Overlay::Nothing);
     let pressure = world.log.channels.iter().position(|channel| channel.name == "pressure").unwrap();
-    let sensors = [world.told.sensors[pressure].clone()];
-    let commissioning = &world.told.commissioning;
+    let sensors = [world.operator_data.sensors[pressure].clone()];
+    let commissioning = &world.operator_data.commissioning;
     let mut monitor =
-        Monitor::new(&world.told.vessel, &sensors, commissioning, &MonitorSettings::default()).unwrap();
+        Monitor::new(&world.operator_data.vessel, &sensors, commissioning, &MonitorSettings::default())
+            .unwrap();
     let rows: Vec<(f64, [f64; 1])> = world.log.rows().map(|(t, row)| (t, [row[pressure]])).collect();
     let outputs = watched_by(&mut monitor, rows.iter().map(|(t, row)| (*t, &row[..])));
     for output in outputs.iter().skip(60) {
@@ -206,7 +207,7 @@ fn measured_fillings_and_losses_of_a_small_tank_are_told() {
         let vessel =
             generate(&Request::tight("air-tank-8l/workshop/mixed/class-b/60s".parse().unwrap(), 1, HOUR_S))
                 .unwrap()
-                .told
+                .operator_data
                 .vessel;
         let sensors = [Sensor::typical("gas_1").unwrap(), Sensor::typical("pressure").unwrap()];
         let filled = Commissioning {

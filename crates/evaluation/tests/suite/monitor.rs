@@ -11,7 +11,9 @@ use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 use cylwatch_evaluation::world::chamber::{Chamber, ChamberRequest};
-use cylwatch_evaluation::world::{FaultRow, Overlay, Request, Simulated, SteadyLeak, Told, World, generate};
+use cylwatch_evaluation::world::{
+    FaultRow, OperatorData, Overlay, Request, Simulated, SteadyLeak, World, generate,
+};
 
 const SHOULDER: usize = 0;
 const VALVE: usize = 1;
@@ -50,19 +52,19 @@ fn tight() -> &'static Rows {
 }
 
 fn vessel() -> Vessel {
-    tight_world().told.vessel.clone()
+    tight_world().operator_data.vessel.clone()
 }
 
 fn sensors() -> Vec<Sensor> {
-    tight_world().told.sensors.clone()
+    tight_world().operator_data.sensors.clone()
 }
 
-fn monitor_of(told: &Told, settings: &MonitorSettings) -> Monitor {
-    Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings).unwrap()
+fn monitor_of(data: &OperatorData, settings: &MonitorSettings) -> Monitor {
+    Monitor::new(&data.vessel, &data.sensors, &data.commissioning, settings).unwrap()
 }
 
 fn monitor() -> Monitor {
-    monitor_of(&tight_world().told, &MonitorSettings::default())
+    monitor_of(&tight_world().operator_data, &MonitorSettings::default())
 }
 
 fn watch(mut monitor: Monitor, rows: &[(f64, [f64; 3])]) -> Vec<Output> {
@@ -78,7 +80,7 @@ fn run(rows: &[(f64, [f64; 3])]) -> Vec<Output> {
 }
 
 fn run_world(world: &World) -> Vec<Output> {
-    watch(monitor_of(&world.told, &MonitorSettings::default()), &rows_of(world))
+    watch(monitor_of(&world.operator_data, &MonitorSettings::default()), &rows_of(world))
 }
 
 fn events(outputs: &[Output]) -> impl Iterator<Item = &EventKind> {
@@ -162,7 +164,7 @@ fn tails_of_a_vessel_of_its_own_find_a_leak_earlier_and_a_state_lives_through_th
     let rows = rows_of(&cylinder(4.0, SEED, leak(1.0, onset_s)));
     let usual_s = found_s(&run(&rows));
     let settings = smaller_tails(1.3);
-    let own = monitor_of(&tight_world().told, &settings);
+    let own = monitor_of(&tight_world().operator_data, &settings);
     // The state of a monitor with the usual tails, an hour before the leak.
     let mut before = monitor();
     let (first, rest) = rows.split_at(rows.partition_point(|(t, _)| *t < onset_s - HOUR_S));
@@ -308,7 +310,7 @@ fn tunnels_that_a_log_has_lost_are_no_gas() {
     // The rows of the last 20 minutes before the air falls by 15 K from one row to the next.
     let mouths: Vec<usize> = (1..air_k.len()).filter(|&row| air_k[row - 1] - air_k[row] > 15.0).collect();
     let is_lost = |row: usize| mouths.iter().any(|mouth| (row + 1..row + 5).contains(mouth));
-    let of = &world.told;
+    let of = &world.operator_data;
     let settings = MonitorSettings::default();
     let mut monitor = Monitor::new(&of.vessel, &of.sensors, &of.commissioning, &settings).unwrap();
     let (mut lost, mut told) = (0, Vec::new());

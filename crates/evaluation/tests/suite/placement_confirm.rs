@@ -3,14 +3,14 @@ use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use std::sync::atomic::Ordering;
 
 use cylwatch_estimator::EstimatorError;
-use cylwatch_estimator::observer::{LeakHypothesis, ObserverSettings};
-use cylwatch_estimator::placement::search::Watch;
+use cylwatch_estimator::observer::{Innovation, LeakHypothesis, ObserverSettings};
+use cylwatch_estimator::placement::search::SearchControl;
 use cylwatch_estimator::placement::{Conditions, DetectionSettings};
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
 use cylwatch_evaluation::EvaluationError;
 use cylwatch_evaluation::placement::{
-    Claim, ConfirmSettings, Confirmation, Recorder, calm, detected_matched, matched, mismatched,
+    Claim, ConfirmSettings, Confirmation, InnovationSink, calm, detected_matched, matched, mismatched,
 };
 use cylwatch_evaluation::world::SteadyLeak;
 
@@ -49,7 +49,7 @@ impl Case {
     }
 
     fn matched(&self, settings: &ConfirmSettings) -> Confirmation<()> {
-        matched(&self.claim(), settings, &Watch::default(), &|_| ()).unwrap()
+        matched(&self.claim(), settings, &SearchControl::default(), &|_| ()).unwrap()
     }
 }
 
@@ -98,25 +98,34 @@ fn the_same_seeds_give_the_same_numbers_and_other_seeds_others() {
     assert_eq!(alone.layouts[0], first.layouts[1]);
 }
 
+/// Innovations of the pressure from half a day on, in standard deviations.
+#[derive(Default)]
+struct Pressure(Vec<f64>);
+
+impl InnovationSink for Pressure {
+    fn record(&mut self, time_s: f64, innovations: &[Innovation]) {
+        if time_s >= 0.5 * DAY_S {
+            self.0.push(innovations[1].nu / innovations[1].s.sqrt());
+        }
+    }
+}
+
 /// Every innovation of the last hours is there to be searched for a leak; a leak that no member expects pulls those of the pressure down.
 #[test]
 fn innovations_show_a_leak_in_both_worlds() {
     let case = Case::quiet(&[&[1, 3]]);
     let leak = Some(SteadyLeak { rate_kg_s: 20e-3 / HOUR_S, onset_s: 0.5 * DAY_S });
-    let listen = |_| Recorder::from(0.5 * DAY_S);
-    let watch = Watch::default();
+    let sink = |_| Pressure::default();
+    let control = SearchControl::default();
     let pressure_sum = |settings: &ConfirmSettings, is_matched: bool| {
         let found = if is_matched {
-            matched(&case.claim(), settings, &watch, &listen).unwrap()
+            matched(&case.claim(), settings, &control, &sink).unwrap()
         } else {
-            mismatched(&case.claim(), settings, &watch, &listen).unwrap()
+            mismatched(&case.claim(), settings, &control, &sink).unwrap()
         };
         assert_eq!(found.runs.len(), 2);
-        let of = |run: &Recorder| -> f64 {
-            assert_eq!((run.time_s[0], run.innovations.len()), (0.5 * DAY_S, 73));
-            run.innovations.iter().map(|row| row[1].nu / row[1].s.sqrt()).sum()
-        };
-        let sums: f64 = found.runs.iter().map(|run| of(&run.heard)).sum();
+        assert!(found.runs.iter().all(|run| run.sink.0.len() == 73));
+        let sums: f64 = found.runs.iter().flat_map(|run| &run.sink.0).sum();
         (sums, found.layouts[0].mass_kg.rms)
     };
     for is_matched in [true, false] {
@@ -133,7 +142,7 @@ fn drawn_cylinders_in_weather_are_judged_too() {
     let case = Case::quiet(&[&[0, 1, 3]]);
     let usual = ObserverSettings::default();
     let claim = Claim { settings: &usual, ..case.claim() };
-    let found = mismatched(&claim, &days(1.0), &Watch::default(), &|_| ()).unwrap();
+    let found = mismatched(&claim, &days(1.0), &SearchControl::default(), &|_| ()).unwrap();
     let of = &found.layouts[0];
     assert!(of.gas_k.rms < 2.0 && of.mass_kg.rms < 0.05 && of.leak_kg_s.is_some(), "{of:?}");
     assert!(of.gas_k.coverage > 0.5 && !found.partial);
@@ -142,12 +151,12 @@ fn drawn_cylinders_in_weather_are_judged_too() {
 #[test]
 fn what_is_stopped_says_so_and_what_cannot_be_is_refused() {
     let case = Case::quiet(&[&[1, 3]]);
-    let watch = Watch::default();
-    watch.stop.store(true, Ordering::Relaxed);
-    let found = matched(&case.claim(), &days(1.0), &watch, &|_| ()).unwrap();
+    let control = SearchControl::default();
+    control.stop.store(true, Ordering::Relaxed);
+    let found = matched(&case.claim(), &days(1.0), &control, &|_| ()).unwrap();
     assert!(found.partial && found.layouts.is_empty() && found.runs.is_empty());
     let refused = |settings: ConfirmSettings, case: &Case| {
-        matched(&case.claim(), &settings, &Watch::default(), &|_| ()).unwrap_err().to_string()
+        matched(&case.claim(), &settings, &SearchControl::default(), &|_| ()).unwrap_err().to_string()
     };
     for (settings, part) in [
         (seeds(0), "seeds = 0"),
@@ -160,7 +169,7 @@ fn what_is_stopped_says_so_and_what_cannot_be_is_refused() {
     }
     assert!(refused(seeds(1), &Case::quiet(&[&[9]])).contains("candidate 9"));
     let empty = Case::quiet(&[&[]]);
-    let error = matched(&empty.claim(), &seeds(1), &Watch::default(), &|_| ()).unwrap_err();
+    let error = matched(&empty.claim(), &seeds(1), &SearchControl::default(), &|_| ()).unwrap_err();
     assert!(matches!(error, EvaluationError::Estimator(EstimatorError::NoSensors)), "{error}");
 }
 
@@ -172,7 +181,7 @@ fn the_smallest_leak_is_near_the_predicted_one() {
     case.member = case.settings.bank[2];
     let run = |case: &Case, settings: ConfirmSettings| {
         let detection = DetectionSettings::default();
-        detected_matched(&case.claim(), &settings, &detection, &Watch::default()).unwrap()
+        detected_matched(&case.claim(), &settings, &detection, &SearchControl::default()).unwrap()
     };
     let found = run(&case, seeds(40));
     for of in &found {

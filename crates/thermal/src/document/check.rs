@@ -28,7 +28,7 @@ pub fn broken(path: &str, value: impl ToString, bound: &str, remedy: &str) -> Th
 }
 
 /// The error of a key that has to be there.
-pub fn missing(path: &str, remedy: &str) -> ThermalError {
+pub(crate) fn missing(path: &str, remedy: &str) -> ThermalError {
     let key = super::keys::example(&key_of(path));
     at(path, Problem::Missing { key, remedy: remedy.to_owned() })
 }
@@ -40,7 +40,7 @@ pub(crate) fn conflict(path: &str, other: &str, remedy: &str) -> ThermalError {
 }
 
 /// The error of a word that is none of the `known`.
-pub fn unknown<'a>(path: &str, word: &str, known: impl IntoIterator<Item = &'a str>) -> ThermalError {
+pub(crate) fn unknown<'a>(path: &str, word: &str, known: impl IntoIterator<Item = &'a str>) -> ThermalError {
     let known: Vec<&str> = known.into_iter().collect();
     let nearest = suggestion(word, known.iter().copied());
     let known = known.join(", ");
@@ -51,7 +51,7 @@ pub fn unknown<'a>(path: &str, word: &str, known: impl IntoIterator<Item = &'a s
 ///
 /// # Errors
 /// Any other value.
-pub fn positive(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalError> {
+pub(crate) fn positive(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalError> {
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err(broken(path, value, "positive", remedy)) }
 }
 
@@ -59,7 +59,7 @@ pub fn positive(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalErro
 ///
 /// # Errors
 /// Any other value.
-pub fn not_negative(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalError> {
+pub(crate) fn not_negative(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalError> {
     if value.is_finite() && value >= 0.0 { Ok(value) } else { Err(broken(path, value, "at least 0", remedy)) }
 }
 
@@ -67,7 +67,7 @@ pub fn not_negative(path: &str, value: f64, remedy: &str) -> Result<f64, Thermal
 ///
 /// # Errors
 /// Any other value.
-pub fn within(
+pub(crate) fn within(
     path: &str,
     value: f64,
     range: (f64, f64),
@@ -81,7 +81,7 @@ pub fn within(
 ///
 /// # Errors
 /// Any other value.
-pub fn fraction(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalError> {
+pub(crate) fn fraction(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalError> {
     within(path, value, (0.0, 1.0), "between 0 and 1", remedy)
 }
 
@@ -89,7 +89,7 @@ pub fn fraction(path: &str, value: f64, remedy: &str) -> Result<f64, ThermalErro
 ///
 /// # Errors
 /// Any other value.
-pub fn temperature_k(path: &str, value: f64) -> Result<f64, ThermalError> {
+pub(crate) fn temperature_k(path: &str, value: f64) -> Result<f64, ThermalError> {
     let bound = "between 60 K and 1500 K (-213 degC and 1227 degC)";
     within(path, value, TEMPERATURE_RANGE_K, bound, "check the unit, _degc or _k")
 }
@@ -98,7 +98,7 @@ pub fn temperature_k(path: &str, value: f64) -> Result<f64, ThermalError> {
 ///
 /// # Errors
 /// Any other value.
-pub fn pressure_pa(path: &str, value: f64) -> Result<f64, ThermalError> {
+pub(crate) fn pressure_pa(path: &str, value: f64) -> Result<f64, ThermalError> {
     let bound = "between 1 Pa and 2000 bar absolute";
     within(
         path,
@@ -113,7 +113,7 @@ pub fn pressure_pa(path: &str, value: f64) -> Result<f64, ThermalError> {
 ///
 /// # Errors
 /// Any other value.
-pub fn cells(path: &str, value: usize, least: usize) -> Result<usize, ThermalError> {
+pub(crate) fn cells(path: &str, value: usize, least: usize) -> Result<usize, ThermalError> {
     if (least..=CELLS_MAX).contains(&value) {
         return Ok(value);
     }

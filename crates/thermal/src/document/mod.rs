@@ -9,6 +9,7 @@ pub mod check;
 #[cfg(feature = "simulate")]
 pub(crate) mod column;
 mod keys;
+mod presets;
 mod problem;
 mod read_error;
 pub mod schema;
@@ -24,6 +25,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::ThermalError;
+pub use presets::Presets;
 pub use problem::Problem;
 pub(crate) use problem::{suggestion, with_table, without_indices};
 use read_error::ReadError;
@@ -31,7 +33,7 @@ use value::ValueReader;
 
 /// Where a value stands and how it was written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub(crate) struct Place {
     /// Line, from 1.
     pub line: usize,
     /// Key as written.
@@ -144,15 +146,4 @@ pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<(T, Places), 
 /// A field's name, as serde wants to have it.
 fn field_name(name: &'static str) -> BorrowedStrDeserializer<'static, ReadError> {
     BorrowedStrDeserializer::new(name)
-}
-
-/// The error for a name that no built-in document of this kind has.
-pub(crate) fn unknown_preset(
-    kind: &'static str,
-    name: &str,
-    names: impl Iterator<Item = &'static str>,
-) -> ThermalError {
-    let known: Vec<&str> = names.collect();
-    let nearest = suggestion(name, known.iter().copied());
-    ThermalError::UnknownPreset { kind, name: name.to_owned(), nearest, known: known.join(", ") }
 }

@@ -18,7 +18,7 @@ use super::data::{ALL, FluidData, GaussianTerm, PowerTerm};
 /// `alpha` and its scaled derivatives. `d`: `rho d/d(rho)`, `t`: `-T d/dT` (in `tau`: `tau d/d(tau)`); second ones are
 /// `delta^2 d2/d(delta)^2`, `delta tau d2/d(delta)d(tau)`, `tau^2 d2/d(tau)^2`.
 #[derive(Clone, Copy, Debug)]
-pub struct Reduced<D> {
+pub(super) struct Reduced<D> {
     /// Value.
     pub a: D,
     /// First derivative in density.
@@ -42,7 +42,7 @@ impl<D: Real> Reduced<D> {
 }
 
 /// An equation of state: its residual reduced Helmholtz energy.
-pub trait HelmholtzEnergy {
+pub(super) trait HelmholtzEnergy {
     /// Residual part at a density, kg/m³, and temperature, K.
     fn residual<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> Reduced<D>;
 
@@ -87,7 +87,7 @@ struct Group {
 
 /// A multiparameter equation of state, prepared for evaluation.
 #[derive(Debug)]
-pub struct Multiparameter {
+pub(super) struct Multiparameter {
     data: &'static FluidData,
     groups: Vec<Group>,
     /// Sorted by `l`, then `d`, as the groups and slots refer to them.
@@ -363,7 +363,7 @@ impl HelmholtzEnergy for Multiparameter {
 }
 
 /// The equation at one temperature: polynomials in density times exponentials.
-pub struct Isotherm<'a> {
+pub(super) struct Isotherm<'a> {
     equation: &'a Multiparameter,
     /// Coefficient of each pair of `l` and `d`.
     coefficients: [f64; MAX_SLOTS],
@@ -380,7 +380,7 @@ impl Isotherm<'_> {
 }
 
 /// Ideal part `alpha0(delta, tau)` of a fluid.
-pub fn ideal<D: Real>(data: &FluidData, density_kg_m3: D, temperature_k: D) -> Reduced<D> {
+pub(super) fn ideal<D: Real>(data: &FluidData, density_kg_m3: D, temperature_k: D) -> Reduced<D> {
     let delta = density_kg_m3 / (data.reducing_density_mol_m3 * data.molar_mass_kg_mol);
     let tau = temperature_k.recip() * data.reducing_temperature_k;
     let ln_tau = tau.ln();

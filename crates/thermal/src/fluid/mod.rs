@@ -1,7 +1,7 @@
 //! Equations of state and transport properties of gases.
 //!
-//! A [`Fluid`] is a gas with the equation that describes it: the fluid's reference equation ([`helmholtz`]), the
-//! ideal gas, or Peng-Robinson (`peng_robinson`), all behind [`helmholtz::HelmholtzEnergy`] and all with
+//! A [`Fluid`] is a gas with the equation that describes it: the fluid's reference equation (`helmholtz`), the
+//! ideal gas, or Peng-Robinson (`peng_robinson`), all behind `helmholtz::HelmholtzEnergy` and all with
 //! the ideal part (heat capacity) of the reference equation. Every property of a [`State`] follows from one Helmholtz
 //! energy, so no two of them can disagree. Numbers are generic over [`Real`]: with dual numbers every property comes with exact derivatives.
 //!
@@ -10,7 +10,7 @@
 //! the checked functions refuse what is outside the domain or two-phase. Near the critical point (within 0.5 %
 //! of the critical temperature below it) phases are not told apart, and states in question are refused.
 mod data;
-pub mod helmholtz;
+mod helmholtz;
 mod ideal_gas;
 mod peng_robinson;
 mod root;
@@ -19,7 +19,7 @@ mod solve;
 mod state;
 #[cfg(test)]
 mod tests;
-pub mod transport;
+mod transport;
 
 pub use saturation::Saturation;
 pub use state::State;
@@ -95,7 +95,7 @@ const DENSEST: f64 = 1.35;
 const DENSEST_CUBIC: f64 = 0.98;
 
 /// Pressures, Pa, and densities, kg/m³, below this lose their digits in products; they count as not positive.
-const THINNEST: f64 = 1e-200;
+const UNDERFLOW_LIMIT: f64 = 1e-200;
 
 impl Fluid {
     /// A fluid with its reference equation.
@@ -153,11 +153,6 @@ impl Fluid {
     /// Source of the reference equation.
     pub fn reference(&self) -> &'static str {
         self.data.reference
-    }
-
-    /// Molar mass, kg/mol.
-    pub fn molar_mass_kg_mol(&self) -> f64 {
-        self.data.molar_mass_kg_mol
     }
 
     /// Specific gas constant of the equation, J/(kg K).
@@ -264,7 +259,7 @@ impl Fluid {
 
     fn check_density(&self, density_kg_m3: f64) -> Result<(), ThermalError> {
         let highest_kg_m3 = self.domain().highest_density_kg_m3;
-        if density_kg_m3 > THINNEST && density_kg_m3 <= highest_kg_m3 {
+        if density_kg_m3 > UNDERFLOW_LIMIT && density_kg_m3 <= highest_kg_m3 {
             return Ok(());
         }
         Err(ThermalError::DensityOutside { fluid: self.name(), density_kg_m3, highest_kg_m3 })
@@ -273,7 +268,7 @@ impl Fluid {
     /// Pressure inside the range and below the melting line; the ideal gas does not freeze.
     fn check_pressure(&self, pressure_pa: f64, temperature_k: f64) -> Result<(), ThermalError> {
         let highest_pa = self.domain().highest_pressure_pa;
-        if !(pressure_pa > THINNEST && pressure_pa <= highest_pa) {
+        if !(pressure_pa > UNDERFLOW_LIMIT && pressure_pa <= highest_pa) {
             return Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa });
         }
         let melting_pa = self.data.melting.pressure_pa(temperature_k);

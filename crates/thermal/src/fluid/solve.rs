@@ -10,7 +10,7 @@ use super::{Description, Fluid, Real, State};
 use crate::ThermalError;
 
 /// Up to this part of the critical pressure a gas above 0.8 critical temperatures is not near its saturation line.
-const THIN: f64 = 0.2;
+const DILUTE_REDUCED_PRESSURE: f64 = 0.2;
 
 impl Fluid {
     /// Density, kg/m³, at a pressure, Pa, and temperature, K.
@@ -32,7 +32,8 @@ impl Fluid {
         let densest = self.domain().highest_density_kg_m3;
         let (mut low, mut high) = (0.0, densest);
         let critical_k = self.data.critical_temperature_k;
-        if temperature_k < critical_k && pressure_pa > THIN * self.data.critical_pressure_pa
+        if temperature_k < critical_k
+            && pressure_pa > DILUTE_REDUCED_PRESSURE * self.data.critical_pressure_pa
             || temperature_k < 0.8 * critical_k
         {
             // Near and above saturation the branch must be known.
@@ -89,20 +90,6 @@ impl Fluid {
             return Ok(density_kg_m3);
         }
         Err(ThermalError::TooDense { fluid: self.name(), pressure_pa, highest_kg_m3 })
-    }
-
-    /// The same with derivatives.
-    ///
-    /// # Errors
-    /// As [`Fluid::density_from_pressure_temperature`].
-    pub fn density_from_pressure_temperature_lifted<D: Real>(
-        &self,
-        pressure_pa: D,
-        temperature_k: D,
-    ) -> Result<D, ThermalError> {
-        let rho = self.density_from_pressure_temperature(pressure_pa.re(), temperature_k.re())?;
-        let fixed = self.state(D::from(rho), temperature_k);
-        Ok(-(fixed.pressure_pa - pressure_pa) / fixed.dp_drho_pa_m3_kg.re() + rho)
     }
 
     /// Temperature, K, at a density, kg/m³, and internal energy, J/kg; `guess_k` speeds it up and has no other effect.
@@ -277,7 +264,7 @@ impl Fluid {
             |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
         // Up to where the phase is told apart; thin gas is never in doubt.
         let end = |density: Result<f64, ThermalError>| match density {
-            _ if pressure_pa <= THIN * self.data.critical_pressure_pa => Ok(critical_k),
+            _ if pressure_pa <= DILUTE_REDUCED_PRESSURE * self.data.critical_pressure_pa => Ok(critical_k),
             Ok(density) if value(&self.state(density, highest_k)).0 < target => Err(near_critical()),
             _ => Ok(highest_k),
         };

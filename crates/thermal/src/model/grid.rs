@@ -13,7 +13,7 @@ const SLICES: usize = 400;
 
 /// One gas cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GasCell {
+pub(super) struct GasCell {
     /// Part of the vessel's volume.
     pub volume_fraction: f64,
     /// Height of the slab, m.
@@ -26,7 +26,7 @@ pub struct GasCell {
 
 /// Contact of a wall column with a gas cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub(super) struct Contact {
     /// Gas cell.
     pub cell: usize,
     /// Area, m².
@@ -37,7 +37,7 @@ pub struct Contact {
 
 /// The gas cells of a vessel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GasGrid {
+pub(super) struct GasGrid {
     /// Cells from the bottom up.
     pub cells: Vec<GasCell>,
     /// Contacts of each wall column.

@@ -3,7 +3,7 @@ use crate::scenario::series::LinearPiece;
 use crate::scenario::{OutsideFilm, Scenario};
 
 /// Relative difference above which a signal jumps at an edge: far above rounding, far below any effect.
-const JUMP: f64 = 1e-9;
+const JUMP_TOLERANCE: f64 = 1e-9;
 
 /// Outside film at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,10 @@ impl Inputs {
             let radiation_k = inputs.radiation_k.unwrap_or(0.0);
             [inputs.air_k, film, multiplier, radiation_k, inputs.irradiance_w_m2, inputs.air_difference_k]
         };
-        signals(self).iter().zip(signals(before)).any(|(a, b)| (a - b).abs() > JUMP * (1.0 + a.abs()))
+        signals(self)
+            .iter()
+            .zip(signals(before))
+            .any(|(a, b)| (a - b).abs() > JUMP_TOLERANCE * (1.0 + a.abs()))
     }
 }
 
@@ -96,7 +99,7 @@ impl InputPieces {
 
 /// Times at which an input jumps or bends, or a flow may start or stop, s: increasing, inside `(0, duration)`,
 /// with the duration as the last.
-pub fn edges_s(scenario: &Scenario) -> Vec<f64> {
+pub(crate) fn edges_s(scenario: &Scenario) -> Vec<f64> {
     let surroundings = &scenario.surroundings;
     let mut edges: Vec<f64> =
         surroundings.air_k.edges_s().chain(surroundings.film.signal().edges_s()).collect();

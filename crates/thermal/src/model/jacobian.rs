@@ -16,7 +16,7 @@ use crate::wall::conduction::link_flow;
 use crate::wall::mesh::Facing;
 
 /// Receiver of `(row, column, value)` entries that add.
-pub type Assembly<'a> = dyn FnMut(usize, usize, f64) + 'a;
+pub(super) type Assembly<'a> = dyn FnMut(usize, usize, f64) + 'a;
 
 /// Derivatives of the gas of `n` cells.
 ///

@@ -24,11 +24,11 @@ pub struct Layout {
     /// Heat received from outside, J.
     pub heat_in: usize,
     /// Enthalpy received with gas, J.
-    pub enthalpy_in: usize,
+    pub(crate) enthalpy_in: usize,
     /// Gas received, kg.
-    pub mass_in: usize,
+    pub(crate) mass_in: usize,
     /// Work done on the expanding vessel, J.
-    pub work_out: usize,
+    pub(crate) work_out: usize,
     /// Number of states.
     pub states: usize,
 }

@@ -1,9 +1,9 @@
 //! The coupled model: wall cells, valve, gas and ledger as one system of ordinary differential equations.
 //!
-//! * Wall and valve cells: `C dx/dt = sum of heat flows`, conduction by [`crate::wall::conduction`].
+//! * Wall and valve cells: `C dx/dt = sum of heat flows`, conduction by `wall::conduction`.
 //! * Inner faces: film to the gas cells in contact, outer faces: film, radiation and sun, both through half
 //!   a wall cell whose surface temperature is solved ([`crate::transfer`]).
-//! * Gas: [`well_mixed`] (one node) or [`stratified`] (stacked cells).
+//! * Gas: `well_mixed` (one node) or `stratified` (stacked cells).
 //! * Ledger: heat, enthalpy, mass and work that cross the boundary, integrated beside the states.
 //!
 //! Every flow leaves one balance and enters another with the same number, so mass and energy are conserved by
@@ -11,14 +11,14 @@
 //! evaluation, and exactly too for the Jacobian, so that an implicit integrator keeps it to rounding.
 mod faces;
 mod gas;
-pub mod grid;
+mod grid;
 mod initial;
 pub mod inputs;
 mod jacobian;
 pub mod layout;
 mod output;
-pub mod stratified;
-pub mod well_mixed;
+mod stratified;
+mod well_mixed;
 
 use std::cell::RefCell;
 
@@ -39,8 +39,7 @@ use layout::Layout;
 use stratified::{Stratified, WallAction};
 use well_mixed::WellMixed;
 
-pub use jacobian::Assembly;
-pub use output::Output;
+pub(crate) use output::Output;
 
 /// The system of equations of one vessel with one set of flows.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use crate::flow::{FlowKind, orifice};
 
 /// Everything that is reported of one instant. SI.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Output {
+pub(crate) struct Output {
     /// Mass-weighted mean gas temperature, K.
     pub gas_mean_k: f64,
     /// Temperature of each gas cell, K.

@@ -79,7 +79,7 @@ impl<D: Real> Core<D> {
 
 /// What the wall does to the cells.
 #[derive(Clone, Debug, Default)]
-pub struct WallAction<D> {
+pub(super) struct WallAction<D> {
     /// Heat from the side wall into each cell, W.
     pub side_w: Vec<D>,
     /// Heat from plates into each cell, W.
@@ -96,7 +96,7 @@ struct Network<D> {
 
 /// The stacked gas of one vessel.
 #[derive(Debug)]
-pub struct Stratified {
+pub(super) struct Stratified {
     nodes: Vec<WellMixed>,
     cells: Vec<GasCell>,
     outlet: usize,

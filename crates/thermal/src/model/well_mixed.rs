@@ -18,11 +18,11 @@ const MAX_ITERATIONS: usize = 60;
 /// Relative length of the last Newton step; the error after it is about its square, a rounding.
 const TOLERANCE: f64 = 1e-8;
 /// Relative change over which the slopes of the last solution may lead to the next one.
-const NEAR: f64 = 0.05;
+const WARM_START_RANGE: f64 = 0.05;
 
 /// State of the node with the derivatives of its volume.
 #[derive(Clone, Copy, Debug)]
-pub struct Node<D> {
+pub(super) struct Node<D> {
     /// Thermodynamic state.
     pub state: State<D>,
     /// Volume, m³.
@@ -33,7 +33,7 @@ pub struct Node<D> {
 
 /// Everything that flows, and what it does to the node.
 #[derive(Clone, Copy, Debug)]
-pub struct Rates<D> {
+pub(super) struct Rates<D> {
     /// Net mass flow in, kg/s.
     pub mass_kg_s: D,
     /// Change of the gas energy, W.
@@ -46,7 +46,7 @@ pub struct Rates<D> {
 
 /// The well-mixed gas of one vessel.
 #[derive(Debug)]
-pub struct WellMixed {
+pub(super) struct WellMixed {
     fluid: Fluid,
     volume: InnerVolume,
     /// Temperature at which the first solution is sought, K.
@@ -188,7 +188,7 @@ impl WellMixed {
         let Some(last) = self.last.get() else { return (self.volume.volume_m3, self.start_k) };
         let from = (last.node.volume_m3, last.node.state.temperature_k);
         let to = last.along(inputs);
-        let is_near = |to: f64, from: f64| (to - from).abs() <= NEAR * from;
+        let is_near = |to: f64, from: f64| (to - from).abs() <= WARM_START_RANGE * from;
         if is_near(to.0, from.0) && is_near(to.1, from.1) { to } else { from }
     }
 
@@ -291,7 +291,7 @@ impl<D: Real> Linearised<D> {
 
 /// The flows of a scenario as they are open now.
 #[derive(Clone, Copy, Debug)]
-pub struct Boundary<'a> {
+pub(super) struct Boundary<'a> {
     /// Flows of the scenario.
     pub flows: &'a [Flow],
     /// Which are open; same length.
@@ -302,7 +302,7 @@ pub struct Boundary<'a> {
 
 /// Gas and enthalpy that cross the boundary, both positive inwards.
 #[derive(Clone, Copy, Debug)]
-pub struct Exchange<D> {
+pub(super) struct Exchange<D> {
     /// Net mass flow in, kg/s.
     pub mass_kg_s: D,
     /// Net enthalpy flow in, W.

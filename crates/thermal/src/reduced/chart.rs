@@ -24,7 +24,7 @@ const CELLS_PER_DENSEST: f64 = 128.0;
 /// Relative error between the nodes up to which polynomials are used.
 const LARGEST_ERROR: f64 = 1e-9;
 /// Cells kept at a time, along each direction: a power of two.
-const KEPT: i32 = 8;
+const CACHED_CELLS: i32 = 8;
 
 type Coefficients = SMatrix<f64, ORDER, ORDER>;
 /// Value and derivatives `[f, f_T, f_rho, f_TT, f_Trho, f_rhorho]`.
@@ -117,7 +117,7 @@ impl Chart {
             height_kg_m3: fluid.domain().highest_density_kg_m3 / CELLS_PER_DENSEST,
             nodes,
             to_coefficients: powers.try_inverse().expect("the nodes differ"),
-            cells: vec![None; (KEPT * KEPT) as usize],
+            cells: vec![None; (CACHED_CELLS * CACHED_CELLS) as usize],
             fluid,
         }
     }
@@ -181,7 +181,7 @@ impl Chart {
     fn polynomials(&mut self, rho: f64, t: f64) -> Option<&Polynomials> {
         // Both are positive inside the domain; what is outside of it is not looked up.
         let index = ((t / WIDTH_K) as i32, (rho / self.height_kg_m3) as i32);
-        let slot = ((index.0 & (KEPT - 1)) * KEPT + (index.1 & (KEPT - 1))) as usize;
+        let slot = ((index.0 & (CACHED_CELLS - 1)) * CACHED_CELLS + (index.1 & (CACHED_CELLS - 1))) as usize;
         if self.cells[slot].as_ref().is_none_or(|cell| cell.index != index) {
             let domain = self.fluid.domain();
             let known = t >= domain.lowest_temperature_k

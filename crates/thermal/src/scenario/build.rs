@@ -20,7 +20,7 @@ impl ScenarioSpec {
     /// # Errors
     /// [`ThermalError::Specification`] with the path of the first value that breaks a bound;
     /// [`ThermalError::Document`] for a line of a CSV file.
-    pub fn build(&self, files: Files<'_>) -> Result<Scenario, ThermalError> {
+    pub(crate) fn build(&self, files: Files<'_>) -> Result<Scenario, ThermalError> {
         if self.name.trim().is_empty() {
             return Err(check::broken("name", "\"\"", "a name", "say what this scenario is called"));
         }

@@ -1,18 +1,18 @@
 //! What happens to a cylinder: fill, surroundings, flows, events, duration.
 //!
-//! [`ScenarioSpec`] is the raw content of a scenario file; [`ScenarioSpec::build`] checks it (and reads the
+//! `ScenarioSpec` is the raw content of a scenario file; `ScenarioSpec::build` checks it (and reads the
 //! CSV files it names) and gives a [`Scenario`].
 mod build;
 mod flows;
 pub mod presets;
 mod read;
-pub mod series;
+pub(crate) mod series;
 mod signal;
 pub mod spec;
 
 pub use read::{read_scenario, schema};
 pub use series::Series;
-pub use spec::ScenarioSpec;
+pub(crate) use spec::ScenarioSpec;
 
 use crate::flow::Flow;
 use crate::sensor::MountedSensor;

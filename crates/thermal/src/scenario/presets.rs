@@ -3,32 +3,26 @@ use std::io;
 
 use super::{Scenario, read_scenario};
 use crate::ThermalError;
-use crate::document::unknown_preset;
+use crate::document::Presets;
 
-const FILES: [(&str, &str); 9] = [
-    ("shock-cold", include_str!("../../presets/scenarios/shock-cold.toml")),
-    ("tunnel-winter", include_str!("../../presets/scenarios/tunnel-winter.toml")),
-    ("ramp-warm", include_str!("../../presets/scenarios/ramp-warm.toml")),
-    ("cool-down", include_str!("../../presets/scenarios/cool-down.toml")),
-    ("tunnel-step", include_str!("../../presets/scenarios/tunnel-step.toml")),
-    ("leak-after-tunnel", include_str!("../../presets/scenarios/leak-after-tunnel.toml")),
-    ("bottle-step", include_str!("../../presets/scenarios/bottle-step.toml")),
-    ("haque-i1", include_str!("../../presets/scenarios/haque-i1.toml")),
-    ("railway-week", include_str!("../../presets/scenarios/railway-week.toml")),
-];
+/// The built-in scenarios.
+pub const FILES: Presets = Presets {
+    kind: "scenario",
+    files: &[
+        ("shock-cold", include_str!("../../presets/scenarios/shock-cold.toml")),
+        ("tunnel-winter", include_str!("../../presets/scenarios/tunnel-winter.toml")),
+        ("ramp-warm", include_str!("../../presets/scenarios/ramp-warm.toml")),
+        ("cool-down", include_str!("../../presets/scenarios/cool-down.toml")),
+        ("tunnel-step", include_str!("../../presets/scenarios/tunnel-step.toml")),
+        ("leak-after-tunnel", include_str!("../../presets/scenarios/leak-after-tunnel.toml")),
+        ("bottle-step", include_str!("../../presets/scenarios/bottle-step.toml")),
+        ("haque-i1", include_str!("../../presets/scenarios/haque-i1.toml")),
+        ("railway-week", include_str!("../../presets/scenarios/railway-week.toml")),
+    ],
+};
 
 const TABLES: [(&str, &str); 1] =
     [("railway-week.csv", include_str!("../../presets/scenarios/railway-week.csv"))];
-
-/// Names of the built-in scenarios.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    FILES.iter().map(|(name, _)| *name)
-}
-
-/// Text of a built-in scenario's file.
-pub fn text(name: &str) -> Option<&'static str> {
-    FILES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
-}
 
 /// Text of a table that a built-in scenario names.
 ///
@@ -46,6 +40,5 @@ pub fn table(file: &str) -> io::Result<String> {
 /// # Errors
 /// [`ThermalError::UnknownPreset`] for any other name.
 pub fn load(name: &str) -> Result<Scenario, ThermalError> {
-    let text = text(name).ok_or_else(|| unknown_preset("scenario", name, names()))?;
-    read_scenario(text, &format!("scenarios/{name}.toml"), &table)
+    read_scenario(FILES.text(name)?, &format!("scenarios/{name}.toml"), &table)
 }

@@ -21,7 +21,7 @@ pub struct LinearPiece {
     /// Value at the start, approached from inside the interval.
     pub value: f64,
     /// Change per second.
-    pub slope_per_s: f64,
+    pub(crate) slope_per_s: f64,
 }
 
 impl LinearPiece {

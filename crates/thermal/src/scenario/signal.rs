@@ -12,7 +12,7 @@ pub(super) type Files<'f> = &'f dyn Fn(&str) -> std::io::Result<String>;
 
 /// A column of a CSV file with a column `time_s`, `time_min`, `time_h` or `time_d`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-pub struct CsvSpec {
+pub(crate) struct CsvSpec {
     /// File, relative to the scenario.
     pub file: String,
     /// Column; its suffix is the unit.

@@ -9,7 +9,7 @@ use crate::sensor::SensorSpec;
 
 /// Raw content of a scenario file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-pub struct ScenarioSpec {
+pub(crate) struct ScenarioSpec {
     /// Name for people.
     pub name: String,
     /// End time.
@@ -41,7 +41,7 @@ pub struct ScenarioSpec {
 
 /// State at time 0: the fill by exactly one of settled fill, pressure or mass, and the temperatures.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-pub struct InitialSpec {
+pub(crate) struct InitialSpec {
     /// Settled fill: absolute pressure at `fill_temperature`.
     pub fill_pressure_pa: Option<f64>,
     /// Settled fill: temperature of gas and wall, 15 °C by default.
@@ -60,7 +60,7 @@ pub struct InitialSpec {
 
 /// What surrounds the cylinder. Each signal is a constant, a constant with changes, a table or a CSV column.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-pub struct AmbientSpec {
+pub(crate) struct AmbientSpec {
     /// Air temperature.
     pub air_k: Option<f64>,
     /// Steps and ramps of the air temperature, in order of time.
@@ -113,7 +113,7 @@ pub struct AmbientSpec {
 
 /// Which part the sun lights.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-pub struct SunSpec {
+pub(crate) struct SunSpec {
     /// Lower end of the lit stretch as a fraction of the outer height, 0 by default.
     pub from_fraction: Option<f64>,
     /// Upper end of the lit stretch as a fraction of the outer height, 1 by default.
@@ -124,7 +124,7 @@ pub struct SunSpec {
 
 /// A flow out: a constant mass flow, or an orifice.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-pub struct OutflowSpec {
+pub(crate) struct OutflowSpec {
     /// Name for people and events; `leak` or `discharge` (with a number from the second on) by default.
     pub name: Option<String>,
     /// Constant mass flow.
@@ -147,7 +147,7 @@ pub struct OutflowSpec {
 
 /// A flow in.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-pub struct RefillSpec {
+pub(crate) struct RefillSpec {
     /// Name for people and events; `refill` (with a number from the second on) by default.
     pub name: Option<String>,
     /// Constant mass flow.
@@ -168,7 +168,7 @@ pub struct RefillSpec {
 
 /// Limits whose crossing is reported.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-pub struct LimitsSpec {
+pub(crate) struct LimitsSpec {
     /// Absolute pressures.
     #[serde(default)]
     pub pressure_pa: Vec<f64>,

@@ -17,7 +17,7 @@ type M = FaerSparseMat<f64>;
 type V = FaerVec<f64>;
 
 /// Rows up to which a matrix is factorised as a dense one, by measurement.
-const DENSE: usize = 16;
+const MAX_DENSE_ROWS: usize = 16;
 
 /// Where an entry of the whole matrix belongs, in the order of its values.
 #[derive(Clone, Copy, Debug)]
@@ -156,7 +156,7 @@ impl LinearSolver<M> for BorderedLu {
     fn set_sparsity<C: LinearOp<V = V, T = f64, M = M, C = FaerContext>>(&mut self, op: &C) {
         let context = *op.context();
         let whole = M::new_from_sparsity(op.nrows(), op.ncols(), op.sparsity(), context);
-        if op.nrows() <= DENSE {
+        if op.nrows() <= MAX_DENSE_ROWS {
             self.border = op.nrows();
         }
         self.parts = Parts::new(whole, self.border, context);
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn bordered_solve_is_the_dense_solve() {
-        for (n, border) in [(DENSE, 3), (DENSE, 4), (DENSE - 3, 3)] {
+        for (n, border) in [(MAX_DENSE_ROWS, 3), (MAX_DENSE_ROWS, 4), (MAX_DENSE_ROWS - 3, 3)] {
             let (op, dense) = example(n);
             let right = DVector::from_fn(n + 3, |i, _| (i as f64).sin() + 0.3);
             let expected = dense.lu().solve(&right).unwrap();

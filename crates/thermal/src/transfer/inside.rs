@@ -37,7 +37,7 @@ const STEP_LN_P: f64 = 0.05;
 
 /// `ln k` and `ln R` with their derivatives along temperature and logarithm of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmGroups {
+pub(crate) struct FilmGroups {
     /// `[ln k, d/dT, d/d ln p]`, k in W/(m K).
     pub ln_k: [f64; 3],
     /// `[ln R, d/dT, d/d ln p]`, R in 1/(m³ K).
@@ -88,7 +88,7 @@ type Patch = [[[f64; 4]; 4]; 2];
 
 /// The lazily filled grid of film property groups of one fluid.
 #[derive(Clone, Debug)]
-pub struct FilmGrid {
+pub(crate) struct FilmGrid {
     fluid: Fluid,
     nodes: RefCell<HashMap<GridIndex, [f64; 2]>>,
     patches: RefCell<HashMap<GridIndex, Patch>>,
@@ -168,7 +168,7 @@ impl FilmGrid {
 
 /// Heat flux into the gas with its partial derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct InsideFlux {
+pub(crate) struct InsideFlux {
     /// Heat flux from the surface to the gas, W/m².
     pub flux_w_m2: f64,
     /// Derivative with the surface temperature, W/(m² K).
@@ -181,7 +181,7 @@ pub struct InsideFlux {
 
 /// A film law bound to a length and to the property grid of a gas.
 #[derive(Clone, Debug)]
-pub struct InsideConvection {
+pub(crate) struct InsideConvection {
     law: InsideFilm,
     ln_length: f64,
     grid: FilmGrid,

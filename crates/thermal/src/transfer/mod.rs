@@ -3,5 +3,6 @@ pub mod inside;
 pub mod outside;
 mod surface;
 
-pub use surface::{HalfCell, SurfaceBalance};
-pub(crate) use surface::{solve_surface, solve_surface_from};
+#[cfg(feature = "simulate")]
+pub(crate) use surface::SurfaceBalance;
+pub(crate) use surface::{HalfCell, solve_surface, solve_surface_from};

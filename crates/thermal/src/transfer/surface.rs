@@ -11,7 +11,7 @@ const LAST_STEP_K: f64 = 1e-6;
 
 /// A surface in balance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceBalance {
+pub(crate) struct SurfaceBalance {
     /// Surface temperature, K.
     pub surface_k: f64,
     /// Heat flow from the node through the surface, W.
@@ -25,7 +25,7 @@ pub struct SurfaceBalance {
 
 /// A half cell between a wall node and its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfCell {
+pub(crate) struct HalfCell {
     /// Temperature of the node, K.
     pub node_k: f64,
     /// Conductance at that temperature, W/K.

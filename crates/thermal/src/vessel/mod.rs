@@ -137,7 +137,7 @@ pub enum InsideFilm {
 pub enum GasResolution {
     /// One well-mixed node: what mean temperature and pressure need.
     WellMixed,
-    /// Stacked cells of common pressure; the constants are uncertain (see [`crate::model::stratified`]).
+    /// Stacked cells of common pressure; the constants are uncertain (see `model::stratified`).
     Stratified(Stratification),
 }
 

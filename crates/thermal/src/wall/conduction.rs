@@ -6,7 +6,7 @@ use super::mesh::{Link, Mesh};
 
 /// Heat flow over a link and its derivatives with the two node temperatures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinkFlow {
+pub(crate) struct LinkFlow {
     /// Heat flow from `a` to `b`, W.
     pub heat_w: f64,
     /// Derivative with the temperature of `a`, W/K.

@@ -96,12 +96,12 @@ const ENTRIES: [Entry; 8] = [
 ];
 
 /// Names of the library's materials.
-pub fn names() -> impl Iterator<Item = &'static str> {
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     ENTRIES.iter().map(|entry| entry.name)
 }
 
 /// A material of the library by name, whatever its case.
-pub fn find(name: &str) -> Option<Material> {
+pub(crate) fn find(name: &str) -> Option<Material> {
     let entry = ENTRIES.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))?;
     Some(Material {
         name: entry.name.to_owned(),

@@ -49,7 +49,7 @@ pub struct Column {
     /// What it belongs to.
     pub section: Section,
     /// How its inner face lies.
-    pub facing: Facing,
+    pub(crate) facing: Facing,
     /// Area facing the gas, m².
     pub inner_area_m2: f64,
     /// Area facing the surroundings, m².

@@ -1,7 +1,7 @@
 //! The wall: contour, mesh, materials, conduction.
-pub mod conduction;
+pub(crate) mod conduction;
 pub mod geometry;
 #[cfg(feature = "files")]
-pub mod library;
+pub(crate) mod library;
 pub mod material;
 pub mod mesh;

@@ -37,8 +37,8 @@ fn any_unit_of_the_dimension_gives_the_same_vessel() {
 
 #[test]
 fn a_specification_written_and_read_again_is_the_same() {
-    for name in presets::names() {
-        let (specification, vessel) = read_specification(presets::text(name).unwrap(), name).unwrap();
+    for name in presets::FILES.names() {
+        let (specification, vessel) = read_specification(presets::FILES.text(name).unwrap(), name).unwrap();
         let text = specification.to_toml().unwrap();
         let (again, same) = read_specification(&text, name).unwrap();
         assert_eq!(again, specification, "{text}");
@@ -48,7 +48,7 @@ fn a_specification_written_and_read_again_is_the_same() {
 
 #[test]
 fn factors_of_a_calibration_scale_what_they_are_named_after() {
-    let plain = presets::text("nitrogen-20l").unwrap();
+    let plain = presets::FILES.text("nitrogen-20l").unwrap();
     let text = plain
         .replace("thickness_mm = 5.8", "thickness_mm = 5.8\nheat_capacity_factor = 1.2")
         .replace("mass_kg = 1.2", "mass_kg = 1.2\nheat_capacity_factor = 0.8")
@@ -63,7 +63,7 @@ fn factors_of_a_calibration_scale_what_they_are_named_after() {
 
 #[test]
 fn the_record_of_a_calibration_is_read_and_written_and_changes_nothing() {
-    let plain = presets::text("nitrogen-20l").unwrap();
+    let plain = presets::FILES.text("nitrogen-20l").unwrap();
     let (mut specification, vessel) = read_specification(plain, "x.toml").unwrap();
     let (again, same) = read_specification(&format!("{plain}{CALIBRATION}"), "x.toml").unwrap();
     let record = again.calibration.clone().unwrap();

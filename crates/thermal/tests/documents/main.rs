@@ -14,7 +14,7 @@ mod vessel_messages;
 
 /// The built-in vessel with one piece of its text replaced.
 fn vessel_with(from: &str, to: &str) -> String {
-    let text = cylwatch_thermal::vessel::presets::text("nitrogen-20l").unwrap();
+    let text = cylwatch_thermal::vessel::presets::FILES.text("nitrogen-20l").unwrap();
     assert_eq!(text.matches(from).count(), 1, "{from:?} has to stand once in the vessel");
     text.replace(from, to)
 }

@@ -35,10 +35,10 @@ fn wall_volume_m3(geometry: &Geometry) -> f64 {
 
 #[test]
 fn every_built_in_document_loads() {
-    for name in vessel::presets::names() {
+    for name in vessel::presets::FILES.names() {
         vessel::presets::load(name).unwrap_or_else(|error| panic!("{error}"));
     }
-    for name in scenario::presets::names() {
+    for name in scenario::presets::FILES.names() {
         scenario::presets::load(name).unwrap_or_else(|error| panic!("{error}"));
     }
 }

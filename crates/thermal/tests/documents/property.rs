@@ -87,11 +87,11 @@ fn texts(presets: Vec<&'static str>) -> impl Strategy<Value = String> {
 }
 
 fn vessels() -> Vec<&'static str> {
-    vessel::presets::names().filter_map(vessel::presets::text).collect()
+    vessel::presets::FILES.names().filter_map(|name| vessel::presets::FILES.text(name).ok()).collect()
 }
 
 fn scenarios() -> Vec<&'static str> {
-    scenario::presets::names().filter_map(scenario::presets::text).collect()
+    scenario::presets::FILES.names().filter_map(|name| scenario::presets::FILES.text(name).ok()).collect()
 }
 
 fn positive(values: impl IntoIterator<Item = f64>) -> bool {

@@ -47,12 +47,12 @@ fn assert_admits(schema: &Value, root: &Value, document: &toml::Value, path: &st
 #[test]
 fn schemas_admit_every_built_in_document() {
     let (vessel, scenario) = (vessel::schema(), scenario::schema());
-    for name in vessel::presets::names() {
-        let document = vessel::presets::text(name).unwrap().parse::<toml::Table>().unwrap();
+    for name in vessel::presets::FILES.names() {
+        let document = vessel::presets::FILES.text(name).unwrap().parse::<toml::Table>().unwrap();
         assert_admits(&vessel, &vessel, &toml::Value::Table(document), name);
     }
-    for name in scenario::presets::names() {
-        let document = scenario::presets::text(name).unwrap().parse::<toml::Table>().unwrap();
+    for name in scenario::presets::FILES.names() {
+        let document = scenario::presets::FILES.text(name).unwrap().parse::<toml::Table>().unwrap();
         assert_admits(&scenario, &scenario, &toml::Value::Table(document), name);
     }
 }

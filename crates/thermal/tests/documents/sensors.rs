@@ -101,7 +101,7 @@ fn numbers_of_a_temperature_arrive_in_si() {
 
 #[test]
 fn a_height_on_the_wall_is_the_column_whose_inner_face_is_there() {
-    for name in vessel::presets::names() {
+    for name in vessel::presets::FILES.names() {
         let geometry = vessel::presets::load(name).unwrap().geometry;
         let mesh = Mesh::new(&geometry);
         let column = |height_m| SurfacePlace::Height { height_m }.column(&geometry, &mesh);

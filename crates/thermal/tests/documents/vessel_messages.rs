@@ -156,7 +156,7 @@ fn a_gas_that_the_fluids_do_not_know_is_refused_at_its_line() {
 
 #[test]
 fn a_record_that_claims_what_cannot_be_is_refused() {
-    let plain = cylwatch_thermal::vessel::presets::text("nitrogen-20l").unwrap();
+    let plain = cylwatch_thermal::vessel::presets::FILES.text("nitrogen-20l").unwrap();
     let cases = [
         (
             "date = \"2026-03-01T12:00:00Z\"",

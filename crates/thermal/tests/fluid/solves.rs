@@ -118,28 +118,6 @@ fn difference(f: impl Fn(f64) -> f64, x: f64) -> f64 {
 }
 
 #[test]
-fn derivatives_of_the_solved_density_are_its_differences() {
-    for (fluid, p, t) in room() {
-        let plain = |p: f64, t: f64| fluid.density_from_pressure_temperature(p, t).unwrap();
-        let lifted = |dp: f64, dt: f64| {
-            fluid.density_from_pressure_temperature_lifted(Dual64::new(p, dp), Dual64::new(t, dt)).unwrap()
-        };
-        let (in_pressure, in_temperature) = (lifted(1.0, 0.0), lifted(0.0, 1.0));
-        assert!((in_pressure.re / plain(p, t) - 1.0).abs() <= 1e-12);
-        for (exact, numeric) in [
-            (in_pressure.eps, difference(|p| plain(p, t), p)),
-            (in_temperature.eps, difference(|t| plain(p, t), t)),
-        ] {
-            assert!(
-                (exact / numeric - 1.0).abs() <= 1e-6,
-                "{} at {t} K, {p} Pa: {exact} {numeric}",
-                fluid.name()
-            );
-        }
-    }
-}
-
-#[test]
 fn derivatives_of_the_state_from_density_and_energy_are_its_differences() {
     for (fluid, p, t) in room() {
         let rho = fluid.density_from_pressure_temperature(p, t).unwrap();

@@ -30,14 +30,14 @@ fn vessel_for(scenario: &str) -> Vessel {
 
 #[test]
 fn ledger_closes_over_every_preset_at_the_default_tolerance() {
-    for name in scenario::presets::names() {
+    for name in scenario::presets::FILES.names() {
         assert_closed(name, &run(&vessel_for(name), name, 1e-6, Method::Bdf), 1e-9);
     }
 }
 
 #[test]
 fn ledger_closes_to_1e_8_at_tolerance_1e_10() {
-    for name in scenario::presets::names().filter(|name| *name != "railway-week") {
+    for name in scenario::presets::FILES.names().filter(|name| *name != "railway-week") {
         assert_closed(name, &run(&vessel_for(name), name, 1e-10, Method::Bdf), 1e-8);
     }
 }

@@ -20,7 +20,7 @@ use crate::numbers;
 /// Distance up to which two states differ linearly: curvature is left out.
 const LINEAR_DISTANCE: f64 = 0.5;
 /// Part of the variance of a considered state that a reading explains at least that moves it.
-const TELLING: f64 = 0.01;
+const MIN_EXPLAINED_PART: f64 = 0.01;
 
 /// Covariances of up to four members.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -232,7 +232,7 @@ impl Pack {
         for &state in plant.considered() {
             let (gain, variance) = (&mut gain[state], self.bank.variances(state));
             for (lane, _) in members.iter().enumerate().filter(|(_, of)| plant.considers(&of.hypothesis)) {
-                if gain.0[lane].powi(2) * s.0[lane] < TELLING * variance.0[lane] {
+                if gain.0[lane].powi(2) * s.0[lane] < MIN_EXPLAINED_PART * variance.0[lane] {
                     gain.0[lane] = 0.0;
                 }
             }

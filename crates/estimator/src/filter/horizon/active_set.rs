@@ -3,17 +3,17 @@
 //! Of a run of violated samples only the worst joins at a time, since its neighbours mostly follow.
 use nalgebra::DVector;
 
-use super::constraint::{Constraint, Span, Spot};
+use super::constraint::{Constraint, Span, StageRow};
 use super::interior_point;
 use super::outcome::{FallbackReason, HorizonStatus};
 use super::polish::polish;
 use super::problem::{Active, Resolution, WindowProblem};
 use super::program::{Basis, Optimum, Program, Row, Suspect};
 use super::settings::Loss;
-use super::window::Path;
+use super::window::WindowTrajectory;
 
 /// Violation of a row, in its posterior standard deviations, that is left alone.
-const SLACK: f64 = 1e-8;
+const VIOLATION_TOLERANCE: f64 = 1e-8;
 /// Violation relative to the magnitudes in a row that may be rounding.
 const ROUNDING: f64 = 1e-12;
 /// Violation relative to the magnitudes in a row that nothing can move which makes the problem infeasible.
@@ -21,13 +21,13 @@ const INFEASIBLE: f64 = 1e-9;
 /// Posterior standard deviation of a row, relative to those of its states, up to which nothing can move it.
 const FIXED: f64 = 1e-12;
 /// Overshoot of the loss's bend, relative, that is left alone.
-const BEND: f64 = 1e-9;
+const BEND_TOLERANCE: f64 = 1e-9;
 
 /// The program and where its rows and suspects come from.
 pub(super) struct ActiveSet<'a> {
     problem: &'a WindowProblem<'a>,
     /// The optimum without constraints.
-    base: &'a Path,
+    base: &'a WindowTrajectory,
     basis: Basis,
     program: Program,
     rows: Vec<Joined>,
@@ -36,21 +36,21 @@ pub(super) struct ActiveSet<'a> {
 }
 
 struct Joined {
-    spot: Spot,
+    spot: StageRow,
     /// Posterior standard deviation of the row.
     sd: f64,
 }
 
 /// A row at one place, and how far it is outside.
 struct Violation {
-    spot: Spot,
+    spot: StageRow,
     excess: f64,
     /// Sum of the magnitudes whose difference the excess is.
     magnitude: f64,
 }
 
 impl<'a> ActiveSet<'a> {
-    pub(super) fn new(problem: &'a WindowProblem<'a>, base: &'a Path) -> Self {
+    pub(super) fn new(problem: &'a WindowProblem<'a>, base: &'a WindowTrajectory) -> Self {
         let delta = match problem.loss {
             Loss::Huber { delta } => delta,
             Loss::Quadratic => f64::INFINITY,
@@ -63,7 +63,11 @@ impl<'a> ActiveSet<'a> {
     ///
     /// # Errors
     /// A violated row cannot be moved.
-    pub(super) fn extend(&mut self, step: &Path, likely: &[Spot]) -> Result<bool, FallbackReason> {
+    pub(super) fn extend(
+        &mut self,
+        step: &WindowTrajectory,
+        likely: &[StageRow],
+    ) -> Result<bool, FallbackReason> {
         let before = (self.rows.len(), self.suspects.len());
         self.extend_suspects(step);
         let violations = self.violations(step);
@@ -79,11 +83,12 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// Readings beyond the loss's bend, and those weighted down: their weight is only a stand-in for the loss.
-    fn extend_suspects(&mut self, step: &Path) {
+    fn extend_suspects(&mut self, step: &WindowTrajectory) {
         for (i, interval) in self.problem.intervals.iter().enumerate() {
             for reading in &interval.readings {
                 let residual = interval.residual_after(reading, &step.x[i + 1]);
-                let suspect = reading.weight < 1.0 || residual.abs() > self.program.delta * (1.0 + BEND);
+                let suspect =
+                    reading.weight < 1.0 || residual.abs() > self.program.delta * (1.0 + BEND_TOLERANCE);
                 if suspect && !self.suspects.contains(&(i, reading.output)) {
                     let a = interval.gradient.column(reading.output);
                     let derivative = self.problem.sweep.derivative_at(a.as_slice(), i + 1);
@@ -99,7 +104,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// The worst places of every run of violated samples.
-    fn violations(&self, step: &Path) -> Vec<Violation> {
+    fn violations(&self, step: &WindowTrajectory) -> Vec<Violation> {
         let states: Vec<_> = (0..step.x.len()).map(|i| self.problem.state(step, i)).collect();
         let mut found = Vec::new();
         for (row, constraint) in self.problem.constraints.iter().enumerate() {
@@ -131,7 +136,7 @@ impl<'a> ActiveSet<'a> {
             let infeasible = excess > INFEASIBLE * magnitude;
             return if infeasible { Err(FallbackReason::Infeasible) } else { Ok(()) };
         }
-        if excess <= SLACK * sd {
+        if excess <= VIOLATION_TOLERANCE * sd {
             return Ok(());
         }
         let scaled: Vec<f64> = derivative.iter().map(|d| d / sd).collect();
@@ -180,12 +185,15 @@ fn excess_at(constraint: &Constraint, stage: usize, states: &[DVector<f64>]) -> 
 
 impl WindowProblem<'_> {
     /// Places in the window where a row holds.
-    fn spots(&self, row: usize) -> Vec<Spot> {
-        (0..=self.intervals.len()).map(|stage| Spot { row, stage }).filter(|spot| self.holds(spot)).collect()
+    fn spots(&self, row: usize) -> Vec<StageRow> {
+        (0..=self.intervals.len())
+            .map(|stage| StageRow { row, stage })
+            .filter(|spot| self.holds(spot))
+            .collect()
     }
 
     /// Whether a row holds there. One on constants alone has a single place, at the start.
-    fn holds(&self, spot: &Spot) -> bool {
+    fn holds(&self, spot: &StageRow) -> bool {
         let constraint = &self.constraints[spot.row];
         match constraint.span() {
             Span::State => spot.stage == 0 || !constraint.is_on_constants(self.sweep.leading()),
@@ -193,7 +201,7 @@ impl WindowProblem<'_> {
         }
     }
 
-    fn excess(&self, step: &Path, spot: Spot) -> f64 {
+    fn excess(&self, step: &WindowTrajectory, spot: StageRow) -> f64 {
         let before = self.state(step, spot.stage.saturating_sub(1));
         let constraint = &self.constraints[spot.row];
         constraint.excess(before.as_slice(), self.state(step, spot.stage).as_slice())

@@ -101,7 +101,7 @@ impl Constraint {
 
 /// One row at one place of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Spot {
+pub(super) struct StageRow {
     /// Index into the constraints.
     pub row: usize,
     /// The (later) state that it acts on, from 0 at the window's start.

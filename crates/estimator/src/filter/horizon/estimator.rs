@@ -2,7 +2,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::arrival::Arrival;
-use super::constraint::{Constraint, Spot};
+use super::constraint::{Constraint, StageRow};
 use super::gauss_newton::{GaussNewton, Iterated, weigh_readings};
 use super::interval::Interval;
 use super::outcome::{ActiveConstraint, HorizonError, HorizonEstimate, HorizonStatus, Outlier};
@@ -24,7 +24,7 @@ pub struct MovingHorizon<M> {
     window: Window,
     sweep: Sweep,
     /// Rows active at the newest sample's optimum.
-    active: Vec<Spot>,
+    active: Vec<StageRow>,
 }
 
 impl<M: StateSpace> MovingHorizon<M> {

@@ -4,19 +4,19 @@
 //! converged, and linear constraints hold after every full step.
 use nalgebra::DMatrix;
 
-use super::constraint::{Constraint, Spot};
+use super::constraint::{Constraint, StageRow};
 use super::merit::{Merit, linear_cost};
 use super::outcome::{HorizonError, HorizonStatus};
 use super::problem::{Resolution, WindowProblem};
 use super::settings::{HorizonSettings, Loss};
 use super::sweep::Sweep;
-use super::window::{Path, Window};
+use super::window::{Window, WindowTrajectory};
 use crate::filter::StateSpace;
 
 /// Least share of a full step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
 /// Share of the predicted decrease that a step must reach.
-const SUFFICIENT: f64 = 1e-4;
+const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// Relative rounding error of a cost.
 const ROUNDING: f64 = 1e-12;
 
@@ -53,7 +53,7 @@ struct Proposed {
 
 /// Where a line search ends.
 struct Searched {
-    path: Path,
+    path: WindowTrajectory,
     full: bool,
     /// Merit there, if it is sufficiently lower.
     merit: Option<f64>,
@@ -66,7 +66,7 @@ impl GaussNewton<'_> {
         model: &mut M,
         window: &mut Window,
         sweep: &mut Sweep,
-        likely: &[Spot],
+        likely: &[StageRow],
     ) -> Result<Iterated, HorizonError<M::Error>> {
         let mut likely = likely.to_vec();
         let (mut qp_solves, mut qp_iterations) = (0, 0);
@@ -88,7 +88,7 @@ impl GaussNewton<'_> {
         unreachable!("the loop ends at the last iteration")
     }
 
-    fn propose(&self, window: &Window, sweep: &mut Sweep, likely: &[Spot]) -> Proposed {
+    fn propose(&self, window: &Window, sweep: &mut Sweep, likely: &[StageRow]) -> Proposed {
         let Window { arrival, intervals, path } = window;
         sweep.factorise(intervals, path, &arrival.mean, &arrival.root);
         let spread = spread(&sweep.newest_covariance());
@@ -110,7 +110,7 @@ impl GaussNewton<'_> {
             let path = window.path.towards(&proposed.resolution.step, alpha);
             let against = (self.constraints, self.settings.loss);
             if let Ok(merit) = proposed.merit.trial(model, window, &path, against) {
-                let decrease = SUFFICIENT * alpha * (proposed.current - proposed.predicted);
+                let decrease = SUFFICIENT_DECREASE * alpha * (proposed.current - proposed.predicted);
                 if merit <= proposed.current - decrease + ROUNDING * proposed.current {
                     return self.keep_inside(window, proposed, path, alpha, merit);
                 }
@@ -127,7 +127,7 @@ impl GaussNewton<'_> {
         &self,
         window: &Window,
         proposed: &Proposed,
-        path: Path,
+        path: WindowTrajectory,
         alpha: f64,
         merit: f64,
     ) -> Searched {

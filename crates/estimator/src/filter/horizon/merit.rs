@@ -11,7 +11,7 @@ use super::interval::Interval;
 use super::outcome::HorizonError;
 use super::problem::{Active, Resolution, WindowProblem};
 use super::settings::Loss;
-use super::window::{Path, Window};
+use super::window::{Window, WindowTrajectory};
 use crate::filter::StateSpace;
 
 /// Weights of the penalties.
@@ -57,7 +57,7 @@ impl Merit {
         &self,
         model: &mut M,
         window: &Window,
-        path: &Path,
+        path: &WindowTrajectory,
         (constraints, loss): (&[Constraint], Loss),
     ) -> Result<f64, HorizonError<M::Error>> {
         let mut phi = noise_cost(path) + self.outside(window, path, constraints);
@@ -71,7 +71,7 @@ impl Merit {
     }
 
     /// Penalty of the initial state's defect and of the active constraints.
-    fn outside(&self, window: &Window, path: &Path, constraints: &[Constraint]) -> f64 {
+    fn outside(&self, window: &Window, path: &WindowTrajectory, constraints: &[Constraint]) -> f64 {
         let start = &window.arrival.mean + &window.arrival.root * &path.xi - &path.x[0];
         let excess = |active: &Active| {
             let stage = active.spot.stage;
@@ -83,7 +83,13 @@ impl Merit {
     }
 
     /// Penalty of the defect at the end of interval `i`, over which the state alone moves to `advanced`.
-    fn defect(&self, interval: &Interval, mut advanced: DVector<f64>, path: &Path, i: usize) -> f64 {
+    fn defect(
+        &self,
+        interval: &Interval,
+        mut advanced: DVector<f64>,
+        path: &WindowTrajectory,
+        i: usize,
+    ) -> f64 {
         interval.add_noise(&path.omega[i], &mut advanced);
         self.penalty(&(advanced - &path.x[i + 1]))
     }
@@ -94,7 +100,7 @@ impl Merit {
 }
 
 /// Cost of the step in the linearised problem, where it leaves no defect.
-pub(super) fn linear_cost(problem: &WindowProblem, step: &Path) -> f64 {
+pub(super) fn linear_cost(problem: &WindowProblem, step: &WindowTrajectory) -> f64 {
     let mut cost = noise_cost(step);
     for (interval, delta) in problem.intervals.iter().zip(&step.x[1..]) {
         for reading in &interval.readings {
@@ -104,7 +110,7 @@ pub(super) fn linear_cost(problem: &WindowProblem, step: &Path) -> f64 {
     cost
 }
 
-fn noise_cost(path: &Path) -> f64 {
+fn noise_cost(path: &WindowTrajectory) -> f64 {
     0.5 * (path.xi.norm_squared() + path.omega.iter().map(|w| w.norm_squared()).sum::<f64>())
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Basis {
 }
 
 /// Share of a derivative outside the basis below which it counts as inside: rounding of two projections.
-const DEPENDENT: f64 = 1e-10;
+const DEPENDENCE_TOLERANCE: f64 = 1e-10;
 
 impl Basis {
     pub(super) fn rank(&self) -> usize {
@@ -40,7 +40,7 @@ impl Basis {
             }
         }
         let left = dot(&rest, &rest).sqrt();
-        if left > DEPENDENT * dot(t, t).sqrt() {
+        if left > DEPENDENCE_TOLERANCE * dot(t, t).sqrt() {
             rest.iter_mut().for_each(|r| *r /= left);
             self.vectors.push(rest);
             coordinates.push(left);

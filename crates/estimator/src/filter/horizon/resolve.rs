@@ -6,14 +6,14 @@
 use nalgebra::DVector;
 
 use super::active_set::ActiveSet;
-use super::constraint::Spot;
+use super::constraint::StageRow;
 use super::outcome::{FallbackReason, HorizonStatus};
 use super::problem::{Resolution, WindowProblem};
-use super::window::Path;
+use super::window::WindowTrajectory;
 
 impl WindowProblem<'_> {
     /// Solve; `likely` names rows that were active before.
-    pub(super) fn resolve(&self, likely: &[Spot]) -> Resolution {
+    pub(super) fn resolve(&self, likely: &[StageRow]) -> Resolution {
         let base = self.sweep.run(None);
         match self.constrained(&base, likely) {
             Ok(resolution) => resolution,
@@ -22,14 +22,18 @@ impl WindowProblem<'_> {
     }
 
     /// What is left when the constraints cannot be met: the robust optimum, or at worst the weighted one.
-    fn without_constraints(&self, base: &Path, reason: FallbackReason) -> Resolution {
+    fn without_constraints(&self, base: &WindowTrajectory, reason: FallbackReason) -> Resolution {
         let free = WindowProblem { constraints: &[], ..*self };
         let robust = free.constrained(base, &[]);
         let resolution = robust.unwrap_or_else(|_| Resolution::unconstrained(base.clone()));
         Resolution { status: HorizonStatus::Fallback(reason), ..resolution }
     }
 
-    fn constrained(&self, base: &Path, likely: &[Spot]) -> Result<Resolution, FallbackReason> {
+    fn constrained(
+        &self,
+        base: &WindowTrajectory,
+        likely: &[StageRow],
+    ) -> Result<Resolution, FallbackReason> {
         let mut active_set = ActiveSet::new(self, base);
         let mut resolution = Resolution::unconstrained(base.clone());
         while active_set.extend(&resolution.step, likely)? {
@@ -39,13 +43,13 @@ impl WindowProblem<'_> {
     }
 
     /// State `i` after the change in `step`.
-    pub(super) fn state(&self, step: &Path, i: usize) -> DVector<f64> {
+    pub(super) fn state(&self, step: &WindowTrajectory, i: usize) -> DVector<f64> {
         &self.path.x[i] + &step.x[i]
     }
 }
 
 impl Resolution {
-    fn unconstrained(step: Path) -> Self {
+    fn unconstrained(step: WindowTrajectory) -> Self {
         Self {
             step,
             active: Vec::new(),

@@ -14,11 +14,11 @@
 //! Rao, Rawlings and Lee 2001 for the problem.
 use nalgebra::{DMatrix, DVector};
 
-use super::constraint::{Constraint, Span, Spot};
+use super::constraint::{Constraint, Span, StageRow};
 use super::interval::Interval;
 use super::program::Basis;
 use super::triangular::{divide_right, triangularise};
-use super::window::Path;
+use super::window::WindowTrajectory;
 use crate::filter::kernel::{axpy, dot};
 
 /// Posterior of a window as a process driven by independent noises `eta` of unit variance.
@@ -99,7 +99,7 @@ impl Sweep {
     pub(super) fn factorise(
         &mut self,
         intervals: &[Interval],
-        path: &Path,
+        path: &WindowTrajectory,
         mean: &DVector<f64>,
         root: &DMatrix<f64>,
     ) {
@@ -146,14 +146,14 @@ impl Sweep {
     }
 
     /// The optimum, moved by `eta` (length [`drives`](Self::drives)) where given. States are changes.
-    pub(super) fn run(&self, eta: Option<&[f64]>) -> Path {
+    pub(super) fn run(&self, eta: Option<&[f64]>) -> WindowTrajectory {
         let n = self.states;
         let (mut xi, mut delta) = (self.start.xi.clone(), self.start.delta.clone());
         if let Some(eta) = eta {
             multiply_add(&self.start.xi_root, &eta[..n], xi.as_mut_slice());
             multiply_add(&self.start.delta_root, &eta[..n], delta.as_mut_slice());
         }
-        let mut path = Path { x: vec![delta], omega: Vec::with_capacity(self.stages.len()), xi };
+        let mut path = WindowTrajectory { x: vec![delta], omega: Vec::with_capacity(self.stages.len()), xi };
         for (i, stage) in self.stages.iter().enumerate() {
             let delta = path.newest();
             let mut omega = stage.feedforward.clone();
@@ -174,7 +174,7 @@ impl Sweep {
     }
 
     /// Derivative `T^T c` of a row's value with `eta`; its square is the row's posterior variance.
-    pub(super) fn derivative(&self, constraint: &Constraint, spot: Spot) -> Vec<f64> {
+    pub(super) fn derivative(&self, constraint: &Constraint, spot: StageRow) -> Vec<f64> {
         let mut c = vec![0.0; self.states];
         for &(k, a) in constraint.terms() {
             c[k] += a;
@@ -241,7 +241,7 @@ impl Sweep {
     /// formed as a Gram matrix and so positive semi-definite.
     pub(super) fn projected_covariance<'a>(
         &self,
-        rows: impl Iterator<Item = (&'a Constraint, Spot)>,
+        rows: impl Iterator<Item = (&'a Constraint, StageRow)>,
     ) -> DMatrix<f64> {
         let mut basis = Basis::default();
         for (constraint, spot) in rows {

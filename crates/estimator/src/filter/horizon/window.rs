@@ -10,7 +10,7 @@ use crate::filter::StateSpace;
 
 /// States and noises over a window of `N` intervals.
 #[derive(Clone, Debug)]
-pub(super) struct Path {
+pub(super) struct WindowTrajectory {
     /// States at the window's start and at each sample (or their changes `delta`): N + 1 of (n).
     pub x: Vec<DVector<f64>>,
     /// Noises in standard deviations: N of (k).
@@ -19,13 +19,13 @@ pub(super) struct Path {
     pub xi: DVector<f64>,
 }
 
-impl Path {
+impl WindowTrajectory {
     pub(super) fn newest(&self) -> &DVector<f64> {
         self.x.last().expect("a path holds the state at the window's start")
     }
 
     /// The path a fraction `alpha` of the way along `step`, whose states are changes and whose noises are absolute.
-    pub(super) fn towards(&self, step: &Path, alpha: f64) -> Self {
+    pub(super) fn towards(&self, step: &WindowTrajectory, alpha: f64) -> Self {
         let blend = |a: &DVector<f64>, b: &DVector<f64>| a * (1.0 - alpha) + b * alpha;
         Self {
             x: self.x.iter().zip(&step.x).map(|(x, delta)| x + delta * alpha).collect(),
@@ -40,13 +40,17 @@ impl Path {
 pub(super) struct Window {
     pub arrival: Arrival,
     pub intervals: Vec<Interval>,
-    pub path: Path,
+    pub path: WindowTrajectory,
 }
 
 impl Window {
     /// A window without samples.
     pub(super) fn new(arrival: Arrival) -> Self {
-        let path = Path { x: vec![arrival.mean.clone()], omega: Vec::new(), xi: arrival.mean.map(|_| 0.0) };
+        let path = WindowTrajectory {
+            x: vec![arrival.mean.clone()],
+            omega: Vec::new(),
+            xi: arrival.mean.map(|_| 0.0),
+        };
         Self { arrival, intervals: Vec::new(), path }
     }
 
@@ -91,7 +95,7 @@ impl Window {
     }
 
     /// Whether the newest state of `path` is outside a constraint.
-    pub(super) fn ends_outside(&self, constraints: &[Constraint], path: &Path) -> bool {
+    pub(super) fn ends_outside(&self, constraints: &[Constraint], path: &WindowTrajectory) -> bool {
         let last = self.intervals.len();
         let (x, previous) = (path.x[last].as_slice(), path.x[last.saturating_sub(1)].as_slice());
         constraints.iter().any(|c| c.excess(previous, x) > 0.0)

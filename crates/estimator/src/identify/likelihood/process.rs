@@ -9,13 +9,13 @@ use crate::identify::parametrisation::Coefficients;
 use crate::identify::propagator::{Propagator, Propagators};
 use crate::identify::response::companion;
 use crate::identify::schedule::Piece;
-use crate::identify::{Hold, InputCourse};
+use crate::identify::{Hold, InputModel};
 
 /// The process of `[w, u now, u next, (slope)]` over the present piece.
 pub(super) struct Process<const N: usize> {
     k: Coefficients,
     hold: Hold,
-    course: InputCourse,
+    input_model: InputModel,
     variances: Variances,
     intensity: f64,
     input_time: Vec<f64>,
@@ -55,7 +55,7 @@ impl<const N: usize> Process<N> {
         Self {
             k: *k,
             hold: likelihood.search.problem.hold,
-            course: likelihood.course,
+            input_model: likelihood.input_model,
             variances: likelihood.variances,
             intensity,
             input_time: likelihood.search.problem.input_time.clone(),
@@ -85,7 +85,7 @@ impl<const N: usize> Process<N> {
             phi[(place, N)] = 1.0;
             g[(place, 0)] = 1.0;
             q[0] = self.intensity * wandered;
-            if self.course == InputCourse::IntegratedRandomWalk {
+            if self.input_model == InputModel::IntegratedRandomWalk {
                 // The slope's step moves the input by half an interval; the rest is independent of it.
                 phi[(place, N + 2)] = wandered;
                 g[(place, 1)] = 0.5 * wandered;
@@ -121,7 +121,7 @@ impl<const N: usize> StateSpace for Process<N> {
     type Error = EstimatorError;
 
     fn states(&self) -> usize {
-        N + 2 + usize::from(self.course == InputCourse::IntegratedRandomWalk)
+        N + 2 + usize::from(self.input_model == InputModel::IntegratedRandomWalk)
     }
 
     fn leading(&self) -> usize {
@@ -129,7 +129,7 @@ impl<const N: usize> StateSpace for Process<N> {
     }
 
     fn noises(&self) -> usize {
-        1 + usize::from(self.course == InputCourse::IntegratedRandomWalk)
+        1 + usize::from(self.input_model == InputModel::IntegratedRandomWalk)
     }
 
     fn outputs(&self) -> usize {

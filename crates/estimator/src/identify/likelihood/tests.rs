@@ -16,9 +16,9 @@ fn dense_cost(likelihood: &Likelihood<'_>, k: &Coefficients, intensity: f64, fir
     // Covariance of the true input at two samples, given its first value and slope.
     let walk = |s: f64, t: f64| {
         let (early, late) = (s.min(t), s.max(t));
-        match likelihood.course {
-            InputCourse::RandomWalk => intensity * early,
-            InputCourse::IntegratedRandomWalk => {
+        match likelihood.input_model {
+            InputModel::RandomWalk => intensity * early,
+            InputModel::IntegratedRandomWalk => {
                 intensity * (early * early * late / 2.0 - early.powi(3) / 6.0)
             }
         }
@@ -55,10 +55,10 @@ fn dense_cost(likelihood: &Likelihood<'_>, k: &Coefficients, intensity: f64, fir
 fn the_filters_likelihood_is_the_joint_gaussian_density() {
     let settings = Settings::default();
     for hold in [Hold::First, Hold::Zero] {
-        for (course, dead_time_s) in [
-            (InputCourse::RandomWalk, 0.0),
-            (InputCourse::RandomWalk, 1.3),
-            (InputCourse::IntegratedRandomWalk, 0.0),
+        for (input_model, dead_time_s) in [
+            (InputModel::RandomWalk, 0.0),
+            (InputModel::RandomWalk, 1.3),
+            (InputModel::IntegratedRandomWalk, 0.0),
         ] {
             let time_s: Vec<f64> = (0..14).map(|k| f64::from(k) + 0.2 * (f64::from(k) * 1.7).sin()).collect();
             let input = (0..14).map(|k| (f64::from(k) * 0.7).sin()).collect();
@@ -72,10 +72,10 @@ fn the_filters_likelihood_is_the_joint_gaussian_density() {
             let parametrisation = Parametrisation::new(&structure, &problem.units);
             let search = Search { problem: &problem, parametrisation: &parametrisation, settings: &settings };
             let variances = Variances { input: 0.05, output: 0.02 };
-            let likelihood = Likelihood { search, variances, course };
+            let likelihood = Likelihood { search, variances, input_model };
             let cost_at = |theta: &[f64]| {
                 let k = parametrisation.expand(theta);
-                let states = 4 + usize::from(course == InputCourse::IntegratedRandomWalk);
+                let states = 4 + usize::from(input_model == InputModel::IntegratedRandomWalk);
                 let start = likelihood.start_covariance(&k, states);
                 let first: Vec<f64> = (2..states).filter(|i| *i != 3).map(|i| start[(i, i)]).collect();
                 let dense = dense_cost(&likelihood, &k, theta[4].exp(), &first);

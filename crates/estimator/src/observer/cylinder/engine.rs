@@ -9,7 +9,7 @@ use crate::observer::engine::MovingHorizonSettings;
 
 /// Least mass in a window, as a share of the highest.
 #[cfg(feature = "design")]
-const LEAST: f64 = 1e-6;
+const MIN_MASS_SHARE: f64 = 1e-6;
 
 impl Cylinder {
     /// The engine of the settings.
@@ -33,7 +33,7 @@ impl Cylinder {
         let domain = self.model.fluid().domain();
         let states = &self.states;
         let mut rows = vec![
-            Constraint::at_least(states.mass, LEAST * highest_kg),
+            Constraint::at_least(states.mass, MIN_MASS_SHARE * highest_kg),
             Constraint::at_most(states.mass, highest_kg),
         ];
         for state in (0..states.wall).chain(states.valve).chain([states.gas]) {

@@ -194,7 +194,7 @@ fn nothing_is_compensated_in_a_tight_cylinder() {
 fn ladder(days: f64, mut each: impl FnMut(&mut Onsets)) -> (Onsets, f64) {
     let (mut onsets, mut time_s) = (Onsets { compensated: vec![0.0], ..Onsets::default() }, 0.0);
     while time_s < days * 86_400.0 {
-        time_s += EVERY_S;
+        time_s += ONSET_INTERVAL_S;
         onsets.renew(time_s, 0);
         each(&mut onsets);
     }
@@ -208,8 +208,8 @@ fn onsets_of_two_months_are_few_and_lie_close() {
     assert!(onsets.is_like(1) && !onsets.is_like(2));
     let ages: Vec<f64> = onsets.sums.iter().map(|sums| time_s - sums.since_s).collect();
     assert!(ages[0] > 0.5 * LONGEST_S && ages[0] <= LONGEST_S, "{} d", ages[0] / 86_400.0);
-    for pair in ages.windows(2).filter(|pair| pair[1] > 2.0 * EVERY_S) {
-        assert!(pair[0] <= RATIO * pair[1], "{pair:?}");
+    for pair in ages.windows(2).filter(|pair| pair[1] > 2.0 * ONSET_INTERVAL_S) {
+        assert!(pair[0] <= ONSET_AGE_RATIO * pair[1], "{pair:?}");
     }
 }
 
@@ -226,8 +226,8 @@ fn the_likeliest_onset_and_its_neighbours_stay_where_others_are_thinned_out() {
     let likeliest = onsets.likeliest().unwrap();
     let since_s = |index: usize| onsets.sums[index].since_s;
     assert_eq!(since_s(likeliest), begun_s);
-    assert!(since_s(likeliest) - since_s(likeliest - 1) <= EVERY_S);
-    assert!(since_s(likeliest + 1) - since_s(likeliest) <= EVERY_S);
+    assert!(since_s(likeliest) - since_s(likeliest - 1) <= ONSET_INTERVAL_S);
+    assert!(since_s(likeliest + 1) - since_s(likeliest) <= ONSET_INTERVAL_S);
 }
 
 #[test]

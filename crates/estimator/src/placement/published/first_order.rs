@@ -17,7 +17,7 @@ const SHORTEST: f64 = 0.1;
 /// Time constants that are tried first grow by this factor.
 const STEP: f64 = 1.6;
 /// Width of the logarithm of the time constant at which it ends.
-const NARROW: f64 = 1e-5;
+const BRACKET_WIDTH: f64 = 1e-5;
 
 /// Readings with the mean gas temperature, none missing.
 #[derive(Clone, Debug, Default)]
@@ -118,7 +118,8 @@ impl Record {
         let best = (0..=tried).map(|number| (number, left(at(number)))).min_by(by_left);
         let nearest = at(best.map_or(0, |(number, _)| number));
         let around = (nearest - STEP.ln(), nearest + STEP.ln());
-        let Ok(narrowed) = golden_section(around, NARROW, |logarithm| Ok::<_, Infallible>(left(logarithm)));
+        let Ok(narrowed) =
+            golden_section(around, BRACKET_WIDTH, |logarithm| Ok::<_, Infallible>(left(logarithm)));
         let narrowed = narrowed.exp();
         let without = self.moments(0.0).left() <= self.moments(narrowed).left();
         let time_constant_s = if without { 0.0 } else { narrowed };

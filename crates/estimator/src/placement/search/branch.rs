@@ -3,21 +3,21 @@
 //! A node has sensors that are in and others that are open, of which some more are taken. Two bounds hold for all layouts
 //! below it: the value with every open sensor in (a sensor more never harms), and the least of the tangent at equal weights of the open
 //! ones, which the steepest of them reach. The larger one counts. Sensors are tried in the order of their slopes, so that good layouts come early.
-use super::{Constraints, Layout, Objective, Shortlist, Watch, greedy};
+use super::{Constraints, Layout, Objective, SearchControl, Shortlist, greedy};
 
 /// The layouts within a part of the best.
 pub(super) fn search(
     objective: &impl Objective,
     constraints: &Constraints,
     within: f64,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Vec<Layout> {
     let mut list = Shortlist::new(within);
     // A good layout from the start prunes; it is offered again when it comes by.
-    if let Some(first) = greedy::search(objective, constraints, watch).first() {
+    if let Some(first) = greedy::search(objective, constraints, control).first() {
         list.best = first.value;
     }
-    let mut tree = Tree { objective, constraints, watch, list };
+    let mut tree = Tree { objective, constraints, control, list };
     let open = constraints.free(objective.candidates());
     tree.visit(&mut constraints.must.clone(), &open);
     tree.list.sorted()
@@ -26,21 +26,21 @@ pub(super) fn search(
 struct Tree<'a, O> {
     objective: &'a O,
     constraints: &'a Constraints,
-    watch: &'a Watch,
+    control: &'a SearchControl,
     list: Shortlist,
 }
 
 impl<O: Objective> Tree<'_, O> {
     fn visit(&mut self, taken: &mut Vec<usize>, open: &[usize]) {
         let missing = self.constraints.sensors - taken.len();
-        if self.watch.is_stopped() || missing > open.len() || !self.constraints.may_grow(taken) {
+        if self.control.is_stopped() || missing > open.len() || !self.constraints.may_grow(taken) {
             return;
         }
         if missing == 0 {
             let mut layout = taken.clone();
             layout.sort_unstable();
             if self.constraints.allow(&layout) {
-                let value = self.watch.evaluate(self.objective, &layout);
+                let value = self.control.evaluate(self.objective, &layout);
                 self.list.offer(&layout, value);
             }
             return;
@@ -64,7 +64,7 @@ impl<O: Objective> Tree<'_, O> {
         let share = missing as f64 / open.len() as f64;
         let mut all: Vec<usize> = taken.iter().chain(open).copied().collect();
         all.sort_unstable();
-        let with_all = self.watch.evaluate(self.objective, &all);
+        let with_all = self.control.evaluate(self.objective, &all);
         if !with_all.is_finite() {
             return None;
         }

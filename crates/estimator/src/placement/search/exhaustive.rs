@@ -1,14 +1,14 @@
 //! Every layout that is allowed, in parallel.
 use rayon::prelude::*;
 
-use super::{Constraints, Layout, Objective, Shortlist, Watch};
+use super::{Constraints, Layout, Objective, SearchControl, Shortlist};
 
 /// The layouts within a part of the best.
 pub(super) fn search(
     objective: &impl Objective,
     constraints: &Constraints,
     within: f64,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Vec<Layout> {
     let free = constraints.free(objective.candidates());
     let wanted = constraints.sensors - constraints.must.len();
@@ -24,8 +24,8 @@ pub(super) fn search(
             let mut layout: Vec<usize> = positions.iter().map(|at| free[*at]).collect();
             layout.extend(&constraints.must);
             layout.sort_unstable();
-            if !watch.is_stopped() && constraints.allow(&layout) {
-                list.offer(&layout, watch.evaluate(objective, &layout));
+            if !control.is_stopped() && constraints.allow(&layout) {
+                list.offer(&layout, control.evaluate(objective, &layout));
             }
         });
         list

@@ -3,21 +3,29 @@
 //! As long as no layout sees what it should, the gradient of the relaxed value at equal weights says what to take.
 use rayon::prelude::*;
 
-use super::{Constraints, Layout, Objective, Watch};
+use super::{Constraints, Layout, Objective, SearchControl};
 
 /// The layout that no swap betters; empty where none was found.
-pub(super) fn search(objective: &impl Objective, constraints: &Constraints, watch: &Watch) -> Vec<Layout> {
-    let Some(mut layout) = begin(objective, constraints, watch) else { return Vec::new() };
-    let mut value = watch.evaluate(objective, &layout);
-    while !watch.is_stopped() {
-        let Some(better) = best_swap(objective, constraints, &layout, value, watch) else { break };
+pub(super) fn search(
+    objective: &impl Objective,
+    constraints: &Constraints,
+    control: &SearchControl,
+) -> Vec<Layout> {
+    let Some(mut layout) = begin(objective, constraints, control) else { return Vec::new() };
+    let mut value = control.evaluate(objective, &layout);
+    while !control.is_stopped() {
+        let Some(better) = best_swap(objective, constraints, &layout, value, control) else { break };
         (layout, value) = (better.sensors, better.value);
     }
     if value.is_finite() { vec![Layout { sensors: layout, value }] } else { Vec::new() }
 }
 
 /// One sensor after the other, each the one that helps most.
-fn begin(objective: &impl Objective, constraints: &Constraints, watch: &Watch) -> Option<Vec<usize>> {
+fn begin(
+    objective: &impl Objective,
+    constraints: &Constraints,
+    control: &SearchControl,
+) -> Option<Vec<usize>> {
     let candidates = objective.candidates();
     let share = constraints.sensors as f64 / candidates as f64;
     let slope = objective.relaxed(&vec![share; candidates]).map(|relaxed| relaxed.gradient);
@@ -35,7 +43,7 @@ fn begin(objective: &impl Objective, constraints: &Constraints, watch: &Watch) -
                 can_be_completed(constraints, &grown, candidates)
             };
             open.then(|| {
-                (watch.evaluate(objective, &grown), slope.as_ref().map_or(0.0, |of| of[index]), index)
+                (control.evaluate(objective, &grown), slope.as_ref().map_or(0.0, |of| of[index]), index)
             })
         });
         let by_value = |a: &(f64, f64, usize), b: &(f64, f64, usize)| {
@@ -72,7 +80,7 @@ fn best_swap(
     constraints: &Constraints,
     layout: &[usize],
     value: f64,
-    watch: &Watch,
+    control: &SearchControl,
 ) -> Option<Layout> {
     let free = constraints.free(objective.candidates());
     let out = layout.iter().copied().filter(|index| !constraints.must.contains(index));
@@ -82,8 +90,8 @@ fn best_swap(
     let tried = swaps.into_par_iter().filter_map(|(out, into)| {
         let others: Vec<usize> = layout.iter().copied().filter(|index| *index != out).collect();
         let sensors = with(&others, into);
-        let allowed = !watch.is_stopped() && constraints.allow(&sensors);
-        allowed.then(|| Layout { value: watch.evaluate(objective, &sensors), sensors })
+        let allowed = !control.is_stopped() && constraints.allow(&sensors);
+        allowed.then(|| Layout { value: control.evaluate(objective, &sensors), sensors })
     });
     let best = tried.min_by(|a, b| a.value.total_cmp(&b.value).then_with(|| a.sensors.cmp(&b.sensors)))?;
     (best.value < value).then_some(best)

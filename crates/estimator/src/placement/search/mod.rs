@@ -32,9 +32,9 @@ pub struct Layout {
     pub value: f64,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct SearchResult {
     /// The layouts within the tolerance of the best, the best first; those that were looked at.
     pub layouts: Vec<Layout>,
     /// What no allowed layout falls below, if the search itself proves one.
@@ -47,23 +47,23 @@ pub struct Found {
     pub partial: bool,
 }
 
-impl Found {
+impl SearchResult {
     /// The best one; `None` where no layout is allowed, or none sees what it should.
     pub fn best(&self) -> Option<&Layout> {
         self.layouts.first()
     }
 }
 
-/// What a search is told.
+/// Progress of a search, and the means to stop it.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub struct SearchControl {
     /// Layouts evaluated so far.
     pub evaluated: AtomicU64,
     /// Set it to end the search with what it has.
     pub stop: AtomicBool,
 }
 
-impl Watch {
+impl SearchControl {
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
@@ -83,19 +83,19 @@ pub fn search(
     constraints: &Constraints,
     method: Method,
     within: f64,
-    watch: &Watch,
-) -> Result<Found, EstimatorError> {
+    control: &SearchControl,
+) -> Result<SearchResult, EstimatorError> {
     constraints.validate(objective.candidates())?;
-    let begun = watch.evaluated.load(Ordering::Relaxed);
+    let begun = control.evaluated.load(Ordering::Relaxed);
     let (layouts, proven) = match method {
-        Method::Exhaustive => (exhaustive::search(objective, constraints, within, watch), true),
-        Method::BranchAndBound => (branch::search(objective, constraints, within, watch), true),
-        Method::Greedy => (greedy::search(objective, constraints, watch), false),
+        Method::Exhaustive => (exhaustive::search(objective, constraints, within, control), true),
+        Method::BranchAndBound => (branch::search(objective, constraints, within, control), true),
+        Method::Greedy => (greedy::search(objective, constraints, control), false),
     };
-    let partial = watch.is_stopped();
+    let partial = control.is_stopped();
     let bound = layouts.first().map(|best| best.value).filter(|_| proven && !partial);
-    let evaluated = watch.evaluated.load(Ordering::Relaxed) - begun;
-    Ok(Found { layouts, bound, method, evaluated, partial })
+    let evaluated = control.evaluated.load(Ordering::Relaxed) - begun;
+    Ok(SearchResult { layouts, bound, method, evaluated, partial })
 }
 
 /// The best layouts so far: those within a part of the best.
@@ -108,7 +108,7 @@ struct Shortlist {
 
 impl Shortlist {
     /// Longest list before those that have fallen behind are dropped.
-    const LONG: usize = 4096;
+    const MAX_LIST: usize = 4096;
 
     fn new(within: f64) -> Self {
         Self { within, best: f64::INFINITY, layouts: Vec::new() }
@@ -126,7 +126,7 @@ impl Shortlist {
         self.best = self.best.min(value);
         if value <= self.limit() {
             self.layouts.push(Layout { sensors: sensors.to_vec(), value });
-            if self.layouts.len() >= Self::LONG {
+            if self.layouts.len() >= Self::MAX_LIST {
                 self.prune();
             }
         }

@@ -9,11 +9,11 @@ use crate::EstimatorError;
 use crate::log::Quantity as Reading;
 use crate::placement::cylinder::Quantity;
 use crate::placement::response::{Disturbance, Response};
-use crate::placement::site::Certainty;
+use crate::placement::steady::SteadyAccuracy;
 use crate::sensor::ParameterKind;
 
 /// A fault that a workshop should be able to find: 1 K, 1 bar.
-const FAULT: [f64; 2] = [1.0, 1e5];
+const REQUIRED_FAULT: [f64; 2] = [1.0, 1e5];
 /// Difference of air and wall that a coupling error is told at, K.
 const COUPLED_K: f64 = 10.0;
 /// Times after which a bias is told, s.
@@ -25,7 +25,7 @@ pub struct Failure {
     /// Index of the candidate.
     pub sensor: usize,
     /// What the other sensors know; `None`: they do not see every state.
-    pub without: Option<Certainty>,
+    pub without: Option<SteadyAccuracy>,
     /// The state that they do not see.
     pub unseen: Option<String>,
     /// Smallest constant error that is found in time, K or Pa.
@@ -74,9 +74,9 @@ impl Placement {
     pub(super) fn failures(&self, layout: &[usize]) -> Result<Vec<Failure>, EstimatorError> {
         let mut disturbances = vec![Disturbance::Leak];
         disturbances.extend(layout.iter().map(|&candidate| Disturbance::Reading { candidate }));
-        let response = self.site().response(layout, &disturbances)?;
-        let information = response.information(self.site().samples());
-        let detection = self.site().settings().detection;
+        let response = self.steady().response(layout, &disturbances)?;
+        let information = response.information(self.steady().samples());
+        let detection = self.steady().settings().detection;
         let failure = |(place, &sensor): (usize, &usize)| {
             let own = place + 1;
             let all = information[(own, own)];
@@ -86,9 +86,9 @@ impl Placement {
             let nearest = others.map(|other| (other, beside(other))).min_by(|a, b| a.1.total_cmp(&b.1));
             let (nearest, left) = nearest.unwrap_or((0, all));
             let isolated = if left > 0.0 { detection.smallest(left) } else { f64::INFINITY };
-            let fault = FAULT[usize::from(self.is_pressure(sensor))];
+            let fault = REQUIRED_FAULT[usize::from(self.is_pressure(sensor))];
             let others: Vec<usize> = layout.iter().copied().filter(|other| *other != sensor).collect();
-            let without = self.site().certainty(&others);
+            let without = self.steady().accuracy(&others);
             let unseen = match &without {
                 Err(EstimatorError::Unseen { state }) => Some(state.clone()),
                 _ => None,
@@ -120,11 +120,11 @@ impl Placement {
             let coupled_k = COUPLED_K * sd(ParameterKind::Coupling);
             sources.push((BiasSource::Coupling(sensor), reading, coupled_k));
         }
-        let sun_w = self.site().settings().observer.sun.prior_sd;
+        let sun_w = self.steady().settings().observer.sun.prior_sd;
         sources.push((BiasSource::Sun, Disturbance::Sun, sun_w));
         sources.retain(|(.., size)| *size > 0.0);
         let disturbances: Vec<Disturbance> = sources.iter().map(|(_, disturbance, _)| *disturbance).collect();
-        let response: Response = self.site().response(layout, &disturbances)?;
+        let response: Response = self.steady().response(layout, &disturbances)?;
         let at = |quantity| TIMES_S.map(|time_s| response.bias(quantity, self.samples(time_s)));
         let [gas, mass, leak] = [Quantity::GasTemperature, Quantity::Mass, Quantity::LeakRate].map(at);
         let bias = |(index, &(source, _, size)): (usize, &(BiasSource, Disturbance, f64))| Bias {
@@ -142,6 +142,6 @@ impl Placement {
     }
 
     fn samples(&self, time_s: f64) -> u64 {
-        (time_s / self.site().settings().conditions.interval_s).round().max(1.0) as u64
+        (time_s / self.steady().settings().conditions.interval_s).round().max(1.0) as u64
     }
 }

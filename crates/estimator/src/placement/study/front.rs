@@ -2,10 +2,10 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{ALL_LAYOUTS, Judged, Placement};
+use super::{ALL_LAYOUTS, EvaluatedLayout, Placement};
 use crate::EstimatorError;
 use crate::placement::criterion::Criterion;
-use crate::placement::search::{Method, Watch, search};
+use crate::placement::search::{Method, SearchControl, search};
 
 /// Layouts by cost and one number.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -52,30 +52,36 @@ impl Front {
 
 impl Placement {
     /// Cost against gas temperature, and against the delay of the leak.
-    pub(super) fn fronts(&self, judged: &[Judged], watch: &Watch) -> Result<(Front, Front), EstimatorError> {
+    pub(super) fn fronts(
+        &self,
+        judged: &[EvaluatedLayout],
+        control: &SearchControl,
+    ) -> Result<(Front, Front), EstimatorError> {
         let numbers = self.sensors();
         let complete = numbers.clone().map(|sensors| self.layouts(sensors)).sum::<f64>() <= ALL_LAYOUTS;
-        let of_judged = |value: &dyn Fn(&Judged) -> Option<f64>| {
-            let point =
-                |of: &Judged| Some(Point { sensors: of.sensors.clone(), cost: of.cost, value: value(of)? });
+        let of_judged = |value: &dyn Fn(&EvaluatedLayout) -> Option<f64>| {
+            let point = |of: &EvaluatedLayout| {
+                Some(Point { sensors: of.sensors.clone(), cost: of.cost, value: value(of)? })
+            };
             judged.iter().filter_map(point).collect::<Vec<_>>()
         };
-        let mut by_gas = of_judged(&|of| Some(of.certainty.gas_sd_k));
+        let mut by_gas = of_judged(&|of| Some(of.steady.gas_sd_k));
         let mut by_delay = of_judged(&|of| of.delay_s);
-        if !complete || watch.stop.load(std::sync::atomic::Ordering::Relaxed) {
+        if !complete || control.stop.load(std::sync::atomic::Ordering::Relaxed) {
             return Ok((Front::of(by_gas, false), Front::of(by_delay, false)));
         }
-        let worth = Criterion::GasTemperature.worth(&self.site, &self.courses)?;
+        let objective = Criterion::GasTemperature.objective(&self.steady, &self.scenarios)?;
         for sensors in numbers {
             let constraints = self.constraints(sensors);
             // A number that no layout can have adds nothing.
-            let Ok(found) = search(&worth, &constraints, Method::Exhaustive, f64::INFINITY, watch) else {
+            let Ok(found) = search(&objective, &constraints, Method::Exhaustive, f64::INFINITY, control)
+            else {
                 continue;
             };
             let delays: Vec<Option<f64>> = found
                 .layouts
                 .par_iter()
-                .map(|layout| self.site.delay_s(&layout.sensors, self.settings.leak_kg_s))
+                .map(|layout| self.steady.delay_s(&layout.sensors, self.settings.leak_kg_s))
                 .collect::<Result<_, _>>()?;
             for (layout, delay_s) in found.layouts.into_iter().zip(delays) {
                 let cost = constraints.cost(&layout.sensors);
@@ -84,7 +90,7 @@ impl Placement {
                 by_gas.push(point(layout.value.sqrt()));
             }
         }
-        let complete = !watch.stop.load(std::sync::atomic::Ordering::Relaxed);
+        let complete = !control.stop.load(std::sync::atomic::Ordering::Relaxed);
         Ok((Front::of(by_gas, complete), Front::of(by_delay, complete)))
     }
 }

@@ -1,22 +1,22 @@
 //! The study: which layouts are best, what the next sensor is worth, what is lost with one, and where on the wall it matters.
 //!
-//! Layouts are searched by one [`Criterion`], but never ranked by one alone: what is found is judged by all ([`Judged`]), beside the
+//! Layouts are searched by one [`Criterion`], but never ranked by one alone: what is found is judged by all ([`EvaluatedLayout`]), beside the
 //! best layouts by the other numbers. Each part says of itself what it is:
 //!
 //! | part | what it says |
 //! |---|---|
-//! | [`Numbered`] | best layouts of so many sensors, bound and gap, what the last sensor brought |
-//! | [`Judged`] | a layout by every number, and by every scenario |
+//! | [`BestLayouts`] | best layouts of so many sensors, bound and gap, what the last sensor brought |
+//! | [`EvaluatedLayout`] | a layout by every number, and by every scenario |
 //! | [`Front`] | layouts that none is better than at their cost |
 //! | [`Failure`] | what is left without a sensor, and how large a fault of it is found and told from all others |
 //! | [`Bias`] | what a sensor's offset, its mounting and the sun do to the estimates |
 //! | [`Position`] | one thermometer anywhere on the wall |
-//! | [`ByPaper`] | the same positions by the paper's measure |
+//! | [`PublishedComparison`] | the same positions by the paper's measure |
 //!
 //! A study that is stopped keeps what it has and says that it is partial.
+mod evaluated;
 mod failure;
 mod front;
-mod judged;
 mod position;
 mod published;
 
@@ -29,37 +29,38 @@ use super::PublishedSettings;
 use super::candidate::Candidates;
 use super::certificate::{CertificateSettings, certify};
 use super::constraints::Constraints;
-use super::course::Course;
 use super::criterion::Criterion;
-use super::search::{Layout, Method, Watch, search};
-use super::site::{Site, SiteSettings};
+use super::scenario::ScenarioAnalysis;
+use super::search::{Layout, Method, SearchControl, search};
+use super::steady::{SteadyAnalysis, SteadySettings};
 use crate::EstimatorError;
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
 
+pub use evaluated::EvaluatedLayout;
 pub use failure::{Bias, BiasSource, Failure};
 pub use front::{Front, Point};
-pub use judged::Judged;
 pub use position::Position;
-pub use published::ByPaper;
+pub use published::PublishedComparison;
 
 /// Layouts up to which all are looked at if no method is asked for.
 const ALL_LAYOUTS: f64 = 20_000.0;
 /// Layouts by one criterion that are judged by all others, for each number of sensors.
-pub const JUDGED: usize = 5;
+pub const LAYOUTS_EVALUATED: usize = 5;
 
 /// What is asked of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StudySettings {
     /// How layouts are judged at rest.
-    pub site: SiteSettings,
+    #[serde(rename = "site")]
+    pub steady: SteadySettings,
     /// Most sensors of a layout, those that it must have among them.
     pub sensors: usize,
     /// Largest cost of a layout.
     pub budget: f64,
     /// What is searched by.
     pub criterion: Criterion,
-    /// How; `None`: all layouts as long as there are no more than 20 000, or of a course 400, else greedy with swaps.
+    /// How; `None`: all layouts as long as there are no more than 20 000, or along a scenario 400, else greedy with swaps.
     pub method: Option<Method>,
     /// Part of the best within which layouts are listed, of the number itself.
     pub within: f64,
@@ -73,7 +74,7 @@ impl Default for StudySettings {
     /// Up to four sensors by the leak rate, at any cost, and the delay of 10 g/h.
     fn default() -> Self {
         Self {
-            site: SiteSettings::default(),
+            steady: SteadySettings::default(),
             sensors: 4,
             budget: f64::INFINITY,
             criterion: Criterion::LeakRate,
@@ -85,9 +86,9 @@ impl Default for StudySettings {
     }
 }
 
-/// The best layouts of so many sensors.
+/// The best layouts of a number of sensors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Numbered {
+pub struct BestLayouts {
     /// Number of sensors.
     pub sensors: usize,
     /// Layouts within the tolerance of the best, the best first, by the criterion, in its SI unit.
@@ -110,7 +111,7 @@ pub struct Numbered {
     pub partial: bool,
 }
 
-impl Numbered {
+impl BestLayouts {
     /// Distance of the best from the bound, relative to the best.
     pub fn gap(&self) -> Option<f64> {
         self.layouts.first().map(|best| (1.0 - self.bound / best.value).max(0.0))
@@ -125,7 +126,7 @@ impl Numbered {
 
 /// A number of sensors for which no layout was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Refused {
+pub struct Infeasible {
     /// Number of sensors.
     pub sensors: usize,
     /// Why.
@@ -175,11 +176,11 @@ pub struct Study {
     /// What was asked.
     pub settings: StudySettings,
     /// By number of sensors.
-    pub numbers: Vec<Numbered>,
+    pub numbers: Vec<BestLayouts>,
     /// Numbers of sensors for which there is no layout.
-    pub refused: Vec<Refused>,
+    pub refused: Vec<Infeasible>,
     /// Layouts by every number: the best by the criterion first, for each number of sensors.
-    pub judged: Vec<Judged>,
+    pub judged: Vec<EvaluatedLayout>,
     /// Cost against the standard deviation of the gas temperature.
     pub accuracy_front: Front,
     /// Cost against the delay of the leak.
@@ -191,7 +192,7 @@ pub struct Study {
     /// One thermometer beside what is required, anywhere.
     pub positions: Vec<Position>,
     /// The same positions by the paper's measure; `None`: it was stopped before.
-    pub published: Option<ByPaper>,
+    pub published: Option<PublishedComparison>,
     /// It was stopped before its end.
     pub partial: bool,
 }
@@ -200,8 +201,8 @@ pub struct Study {
 #[derive(Debug)]
 pub struct Placement {
     candidates: Candidates,
-    site: Site,
-    courses: Vec<Course>,
+    steady: SteadyAnalysis,
+    scenarios: Vec<ScenarioAnalysis>,
     vessel: Vessel,
     settings: StudySettings,
 }
@@ -217,14 +218,15 @@ impl Placement {
         scenarios: &[Scenario],
         settings: &StudySettings,
     ) -> Result<Self, EstimatorError> {
-        let site = Site::new(vessel, &candidates.sensors(), &settings.site)?;
-        let course =
-            |scenario| Course::new(vessel, scenario, &candidates.sensors(), &site.settings().observer);
-        let courses = scenarios.iter().map(course).collect::<Result<_, _>>()?;
+        let steady = SteadyAnalysis::new(vessel, &candidates.sensors(), &settings.steady)?;
+        let analysis = |scenario| {
+            ScenarioAnalysis::new(vessel, scenario, &candidates.sensors(), &steady.settings().observer)
+        };
+        let scenarios = scenarios.iter().map(analysis).collect::<Result<_, _>>()?;
         Ok(Self {
             candidates: candidates.clone(),
-            site,
-            courses,
+            steady,
+            scenarios,
             vessel: vessel.clone(),
             settings: settings.clone(),
         })
@@ -240,9 +242,9 @@ impl Placement {
         &self.vessel
     }
 
-    /// What judges at rest.
-    pub fn site(&self) -> &Site {
-        &self.site
+    /// The analysis at rest.
+    pub fn steady(&self) -> &SteadyAnalysis {
+        &self.steady
     }
 
     fn constraints(&self, sensors: usize) -> Constraints {
@@ -276,21 +278,21 @@ impl Placement {
 
     /// How layouts of so many sensors are searched.
     pub(crate) fn method(&self, sensors: usize) -> Method {
-        // A layout along a course takes a thousand times as long as one at rest.
-        let most = if let Criterion::Course(_) = self.settings.criterion { 400.0 } else { ALL_LAYOUTS };
+        // A layout along a scenario takes a thousand times as long as one at rest.
+        let most = if let Criterion::Scenario(_) = self.settings.criterion { 400.0 } else { ALL_LAYOUTS };
         let usual = if self.layouts(sensors) <= most { Method::Exhaustive } else { Method::Greedy };
         self.settings.method.unwrap_or(usual)
     }
 
-    /// Run the study. What is stopped by the watch is left out and said to be partial.
+    /// Run the study. What is stopped by the control is left out and said to be partial.
     ///
     /// # Errors
     /// The constraints contradict each other, or no layout sees what it should: the state is named.
-    pub fn run(&self, watch: &Watch) -> Result<Study, EstimatorError> {
-        let (numbers, refused) = self.numbers_and_refused(watch)?;
-        let judged = self.judge_all(&numbers, watch)?;
-        let (accuracy_front, delay_front) = self.fronts(&judged, watch)?;
-        let going = || !watch.stop.load(Ordering::Relaxed);
+    pub fn run(&self, control: &SearchControl) -> Result<Study, EstimatorError> {
+        let (numbers, refused) = self.numbers_and_infeasible(control)?;
+        let judged = self.evaluate_all(&numbers, control)?;
+        let (accuracy_front, delay_front) = self.fronts(&judged, control)?;
+        let going = || !control.stop.load(Ordering::Relaxed);
         let (failures, biases) = match numbers.last() {
             Some(most) if going() => {
                 let best = &most.layouts[0].sensors;
@@ -305,7 +307,7 @@ impl Placement {
             vessel: self.vessel.name.clone(),
             candidates: list.iter().map(|candidate| candidate.sensor.name.clone()).collect(),
             heights_m: list.iter().map(|candidate| candidate.height_m).collect(),
-            scenarios: self.courses.iter().map(|course| course.name().to_owned()).collect(),
+            scenarios: self.scenarios.iter().map(|scenario| scenario.name().to_owned()).collect(),
             settings: self.settings.clone(),
             numbers,
             refused,
@@ -324,18 +326,21 @@ impl Placement {
     ///
     /// # Errors
     /// As [`Placement::run`].
-    pub fn numbers(&self, watch: &Watch) -> Result<Vec<Numbered>, EstimatorError> {
-        Ok(self.numbers_and_refused(watch)?.0)
+    pub fn numbers(&self, control: &SearchControl) -> Result<Vec<BestLayouts>, EstimatorError> {
+        Ok(self.numbers_and_infeasible(control)?.0)
     }
 
-    fn numbers_and_refused(&self, watch: &Watch) -> Result<(Vec<Numbered>, Vec<Refused>), EstimatorError> {
+    fn numbers_and_infeasible(
+        &self,
+        control: &SearchControl,
+    ) -> Result<(Vec<BestLayouts>, Vec<Infeasible>), EstimatorError> {
         let most = self.settings.sensors;
         let at_any_cost = self.candidates.constraints(most, f64::INFINITY);
         at_any_cost.validate(self.candidates.list.len())?;
-        let mut numbers: Vec<Numbered> = Vec::new();
+        let mut numbers: Vec<BestLayouts> = Vec::new();
         let mut errors = Vec::new();
         for sensors in self.sensors() {
-            match self.numbered(sensors, watch) {
+            match self.best_layouts(sensors, control) {
                 Ok(Some(mut number)) => {
                     let before = numbers.last().map(|before| before.layouts[0].value);
                     number.marginal = before.map(|before| number.layouts[0].value / before - 1.0);
@@ -345,7 +350,7 @@ impl Placement {
                 // Fewer or more may do: what is dear may not be, what is few may not see.
                 Err(error) => errors.push((sensors, error)),
             }
-            if watch.stop.load(Ordering::Relaxed) {
+            if control.stop.load(Ordering::Relaxed) {
                 return Ok((numbers, Vec::new()));
             }
         }
@@ -353,25 +358,29 @@ impl Placement {
             return Err(no_number(errors));
         }
         let refused =
-            |(sensors, error): (usize, EstimatorError)| Refused { sensors, reason: error.to_string() };
+            |(sensors, error): (usize, EstimatorError)| Infeasible { sensors, reason: error.to_string() };
         Ok((numbers, errors.into_iter().map(refused).collect()))
     }
 
     /// `None`: it was stopped before any layout was looked at.
-    fn numbered(&self, sensors: usize, watch: &Watch) -> Result<Option<Numbered>, EstimatorError> {
+    fn best_layouts(
+        &self,
+        sensors: usize,
+        control: &SearchControl,
+    ) -> Result<Option<BestLayouts>, EstimatorError> {
         let constraints = self.constraints(sensors);
         let criterion = self.settings.criterion;
-        let worth = criterion.worth(&self.site, &self.courses)?;
+        let objective = criterion.objective(&self.steady, &self.scenarios)?;
         let method = self.method(sensors);
-        // The worth is the square of the number that people read.
+        // The objective is the square of the number that people read.
         let within = (1.0 + self.settings.within).powi(2) - 1.0;
-        let found = search(&worth, &constraints, method, within, watch)?;
-        let is_stopped = watch.stop.load(Ordering::Relaxed);
+        let found = search(&objective, &constraints, method, within, control)?;
+        let is_stopped = control.stop.load(Ordering::Relaxed);
         if found.layouts.is_empty() {
             return if is_stopped { Ok(None) } else { Err(self.nothing_found(&constraints)) };
         }
         let certificate = if criterion.is_convex() && !is_stopped {
-            Some(certify(&worth, &constraints, &CertificateSettings::default())?)
+            Some(certify(&objective, &constraints, &CertificateSettings::default())?)
         } else {
             None
         };
@@ -382,7 +391,7 @@ impl Placement {
             (None, None) => (0.0, Proof::None),
         };
         let root = |layout: Layout| Layout { value: layout.value.sqrt(), ..layout };
-        Ok(Some(Numbered {
+        Ok(Some(BestLayouts {
             sensors,
             layouts: found.layouts.into_iter().map(root).collect(),
             bound,
@@ -401,11 +410,11 @@ impl Placement {
         let mut all = constraints.free(self.candidates.list.len());
         all.extend(&constraints.must);
         all.sort_unstable();
-        if let Err(error) = self.site.certainty(&all) {
+        if let Err(error) = self.steady.accuracy(&all) {
             return error;
         }
         match self.cheapest_allowed(constraints) {
-            Some(layout) => self.site.slow().unseen_error(&layout),
+            Some(layout) => self.steady.slow().unseen_error(&layout),
             None => EstimatorError::PlacementConstraints {
                 what: format!(
                     "of {} sensors none meets groups, distances and the budget {} together",
@@ -418,7 +427,7 @@ impl Placement {
     /// A layout that is allowed, whatever it is worth.
     fn cheapest_allowed(&self, constraints: &Constraints) -> Option<Vec<usize>> {
         let costs = super::search::Costs(&constraints.costs);
-        let found = search(&costs, constraints, Method::Greedy, 0.0, &Watch::default()).ok()?;
+        let found = search(&costs, constraints, Method::Greedy, 0.0, &SearchControl::default()).ok()?;
         found.best().map(|best| best.sensors.clone())
     }
 }

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::Placement;
 use crate::EstimatorError;
 use crate::placement::candidate::Status;
-use crate::placement::course::CourseNumber;
-use crate::placement::site::Certainty;
+use crate::placement::scenario::ScenarioMeasure;
+use crate::placement::steady::SteadyAccuracy;
 
 /// A candidate alone with what is required.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,8 @@ pub struct Position {
     /// Height above the outer bottom along the axis, m; `None`: not on the wall.
     pub height_m: Option<f64>,
     /// At rest; `None`: it does not see every state.
-    pub certainty: Option<Certainty>,
+    #[serde(rename = "certainty")]
+    pub steady: Option<SteadyAccuracy>,
     /// Time until the leak of the settings is found, s.
     pub delay_s: Option<f64>,
     /// Mean standard deviation of the gas temperature with model error in each scenario, K.
@@ -34,15 +35,19 @@ impl Placement {
             layout.push(sensor);
             layout.sort_unstable();
             let height_m = list[sensor].height_m;
-            let Ok(judged) = self.judge(&layout) else {
-                return Position { sensor, height_m, certainty: None, delay_s: None, robust_k: Vec::new() };
+            let Ok(judged) = self.evaluate(&layout) else {
+                return Position { sensor, height_m, steady: None, delay_s: None, robust_k: Vec::new() };
             };
             Position {
                 sensor,
                 height_m,
-                certainty: Some(judged.certainty),
+                steady: Some(judged.steady),
                 delay_s: judged.delay_s,
-                robust_k: judged.along.iter().map(|along| CourseNumber::Schmidt.of(along)).collect(),
+                robust_k: judged
+                    .scenarios
+                    .iter()
+                    .map(|scenario| ScenarioMeasure::Schmidt.of(scenario))
+                    .collect(),
             }
         };
         let free: Vec<usize> = (0..list.len()).filter(|index| !required.contains(index)).collect();

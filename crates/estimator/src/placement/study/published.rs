@@ -7,14 +7,14 @@ use crate::placement::{PublishedDuel, PublishedRecord, PublishedScore, published
 
 /// Positions by the fit of a first-order transfer function.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ByPaper {
+pub struct PublishedComparison {
     /// Each thermometer among the candidates.
     pub scores: Vec<PublishedScore>,
     /// The paper's question on each record: the valve against the shoulder; empty where one of them is no candidate.
     pub valve_against_shoulder: Vec<(PublishedRecord, PublishedDuel)>,
 }
 
-impl ByPaper {
+impl PublishedComparison {
     /// The thermometer of a layout that does best on a record, by its mean square error; `None`: the layout has none.
     pub fn best_of(&self, names: &[&str], record: PublishedRecord) -> Option<&PublishedScore> {
         let of_layout = self.scores.iter().filter(|score| names.contains(&&*score.name));
@@ -27,10 +27,10 @@ impl Placement {
     ///
     /// # Errors
     /// As [`published_scores`].
-    pub(crate) fn by_paper(&self) -> Result<ByPaper, EstimatorError> {
+    pub(crate) fn by_paper(&self) -> Result<PublishedComparison, EstimatorError> {
         let found = published_scores(&self.vessel, &self.candidates.sensors(), &self.settings.published)?;
         let duel = |record| Some((record, found.duel("valve", "shoulder", record)?));
         let valve_against_shoulder = PublishedRecord::ALL.into_iter().filter_map(duel).collect();
-        Ok(ByPaper { scores: found.scores, valve_against_shoulder })
+        Ok(PublishedComparison { scores: found.scores, valve_against_shoulder })
     }
 }

@@ -122,8 +122,7 @@ impl Case {
         let truth = self.course(next).gas_mean_k;
         let file = vessel::presets::load("nitrogen-20l").unwrap();
         let before = run(&file, next);
-        let vessel = calibrated.calibrated_vessel(0, "2026-01-01T00:00:00Z").unwrap().vessel;
-        let after = run(&vessel, &calibrated.applied_to_scenario(0, next).unwrap());
+        let after = run(&calibrated.applied(0, &file), &calibrated.applied_to_scenario(0, next).unwrap());
         (rms(&truth, &before.gas_mean_k), rms(&truth, &after.gas_mean_k))
     }
 }

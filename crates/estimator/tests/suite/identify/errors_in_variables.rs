@@ -3,7 +3,7 @@
 //! Six records (regular steps, a wandering input at three sampling rates, a day's wave), each drawn many times. The runs here
 //! resolve a bias of one percent where the other methods have more; the example `identify_monte_carlo` runs more.
 use cylwatch_estimator::consistency::{Coverage, Significance};
-use cylwatch_estimator::identify::{InputCourse, Method};
+use cylwatch_estimator::identify::{InputModel, Method};
 
 use super::noisy::{CASES, Case, Study, study};
 
@@ -76,7 +76,7 @@ fn instruments_from_a_second_sensor_need_no_variance() {
 #[test]
 fn the_likelihood_of_a_random_walk_is_not_biased_where_the_input_wanders() {
     let case = &CASES[3];
-    let found = study(case, 0..36, |_| case.likely(InputCourse::RandomWalk));
+    let found = study(case, 0..36, |_| case.likely(InputModel::RandomWalk));
     assert!(found.failures.is_empty(), "{:?}", found.failures);
     let ((mean, error, sd), compensated) =
         (found.pole.bias(), study(case, 0..36, |_| case.compensated()).pole.bias());
@@ -91,8 +91,8 @@ fn the_likelihood_of_a_random_walk_is_not_biased_where_the_input_wanders() {
 fn the_likelihood_of_a_smooth_input_is_that_of_an_integrated_walk() {
     // A day's wave is no random walk: that prior slows the pole of every record, the smooth one does not.
     let case = &CASES[5];
-    let smooth = study(case, 0..8, |_| case.likely(InputCourse::IntegratedRandomWalk));
-    let rough = study(case, 0..8, |_| case.likely(InputCourse::RandomWalk));
+    let smooth = study(case, 0..8, |_| case.likely(InputModel::IntegratedRandomWalk));
+    let rough = study(case, 0..8, |_| case.likely(InputModel::RandomWalk));
     assert!(smooth.failures.is_empty() && rough.failures.is_empty());
     for (smooth, rough) in smooth.pole.relative.iter().zip(&rough.pole.relative) {
         println!("pole {:+.2} % smooth, {:+.2} % rough", 100.0 * smooth, 100.0 * rough);

@@ -1,6 +1,6 @@
 //! Data without noise: every method finds the system, whatever the samples, hold, order and start.
 use cylwatch_estimator::identify::{
-    Data, Hold, InitialState, InputCourse, Method, Settings, StartMethod, Structure, identify,
+    Data, Hold, InitialState, InputModel, Method, Settings, StartMethod, Structure, identify,
 };
 use nalgebra::Complex;
 
@@ -23,7 +23,7 @@ fn methods(data: &Data) -> Vec<(&'static str, Method)> {
             Method::MaximumLikelihood {
                 input_variance: 1e-14,
                 output_variance: 1e-14,
-                course: InputCourse::RandomWalk,
+                input_model: InputModel::RandomWalk,
             },
         ),
     ]

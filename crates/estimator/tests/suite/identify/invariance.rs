@@ -1,7 +1,7 @@
 //! Results do not depend on units, and two methods that minimise the same thing agree.
 use approx::assert_relative_eq;
 use cylwatch_estimator::identify::{
-    Data, Hold, Identified, InputCourse, Method, Parameter, Settings, StartMethod, Structure, identify,
+    Data, Hold, Identified, InputModel, Method, Parameter, Settings, StartMethod, Structure, identify,
 };
 
 use super::system::{System, irregular, levels, normal, random, regular};
@@ -32,7 +32,7 @@ fn methods(second: &[f64], input_unit: f64, output_unit: f64) -> Vec<Method> {
         Method::SecondSensor { input: second.iter().map(|u| u * input_unit).collect() },
         Method::BiasCompensated { input_variance, output_variance },
         Method::CompensatedInstruments { input_variance },
-        Method::MaximumLikelihood { input_variance, output_variance, course: InputCourse::RandomWalk },
+        Method::MaximumLikelihood { input_variance, output_variance, input_model: InputModel::RandomWalk },
     ]
 }
 

@@ -1,7 +1,7 @@
 //! Six records with noise on input and output, on which a method that ignores the input's noise is biased more and more.
 use cylwatch_estimator::consistency::Coverage;
 use cylwatch_estimator::identify::{
-    Data, Hold, Identified, IdentifyError, InputCourse, Interval, Method, Parameter, Settings, Structure,
+    Data, Hold, Identified, IdentifyError, InputModel, Interval, Method, Parameter, Settings, Structure,
     identify,
 };
 use cylwatch_thermal::units::HOUR_S;
@@ -99,9 +99,9 @@ impl Case {
     }
 
     /// The method that knows the input's kind as well.
-    pub(crate) fn likely(&self, course: InputCourse) -> Method {
+    pub(crate) fn likely(&self, input_model: InputModel) -> Method {
         let (input_variance, output_variance) = self.variances();
-        Method::MaximumLikelihood { input_variance, output_variance, course }
+        Method::MaximumLikelihood { input_variance, output_variance, input_model }
     }
 }
 

@@ -34,7 +34,7 @@ fn a_known_dead_time_between_the_samples_is_exact() {
         let variances = Method::MaximumLikelihood {
             input_variance: 1e-14,
             output_variance: 1e-14,
-            course: Default::default(),
+            input_model: Default::default(),
         };
         assert!(error(&found(&data, &structure, &variances), &system) < 1e-8);
     }
@@ -114,7 +114,7 @@ fn a_settled_start_is_found_without_parameters_of_its_own() {
     let likely = Method::MaximumLikelihood {
         input_variance: 1e-14,
         output_variance: 1e-14,
-        course: Default::default(),
+        input_model: Default::default(),
     };
     assert!(error(&found(&data, &structure, &likely), &system) < 1e-8);
 }
@@ -131,7 +131,7 @@ fn a_given_start_is_used_and_a_wrong_one_shows() {
     methods.push(Method::MaximumLikelihood {
         input_variance: 1e-14,
         output_variance: 1e-14,
-        course: Default::default(),
+        input_model: Default::default(),
     });
     for method in methods {
         let found = found(&data, &Structure::new(2, 1).with_initial(given.clone()), &method);

@@ -26,11 +26,11 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::JudgeError;
-use super::said::Said;
-use crate::world::{Snapshot, Told};
+use super::statement::Statement;
+use crate::world::{OperatorData, Snapshot};
 
 pub use monitored::monitor;
-pub use observed::observer;
+pub(crate) use observed::observer;
 
 /// A row as it arrives.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ pub trait Candidate: Send + Sync {
     ///
     /// # Errors
     /// What it refuses.
-    fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError>;
+    fn start(&self, data: &OperatorData) -> Result<Box<dyn CandidateRun>, JudgeError>;
 
     /// Probability of a leak from which on it decides for one.
     fn decision_level(&self) -> f64 {
@@ -63,18 +63,18 @@ pub trait Candidate: Send + Sync {
 }
 
 /// A candidate at work on one log.
-pub trait Contender {
+pub trait CandidateRun {
     /// Take a row and append what is said now: once for each row that is ready.
     ///
     /// # Errors
     /// What it cannot go on with.
-    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError>;
+    fn step(&mut self, row: &Row<'_>, statements: &mut Vec<Statement>) -> Result<(), JudgeError>;
 
     /// The log has ended: what was held back.
     ///
     /// # Errors
-    /// As [`Contender::step`].
-    fn finish(&mut self, _said: &mut Vec<Said>) -> Result<(), JudgeError> {
+    /// As [`CandidateRun::step`].
+    fn finish(&mut self, _statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         Ok(())
     }
 
@@ -96,7 +96,7 @@ pub trait Contender {
 }
 
 /// Makes a candidate from the settings of a plan.
-pub type Kind = fn(&Value) -> Result<Arc<dyn Candidate>, JudgeError>;
+pub(crate) type Kind = fn(&Value) -> Result<Arc<dyn Candidate>, JudgeError>;
 
 /// Kinds of candidates by name.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Candidate, Contender, Row, overlaid};
+use super::{Candidate, CandidateRun, Row, overlaid};
 use crate::detector::evidence::Tails;
 use crate::detector::monitor::alarm::{AlarmName, AlarmSettings};
 use crate::detector::monitor::{
@@ -12,9 +12,9 @@ use crate::detector::monitor::{
 use crate::estimator::observer::Outcome;
 use crate::judge::JudgeError;
 use crate::judge::measures::Class;
-use crate::judge::said::{Decision, Estimates, Innovation, Said, normal};
+use crate::judge::statement::{Decision, Estimates, Innovation, Statement, normal};
 use crate::tails::Commissioned;
-use crate::world::{Snapshot, Told};
+use crate::world::{OperatorData, Snapshot};
 
 /// Operational limit as a part of the stated filling: 160 bar of 200.
 const LIMIT: f64 = 0.8;
@@ -48,15 +48,15 @@ struct Monitors {
 }
 
 impl Candidate for Monitors {
-    fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError> {
+    fn start(&self, data: &OperatorData) -> Result<Box<dyn CandidateRun>, JudgeError> {
         let mut settings = MonitorSettings::default();
-        settings.limits.operational_pa = LIMIT * super::statistic::stated_filling(told).pressure_pa;
+        settings.limits.operational_pa = LIMIT * super::statistic::stated_filling(data).pressure_pa;
         settings.alarms = AlarmSettings::with_limit(settings.limits.operational_pa);
         let settings = overlaid(&settings, &self.settings)?;
-        let monitor = begun(told, &settings)?;
-        let pressure = told.sensors.iter().position(|sensor| sensor.name == "pressure");
+        let monitor = begun(data, &settings)?;
+        let pressure = data.sensors.iter().position(|sensor| sensor.name == "pressure");
         Ok(Box::new(Monitored {
-            told: told.clone(),
+            data: data.clone(),
             settings,
             monitor,
             pressure,
@@ -71,14 +71,14 @@ impl Candidate for Monitors {
 }
 
 /// A monitor before its first row, told of the discharges that are ordered.
-fn begun(told: &Told, settings: &MonitorSettings) -> Result<Monitor, JudgeError> {
-    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
-    told.announced.iter().for_each(|(from_s, until_s)| monitor.announce(*from_s, *until_s));
+fn begun(data: &OperatorData, settings: &MonitorSettings) -> Result<Monitor, JudgeError> {
+    let mut monitor = Monitor::new(&data.vessel, &data.sensors, &data.commissioning, settings)?;
+    data.announced.iter().for_each(|(from_s, until_s)| monitor.announce(*from_s, *until_s));
     Ok(monitor)
 }
 
 struct Monitored {
-    told: Told,
+    data: OperatorData,
     settings: MonitorSettings,
     monitor: Monitor,
     /// Index of the pressure.
@@ -89,20 +89,20 @@ struct Monitored {
     old: Option<Vec<u8>>,
 }
 
-impl Contender for Monitored {
-    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+impl CandidateRun for Monitored {
+    fn step(&mut self, row: &Row<'_>, statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         let outputs = if row.historical {
             self.monitor.step_historical(row.stamp_s, row.readings)?
         } else {
             self.monitor.step(row.stamp_s, row.readings)?
         };
-        self.say(&outputs, said);
+        self.say(&outputs, statements);
         Ok(())
     }
 
-    fn finish(&mut self, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+    fn finish(&mut self, statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         let outputs = self.monitor.finish()?;
-        self.say(&outputs, said);
+        self.say(&outputs, statements);
         Ok(())
     }
 
@@ -116,7 +116,7 @@ impl Contender for Monitored {
             (Snapshot::Old, Some(old)) => old.clone(),
             _ => self.monitor.save().map_err(crate::detector::DetectorError::from)?,
         };
-        let mut sensors = self.told.sensors.clone();
+        let mut sensors = self.data.sensors.clone();
         match snapshot {
             Snapshot::Truncated => bytes.truncate(bytes.len() / 2),
             Snapshot::Corrupted => {
@@ -127,34 +127,34 @@ impl Contender for Monitored {
             Snapshot::Foreign => {
                 sensors.remove(0);
                 let other =
-                    Monitor::new(&self.told.vessel, &sensors, &self.told.commissioning, &self.settings)?;
+                    Monitor::new(&self.data.vessel, &sensors, &self.data.commissioning, &self.settings)?;
                 bytes = other.save().map_err(crate::detector::DetectorError::from)?;
             }
             Snapshot::Current | Snapshot::Old => {}
         }
-        let Told { vessel, sensors, .. } = &self.told;
+        let OperatorData { vessel, sensors, .. } = &self.data;
         self.monitor = match Monitor::restore(vessel, sensors, &self.settings, &bytes) {
             Ok(monitor) => monitor,
             Err(error) if matches!(snapshot, Snapshot::Current | Snapshot::Old) => return Err(error.into()),
-            Err(_) => begun(&self.told, &self.settings)?,
+            Err(_) => begun(&self.data, &self.settings)?,
         };
         Ok(())
     }
 }
 
 impl Monitored {
-    fn say(&mut self, outputs: &[Output], said: &mut Vec<Said>) {
+    fn say(&mut self, outputs: &[Output], statements: &mut Vec<Statement>) {
         for (index, output) in outputs.iter().enumerate() {
             let decision = self.decision(output, index + 1 == outputs.len());
-            said.push(Said {
+            statements.push(Statement {
                 stamp_s: output.stamp_s,
                 decision: Some(decision),
                 estimates: estimates(output),
-                ..Said::default()
+                ..Statement::default()
             });
         }
         // The observer inside stands at the last row.
-        let Some(last) = said.last_mut().filter(|_| !outputs.is_empty()) else { return };
+        let Some(last) = statements.last_mut().filter(|_| !outputs.is_empty()) else { return };
         let innovations = self.monitor.observer().innovations();
         last.innovation = self
             .pressure

@@ -3,17 +3,17 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Candidate, Contender, Row, overlaid};
+use super::{Candidate, CandidateRun, Row, overlaid};
 use crate::estimator::observer::{Observer, ObserverSettings, Outcome};
 use crate::judge::JudgeError;
-use crate::judge::said::{Estimates, Innovation, Said, normal};
-use crate::world::Told;
+use crate::judge::statement::{Estimates, Innovation, Statement, normal};
+use crate::world::OperatorData;
 
 /// The observer, with the settings of a plan laid over its own.
 ///
 /// # Errors
 /// A setting that it does not have.
-pub fn observer(settings: &Value) -> Result<Arc<dyn Candidate>, JudgeError> {
+pub(crate) fn observer(settings: &Value) -> Result<Arc<dyn Candidate>, JudgeError> {
     Ok(Arc::new(Observers { settings: overlaid(&ObserverSettings::default(), settings)? }))
 }
 
@@ -28,16 +28,16 @@ struct Observed {
 }
 
 impl Candidate for Observers {
-    fn start(&self, told: &Told) -> Result<Box<dyn Contender>, JudgeError> {
-        let observer = Observer::new(&told.vessel, &told.sensors, &told.commissioning, &self.settings)?;
-        let pressure = told.sensors.iter().position(|sensor| sensor.name == "pressure");
+    fn start(&self, data: &OperatorData) -> Result<Box<dyn CandidateRun>, JudgeError> {
+        let observer = Observer::new(&data.vessel, &data.sensors, &data.commissioning, &self.settings)?;
+        let pressure = data.sensors.iter().position(|sensor| sensor.name == "pressure");
         Ok(Box::new(Observed { observer, pressure, last_s: f64::NEG_INFINITY }))
     }
 }
 
-impl Contender for Observed {
+impl CandidateRun for Observed {
     /// A row that is not later than the one before is left out, as the observer demands.
-    fn step(&mut self, row: &Row<'_>, said: &mut Vec<Said>) -> Result<(), JudgeError> {
+    fn step(&mut self, row: &Row<'_>, statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         if row.stamp_s <= self.last_s {
             return Ok(());
         }
@@ -48,7 +48,7 @@ impl Contender for Observed {
             .pressure
             .and_then(|pressure| innovations.get(pressure))
             .filter(|innovation| innovation.outcome != Outcome::Missing);
-        said.push(Said {
+        statements.push(Statement {
             stamp_s: row.stamp_s,
             estimates: Estimates {
                 mass_kg: Some(normal(estimate.mass_kg, estimate.mass_sd_kg)),
@@ -59,7 +59,7 @@ impl Contender for Observed {
             },
             innovation: innovation.map(|innovation| Innovation { nu: innovation.nu, s: innovation.s }),
             free_mass_kg: self.observer.leaks().last().map(|leak| leak.mass_kg),
-            ..Said::default()
+            ..Statement::default()
         });
         Ok(())
     }

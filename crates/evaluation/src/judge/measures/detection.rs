@@ -9,7 +9,7 @@ use super::Run;
 /// Times within which a leak should be found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Horizon {
+pub(crate) enum Horizon {
     /// 1 h.
     Hour,
     /// 24 h.
@@ -45,7 +45,7 @@ impl fmt::Display for Horizon {
 
 /// `hits` of `trials`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Proportion {
+pub(crate) struct Proportion {
     /// How often it happened.
     pub hits: u64,
     /// How often it could have.
@@ -64,7 +64,7 @@ impl Proportion {
 
 /// How many leaks of one rate were found within a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Detection {
+pub(crate) struct Detection {
     /// Rate, part of the gas per hour.
     pub part_per_h: f64,
     /// Found of those that were watched for so long, or found before.

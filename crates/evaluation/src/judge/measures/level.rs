@@ -18,9 +18,9 @@ use serde::{Deserialize, Serialize};
 use crate::{EvaluationError, error::positive};
 
 /// Part of the runs that makes the tail, and the fewest and most runs of it.
-const TAIL: f64 = 0.3;
-const FEWEST: usize = 3;
-const MOST: usize = 40;
+const TAIL_PART: f64 = 0.3;
+const MIN_TAIL_RUNS: usize = 3;
+const MAX_TAIL_RUNS: usize = 40;
 
 /// A threshold and what stands behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ pub struct AlarmLevel {
 ///
 /// # Errors
 /// Times are not positive, or fewer than five runs have a value.
-pub fn alarm_level(
+pub(crate) fn alarm_level(
     largest: &[f64],
     length_s: f64,
     between_alarms_s: f64,
@@ -48,10 +48,11 @@ pub fn alarm_level(
     positive("between_alarms_s", between_alarms_s)?;
     let mut sorted: Vec<f64> = largest.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_by(|a, b| b.total_cmp(a));
-    if sorted.len() < FEWEST + 2 {
-        return Err(EvaluationError::TooFewRuns { found: sorted.len(), needed: FEWEST + 2 });
+    if sorted.len() < MIN_TAIL_RUNS + 2 {
+        return Err(EvaluationError::TooFewRuns { found: sorted.len(), needed: MIN_TAIL_RUNS + 2 });
     }
-    let tail = ((TAIL * sorted.len() as f64).round() as usize).clamp(FEWEST, MOST.min(sorted.len() - 1));
+    let tail = ((TAIL_PART * sorted.len() as f64).round() as usize)
+        .clamp(MIN_TAIL_RUNS, MAX_TAIL_RUNS.min(sorted.len() - 1));
     let level = sorted[tail];
     let scale = sorted[..tail].iter().map(|value| value - level).sum::<f64>() / tail as f64;
     let factor = between_alarms_s / length_s;

@@ -37,7 +37,7 @@ impl Run {
 }
 
 /// Runs by the rate of their leak, increasing.
-pub fn by_rate(runs: &[Run]) -> Vec<(f64, Vec<Run>)> {
+pub(crate) fn by_rate(runs: &[Run]) -> Vec<(f64, Vec<Run>)> {
     let mut sorted = runs.to_vec();
     sorted.sort_by(|a, b| a.part_per_h.total_cmp(&b.part_per_h));
     let group = |chunk: &[Run]| (chunk[0].part_per_h, chunk.to_vec());

@@ -14,7 +14,7 @@ use super::normal_quantile;
 
 /// A time to an event, or how long none came.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Observed {
+pub(crate) enum Observed {
     /// The event came after so many s.
     After(f64),
     /// It had not come after so many s, and nobody knows what came then.
@@ -23,7 +23,7 @@ pub enum Observed {
 
 /// What is left against time: a staircase.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Survival {
+pub(crate) struct Survival {
     /// Times of events, increasing.
     steps: Vec<Step>,
 }

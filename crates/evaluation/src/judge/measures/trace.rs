@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 /// A value above all before it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Highest {
+pub(crate) struct Highest {
     /// When, s.
     pub time_s: f64,
     /// The value.

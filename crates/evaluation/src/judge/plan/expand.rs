@@ -12,7 +12,7 @@ use crate::world::{FaultRow, Leak, Overlay, Request, SimulationKey};
 /// Shortest and longest log, s.
 const LENGTHS_S: std::ops::RangeInclusive<f64> = 900.0..=400.0 * DAY_S;
 /// Turns between the beginnings of two groups: prime to the numbers of kinds of all axes.
-const APART: usize = 13;
+const GROUP_STRIDE: usize = 13;
 /// Most rows of one log: a year of 2 min is 0.26 million, and a row takes about 150 bytes.
 const MOST_ROWS: f64 = 5e6;
 
@@ -52,7 +52,8 @@ pub(super) fn tasks(plan: &Plan, check: &Check<'_>) -> Result<Vec<Task>, JudgeEr
             for seed in first..=last {
                 let count = pattern.combinations();
                 // Groups begin their turns apart, so that not all of them pair the same kinds.
-                let turn = |number: usize| (seed - first) as usize * count + number + APART * group_index;
+                let turn =
+                    |number: usize| (seed - first) as usize * count + number + GROUP_STRIDE * group_index;
                 for family in pattern.families(turn) {
                     let remedy = "must match `tune` or `judge`, and not both";
                     let role =

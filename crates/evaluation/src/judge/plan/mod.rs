@@ -16,7 +16,8 @@ use sha2::{Digest, Sha256};
 pub use document::{CandidateDocument, GroupDocument, OverlayDocument, PlanDocument};
 pub use expand::{Task, Unit};
 pub use extent::Extent;
-pub use pattern::{Axis, Pattern};
+pub use pattern::Axis;
+pub(crate) use pattern::Pattern;
 
 use super::JudgeError;
 use super::candidate::{Candidate, Registry};
@@ -30,7 +31,7 @@ pub struct Plan {
     /// Kinds of families that judge instead of tuning.
     pub left_out: Vec<Axis>,
     /// Candidates with their names, in the order of the plan.
-    pub candidates: Vec<Named>,
+    pub candidates: Vec<PlanCandidate>,
     /// All worlds, in the order of the plan.
     pub tasks: Vec<Task>,
     tune: Vec<Pattern>,
@@ -39,7 +40,7 @@ pub struct Plan {
 
 /// A candidate by its name.
 #[derive(Clone)]
-pub struct Named {
+pub struct PlanCandidate {
     /// Name in the table.
     pub name: String,
     /// The candidate.
@@ -155,9 +156,9 @@ fn candidates(
     check: &Check<'_>,
     document: &PlanDocument,
     registry: &Registry,
-) -> Result<Vec<Named>, JudgeError> {
+) -> Result<Vec<PlanCandidate>, JudgeError> {
     check.that(!document.candidate.is_empty(), "candidate", "none", "give at least one [[candidate]]")?;
-    let mut all: Vec<Named> = Vec::new();
+    let mut all: Vec<PlanCandidate> = Vec::new();
     for CandidateDocument { name, kind, settings } in &document.candidate {
         let unique = all.iter().all(|known| known.name != *name);
         check.that(
@@ -173,7 +174,7 @@ fn candidates(
         let candidate = make(&settings).map_err(|error| {
             check.refuse(&format!("candidate.{name}.settings"), &settings, &error.to_string())
         })?;
-        all.push(Named { name: name.clone(), candidate });
+        all.push(PlanCandidate { name: name.clone(), candidate });
     }
     Ok(all)
 }

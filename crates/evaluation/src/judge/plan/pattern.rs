@@ -18,7 +18,7 @@ struct Part<T> {
 
 /// A pattern of families.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Pattern {
+pub(crate) struct Pattern {
     vessel: Part<VesselKind>,
     climate: Part<Climate>,
     gas: Part<GasKind>,

@@ -45,13 +45,11 @@ fn a_group_is_families_times_seeds_times_sets_times_overlays() {
 #[test]
 fn every_file_of_plans_is_built_in_and_passes_its_checks() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/plans");
-    assert_eq!(std::fs::read_dir(folder).unwrap().count(), presets::names().count());
-    for name in presets::names() {
-        let plan = parse(presets::text(name).unwrap(), &[]).unwrap_or_else(|error| panic!("{name}: {error}"));
-        assert_eq!(
-            std::fs::read_to_string(format!("{folder}/{name}.toml")).ok().as_deref(),
-            presets::text(name)
-        );
+    assert_eq!(std::fs::read_dir(folder).unwrap().count(), presets::FILES.names().count());
+    for name in presets::FILES.names() {
+        let text = presets::FILES.text(name).unwrap();
+        let plan = parse(text, &[]).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(std::fs::read_to_string(format!("{folder}/{name}.toml")).unwrap(), text);
         let Extent { worlds, cylinder_years, simulations, simulated_years, core_s, .. } = plan.extent();
         assert!(worlds >= simulations && cylinder_years >= simulated_years && core_s > 0.0);
     }

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use super::Moment;
 use crate::detector::prognosis::Reaction;
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 use crate::world::World;
 
 /// Ways to contradict oneself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Rule {
+pub(crate) enum Rule {
     /// The probability is no number between 0 and 1.
     NoProbability,
     /// The verdict is tight, and the probability of a leak is at or above the decision's level.
@@ -60,7 +60,7 @@ impl Rule {
     ];
 
     /// Words for a table.
-    pub(crate) const fn words(self) -> &'static str {
+    pub(crate) const fn description(self) -> &'static str {
         match self {
             Self::NoProbability => "probability is none",
             Self::TightButProbable => "tight, but a leak is probable",
@@ -92,9 +92,10 @@ pub struct Disagreements {
 
 impl Disagreements {
     /// Which rules are broken, and in how many rows.
-    pub(crate) fn words(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         let broken = Rule::ALL.into_iter().zip(self.by_rule).filter(|(_, count)| *count > 0);
-        let words: Vec<String> = broken.map(|(rule, count)| format!("{} ({count})", rule.words())).collect();
+        let words: Vec<String> =
+            broken.map(|(rule, count)| format!("{} ({count})", rule.description())).collect();
         words.join("; ")
     }
 }
@@ -109,7 +110,7 @@ impl AddAssign<&Self> for Disagreements {
 
 /// Counts them.
 #[derive(Clone, Debug)]
-pub struct Agreement {
+pub(crate) struct Agreement {
     level: f64,
     /// Announced discharges by the log's clock, s.
     announced: Vec<(f64, f64)>,
@@ -120,13 +121,13 @@ pub struct Agreement {
 impl Agreement {
     /// Of a candidate that decides for a leak from a probability of `level` on.
     pub(crate) fn new(world: &World, level: f64) -> Self {
-        let announced = world.told.announced.clone();
+        let announced = world.operator_data.announced.clone();
         Self { level, announced, loss_said: false, counts: Disagreements::default() }
     }
 
     /// Take a decision.
     pub(crate) fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
-        let stamp_s = moment.said.stamp_s;
+        let stamp_s = moment.statement.stamp_s;
         // An announced discharge may be seen a while after its end.
         let announced = self
             .announced

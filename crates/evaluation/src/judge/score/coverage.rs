@@ -5,11 +5,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
-use crate::judge::said::Estimated;
+use crate::judge::statement::Estimated;
 use crate::world::{Overlay, World};
 
 /// Shortest time between two judged statements, s.
-const APART_S: f64 = 110.0;
+const MIN_SPACING_S: f64 = 110.0;
 
 /// Quantities in the order of the cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -71,11 +71,11 @@ impl Coverage {
     /// Take what is estimated at a row.
     pub(crate) fn take(&mut self, moment: &Moment<'_>, world: &World) {
         let fault = matches!(world.request.overlay, Overlay::Fault { .. });
-        if fault || self.last_s.is_some_and(|last_s| moment.now_s - last_s < APART_S) {
+        if fault || self.last_s.is_some_and(|last_s| moment.now_s - last_s < MIN_SPACING_S) {
             return;
         }
         self.last_s = Some(moment.now_s);
-        let (truth, row, estimates) = (&world.truth, moment.row, &moment.said.estimates);
+        let (truth, row, estimates) = (&world.truth, moment.row, &moment.statement.estimates);
         let whole_kg = truth.mass_kg[0];
         let mut judge = |quantity: Quantity, estimated: &Option<Estimated>, truth: f64, unit: f64| {
             if let Some(estimated) = estimated {

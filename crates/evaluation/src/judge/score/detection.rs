@@ -8,19 +8,19 @@ use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 use crate::world::{Overlay, World};
 
 /// Part of the gas after whose loss a fast loss must be told.
-const MATTERS: f64 = 0.03;
+const FAST_LOSS_PART: f64 = 0.03;
 /// Time within which it must be told, s.
-const WITHIN_S: f64 = 300.0;
+const FAST_LOSS_DEADLINE_S: f64 = 300.0;
 /// Time within which an exchange of gas must be recognised, s.
 const RECOGNISED_S: f64 = 3.0 * 3600.0;
 
 /// The truth of a leak that was laid over.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeakFacts {
+pub(crate) struct LeakFacts {
     /// Part of the gas per hour.
     pub part_per_h: f64,
     /// The same as loss of the pressure at 15 °C, Pa/s, at the beginning.
@@ -40,14 +40,14 @@ pub struct Detected {
 
 /// A leak while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct Detecting {
+pub(crate) struct LeakWatch {
     onset_s: f64,
     detected: Detected,
     /// Since when a loss is being said, s.
     since_s: Option<f64>,
 }
 
-impl Detecting {
+impl LeakWatch {
     /// The truth of the leak of a world; `None`: it has none.
     pub(crate) fn facts(world: &World) -> Option<LeakFacts> {
         let Overlay::Leak { part_per_h, onset_s } = world.request.overlay else { return None };
@@ -120,7 +120,7 @@ pub struct Exchanged {
 
 /// An exchange of gas while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct ExchangeWatch {
+pub(crate) struct ExchangeWatch {
     outcome: Exchanged,
     onset_s: f64,
 }
@@ -151,7 +151,7 @@ impl ExchangeWatch {
 
 /// A fast loss while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct FastLossWatch {
+pub(crate) struct FastLossWatch {
     outcome: FastLoss,
     onset_s: f64,
     /// By then it must be told, s.
@@ -172,14 +172,14 @@ impl FastLossWatch {
         let first = truth.time_s.partition_point(|time_s| *time_s <= onset_s).saturating_sub(1);
         let whole_kg = *truth.mass_kg.get(first)?;
         let matters =
-            (first..truth.mass_kg.len()).find(|row| truth.mass_kg[*row] <= (1.0 - MATTERS) * whole_kg);
+            (first..truth.mass_kg.len()).find(|row| truth.mass_kg[*row] <= (1.0 - FAST_LOSS_PART) * whole_kg);
         // Between two rows the loss is taken as even.
         let matters_s = matters.map(|row| {
             let before = row.saturating_sub(1).max(first);
             let (from_s, to_s) = (truth.time_s[before].max(onset_s), truth.time_s[row]);
             let fallen_kg = truth.mass_kg[before] - truth.mass_kg[row];
-            let share =
-                (truth.mass_kg[before] - (1.0 - MATTERS) * whole_kg) / fallen_kg.max(f64::MIN_POSITIVE);
+            let share = (truth.mass_kg[before] - (1.0 - FAST_LOSS_PART) * whole_kg)
+                / fallen_kg.max(f64::MIN_POSITIVE);
             from_s + share.clamp(0.0, 1.0) * (to_s - from_s)
         });
         let outcome = FastLoss {
@@ -190,7 +190,12 @@ impl FastLossWatch {
             in_time: false,
             told_as: None,
         };
-        Some(Self { outcome, onset_s, deadline_s: matters_s.map(|at_s| at_s + WITHIN_S), is_late: false })
+        Some(Self {
+            outcome,
+            onset_s,
+            deadline_s: matters_s.map(|at_s| at_s + FAST_LOSS_DEADLINE_S),
+            is_late: false,
+        })
     }
 
     /// Take a decision.

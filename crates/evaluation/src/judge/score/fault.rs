@@ -19,8 +19,8 @@ use serde::{Deserialize, Serialize};
 use super::Moment;
 use crate::fault::Requirement;
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
-use crate::world::{FaultRow, HappeningKind, Overlay, World};
+use crate::judge::statement::Decision;
+use crate::world::{FaultRow, Overlay, World, WorldEventKind};
 
 /// Time within which an exchange of gas must be recognised, s.
 const RECOGNISED_S: f64 = 3.0 * 3600.0;
@@ -44,7 +44,7 @@ pub struct FaultOutcome {
 
 /// A fault while it is watched.
 #[derive(Clone, Copy, Debug)]
-pub struct FaultWatch {
+pub(crate) struct FaultWatch {
     row: FaultRow,
     onset_s: f64,
     leak_onset_s: Option<f64>,
@@ -67,12 +67,11 @@ impl FaultWatch {
     /// The fault of a world; `None`: it has none.
     pub(crate) fn of(world: &World) -> Option<Self> {
         let Overlay::Fault { row, onset_s, leak } = world.request.overlay else { return None };
-        let any =
-            |is: fn(&HappeningKind) -> bool| world.happenings.iter().any(|happening| is(&happening.kind));
+        let any = |is: fn(&WorldEventKind) -> bool| world.events.iter().any(|event| is(&event.kind));
         let requirement = row.requirement();
         let loses =
-            leak.is_none() && any(|kind| matches!(kind, HappeningKind::Leak | HappeningKind::FastLoss));
-        let exchanges = any(|kind| matches!(kind, HappeningKind::Discharge | HappeningKind::Refill));
+            leak.is_none() && any(|kind| matches!(kind, WorldEventKind::Leak | WorldEventKind::FastLoss));
+        let exchanges = any(|kind| matches!(kind, WorldEventKind::Discharge | WorldEventKind::Refill));
         Some(Self {
             row,
             onset_s,

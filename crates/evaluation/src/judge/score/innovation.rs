@@ -7,13 +7,13 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use crate::judge::said::Innovation;
+use crate::judge::statement::Innovation;
 use crate::world::Regime;
 
 /// Lags, s.
-pub const LAGS_S: [f64; 2] = [60.0, 600.0];
+pub(crate) const LAGS_S: [f64; 2] = [60.0, 600.0];
 /// How far two innovations may be from the lag, in parts of it.
-const NEAR: f64 = 0.25;
+const LAG_TOLERANCE: f64 = 0.25;
 
 /// Sums over pairs of one lag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -40,7 +40,7 @@ pub struct RegimeSums {
 }
 
 /// Sums by regime, in the order of [`Regime::ALL`].
-pub type Innovations = [RegimeSums; 5];
+pub(crate) type Innovations = [RegimeSums; 5];
 
 impl Pairs {
     /// Autocorrelation; `None` without pairs.
@@ -74,7 +74,7 @@ impl RegimeSums {
 
 /// The last innovations: time, s, and `z`.
 #[derive(Clone, Debug, Default)]
-pub struct Whiteness {
+pub(crate) struct Whiteness {
     last: VecDeque<(f64, f64)>,
 }
 
@@ -97,14 +97,14 @@ impl Whiteness {
         sums.count += 1;
         sums.nis += z * z;
         for (lag_s, pairs) in LAGS_S.into_iter().zip(&mut sums.lags) {
-            let Some(before) = self.nearest(time_s - lag_s, NEAR * lag_s) else { continue };
+            let Some(before) = self.nearest(time_s - lag_s, LAG_TOLERANCE * lag_s) else { continue };
             pairs.products += before * z;
             pairs.before += before * before;
             pairs.after += z * z;
             pairs.count += 1;
         }
         self.last.push_back((time_s, z));
-        let oldest_s = time_s - (1.0 + NEAR) * LAGS_S[1];
+        let oldest_s = time_s - (1.0 + LAG_TOLERANCE) * LAGS_S[1];
         while self.last.front().is_some_and(|(at_s, _)| *at_s < oldest_s) {
             self.last.pop_front();
         }

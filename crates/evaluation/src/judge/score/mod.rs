@@ -9,30 +9,30 @@
 //! | [`agreement`] | rows in which the statements contradict each other |
 //! | [`fault`] | a row of the fault table: recognised, or not |
 //! | [`noise`] | what the freest mass does without a leak: behind the shortest possible delay |
-pub mod agreement;
-pub mod coverage;
-pub mod detection;
-pub mod fault;
-pub mod innovation;
-pub mod noise;
-pub mod verdict;
+pub(crate) mod agreement;
+pub(crate) mod coverage;
+pub(crate) mod detection;
+pub(super) mod fault;
+pub(crate) mod innovation;
+pub(crate) mod noise;
+pub(crate) mod verdict;
 
 use serde::{Deserialize, Serialize};
 
 use self::agreement::{Agreement, Disagreements};
 use self::coverage::Coverage;
-use self::detection::{Detected, Detecting, ExchangeWatch, Exchanged, FastLoss, FastLossWatch};
+use self::detection::{Detected, ExchangeWatch, Exchanged, FastLoss, FastLossWatch, LeakWatch};
 use self::fault::{FaultOutcome, FaultWatch};
 use self::innovation::{Innovations, Whiteness};
 use self::noise::FreeMass;
 use self::verdict::{Episodes, Shares, Verdicts};
 use super::measures::Trace;
-use super::said::Said;
+use super::statement::Statement;
 use crate::noise::Noise;
 use crate::world::{Overlay, World};
 
 /// The first day, in which candidates learn, is reported apart.
-pub const FIRST_DAY_S: f64 = 86_400.0;
+pub(super) const FIRST_DAY_S: f64 = 86_400.0;
 /// Longest time for which a statement counts when no row follows, s.
 const LONGEST_STEP_S: f64 = 3600.0;
 
@@ -67,7 +67,7 @@ pub struct Score {
 
 /// What has happened to the gas at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gas {
+pub(crate) enum Gas {
     /// Nothing yet.
     Tight,
     /// Gas is or was being lost.
@@ -78,9 +78,9 @@ pub enum Gas {
 
 /// A statement, and what is true at its row.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub(crate) struct Moment<'a> {
     /// What is said.
-    pub said: &'a Said,
+    pub statement: &'a Statement,
     /// True time at which it is said, s.
     pub now_s: f64,
     /// Time since the statement before, s, at most an hour.
@@ -94,12 +94,12 @@ pub struct Moment<'a> {
 }
 
 /// Scores the statements of one candidate in one world.
-pub struct Scorer<'a> {
+pub(super) struct Scorer<'a> {
     world: &'a World,
     last_s: Option<f64>,
     score: Score,
     verdicts: Verdicts,
-    detecting: Option<Detecting>,
+    detecting: Option<LeakWatch>,
     fast_loss: Option<FastLossWatch>,
     exchange: Option<ExchangeWatch>,
     fault: Option<FaultWatch>,
@@ -118,7 +118,7 @@ impl<'a> Scorer<'a> {
             last_s: None,
             score: Score::default(),
             verdicts: Verdicts::default(),
-            detecting: Detecting::of(world),
+            detecting: LeakWatch::of(world),
             fast_loss: FastLossWatch::of(world),
             exchange: ExchangeWatch::of(world),
             fault: FaultWatch::of(world),
@@ -131,13 +131,13 @@ impl<'a> Scorer<'a> {
     }
 
     /// Take a statement that is said at the true time `now_s` about the row of an index.
-    pub(crate) fn take(&mut self, now_s: f64, row: usize, said: &Said) {
+    pub(crate) fn take(&mut self, now_s: f64, row: usize, statement: &Statement) {
         let truth = &self.world.truth;
         let step_s = self.last_s.map_or(0.0, |last_s| (now_s - last_s).clamp(0.0, LONGEST_STEP_S));
         self.last_s = Some(now_s);
         let time_s = truth.time_s[row];
         let moment = Moment {
-            said,
+            statement,
             now_s,
             step_s,
             row,
@@ -145,7 +145,7 @@ impl<'a> Scorer<'a> {
             gas: gas_at(&self.world.request.overlay, time_s),
         };
         self.score.said += 1;
-        if let Some(decision) = &said.decision {
+        if let Some(decision) = &statement.decision {
             self.verdicts.take(&moment, decision);
             self.agreement.take(&moment, decision);
             if let Some(detecting) = &mut self.detecting {
@@ -161,7 +161,7 @@ impl<'a> Scorer<'a> {
                 fault.take(&moment, decision);
             }
         }
-        if let Some(statistic) = said.statistic {
+        if let Some(statistic) = statement.statistic {
             if statistic.is_finite() {
                 self.first_told_s.get_or_insert(now_s);
             }
@@ -170,7 +170,7 @@ impl<'a> Scorer<'a> {
         self.score.coverage.take(&moment, self.world);
         // Spikes and exchanges of gas are no question of the noise.
         let steady = matches!(self.world.request.overlay, Overlay::Nothing | Overlay::Leak { .. });
-        let innovation = said.innovation.filter(|_| steady);
+        let innovation = statement.innovation.filter(|_| steady);
         self.whiteness.take(&mut self.score.innovations, time_s, truth.regime[row], innovation);
         self.free_mass.take(&moment, self.world);
     }
@@ -198,7 +198,7 @@ impl<'a> Scorer<'a> {
 }
 
 /// What an overlay has done to the gas at a true time, s.
-pub fn gas_at(overlay: &Overlay, time_s: f64) -> Gas {
+pub(super) fn gas_at(overlay: &Overlay, time_s: f64) -> Gas {
     match *overlay {
         Overlay::Leak { onset_s, .. } | Overlay::FastLoss { onset_s, .. } if time_s >= onset_s => Gas::Lost,
         Overlay::Discharge { onset_s, .. } | Overlay::Refill { onset_s, .. } if time_s >= onset_s => {

@@ -7,18 +7,20 @@ use crate::noise::{Noise, Residual};
 use crate::world::World;
 
 /// Interval of the masses that are kept, s.
-pub const SETTLED_S: f64 = 1200.0;
+pub(crate) const SETTLED_S: f64 = 1200.0;
 
 /// The masses that are kept.
 #[derive(Clone, Debug, Default)]
-pub struct FreeMass {
+pub(crate) struct FreeMass {
     kept: Vec<Residual>,
 }
 
 impl FreeMass {
     /// Take a statement.
     pub(crate) fn take(&mut self, moment: &Moment<'_>, world: &World) {
-        let Some(mass_kg) = moment.said.free_mass_kg.filter(|mass_kg| mass_kg.is_finite()) else { return };
+        let Some(mass_kg) = moment.statement.free_mass_kg.filter(|mass_kg| mass_kg.is_finite()) else {
+            return;
+        };
         let due = self.kept.last().is_none_or(|last| moment.now_s >= last.time_s + SETTLED_S);
         if moment.period == 1 && due {
             let value = mass_kg / world.truth.mass_kg[moment.row];

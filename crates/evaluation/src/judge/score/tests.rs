@@ -9,7 +9,7 @@ use super::*;
 use crate::detector::prognosis::Reaction;
 use crate::judge::fixture::{WHOLE_KG, decided, toy, world};
 use crate::judge::measures::Class;
-use crate::judge::said::{Decision, Innovation};
+use crate::judge::statement::{Decision, Innovation};
 use crate::judge::watch::watch;
 use crate::world::{Family, FaultRow, Leak, Regime, Request, RowPattern};
 
@@ -23,7 +23,10 @@ macro_rules! from_loss {
     ($part:expr, $class:expr) => {
         toy(|_, row| {
             let lost = row.readings[2] <= WHOLE_KG * (1.0 - $part);
-            Said { decision: Some(decided(if lost { $class } else { Class::Tight })), ..Said::default() }
+            Statement {
+                decision: Some(decided(if lost { $class } else { Class::Tight })),
+                ..Statement::default()
+            }
         })
     };
 }
@@ -69,8 +72,10 @@ fn an_exchange_is_recognised_by_its_own_name_alone() {
 
 fn says_always(class: Class) -> std::sync::Arc<dyn crate::judge::candidate::Candidate> {
     match class {
-        Class::Discharge => toy(|_, _| Said { decision: Some(decided(Class::Discharge)), ..Said::default() }),
-        _ => toy(|_, _| Said { decision: Some(decided(Class::Refill)), ..Said::default() }),
+        Class::Discharge => {
+            toy(|_, _| Statement { decision: Some(decided(Class::Discharge)), ..Statement::default() })
+        }
+        _ => toy(|_, _| Statement { decision: Some(decided(Class::Refill)), ..Statement::default() }),
     }
 }
 
@@ -82,13 +87,13 @@ fn a_fault_is_recognised_by_what_its_row_requires() {
     };
     let names = toy(|_, row| {
         let class = if row.stamp_s > 31.0 * HOUR_S { Class::SensorFault } else { Class::Tight };
-        Said { decision: Some(decided(class)), ..Said::default() }
+        Statement { decision: Some(decided(class)), ..Statement::default() }
     });
     let leaks = toy(|_, row| {
         let class = if row.stamp_s > 31.0 * HOUR_S { Class::Leak } else { Class::Tight };
-        Said { decision: Some(decided(class)), ..Said::default() }
+        Statement { decision: Some(decided(class)), ..Statement::default() }
     });
-    let tight = toy(|_, _| Said { decision: Some(decided(Class::Tight)), ..Said::default() });
+    let tight = toy(|_, _| Statement { decision: Some(decided(Class::Tight)), ..Statement::default() });
     // P1 must be named, P5 survived; P3 may be taken for a leak, and nothing else may. A discharge is a loss, a refill is none.
     let recognised = |row| [&names, &leaks, &tight].map(|who| outcome(row, who.as_ref()).recognised);
     assert_eq!(recognised(FaultRow::P1), [true, false, false]);
@@ -118,7 +123,7 @@ fn a_leak_beside_a_leak_is_found_whenever_it_is_told() {
 fn leak_from_hour<const HOUR: u32>() -> std::sync::Arc<dyn crate::judge::candidate::Candidate> {
     toy(|_, row| {
         let class = if row.stamp_s > f64::from(HOUR) * HOUR_S { Class::Leak } else { Class::Tight };
-        Said { decision: Some(decided(class)), ..Said::default() }
+        Statement { decision: Some(decided(class)), ..Statement::default() }
     })
 }
 
@@ -187,7 +192,7 @@ fn a_statement_that_flickers_is_one_episode_and_one_an_hour_later_another() {
         let (hour, minute) = ((row.stamp_s / HOUR_S) as u64, (row.stamp_s / 60.0) as u64);
         let leaks = (hour == 1 || hour == 3) && minute.is_multiple_of(2);
         let class = if leaks { Class::Leak } else { Class::Tight };
-        Said { decision: Some(decided(class)), ..Said::default() }
+        Statement { decision: Some(decided(class)), ..Statement::default() }
     });
     let score = watch(&world(&request(Overlay::Nothing, 6.0)), flickers.as_ref()).score.unwrap();
     let leak = score.episodes.unwrap().leak;
@@ -201,7 +206,7 @@ fn a_statement_that_flickers_is_one_episode_and_one_an_hour_later_another() {
 fn an_exchange_that_is_told_by_an_event_alone_counts() {
     let puffs = toy(|_, row| {
         let exchange = row.stamp_s == 2.0 * HOUR_S;
-        Said { decision: Some(Decision { exchange, ..decided(Class::Tight) }), ..Said::default() }
+        Statement { decision: Some(Decision { exchange, ..decided(Class::Tight) }), ..Statement::default() }
     });
     let score = watch(&world(&request(Overlay::Nothing, 6.0)), puffs.as_ref()).score.unwrap();
     assert_eq!(score.episodes.unwrap().exchange.count, [1, 0]);
@@ -211,7 +216,7 @@ fn an_exchange_that_is_told_by_an_event_alone_counts() {
 fn a_candidate_that_fails_or_panics_has_no_score_and_a_reason() {
     let panics = toy(|_, row| {
         assert!(row.stamp_s < 600.0, "no more");
-        Said::default()
+        Statement::default()
     });
     let reason = watch(&world(&request(Overlay::Nothing, 1.0)), panics.as_ref()).score.unwrap_err();
     assert!(reason.contains("panicked: no more"), "{reason}");

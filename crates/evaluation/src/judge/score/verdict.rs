@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{Gas, Moment};
 use crate::judge::measures::Class;
-use crate::judge::said::Decision;
+use crate::judge::statement::Decision;
 
 /// Time without a statement after which it counts anew, s.
-const APART_S: f64 = 3600.0;
+const EPISODE_GAP_S: f64 = 3600.0;
 
 /// Time by verdict in the order of `Class::ALL`, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -45,18 +45,18 @@ pub struct Episodes {
 
 /// Episodes while they are counted.
 #[derive(Clone, Copy, Debug, Default)]
-struct Counting {
+struct EpisodeCounter {
     episode: Episode,
     said_until_s: Option<f64>,
 }
 
-impl Counting {
+impl EpisodeCounter {
     fn take(&mut self, moment: &Moment<'_>, said: bool) {
         if !said {
             self.episode.at_risk_s[moment.period] += moment.step_s;
             return;
         }
-        let fresh = self.said_until_s.is_none_or(|until_s| moment.now_s - until_s > APART_S);
+        let fresh = self.said_until_s.is_none_or(|until_s| moment.now_s - until_s > EPISODE_GAP_S);
         self.episode.count[moment.period] += u64::from(fresh);
         self.said_until_s = Some(moment.now_s);
     }
@@ -64,13 +64,13 @@ impl Counting {
 
 /// Verdicts while they are counted.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Verdicts {
+pub(crate) struct Verdicts {
     shares: Shares,
     last: Option<Class>,
-    loss: Counting,
-    leak: Counting,
-    exchange: Counting,
-    sensor_fault: Counting,
+    loss: EpisodeCounter,
+    leak: EpisodeCounter,
+    exchange: EpisodeCounter,
+    sensor_fault: EpisodeCounter,
 }
 
 impl Verdicts {

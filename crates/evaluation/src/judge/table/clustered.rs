@@ -15,7 +15,7 @@ use cylwatch_thermal::units::YEAR_S;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::judge::said::BAND_95;
+use crate::judge::statement::BAND_95;
 use crate::world::SimulationKey;
 
 /// Sums over simulations; what belongs to one simulation must come together.

@@ -9,16 +9,16 @@ use crate::world::{Climate, Family, GasKind, RowPattern, SensorClass, VesselKind
 
 /// Worlds of one role, and what they have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Group {
+pub(crate) struct Group {
     /// What their families are for.
     pub role: Role,
     /// What they have in common.
-    pub of: Of,
+    pub by: Grouping,
 }
 
 /// What the worlds of a group have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Of {
+pub(crate) enum Grouping {
     /// Nothing.
     All,
     /// Their vessel.
@@ -41,7 +41,7 @@ pub enum Of {
 
 /// Lengths of logs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-pub enum Length {
+pub(crate) enum Length {
     /// Up to 2 d.
     Days,
     /// Up to 30 d.
@@ -69,26 +69,26 @@ impl Group {
         let family = task.request.family;
         let Family { vessel, climate, gas, sensors, rows } = family;
         [
-            Of::All,
-            Of::Vessel(vessel),
-            Of::Climate(climate),
-            Of::Gas(gas),
-            Of::Sensors(sensors),
-            Of::Rows(rows),
-            Of::Length(Length::of(task.request.length_s)),
-            Of::Place(vessel, climate),
-            Of::Family(family),
+            Grouping::All,
+            Grouping::Vessel(vessel),
+            Grouping::Climate(climate),
+            Grouping::Gas(gas),
+            Grouping::Sensors(sensors),
+            Grouping::Rows(rows),
+            Grouping::Length(Length::of(task.request.length_s)),
+            Grouping::Place(vessel, climate),
+            Grouping::Family(family),
         ]
-        .map(|of| Self { role: task.role, of })
+        .map(|by| Self { role: task.role, by })
     }
 
     /// Whether the table for people shows it among the first rows.
     pub(crate) fn is_of_one_axis(&self) -> bool {
-        !matches!(self.of, Of::Place(..) | Of::Family(_))
+        !matches!(self.by, Grouping::Place(..) | Grouping::Family(_))
     }
 }
 
-impl fmt::Display for Of {
+impl fmt::Display for Grouping {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::All => f.write_str("all"),

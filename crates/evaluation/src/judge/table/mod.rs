@@ -15,7 +15,7 @@ use serde::Serialize;
 
 pub(crate) use self::clustered::Clustered;
 pub use self::clustered::{Rate, Share};
-pub use self::group::{Group, Length, Of};
+pub(crate) use self::group::Group;
 pub use self::report::{
     CandidateReport, CoverageRow, DisagreementReport, FastRow, FaultRowReport, GroupReport, InnovationRow,
     LeakRow, Leaks, Tight,
@@ -32,11 +32,11 @@ use crate::noise::Noise;
 use crate::world::{Overlay, Request, SimulationKey};
 
 /// Names of the files of the table.
-pub const TABLE: [&str; 2] = ["table.md", "table.json"];
+pub(crate) const TABLE: [&str; 2] = ["table.md", "table.json"];
 /// Failure of a candidate that is not judged at all.
 const NO_THRESHOLD: &str = "no threshold: it says a number in fewer than five tight worlds that tune; give it more of them, or more time in each";
 /// Failures that are told one by one.
-const TOLD_FAILURES: usize = 10;
+const LISTED_FAILURES: usize = 10;
 
 /// What the table is of.
 #[derive(Clone, Debug, Serialize)]
@@ -78,7 +78,7 @@ pub struct Table {
 ///
 /// # Errors
 /// The journal cannot be read, or a file not be written.
-pub fn write(plan: &Plan, results: &mut Results, folder: &Path) -> Result<Table, JudgeError> {
+pub(crate) fn write(plan: &Plan, results: &mut Results, folder: &Path) -> Result<Table, JudgeError> {
     let table = Table::of(plan, results)?;
     let texts = [table.to_markdown(), table.to_json()?];
     for (name, text) in TABLE.into_iter().zip(texts) {
@@ -173,7 +173,7 @@ fn add(
             }
             Ok(mut score) => {
                 if let Some(found) = score.disagreements.filter(|found| found.disagreeing > 0) {
-                    note(&mut reports[candidate].contradictions, plan, index, &found.words());
+                    note(&mut reports[candidate].contradictions, plan, index, &found.description());
                 }
                 if let Some(tuned) = thresholds[candidate] {
                     at_threshold(&mut score, tuned.level.threshold, &facts, &task.request.overlay);
@@ -186,7 +186,7 @@ fn add(
 
 /// Keep the first failures, with the request that makes the world again.
 fn note(failures: &mut Vec<String>, plan: &Plan, task: usize, reason: &str) {
-    if failures.len() < TOLD_FAILURES {
+    if failures.len() < LISTED_FAILURES {
         let request = &plan.tasks[task].request;
         let Request { family, seed, set, length_s, overlay } = request;
         failures.push(format!("{family} seed {seed} set {set}, {length_s} s, {overlay:?}: {reason}"));

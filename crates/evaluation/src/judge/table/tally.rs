@@ -39,9 +39,9 @@ pub(crate) struct FaultTally {
 /// What came of fast losses of one kind.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FastTally {
-    /// Told in time, of worlds in which nothing was told before.
+    /// OperatorData in time, of worlds in which nothing was told before.
     pub in_time: Clustered,
-    /// Told at all after the onset.
+    /// OperatorData at all after the onset.
     pub told: Clustered,
     /// Worlds in which exit code 1 came before the onset.
     pub before: u64,

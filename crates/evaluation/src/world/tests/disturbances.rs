@@ -1,6 +1,6 @@
 //! Rows of the fault table that happen to the cylinder, where the film is a coefficient and where it is a wind.
 use super::request;
-use crate::world::{FaultRow, HappeningKind, Overlay, Simulated, World};
+use crate::world::{FaultRow, Overlay, Simulated, World, WorldEventKind};
 use cylwatch_thermal::scenario::OutsideFilm;
 use cylwatch_thermal::units::DAY_S;
 use cylwatch_thermal::units::HOUR_S;
@@ -142,7 +142,7 @@ fn a_leak_masked_by_warming_holds_the_pressure_while_the_air_warms_by_twenty_kel
     assert!((last_pa / first_pa - 1.0).abs() < 0.005, "{first_pa} Pa, {last_pa} Pa");
     // 16 K and more of warming meanwhile, of some 290.
     assert!(last_kg < 0.96 * first_kg, "{first_kg} kg, {last_kg} kg");
-    let fault = world.happenings.iter().find(|h| h.kind == HappeningKind::Fault(FaultRow::G5)).unwrap();
+    let fault = world.events.iter().find(|h| h.kind == WorldEventKind::Fault(FaultRow::G5)).unwrap();
     let stated = 1.0 / world.drawn.cylinder.vessel.volume;
     assert!((fault.lost_kg - (first_kg - last_kg) * stated).abs() < 0.01 * fault.lost_kg);
 }
@@ -153,7 +153,7 @@ fn a_bottle_filled_elsewhere_has_no_rows_meanwhile() {
     for seed in 0..6 {
         let (_, _, world) = pair(FaultRow::G1, "workshop", seed);
         let without = world.truth.time_s.iter().filter(|t| (DAY_S..DAY_S + HOUR_S).contains(t)).count() == 0;
-        let gap = world.happenings.iter().any(|happening| happening.kind == HappeningKind::Gap);
+        let gap = world.events.iter().any(|event| event.kind == WorldEventKind::Gap);
         assert_eq!(without, gap);
         away += usize::from(without);
     }

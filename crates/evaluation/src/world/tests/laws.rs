@@ -253,12 +253,12 @@ fn transmitters_are_off_by_their_class_and_a_quarter_of_one_class_counts_from_th
 
 /// A data sheet is honest: what is drawn has the told standard deviation, or less where the sheet rounds up.
 #[test]
-fn told_standard_deviations_are_those_of_what_is_drawn() {
+fn stated_standard_deviations_are_those_of_what_is_drawn() {
     for &class in SensorClass::ALL {
         let drawn = drawn_sensors(class, VesselKind::Argon50);
-        let told = drawn[0].told(class).build().unwrap();
+        let data = drawn[0].data_sheets(class).build().unwrap();
         let ratio = |sensor: usize, parameter: usize, value: &dyn Fn(&SensorDraw) -> f64| {
-            let parameter = &told.sensors()[sensor].parameters()[parameter];
+            let parameter = &data.sensors()[sensor].parameters()[parameter];
             let errors = drawn.iter().map(|d| ((value(d) - parameter.mean) / parameter.sd).powi(2));
             (errors.sum::<f64>() / drawn.len() as f64).sqrt()
         };

@@ -2,8 +2,8 @@
 use super::{family, request};
 use crate::fault::Fault;
 use crate::world::{
-    Family, FaultRow, HappeningKind, Leak, Overlay, Request, Simulated, SteadyLeak, VesselKind, World,
-    compose, faulty, generate,
+    Family, FaultRow, Leak, Overlay, Request, Simulated, SteadyLeak, VesselKind, World, WorldEventKind,
+    compose, data_fault, generate,
 };
 use cylwatch_thermal::units::DAY_S;
 use cylwatch_thermal::units::HOUR_S;
@@ -50,9 +50,9 @@ fn a_leak_loses_its_rate_times_its_time_however_it_is_made() {
         let lost_kg = part_per_h * 10.0 * truth.mass_kg[0];
         let found_kg = truth.mass_kg[0] - truth.mass_kg[truth.mass_kg.len() - 1];
         assert!((found_kg / lost_kg - 1.0).abs() < 1e-3, "{found_kg} kg, {lost_kg} kg");
-        let [happening] = &world.happenings[..] else { panic!("one happening") };
-        assert_eq!(happening.kind, HappeningKind::Leak);
-        assert!((happening.lost_kg / lost_kg - 1.0).abs() < 1e-3);
+        let [event] = &world.events[..] else { panic!("one event") };
+        assert_eq!(event.kind, WorldEventKind::Leak);
+        assert!((event.lost_kg / lost_kg - 1.0).abs() < 1e-3);
         let rate = truth.outflow_kg_s[truth.outflow_kg_s.len() - 1];
         assert!((rate / (part_per_h * truth.mass_kg[0] / HOUR_S) - 1.0).abs() < 1e-3);
         assert_eq!(truth.outflow_kg_s[0], 0.0);
@@ -76,10 +76,10 @@ fn a_fast_loss_loses_its_part_within_its_time_in_every_vessel() {
                 let before_kg = world.truth.mass_kg[0];
                 let lost = 1.0 - mass_at(&world, 30.0 + within_s + 1.5) / before_kg;
                 assert!((0.8 * part..1.02 * part).contains(&lost), "{vessel} {seed}: {lost} of {part}");
-                let [happening] = &world.happenings[..] else { panic!("one happening") };
-                assert_eq!(happening.kind, HappeningKind::FastLoss);
-                assert!((happening.end_s - 30.0 - within_s).abs() < 1e-6, "{vessel}: {}", happening.end_s);
-                assert!((happening.lost_kg / before_kg - lost).abs() < 1e-3, "{vessel}");
+                let [event] = &world.events[..] else { panic!("one event") };
+                assert_eq!(event.kind, WorldEventKind::FastLoss);
+                assert!((event.end_s - 30.0 - within_s).abs() < 1e-6, "{vessel}: {}", event.end_s);
+                assert!((event.lost_kg / before_kg - lost).abs() < 1e-3, "{vessel}");
             }
         }
     }
@@ -91,7 +91,7 @@ fn a_loss_that_goes_on_ends_at_a_fifth_of_the_pressure() {
         let family = Family { vessel, ..family("nitrogen-20l/workshop/mixed/class-b/10s") };
         let loss = Overlay::FastLoss { part: 0.3, within_s: 600.0, onset_s: 0.0, goes_on: true };
         let world = generate(&Request::tight(family, 2, 6.0 * HOUR_S).with(loss)).unwrap();
-        let end_s = world.happenings[0].end_s;
+        let end_s = world.events[0].end_s;
         assert!(end_s > 600.0 && end_s < 6.0 * HOUR_S, "{vessel}: {end_s} s");
         let at_end = world.truth.time_s.partition_point(|&t| t < end_s);
         let left = world.truth.pressure_pa[at_end] / world.drawn.cylinder.fill.pressure_pa;
@@ -111,15 +111,15 @@ fn a_refill_adds_its_part_and_a_discharge_is_told_only_if_it_is_announced() {
     let refill = Overlay::Refill { part: 0.2, within_s: 300.0, onset_s: 3600.0 };
     let world = generate(&base.with(refill)).unwrap();
     assert!((mass_at(&world, 4000.0) / world.truth.mass_kg[0] - 1.2).abs() < 1e-6);
-    assert!(world.happenings[0].lost_kg < 0.0);
+    assert!(world.events[0].lost_kg < 0.0);
     let warmest_k = world.truth.gas_mean_k.iter().copied().fold(0.0, f64::max);
     assert!(warmest_k > world.truth.gas_mean_k[0] + 3.0, "compressed gas is warm: {warmest_k}");
     for announced in [false, true] {
         let discharge = Overlay::Discharge { part: 0.3, within_s: 60.0, onset_s: 3600.0, announced };
         let world = generate(&base.with(discharge)).unwrap();
-        assert_eq!(world.happenings[0].announced, announced);
+        assert_eq!(world.events[0].announced, announced);
         let told: Vec<(f64, f64)> = if announced { vec![(3600.0, 3660.0)] } else { Vec::new() };
-        assert_eq!(world.told.announced, told);
+        assert_eq!(world.operator_data.announced, told);
     }
 }
 
@@ -144,7 +144,7 @@ fn every_row_of_the_fault_table_makes_a_world_whose_truth_has_an_entry_for_each_
             }
             assert_eq!(truth.regime.len(), rows);
             assert_eq!(world.fault.is_some(), row.is_of_data(), "{row:?}");
-            assert!(world.happenings.iter().any(|happening| happening.kind == HappeningKind::Fault(row)));
+            assert!(world.events.iter().any(|event| event.kind == WorldEventKind::Fault(row)));
         }
     }
 }
@@ -176,7 +176,7 @@ fn a_fault_of_data_leaves_the_rows_before_its_onset_and_the_cylinder_alone() {
 fn pressures_of_the_fault_table_are_parts_of_the_transmitters_range() {
     for row in FaultRow::ALL.into_iter().filter(|row| row.is_of_data()) {
         for seed in 0..20 {
-            let (table, tank) = (row.draw(seed).unwrap(), faulty::draw(row, 10e5, seed).unwrap());
+            let (table, tank) = (row.draw(seed).unwrap(), data_fault::draw(row, 10e5, seed).unwrap());
             let size = |fault: &Fault| match fault {
                 Fault::Offset { sensor, by } if sensor == "pressure" => Some(*by),
                 Fault::Drift { sensor, per_s } if sensor == "pressure" => Some(*per_s),
@@ -202,7 +202,7 @@ fn pressures_of_the_fault_table_are_parts_of_the_transmitters_range() {
 fn what_happens_to_the_gas_by_the_table_is_in_proportion_to_the_fill() {
     let lost = |row: FaultRow, family: &str, seed: u64| {
         let world = with_fault(row, family, seed, 4.0);
-        let fault = world.happenings.iter().find(|h| h.kind == HappeningKind::Fault(row)).unwrap();
+        let fault = world.events.iter().find(|h| h.kind == WorldEventKind::Fault(row)).unwrap();
         fault.lost_kg / world.truth.mass_kg[0]
     };
     for seed in 0..3 {
@@ -229,7 +229,7 @@ fn a_leak_beside_a_fault_is_the_leak_alone() {
         let both =
             generate(&base.with(Overlay::Fault { row, onset_s: 1.5 * DAY_S, leak: Some(leak) })).unwrap();
         let of =
-            |world: &World| world.happenings.iter().find(|h| h.kind == HappeningKind::Leak).unwrap().lost_kg;
+            |world: &World| world.events.iter().find(|h| h.kind == WorldEventKind::Leak).unwrap().lost_kg;
         assert!((of(&both) / of(&alone) - 1.0).abs() < 1e-6, "{row:?}");
         let last = |world: &World| world.truth.mass_kg[world.truth.mass_kg.len() - 1];
         assert!((last(&both) / last(&alone) - 1.0).abs() < 1e-6, "{row:?}");

@@ -82,7 +82,7 @@ fn mass_and_energy_are_balanced_in_every_vessel_and_a_tight_one_keeps_its_gas() 
         let world = simulated.world(&request).unwrap();
         let (first, last) = (world.truth.mass_kg[0], world.truth.mass_kg[world.truth.mass_kg.len() - 1]);
         assert!((last / first - 1.0).abs() < 1e-9, "{vessel}: {first} kg, {last} kg");
-        assert!(world.happenings.is_empty());
+        assert!(world.events.is_empty());
     }
 }
 
@@ -111,8 +111,8 @@ fn a_tight_cylinder_has_the_stated_mass_times_the_error_of_the_statement_and_the
             assert!((settled_pa / drawn.fill.pressure_pa - 1.0).abs() < 1e-6, "{vessel}: {settled_pa}");
         }
         let density =
-            |pa: f64| world.told.vessel.fluid.density_from_pressure_temperature(pa, 288.15).unwrap();
-        let told_kg = world.told.commissioning.mass_kg(&world.told.vessel, 288.15).unwrap();
+            |pa: f64| world.operator_data.vessel.fluid.density_from_pressure_temperature(pa, 288.15).unwrap();
+        let told_kg = world.operator_data.commissioning.mass_kg(&world.operator_data.vessel, 288.15).unwrap();
         let statement = density(drawn.fill.stated_pa) / density(drawn.fill.pressure_pa);
         // Expansions of the real vessel are within 10 % of the nominal ones, which are 1 % at most.
         assert!((told_kg / world.truth.mass_kg[0] / statement - 1.0).abs() < 2e-3, "{vessel}");

@@ -69,7 +69,7 @@ impl VesselKind {
             |text, fill_bar, full_scale_bar, inlet_m| Entry { text, fill_bar, full_scale_bar, inlet_m };
         match self {
             Self::Nitrogen20 => {
-                let text = presets::text("nitrogen-20l").unwrap_or_default();
+                let text = presets::FILES.text("nitrogen-20l").unwrap_or_default();
                 entry(text, (180.0, 200.0), 250.0, 0.006)
             }
             Self::Argon50 => entry(include_str!("argon-50l.toml"), (270.0, 300.0), 400.0, 0.006),
@@ -107,15 +107,15 @@ pub struct VesselDraw {
     /// Inner volume.
     pub volume: f64,
     /// Heat capacity of the wall.
-    pub wall_capacity: f64,
+    pub(crate) wall_capacity: f64,
     /// Heat capacity of the valve.
     pub valve_capacity: f64,
     /// Conductance between valve and shoulder.
-    pub valve_contact: f64,
+    pub(crate) valve_contact: f64,
     /// Film inside.
     pub inside_film: f64,
     /// Film outside, by convection.
-    pub outside_film: f64,
+    pub(crate) outside_film: f64,
     /// Relative change of the outside film from bottom to top.
     pub film_slope: f64,
     /// Long-wave emissivity itself.
@@ -123,9 +123,9 @@ pub struct VesselDraw {
     /// Absorptivity for sunlight itself.
     pub absorptivity: f64,
     /// Expansion of the volume by temperature.
-    pub thermal_expansion: f64,
+    pub(crate) thermal_expansion: f64,
     /// Expansion of the volume by pressure.
-    pub pressure_expansion: f64,
+    pub(crate) pressure_expansion: f64,
 }
 
 impl VesselDraw {

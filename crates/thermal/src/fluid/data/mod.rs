@@ -14,7 +14,7 @@ pub(super) static ALL: &[&FluidData] =
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
 #[derive(Clone, Copy, Debug)]
-pub struct PowerTerm {
+pub(super) struct PowerTerm {
     /// Coefficient.
     pub n: f64,
     /// Exponent of the reduced density.
@@ -27,7 +27,7 @@ pub struct PowerTerm {
 
 /// Term `n delta^d tau^t exp(-eta (delta - epsilon)^2 - beta (tau - gamma)^2)`.
 #[derive(Clone, Copy, Debug)]
-pub struct GaussianTerm {
+pub(super) struct GaussianTerm {
     /// Coefficient.
     pub n: f64,
     /// Exponent of the reduced density.
@@ -46,7 +46,7 @@ pub struct GaussianTerm {
 
 /// Melting pressure `p_0 + sum a [(T/T_0)^t - 1]`: above it the fluid is solid.
 #[derive(Clone, Copy, Debug)]
-pub struct Melting {
+pub(super) struct Melting {
     /// `T_0`, K.
     pub temperature_k: f64,
     /// `p_0`, Pa.
@@ -65,7 +65,7 @@ impl Melting {
 
 /// A fundamental equation `a / (R T) = alpha0 + alphar` and its range of validity.
 #[derive(Debug)]
-pub struct FluidData {
+pub(super) struct FluidData {
     /// Name as files spell it.
     pub name: &'static str,
     /// Source in short.

@@ -33,7 +33,7 @@ const CHI_ZERO: f64 = 10.0 * f64::EPSILON;
 
 /// Fluid constants of the crossover model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OlchowySengers {
+pub(crate) struct OlchowySengers {
     /// Amplitude of the correlation length `xi_0`, m.
     pub xi_0_m: f64,
     /// Amplitude of the susceptibility `Gamma`.

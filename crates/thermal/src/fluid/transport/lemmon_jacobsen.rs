@@ -25,7 +25,7 @@ const CHAPMAN_ENSKOG: f64 = 0.026_695_8;
 
 /// One residual term `n tau^t delta^d exp(-delta^l)`, the exponential only for `l > 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term {
+pub(crate) struct Term {
     /// Factor, µPa s or mW/(m K).
     pub n: f64,
     /// Exponent of `tau`.
@@ -45,7 +45,7 @@ impl Term {
 
 /// Constants and coefficients of one fluid, in the units of the source.
 #[derive(Clone, Copy, Debug)]
-pub struct LemmonJacobsenData {
+pub(crate) struct LemmonJacobsenData {
     /// Molar mass within `eta_0`, g/mol.
     pub molar_mass_g_mol: f64,
     /// Lennard-Jones energy `epsilon/k`, K.

@@ -19,14 +19,14 @@ mod lemmon_jacobsen;
 #[cfg(test)]
 mod tests;
 
-pub use critical::OlchowySengers;
-pub use lemmon_jacobsen::{LemmonJacobsenData, Term};
+pub(crate) use critical::OlchowySengers;
+pub(crate) use lemmon_jacobsen::{LemmonJacobsenData, Term};
 
 use crate::fluid::Real;
 
 /// What the critical enhancement needs of the equation of state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransportState<D> {
+pub(super) struct TransportState<D> {
     /// Temperature, K.
     pub temperature_k: D,
     /// Density, kg/m³.
@@ -41,7 +41,7 @@ pub struct TransportState<D> {
 
 /// Transport correlations of one fluid.
 #[derive(Clone, Copy, Debug)]
-pub enum Transport {
+pub(super) enum Transport {
     /// The form of Lemmon and Jacobsen 2004.
     LemmonJacobsen(&'static LemmonJacobsenData),
     /// Normal hydrogen: Muzny et al. 2013, Assael et al. 2011.

@@ -12,7 +12,7 @@ use crate::judge::score::agreement::Rule;
 use crate::judge::score::coverage::Quantity;
 use crate::judge::score::innovation::RegimeSums;
 use crate::judge::score::noise::SETTLED_S;
-use crate::judge::table::group::{Group, Of};
+use crate::judge::table::group::{Group, Grouping};
 use crate::judge::table::tally::{FastTally, FaultTally, Tally};
 use crate::noise::Noise;
 use crate::world::{FaultRow, Regime};
@@ -20,7 +20,7 @@ use crate::world::{FaultRow, Regime};
 /// Percent of all.
 const PERCENT: f64 = 100.0;
 /// Part of the leaks that must be found for the smallest leak.
-const FOUND: f64 = 0.95;
+const REQUIRED_DETECTION: f64 = 0.95;
 /// Horizons of the smallest leak.
 const HORIZONS: [Horizon; 3] = [Horizon::Hour, Horizon::Day, Horizon::Week];
 
@@ -40,10 +40,10 @@ impl GroupReport {
         let decides = tally.disagreements.rows > 0;
         Self {
             role: group.role,
-            group: group.of.to_string(),
-            is_all: group.of == Of::All,
+            group: group.by.to_string(),
+            is_all: group.by == Grouping::All,
             is_of_one_axis: group.is_of_one_axis(),
-            is_family: matches!(group.of, Of::Family(_)),
+            is_family: matches!(group.by, Grouping::Family(_)),
             worlds: tally.worlds,
             failed: tally.failed,
             simulations: tally.simulations.len() as u64,
@@ -85,8 +85,9 @@ fn leaks(tally: &Tally, noise: Option<Noise>, between_alarms_s: f64) -> Option<L
         return None;
     }
     let within = |horizon: Horizon| Detection::against_rate(&groups, horizon.seconds());
-    let smallest =
-        |horizon: Horizon| SmallestLeak::of(&within(horizon), FOUND).map(|leak| leak.times(PERCENT));
+    let smallest = |horizon: Horizon| {
+        SmallestLeak::of(&within(horizon), REQUIRED_DETECTION).map(|leak| leak.times(PERCENT))
+    };
     let row = |(index, (part_per_h, runs)): (usize, &(f64, Vec<_>))| {
         let delay = Delay::of(runs);
         let bound_s =
@@ -168,6 +169,6 @@ fn disagreements(tally: &Tally) -> DisagreementReport {
     DisagreementReport {
         rows: of.rows,
         disagreeing: of.disagreeing,
-        by_rule: named.map(|(rule, count)| (rule.words(), count)).collect(),
+        by_rule: named.map(|(rule, count)| (rule.description(), count)).collect(),
     }
 }

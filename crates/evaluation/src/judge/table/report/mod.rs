@@ -167,9 +167,9 @@ pub struct InnovationRow {
 pub struct FastRow {
     /// What they are.
     pub kind: &'static str,
-    /// Told with exit code 1 in time.
+    /// OperatorData with exit code 1 in time.
     pub in_time: Option<Share>,
-    /// Told with exit code 1 at all.
+    /// OperatorData with exit code 1 at all.
     pub told: Option<Share>,
     /// Worlds in which exit code 1 came before.
     pub before: u64,

@@ -34,7 +34,7 @@ const M: f64 = (GAMMA - 1.0) / (2.0 * BETA);
 /// Factor `m`, of the dimension that makes the enhancement W/(m K).
 const FACTOR: f64 = 3.468_523_3e-17 * 3.726_229_668;
 /// Smallest distance from the critical temperature and density: powers of zero have no derivative.
-const SMALLEST: f64 = 1e-9;
+const CRITICAL_DISTANCE_FLOOR: f64 = 1e-9;
 
 /// Enhancement, W/(m K); `viscosity` in Pa s.
 pub(crate) fn conductivity_w_m_k<R: Real>(state: &TransportState<R>, viscosity: R) -> R {
@@ -53,7 +53,7 @@ pub(crate) fn conductivity_w_m_k<R: Real>(state: &TransportState<R>, viscosity: 
 /// `|1 - r|`, at least [`SMALLEST`].
 fn distance<R: Real>(r: R) -> R {
     let distance = (-r + 1.0).abs();
-    if distance.re() < SMALLEST { R::from(SMALLEST) } else { distance }
+    if distance.re() < CRITICAL_DISTANCE_FLOOR { R::from(CRITICAL_DISTANCE_FLOOR) } else { distance }
 }
 
 /// `K`, 1/Pa.

@@ -5,9 +5,9 @@ use super::record::Record;
 use crate::EvaluationError;
 use crate::world::{Request, World};
 
-/// A cylinder that was watched with one set of sensors.
+/// A cylinder that was monitored with one set of sensors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Watched {
+pub struct MonitoredCylinder {
     /// What decided its world.
     pub request: Request,
     /// What the statistics reached.
@@ -18,14 +18,14 @@ pub struct Watched {
 ///
 /// # Errors
 /// What the monitor refuses.
-pub fn watch(world: &World, settings: &MonitorSettings) -> Result<Watched, EvaluationError> {
-    let told = &world.told;
-    let mut monitor = Monitor::new(&told.vessel, &told.sensors, &told.commissioning, settings)?;
+pub fn monitor(world: &World, settings: &MonitorSettings) -> Result<MonitoredCylinder, EvaluationError> {
+    let data = &world.operator_data;
+    let mut monitor = Monitor::new(&data.vessel, &data.sensors, &data.commissioning, settings)?;
     let mut record = Record::default();
     for (stamp_s, readings) in world.log.rows() {
         for output in monitor.step(stamp_s, readings)? {
             record.update(output.estimate.time_s, &monitor.evidence());
         }
     }
-    Ok(Watched { request: world.request, record })
+    Ok(MonitoredCylinder { request: world.request, record })
 }

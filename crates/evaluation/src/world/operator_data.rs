@@ -1,11 +1,11 @@
-//! What a candidate may know beforehand.
+//! The data that an operator has of a cylinder, and a candidate is given.
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::{Sensor, SensorsSpec};
 use cylwatch_thermal::vessel::Vessel;
 
-/// What a candidate may know: nominal vessel, data sheets, the fill as it was stated, discharges that are ordered.
+/// Nominal vessel, data sheets, the fill as it was stated, announced discharges.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct OperatorData {
     /// Nominal vessel.
     pub vessel: Vessel,
     /// Sensors as their data sheets state them, in the order of the log's channels.
@@ -14,6 +14,6 @@ pub struct Told {
     pub sensors_spec: SensorsSpec,
     /// Fill as stated at commissioning.
     pub commissioning: Commissioning,
-    /// Discharges that are announced: start and end by the log's clock, s.
+    /// Announced discharges: start and end by the log's clock, s.
     pub announced: Vec<(f64, f64)>,
 }

@@ -13,7 +13,7 @@ use crate::fault::{Arrival, Fault, Record, Step, TABLE_FULL_SCALE_PA};
 const AMBIENT: &str = "ambient";
 
 /// Rows as they arrive with a fault.
-pub(super) struct Faulty {
+pub(super) struct FaultyLog {
     pub log: Log,
     /// True times at which the rows were measured, s.
     pub time_s: Vec<f64>,
@@ -51,9 +51,9 @@ pub(super) fn inject(
     truth: &Truth,
     onset_s: f64,
     seed: u64,
-) -> Result<Faulty, WorldError> {
+) -> Result<FaultyLog, WorldError> {
     let record = fault.inject(&record(log, rows, truth), onset_s, seed)?.without(AMBIENT);
-    let mut faulty = Faulty {
+    let mut faulty = FaultyLog {
         log: Log { channels: log.channels.clone(), ..Log::default() },
         time_s: Vec::new(),
         historical: Vec::new(),

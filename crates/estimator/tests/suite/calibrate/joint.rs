@@ -1,6 +1,6 @@
 //! Several logs, filling pressures and vessels at once, held-out readings, profiles.
 use cylwatch_estimator::calibrate::{
-    Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, ParameterSpec, PartOf,
+    Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, ParameterSpec,
 };
 use cylwatch_estimator::sensor::{SensorSuite, sample};
 use cylwatch_thermal::scenario::{OutsideFilm, Scenario};
@@ -117,22 +117,17 @@ fn profile_and_covariance_give_the_same_interval_where_the_model_is_nearly_linea
 }
 
 #[test]
-fn record_says_what_was_fitted_from_which_log_and_when() {
-    let calibrated = two_vessels().run().unwrap();
-    let result = calibrated.calibrated_vessel(1, "2026-03-01T12:00:00Z").unwrap();
-    let nominal = vessel::presets::load("nitrogen-20l").unwrap();
+fn factors_found_on_one_vessel_hold_for_another() {
+    let calibration = two_vessels();
+    let calibrated = calibration.run().unwrap();
+    let small = calibration.experiments[1].vessel.as_ref().unwrap();
+    let changed = calibrated.applied(1, small);
     let [found, file] =
-        [&result.vessel, &nominal].map(|vessel| vessel.geometry.layers[0].material.heat_capacity_j_kg_k);
+        [&changed, small].map(|vessel| vessel.geometry.layers[0].material.heat_capacity_j_kg_k);
     assert!((found / file - calibrated.estimates[0].value).abs() < 1e-12);
-    assert_eq!(result.vessel.geometry.cylinder_length_m, 0.25);
-    let record = &result.record;
-    assert_eq!(record.sources, ["large, 200 bar", "small, 120 bar"]);
-    assert_eq!(record.calibrated_at, "2026-03-01T12:00:00Z");
-    assert_eq!(
-        record.fitted.iter().map(|one| one.part_of).collect::<Vec<_>>(),
-        [PartOf::Vessel, PartOf::Vessel]
-    );
-    assert_eq!(record.fitted[1].value, calibrated.estimates[2].value);
+    let film = changed.surface.film_factor / small.surface.film_factor;
+    assert!((film - calibrated.estimates[2].value).abs() < 1e-12, "of its own chamber");
+    assert_eq!(changed.geometry.cylinder_length_m, 0.25);
 }
 
 #[test]

@@ -1,12 +1,12 @@
-//! What a layout is worth along a scenario, and how wrong the observer is where the cylinder is not what it supposes.
+//! Accuracy of a layout in a scenario, with the error of the observer where the cylinder is not as modelled.
 //!
 //! The ordinary model runs the scenario once as the vessel file says and once for each [`Variant`]; ideal sensors read it; the ordinary observer takes the
-//! readings of a layout. Its covariance then is that along the course, `P(t)`, and its error in readings without noise is what model error alone
+//! readings of a layout. Its covariance then is that in the scenario, `P(t)`, and its error in readings without noise is what model error alone
 //! leaves, `e_v(t)`. A filter does not know of the latter: as consider parameters (Schmidt 1966) the variants add
 //!
 //! `P_S(t) = P(t) + e_0(t)^2 + sum_v w_v (e_v(t) - e_0(t))^2`
 //!
-//! to its variance, with the nominal course 0 and the weights of `Variant::weight`; the worst case is `P(t) + max_v e_v(t)^2`. So model error is not
+//! to its variance, with the nominal variant 0 and the weights of `Variant::weight`; the worst case is `P(t) + max_v e_v(t)^2`. So model error is not
 //! taken for information. A scenario that begins settled has three hours of rest before it.
 //!
 //! Assumes that the variants' errors add: each is small beside what it varies. Films that the observer learns are in `P` and among
@@ -71,8 +71,8 @@ impl Variant {
         }
     }
 
-    /// Words for people.
-    pub fn words(&self) -> String {
+    /// Description for reports.
+    pub fn description(&self) -> String {
         match self {
             Self::Nominal => "as stated".into(),
             Self::OutsideFilm(factor) => format!("outside film x {factor}"),
@@ -119,7 +119,7 @@ impl Variant {
     }
 }
 
-/// What all candidates read in one variant of a scenario, and what was to be known.
+/// Readings of all candidates in one variant of a scenario, and the true gas temperature and mass.
 #[derive(Clone, Debug)]
 struct Run {
     variant: Variant,
@@ -131,9 +131,9 @@ struct Run {
     rows: Vec<Vec<f64>>,
 }
 
-/// A scenario with everything that layouts are judged by in it.
+/// A scenario, simulated in all variants and read by all candidates: layouts are evaluated in it.
 #[derive(Clone, Debug)]
-pub struct Course {
+pub struct ScenarioAnalysis {
     name: String,
     vessel: Vessel,
     candidates: Vec<Sensor>,
@@ -143,9 +143,9 @@ pub struct Course {
     runs: Vec<Run>,
 }
 
-/// A layout along a course.
+/// Accuracy of a layout in a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Along {
+pub struct ScenarioAccuracy {
     /// Name of the scenario.
     pub scenario: String,
     /// Mean and largest standard deviation of the gas temperature as the observer states it, K.
@@ -164,7 +164,7 @@ pub struct Along {
     pub variants: Vec<VariantError>,
 }
 
-/// Over a course.
+/// A quantity over a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Root of the mean square.
@@ -184,10 +184,10 @@ pub struct VariantError {
     pub mass_kg: Summary,
 }
 
-/// Which number of a course a search is for; all of the gas temperature.
+/// What a search minimises in a scenario; all of the gas temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum CourseNumber {
+pub enum ScenarioMeasure {
     /// Mean standard deviation.
     Mean,
     /// Largest standard deviation.
@@ -198,7 +198,7 @@ pub enum CourseNumber {
     WorstCase,
 }
 
-impl Course {
+impl ScenarioAnalysis {
     /// Run a scenario in all variants, read by all candidates.
     ///
     /// # Errors
@@ -237,11 +237,11 @@ impl Course {
         &self.name
     }
 
-    /// A layout along it.
+    /// Accuracy of a layout in it.
     ///
     /// # Errors
     /// The observer cannot be built or cannot follow.
-    pub fn along(&self, layout: &[usize]) -> Result<Along, EstimatorError> {
+    pub fn accuracy(&self, layout: &[usize]) -> Result<ScenarioAccuracy, EstimatorError> {
         let sensors: Vec<Sensor> = layout.iter().map(|&index| self.candidates[index].clone()).collect();
         let followed: Vec<Vec<Point>> =
             self.runs.iter().map(|run| self.follow(layout, &sensors, run)).collect::<Result<_, _>>()?;
@@ -264,7 +264,7 @@ impl Course {
             gas_k: Summary::of(points.iter().map(|point| point.gas_error_k.abs())),
             mass_kg: Summary::of(points.iter().map(|point| point.mass_error_kg.abs())),
         });
-        Ok(Along {
+        Ok(ScenarioAccuracy {
             scenario: self.name.clone(),
             gas_sd_k: over(&|at| nominal[at].gas_sd_k),
             mass_sd_kg: over(&|at| nominal[at].mass_sd_kg),
@@ -350,34 +350,34 @@ fn at_rest(trajectory: &Trajectory, specimens: &[Specimen]) -> Vec<f64> {
     specimens.iter().map(|of| of.sensor.predict(&exposure, &of.truth.parameters).value).collect()
 }
 
-/// A number of a course as what is searched for: its square, K². It has no relaxation, hence no certificate.
+/// A measure of a scenario as an objective: its square, K². It has no relaxation, hence no certificate.
 #[derive(Clone, Copy, Debug)]
-pub struct AlongCourse<'a> {
-    /// The course.
-    pub course: &'a Course,
-    /// The number.
-    pub number: CourseNumber,
+pub(crate) struct ScenarioObjective<'a> {
+    /// The scenario.
+    pub scenario: &'a ScenarioAnalysis,
+    /// The measure.
+    pub measure: ScenarioMeasure,
 }
 
-impl CourseNumber {
-    /// The number of a layout, K.
-    pub fn of(self, along: &Along) -> f64 {
+impl ScenarioMeasure {
+    /// The measure of a layout, K.
+    pub fn of(self, accuracy: &ScenarioAccuracy) -> f64 {
         match self {
-            Self::Mean => along.gas_sd_k.mean,
-            Self::Worst => along.gas_sd_k.worst,
-            Self::Schmidt => along.gas_schmidt_k.mean,
-            Self::WorstCase => along.gas_worst_case_k.worst,
+            Self::Mean => accuracy.gas_sd_k.mean,
+            Self::Worst => accuracy.gas_sd_k.worst,
+            Self::Schmidt => accuracy.gas_schmidt_k.mean,
+            Self::WorstCase => accuracy.gas_worst_case_k.worst,
         }
     }
 }
 
-impl Objective for AlongCourse<'_> {
+impl Objective for ScenarioObjective<'_> {
     fn candidates(&self) -> usize {
-        self.course.candidates.len()
+        self.scenario.candidates.len()
     }
 
     fn value(&self, layout: &[usize]) -> f64 {
-        self.course.along(layout).map_or(f64::INFINITY, |along| self.number.of(&along).powi(2))
+        self.scenario.accuracy(layout).map_or(f64::INFINITY, |accuracy| self.measure.of(&accuracy).powi(2))
     }
 
     fn relaxed(&self, _: &[f64]) -> Option<Relaxed> {

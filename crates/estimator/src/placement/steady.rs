@@ -1,11 +1,11 @@
-//! What a layout is worth at rest, by all that the ordinary observer gives.
+//! Accuracy of a layout at rest, in the steady state of the ordinary observer.
 //!
 //! The members of its bank do what they do there: the first gives the mass, the middle one of those with a leak rate gives the gas temperature, the
 //! rate and the innovations that a leak is found by.
 use serde::{Deserialize, Serialize};
 
 use super::GroupedProblem;
-use super::cylinder::{Conditions, Quantity, SitedCylinder};
+use super::cylinder::{Conditions, InstrumentedCylinder, Quantity};
 use super::objective::{Objective, Relaxed};
 use super::response::{DetectionSettings, Disturbance, Response};
 use crate::EstimatorError;
@@ -13,21 +13,21 @@ use crate::observer::{LeakHypothesis, ObserverSettings, middle_slow};
 use crate::sensor::Sensor;
 use crate::thermal::vessel::Vessel;
 
-/// Wall nodes of the observer that judges: places between them count as one.
+/// Wall nodes of the observer: places between them count as one.
 const WALL_NODES: usize = 6;
 
-/// How layouts are judged.
+/// Settings of the steady-state analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SiteSettings {
+pub struct SteadySettings {
     /// The observer; a finer wall than in a vehicle tells heights apart.
     pub observer: ObserverSettings,
-    /// Where the cylinder rests; its film is taken at the difference of wall and gas that noise makes.
+    /// State in which the cylinder rests; its film is taken at the difference of wall and gas that noise makes.
     pub conditions: Conditions,
     /// When a leak counts as found.
     pub detection: DetectionSettings,
 }
 
-impl Default for SiteSettings {
+impl Default for SteadySettings {
     fn default() -> Self {
         Self {
             observer: ObserverSettings { wall_nodes: WALL_NODES, ..ObserverSettings::default() },
@@ -37,20 +37,20 @@ impl Default for SiteSettings {
     }
 }
 
-/// A vessel with all candidates as the members of the bank see it.
+/// Steady-state analysis of a vessel with all candidates, for the members of the bank.
 #[derive(Clone, Debug)]
-pub struct Site {
-    settings: SiteSettings,
-    slow: SitedCylinder,
-    first: SitedCylinder,
+pub struct SteadyAnalysis {
+    settings: SteadySettings,
+    slow: InstrumentedCylinder,
+    first: InstrumentedCylinder,
     gas: GroupedProblem,
     mass: GroupedProblem,
     leak: GroupedProblem,
 }
 
-/// What the observer knows at rest with a layout.
+/// Accuracy of the observer at rest with a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Certainty {
+pub struct SteadyAccuracy {
     /// Standard deviation of the mean gas temperature, K.
     pub gas_sd_k: f64,
     /// Of the mass against the filling, kg.
@@ -61,15 +61,15 @@ pub struct Certainty {
     pub smallest_leak_kg_s: f64,
 }
 
-impl Site {
+impl SteadyAnalysis {
     /// A vessel with candidates. There are never more wall nodes than the vessel has columns.
     ///
     /// # Errors
-    /// As [`SitedCylinder::new`]; or no member of the bank has a leak rate.
+    /// As [`InstrumentedCylinder::new`]; or no member of the bank has a leak rate.
     pub fn new(
         vessel: &Vessel,
         candidates: &[Sensor],
-        settings: &SiteSettings,
+        settings: &SteadySettings,
     ) -> Result<Self, EstimatorError> {
         let mut settings = settings.clone();
         let columns = crate::thermal::wall::mesh::Mesh::new(&vessel.geometry).columns.len();
@@ -78,10 +78,10 @@ impl Site {
         let bank = &settings.observer.bank;
         let no_rate = EstimatorError::PlacementQuantity { quantity: Quantity::LeakRate };
         let slow = middle_slow(bank).ok_or(no_rate)?;
-        let sited = |member: &LeakHypothesis| {
-            SitedCylinder::new(vessel, candidates, &settings.observer, member, &settings.conditions)
+        let cylinder = |member: &LeakHypothesis| {
+            InstrumentedCylinder::new(vessel, candidates, &settings.observer, member, &settings.conditions)
         };
-        let (slow, first) = (sited(&bank[slow])?, sited(&bank[0])?);
+        let (slow, first) = (cylinder(&bank[slow])?, cylinder(&bank[0])?);
         Ok(Self {
             gas: slow.problem(Quantity::GasTemperature)?,
             leak: slow.problem(Quantity::LeakRate)?,
@@ -92,8 +92,8 @@ impl Site {
         })
     }
 
-    /// How it judges.
-    pub fn settings(&self) -> &SiteSettings {
+    /// The settings.
+    pub fn settings(&self) -> &SteadySettings {
         &self.settings
     }
 
@@ -104,12 +104,12 @@ impl Site {
     }
 
     /// The member that gives gas temperature and leak rate.
-    pub fn slow(&self) -> &SitedCylinder {
+    pub fn slow(&self) -> &InstrumentedCylinder {
         &self.slow
     }
 
     /// The member that gives the mass.
-    pub fn first(&self) -> &SitedCylinder {
+    pub fn first(&self) -> &InstrumentedCylinder {
         &self.first
     }
 
@@ -126,12 +126,12 @@ impl Site {
     ///
     /// # Errors
     /// [`EstimatorError::Unseen`]: it does not see every state.
-    pub fn certainty(&self, layout: &[usize]) -> Result<Certainty, EstimatorError> {
+    pub fn accuracy(&self, layout: &[usize]) -> Result<SteadyAccuracy, EstimatorError> {
         let sd = |quantity| {
             let variance = self.problem(quantity).value(layout);
             if variance.is_finite() { Ok(variance.sqrt()) } else { Err(self.slow.unseen_error(layout)) }
         };
-        Ok(Certainty {
+        Ok(SteadyAccuracy {
             gas_sd_k: sd(Quantity::GasTemperature)?,
             mass_sd_kg: sd(Quantity::Mass)?,
             leak_sd_kg_s: sd(Quantity::LeakRate)?,
@@ -142,7 +142,7 @@ impl Site {
     /// Response of the member whose innovations tell a leak.
     ///
     /// # Errors
-    /// As [`SitedCylinder::response`].
+    /// As [`InstrumentedCylinder::response`].
     pub fn response(
         &self,
         layout: &[usize],
@@ -159,7 +159,7 @@ impl Site {
     /// Smallest leak that is found in time, kg/s.
     ///
     /// # Errors
-    /// As [`Site::certainty`].
+    /// As [`SteadyAnalysis::accuracy`].
     pub fn smallest_leak_kg_s(&self, layout: &[usize]) -> Result<f64, EstimatorError> {
         let response = self.response(layout, &[Disturbance::Leak])?;
         Ok(self.settings.detection.smallest(response.information(self.samples())[(0, 0)]))
@@ -168,7 +168,7 @@ impl Site {
     /// Time until a leak of a rate, kg/s, is found, s; `None`: never.
     ///
     /// # Errors
-    /// As [`Site::certainty`].
+    /// As [`SteadyAnalysis::accuracy`].
     pub fn delay_s(&self, layout: &[usize], rate_kg_s: f64) -> Result<Option<f64>, EstimatorError> {
         let needed = (self.settings.detection.needed_sd() / rate_kg_s).powi(2);
         let samples = self.response(layout, &[Disturbance::Leak])?.samples_to(0, needed);
@@ -176,10 +176,10 @@ impl Site {
     }
 }
 
-/// The smallest leak as what is searched for: its square, kg²/s², the variance that stands for it. It has no relaxation, hence no certificate: every
+/// The smallest leak as an objective: its square, kg²/s², the variance that stands for it. It has no relaxation, hence no certificate: every
 /// layout has to be looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct SmallestLeak<'a>(pub &'a Site);
+pub(super) struct SmallestLeak<'a>(pub &'a SteadyAnalysis);
 
 impl Objective for SmallestLeak<'_> {
     fn candidates(&self) -> usize {

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use cylwatch_detector::monitor::MonitorSettings;
 
 use super::fit::fit;
+use super::monitored::MonitoredCylinder;
 use super::record::Record;
-use super::watched::Watched;
 use crate::EvaluationError;
 use crate::judge::table::{Clustered, Rate};
 use crate::world::{Family, SimulationKey};
@@ -23,19 +23,23 @@ pub(super) const FOLDS: usize = 2;
 ///
 /// # Errors
 /// A half has too few stretches or nothing to fit to.
-pub fn found(watched: &[Watched], stretch: f64, mean_time_s: f64) -> Result<Rate, EvaluationError> {
+pub(super) fn false_alarm_rate(
+    monitored: &[MonitoredCylinder],
+    stretch: f64,
+    mean_time_s: f64,
+) -> Result<Rate, EvaluationError> {
     let over_after_s = MonitorSettings::default().leak_over_after_s;
-    let folds = folds(watched);
+    let folds = folds(monitored);
     let mut counted = Clustered::default();
     for fold in 0..FOLDS {
         let (held_out, fitted): (Vec<_>, Vec<_>) =
-            watched.iter().zip(&folds).partition(|(_, of_it)| **of_it == fold);
-        let records: Vec<&Record> = fitted.iter().map(|(watched, _)| &watched.record).collect();
+            monitored.iter().zip(&folds).partition(|(_, of_it)| **of_it == fold);
+        let records: Vec<&Record> = fitted.iter().map(|(monitored, _)| &monitored.record).collect();
         let thresholds = fit(&records, stretch)?.thresholds(mean_time_s)?;
-        for (watched, _) in held_out {
-            let alarms = watched.record.alarms(&thresholds, over_after_s);
+        for (monitored, _) in held_out {
+            let alarms = monitored.record.alarms(&thresholds, over_after_s);
             let at_risk_s = HOUR_S * alarms.at_risk_h as f64;
-            counted.add(SimulationKey::of(&watched.request), alarms.count as f64, at_risk_s);
+            counted.add(SimulationKey::of(&monitored.request), alarms.count as f64, at_risk_s);
         }
     }
     counted.rate().ok_or(EvaluationError::TooFewStretches { found: 0, needed: super::fit::STRETCHES })
@@ -43,11 +47,11 @@ pub fn found(watched: &[Watched], stretch: f64, mean_time_s: f64) -> Result<Rate
 
 /// The half of each cylinder. The first of the families go to the halves in turn, and the next one of a family to the next half. What shares a
 /// simulation stays together.
-fn folds(watched: &[Watched]) -> Vec<usize> {
+fn folds(monitored: &[MonitoredCylinder]) -> Vec<usize> {
     let mut families: BTreeMap<Family, (usize, usize)> = BTreeMap::new();
     let mut simulations: BTreeMap<SimulationKey, usize> = BTreeMap::new();
-    let mut fold_of = |watched: &Watched| {
-        let request = &watched.request;
+    let mut fold_of = |monitored: &MonitoredCylinder| {
+        let request = &monitored.request;
         *simulations.entry(SimulationKey::of(request)).or_insert_with(|| {
             let next = families.len();
             let (family, rank) = families.entry(request.family).or_insert((next, 0));
@@ -55,7 +59,7 @@ fn folds(watched: &[Watched]) -> Vec<usize> {
             (*family + *rank) % FOLDS
         })
     };
-    watched.iter().map(&mut fold_of).collect()
+    monitored.iter().map(&mut fold_of).collect()
 }
 
 #[cfg(test)]
@@ -68,7 +72,7 @@ mod tests {
     const MEAN_TIME_S: f64 = 3652.5 * DAY_S;
 
     /// Forty days of stretches whose peaks fall off exponentially, `loudness` times as high.
-    fn watched(seed: u64, climate: Climate, loudness: f64) -> Watched {
+    fn monitored(seed: u64, climate: Climate, loudness: f64) -> MonitoredCylinder {
         let mut record = Record::default();
         for hour in 0..40 * 24_u32 {
             // Even over 0 to 1, and never alike.
@@ -77,11 +81,11 @@ mod tests {
             record.update(3600.0 * f64::from(hour), &[value; Scale::ALL.len()]);
         }
         let family = Family { climate, ..Family::usual() };
-        Watched { request: Request::tight(family, seed, 40.0 * DAY_S), record }
+        MonitoredCylinder { request: Request::tight(family, seed, 40.0 * DAY_S), record }
     }
 
-    fn cylinders(loudness: impl Fn(u64) -> f64) -> Vec<Watched> {
-        (0..60).map(|seed| watched(seed, Climate::Railway, loudness(seed))).collect()
+    fn cylinders(loudness: impl Fn(u64) -> f64) -> Vec<MonitoredCylinder> {
+        (0..60).map(|seed| monitored(seed, Climate::Railway, loudness(seed))).collect()
     }
 
     #[test]
@@ -94,11 +98,11 @@ mod tests {
         assert!(
             half(true).all(|(_, fold)| *fold != folds[0]) && half(false).all(|(_, fold)| *fold == folds[0])
         );
-        let quiet: Vec<&Record> = half(false).map(|(watched, _)| &watched.record).collect();
+        let quiet: Vec<&Record> = half(false).map(|(monitored, _)| &monitored.record).collect();
         let thresholds = fit(&quiet, 0.01).unwrap().thresholds(MEAN_TIME_S).unwrap();
         let expected: u64 =
-            half(true).map(|(watched, _)| watched.record.alarms(&thresholds, DAY_S).count).sum();
-        let rate = found(&all, 0.01, MEAN_TIME_S).unwrap();
+            half(true).map(|(monitored, _)| monitored.record.alarms(&thresholds, DAY_S).count).sum();
+        let rate = false_alarm_rate(&all, 0.01, MEAN_TIME_S).unwrap();
         assert!(expected >= 30, "{expected}");
         // The quiet half never reaches thresholds of the loud one.
         assert_eq!((rate.count, rate.simulations_with), (expected, 30));
@@ -107,12 +111,14 @@ mod tests {
     #[test]
     fn each_half_has_every_family_and_what_shares_a_simulation_stays_together() {
         let climates = [Climate::Railway, Climate::Parked, Climate::Workshop];
-        let all: Vec<Watched> = (0..24).map(|seed| watched(seed, climates[seed as usize % 3], 1.0)).collect();
+        let all: Vec<MonitoredCylinder> =
+            (0..24).map(|seed| monitored(seed, climates[seed as usize % 3], 1.0)).collect();
         let folds = self::folds(&all);
         for climate in climates {
             let of = |half| {
-                let is_one =
-                    |(w, fold): &(&Watched, &usize)| w.request.family.climate == climate && **fold == half;
+                let is_one = |(w, fold): &(&MonitoredCylinder, &usize)| {
+                    w.request.family.climate == climate && **fold == half
+                };
                 all.iter().zip(&folds).filter(is_one).count()
             };
             assert_eq!((of(0), of(1)), (4, 4), "{climate}");
@@ -125,7 +131,7 @@ mod tests {
 
     #[test]
     fn no_alarm_in_a_time_leaves_the_published_upper_bound() {
-        let rate = found(&cylinders(|_| 1.0), 0.01, 1e6 * MEAN_TIME_S).unwrap();
+        let rate = false_alarm_rate(&cylinders(|_| 1.0), 0.01, 1e6 * MEAN_TIME_S).unwrap();
         assert_eq!((rate.count, rate.per_ten_years), (0, 0.0));
         // Garwood: 3.689 events for none.
         let tens = rate.cylinder_years / 10.0;

@@ -27,7 +27,7 @@ const WIND_SUN_M_S: f64 = 0.5;
 const WIND_MOST_M_S: f64 = 40.0;
 
 /// A row of the table, to be put into a simulation.
-pub(super) struct Disturbed<'a> {
+pub(super) struct CylinderFault<'a> {
     pub row: FaultRow,
     /// Bore through which it is filled, m.
     pub inlet_m: f64,
@@ -57,7 +57,7 @@ pub(super) fn away_s(row: FaultRow, seed: u64) -> Option<f64> {
     is_away.then_some(AWAY_S)
 }
 
-impl Disturbed<'_> {
+impl CylinderFault<'_> {
     /// Simulate a scenario with what this row does to it.
     pub(super) fn simulate(
         &self,

@@ -5,11 +5,11 @@ use crate::detector::prognosis::Reaction;
 use super::measures::Class;
 
 /// Half width of a 95 % interval in standard deviations.
-pub const BAND_95: f64 = 1.959_963_984_540_054;
+pub(crate) const BAND_95: f64 = 1.959_963_984_540_054;
 
 /// All that a candidate says. What it does not know it leaves out.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Said {
+pub struct Statement {
     /// Stamp of the row that it is about, s: a candidate may hold rows back.
     pub stamp_s: f64,
     /// What it decides; `None`: it decides nothing, and is judged as an estimator.
@@ -92,7 +92,7 @@ pub struct Innovation {
 }
 
 /// A value with a normal interval.
-pub fn normal(value: f64, sd: f64) -> Estimated {
+pub(crate) fn normal(value: f64, sd: f64) -> Estimated {
     let half = BAND_95 * sd;
     Estimated { value, interval: sd.is_finite().then_some((value - half, value + half)) }
 }
