@@ -108,8 +108,8 @@ fn estimate(
     log: &mut LogInput,
     messages: &Messages,
 ) -> anyhow::Result<report::Summary> {
-    let selection = Selection::new(&mut log.reader, sensors, vessel, &[], messages)?;
-    let (first, fill) = start::first_rows(&mut log.reader, &selection, options.source)?;
+    let mut selection = Selection::new(&mut log.reader, sensors, vessel, &[], messages)?;
+    let (first, fill) = start::first_rows(&mut log.reader, &mut selection, options.source, vessel)?;
     let first_k = selection.mean_temperature_k(first.first());
     let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
     let commissioning = options.fill.commissioning(fill, vessel, first_k, selection.pressure_offset_sd_pa());

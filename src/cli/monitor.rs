@@ -47,7 +47,7 @@ pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::R
     let mut log = inputs.log(&options.log, &log_options)?;
     let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
     let outcome =
-        selection.and_then(|selection| monitor(&options, &inputs, beginning, &selection, &mut log, messages));
+        selection.and_then(|selection| monitor(&options, &inputs, beginning, selection, &mut log, messages));
     for caution in log.reader.cautions() {
         messages.caution(&caution.to_string());
     }
@@ -65,19 +65,23 @@ fn monitor(
     options: &Options,
     inputs: &Inputs,
     beginning: RunStart,
-    selection: &Selection,
+    mut selection: Selection,
     log: &mut LogInput,
     messages: &Messages,
 ) -> anyhow::Result<Option<Summary>> {
-    let mut identity = beginning.identity(options, &selection.sensors);
-    let engine = match &beginning.state {
-        None => Engine::cold(options, inputs, &beginning, selection, log, messages)?,
+    let (engine, identity) = match &beginning.state {
+        None => {
+            let engine = Engine::cold(options, inputs, &beginning, &mut selection, log, messages)?;
+            (engine, beginning.identity(options, &selection.sensors))
+        }
         Some(state) => {
+            selection.know_the_fill(state.full_pa, state.stated, &mut log.reader)?;
+            let identity = beginning.identity(options, &selection.sensors);
             let path = options.state.as_deref().unwrap_or(Path::new("the state"));
             state.check(&identity).map_err(|reason| resume::refused(path, &reason))?;
             session::check_clock(options, state, log)?;
-            identity = identity.after(&state.identity);
-            Engine::restored(options, &beginning, selection, state)?
+            let engine = Engine::restored(options, &beginning, &selection, state)?;
+            (engine, identity.after(&state.identity))
         }
     };
     if let Some(commissioned) = &beginning.commissioned {
@@ -85,7 +89,7 @@ fn monitor(
     }
     let title = format!("{} \u{2013} {}", beginning.vessel.name, selection.names().join(", "));
     let first = engine.first.clone();
-    let context = RunContext { options, inputs, selection, messages, identity };
+    let context = RunContext { options, inputs, selection: &selection, messages, identity };
     let mut session = Session::begin(context, &beginning, engine, log)?;
     let progress = Progress::new(messages);
     session.acknowledge(&progress)?;

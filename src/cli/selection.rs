@@ -14,7 +14,14 @@ pub(super) struct Selection {
     pub sensors: Vec<Sensor>,
     /// Channel of each.
     channels: Vec<usize>,
+    /// Whether nobody said what they are.
+    typical: bool,
 }
+
+/// Pressure up to which the fill is looked for, Pa.
+const ANY_PA: (f64, f64) = (-1e5, 1.5e8);
+/// Fill of the usual cylinder at 15 °C, Pa.
+const USUAL_FILL_PA: f64 = 200e5;
 
 impl Selection {
     /// The sensors of a file, or typical ones on all columns outside of the gas; narrows what the log takes as a reading
@@ -36,10 +43,30 @@ impl Selection {
             None => Self::typical(channels, vessel, known, messages)?,
         };
         for (sensor, &channel) in selection.sensors.iter().zip(&selection.channels) {
-            let (low, high) = sensor.plausible();
+            let awaits_fill = selection.typical && sensor.quantity() == Quantity::Pressure;
+            let (low, high) = if awaits_fill { ANY_PA } else { sensor.plausible() };
             reader.set_range(channel, low, high);
         }
         Ok(selection)
+    }
+
+    /// The fill has such a pressure at 15 °C, Pa: typical transmitters get the range for that. Where the fill was not stated but read, gas may be missing, and the range is no smaller than that of the usual cylinder.
+    pub(super) fn know_the_fill(
+        &mut self,
+        full_pa: f64,
+        stated: bool,
+        reader: &mut LogReader,
+    ) -> anyhow::Result<()> {
+        let full_pa = if stated { full_pa } else { full_pa.max(USUAL_FILL_PA) };
+        let pressures = self.sensors.iter_mut().zip(&self.channels);
+        let pressures =
+            pressures.filter(|(sensor, _)| self.typical && sensor.quantity() == Quantity::Pressure);
+        for (sensor, &channel) in pressures {
+            *sensor = Sensor::typical_transmitter(&sensor.name, full_pa)?;
+            let (low, high) = sensor.plausible();
+            reader.set_range(channel, low, high);
+        }
+        Ok(())
     }
 
     /// A file of sensors replaces all typical ones, which is easily forgotten.
@@ -74,7 +101,7 @@ impl Selection {
             Ok(found)
         };
         let channels = sensors.iter().map(channel).collect::<anyhow::Result<_>>()?;
-        Ok(Self { sensors, channels })
+        Ok(Self { sensors, channels, typical: false })
     }
 
     fn typical(
@@ -111,7 +138,7 @@ impl Selection {
         // The order of the columns means nothing: a log that has another one goes on from the same state.
         found.sort_by_key(|(sensor, _)| (sensor.quantity() == Quantity::Pressure, sensor.name.clone()));
         let (sensors, channels) = found.into_iter().unzip();
-        Ok(Self { sensors, channels })
+        Ok(Self { sensors, channels, typical: true })
     }
 
     /// Names of the sensors.

@@ -2,9 +2,11 @@
 use super::fill::FillSource;
 use super::input::Inputs;
 use super::selection::Selection;
+use crate::detector::prognosis::Contents;
 use crate::estimator::log::Quantity;
-use crate::estimator::observer::Learned;
+use crate::estimator::observer::{Commissioning, Learned};
 use crate::log::{LogReader, Row};
+use crate::thermal::units::QUOTED_K;
 use crate::thermal::vessel::Fill;
 use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
@@ -13,8 +15,24 @@ use std::path::Path;
 /// Rows that are looked through for the first pressure.
 const LONGEST_WAIT: usize = 10_000;
 
-/// Reads rows until the fill is known: one row, or all up to the first pressure.
+/// Reads rows until the fill is known, one row, or all up to the first pressure, and fits the range of a typical transmitter to it.
 pub(super) fn first_rows(
+    reader: &mut LogReader,
+    selection: &mut Selection,
+    source: FillSource,
+    vessel: &Vessel,
+) -> anyhow::Result<(Vec<Row>, Fill)> {
+    let (rows, fill) = rows_up_to_the_fill(reader, selection, source)?;
+    let begin = || rows.last().map_or_else(String::new, |row| reader.place(row));
+    let first_k = selection.mean_temperature_k(rows.first());
+    let commissioning = Commissioning { fill, mass_sd: 1.0, settled: false };
+    let mass_kg = commissioning.mass_kg(vessel, first_k).with_context(begin)?;
+    let full_pa = Contents::of(vessel).pressure_pa(mass_kg, QUOTED_K).with_context(begin)?;
+    selection.know_the_fill(full_pa, source != FillSource::FirstPressure, reader)?;
+    Ok((rows, fill))
+}
+
+fn rows_up_to_the_fill(
     reader: &mut LogReader,
     selection: &Selection,
     source: FillSource,

@@ -52,7 +52,8 @@ impl Reading<'_> {
         let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
         let options = self.reading.options(names);
         let mut input = self.inputs.log(name, &options)?;
-        let selection = Selection::new(&mut input.reader, sensors, vessel, &[AMBIENT], self.messages)?;
+        let mut selection = Selection::new(&mut input.reader, sensors, vessel, &[AMBIENT], self.messages)?;
+        let mut unknown = selection.first_of(Quantity::Pressure);
         let air = input.reader.channels().iter().position(|channel| {
             channel.name.eq_ignore_ascii_case(AMBIENT) && channel.quantity == Quantity::Temperature
         });
@@ -65,6 +66,12 @@ impl Reading<'_> {
                     recording.log.values.extend(selection.readings(row));
                     let of_air = air.map(|channel| (row.time_s, row.readings[channel]));
                     recording.air.extend(of_air.filter(|(_, air_k)| air_k.is_finite()));
+                    let read_pa = unknown.map_or(f64::NAN, |channel| row.readings[channel]);
+                    if read_pa > 0.0 {
+                        unknown = None;
+                        selection.know_the_fill(read_pa, false, &mut input.reader)?;
+                        recording.sensors.clone_from(&selection.sensors);
+                    }
                 }
                 Ok(None) => break Ok(()),
                 Err(error) => break Err(error),

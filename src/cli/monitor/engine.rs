@@ -18,6 +18,8 @@ pub(super) struct Engine {
     pub full_pa: f64,
     /// Whether all was at rest at the first row.
     pub settled: bool,
+    /// Whether the fill was stated, not read.
+    pub stated: bool,
     /// Rows that were read to find the fill.
     pub first: Vec<Row>,
 }
@@ -55,7 +57,13 @@ impl Engine {
         let restored = Monitor::restore(&beginning.vessel, &selection.sensors, &settings, &state.monitor);
         let path = options.state.as_deref().unwrap_or(Path::new("the state"));
         let monitor = restored.map_err(|error| refused(path, &Refusal::Monitor(error)))?;
-        Ok(Self { monitor, full_pa: state.full_pa, settled: state.settled, first: Vec::new() })
+        Ok(Self {
+            monitor,
+            full_pa: state.full_pa,
+            settled: state.settled,
+            stated: state.stated,
+            first: Vec::new(),
+        })
     }
 
     /// A monitor that begins with the first rows.
@@ -63,14 +71,14 @@ impl Engine {
         options: &Options,
         inputs: &Inputs,
         beginning: &RunStart,
-        selection: &Selection,
+        selection: &mut Selection,
         log: &mut LogInput,
         messages: &Messages,
     ) -> anyhow::Result<Self> {
         let vessel = &beginning.vessel;
         let learned = options.learned_in.as_deref();
         let learned = learned.map(|path| start::learned(inputs, path, vessel)).transpose()?;
-        let (first, fill) = start::first_rows(&mut log.reader, selection, options.source)?;
+        let (first, fill) = start::first_rows(&mut log.reader, selection, options.source, vessel)?;
         let first_k = selection.mean_temperature_k(first.first());
         let begin = || first.last().map_or_else(String::new, |row| log.reader.place(row));
         let commissioning =
@@ -108,6 +116,7 @@ impl Engine {
                  another one, state it with --limit-bar"
             ));
         }
-        Ok(Self { monitor, full_pa, settled: options.fill.is_settled(), first })
+        let stated = options.source != FillSource::FirstPressure;
+        Ok(Self { monitor, full_pa, settled: options.fill.is_settled(), stated, first })
     }
 }

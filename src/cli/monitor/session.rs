@@ -29,6 +29,7 @@ pub(super) struct Session<'a> {
     monitor: Monitor,
     full_pa: f64,
     settled: bool,
+    stated: bool,
     naming: Naming,
     sink: EventSink,
     rows: Rows,
@@ -83,6 +84,7 @@ impl<'a> Session<'a> {
             monitor,
             full_pa: engine.full_pa,
             settled: engine.settled,
+            stated: engine.stated,
             naming,
             sink,
             rows: Rows::begin(options, context.inputs, context.selection, log, &start.vessel)?,
@@ -204,6 +206,7 @@ impl<'a> Session<'a> {
             log_starts_s: self.log_starts_s.clone(),
             full_pa: self.full_pa,
             settled: self.settled,
+            stated: self.stated,
             last: self.last.clone(),
             monitor: self.monitor.save()?,
         };

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Version of the format; another one is refused.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// First words of the file.
 const MARK: &str = "cylwatch-monitor-state";
 
@@ -30,6 +30,8 @@ pub(super) struct State {
     pub full_pa: f64,
     /// Whether all was at rest at the first row.
     pub settled: bool,
+    /// Whether the fill was stated, not read.
+    pub stated: bool,
     /// The last output.
     pub last: Option<Output>,
     /// The monitor, as it saves itself.
@@ -176,6 +178,7 @@ mod tests {
             log_starts_s: vec![0.0],
             full_pa: 200e5,
             settled: true,
+            stated: true,
             last: None,
             monitor: (0..200).collect(),
         }

@@ -285,3 +285,38 @@ fn alarms_are_acknowledged_with_a_comment_and_reset_once_they_are_over() {
         refusal(monitor(folder.path(), &log(0..3, TIGHT), options), &[words]);
     }
 }
+
+#[test]
+fn a_vessel_of_any_pressure_is_watched_without_a_word_about_its_transmitter_and_goes_on_from_its_state() {
+    let folder = tempdir().unwrap();
+    for (bar, fill) in [
+        (310.0, &[][..]),
+        (310.0, &["--fill-pressure-bar", "310"][..]),
+        (7.0, &["--fill-pressure-bar", "7"][..]),
+    ] {
+        for (name, from) in [("first.csv", 0), ("second.csv", 120)] {
+            let row = |minute: u32| {
+                let k = f64::from(minute % 7);
+                format!(
+                    "{},{:.2},{:.2},{:.3}\n",
+                    60 * minute,
+                    15.0 + 0.01 * k,
+                    15.02 - 0.01 * k,
+                    bar * (1.0 + 1e-5 * k)
+                )
+            };
+            let rows: String = (from..from + 120).map(row).collect();
+            let text = format!("time_s,shoulder_degc,valve_degc,pressure_bar\n{rows}");
+            std::fs::write(folder.path().join(name), text).unwrap();
+            let common =
+                ["monitor", "nitrogen-20l", name, "--state", "s.state", "-o", "rows.csv", "--limit-bar", "5"];
+            let outcome = run(folder.path(), &[&common, fill].concat());
+            assert_eq!(outcome.code, Some(3), "{bar} bar: {}", outcome.stderr);
+            assert!(outcome.stderr.contains("sensors            all good"), "{bar} bar: {}", outcome.stderr);
+            if from > 0 {
+                assert!(!outcome.stderr.contains("cold"), "{}", outcome.stderr);
+            }
+        }
+        std::fs::remove_file(folder.path().join("s.state")).unwrap();
+    }
+}
