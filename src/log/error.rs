@@ -32,21 +32,14 @@ pub enum LogError {
         remedy: String,
     },
     /// The readings of a column are in another unit than its name says.
-    #[error(
-        "{at}: {column} reads {values}, which no sensor on a cylinder shows in _{unit}; in _{fitting} they are \
-             usual: add {remedy}"
-    )]
+    #[error("{at}: {column} reads {readings}: add {remedy}")]
     Unit {
         /// Place of the last of them.
         at: String,
         /// Column as written.
         column: String,
-        /// Lowest and highest value.
-        values: String,
-        /// Unit of its name.
-        unit: &'static str,
-        /// Unit that fits.
-        fitting: &'static str,
+        /// Lowest and highest value, in its unit and in the one that fits.
+        readings: String,
         /// What to write.
         remedy: String,
     },

@@ -418,9 +418,13 @@ fn misread(column: &ValueColumn<Channel>, check: &UnitCheck, fitting: &Unit, at:
     LogError::Unit {
         at,
         column: column.header.clone(),
-        values: format!("{} to {}", tidy(low), tidy(high)),
-        unit: column.unit.suffix,
-        fitting: fitting.suffix,
+        readings: format!(
+            "{} to {}, which no sensor on a cylinder shows in _{}; in _{} they are usual",
+            tidy(low),
+            tidy(high),
+            column.unit.suffix,
+            fitting.suffix
+        ),
         remedy: renaming(column, fitting),
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use tempfile::tempdir;
 
 /// Thirty rows about 15 °C and 200 bar under a header, each value written by its own function.
-fn log(folder: &Path, header: &str, temperature: fn(f64) -> f64, pressure: fn(f64) -> f64) {
+fn log(folder: &Path, header: &str, temperature: Writing, pressure: Writing) {
     let mut text = format!("{header}\n");
     for row in 0..30 {
         let degc = 15.0 + 0.1 * f64::from(row);
@@ -15,7 +15,10 @@ fn log(folder: &Path, header: &str, temperature: fn(f64) -> f64, pressure: fn(f6
     std::fs::write(folder.join("log.csv"), text).unwrap();
 }
 
-const AS_IT_IS: fn(f64) -> f64 = |value| value;
+/// How a value is written.
+type Writing = fn(f64) -> f64;
+
+const AS_IT_IS: Writing = |value| value;
 
 /// Temperature at the end of an estimate, degC.
 fn gas_degc(folder: &Path, maps: &[&str]) -> f64 {
@@ -32,7 +35,7 @@ fn gas_degc(folder: &Path, maps: &[&str]) -> f64 {
 fn a_unit_that_readings_cannot_be_in_is_refused_with_the_one_that_fits() {
     let folder = tempdir().unwrap();
     let named = "time_s,shoulder_degc,valve_degc,pressure_bar";
-    let cases: [(&str, fn(f64) -> f64, fn(f64) -> f64, &str); 5] = [
+    let cases: [(&str, Writing, Writing, &str); 5] = [
         (named, |degc| degc + 273.15, AS_IT_IS, "--map shoulder_k=shoulder_degc"),
         (named, AS_IT_IS, |bar| 1e5 * bar, "--map pressure_pa=pressure_bar"),
         (named, AS_IT_IS, |bar| 1e2 * bar, "--map pressure_kpa=pressure_bar"),
