@@ -79,7 +79,16 @@ impl Inputs {
         messages: &Messages,
     ) -> anyhow::Result<(VesselSpec, Vessel, Input)> {
         let document = self.document(name, &vessel::presets::FILES, "simulate")?;
-        let (specification, vessel) = vessel::read_specification(&document.text, &document.shown)?;
+        let read = vessel::read_specification(&document.text, &document.shown);
+        let (specification, vessel) = read.map_err(|error| {
+            // A file that is fine as something else was given in the wrong place.
+            match scenario::read_scenario(&document.text, &document.shown, &|_| {
+                Err(std::io::ErrorKind::NotFound.into())
+            }) {
+                Ok(_) => anyhow!("{} is a scenario, and a vessel is wanted here", document.shown),
+                Err(_) => error.into(),
+            }
+        })?;
         vessel.doubts().iter().for_each(|doubt| messages.caution(doubt));
         let origin = self.records.borrow().last().cloned().context("what was read is recorded")?;
         Ok((specification, vessel, origin))
@@ -110,7 +119,12 @@ impl Inputs {
                 std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text: save it as UTF-8")
             })
         };
-        Ok(scenario::read_scenario(&document.text, &document.shown, &table)?)
+        scenario::read_scenario(&document.text, &document.shown, &table).map_err(|error| {
+            match vessel::read_specification(&document.text, &document.shown) {
+                Ok(_) => anyhow!("{} is a vessel, and a scenario is wanted here", document.shown),
+                Err(_) => error.into(),
+            }
+        })
     }
 
     /// A plan of the judge by file name, by built-in name, or from stdin; `left_out` as in `climate=desert`.
@@ -152,6 +166,14 @@ impl Inputs {
             return Ok(LogInput { reader, name: name.to_owned(), passed, length: None });
         }
         let failed = || format!("{name} cannot be read");
+        if let Some(kind) =
+            NO_LOG.iter().find(|kind| name.to_ascii_lowercase().ends_with(&format!(".{kind}")))
+        {
+            bail!(
+                "{name} is a {} file, and a log is wanted here: a table in CSV or Parquet",
+                kind.to_uppercase()
+            );
+        }
         let mut file = File::open(name).with_context(failed)?;
         let metadata = file.metadata().with_context(failed)?;
         if metadata.is_dir() {
@@ -201,6 +223,9 @@ impl Inputs {
         Ok(Document { text: text.to_owned(), shown: format!("preset {name}"), built_in: true })
     }
 }
+
+/// Endings of files that are no logs.
+const NO_LOG: [&str; 4] = ["toml", "json", "html", "svg"];
 
 /// What a log is, by its name.
 enum Content {
@@ -292,7 +317,7 @@ fn unknown(name: &str, presets: &Presets, listed_by: &str) -> anyhow::Error {
     let nearest = presets.names().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     let nearest = nearest.map_or(String::new(), |nearest| format!(", the nearest is {nearest}"));
     anyhow!(
-        "{name} is neither a {kind} file nor a built-in {kind}{nearest}: give the path of a TOML file, or a name \
+        "{name}: no such file, and no built-in {kind} is called so{nearest}: give the path of a TOML file, or a name \
          that `cylwatch {listed_by} --list` shows"
     )
 }

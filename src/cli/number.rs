@@ -102,7 +102,12 @@ where
             let default = defaults
                 .first()
                 .map_or(String::new(), |default| format!("; the default is {}", default.to_string_lossy()));
-            let message = format!("{option}{text}: it must be {}{default}\n", self.bounds());
+            let with_point = text.trim().replace(',', ".");
+            let point = match with_point.parse::<T>() {
+                Ok(_) if text.contains(',') => format!(": write {with_point}, with a decimal point"),
+                _ => default,
+            };
+            let message = format!("{option}{text}: it must be {}{point}\n", self.bounds());
             clap::Error::raw(ErrorKind::ValueValidation, message)
         })
     }

@@ -12,8 +12,12 @@ pub enum Packing {
     Gzip,
 }
 
+const NO_TABLE: &str = "name a table in CSV or Parquet";
+/// Bytes that are looked at.
+const HEAD: u64 = 256;
+
 /// First bytes of what is no text: what it is, and what to do.
-const FOREIGN: [(&[u8], &str, &str); 5] = [
+const FOREIGN: [(&[u8], &str, &str); 10] = [
     (b"PAR1", "a Parquet file", "give its name the ending .parquet; Parquet cannot be read from a pipe"),
     (
         b"PK\x03\x04",
@@ -22,6 +26,11 @@ const FOREIGN: [(&[u8], &str, &str); 5] = [
     ),
     (b"\x28\xb5\x2f\xfd", "packed with zstd", "unpack it with `zstd -d`, or pack it with gzip"),
     (b"\xfd7zX", "packed with xz", "unpack it with `xz -d`, or pack it with gzip"),
+    (b"\x89PNG", "a picture", NO_TABLE),
+    (b"\xff\xd8\xff", "a picture", NO_TABLE),
+    (b"%PDF", "a PDF document", NO_TABLE),
+    (b"\x7fELF", "a program", NO_TABLE),
+    (b"\xd0\xcf\x11\xe0", "a workbook of a spreadsheet program", "save the sheet as CSV"),
     (b"BZh", "packed with bzip2", "unpack it with `bzip2 -d`, or pack it with gzip"),
 ];
 
@@ -31,12 +40,19 @@ const FOREIGN: [(&[u8], &str, &str); 5] = [
 /// The first bytes cannot be read, or are those of something else than text and gzip.
 pub(super) fn unpacked(mut input: Box<dyn Read>, file: &str) -> Result<(Box<dyn Read>, Packing), LogError> {
     let mut head = Vec::new();
-    let read = input.by_ref().take(4).read_to_end(&mut head);
+    let read = input.by_ref().take(HEAD).read_to_end(&mut head);
     read.map_err(|source| LogError::Io { file: file.to_owned(), source })?;
     if let Some(&(_, what, remedy)) = FOREIGN.iter().find(|(bytes, ..)| head.starts_with(bytes)) {
         return Err(LogError::NoText { file: file.to_owned(), what, remedy });
     }
     let is_gzip = head.starts_with(b"\x1f\x8b");
+    // Those of UTF-16 are told with what to do.
+    let is_control =
+        |byte: &u8| *byte < b' ' && !matches!(byte, 0 | b'\t' | b'\n' | b'\r' | b'\x0c' | b'\x1a');
+    if !is_gzip && head.iter().any(is_control) {
+        let what = "no text: its first bytes are those of a program's own data";
+        return Err(LogError::NoText { file: file.to_owned(), what, remedy: NO_TABLE });
+    }
     let whole = Cursor::new(head).chain(input);
     Ok(if is_gzip {
         (Box::new(MultiGzDecoder::new(BufReader::new(whole))), Packing::Gzip)

@@ -2,6 +2,7 @@
 // Helpers outside of test functions fail a test by panicking, too.
 #![allow(clippy::unwrap_used)]
 
+mod bad_inputs;
 mod bench_detector;
 mod book;
 mod browser;

@@ -8,6 +8,7 @@ use crate::detector::monitor::intake::IntakeSettings;
 use crate::report::monitor::OperatingLimits;
 use crate::thermal::units::DAY_S;
 use crate::thermal::units::{BAR_PA, Dimension, ZERO_CELSIUS_K};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -98,10 +99,18 @@ impl Options {
     }
 }
 
+/// What a coldest night may be, K.
+const COLDEST_K: RangeInclusive<f64> = 173.15..=333.15;
+
 fn limits(given: &QuantityArguments<super::arguments::MonitorQuantities>) -> anyhow::Result<OperatingLimits> {
+    let coldest_k = given.si("coldest", Dimension::Temperature)?.unwrap_or(ZERO_CELSIUS_K - 25.0);
+    if !COLDEST_K.contains(&coldest_k) {
+        let degc = coldest_k - ZERO_CELSIUS_K;
+        bail!("--coldest of {degc} °C: it must be from -100 to 60 °C, the coldest that the cylinder will be");
+    }
     Ok(OperatingLimits {
         limit_pa: given.si("limit", Dimension::Pressure)?.unwrap_or(160.0 * BAR_PA),
-        coldest_k: given.si("coldest", Dimension::Temperature)?.unwrap_or(ZERO_CELSIUS_K - 25.0),
+        coldest_k,
         next_service_s: given.si("next-service", Dimension::Time)?.unwrap_or(30.0 * DAY_S),
     })
 }

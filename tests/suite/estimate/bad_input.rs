@@ -127,7 +127,7 @@ fn celsius_in_a_column_of_kelvins_is_no_reading_and_said_so() {
     refused_with(
         "time_s,shoulder_k\n0,15\n60,15\n",
         &["--fill-mass-kg", "4.4"],
-        &["shoulder_k = 15 lies outside of", "look at the unit"],
+        &["shoulder_k = 15 lies outside of", "--map shoulder_degc=shoulder_k"],
     );
 }
 
@@ -154,9 +154,9 @@ fn a_fill_that_contradicts_the_first_pressure_is_cautioned_about_and_refused_bey
     // Pounds per square inch in a column of bars.
     refused(
         "time_s,shoulder_degc,pressure_bar\n0,15,2900\n60,15,2900\n",
-        &["none of the first 2 rows has a pressure"],
+        &["stdin: pressure_bar reads 2900 to 2900", "--map pressure_psi=pressure_bar"],
     );
-    refused("time_s,shoulder_degc,pressure_bar\n0,15,0\n60,15,0\n", &["stdin:2: pressure 0 Pa"]);
+    refused("time_s,shoulder_degc,pressure_bar\n0,15,0\n60,15,0\n", &["stdin:2: pressure_bar reads nothing or less", "--map pressure_barg=pressure_bar"]);
 }
 
 #[test]

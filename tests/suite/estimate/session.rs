@@ -142,9 +142,10 @@ fn what_was_learnt_makes_the_next_start_surer_and_is_refused_for_another_vessel(
     assert!(document["learned"]["names"].as_array().unwrap().len() > 4);
     let second = ["estimate", "nitrogen-20l", "run.csv", "-o", "b.csv", "--learned-in", "cylinder.json"];
     assert_eq!(run(folder.path(), &second).code, Some(0));
+    // Two hours on: in the first one how far the gas was from the thermometers, in the middle of a tunnel, is most of it.
     let sd = |name: &str| {
         let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
-        column(&text, "gas_mean_sd_k")[30]
+        column(&text, "gas_mean_sd_k")[120]
     };
     assert!(sd("b.csv") < 0.9 * sd("a.csv"), "{} and {}", sd("b.csv"), sd("a.csv"));
     let other = ["estimate", "closed-bottle", "run.csv", "--learned-in", "cylinder.json"];

@@ -51,11 +51,14 @@ impl<'a, 't> ValueReader<'a, 't> {
     }
 
     fn wrong_type(&self, expected: &str) -> ReadError {
-        self.placed(Problem::WrongType {
-            key: self.named(),
-            text: self.text(),
-            expected: expected.to_owned(),
-        })
+        let (key, text) = (self.named(), self.text());
+        let expected = match self.value.get_ref() {
+            DeValue::Table(_) if expected == "a list" => {
+                format!("a list: write [[{}]], in two brackets, for each", key.replace(' ', "."))
+            }
+            _ => expected.to_owned(),
+        };
+        self.placed(Problem::WrongType { key, text, expected })
     }
 
     /// Gives an error of a visitor its line and names.

@@ -6,7 +6,7 @@ use super::{AxialVariation, Fill, Initial, OutsideFilm, Scenario, Series, Sun, S
 use crate::ThermalError;
 use crate::document::check;
 use crate::sensor;
-use crate::units::{Dimension, ZERO_CELSIUS_K};
+use crate::units::{BAR_PA, Dimension, ZERO_CELSIUS_K};
 
 /// Longest duration, s: ten years.
 const DURATION_MAX_S: f64 = 3.2e8;
@@ -25,6 +25,8 @@ impl ScenarioSpec {
             return Err(check::broken("name", "\"\"", "a name", "say what this scenario is called"));
         }
         let (duration_s, sample_time_s) = self.times()?;
+        let signals = [air, film, wind, radiation, irradiance].map(|signal| signal(&self.ambient));
+        signals.iter().try_for_each(|signal| signal.changes_within(duration_s))?;
         let air = air(&self.ambient);
         let air_k = air.series(files)?.ok_or_else(|| {
             check::missing("ambient.air_k", "say the temperature of the air around the cylinder")
@@ -210,8 +212,13 @@ fn fill(spec: &InitialSpec) -> Result<Fill, ThermalError> {
         }
         [(path, pressure_pa), ..] => {
             let temperature_k = spec.fill_temperature_k.unwrap_or(ZERO_CELSIUS_K + 15.0);
+            let (bound, remedy) = ("at least 0.1 bar", "check the unit, _bar, _pa or _mpa");
+            let range = (0.1 * BAR_PA, f64::MAX);
             Ok(Fill::Settled {
-                pressure_pa: check::pressure_pa(path, pressure_pa)?,
+                pressure_pa: check::pressure_pa(
+                    path,
+                    check::within(path, pressure_pa, range, bound, remedy)?,
+                )?,
                 temperature_k: check::temperature_k("initial.fill_temperature_k", temperature_k)?,
             })
         }

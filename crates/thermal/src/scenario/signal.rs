@@ -143,6 +143,20 @@ impl Signal<'_> {
         self.series_of_changes(&path("_change"), value).map(Some)
     }
 
+    /// Refuse a change that begins when all is over.
+    ///
+    /// # Errors
+    /// There is one; with its time and the duration.
+    pub(super) fn changes_within(&self, duration_s: f64) -> Result<(), ThermalError> {
+        let Some(late) = self.changes.iter().position(|change| change.at_s > duration_s) else {
+            return Ok(());
+        };
+        let path = format!("ambient.{}_change[{late}].at_s", self.name);
+        let bound = format!("at most {}, the duration", check::time_text(duration_s));
+        let remedy = "check the unit, _s, _min or _h, or let the scenario last longer";
+        Err(check::broken(&path, self.changes[late].at_s, &bound, remedy))
+    }
+
     /// Value before everything that changes it.
     pub(super) fn first(&self) -> Option<f64> {
         self.constant

@@ -42,9 +42,14 @@ impl VesselSpec {
     fn geometry(&self) -> Result<Geometry, ThermalError> {
         let spec = &self.geometry;
         let layers = self.layers()?;
-        let wall_m = layers.iter().map(|layer| layer.thickness_m).sum();
+        let wall_m: f64 = layers.iter().map(|layer| layer.thickness_m).sum();
         let inner_diameter_m = length("geometry.inner_diameter_m", spec.inner_diameter_m)?;
         let radius_m = 0.5 * inner_diameter_m;
+        if wall_m > radius_m {
+            let bound = format!("at most {} mm together, the inner radius", 1e3 * radius_m);
+            let remedy = "check the unit: a steel cylinder of 200 bar has 4 to 8 mm";
+            return Err(check::broken("layer[0].thickness_m", wall_m, &bound, remedy));
+        }
         let neck = spec.neck.as_ref().map(|neck| build_neck(neck, inner_diameter_m)).transpose()?;
         Ok(Geometry {
             orientation: match self.orientation {
