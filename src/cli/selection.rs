@@ -21,7 +21,7 @@ pub(super) struct Selection {
 /// Pressure up to which the fill is looked for, Pa.
 const ANY_PA: (f64, f64) = (-1e5, 1.5e8);
 /// Fill of the usual cylinder at 15 °C, Pa.
-const USUAL_FILL_PA: f64 = 200e5;
+pub(super) const USUAL_FILL_PA: f64 = 200e5;
 
 impl Selection {
     /// The sensors of a file, or typical ones on all columns outside of the gas; narrows what the log takes as a reading

@@ -1,7 +1,7 @@
 //! What a run over a log begins with: the first rows, the fill, what was learnt before.
 use super::fill::FillSource;
 use super::input::Inputs;
-use super::selection::Selection;
+use super::selection::{Selection, USUAL_FILL_PA};
 use crate::detector::prognosis::Contents;
 use crate::estimator::log::Quantity;
 use crate::estimator::observer::{Commissioning, Learned};
@@ -11,6 +11,9 @@ use crate::thermal::vessel::Fill;
 use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
 use std::path::Path;
+
+/// Fill at 15 °C up to which there are transmitters, Pa.
+const MOST_PA: f64 = 1e8;
 
 /// Rows that are looked through for the first pressure.
 const LONGEST_WAIT: usize = 10_000;
@@ -23,11 +26,12 @@ pub(super) fn first_rows(
     vessel: &Vessel,
 ) -> anyhow::Result<(Vec<Row>, Fill)> {
     let (rows, fill) = rows_up_to_the_fill(reader, selection, source)?;
-    let begin = || rows.last().map_or_else(String::new, |row| reader.place(row));
     let first_k = selection.mean_temperature_k(rows.first());
     let commissioning = Commissioning { fill, mass_sd: 1.0, settled: false };
-    let mass_kg = commissioning.mass_kg(vessel, first_k).with_context(begin)?;
-    let full_pa = Contents::of(vessel).pressure_pa(mass_kg, QUOTED_K).with_context(begin)?;
+    let mass_kg = commissioning.mass_kg(vessel, first_k).ok();
+    let full_pa = mass_kg.and_then(|mass_kg| Contents::of(vessel).pressure_pa(mass_kg, QUOTED_K).ok());
+    // A fill that cannot be is refused with better words later on.
+    let full_pa = full_pa.filter(|full_pa| *full_pa < MOST_PA).unwrap_or(USUAL_FILL_PA);
     selection.know_the_fill(full_pa, source != FillSource::FirstPressure, reader)?;
     Ok((rows, fill))
 }

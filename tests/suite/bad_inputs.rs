@@ -89,10 +89,10 @@ fn options_that_make_no_sense_are_refused_with_what_would() {
     start(folder.path());
     let cases: [(&[&str], &str); 8] = [
         (&["--coldest-degc", "400"], "from -100 to 60 °C"),
-        (&["--coldest-k", "-25"], "from -100 to 60 °C"),
+        (&["--coldest-k", "25"], "from -100 to 60 °C"),
         (&["--limit-bar", "160,5"], "write 160.5, with a decimal point"),
         (&["--fill-pressure-bar", "200,0"], "write 200.0, with a decimal point"),
-        (&["--limit-bar", "many"], "a number above 0"),
+        (&["--limit-bar", "many"], "a finite number"),
         (&["--fill-pressure-bar", "-3"], "above 0"),
         (&["--lateness-s", "-1"], "of at least 0"),
         (&["--fill-temperature-degc", "15"], "add --fill-pressure-bar"),

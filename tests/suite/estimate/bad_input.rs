@@ -156,7 +156,10 @@ fn a_fill_that_contradicts_the_first_pressure_is_cautioned_about_and_refused_bey
         "time_s,shoulder_degc,pressure_bar\n0,15,2900\n60,15,2900\n",
         &["stdin: pressure_bar reads 2900 to 2900", "--map pressure_psi=pressure_bar"],
     );
-    refused("time_s,shoulder_degc,pressure_bar\n0,15,0\n60,15,0\n", &["stdin:2: pressure_bar reads nothing or less", "--map pressure_barg=pressure_bar"]);
+    refused(
+        "time_s,shoulder_degc,pressure_bar\n0,15,0\n60,15,0\n",
+        &["stdin:2: pressure_bar reads nothing or less", "--map pressure_barg=pressure_bar"],
+    );
 }
 
 #[test]
