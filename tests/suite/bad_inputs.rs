@@ -94,7 +94,7 @@ fn options_that_make_no_sense_are_refused_with_what_would() {
         (&["--fill-pressure-bar", "200,0"], "write 200.0, with a decimal point"),
         (&["--limit-bar", "many"], "a finite number"),
         (&["--fill-pressure-bar", "-3"], "above 0"),
-        (&["--lateness-s", "-1"], "of at least 0"),
+        (&["--lateness-s", "-1"], "must be above 0"),
         (&["--fill-temperature-degc", "15"], "add --fill-pressure-bar"),
     ];
     for (options, words) in cases {
