@@ -213,7 +213,7 @@ fn the_vessel_or_the_scenario_comes_from_stdin_but_not_both() {
 fn a_name_that_is_neither_file_nor_preset_is_told_both_possibilities_and_the_nearest() {
     let folder = tempdir().unwrap();
     let words =
-        ["nitrogen-20", "neither a vessel file nor a built-in vessel", "nearest is nitrogen-20l", "--list"];
+        ["nitrogen-20: no such file", "no built-in vessel is called so", "nearest is nitrogen-20l", "--list"];
     refused(folder.path(), &["simulate", "nitrogen-20", "shock-cold"], &words);
     refused(
         folder.path(),

@@ -221,8 +221,8 @@ mod tests {
     #[test]
     fn another_version_and_another_kind_of_file_are_named() {
         let bytes = state().to_bytes().unwrap();
-        let text = String::from_utf8_lossy(&bytes).replacen(" 1 ", " 9 ", 1);
-        assert!(refusal(text.as_bytes()).contains("version 9, this program reads 1"));
+        let text = String::from_utf8_lossy(&bytes).replacen(" 2 ", " 9 ", 1);
+        assert!(refusal(text.as_bytes()).contains("version 9, this program reads 2"));
         assert!(refusal(b"time_s,shoulder_degc\n0,15\n").contains("no state"));
     }
 

@@ -19,6 +19,8 @@ const DEFAULT_MASS_SD: f64 = 0.01;
 const BODY_SD_K: f64 = 1.0;
 /// and wall, valve and gas of a settled one from each other: the turbulence of the air and a shoulder in the wind.
 const SETTLED_SD_K: f64 = 0.2;
+/// The same where an estimate begins again, of a cylinder that has been watched.
+const AGAIN_SD_K: f64 = 5.0;
 
 /// What is known of the cylinder at the first sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -76,6 +78,17 @@ pub(super) struct Prior {
     pub covariance: DMatrix<f64>,
 }
 
+/// How an estimate begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Start {
+    /// With wall and gas at one temperature.
+    Settled,
+    /// In the middle of whatever the surroundings do.
+    Anywhere,
+    /// Once more.
+    Again,
+}
+
 /// Standard deviations of the temperatures at the start: common to all, and of each by itself, K.
 #[derive(Clone, Copy)]
 struct Spread {
@@ -85,14 +98,18 @@ struct Spread {
 
 impl Spread {
     /// Of a cylinder whose thermometers, if there are any, are so far apart at first, K.
-    fn of(settled: bool, apart_k: Option<f64>) -> Self {
-        let common_k = match (apart_k, settled) {
+    fn of(start: Start, apart_k: Option<f64>) -> Self {
+        let common_k = match (apart_k, start) {
             (None, _) => ASSUMED_SD_K,
-            (Some(_), true) => BODY_SD_K,
-            (Some(_), false) => 0.0,
+            (Some(_), Start::Settled) => BODY_SD_K,
+            (Some(_), _) => 0.0,
         };
-        let unsettled_k = Commissioning::UNSETTLED_SD_K.hypot(apart_k.unwrap_or_default());
-        Self { common_k, each_k: if settled { SETTLED_SD_K } else { unsettled_k } }
+        let each_k = match start {
+            Start::Settled => SETTLED_SD_K,
+            Start::Anywhere => Commissioning::UNSETTLED_SD_K.hypot(apart_k.unwrap_or_default()),
+            Start::Again => AGAIN_SD_K,
+        };
+        Self { common_k, each_k }
     }
 
     /// Add what is common to the temperatures of wall, valve and gas.
@@ -111,7 +128,7 @@ pub(super) fn prior(
     states: &States,
     sensors: &[Sensor],
     settings: &ObserverSettings,
-    commissioning: &Commissioning,
+    (commissioning, start): (&Commissioning, Start),
     vessel: &Vessel,
     readings: &[f64],
 ) -> Result<Prior, EstimatorError> {
@@ -125,7 +142,7 @@ pub(super) fn prior(
     let measured = surface.or(gas).or(air);
     let [gas, air] = [gas, air].map(|of| of.map(|(mean_k, _)| mean_k));
     let body_k = measured.map_or(ASSUMED_K, |(mean_k, _)| mean_k);
-    let spread = Spread::of(commissioning.settled, measured.map(|(_, apart_k)| apart_k));
+    let spread = Spread::of(start, measured.map(|(_, apart_k)| apart_k));
     let mass_kg = commissioning.mass_kg(vessel, gas.unwrap_or(body_k))?;
     let mut mean = Vec::new();
     let mut sd = Vec::new();
@@ -186,9 +203,10 @@ mod tests {
             ["shoulder", "valve", "pressure"].iter().map(|name| Sensor::typical(name).unwrap()).collect();
         let settings = ObserverSettings::default();
         let cylinder = Cylinder::new(&vessel, &sensors, &settings).unwrap();
-        let commissioning = Commissioning { settled, ..Commissioning::filled(2e7, 288.15) };
+        let filled = Commissioning::filled(2e7, 288.15);
+        let start = if settled { Start::Settled } else { Start::Anywhere };
         let states = cylinder.state_map().clone();
-        let prior = prior(&states, &sensors, &settings, &commissioning, &vessel, readings).unwrap();
+        let prior = prior(&states, &sensors, &settings, (&filled, start), &vessel, readings).unwrap();
         (prior, states)
     }
 

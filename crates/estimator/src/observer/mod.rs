@@ -53,6 +53,7 @@ pub use band_settings::BandSettings;
 pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
+use commissioning::Start;
 use cylinder::Cylinder;
 pub use engine::Engine;
 #[cfg(feature = "design")]
@@ -292,12 +293,16 @@ impl Observer {
     /// Every member as the prior has it.
     fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         // Where the estimate has to begin again, nothing says that the cylinder is settled then.
-        let settled = self.commissioning.settled && self.clock.time_s.is_none();
+        let start = match self.clock.time_s {
+            None if self.commissioning.settled => Start::Settled,
+            None => Start::Anywhere,
+            Some(_) => Start::Again,
+        };
         let prior = commissioning::prior(
             self.cylinder.state_map(),
             self.cylinder.sensors(),
             self.cylinder.settings(),
-            &Commissioning { settled, ..self.commissioning },
+            (&self.commissioning, start),
             &self.vessel,
             readings,
         )?;
