@@ -13,8 +13,9 @@ pub enum Packing {
 }
 
 const NO_TABLE: &str = "name a table in CSV or Parquet";
-/// Bytes that are looked at.
-const HEAD: u64 = 256;
+/// Bytes that are looked at, and those that tell how they are packed.
+const HEAD: usize = 256;
+const MARK: usize = 4;
 
 /// First bytes of what is no text: what it is, and what to do.
 const FOREIGN: [(&[u8], &str, &str); 10] = [
@@ -40,8 +41,16 @@ const FOREIGN: [(&[u8], &str, &str); 10] = [
 /// The first bytes cannot be read, or are those of something else than text and gzip.
 pub(super) fn unpacked(mut input: Box<dyn Read>, file: &str) -> Result<(Box<dyn Read>, Packing), LogError> {
     let mut head = Vec::new();
-    let read = input.by_ref().take(HEAD).read_to_end(&mut head);
-    read.map_err(|source| LogError::Io { file: file.to_owned(), source })?;
+    // No more than is there: a live log may begin with a few bytes.
+    while head.len() < MARK {
+        let mut piece = [0; HEAD];
+        match input.read(&mut piece) {
+            Ok(0) => break,
+            Ok(count) => head.extend_from_slice(&piece[..count]),
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(source) => return Err(LogError::Io { file: file.to_owned(), source }),
+        }
+    }
     if let Some(&(_, what, remedy)) = FOREIGN.iter().find(|(bytes, ..)| head.starts_with(bytes)) {
         return Err(LogError::NoText { file: file.to_owned(), what, remedy });
     }
