@@ -142,15 +142,15 @@ fn changes_table_and_column_give_the_same_air() {
 
 #[test]
 fn steps_after_ramps_and_on_their_end_are_exact_jumps() {
-    let changes = "air_degc = 0\nfilm_w_m2_k = 8\n[[ambient.air_change]]\nat_h = 1\nover_h = 1\nto_degc = 10\n\
-                   [[ambient.air_change]]\nat_h = 2\nto_degc = 30\n[[ambient.air_change]]\nat_h = 3\nover_min = 10\nto_degc = 0";
+    let changes = "air_degc = 0\nfilm_w_m2_k = 8\n[[ambient.air_change]]\nat_h = 0.5\nover_h = 0.5\nto_degc = 10\n\
+                   [[ambient.air_change]]\nat_h = 1\nto_degc = 30\n[[ambient.air_change]]\nat_h = 1.5\nover_min = 10\nto_degc = 0";
     let scenario = scenario_with("air_degc = 21\nfilm_w_m2_k = 8", changes).unwrap();
     let air = &scenario.surroundings.air_k;
-    let expected = [(0.0, 0.0), (1.0, 0.0), (1.5, 5.0), (2.0, 30.0), (3.0, 30.0), (3.25, 0.0)];
+    let expected = [(0.0, 0.0), (0.5, 0.0), (0.75, 5.0), (1.0, 30.0), (1.5, 30.0), (1.75, 0.0)];
     for (t_h, degc) in expected {
         assert_relative_eq!(air.at(t_h * 3_600.0), 273.15 + degc, max_relative = 1e-12);
     }
-    assert_relative_eq!(air.segment(3_600.0, 7_200.0).at(7_200.0), 283.15, max_relative = 1e-12);
+    assert_relative_eq!(air.segment(1_800.0, 3_600.0).at(3_600.0), 283.15, max_relative = 1e-12);
 }
 
 #[test]

@@ -83,12 +83,12 @@ fn each_fault_of_a_scenario_names_line_key_and_remedy() {
         (
             "air_degc = 21",
             "air_csv = {file = \"t.csv\", column = \"air\"}",
-            "6: ambient.air_csv column = \"air\" must be a column in a unit of this signal, one of _degc, _k: the end of a column's name is its unit",
+            "6: ambient.air_csv column = \"air\" must be a column in a unit of this signal, one of _degc, _k, _degf: the end of a column's name is its unit",
         ),
         (
             "air_degc = 21",
             "air_csv = {file = \"t.csv\", column = \"wind_m_s\"}",
-            "6: ambient.air_csv column = \"wind_m_s\" must be a column in a unit of this signal, one of _degc, _k: the end of a column's name is its unit",
+            "6: ambient.air_csv column = \"wind_m_s\" must be a column in a unit of this signal, one of _degc, _k, _degf: the end of a column's name is its unit",
         ),
         (
             "film_w_m2_k = 8",
