@@ -53,15 +53,16 @@ fn rows_up_to_the_fill(
             FillSource::Given(fill) => return Ok((rows, fill)),
             FillSource::FirstPressure => {
                 let pressure_pa = pressure.map_or(f64::NAN, |channel| row.readings[channel]);
-                if pressure_pa <= 0.0 {
-                    let (place, column) = (
-                        reader.place(&rows[rows.len() - 1]),
-                        pressure.map(|at| &reader.columns().readings[at]),
-                    );
-                    let header = column.map_or("pressure", |column| &column.header);
+                if let (Some(channel), true) = (pressure, pressure_pa <= 0.0) {
+                    let place = reader.place(&rows[rows.len() - 1]);
+                    let header = &reader.columns().readings[channel].header;
+                    let gauge = reader.as_gauge(channel);
+                    let gauge = gauge.map_or(String::new(), |option| {
+                        format!("add {option} if it counts from the air, or ")
+                    });
                     bail!(
-                        "{place}: {header} reads nothing or less, and the gas there is is to follow from it: add \
-                         --map pressure_barg={header} if it counts from the air, or {REMEDY}"
+                        "{place}: {header} reads nothing or less, and how much gas there is is to follow from it: \
+                         {gauge}{REMEDY}"
                     );
                 }
                 if pressure_pa.is_finite() {

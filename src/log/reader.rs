@@ -6,7 +6,7 @@ use super::inspect::{Survey, Tap};
 use super::row::{self, RawRow, Row, Truth};
 use super::sampling::Sampling;
 use super::stuck::StuckWatch;
-use super::unit_check::{Doubt, UnitCheck};
+use super::unit_check::{Doubt, UnitCheck, gauge_of};
 use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Log};
 use crate::thermal::units::Unit;
@@ -62,8 +62,7 @@ pub struct LogReader {
     columns: Columns,
     channels: Vec<Channel>,
     ranges: Vec<(f64, f64)>,
-    /// Usable readings of every channel so far.
-    usable: Vec<u64>,
+    /// What the readings of every channel say of its unit.
     units: Vec<UnitCheck>,
     /// The row that waits for another of its time.
     pending: Option<RawRow>,
@@ -159,7 +158,6 @@ impl LogReader {
             file: file.to_owned(),
             source,
             ranges: channels.iter().map(|channel| options.range(channel.quantity)).collect(),
-            usable: vec![0; count],
             units: columns.readings.iter().map(|column| UnitCheck::new(column.unit)).collect(),
             pending: None,
             fetched: RawRow::default(),
@@ -188,6 +186,12 @@ impl LogReader {
     /// Narrows what a channel can read, SI; what lies outside is taken as missing.
     pub fn set_range(&mut self, channel: usize, low: f64, high: f64) {
         self.ranges[channel] = (low, high);
+    }
+
+    /// The option that makes a channel's pressure count from the air; `None`: it does, or it is no pressure.
+    pub(crate) fn as_gauge(&self, channel: usize) -> Option<String> {
+        let column = &self.columns.readings[channel];
+        Some(renaming(column, gauge_of(column.unit)?))
     }
 
     /// Date of second 0 in RFC 3339, if the log has dates and a row has been read.
@@ -329,13 +333,12 @@ impl LogReader {
                 continue;
             }
             let is_usable = (low..=high).contains(value);
-            let doubt = self.units[channel].push(*value, is_usable);
+            let other = self.units[channel].push(*value, is_usable);
             if is_usable {
-                self.usable[channel] += 1;
                 continue;
             }
             let column = &self.columns.readings[channel];
-            if let Some(Doubt::Impossible(fitting)) = doubt.filter(|_| !self.any_unit) {
+            if let Some(fitting) = other.filter(|_| !self.any_unit) {
                 return Err(misread(column, &self.units[channel], fitting, place()));
             }
             self.cautions.count(Kind::OutOfRange, &column.header, || {
@@ -391,8 +394,8 @@ impl LogReader {
             .columns
             .readings
             .iter()
-            .zip(&self.usable)
-            .filter_map(|(column, &usable)| (usable == 0).then_some(column.header.as_str()))
+            .zip(&self.units)
+            .filter_map(|(column, check)| check.is_silent().then_some(column.header.as_str()))
             .collect();
         if silent.len() == self.channels.len() {
             let columns = silent.join(", ");

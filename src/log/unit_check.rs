@@ -27,6 +27,13 @@ pub(super) fn fitting(dimension: Dimension, [low, typical, high]: [f64; 3]) -> O
     })
 }
 
+/// The unit of a gauge beside one of absolute pressure, where there is one.
+pub(super) fn gauge_of(unit: &Unit) -> Option<&'static Unit> {
+    let is_gauge = |other: &&Unit| other.factor == unit.factor && other.offset == ATMOSPHERE_PA;
+    let is_absolute = unit.dimension == Dimension::Pressure && unit.offset == 0.0;
+    is_absolute.then(|| units::units_of(Dimension::Pressure).find(is_gauge)).flatten()
+}
+
 /// What the unit of a column turned out to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Doubt {
@@ -57,8 +64,8 @@ impl UnitCheck {
         Self { unit, count: 0, usable: 0, unusual: 0, sum: 0.0, low, high }
     }
 
-    /// Take in a reading, SI, and whether the sensor can show it; what is in doubt as soon as it is not to be helped.
-    pub(super) fn push(&mut self, si: f64, is_usable: bool) -> Option<Doubt> {
+    /// Take in a reading, SI, and whether the sensor can show it; the unit that all are in as soon as enough cannot be in this one.
+    pub(super) fn push(&mut self, si: f64, is_usable: bool) -> Option<&'static Unit> {
         let value = self.unit.from_si(si);
         self.count += 1;
         self.usable += u64::from(is_usable);
@@ -76,7 +83,8 @@ impl UnitCheck {
     pub(super) fn judge(&self) -> Option<Doubt> {
         let mostly = 2 * self.unusual > self.count;
         let unusual = || self.other().filter(|_| mostly).map(Doubt::Unusual);
-        self.impossible().or_else(unusual).or_else(|| self.gauge())
+        let gauge = || gauge_of(self.unit).filter(|_| self.is_below_zero()).map(Doubt::Gauge);
+        self.impossible().map(Doubt::Impossible).or_else(unusual).or_else(gauge)
     }
 
     /// Lowest and highest value, in the column's unit.
@@ -84,8 +92,13 @@ impl UnitCheck {
         (self.low, self.high)
     }
 
-    fn impossible(&self) -> Option<Doubt> {
-        self.other().filter(|_| self.usable == 0).map(Doubt::Impossible)
+    /// Whether none of the readings so far was usable.
+    pub(super) fn is_silent(&self) -> bool {
+        self.usable == 0
+    }
+
+    fn impossible(&self) -> Option<&'static Unit> {
+        self.other().filter(|_| self.is_silent())
     }
 
     fn other(&self) -> Option<&'static Unit> {
@@ -93,13 +106,10 @@ impl UnitCheck {
         fitting.filter(|other| other.suffix != self.unit.suffix)
     }
 
-    /// The gauge's unit for an absolute pressure that was below zero, if it is one of the air or above then.
-    fn gauge(&self) -> Option<Doubt> {
+    /// Whether a pressure was below zero, and would not be if it counted from the air.
+    fn is_below_zero(&self) -> bool {
         let lowest_pa = self.unit.to_si(self.low);
-        let below =
-            self.unit.dimension == Dimension::Pressure && lowest_pa < 0.0 && lowest_pa > -ATMOSPHERE_PA;
-        let same = |other: &&Unit| other.factor == self.unit.factor && other.offset == ATMOSPHERE_PA;
-        below.then(|| units::units_of(Dimension::Pressure).find(same)).flatten().map(Doubt::Gauge)
+        lowest_pa < 0.0 && lowest_pa > -ATMOSPHERE_PA
     }
 }
 
@@ -111,7 +121,7 @@ mod tests {
         suffix: &str,
         dimension: Dimension,
         readings: impl Iterator<Item = f64>,
-    ) -> (Option<Doubt>, UnitCheck) {
+    ) -> (Option<&'static str>, UnitCheck) {
         let unit = units::find(suffix, dimension).unwrap();
         let mut check = UnitCheck::new(unit);
         let usual = if dimension == Dimension::Pressure { (-3e5, 260e5) } else { (183.0, 423.0) };
@@ -120,7 +130,7 @@ mod tests {
             let si = unit.to_si(value);
             early = early.or(check.push(si, si >= usual.0 && si <= usual.1));
         }
-        (early, check)
+        (early.map(|unit| unit.suffix), check)
     }
 
     fn suffix(doubt: Option<Doubt>) -> Option<&'static str> {
@@ -131,8 +141,8 @@ mod tests {
     fn kelvin_is_known_from_celsius_after_twenty_readings_and_fahrenheit_at_the_end() {
         let readings = |of: fn(f64) -> f64| (0..60).map(move |k| of(f64::from(k) - 15.0));
         let (early, check) = after("degc", Dimension::Temperature, readings(|degc| degc + 273.15));
-        assert_eq!((suffix(early), suffix(check.judge())), (Some("k"), Some("k")));
-        assert!(matches!(early, Some(Doubt::Impossible(_))));
+        assert_eq!((early, suffix(check.judge())), (Some("k"), Some("k")));
+        assert!(matches!(check.judge(), Some(Doubt::Impossible(_))));
         let warm = (0..60).map(|k| 1.8 * (30.0 + 0.1 * f64::from(k)) + 32.0);
         let (early, check) = after("degc", Dimension::Temperature, warm);
         assert!(

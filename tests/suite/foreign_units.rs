@@ -78,6 +78,12 @@ fn readings_that_a_sensor_can_show_and_a_cylinder_hardly_has_cost_a_caution() {
         &["monitor", "nitrogen-20l", "log.csv"],
         &["log.csv:2: ", "--map pressure_barg=pressure_bar"],
     );
+    log(folder.path(), "time_s,shoulder_degc,valve_degc,Pressure [psi]", AS_IT_IS, |bar| bar - 200.05);
+    refused(
+        folder.path(),
+        &["estimate", "nitrogen-20l", "log.csv"],
+        &["log.csv:2: ", "--map 'pressure_psig=Pressure [psi]'"],
+    );
     log(folder.path(), named, AS_IT_IS, |bar| 202.85 - bar);
     let empty = run(folder.path(), &["monitor", "nitrogen-20l", "log.csv", "-o", "e.csv"]);
     assert!(empty.stderr.contains("--map pressure_barg=pressure_bar"), "{}", empty.stderr);

@@ -153,6 +153,7 @@ fn a_unit_that_the_values_contradict_is_doubted() {
     let pressures = [
         ("pressure_bar", 2900.0, "pressure_psi=pressure_bar"),
         ("pressure_mpa", 200.0, "pressure_bar=pressure_mpa"),
+        ("pressure_pa", 200.0, "pressure_bar=pressure_pa"),
     ];
     for (name, value, words) in pressures {
         let text = minutes(&format!("time_s,shoulder_degc,{name}"), 60, |k| {

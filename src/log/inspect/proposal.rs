@@ -2,7 +2,7 @@
 use super::{ColumnReport, Role};
 use crate::log::header::is_value;
 use crate::log::label::{self, Label};
-use crate::log::unit_check::{GAS_PA, WALL_K, fitting};
+use crate::log::unit_check::{GAS_PA, WALL_K, fitting, gauge_of};
 use crate::log::{Mapping, date};
 use crate::thermal::units::{self, Dimension};
 
@@ -97,25 +97,18 @@ fn doubt_unit(report: &mut ColumnReport) {
 fn doubt(suffix: &str, range: [f64; 3]) -> Option<(&'static str, String)> {
     let dimension = dimension_of(suffix)?;
     let unit = units::find(suffix, dimension)?;
-    let [low, median, high] = range;
-    if dimension == Dimension::Pressure && unit.offset == 0.0 && unit.to_si(low) < NEARLY_NOTHING_PA {
-        let other = gauge(unit.suffix);
-        let falls = unit.to_si(median) > OFTEN_MORE_PA && other != unit.suffix;
-        return falls.then(|| {
-            (other, format!("falls to {low} in _{suffix}, less than the air: gauge pressure, or no reading"))
-        });
+    let [low, median, _] = range;
+    let usual = if dimension == Dimension::Temperature { WALL_K } else { GAS_PA };
+    if !usual.contains(&unit.to_si(median)) {
+        let other = fitting(dimension, range).filter(|other| other.suffix != suffix)?.suffix;
+        return Some((
+            other,
+            format!("a median of {median} is no cylinder's in _{suffix}; in _{other} it is"),
+        ));
     }
-    let is_usual = match dimension {
-        Dimension::Temperature => WALL_K.contains(&unit.to_si(median)),
-        _ => GAS_PA.contains(&unit.to_si(median)),
-    };
-    let other =
-        fitting(dimension, [low, median, high]).filter(|other| !is_usual && other.suffix != suffix)?;
-    let name = other.suffix;
-    Some((
-        name,
-        format!("a median of {median} {suffix} in _{suffix} is none of a cylinder; in _{name} it is"),
-    ))
+    let falls = unit.to_si(low) < NEARLY_NOTHING_PA && unit.to_si(median) > OFTEN_MORE_PA;
+    let gauge = gauge_of(unit).filter(|_| falls)?.suffix;
+    Some((gauge, format!("falls to {low} in _{suffix}, less than the air: gauge pressure, or no reading")))
 }
 
 impl Role {
@@ -157,7 +150,8 @@ fn guess(report: &ColumnReport, by_name: bool, taken: &[String]) -> Option<(Stri
         Some(suffixes) => suffixes.iter().copied().find(|suffix| units::find(suffix, dimension).is_some())?,
         None => fitting(dimension, report.range)?.suffix,
     };
-    let unit = if is_gauge(&report.header) { gauge(unit) } else { unit };
+    let gauge = units::find(unit, dimension).and_then(gauge_of).filter(|_| is_gauge(&report.header));
+    let unit = gauge.map_or(unit, |gauge| gauge.suffix);
     let by = match (named.is_some() && is_place, label.suffixes()) {
         (true, Some(_)) => "by its name and unit".to_owned(),
         (true, None) => "by its name and range".to_owned(),
@@ -171,18 +165,6 @@ fn guess(report: &ColumnReport, by_name: bool, taken: &[String]) -> Option<(Stri
 fn is_gauge(header: &str) -> bool {
     let header = header.to_lowercase();
     ["überdruck", "ueberdruck", "gauge", "relativdruck"].iter().any(|word| header.contains(word))
-}
-
-/// The unit of a gauge, where files have one.
-fn gauge(unit: &'static str) -> &'static str {
-    match unit {
-        "bar" => "barg",
-        "psi" => "psig",
-        "kpa" => "kpag",
-        "mpa" => "mpag",
-        "mbar" => "mbarg",
-        other => other,
-    }
 }
 
 fn dimension_of(suffix: &str) -> Option<Dimension> {
