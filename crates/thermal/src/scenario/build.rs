@@ -25,17 +25,15 @@ impl ScenarioSpec {
             return Err(check::broken("name", "\"\"", "a name", "say what this scenario is called"));
         }
         let (duration_s, sample_time_s) = self.times()?;
-        let signals = [air, film, wind, radiation, irradiance].map(|signal| signal(&self.ambient));
-        signals.iter().try_for_each(|signal| signal.changes_within(duration_s))?;
         let air = air(&self.ambient);
-        let air_k = air.series(files)?.ok_or_else(|| {
+        let air_k = air.series(files, duration_s)?.ok_or_else(|| {
             check::missing("ambient.air_k", "say the temperature of the air around the cylinder")
         })?;
         let before_k = air.first().unwrap_or_else(|| air_k.segment(-1.0, 0.0).value);
         Ok(Scenario {
             name: self.name.clone(),
             initial: initial(&self.initial, before_k)?,
-            surroundings: self.surroundings(air_k, files)?,
+            surroundings: self.surroundings(air_k, files, duration_s)?,
             flows: flows::build(self)?,
             pressure_limits_pa: self
                 .limits
@@ -68,12 +66,16 @@ impl ScenarioSpec {
         Ok((duration_s, check::within("sample_time_s", sample_s, range, &bound, remedy)?))
     }
 
-    fn surroundings(&self, air_k: Series, files: Files<'_>) -> Result<Surroundings, ThermalError> {
+    fn surroundings(
+        &self,
+        air_k: Series,
+        files: Files<'_>,
+        duration_s: f64,
+    ) -> Result<Surroundings, ThermalError> {
         let spec = &self.ambient;
-        let film = film(spec).series(files)?;
-        let wind = wind(spec).series(files)?;
-        let radiation = radiation(spec).series(files)?;
-        let irradiance = irradiance(spec).series(files)?;
+        let series = |of: fn(&AmbientSpec) -> Signal<'_>| of(spec).series(files, duration_s);
+        let (film, wind) = (series(film)?, series(wind)?);
+        let (radiation, irradiance) = (series(radiation)?, series(irradiance)?);
         let is_coefficient = film.is_some();
         let film = match (film, wind) {
             (Some(_), Some(_)) => {

@@ -109,8 +109,8 @@ pub(super) struct Signal<'a> {
 }
 
 impl Signal<'_> {
-    /// The series, or `None` if the file says nothing about this signal.
-    pub(super) fn series(&self, files: Files<'_>) -> Result<Option<Series>, ThermalError> {
+    /// The series in a scenario of a duration, s, or `None` if the file says nothing about this signal.
+    pub(super) fn series(&self, files: Files<'_>, duration_s: f64) -> Result<Option<Series>, ThermalError> {
         let path = |form: &str| format!("ambient.{}{form}", self.name);
         let constant = path(&format!("_{}", crate::units::si_suffix(self.dimension)));
         let others = [
@@ -140,21 +140,7 @@ impl Signal<'_> {
             return Err(check::missing(&constant, "say the value before the first change"));
         };
         self.check(&constant, value)?;
-        self.series_of_changes(&path("_change"), value).map(Some)
-    }
-
-    /// Refuse a change that begins when all is over.
-    ///
-    /// # Errors
-    /// There is one; with its time and the duration.
-    pub(super) fn changes_within(&self, duration_s: f64) -> Result<(), ThermalError> {
-        let Some(late) = self.changes.iter().position(|change| change.at_s > duration_s) else {
-            return Ok(());
-        };
-        let path = format!("ambient.{}_change[{late}].at_s", self.name);
-        let bound = format!("at most {}, the duration", check::time_text(duration_s));
-        let remedy = "check the unit, _s, _min or _h, or let the scenario last longer";
-        Err(check::broken(&path, self.changes[late].at_s, &bound, remedy))
+        self.series_of_changes(&path("_change"), value, duration_s).map(Some)
     }
 
     /// Value before everything that changes it.
@@ -180,7 +166,7 @@ impl Signal<'_> {
         }
     }
 
-    fn series_of_changes(&self, path: &str, constant: f64) -> Result<Series, ThermalError> {
+    fn series_of_changes(&self, path: &str, constant: f64, duration_s: f64) -> Result<Series, ThermalError> {
         if self.changes.is_empty() {
             return Ok(Series::constant(constant));
         }
@@ -197,6 +183,11 @@ impl Signal<'_> {
                 over_s,
                 "say how long the ramp takes, or leave it out for a step",
             )?;
+            if change.at_s > duration_s {
+                let bound = format!("at most {}, the duration", check::time_text(duration_s));
+                let remedy = "check the unit, _s, _min or _h, or let the scenario last longer";
+                return Err(check::broken(&path("at_s"), change.at_s, &bound, remedy));
+            }
             if change.at_s < free_s {
                 let bound = format!("at least {}, the end of the change before", check::time_text(free_s));
                 return Err(check::broken(&path("at_s"), change.at_s, &bound, "sort the changes by time"));
