@@ -1,9 +1,10 @@
-//! What is known when the observer starts.
+//! What is known when the observer starts, and how it starts or starts again.
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::settings::ObserverSettings;
+use super::settings::{LeakHypothesis, ObserverSettings};
 use super::states::{StateKind, States};
+use super::{Bank, Observer, REFERENCE_AFTER_S, SETTLE_S};
 use crate::EstimatorError;
 use crate::log::Quantity;
 use crate::sensor::{Sensor, Site};
@@ -71,7 +72,7 @@ impl Commissioning {
 
 /// Mean and covariance of the state before the first sample.
 #[derive(Clone, Debug)]
-pub(super) struct Prior {
+struct Prior {
     /// Mean: (n).
     pub mean: Vec<f64>,
     /// Covariance: (n, n); only the temperatures of a settled cylinder are correlated.
@@ -80,7 +81,7 @@ pub(super) struct Prior {
 
 /// How an estimate begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Start {
+enum Start {
     /// With wall and gas at one temperature.
     Settled,
     /// In the middle of whatever the surroundings do.
@@ -124,7 +125,7 @@ impl Spread {
 }
 
 /// The prior of the member that supposes nothing of its own, from the first readings (NaN: missing).
-pub(super) fn prior(
+fn prior(
     states: &States,
     sensors: &[Sensor],
     settings: &ObserverSettings,
@@ -188,6 +189,64 @@ fn lagged(sensors: &[Sensor], readings: &[f64], sensor: usize, body_k: f64) -> (
     let (assumed, sd) = if pressure { (2e7, 1e7) } else { (body_k, ASSUMED_SD_K) };
     let reading = readings[sensor];
     if reading.is_finite() { (reading, if pressure { 1e5 } else { 1.0 }) } else { (assumed, sd) }
+}
+
+impl Observer {
+    /// Begin from the prior at a sample, and use its readings if they lead to a state that can be.
+    pub(super) fn start(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        self.reset(time_s, readings)?;
+        if self.update(readings).is_ok() && self.is_possible() {
+            return Ok(());
+        }
+        self.reset(time_s, readings)?;
+        let without = vec![f64::NAN; readings.len()];
+        self.update(&without)
+    }
+
+    /// Every member as the prior has it.
+    fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
+        // Where the estimate has to begin again, nothing says that the cylinder is settled then.
+        let start = match self.clock.time_s {
+            None if self.commissioning.settled => Start::Settled,
+            None => Start::Anywhere,
+            Some(_) => Start::Again,
+        };
+        let prior = prior(
+            self.cylinder.state_map(),
+            self.cylinder.sensors(),
+            self.cylinder.settings(),
+            (&self.commissioning, start),
+            &self.vessel,
+            readings,
+        )?;
+        let (mut mean, mut covariance) = (prior.mean, prior.covariance);
+        self.prior.clone_from(&covariance);
+        if let Some(learned) = &self.learned {
+            learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
+        }
+        let engine = self.cylinder.bank_engine();
+        let members = self.priors(&covariance);
+        self.bank = Bank::new(&mut self.cylinder, &engine, &mean, members)?;
+        self.clock.await_reference(time_s + REFERENCE_AFTER_S);
+        self.clock.pulled_until_s = time_s + SETTLE_S;
+        for sensor in 0..readings.len() {
+            self.cylinder.set_interval_s(sensor, f64::INFINITY);
+        }
+        Ok(())
+    }
+
+    /// Hypothesis and prior of each member: one covariance, but for the leak rate, of which each has its own.
+    fn priors(&self, covariance: &DMatrix<f64>) -> Vec<(LeakHypothesis, DMatrix<f64>)> {
+        let leak = self.cylinder.state_map().leak;
+        let prior = |hypothesis: &LeakHypothesis| {
+            let mut covariance = covariance.clone();
+            covariance.row_mut(leak).fill(0.0);
+            covariance.column_mut(leak).fill(0.0);
+            covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
+            (*hypothesis, covariance)
+        };
+        self.cylinder.settings().bank.iter().map(prior).collect()
+    }
 }
 
 #[cfg(test)]

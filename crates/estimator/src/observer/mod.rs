@@ -53,7 +53,6 @@ pub use band_settings::BandSettings;
 pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
-use commissioning::Start;
 use cylinder::Cylinder;
 pub use engine::Engine;
 #[cfg(feature = "design")]
@@ -264,17 +263,6 @@ impl Observer {
         }
     }
 
-    /// Begin from the prior at a sample, and use its readings if they lead to a state that can be.
-    fn start(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
-        self.reset(time_s, readings)?;
-        if self.update(readings).is_ok() && self.is_possible() {
-            return Ok(());
-        }
-        self.reset(time_s, readings)?;
-        let without = vec![f64::NAN; readings.len()];
-        self.update(&without)
-    }
-
     /// Members that are excluded begin anew from the freest one.
     fn replace_excluded(&mut self) {
         let mass = self.cylinder.state_map().mass;
@@ -288,38 +276,6 @@ impl Observer {
                 self.masses[index] = self.masses[freest];
             }
         }
-    }
-
-    /// Every member as the prior has it.
-    fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
-        // Where the estimate has to begin again, nothing says that the cylinder is settled then.
-        let start = match self.clock.time_s {
-            None if self.commissioning.settled => Start::Settled,
-            None => Start::Anywhere,
-            Some(_) => Start::Again,
-        };
-        let prior = commissioning::prior(
-            self.cylinder.state_map(),
-            self.cylinder.sensors(),
-            self.cylinder.settings(),
-            (&self.commissioning, start),
-            &self.vessel,
-            readings,
-        )?;
-        let (mut mean, mut covariance) = (prior.mean, prior.covariance);
-        self.prior.clone_from(&covariance);
-        if let Some(learned) = &self.learned {
-            learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
-        }
-        let engine = self.cylinder.bank_engine();
-        let members = self.priors(&covariance);
-        self.bank = Bank::new(&mut self.cylinder, &engine, &mean, members)?;
-        self.clock.await_reference(time_s + REFERENCE_AFTER_S);
-        self.clock.pulled_until_s = time_s + SETTLE_S;
-        for sensor in 0..readings.len() {
-            self.cylinder.set_interval_s(sensor, f64::INFINITY);
-        }
-        Ok(())
     }
 
     /// Move on and take readings; where the surroundings may have made a step, as the likeliest [explanation](surroundings) has it.
@@ -377,19 +333,6 @@ impl Observer {
             self.bank.set_variance(flowing, self.cylinder.state_map().leak, prior_sd_kg_s * prior_sd_kg_s);
         }
         true
-    }
-
-    /// Hypothesis and prior of each member: one covariance, but for the leak rate, of which each has its own.
-    fn priors(&self, covariance: &DMatrix<f64>) -> Vec<(LeakHypothesis, DMatrix<f64>)> {
-        let leak = self.cylinder.state_map().leak;
-        let prior = |hypothesis: &LeakHypothesis| {
-            let mut covariance = covariance.clone();
-            covariance.row_mut(leak).fill(0.0);
-            covariance.column_mut(leak).fill(0.0);
-            covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
-            (*hypothesis, covariance)
-        };
-        self.cylinder.settings().bank.iter().map(prior).collect()
     }
 
     /// Let a member begin anew with all that another one knows. Where that is less mass than supposed, a leak rate that may walk
