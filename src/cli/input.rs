@@ -6,6 +6,7 @@ use crate::evaluation::judge::plan::{self, Plan};
 use crate::log::inspect::Inspector;
 use crate::log::{LogError, LogOptions, LogReader, is_parquet};
 use crate::report::{Fingerprint, Input, Provenance};
+use crate::thermal::ThermalError;
 use crate::thermal::document::Presets;
 use crate::thermal::scenario::{self, Scenario};
 use crate::thermal::vessel::{self, Vessel, VesselSpec};
@@ -81,13 +82,9 @@ impl Inputs {
         let document = self.document(name, &vessel::presets::FILES, "simulate")?;
         let read = vessel::read_specification(&document.text, &document.shown);
         let (specification, vessel) = read.map_err(|error| {
-            // A file that is fine as something else was given in the wrong place.
-            match scenario::read_scenario(&document.text, &document.shown, &|_| {
-                Err(std::io::ErrorKind::NotFound.into())
-            }) {
-                Ok(_) => anyhow!("{} is a scenario, and a vessel is wanted here", document.shown),
-                Err(_) => error.into(),
-            }
+            let no_table = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+            let other = scenario::read_scenario(&document.text, &document.shown, &no_table).is_ok();
+            misplaced(error, other, &document.shown, ["a scenario", "a vessel"])
         })?;
         vessel.doubts().iter().for_each(|doubt| messages.caution(doubt));
         let origin = self.records.borrow().last().cloned().context("what was read is recorded")?;
@@ -120,10 +117,8 @@ impl Inputs {
             })
         };
         scenario::read_scenario(&document.text, &document.shown, &table).map_err(|error| {
-            match vessel::read_specification(&document.text, &document.shown) {
-                Ok(_) => anyhow!("{} is a vessel, and a scenario is wanted here", document.shown),
-                Err(_) => error.into(),
-            }
+            let other = vessel::read_specification(&document.text, &document.shown).is_ok();
+            misplaced(error, other, &document.shown, ["a vessel", "a scenario"])
         })
     }
 
@@ -307,6 +302,11 @@ fn hashed(file: &mut File, name: &str) -> std::io::Result<(Input, u64)> {
 /// What a message calls an input.
 pub(super) fn shown(name: &str) -> String {
     if name == "-" { "stdin".to_owned() } else { name.to_owned() }
+}
+
+/// The error of a file, or that it is fine as something else and given in the wrong place.
+fn misplaced(error: ThermalError, other: bool, shown: &str, [found, wanted]: [&str; 2]) -> anyhow::Error {
+    if other { anyhow!("{shown} is {found}, and {wanted} is wanted here") } else { error.into() }
 }
 
 /// The error for a name that is neither that of a file nor of a preset.
