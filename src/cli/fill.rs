@@ -43,7 +43,7 @@ pub(super) struct GivenFill {
     given: QuantityArguments<FillQuantities>,
 
     /// Standard deviation of the gas mass of the fill, in % [default: 1; where the temperature is that of the first row, the
-    /// effect of 5 K is added, of 1 K with --settled].
+    /// effect of 10 K is added, of 1 K with --settled].
     #[arg(long = "fill-sd-percent", value_name = "NUMBER", value_parser = above(0.0).at_most(100.0), help_heading = EXPERT)]
     mass_sd_percent: Option<f64>,
 
