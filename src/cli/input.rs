@@ -1,4 +1,5 @@
 //! What a run reads: files, stdin, built-in vessels, scenarios and plans. Everything read is recorded with its SHA-256.
+use super::live::Live;
 use super::message::Messages;
 use super::output::command_line;
 use crate::evaluation::judge::candidate::Registry;
@@ -130,15 +131,21 @@ impl Inputs {
 
     /// Opens a log for reading row by row; - is stdin.
     pub(super) fn log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
-        self.opened(name, |content, shown| match content {
-            Content::Text(text) => LogReader::from_text(text, shown, options),
-            Content::Parquet(file) => LogReader::from_parquet(file, shown, options),
-        })
+        self.opened(name, false, |content, shown| log_reader(content, shown, options))
+    }
+
+    /// The same for a log that may be written while it is read: a row from a pipe is there when it has come.
+    pub(super) fn live_log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
+        let mut log = self.opened(name, true, |content, shown| log_reader(content, shown, options))?;
+        if let Some(live) = log.live.clone() {
+            log.reader.hands_out_while(move || live.is_waiting());
+        }
+        Ok(log)
     }
 
     /// Opens a log for inspection; - is stdin.
     pub(super) fn inspector(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput<Inspector>> {
-        self.opened(name, |content, shown| match content {
+        self.opened(name, false, |content, shown| match content {
             Content::Text(text) => Inspector::new(text, shown, options),
             Content::Parquet(file) => Inspector::of_parquet(file, shown, options),
         })
@@ -149,16 +156,14 @@ impl Inputs {
     fn opened<R>(
         &self,
         name: &str,
+        is_live: bool,
         reader: impl FnOnce(Content, &str) -> Result<R, LogError>,
     ) -> anyhow::Result<LogInput<R>> {
-        let passed = Rc::new(Passed::default());
         if name == "-" {
             if self.stdin_taken.replace(true) {
                 bail!("stdin can be read once: give the other input as a file");
             }
-            let input = Box::new(Metered { input: std::io::stdin(), passed: passed.clone(), hashes: true });
-            let reader = reader(Content::Text(input), "stdin")?;
-            return Ok(LogInput { reader, name: name.to_owned(), passed, length: None });
+            return LogInput::of_pipe(std::io::stdin(), (name, "stdin"), is_live, reader);
         }
         let failed = || format!("{name} cannot be read");
         if let Some(kind) =
@@ -176,10 +181,9 @@ impl Inputs {
         }
         let name = name.to_owned();
         if !metadata.is_file() {
-            let input = Box::new(Metered { input: file, passed: passed.clone(), hashes: true });
-            let reader = reader(Content::Text(input), &name)?;
-            return Ok(LogInput { reader, name, passed, length: None });
+            return LogInput::of_pipe(file, (&name, &name), is_live, reader);
         }
+        let passed = Rc::new(Passed::default());
         let (record, length) = hashed(&mut file, &name).with_context(failed)?;
         self.records.borrow_mut().push(record);
         let content = if is_parquet(Path::new(&name)) {
@@ -192,7 +196,7 @@ impl Inputs {
             }))
         };
         let reader = reader(content, &name)?;
-        Ok(LogInput { reader, name, passed, length: Some(length) })
+        Ok(LogInput { reader, name, passed, length: Some(length), live: None })
     }
 
     /// Records a log that was hashed on the way, when it has been read; `None` if it was recorded before.
@@ -222,6 +226,13 @@ impl Inputs {
 /// Endings of files that are no logs.
 const NO_LOG: [&str; 4] = ["toml", "json", "html", "svg"];
 
+fn log_reader(content: Content, shown: &str, options: &LogOptions) -> Result<LogReader, LogError> {
+    match content {
+        Content::Text(text) => LogReader::from_text(text, shown, options),
+        Content::Parquet(file) => LogReader::from_parquet(file, shown, options),
+    }
+}
+
 /// What a log is, by its name.
 enum Content {
     Text(Box<dyn Read>),
@@ -236,9 +247,30 @@ pub(super) struct LogInput<R = LogReader> {
     passed: Rc<Passed>,
     /// Bytes, where they are known beforehand.
     length: Option<u64>,
+    /// The pipe, where rows are wanted as they come.
+    live: Option<Live>,
 }
 
 impl<R> LogInput<R> {
+    /// A log that cannot be read twice, by its name and by what messages call it.
+    fn of_pipe(
+        input: impl Read + Send + 'static,
+        (name, shown): (&str, &str),
+        is_live: bool,
+        reader: impl FnOnce(Content, &str) -> Result<R, LogError>,
+    ) -> anyhow::Result<Self> {
+        let passed = Rc::new(Passed::default());
+        let (live, input): (Option<Live>, Box<dyn Read>) = if is_live {
+            let live = Live::new(input)?;
+            (Some(live.clone()), Box::new(live))
+        } else {
+            (None, Box::new(input))
+        };
+        let metered = Metered { input, passed: passed.clone(), hashes: true };
+        let reader = reader(Content::Text(Box::new(metered)), shown)?;
+        Ok(Self { reader, name: name.to_owned(), passed, length: None, live })
+    }
+
     /// Whether its hash is known at its end only.
     pub(super) fn is_hashed_late(&self) -> bool {
         self.length.is_none()

@@ -2,6 +2,7 @@
 //!
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error; of `monitor`
 //! also 1 leak found, 3 inconclusive; of `place` 3 ended early; of `bench-detector` 3 worlds failed or are missing.
+mod appended;
 mod arguments;
 mod bench_detector;
 mod calibrate;
@@ -14,6 +15,8 @@ mod identify;
 mod init;
 mod input;
 mod inspect;
+mod interrupt;
+mod live;
 mod man;
 mod message;
 mod monitor;

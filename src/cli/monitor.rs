@@ -2,6 +2,7 @@
 use super::fill::{self, FillSource, GivenFill};
 use super::format::Format;
 use super::input::{Inputs, LogInput};
+use super::interrupt;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
@@ -9,7 +10,7 @@ use super::selection::{self, Selection};
 use super::start;
 use super::views::{RenderedViews, Views};
 use crate::detector::monitor::Outcome;
-use crate::log::{LogOptions, Row};
+use crate::log::{LogError, LogOptions, Row};
 use crate::report::monitor::Summary;
 use anyhow::{Context, bail};
 use std::path::Path;
@@ -44,19 +45,29 @@ pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::R
     let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
     let log_options =
         LogOptions { origin: beginning.origin()?, any_order: true, ..options.reading.options(names) };
-    let mut log = inputs.log(&options.log, &log_options)?;
+    let mut log = inputs.live_log(&options.log, &log_options)?;
+    if options.state.is_some() && !options.is_live() {
+        // What is done until then stays in the state.
+        interrupt::listen(|| {})?;
+    }
     let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
     let outcome =
         selection.and_then(|selection| monitor(&options, &inputs, beginning, selection, &mut log, messages));
     for caution in log.reader.cautions() {
         messages.caution(&caution.to_string());
     }
-    let Some(summary) = outcome? else {
-        messages.say("no verdict yet: all rows wait in the state for late ones");
-        return Ok(ExitCode::from(Outcome::Unknown.exit_code()));
+    let (summary, written) = outcome?;
+    let outcome = match &summary {
+        Some(summary) => {
+            messages.say(&crate::report::monitor::summary(summary).to_text());
+            summary.outcome()
+        }
+        None => {
+            messages.say("no verdict yet: all rows wait in the state for late ones");
+            Outcome::Unknown
+        }
     };
-    messages.say(&crate::report::monitor::summary(&summary).to_text());
-    Ok(ExitCode::from(summary.outcome().exit_code()))
+    written.map(|()| ExitCode::from(outcome.exit_code()))
 }
 
 /// Runs the monitor over the log. Without a state nothing is left behind if it fails; with one, what was done before a
@@ -68,7 +79,7 @@ fn monitor(
     mut selection: Selection,
     log: &mut LogInput,
     messages: &Messages,
-) -> anyhow::Result<Option<Summary>> {
+) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
     let (engine, identity) = match &beginning.state {
         None => {
             let engine = Engine::cold(options, inputs, &beginning, &mut selection, log, messages)?;
@@ -97,6 +108,12 @@ fn monitor(
         session.abandon(inputs, log, &error)?;
         return Err(error);
     }
+    if interrupt::has_come() {
+        messages.say(match options.state {
+            Some(_) => "stopped by a signal; the state is saved",
+            None => "stopped by a signal",
+        });
+    }
     session.finish(title, log, &progress)
 }
 
@@ -115,7 +132,16 @@ fn read(
     }
     loop {
         progress.show(&options.log, log.fraction());
-        let Some(row) = log.reader.next_row()? else { return Ok(()) };
+        if interrupt::has_come() && !options.is_live() {
+            return Ok(());
+        }
+        let row = match log.reader.next_row() {
+            Ok(Some(row)) => row,
+            Ok(None) => return Ok(()),
+            // A signal came before the first row: what the state says still stands.
+            Err(LogError::NoRows { .. }) if interrupt::has_come() => return Ok(()),
+            Err(error) => return Err(error.into()),
+        };
         let row = row.clone();
         order.check(row.time_s, log.reader.place(&row))?;
         session.push(&row, log, progress)?;

@@ -43,6 +43,7 @@ impl Target {
             _ => {}
         }
         let folder = folder_of(&path);
+        remove_orphans(folder);
         if !folder.is_dir() {
             bail!("{shown} cannot be written: there is no folder {}, make it first", folder.display());
         }
@@ -76,25 +77,6 @@ impl Target {
         Ok(Stream { writer: BufWriter::with_capacity(BUFFER, writer), shown, flushed: Instant::now() })
     }
 
-    /// Begins a result whose lines are there as soon as they are written; `goes_on` keeps those of an earlier run.
-    pub(super) fn append(&self, goes_on: bool) -> anyhow::Result<Appended> {
-        let (writer, shown): (Box<dyn Write>, String) = match self {
-            Self::Stdout => (Box::new(std::io::stdout()), "stdout".to_owned()),
-            Self::File(path) | Self::Device(path) => {
-                let shown = path.display().to_string();
-                let mut options = File::options();
-                let is_device = matches!(self, Self::Device(_));
-                options.append(true).create(!is_device);
-                let opened = options.open(path).with_context(|| format!("{shown} cannot be written"))?;
-                if !goes_on && !is_device {
-                    opened.set_len(0).with_context(|| format!("{shown} cannot be emptied"))?;
-                }
-                (Box::new(opened), shown)
-            }
-        };
-        Ok(Appended { writer, shown })
-    }
-
     /// Writes the result.
     pub(super) fn write(&self, bytes: &[u8]) -> anyhow::Result<()> {
         match self {
@@ -123,21 +105,6 @@ pub(super) fn check_distinct(outputs: &[(&str, Option<&Target>)]) -> anyhow::Res
         }
     }
     Ok(())
-}
-
-/// A result whose lines are there as soon as they are written.
-pub(super) struct Appended {
-    writer: Box<dyn Write>,
-    shown: String,
-}
-
-impl Appended {
-    /// Writes a line.
-    pub(super) fn line(&mut self, line: &str) -> anyhow::Result<()> {
-        let written =
-            self.writer.write_all(format!("{line}\n").as_bytes()).and_then(|()| self.writer.flush());
-        written.with_context(|| format!("{} cannot be written", self.shown))
-    }
 }
 
 const BUFFER: usize = 1 << 16;
@@ -257,18 +224,42 @@ fn complete(path: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
     Ok(file)
 }
 
-/// A file under a name of its own in `folder`; it goes when it is dropped.
+/// Beginning and end of the names of files that are being written.
+const PART: (&str, &str) = (".cylwatch-", ".part");
+/// A file that is being written is locked within this time after it was made.
+const UNLOCKED: Duration = Duration::from_secs(60);
+
+/// A file under a name of its own in `folder`; it goes when it is dropped. Its lock says that somebody is writing it.
 fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".cylwatch-").suffix(".part");
+    builder.prefix(PART.0).suffix(PART.1);
     #[cfg(unix)]
     {
         // What any new file gets: the user's mask applies.
         use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666)).tempfile_in(folder)
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    #[cfg(not(unix))]
-    builder.tempfile_in(folder)
+    let file = builder.tempfile_in(folder)?;
+    // A file system without locks keeps what a killed run leaves.
+    _ = file.as_file().try_lock();
+    Ok(file)
+}
+
+/// Removes what runs that were killed have left in `folder`.
+fn remove_orphans(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_part = name.to_str().is_some_and(|name| name.starts_with(PART.0) && name.ends_with(PART.1));
+        let age = || entry.metadata().and_then(|found| found.modified()).ok()?.elapsed().ok();
+        if !is_part || age().is_none_or(|age| age < UNLOCKED) {
+            continue;
+        }
+        let file = File::options().write(true).open(entry.path());
+        if file.is_ok_and(|file| file.try_lock().is_ok()) {
+            // Somebody else may have removed it.
+            _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// The command line as it was typed, quoted so that a shell runs it again.

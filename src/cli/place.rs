@@ -8,6 +8,7 @@ pub(super) use arguments::PlaceArguments;
 
 use super::format::Format;
 use super::input::Inputs;
+use super::interrupt;
 use super::message::Messages;
 use super::output::Target;
 use super::progress::Progress;
@@ -53,7 +54,7 @@ pub(super) fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Res
     let candidates = options.candidates(&inputs, &vessel)?;
     let scenarios: Vec<Scenario> =
         options.scenarios.iter().map(|name| inputs.scenario(name)).collect::<anyhow::Result<_>>()?;
-    stop::listen()?;
+    interrupt::listen(|| {})?;
     let deadline = options.time_limit.and_then(|limit| begun.checked_add(limit));
     let progress = Progress::open_ended(messages, "running the scenarios");
     let placement = Placement::new(&vessel, &candidates, &scenarios, &options.settings)?;

@@ -67,6 +67,11 @@ impl CsvSource {
         Ok((Self { tap: Some(Box::new(Tap::new(count))), ..source }, columns, survey))
     }
 
+    /// Whether what comes next has not been taken from the input yet.
+    pub(super) fn is_drained(&self) -> bool {
+        self.records.is_drained()
+    }
+
     /// What counted the cells of a log that is inspected.
     pub(super) fn tap(&self) -> Option<&Tap> {
         self.tap.as_deref()

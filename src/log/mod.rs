@@ -10,7 +10,7 @@
 //! **Order**: a filter cannot go back. A row whose time lies before the one above is refused with both times, unless
 //! [any order](LogOptions::any_order) is wanted. Rows of
 //! one time are one row: repeated ones are counted, ones that fill each other's gaps are joined, ones that contradict
-//! each other are refused. For this a row is held back until the next one has been read.
+//! each other are refused. For this a row is held back until the next one has been read, or a pipe has nothing more at once.
 //!
 //! **Structure** is not guessed: a missing unit, a unit of another quantity, one quantity twice, a row with more or
 //! fewer cells than the header are refused with file, line, value and remedy ([`LogError`]).

@@ -38,6 +38,14 @@ impl Source {
         }
     }
 
+    fn is_drained(&self) -> bool {
+        match self {
+            Self::Csv(source) => source.is_drained(),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => false,
+        }
+    }
+
     fn place(&self, number: u64) -> String {
         match self {
             Self::Csv(source) => source.place(number),
@@ -72,6 +80,8 @@ pub struct LogReader {
     sampling: Sampling,
     cautions: Cautions,
     any_order: bool,
+    /// Tells whether the input has nothing more at once.
+    is_waiting: Option<Box<dyn Fn() -> bool>>,
     /// Whether readings in another unit than their column's are told, not refused.
     any_unit: bool,
     ended: bool,
@@ -166,6 +176,7 @@ impl LogReader {
             sampling: Sampling::default(),
             cautions,
             any_order: options.any_order,
+            is_waiting: None,
             any_unit: false,
             ended: false,
             columns,
@@ -181,6 +192,11 @@ impl LogReader {
     /// Columns of the file by what they are for.
     pub fn columns(&self) -> &Columns {
         &self.columns
+    }
+
+    /// Hands a row out while the input is waiting for more, rather than with the row after it.
+    pub(crate) fn hands_out_while(&mut self, is_waiting: impl Fn() -> bool + 'static) {
+        self.is_waiting = Some(Box::new(is_waiting));
     }
 
     /// Narrows what a channel can read, SI; what lies outside is taken as missing.
@@ -263,6 +279,9 @@ impl LogReader {
     /// Moves the next row, joined from all rows of its time, into `self.row`; `false` at the end.
     fn advance(&mut self) -> Result<bool, LogError> {
         loop {
+            if self.pending.is_some() && !self.ended && self.nothing_comes() {
+                break;
+            }
             let found = !self.ended && self.source.next(&mut self.fetched, &mut self.cautions)?;
             self.ended |= !found;
             let Some(pending) = &mut self.pending else {
@@ -285,6 +304,14 @@ impl LogReader {
             }
             self.same_time()?;
         }
+        let pending = self.pending.take();
+        pending.iter().for_each(|pending| row::tell(pending, &self.columns, &mut self.row));
+        Ok(true)
+    }
+
+    /// Whether the input has nothing more at once.
+    fn nothing_comes(&self) -> bool {
+        self.is_waiting.as_ref().is_some_and(|is_waiting| self.source.is_drained() && is_waiting())
     }
 
     /// Joins the fetched row with the pending one of the same time, or refuses it.

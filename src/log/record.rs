@@ -52,6 +52,11 @@ impl Records {
         self.packing
     }
 
+    /// Whether what comes next has not been taken from the input yet.
+    pub(super) fn is_drained(&self) -> bool {
+        self.packing == Packing::Plain && self.ahead.is_empty() && self.input.buffer().is_empty()
+    }
+
     /// A line that comes, 0 the next, with its end; `None`: the text ends before it.
     pub(super) fn ahead(&mut self, index: usize) -> Result<Option<&[u8]>, LogError> {
         while self.ahead.len() <= index {

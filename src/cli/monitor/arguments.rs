@@ -41,6 +41,8 @@ pub(crate) struct MonitorArguments {
     #[command(flatten)]
     pub false_alarms: FalseAlarmArguments,
     /// Continue from FILE if it exists, and save the state to it.
+    ///
+    /// A CSV file of -o then grows from run to run; Ctrl-C and SIGTERM end the run with the state saved.
     #[arg(long, value_name = "FILE")]
     pub state: Option<PathBuf>,
     #[command(flatten)]
@@ -92,7 +94,7 @@ Examples:
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch monitor nitrogen-20l day.csv -o rows.csv --events events.jsonl --state cylinder.state
   cylwatch monitor nitrogen-20l run.csv --commissioned thresholds.json -o rows.csv
-  tail -n +1 -f live.csv | cylwatch monitor nitrogen-20l - --state cylinder.state >> rows.csv",
+  tail -n +1 -f live.csv | cylwatch monitor nitrogen-20l - --state cylinder.state -o rows.csv",
         monitor::DOCUMENTATION
     )
 }

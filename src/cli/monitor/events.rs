@@ -1,6 +1,7 @@
 //! Where events and alarms go: lines of a file as they happen, or words on stderr.
+use crate::cli::appended::Appended;
 use crate::cli::message::Messages;
-use crate::cli::output::{Appended, Target};
+use crate::cli::output::Target;
 use crate::cli::progress::Progress;
 use crate::detector::monitor::Event;
 use crate::detector::monitor::alarm::AlarmEvent;
@@ -17,9 +18,9 @@ pub(super) enum EventSink {
 
 impl EventSink {
     /// Opens the file, if one is wanted; `goes_on` keeps what it has.
-    pub(super) fn open(target: Option<&Target>, goes_on: bool) -> anyhow::Result<Self> {
+    pub(super) fn open(target: Option<&Target>, goes_on: bool, messages: &Messages) -> anyhow::Result<Self> {
         Ok(match target {
-            Some(target) => Self::File(target.append(goes_on)?),
+            Some(target) => Self::File(Appended::open(target, goes_on, messages)?),
             None => Self::Stderr,
         })
     }
@@ -42,6 +43,14 @@ impl EventSink {
         match self {
             Self::File(file) => file.line(&alarm_line(alarm, &naming.clock)),
             Self::Stderr => console.print(&alarm_text(alarm, &naming.clock)),
+        }
+    }
+
+    /// Ends the file.
+    pub(super) fn finish(self) -> anyhow::Result<()> {
+        match self {
+            Self::File(file) => file.finish(),
+            Self::Stderr => Ok(()),
         }
     }
 

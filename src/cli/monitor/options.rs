@@ -95,7 +95,12 @@ impl Options {
 
     /// Whether rows come one by one through a pipe, so that each result must go out at once.
     pub(super) fn is_live(&self) -> bool {
-        self.log == "-"
+        self.log == "-" || Path::new(&self.log).metadata().is_ok_and(|found| !found.is_file())
+    }
+
+    /// Whether the rows are a table that grows from run to run.
+    pub(super) fn has_table(&self) -> bool {
+        self.state.is_some() && self.format == Format::Csv && matches!(self.data, Target::File(_))
     }
 }
 

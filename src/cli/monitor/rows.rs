@@ -1,4 +1,5 @@
 //! Outputs as rows of the data.
+use super::state::State;
 use super::*;
 use crate::cli::row_stream::RowStream;
 use crate::detector::monitor::Output;
@@ -35,9 +36,14 @@ impl Rows {
         selection: &Selection,
         log: &LogInput,
         vessel: &Vessel,
+        (state, messages): (Option<&State>, &Messages),
     ) -> anyhow::Result<Self> {
-        let (fields, names) = (report::fields(), selection.names());
-        let stream = RowStream::begin(&options.data, options.format, fields, inputs, &names, log)?;
+        let (fields, names, data) = (report::fields(), selection.names(), &options.data);
+        let stream = if options.has_table() {
+            RowStream::table(data, state.is_some(), fields, inputs, &names, log, messages)?
+        } else {
+            RowStream::begin(data, options.format, fields, inputs, &names, log)?
+        };
         let slope = Slope { contents: Contents::of(vessel), class: None, pa_kg: f64::NAN };
         Ok(Self { stream, slope })
     }
@@ -47,6 +53,16 @@ impl Rows {
         let estimate = &output.estimate;
         let leak_pa_s = estimate.leak_kg_s * self.slope.at(estimate.mass_kg)?;
         self.stream.push(&MonitorRow::new(output, leak_pa_s))
+    }
+
+    /// Takes back the rows that came after those of a state: they come again.
+    pub(super) fn take_back(&mut self, length: u64) -> anyhow::Result<()> {
+        self.stream.cut(length)
+    }
+
+    /// Length of the table, bytes, if all rows are there; else they wait for room.
+    pub(super) fn complete_length(&self) -> Option<u64> {
+        self.stream.complete_length()
     }
 
     /// Hands on what waits.

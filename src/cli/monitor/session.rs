@@ -9,6 +9,7 @@ use crate::detector::monitor::{Monitor, Outcome, Output};
 use crate::log::Truth;
 use crate::report::monitor::{self as report, Clock, FigureData, Naming, RowCounts, Summary};
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Most logs whose beginning is remembered.
@@ -48,6 +49,10 @@ pub(super) struct Session<'a> {
     counts_before: Counts,
     loss_found: bool,
     continued: bool,
+    /// The table of the state.
+    table: Option<(PathBuf, u64)>,
+    /// Why the state could not be saved the last time.
+    unsaved: Option<String>,
     /// Whether something failed that leaves the monitor or the rows with part of a row.
     broken: bool,
     saved: Instant,
@@ -70,7 +75,7 @@ impl<'a> Session<'a> {
             sensors: sensors.map(|sensor| (sensor.name.clone(), sensor.quantity())).collect(),
         };
         let last_stamp_s = state.map_or(f64::NAN, |state| state.last_stamp_s);
-        let mut sink = EventSink::open(options.events.as_ref(), state.is_some())?;
+        let mut sink = EventSink::open(options.events.as_ref(), state.is_some(), context.messages)?;
         if let Some(reason) = &start.cold_start {
             sink.cold_start(reason)?;
         }
@@ -87,7 +92,15 @@ impl<'a> Session<'a> {
             stated: engine.stated,
             naming,
             sink,
-            rows: Rows::begin(options, context.inputs, context.selection, log, &start.vessel)?,
+            rows: Rows::begin(
+                options,
+                context.inputs,
+                context.selection,
+                log,
+                &start.vessel,
+                (state, context.messages),
+            )?,
+            table: state.and_then(|state| state.table.clone()),
             figure: options
                 .views
                 .is_any_requested()
@@ -102,6 +115,7 @@ impl<'a> Session<'a> {
             counts_before,
             loss_found: false,
             continued: state.is_some(),
+            unsaved: None,
             broken: false,
             saved: Instant::now(),
             context,
@@ -120,7 +134,7 @@ impl<'a> Session<'a> {
 
     /// Takes in a row.
     pub(super) fn push(&mut self, row: &Row, log: &LogInput, progress: &Progress) -> anyhow::Result<()> {
-        if self.is_known(row) {
+        if self.is_known(row)? {
             self.known_rows += 1;
             return Ok(());
         }
@@ -143,30 +157,59 @@ impl<'a> Session<'a> {
         }
         self.broken = false;
         if self.saved.elapsed() >= self.context.options.save_every {
-            self.rows.flush()?;
-            self.save(log)?;
+            self.try_to_save(log)?;
+        }
+        Ok(())
+    }
+
+    /// Saves the state during the run. What hinders it costs one caution: it is tried again.
+    fn try_to_save(&mut self, log: &LogInput) -> anyhow::Result<()> {
+        self.rows.flush()?;
+        let messages = self.context.messages;
+        match (self.save(log), self.unsaved.take()) {
+            (Ok(()), Some(_)) => messages.caution("the state is saved again"),
+            (Ok(()), None) => {}
+            (Err(error), before) => {
+                if before.is_none() {
+                    messages.caution(&format!("{error:#}; the run goes on"));
+                }
+                self.unsaved = Some(format!("{error:#}"));
+            }
         }
         Ok(())
     }
 
     /// Whether a row at the beginning of the log is one that the state has seen. A file may overlap with what came before. Through
     /// a pipe rows are new unless it is a known log once more: a clock that was set back must not be taken for old rows.
-    fn is_known(&mut self, row: &Row) -> bool {
-        let until_s = *self.known_until_s.get_or_insert_with(|| {
-            let again = self.log_starts_s.contains(&row.time_s);
-            if !again {
-                self.log_starts_s.push(row.time_s);
-                let surplus = self.log_starts_s.len().saturating_sub(MOST_LOGS);
-                self.log_starts_s.drain(..surplus);
-            }
-            let RunContext { options, .. } = self.context;
-            if again || !options.is_live() { self.last_stamp_s - options.lateness_s } else { f64::NAN }
-        });
+    fn is_known(&mut self, row: &Row) -> anyhow::Result<bool> {
+        let until_s = match self.known_until_s {
+            Some(until_s) => until_s,
+            None => self.looked_back(row.time_s)?,
+        };
         let known = row.time_s <= until_s;
-        if !known {
-            self.known_until_s = Some(f64::NAN);
+        self.known_until_s = Some(if known { until_s } else { f64::NAN });
+        Ok(known)
+    }
+
+    /// Until when the log that begins at a time is known, s; NaN: it is not. What the table has beyond the state comes once more from a log that is read
+    /// again, and never from a pipe that goes on.
+    fn looked_back(&mut self, start_s: f64) -> anyhow::Result<f64> {
+        let again = self.log_starts_s.contains(&start_s);
+        if !again {
+            self.log_starts_s.push(start_s);
+            let surplus = self.log_starts_s.len().saturating_sub(MOST_LOGS);
+            self.log_starts_s.drain(..surplus);
         }
-        known
+        let RunContext { options, .. } = self.context;
+        if !again && options.is_live() {
+            return Ok(f64::NAN);
+        }
+        if let (Some((path, length)), Target::File(now)) = (&self.table, &options.data)
+            && now.canonicalize().is_ok_and(|now| *path == now)
+        {
+            self.rows.take_back(*length)?;
+        }
+        Ok(self.last_stamp_s - options.lateness_s)
     }
 
     /// Truth of a row that may have been held back.
@@ -198,8 +241,18 @@ impl<'a> Session<'a> {
     /// Saves the state, if one is wanted.
     fn save(&mut self, log: &LogInput) -> anyhow::Result<()> {
         self.saved = Instant::now();
-        let Some(path) = &self.context.options.state else { return Ok(()) };
+        let options = self.context.options;
+        let Some(path) = &options.state else { return Ok(()) };
+        // A state that knows rows which the table lacks would lose them.
+        let Some(length) = self.rows.complete_length() else {
+            bail!("{} is not saved: rows wait for room in their file", path.display());
+        };
+        let table = match &options.data {
+            Target::File(rows) if options.has_table() => Some((rows.canonicalize()?, length)),
+            _ => None,
+        };
         let state = State {
+            table,
             identity: self.context.identity.clone(),
             origin: log.reader.origin(),
             last_stamp_s: self.last_stamp_s,
@@ -223,17 +276,19 @@ impl<'a> Session<'a> {
         if self.broken || self.context.options.state.is_none() {
             return Ok(());
         }
+        self.rows.flush()?;
         self.save(log)?;
-        self.rows.finish(inputs, log, None, Some(&format!("{error:#}")))
+        self.rows.finish(inputs, log, None, Some(&format!("{error:#}")))?;
+        self.sink.finish()
     }
 
-    /// Ends the run; files appear here. `None`: no row has come out yet.
+    /// Ends the run; files appear here. No summary: no row has come out yet. With it, what could not be written at the end.
     pub(super) fn finish(
         mut self,
         title: String,
         log: &LogInput,
         progress: &Progress,
-    ) -> anyhow::Result<Option<Summary>> {
+    ) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
         let RunContext { options, inputs, messages, .. } = self.context;
         if self.known_rows > 0 && self.known_rows == log.reader.sampling().rows() {
             let until = self.naming.clock.text(self.last_stamp_s);
@@ -274,9 +329,10 @@ impl<'a> Session<'a> {
             None => RenderedViews::default(),
         };
         views.write()?;
-        self.save(log)?;
-        self.rows.finish(inputs, log, summary.as_ref(), None)?;
-        Ok(summary)
+        self.rows.flush()?;
+        let saved = self.save(log);
+        let written = self.rows.finish(inputs, log, summary.as_ref(), None).and(self.sink.finish());
+        Ok((summary, written.and(saved)))
     }
 }
 

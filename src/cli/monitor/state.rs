@@ -8,10 +8,10 @@ use crate::detector::monitor::Output;
 use crate::report::Input;
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Version of the format; another one is refused.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// First words of the file.
 const MARK: &str = "cylwatch-monitor-state";
 
@@ -32,6 +32,8 @@ pub(super) struct State {
     pub settled: bool,
     /// Whether the fill was stated, not read.
     pub stated: bool,
+    /// The table of the rows and its length, bytes, when the state was saved.
+    pub table: Option<(PathBuf, u64)>,
     /// The last output.
     pub last: Option<Output>,
     /// The monitor, as it saves itself.
@@ -179,6 +181,7 @@ mod tests {
             full_pa: 200e5,
             settled: true,
             stated: true,
+            table: Some(("rows.csv".into(), 300)),
             last: None,
             monitor: (0..200).collect(),
         }
@@ -221,8 +224,8 @@ mod tests {
     #[test]
     fn another_version_and_another_kind_of_file_are_named() {
         let bytes = state().to_bytes().unwrap();
-        let text = String::from_utf8_lossy(&bytes).replacen(" 2 ", " 9 ", 1);
-        assert!(refusal(text.as_bytes()).contains("version 9, this program reads 2"));
+        let text = String::from_utf8_lossy(&bytes).replacen(" 3 ", " 9 ", 1);
+        assert!(refusal(text.as_bytes()).contains("version 9, this program reads 3"));
         assert!(refusal(b"time_s,shoulder_degc\n0,15\n").contains("no state"));
     }
 

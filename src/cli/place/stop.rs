@@ -1,30 +1,16 @@
-//! What ends a search early: Ctrl-C and the time limit. Meanwhile the progress is shown.
+//! What ends a search early: a signal and the time limit. Meanwhile the progress is shown.
+use crate::cli::interrupt;
 use crate::cli::progress::Progress;
 use crate::estimator::placement::search::SearchControl;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 /// How often limit and Ctrl-C are looked at.
 const TICK: Duration = Duration::from_millis(50);
-/// What a shell expects of a program that SIGINT ended.
-const INTERRUPTED_CODE: i32 = 130;
-
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
-/// Lets Ctrl-C end the search; a second one ends the program.
-pub(super) fn listen() -> anyhow::Result<()> {
-    let interrupt = || {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED_CODE);
-        }
-    };
-    Ok(ctrlc::set_handler(interrupt)?)
-}
-
 /// Whether the user or the time has ended the search.
 pub(super) fn is_due(deadline: Option<Instant>) -> bool {
-    INTERRUPTED.load(Ordering::Relaxed) || deadline.is_some_and(|deadline| Instant::now() >= deadline)
+    interrupt::has_come() || deadline.is_some_and(|deadline| Instant::now() >= deadline)
 }
 
 /// Shows what has been looked at, and stops the search when it is due, until the other end of the channel is gone.

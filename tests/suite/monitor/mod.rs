@@ -1,5 +1,6 @@
 //! `cylwatch monitor`.
 mod bad_input;
+mod live;
 mod outputs;
 mod session;
 mod states;

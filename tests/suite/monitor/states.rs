@@ -151,18 +151,18 @@ fn a_state_that_is_cut_short_damaged_or_of_another_kind_is_refused_with_the_way_
     refused(log(0..3, TIGHT).as_bytes(), &["no state of a monitor"]);
     refused(b"", &["no state of a monitor"]);
     let line_end = whole.iter().position(|&byte| byte == b'\n').unwrap();
-    let newer = String::from_utf8(whole[..line_end].to_vec()).unwrap().replacen(" 2 ", " 3 ", 1);
-    refused(&[newer.as_bytes(), &whole[line_end..]].concat(), &["version 3, this program reads 2"]);
+    let newer = String::from_utf8(whole[..line_end].to_vec()).unwrap().replacen(" 3 ", " 4 ", 1);
+    refused(&[newer.as_bytes(), &whole[line_end..]].concat(), &["version 4, this program reads 3"]);
     // Declared, it begins anew, says so, and leaves a whole state.
     let cold = [STATE, &["--cold-start", "--events", "e.jsonl"]].concat();
     let outcome = monitor(folder.path(), &log(120..240, TIGHT), &cold);
     assert_eq!(outcome.code, Some(3), "{}", outcome.stderr);
     let [caution] = cautions(&outcome)[..] else { panic!("{}", outcome.stderr) };
     assert!(caution.starts_with("cold start instead of continuing from "), "{caution}");
-    assert!(caution.ends_with("c.state: it has version 3, this program reads 2"), "{caution}");
+    assert!(caution.ends_with("c.state: it has version 4, this program reads 3"), "{caution}");
     let events = events(folder.path(), "e.jsonl");
     assert_eq!(events[0]["event"], "cold-start");
-    assert!(events[0]["reason"].as_str().unwrap().contains("version 3"));
+    assert!(events[0]["reason"].as_str().unwrap().contains("version 4"));
     assert_eq!(monitor(folder.path(), &log(240..250, TIGHT), STATE).code, Some(3));
 }
 
