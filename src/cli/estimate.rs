@@ -133,13 +133,13 @@ fn estimate(
     let progress = Progress::new(messages);
     let mut rows = Rows::begin(observer, &selection, options, inputs, log)?;
     for row in &first {
-        rows.push(row).with_context(|| log.reader.place(row))?;
+        rows.push(row, &log.reader).with_context(|| log.reader.place(row))?;
     }
     loop {
         progress.show(&options.log, log.fraction());
         let Some(row) = log.reader.next_row()? else { break };
         let row = row.clone();
-        rows.push(&row).with_context(|| log.reader.place(&row))?;
+        rows.push(&row, &log.reader).with_context(|| log.reader.place(&row))?;
     }
     drop(progress);
     rows.finish(title, inputs, log, options)

@@ -105,15 +105,20 @@ pub(super) struct LogArguments {
     /// Two columns make a time: time=Date+Clock.
     #[arg(long = "map", value_name = "OURS=THEIRS")]
     pub mappings: Vec<Mapping>,
-    /// Offset from UTC of dates without one, as +01:00 [default: UTC, with a caution].
-    #[arg(long, value_name = "OFFSET", allow_hyphen_values = true, hide_short_help = true)]
+    /// Zone of dates that do not say theirs, as Europe/Berlin or +01:00 [default: UTC, with a caution].
+    #[arg(long, value_name = "ZONE", allow_hyphen_values = true, hide_short_help = true)]
     pub zone: Option<Zone>,
 }
 
 impl LogArguments {
     /// As options of a reader that knows these sensors, too.
     pub(super) fn options(&self, sensors: Vec<String>) -> LogOptions {
-        LogOptions { mappings: self.mappings.clone(), zone: self.zone, sensors, ..LogOptions::default() }
+        LogOptions {
+            mappings: self.mappings.clone(),
+            zone: self.zone.clone(),
+            sensors,
+            ..LogOptions::default()
+        }
     }
 }
 

@@ -26,6 +26,8 @@ pub enum Kind {
     WithoutTime,
     /// The header once more: left out.
     HeaderAgain,
+    /// A line of words among the rows: left out.
+    Remark,
     /// A last row that was cut off: left out.
     CutOff,
     /// Times without a zone: taken as UTC.
@@ -87,11 +89,15 @@ impl fmt::Display for Caution {
             ),
             Kind::WithoutTime => write!(f, "{first}: the row has no time; {rows} left out"),
             Kind::HeaderAgain => write!(f, "{first}: the header stands here again; {rows} left out"),
+            Kind::Remark => {
+                let lines = if *count == 1 { "1 line".to_owned() } else { format!("{count} lines") };
+                write!(f, "{first}: {detail} is no row; {lines} of words left out")
+            }
             Kind::CutOff => write!(f, "{first}: the last row is cut off and left out"),
             Kind::WithoutZone => write!(
                 f,
                 "{first}: {column} = {detail} has no zone and is taken as UTC: local time repeats and leaves \
-                 out an hour a year; --zone +01:00 says another one"
+                 out an hour a year; --zone Europe/Berlin or --zone +01:00 says another one"
             ),
             Kind::DecimalComma => {
                 write!(

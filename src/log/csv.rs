@@ -143,9 +143,9 @@ impl CsvSource {
         }
     }
 
-    /// Date of second 0, if the log has dates.
-    pub(super) fn origin(&self) -> Option<jiff::Timestamp> {
-        self.time.origin()
+    /// What reads the times.
+    pub(super) fn time_reader(&self) -> &TimeReader {
+        &self.time
     }
 
     pub(super) fn place(&self, line: u64) -> String {
@@ -178,9 +178,24 @@ impl CsvSource {
             cautions.count(Kind::CutOff, "", || (at, String::new()));
             return Ok(false);
         }
+        if found < expected && self.is_remark() {
+            cautions.count(Kind::Remark, "", || (at, shown(self.records.text())));
+            return Ok(false);
+        }
         let is_comma = found > expected && !self.decimal_comma;
         let hint = if is_comma { "; a decimal comma separates cells here: write a point" } else { "" };
         Err(LogError::Cells { at, found, expected, hint })
+    }
+
+    /// Whether the line has words and nothing that a row has: a time in its place, or a number.
+    fn is_remark(&self) -> bool {
+        let has_time =
+            self.time_at < self.records.len() && self.time.is_time(self.records.cell(self.time_at));
+        let is_word = |cell| matches!(Cell::read(cell, self.decimal_comma), Cell::Unreadable | Cell::Missing);
+        let text = self.records.text();
+        let is_text =
+            text.iter().any(u8::is_ascii_alphabetic) && !text.iter().any(|&b| b < b' ' && b != b'\t');
+        !has_time && is_text && self.records.iter().all(is_word)
     }
 
     fn numbers(&self, row: &mut RawRow, cautions: &mut Cautions) {

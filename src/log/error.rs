@@ -74,10 +74,9 @@ pub enum LogError {
         #[source]
         source: std::io::Error,
     },
-    /// A zone that is no fixed offset.
+    /// A zone that is none.
     #[error(
-        "{text:?} is no offset from UTC: write one as +01:00 or UTC; a place such as Europe/Berlin repeats an hour a \
-             year"
+        "{text:?} is no zone: write an offset from UTC, as +01:00, or a name of the IANA database, as Europe/Berlin"
     )]
     Zone {
         /// Zone as written.
@@ -161,7 +160,7 @@ pub enum LogError {
     /// Time runs backwards.
     #[error(
         "{at}: time {text} is {back_s} s before the row above ({before}): sort the rows by time, and look for \
-             a clock that was set back"
+             a clock that was set back{hint}"
     )]
     Backwards {
         /// Place.
@@ -172,6 +171,8 @@ pub enum LogError {
         before: String,
         /// How far back, s.
         back_s: f64,
+        /// What may be so.
+        hint: &'static str,
     },
     /// Two rows of one time say different things.
     #[error(

@@ -133,9 +133,9 @@ impl ParquetSource {
         }
     }
 
-    /// Date of second 0, if the log has dates.
-    pub(super) fn origin(&self) -> Option<jiff::Timestamp> {
-        self.time.origin()
+    /// What reads the times.
+    pub(super) fn time_reader(&self) -> &TimeReader {
+        &self.time
     }
 
     pub(super) fn place(&self, number: u64) -> String {

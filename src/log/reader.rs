@@ -6,12 +6,17 @@ use super::inspect::{Survey, Tap};
 use super::row::{self, RawRow, Row, Truth};
 use super::sampling::Sampling;
 use super::stuck::StuckWatch;
+use super::time::TimeReader;
 use super::unit_check::{Doubt, UnitCheck, gauge_of};
+use super::zone::Zone;
 use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Log};
-use crate::thermal::units::Unit;
+use crate::thermal::units::{HOUR_S, Unit};
 use std::io::Read;
 use std::path::Path;
+
+/// What may have set a local clock back.
+const WINTER_TIME: &str = "; if summer time ended there, say the zone, as --zone Europe/Berlin";
 
 /// Where rows come from.
 enum Source {
@@ -54,11 +59,11 @@ impl Source {
         }
     }
 
-    fn origin(&self) -> Option<jiff::Timestamp> {
+    fn time_reader(&self) -> &TimeReader {
         match self {
-            Self::Csv(source) => source.origin(),
+            Self::Csv(source) => source.time_reader(),
             #[cfg(feature = "parquet")]
-            Self::Parquet(source) => source.origin(),
+            Self::Parquet(source) => source.time_reader(),
         }
     }
 }
@@ -222,7 +227,12 @@ impl LogReader {
 
     /// The same as an instant.
     pub(crate) fn origin_instant(&self) -> Option<jiff::Timestamp> {
-        self.source.origin()
+        self.source.time_reader().origin()
+    }
+
+    /// Zone of the dates: their own, or the one that was given.
+    pub(crate) fn zone(&self) -> Option<&Zone> {
+        self.source.time_reader().zone()
     }
 
     /// Share of the log that has been read, where the file says how long it is.
@@ -321,7 +331,9 @@ impl LogReader {
         if fetched.time_s < pending.time_s {
             let back_s = pending.time_s - fetched.time_s;
             let text = format!("{} s", fetched.time_s);
-            return Err(LogError::Backwards { at: at(), text, before, back_s });
+            let is_local = self.has_dates() && self.source.time_reader().zone().is_none();
+            let hint = if is_local && back_s <= HOUR_S { WINTER_TIME } else { "" };
+            return Err(LogError::Backwards { at: at(), text, before, back_s, hint });
         }
         let contradicts = |(a, b): (&f64, &f64)| !a.is_nan() && !b.is_nan() && a != b;
         if self.any_order && pending.values.iter().zip(&fetched.values).any(contradicts) {

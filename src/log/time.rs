@@ -15,7 +15,10 @@ pub(super) struct TimeReader {
     origin: Option<Timestamp>,
     /// Zone of dates that do not say theirs.
     zone: Option<Zone>,
+    /// Zone of the last date that says its own, and its end as written.
+    own_zone: Option<(Zone, Vec<u8>)>,
     zoned: Option<bool>,
+    last: Option<Timestamp>,
     /// Rows, where they are counted.
     rows: u64,
 }
@@ -29,8 +32,10 @@ impl TimeReader {
             form,
             decimal_comma,
             origin,
-            zone: options.zone,
+            zone: options.zone.clone(),
+            own_zone: None,
             zoned: None,
+            last: None,
             rows: 0,
         }
     }
@@ -74,9 +79,24 @@ impl TimeReader {
         }
     }
 
-    /// The instant of a local time.
+    /// The zone of the dates: their own, or the one that was given; `None`: nobody said one.
+    pub(super) fn zone(&self) -> Option<&Zone> {
+        self.own_zone.as_ref().map(|(zone, _)| zone).or(self.zone.as_ref())
+    }
+
+    /// The instant of a local time; `None`: there is none in the zone.
     pub(super) fn instant(&self, local: DateTime) -> Option<Timestamp> {
-        self.zone.unwrap_or(Zone::UTC).offset().to_timestamp(local).ok()
+        self.zone.as_ref().unwrap_or(&Zone::UTC).instant(local, self.last)
+    }
+
+    /// Whether a cell says when.
+    pub(super) fn is_time(&self, cell: &[u8]) -> bool {
+        if self.form != TimeForm::Date {
+            return matches!(Cell::read(cell, self.decimal_comma), Cell::Number(_) | Cell::WithComma(_));
+        }
+        let Ok(text) = std::str::from_utf8(cell.trim_ascii()) else { return false };
+        let is_date = |text: &str| text.parse::<Timestamp>().is_ok() || text.parse::<DateTime>().is_ok();
+        is_date(text) || date::as_rfc3339(text).is_some() || date::is_ambiguous(text)
     }
 
     fn date(
@@ -87,6 +107,8 @@ impl TimeReader {
     ) -> Result<Option<f64>, LogError> {
         const EXPECTED: &str = "a date and time of RFC 3339, as 2026-01-31T08:00:00Z or 2026-01-31T08:00:00+01:00, or \
                                 31.01.2026 08:00:00; a number has its unit in the column's name, as time_s";
+        const LEFT_OUT: &str = "a time that the clock of the zone shows: where summer time begins it leaves an hour out. A logger \
+                                that keeps its time all year has a fixed zone, as --zone +01:00";
         const AMBIGUOUS: &str = "a date that says which number is the day: year first, as 2026-01-31 08:00:00, or day first \
                                  with dots, as 31.01.2026 08:00:00";
         let text = cell.trim_ascii();
@@ -96,15 +118,18 @@ impl TimeReader {
         let Ok(text) = std::str::from_utf8(text) else { return Err(self.refuse(cell, at(), EXPECTED)) };
         let zoned = text.parse::<Timestamp>().ok();
         let instant = match zoned {
-            Some(instant) => instant,
+            Some(instant) => {
+                self.note_zone(text);
+                instant
+            }
             None => {
                 let local = match date::as_rfc3339(text) {
                     Some(text) => text.parse::<DateTime>(),
                     None => text.parse::<DateTime>(),
                 };
                 let expected = if date::is_ambiguous(text) { AMBIGUOUS } else { EXPECTED };
-                let instant = local.ok().and_then(|local| self.instant(local));
-                let instant = instant.ok_or_else(|| self.refuse(cell, at(), expected))?;
+                let local = local.map_err(|_| self.refuse(cell, at(), expected))?;
+                let instant = self.instant(local).ok_or_else(|| self.refuse(cell, at(), LEFT_OUT))?;
                 self.without_zone(|| (at(), shown(cell)), cautions);
                 instant
             }
@@ -115,9 +140,18 @@ impl TimeReader {
         Ok(Some(self.since_origin(instant)))
     }
 
+    /// Notes the zone that a date says. Most dates of a log say the same one.
+    fn note_zone(&mut self, text: &str) {
+        let end = &text.as_bytes()[text.len().saturating_sub("+01:00".len())..];
+        if self.own_zone.as_ref().is_none_or(|(_, known)| known != end) {
+            self.own_zone = Zone::of_text(text).map(|zone| (zone, end.to_vec()));
+        }
+    }
+
     /// Seconds from the first instant, which becomes the origin.
     pub(super) fn since_origin(&mut self, instant: Timestamp) -> f64 {
         let origin = *self.origin.get_or_insert(instant);
+        self.last = Some(instant);
         (instant.as_nanosecond() - origin.as_nanosecond()) as f64 / 1e9
     }
 

@@ -6,6 +6,7 @@ use crate::thermal::units::HOUR_S;
 
 pub mod bench_detector;
 pub(crate) mod calibrate;
+mod clock;
 pub(crate) mod commission;
 mod content;
 pub(crate) mod estimate;
@@ -20,6 +21,7 @@ mod readings;
 pub mod simulation;
 mod table;
 
+pub(crate) use clock::{Clock, Shown};
 pub use content::{Block, Report};
 pub(crate) use page::Page;
 pub(crate) use provenance::{Fingerprint, digest, quoted};

@@ -4,7 +4,8 @@ use crate::cli::row_stream::RowStream;
 use crate::cli::views::RenderedViews;
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::{Estimate, Innovation};
-use crate::log::Truth;
+use crate::log::{LogReader, Truth};
+use crate::report::Clock;
 use crate::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
 use serde_json::Map;
 
@@ -26,6 +27,7 @@ pub(super) struct Rows<'a> {
 /// Where estimates go.
 struct Results {
     stream: RowStream<EstimateRow>,
+    clock: Clock,
     figure: Option<FigureData>,
     innovations: Innovations,
     score: Score,
@@ -48,10 +50,11 @@ impl<'a> Rows<'a> {
         let names = selection.names();
         let cylinder = observer.cylinder().clone();
         let pass = Pass::new(observer, options.smooth)?;
-        let fields = report::fields().into();
+        let fields = report::fields(log.reader.has_dates());
         let stream = RowStream::begin(&options.data, options.format, fields, inputs, &names, log)?;
         let results = Results {
             stream,
+            clock: Clock::default(),
             innovations: Innovations::new(&names),
             score: Score::default(),
             last: None,
@@ -63,7 +66,8 @@ impl<'a> Rows<'a> {
     }
 
     /// Takes in a row and writes the estimates that are final.
-    pub(super) fn push(&mut self, row: &Row) -> anyhow::Result<()> {
+    pub(super) fn push(&mut self, row: &Row, log: &LogReader) -> anyhow::Result<()> {
+        self.results.clock.set(log.origin_instant(), log.zone());
         self.readings.clear();
         self.readings.extend(self.selection.readings(row));
         let results = &mut self.results;
@@ -124,7 +128,8 @@ impl Results {
     /// Writes an estimate and counts it.
     fn take(&mut self, estimate: Estimate, truth: &Truth, innovations: &[Innovation]) -> anyhow::Result<()> {
         let leak_pa_s = estimate.leak_kg_s * self.slope_pa_kg(&estimate)?;
-        let row = EstimateRow { estimate, leak_pa_s, verdict: "" };
+        let time = self.clock.date_of_log(estimate.time_s).unwrap_or_default();
+        let row = EstimateRow { time, estimate, leak_pa_s, verdict: "" };
         self.stream.push(&row)?;
         self.innovations.push(innovations);
         self.score.push(&estimate, truth);

@@ -4,6 +4,7 @@ use super::*;
 use crate::cli::row_stream::RowStream;
 use crate::detector::monitor::Output;
 use crate::detector::prognosis::Contents;
+use crate::report::Clock;
 use crate::report::monitor::{self as report, MonitorRow, Summary};
 use crate::thermal::units::QUOTED_K;
 use crate::thermal::vessel::Vessel;
@@ -38,7 +39,8 @@ impl Rows {
         vessel: &Vessel,
         (state, messages): (Option<&State>, &Messages),
     ) -> anyhow::Result<Self> {
-        let (fields, names, data) = (report::fields(), selection.names(), &options.data);
+        let fields = report::fields(log.reader.has_dates());
+        let (names, data) = (selection.names(), &options.data);
         let stream = if options.has_table() {
             RowStream::table(data, state.is_some(), fields, inputs, &names, log, messages)?
         } else {
@@ -49,10 +51,10 @@ impl Rows {
     }
 
     /// Writes an output.
-    pub(super) fn push(&mut self, output: &Output) -> anyhow::Result<()> {
+    pub(super) fn push(&mut self, output: &Output, clock: &Clock) -> anyhow::Result<()> {
         let estimate = &output.estimate;
         let leak_pa_s = estimate.leak_kg_s * self.slope.at(estimate.mass_kg)?;
-        self.stream.push(&MonitorRow::new(output, leak_pa_s))
+        self.stream.push(&MonitorRow::new(output, leak_pa_s, clock))
     }
 
     /// Takes back the rows that came after those of a state: they come again.

@@ -7,7 +7,8 @@ use super::*;
 use crate::detector::monitor::intake::Counts;
 use crate::detector::monitor::{Monitor, Outcome, Output};
 use crate::log::Truth;
-use crate::report::monitor::{self as report, Clock, FigureData, Naming, RowCounts, Summary};
+use crate::report::monitor::{self as report, FigureData, Naming, RowCounts, Summary};
+use crate::report::{Clock, Shown};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -71,7 +72,8 @@ impl<'a> Session<'a> {
         let limits = options.limits;
         let sensors = context.selection.sensors.iter();
         let naming = Naming {
-            clock: Clock::new(log.reader.origin_instant()),
+            clock: Clock::new(log.reader.origin_instant(), log.reader.zone().cloned())
+                .after(state.map_or_else(Shown::default, |state| state.clock.clone())),
             sensors: sensors.map(|sensor| (sensor.name.clone(), sensor.quantity())).collect(),
         };
         let last_stamp_s = state.map_or(f64::NAN, |state| state.last_stamp_s);
@@ -138,7 +140,7 @@ impl<'a> Session<'a> {
             self.known_rows += 1;
             return Ok(());
         }
-        self.naming.clock = self.naming.clock.with_origin(log.reader.origin_instant());
+        self.naming.clock.set(log.reader.origin_instant(), log.reader.zone());
         self.readings.clear();
         self.readings.extend(self.context.selection.readings(row));
         self.broken = true;
@@ -219,8 +221,7 @@ impl<'a> Session<'a> {
     }
 
     fn take(&mut self, output: Output, progress: &Progress) -> anyhow::Result<()> {
-        let clock = self.naming.clock.with_offset(output.stamp_s - output.estimate.time_s);
-        self.naming.clock = clock;
+        self.naming.clock.note(output.estimate.time_s, output.stamp_s);
         let console = Console { messages: self.context.messages, progress };
         for event in &output.events {
             self.sink.event(event, &self.naming, &console)?;
@@ -229,7 +230,7 @@ impl<'a> Session<'a> {
         for alarm in &output.alarms {
             self.sink.alarm(alarm, &self.naming, &console)?;
         }
-        self.rows.push(&output)?;
+        self.rows.push(&output, &self.naming.clock)?;
         let truth = self.truth_of(output.stamp_s);
         if let Some(figure) = &mut self.figure {
             figure.push(&output, &truth);
@@ -255,6 +256,7 @@ impl<'a> Session<'a> {
             table,
             identity: self.context.identity.clone(),
             origin: log.reader.origin(),
+            clock: self.naming.clock.shown().clone(),
             last_stamp_s: self.last_stamp_s,
             log_starts_s: self.log_starts_s.clone(),
             full_pa: self.full_pa,
@@ -291,7 +293,7 @@ impl<'a> Session<'a> {
     ) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
         let RunContext { options, inputs, messages, .. } = self.context;
         if self.known_rows > 0 && self.known_rows == log.reader.sampling().rows() {
-            let until = self.naming.clock.text(self.last_stamp_s);
+            let until = self.naming.clock.text_of_log(self.last_stamp_s);
             messages.caution(&format!("nothing new: the state has seen all rows up to {until}"));
         }
         if options.state.is_none() {

@@ -5,7 +5,7 @@
 use crate::cli::output::write_file;
 use crate::detector::DetectorError;
 use crate::detector::monitor::Output;
-use crate::report::Input;
+use crate::report::{Input, Shown};
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -22,6 +22,8 @@ pub(super) struct State {
     pub identity: Identity,
     /// Date of second 0 in RFC 3339; `None`: the log has no dates.
     pub origin: Option<String>,
+    /// What the clock of the log has shown.
+    pub clock: Shown,
     /// Time of the last row that was taken in, as it was stamped, s; NaN: none.
     pub last_stamp_s: f64,
     /// Times of the first rows of the last logs, s: a log that begins with one of them is that log again.
@@ -176,6 +178,7 @@ mod tests {
         State {
             identity: Identity(vec![("vessel".into(), "a".into()), ("a lateness of".into(), "0 s".into())]),
             origin: None,
+            clock: Shown::default(),
             last_stamp_s: f64::NAN,
             log_starts_s: vec![0.0],
             full_pa: 200e5,

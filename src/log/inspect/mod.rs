@@ -20,7 +20,7 @@ pub use uses::Use;
 
 pub(super) use survey::{Survey, Tap};
 
-use super::{Caution, LogError, LogOptions, LogReader, Mapping, Packing};
+use super::{Caution, LogError, LogOptions, LogReader, Mapping, Packing, Zone};
 use std::io::Read;
 
 /// How the file is written.
@@ -53,6 +53,10 @@ pub struct Times {
     pub origin: Option<jiff::Timestamp>,
     /// Zone: in the file, given, or supposed to be UTC; `None` where there are no dates.
     pub zone: Option<String>,
+    /// The zone that times are shown in; `None`: UTC.
+    pub shown_zone: Option<Zone>,
+    /// A zone whose clock goes back where this one does, where nobody has said one.
+    pub supposed_zone: Option<Zone>,
     /// Rows with a time.
     pub rows: u64,
     /// First and last time, s.

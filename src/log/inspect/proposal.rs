@@ -150,15 +150,19 @@ fn guess(report: &ColumnReport, by_name: bool, taken: &[String]) -> Option<(Stri
         Some(suffixes) => suffixes.iter().copied().find(|suffix| units::find(suffix, dimension).is_some())?,
         None => fitting(dimension, report.range)?.suffix,
     };
-    let gauge = units::find(unit, dimension).and_then(gauge_of).filter(|_| is_gauge(&report.header));
-    let unit = gauge.map_or(unit, |gauge| gauge.suffix);
+    let gauge = units::find(unit, dimension).and_then(gauge_of);
+    let (unit, but) = match gauge {
+        Some(gauge) if is_gauge(&report.header) => (gauge.suffix, String::new()),
+        Some(gauge) => (unit, format!("; as _{} if it counts from the air", gauge.suffix)),
+        None => (unit, String::new()),
+    };
     let by = match (named.is_some() && is_place, label.suffixes()) {
         (true, Some(_)) => "by its name and unit".to_owned(),
         (true, None) => "by its name and range".to_owned(),
         (false, _) if dimension == Dimension::Pressure => "by its unit".to_owned(),
         _ => "a temperature; where it sits is not known".to_owned(),
     };
-    Some((quantity.to_owned(), unit, by))
+    Some((quantity.to_owned(), unit, by + &but))
 }
 
 /// Whether a name says that the pressure counts from that of the air.

@@ -1,7 +1,8 @@
 //! What the commands can do with a log, and what it lacks for them.
-use super::{ColumnReport, Refusal, Times};
+use super::{ColumnReport, Jump, Refusal, Role, Times};
 use crate::estimator::sensor::Sensor;
 use crate::log::LogOptions;
+use crate::thermal::units::{self, Dimension};
 
 /// Longest interval at which a calibration is worth while, s.
 const LONGEST_INTERVAL_S: f64 = 120.0;
@@ -9,6 +10,22 @@ const LONGEST_INTERVAL_S: f64 = 120.0;
 const SHORTEST_S: f64 = 2.0 * 3600.0;
 /// Change of the air that a calibration needs, K.
 const CHANGE_K: f64 = 10.0;
+
+/// What speaks against a calibration where the air jumps, as in a tunnel.
+fn jumps_of_air(column: &ColumnReport) -> Option<String> {
+    let proposed = column.proposal.as_ref().map(|proposal| proposal.mapping.ours.as_str());
+    let suffix = match (&column.role, proposed) {
+        (Role::Reading(_, suffix), _) => suffix,
+        (_, Some(ours)) => ours.strip_prefix("ambient_")?,
+        _ => return None,
+    };
+    let unit = units::find(suffix, Dimension::Temperature)?;
+    let size_k = |jump: &Jump| (unit.to_si(jump.to) - unit.to_si(jump.from)).abs();
+    let largest_k = column.jumps.iter().map(size_k).fold(0.0, f64::max);
+    (largest_k > CHANGE_K).then(|| {
+        format!("the air jumps by {largest_k:.0} K between two rows, and when it did is not known: a log with slow air tells more")
+    })
+}
 
 /// A command and the log.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,12 +102,12 @@ impl Case<'_> {
 
     fn identify(&self) -> Use {
         let mut lacks = self.lacking(false);
-        let thermometers: Vec<&String> = self.thermometers().collect();
-        let gas = self.quantities.iter().find(|name| name.starts_with("gas_"));
-        let input = thermometers.first().copied();
-        let output = gas.or_else(|| thermometers.get(1).copied());
+        let input = self.thermometers().next();
+        let output = self.quantities.iter().find(|name| name.starts_with("gas_"));
         if input.is_none() || output.is_none() {
-            lacks.push("two temperatures, as shoulder and gas_mean or valve".to_owned());
+            lacks.push(
+                "a thermometer on the cylinder and one in the gas, as shoulder and gas_mean".to_owned(),
+            );
         }
         let word = |name: Option<&String>, otherwise: &str| name.map_or(otherwise.to_owned(), String::clone);
         let mut line = vec!["cylwatch".to_owned(), "identify".to_owned()];
@@ -110,13 +127,19 @@ impl Case<'_> {
         if self.thermometers().next().is_none() {
             lacks.push("a thermometer on the cylinder".to_owned());
         }
-        match self.columns.iter().find(|column| column.role.quantity().as_deref() == Some("ambient")) {
+        let is_air = |column: &&ColumnReport| {
+            let proposed = column.proposal.as_ref().map(|proposal| proposal.mapping.ours.as_str());
+            column.role.quantity().as_deref() == Some("ambient")
+                || proposed.is_some_and(|ours| ours.starts_with("ambient_"))
+        };
+        match self.columns.iter().find(is_air) {
             None if !self.has("ambient") => {
                 lacks.push("a column ambient, or --scenario to say what the air did".to_owned())
             }
             Some(column) if column.range[2] - column.range[0] < CHANGE_K => {
                 but.push(format!("the air changes by less than {CHANGE_K} K: little can be told apart"));
             }
+            Some(column) => but.extend(jumps_of_air(column)),
             _ => {}
         }
         if self.times.interval_s > LONGEST_INTERVAL_S {
@@ -166,7 +189,7 @@ impl Case<'_> {
         let log = if self.name == "stdin" { "-" } else { self.name };
         let mut arguments = vec![log.to_owned()];
         arguments.extend(mappings.flat_map(|mapping| ["--map".to_owned(), mapping.to_string()]));
-        if let Some(zone) = self.options.zone {
+        if let Some(zone) = self.options.zone.as_ref().or(self.times.supposed_zone.as_ref()) {
             arguments.extend(["--zone".to_owned(), zone.to_string()]);
         }
         arguments

@@ -29,6 +29,7 @@ pub(crate) fn document(inspection: &Inspection, provenance: &Provenance) -> Valu
             "proposed_map": times.supposed.as_ref().map(ToString::to_string),
             "origin": times.origin.map(|origin| origin.to_string()),
             "zone": times.zone,
+            "proposed_zone": times.supposed_zone.as_ref().map(ToString::to_string),
             "rows": times.rows,
             "first_s": value(from),
             "last_s": value(to),

@@ -2,8 +2,8 @@
 //! not broken in a terminal, where they are copied from.
 use crate::log::Packing;
 use crate::log::inspect::{ColumnReport, Inspection, Role, Times, Use};
+use crate::report::Clock;
 use crate::report::estimate::duration;
-use crate::report::monitor::Clock;
 use crate::report::table::hanging;
 use crate::report::{Report, aligned, number, quoted};
 
@@ -29,7 +29,8 @@ pub(crate) fn text(inspection: &Inspection) -> String {
         list(&mut text, title, &items);
     }
     text.push_str("\nwhat can be done with it\n");
-    inspection.uses.iter().for_each(|one| text.push_str(&usage(one)));
+    let refused: Vec<&str> = inspection.refusals.iter().map(|refusal| refusal.message.as_str()).collect();
+    inspection.uses.iter().for_each(|one| text.push_str(&usage(one, &refused)));
     text.push_str(&format!("  {VESSEL}\n"));
     text
 }
@@ -106,7 +107,7 @@ fn form(inspection: &Inspection) -> String {
 }
 
 fn times(times: &Times) -> Vec<(&'static str, String)> {
-    let clock = Clock::new(times.origin);
+    let clock = Clock::new(times.origin, times.shown_zone.clone());
     let mut rows: Vec<(&'static str, String)> = Vec::new();
     let mut say = |what, words: String| rows.push((what, words));
     match (&times.column, &times.supposed) {
@@ -116,8 +117,10 @@ fn times(times: &Times) -> Vec<(&'static str, String)> {
         }
         (Some(column), None) => say("time", column.clone()),
     }
-    if let Some(zone) = &times.zone {
-        say("zone", zone.clone());
+    match (&times.zone, &times.supposed_zone) {
+        (_, Some(zone)) => say("zone", format!("supposed, by where the clock goes back: --zone {zone}")),
+        (Some(zone), None) => say("zone", zone.clone()),
+        (None, None) => {}
     }
     if times.rows > 0 && times.column.is_some() {
         let (from, to) = times.span_s;
@@ -187,7 +190,8 @@ fn proposals(inspection: &Inspection) -> Vec<String> {
     of_time.chain(of_columns).collect()
 }
 
-fn usage(usage: &Use) -> String {
+/// `refused`: what is said above.
+fn usage(usage: &Use, refused: &[&str]) -> String {
     let Use { command, lacks, but, line } = usage;
     let mut text = format!("  {command:10}");
     if lacks.is_empty() {
@@ -196,8 +200,14 @@ fn usage(usage: &Use) -> String {
         let line: Vec<String> = line.iter().map(|word| quoted(word)).collect();
         text.push_str(&format!("    {}\n", line.join(" ")));
     } else {
-        text.push_str("no, it lacks\n");
-        lacks.iter().for_each(|words| text.push_str(&hanging(words, "    - ", "      ")));
+        let (above, own): (Vec<&String>, Vec<&String>) =
+            lacks.iter().partition(|words| refused.contains(&words.as_str()));
+        text.push_str(match (above.is_empty(), own.is_empty()) {
+            (true, _) => "no, it lacks\n",
+            (false, true) => "no, it would refuse the log, see above\n",
+            (false, false) => "no, it would refuse the log, see above, and it lacks\n",
+        });
+        own.iter().for_each(|words| text.push_str(&hanging(words, "    - ", "      ")));
     }
     text
 }

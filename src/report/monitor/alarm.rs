@@ -1,6 +1,6 @@
 //! Alarms: in words for people, and as lines of JSON with the names of OPC UA Part 9.
-use super::Clock;
 use crate::detector::monitor::alarm::{AlarmEvent, AlarmName, Change, Condition};
+use crate::report::Clock;
 use serde_json::json;
 
 /// A change of an alarm in words.
@@ -36,7 +36,7 @@ pub(crate) fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
     json!({
         "id": event.id,
         "event": "alarm",
-        "time_s": transition.time_s,
+        "time_s": clock.of_log_s(transition.time_s),
         "time": clock.date(transition.time_s),
         "alarm": event.alarm.as_str(),
         "change": transition.change.as_str(),
@@ -49,7 +49,7 @@ pub(crate) fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
         "LatchedState": condition.latched,
         "Retain": condition.retain(),
         "ReAlarmRepeatCount": condition.re_alarm_repeat_count,
-        "active_since_s": condition.active_since_s,
+        "active_since_s": condition.active_since_s.map(|time_s| clock.of_log_s(time_s)),
         "Comment": condition.comment,
     })
     .to_string()

@@ -1,7 +1,8 @@
 //! Events: in words for people, and as lines of JSON for programs.
-use super::{Clock, short};
+use super::short;
 use crate::detector::monitor::{Event, EventKind, Health, Interval, LeakFinding, Verdict};
 use crate::estimator::log::Quantity;
+use crate::report::Clock;
 use crate::report::estimate::duration;
 use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::BAR_PA;
@@ -122,9 +123,9 @@ pub(crate) fn event_line(event: &Event, naming: &Naming) -> String {
     let mut line = json!({
         "id": event.id,
         "event": event.kind.name(),
-        "time_s": event.time_s,
+        "time_s": naming.clock.of_log_s(event.time_s),
         "time": naming.clock.date(event.time_s),
-        "onset_s": event.onset_s,
+        "onset_s": naming.clock.of_log_s(event.onset_s),
         "onset": naming.clock.date(event.onset_s),
     });
     if let (Value::Object(line), Value::Object(details)) = (&mut line, details(&event.kind, naming)) {
@@ -136,7 +137,7 @@ pub(crate) fn event_line(event: &Event, naming: &Naming) -> String {
 fn details(kind: &EventKind, naming: &Naming) -> Value {
     match kind {
         EventKind::Verdict { from, to } => json!({ "from": verdict(*from), "to": verdict(*to) }),
-        EventKind::LeakFound(leak) => finding(leak),
+        EventKind::LeakFound(leak) => finding(leak, &naming.clock),
         EventKind::Discharge(mass_kg) | EventKind::Refill(mass_kg) => json!({ "mass_g": mass_kg * GRAM }),
         EventKind::Sensor { sensor, health } => json!({
             "sensor": naming.sensor(*sensor),
@@ -164,12 +165,14 @@ pub(super) fn verdict(verdict: Verdict) -> Value {
 }
 
 /// A finding with its intervals, in the units of the files.
-pub(super) fn finding(leak: &LeakFinding) -> Value {
+pub(super) fn finding(leak: &LeakFinding, clock: &Clock) -> Value {
     let of = |interval: Interval| json!([interval.value, interval.low, interval.high]);
+    let began = leak.onset_s;
+    let began_s = [began.value, began.low, began.high].map(|time_s| clock.of_log_s(time_s));
     json!({
         "rate_g_h": of(leak.rate_kg_s.scaled(GRAM_PER_HOUR)),
         "rate_bar_h": of(leak.rate_pa_s.scaled(BAR_PER_HOUR)),
-        "began_s": of(leak.onset_s),
+        "began_s": began_s,
         "lost_g": of(leak.lost_kg.scaled(GRAM)),
     })
 }
@@ -205,7 +208,7 @@ mod tests {
     fn naming() -> Naming {
         let sensors =
             vec![("shoulder".to_owned(), Quantity::Temperature), ("pressure".to_owned(), Quantity::Pressure)];
-        Naming { clock: Clock::new(Some("2026-01-01T00:00:00Z".parse().unwrap())), sensors }
+        Naming { clock: Clock::new(Some("2026-01-01T00:00:00Z".parse().unwrap()), None), sensors }
     }
 
     fn kinds() -> Vec<EventKind> {

@@ -2,7 +2,6 @@
 //!
 //! Everything takes one output after the other and keeps what fits in bounded memory.
 mod alarm;
-mod clock;
 mod event;
 mod figure;
 mod marks;
@@ -12,7 +11,6 @@ mod strip;
 mod summary;
 
 pub(crate) use alarm::{alarm_line, alarm_text};
-pub(crate) use clock::Clock;
 pub(crate) use event::{Naming, event_line, event_text, health_text};
 pub(crate) use figure::{FigureData, figure};
 pub(crate) use prognosis::{passage_text, reaction_reason, reaction_text, reaction_word};

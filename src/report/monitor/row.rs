@@ -2,7 +2,7 @@
 use super::reaction_word;
 use crate::detector::monitor::Output;
 use crate::report::estimate::{self, EstimateRow};
-use crate::report::{Digits, Field, GRAM, GRAM_PER_HOUR};
+use crate::report::{Clock, Digits, Field, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::BAR_PA;
 
 /// Standard deviations between the bounds of a 95 % interval.
@@ -26,7 +26,7 @@ Columns (those of `estimate`, then):
   reason                 why the verdict is unknown";
 
 /// An output as a file has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MonitorRow {
     estimate: EstimateRow,
     leak_probability: f64,
@@ -48,10 +48,11 @@ impl AsRef<EstimateRow> for MonitorRow {
 impl MonitorRow {
     /// Of an output; `leak_pa_s` is the observer's leak rate as fall of the pressure settled at 15 °C, Pa/s; NaN: unknown. A leak that is
     /// found stands in place of the observer's rate.
-    pub(crate) fn new(output: &Output, leak_pa_s: f64) -> Self {
+    pub(crate) fn new(output: &Output, leak_pa_s: f64, clock: &Clock) -> Self {
         let Output { decision, leak_rate_kg_s, leak, .. } = output;
         let verdict = decision.verdict.as_str();
-        let mut row = EstimateRow { estimate: output.estimate, leak_pa_s, verdict };
+        let time = clock.date_of_log(output.stamp_s).unwrap_or_default();
+        let mut row = EstimateRow { time, estimate: output.estimate, leak_pa_s, verdict };
         row.estimate.time_s = output.stamp_s;
         // Until a leak is found its rate is as uncertain as the masses leave it, not as one member of the bank supposes.
         let uncertain_kg_s = leak_rate_kg_s.high / (0.5 * INTERVAL_SD);
@@ -61,7 +62,7 @@ impl MonitorRow {
             row.estimate.leak_kg_s = leak.rate_kg_s.value;
             row.estimate.leak_sd_kg_s = (leak.rate_kg_s.high - leak.rate_kg_s.low) / INTERVAL_SD;
             row.leak_pa_s = leak.rate_pa_s.value;
-            onset_s = leak.onset_s.value + output.stamp_s - output.estimate.time_s;
+            onset_s = clock.of_log_s(leak.onset_s.value);
             lost_kg = leak.lost_kg.value;
         }
         Self {
@@ -78,8 +79,8 @@ impl MonitorRow {
     }
 }
 
-/// Columns of an output, with the decimals that are worth writing.
-pub(crate) fn fields() -> Vec<Field<MonitorRow>> {
+/// Columns of an output, with the decimals that are worth writing; `time` where the log has dates.
+pub(crate) fn fields(has_dates: bool) -> Vec<Field<MonitorRow>> {
     use Digits::Decimals;
     let decision = [
         Field::number("leak_probability", Decimals(6), |row: &MonitorRow| row.leak_probability),
@@ -91,7 +92,7 @@ pub(crate) fn fields() -> Vec<Field<MonitorRow>> {
         Field::text("reaction", |row| row.reaction),
         Field::text("reason", |row| row.reason),
     ];
-    estimate::fields().into_iter().chain(decision).collect()
+    estimate::fields(has_dates).into_iter().chain(decision).collect()
 }
 
 #[cfg(test)]
@@ -170,7 +171,9 @@ pub(super) mod tests {
     }
 
     fn csv(output: &Output, leak_pa_s: f64) -> String {
-        Rows::new(fields(), RowFormat::Csv).row(&MonitorRow::new(output, leak_pa_s)).to_owned()
+        Rows::new(fields(false), RowFormat::Csv)
+            .row(&MonitorRow::new(output, leak_pa_s, &Clock::default()))
+            .to_owned()
     }
 
     #[test]
@@ -179,7 +182,7 @@ pub(super) mod tests {
         let expected = "7200,15.0000,0.2500,4.400000,2.0000,3.600000,0.459192,0.16200000,,199.00000,196.00000,leak,degraded,\
                         0.999000,2.880000,4.680000,3600.0,3.600,158.0000,as-soon-as-possible,\n";
         assert_eq!(csv(&leaking(), 2.0), expected);
-        assert_eq!(expected.matches(',').count() + 1, fields().len());
+        assert_eq!(expected.matches(',').count() + 1, fields(false).len());
     }
 
     #[test]
@@ -197,8 +200,8 @@ pub(super) mod tests {
     #[test]
     fn a_json_row_is_the_csv_row_with_null_for_what_is_missing() {
         for output in [leaking(), unknown()] {
-            let mut rows = Rows::new(fields(), RowFormat::Json);
-            let json = rows.row(&MonitorRow::new(&output, f64::NAN));
+            let mut rows = Rows::new(fields(false), RowFormat::Json);
+            let json = rows.row(&MonitorRow::new(&output, f64::NAN, &Clock::default()));
             let values: Vec<serde_json::Value> = serde_json::from_str(json).unwrap();
             for (cell, value) in csv(&output, f64::NAN).trim_end().split(',').zip(&values) {
                 match value {
@@ -207,7 +210,7 @@ pub(super) mod tests {
                     number => assert_eq!(cell.parse().ok(), number.as_f64()),
                 }
             }
-            assert_eq!(values.len(), fields().len());
+            assert_eq!(values.len(), fields(false).len());
         }
     }
 }

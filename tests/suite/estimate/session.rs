@@ -63,7 +63,14 @@ fn a_logger_with_dates_and_foreign_names_is_mapped_and_gives_the_same_as_seconds
     let maps = ["--map", "time=Timestamp", "--map", "shoulder_degc=T1", "--map", "pressure_bar=P1"];
     let (ours, theirs) = (estimate(folder.path(), ours, &[]), estimate(folder.path(), theirs, &maps));
     assert_eq!(theirs.code, Some(0), "{}", theirs.stderr);
-    assert_eq!(rows(&ours.stdout).1, rows(&theirs.stdout).1);
+    // Dates stand beside the times.
+    let (header, dated) = rows(&theirs.stdout);
+    let dates: Vec<jiff::Timestamp> = dated.iter().map(|row| row[1].parse().unwrap()).collect();
+    assert_eq!(header[1], "time");
+    let written = ["2026-10-25T02:59:00+02:00", "2026-10-25T02:00:00+01:00", "2026-10-25T01:01:30Z"];
+    assert_eq!(dates, written.map(|date| date.parse().unwrap()));
+    let without: Vec<Vec<&str>> = dated.iter().map(|row| [&row[..1], &row[2..]].concat()).collect();
+    assert_eq!(rows(&ours.stdout).1, without);
     assert!(theirs.stdout.contains("# time_s = 0 is 2026-10-25T00:59:00Z"), "{}", theirs.stdout);
     assert!(cautions(&theirs)[0].contains("columns set aside: Operator"), "{}", theirs.stderr);
     let unknown = estimate(folder.path(), "time_s,shoulder_degc\n0,15\n", &["--map", "shoulder_degc=T9"]);

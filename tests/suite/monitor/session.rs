@@ -85,12 +85,47 @@ fn the_verdict_stands_on_stderr_event_by_event_with_the_dates_of_the_log() {
     let outcome = monitor(folder.path(), &text, &["-o", "rows.csv"]);
     assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
     let found = outcome.stderr.lines().find(|line| line.contains("leak found")).unwrap();
-    // The leak begins at noon of the second day, an hour earlier in UTC.
+    // The leak begins at noon of the second day.
     assert!(found.starts_with("2026-01-02T1") && found.contains("since 2026-01-02T1"), "{found}");
     let rows = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
     assert!(rows.contains("# time_s = 0 is 2025-12-31T23:00:00Z"), "{rows:.300}");
     let seconds = monitor(folder.path(), &leaking(), &["-q"]).stdout;
-    assert_eq!(data(&rows), data(&seconds)[..]);
+    let without = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        [&cells[..1], &cells[2..]].concat().join(",")
+    };
+    assert_eq!(data(&rows).into_iter().map(without).collect::<Vec<_>>(), data(&seconds)[..]);
+    assert!(data(&rows)[60].starts_with("3600,2026-01-01T01:00:00+01:00,"), "{}", data(&rows)[60]);
+}
+
+#[test]
+fn after_a_jump_of_the_clock_rows_events_and_summary_have_one_time() {
+    let folder = tempdir().unwrap();
+    let (jump_at, back_s, leak_from, end) = (600, 7200, 30 * 60, 36 * 60);
+    let shifted = |minute: u32| {
+        let row = row(minute, leak_from);
+        let (time_s, cells) = row.split_once(',').unwrap();
+        let jump_s = if minute >= jump_at { back_s } else { 0 };
+        format!("{},{cells}", time_s.parse::<u32>().unwrap() - jump_s)
+    };
+    let text: String = std::iter::once(HEADER.to_owned()).chain((0..end).map(shifted)).collect();
+    let outcome = monitor(folder.path(), &text, &["--format", "json", "--events", "e.jsonl", "-q"]);
+    assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
+    let document: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
+    let times: Vec<f64> =
+        document["data"].as_array().unwrap().iter().map(|row| row[0].as_f64().unwrap()).collect();
+    assert_eq!(document["summary"]["time_s"].as_f64(), times.last().copied());
+    let events = events(folder.path(), "e.jsonl");
+    let leak = events.iter().find(|event| event["event"] == "leak-found").unwrap();
+    let onset_s = leak["onset_s"].as_f64().unwrap();
+    let truth_s = f64::from(60 * leak_from - back_s);
+    assert!((onset_s - truth_s).abs() < 3600.0, "{onset_s} for {truth_s}");
+    let jump = events.iter().position(|event| event["event"] == "clock-jump").unwrap();
+    assert!(events[..jump].iter().all(|event| event["time_s"].as_f64().unwrap() < 36_000.0), "{events:?}");
+    let after = events[jump..].iter().filter(|event| event["event"] == "verdict");
+    for event in after {
+        assert!(times.contains(&event["time_s"].as_f64().unwrap()), "{event}");
+    }
 }
 
 #[test]
