@@ -7,6 +7,7 @@ use super::estimate::EstimateArguments;
 use super::identify::IdentifyArguments;
 use super::init::InitArguments;
 use super::inspect::InspectArguments;
+use super::inspection::InspectionArguments;
 use super::man::ManArguments;
 use super::monitor::MonitorArguments;
 use super::number::with_negative_numbers;
@@ -44,6 +45,7 @@ Examples:
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch commission nitrogen-20l -o thresholds.json
+  cylwatch inspection nitrogen-20l week.csv --fill-pressure-bar 200 --fill-temperature-degc 15
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
   cylwatch place nitrogen-20l --sensors 3 --plot places.svg
@@ -68,6 +70,8 @@ pub(super) enum Command {
     Monitor(Box<MonitorArguments>),
     /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; twenty minutes.
     Commission(Box<CommissionArguments>),
+    /// Judge the loss of pressure adjusted for temperature since the fill, as ISO 14520 words it: pass, refill or cannot be told.
+    Inspection(Box<InspectionArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.
     Identify(Box<IdentifyArguments>),
     /// Fit physical parameters of a vessel to logs and write a calibrated vessel file, with intervals.

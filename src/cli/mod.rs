@@ -15,6 +15,7 @@ mod identify;
 mod init;
 mod input;
 mod inspect;
+mod inspection;
 mod interrupt;
 mod live;
 mod man;
@@ -64,6 +65,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
     let done = match command {
         Command::Monitor(arguments) => return monitor::run(*arguments, messages),
         Command::Place(arguments) => return place::run(*arguments, messages),
+        Command::Inspection(arguments) => return inspection::run(*arguments, messages),
         Command::BenchDetector(arguments) => return bench_detector::run(arguments, messages),
         Command::Reproduce(arguments) => reproduce::run(arguments, messages),
         Command::Simulate(arguments) => simulate::run(arguments, messages),

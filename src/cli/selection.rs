@@ -160,8 +160,7 @@ impl Selection {
     /// Standard deviation of what the first transmitter is off by all the time, Pa; 0 without one.
     pub(super) fn pressure_offset_sd_pa(&self) -> f64 {
         let transmitter = self.sensors.iter().find(|sensor| sensor.quantity() == Quantity::Pressure);
-        let offsets = transmitter.into_iter().flat_map(Sensor::parameters);
-        offsets.filter(|of| of.kind == ParameterKind::Offset).map(|of| of.sd).sum()
+        transmitter.map_or(0.0, offset_sd_pa)
     }
 
     /// Mean of a row's temperatures, K; 15 °C where it has none.
@@ -174,6 +173,11 @@ impl Selection {
             .collect();
         if known.is_empty() { 288.15 } else { known.iter().sum::<f64>() / known.len() as f64 }
     }
+}
+
+/// Standard deviation of what a transmitter is off by all the time, Pa.
+pub(super) fn offset_sd_pa(transmitter: &Sensor) -> f64 {
+    transmitter.parameters().iter().filter(|of| of.kind == ParameterKind::Offset).map(|of| of.sd).sum()
 }
 
 /// The typical sensor of a column, or why it is not used without a file of sensors; `outside`: there are thermometers on the outside.

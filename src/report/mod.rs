@@ -13,6 +13,7 @@ pub(crate) mod estimate;
 pub mod figure;
 pub(crate) mod identify;
 pub(crate) mod inspect;
+pub(crate) mod inspection;
 pub(crate) mod monitor;
 mod page;
 pub mod place;

@@ -15,6 +15,7 @@ mod foreign_log;
 mod foreign_units;
 mod identify;
 mod inspect;
+mod inspection;
 mod log;
 mod log_forms;
 #[cfg(feature = "parquet")]

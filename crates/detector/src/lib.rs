@@ -26,6 +26,7 @@
 //! ```
 pub mod error;
 pub mod evidence;
+pub mod inspection;
 pub mod monitor;
 pub mod prognosis;
 mod units;

@@ -28,10 +28,25 @@ impl Sensor {
     /// # Errors
     /// As [`Sensor::typical`].
     pub fn typical_transmitter(name: &str, full_pa: f64) -> Result<Self, EstimatorError> {
-        let range_bar = RANGES_BAR.into_iter().find(|range_bar| range_bar * BAR_PA >= RESERVE * full_pa);
-        let full_scale_pa = range_bar.map_or(RESERVE * full_pa, |range_bar| range_bar * BAR_PA);
+        let full_scale_pa = Some(full_scale_pa(full_pa));
+        let spec = SensorSpec { name: name.to_owned(), full_scale_pa, ..SensorSpec::default() };
+        Self::try_from(&spec.completed())
+    }
+
+    /// A gauge of an accuracy class, a part of its range, for a fill of such a pressure at 15 °C, Pa, with the smallest range that holds 1.2 times that. It reads anything
+    /// within its class.
+    ///
+    /// # Errors
+    /// As [`Sensor::typical`].
+    ///
+    /// # References
+    /// EN 837-1:1996, 6.
+    pub fn typical_gauge(name: &str, full_pa: f64, class: f64) -> Result<Self, EstimatorError> {
+        let full_scale_pa = full_scale_pa(full_pa);
+        let offset_tolerance_pa = Some(class * full_scale_pa);
+        let full_scale_pa = Some(full_scale_pa);
         let spec =
-            SensorSpec { name: name.to_owned(), full_scale_pa: Some(full_scale_pa), ..SensorSpec::default() };
+            SensorSpec { name: name.to_owned(), full_scale_pa, offset_tolerance_pa, ..SensorSpec::default() };
         Self::try_from(&spec.completed())
     }
 
@@ -44,6 +59,12 @@ impl Sensor {
         let spec = SensorSpec { name, height_m: Some(height_m), ..SensorSpec::default() };
         Self::try_from(&spec.completed())
     }
+}
+
+/// The smallest range of EN 837-1 that a fill of such a pressure at 15 °C is read with, Pa.
+fn full_scale_pa(full_pa: f64) -> f64 {
+    let range_bar = RANGES_BAR.into_iter().find(|range_bar| range_bar * BAR_PA >= RESERVE * full_pa);
+    range_bar.map_or(RESERVE * full_pa, |range_bar| range_bar * BAR_PA)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ mod evidence;
 mod fault;
 mod fault_table;
 mod honest;
+mod inspection;
 mod matched;
 mod monitor;
 mod observer;
