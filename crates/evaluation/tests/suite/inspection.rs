@@ -136,9 +136,8 @@ fn classes(each: u64) -> bool {
         }
         right &= reliability(&format!("log of a day, {class}"), &stated);
     }
-    for (title, climate, rested_s) in
-        [("rest not known", "railway", 0.0), ("6 h of rest in a hall", "hall", 6.0 * HOUR_S)]
-    {
+    let readings = [("rest not known", "switching", 0.0), ("6 h of rest in a hall", "hall", 6.0 * HOUR_S)];
+    for (title, climate, rested_s) in readings {
         let mut random = ChaCha8Rng::seed_from_u64(98);
         let vessels = ["nitrogen-20l", "argon-50l", "nitrogen-80l", "helium-10l", "hydrogen-50l"];
         let stated: Vec<Stated> = (0..each)
