@@ -1,7 +1,7 @@
 //! Reduced Helmholtz energy `alpha = a / (R T)` of a fluid and its exact first and second derivatives.
 //!
 //! `alphar(delta, tau) = sum n delta^d tau^t exp(-delta^l) + sum n delta^d tau^t exp(-eta (delta-epsilon)^2 - beta (tau-gamma)^2)`
-//! with `delta = rho / rho_r`, `tau = T_r / T`. Derivatives are carried in the scaled form
+//! with `delta = rho / rho_r`, `tau = T_r / T`; carbon dioxide adds terms about its critical point ([`NonanalyticTerm`]). Derivatives are carried in the scaled form
 //! `delta d/d(delta) = rho d/d(rho)`, `tau d/d(tau) = -T d/dT`, which does not depend on the reducing values,
 //! so that every equation of state speaks the same language ([`HelmholtzEnergy`]).
 //!
@@ -10,10 +10,10 @@
 //! negligible are skipped. At a given temperature the power terms collapse into polynomials in `delta` ([`Isotherm`]).
 //! Arrays have a fixed size: nothing is allocated.
 use std::ops::Range;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
-use super::Real;
-use super::data::{ALL, FluidData, GaussianTerm, PowerTerm};
+use super::data::{ALL, DepartureTerm, FluidData, GaussianTerm, NonanalyticTerm, PowerTerm};
+use super::{Real, Saturation};
 
 /// `alpha` and its scaled derivatives. `d`: `rho d/d(rho)`, `t`: `-T d/dT` (in `tau`: `tau d/d(tau)`); second ones are
 /// `delta^2 d2/d(delta)^2`, `delta tau d2/d(delta)d(tau)`, `tau^2 d2/d(tau)^2`.
@@ -39,6 +39,15 @@ impl<D: Real> Reduced<D> {
         let zero = D::from(0.0);
         Self { a: zero, d: zero, t: zero, dd: zero, dt: zero, tt: zero }
     }
+
+    fn add(&mut self, other: &Self) {
+        self.a += other.a;
+        self.d += other.d;
+        self.t += other.t;
+        self.dd += other.dd;
+        self.dt += other.dt;
+        self.tt += other.tt;
+    }
 }
 
 /// An equation of state: its residual reduced Helmholtz energy.
@@ -62,6 +71,9 @@ const NEGLIGIBLE: f64 = -60.0;
 const MAX_SLOTS: usize = 40;
 const MAX_TAU: usize = 32;
 const MAX_GAUSSIAN: usize = 16;
+
+/// Temperatures at which a saturation is kept.
+pub(super) const SATURATIONS: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
 struct Term {
@@ -103,6 +115,10 @@ pub(super) struct Multiparameter {
     highest_whole: usize,
     highest_d: usize,
     reducing_density_kg_m3: f64,
+    /// Neither terms about the critical point nor a departure function.
+    plain: bool,
+    /// Saturation at a few temperatures from the lowest to the highest that is resolved, found when one is asked for.
+    pub saturation: [OnceLock<Option<Saturation>>; SATURATIONS],
 }
 
 /// Prepared equations, in the order of the data.
@@ -143,6 +159,11 @@ impl Multiparameter {
         let product = |&t: &f64| if in_table(t) { (t as usize, (8.0 * t) as usize % 8) } else { (0, 0) };
         let tau: Vec<(usize, usize)> = exponents.iter().map(product).collect();
         let tau_others = exponents.iter().copied().enumerate().filter(|&(_, t)| !in_table(t)).collect();
+        assert!(
+            slots.len() <= MAX_SLOTS && tau.len() <= MAX_TAU && gaussian.len() <= MAX_GAUSSIAN,
+            "{}",
+            data.name
+        );
         Self {
             highest_whole: tau.iter().map(|&(whole, _)| whole).max().unwrap_or(0),
             highest_d: sorted
@@ -152,6 +173,8 @@ impl Multiparameter {
                 .max()
                 .map_or(0, usize::from),
             reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
+            saturation: [const { OnceLock::new() }; SATURATIONS],
+            plain: data.nonanalytic.is_empty() && data.departure.is_empty(),
             groups,
             terms,
             slots,
@@ -185,6 +208,22 @@ impl Multiparameter {
         found
     }
 
+    /// Terms that few equations have. Out of line, so that the others do not pay for them.
+    #[inline(never)]
+    fn special<D: Real>(&self, delta: D, tau: D) -> Reduced<D> {
+        let mut sum = Reduced::zero();
+        for term in self.data.nonanalytic {
+            sum.add(&nonanalytic(term, delta, tau));
+        }
+        if !self.data.departure.is_empty() {
+            let ln_tau = tau.ln();
+            for term in self.data.departure {
+                sum.add(&departure(term, delta, ln_tau));
+            }
+        }
+        sum
+    }
+
     /// Collapse the power terms at a temperature.
     #[inline]
     pub(crate) fn isotherm(&self, temperature_k: f64) -> Isotherm<'_> {
@@ -198,7 +237,7 @@ impl Multiparameter {
         for (i, factor) in gaussian.iter_mut().enumerate().take(self.gaussian.len()) {
             *factor = self.gaussian_factor(i, tau, &powers);
         }
-        Isotherm { equation: self, coefficients, gaussian }
+        Isotherm { equation: self, tau, coefficients, gaussian }
     }
 
     /// Sum of `n tau^t` of a slot.
@@ -226,6 +265,7 @@ impl Multiparameter {
     fn slopes(
         &self,
         density_kg_m3: f64,
+        tau: f64,
         coefficient: impl Fn(usize) -> f64,
         gaussian: impl Fn(usize) -> f64,
     ) -> (f64, f64) {
@@ -267,6 +307,11 @@ impl Multiparameter {
             first += c * x;
             second += c * (x * x - 2.0 * g.eta * delta * delta - d);
         }
+        if !self.plain {
+            let part = self.special(delta, tau);
+            first += part.d;
+            second += part.dd;
+        }
         (first, second)
     }
 }
@@ -280,6 +325,61 @@ fn powers<D: Real, const N: usize>(x: D, highest: usize) -> [D; N] {
         powers[i] = powers[i / 2] * powers[i - i / 2];
     }
     powers
+}
+
+/// Least distance of `delta` from 1 in a non-analytic term, whose powers have no derivative there.
+const SHIFT: f64 = 1e-10;
+
+/// A term about the critical point, from the logarithmic derivatives of `delta Delta^b Psi`.
+fn nonanalytic<D: Real>(term: &NonanalyticTerm, delta: D, tau: D) -> Reduced<D> {
+    let (mut u, v) = (delta - 1.0, tau - 1.0);
+    if u.re().abs() < SHIFT {
+        u += SHIFT - u.re();
+    }
+    let exponent = u * u * (-term.eta) - v * v * term.decay;
+    if !(exponent.re() >= NEGLIGIBLE) {
+        return Reduced::zero();
+    }
+    let (square, p) = (u * u, 0.5 / term.beta);
+    // theta and Delta with their derivatives in delta; those in tau are -1 and -2 theta, 2.
+    let bend = square.powf(p - 1.0) * (2.0 * p * term.amplitude);
+    let theta = square.powf(p) * term.amplitude - v;
+    let (theta_d, theta_dd) = (bend * u, bend * (2.0 * p - 1.0));
+    let wide = square.powf(term.a - 1.0) * (2.0 * term.a * term.width);
+    let distance = theta * theta + square.powf(term.a) * term.width;
+    let distance_d = theta * theta_d * 2.0 + wide * u;
+    let distance_dd = (theta_d * theta_d + theta * theta_dd) * 2.0 + wide * (2.0 * term.a - 1.0);
+    let (by_d, by_t) = (distance_d / distance, -theta * 2.0 / distance);
+    let x = delta * (by_d * term.b - u * (2.0 * term.eta)) + 1.0;
+    let y = tau * (by_t * term.b - v * (2.0 * term.decay));
+    let c = delta * distance.powf(term.b) * exponent.exp() * term.n;
+    let curved = (distance_dd / distance - by_d * by_d) * term.b - 2.0 * term.eta;
+    let mixed = (-theta_d * 2.0 / distance - by_d * by_t) * term.b;
+    let bent = (distance.recip() * 2.0 - by_t * by_t) * term.b - 2.0 * term.decay;
+    Reduced {
+        a: c,
+        d: c * x,
+        t: c * y,
+        dd: c * (x * x - 1.0 + delta * delta * curved),
+        dt: c * (x * y + delta * tau * mixed),
+        tt: c * (y * y + tau * tau * bent),
+    }
+}
+
+/// A term of a departure function.
+fn departure<D: Real>(term: &DepartureTerm, delta: D, ln_tau: D) -> Reduced<D> {
+    let (u, d) = (delta - term.epsilon, f64::from(term.d));
+    let exponent = ln_tau * term.t - u * u * term.eta - (delta - term.gamma) * term.beta;
+    let c = delta.powi(i32::from(term.d)) * exponent.exp() * term.n;
+    let x = delta * (-(u * (2.0 * term.eta)) - term.beta) + d;
+    Reduced {
+        a: c,
+        d: c * x,
+        t: c * term.t,
+        dd: c * (x * x - delta * delta * (2.0 * term.eta) - d),
+        dt: c * x * term.t,
+        tt: c * (term.t * (term.t - 1.0)),
+    }
 }
 
 impl HelmholtzEnergy for Multiparameter {
@@ -346,6 +446,9 @@ impl HelmholtzEnergy for Multiparameter {
             sum.dt += c * x * y;
             sum.tt += c * (y * y - tau * tau * (2.0 * g.beta) - g.t);
         }
+        if !self.plain {
+            sum.add(&self.special(delta, tau));
+        }
         sum
     }
 
@@ -356,6 +459,7 @@ impl HelmholtzEnergy for Multiparameter {
         let powers = self.tau_powers(tau);
         self.slopes(
             density_kg_m3,
+            tau,
             |i| self.collapsed(&self.slots[i], &powers),
             |i| self.gaussian_factor(i, tau, &powers),
         )
@@ -365,6 +469,7 @@ impl HelmholtzEnergy for Multiparameter {
 /// The equation at one temperature: polynomials in density times exponentials.
 pub(super) struct Isotherm<'a> {
     equation: &'a Multiparameter,
+    tau: f64,
     /// Coefficient of each pair of `l` and `d`.
     coefficients: [f64; MAX_SLOTS],
     /// Factor of each Gaussian term; zero for those left out.
@@ -375,7 +480,7 @@ impl Isotherm<'_> {
     /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`.
     #[inline]
     pub(crate) fn slopes(&self, density_kg_m3: f64) -> (f64, f64) {
-        self.equation.slopes(density_kg_m3, |i| self.coefficients[i], |i| self.gaussian[i])
+        self.equation.slopes(density_kg_m3, self.tau, |i| self.coefficients[i], |i| self.gaussian[i])
     }
 }
 

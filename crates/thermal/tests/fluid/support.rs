@@ -10,6 +10,11 @@ pub(crate) fn all() -> Vec<Fluid> {
     named.flat_map(|fluid| EQUATIONS.map(|equation| fluid.clone().with_equation(equation))).collect()
 }
 
+/// Whether it condenses in a cylinder at 15 °C, so that its liquid is refused.
+pub(crate) fn liquefies(fluid: &Fluid) -> bool {
+    fluid.equation() != Equation::IdealGas && fluid.domain().critical_temperature_k > 290.0
+}
+
 /// Rows of a table of numbers below its header; lines with `#` are comments.
 pub(crate) fn rows(text: &str) -> Vec<Vec<f64>> {
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);

@@ -8,10 +8,12 @@
 //! |---|---|---|
 //! | nitrogen, argon, air | Lemmon and Jacobsen 2004 | the same |
 //! | hydrogen (normal) | Muzny, Huber and Kazakov 2013 | Assael et al. 2011 |
+//! | carbon dioxide | Laesecke and Muzny 2017 | Huber et al. 2016 |
 //! | helium | Arp, McCarty and Friend 1998 | Hands and Arp 1981 |
 //!
 //! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
 //! CoolProp 8.0.0; each module names its range of validity and the deviations.
+mod carbon_dioxide;
 mod critical;
 mod helium;
 mod hydrogen;
@@ -46,6 +48,8 @@ pub(super) enum Transport {
     LemmonJacobsen(&'static LemmonJacobsenData),
     /// Normal hydrogen: Muzny et al. 2013, Assael et al. 2011.
     Hydrogen,
+    /// Carbon dioxide: Laesecke and Muzny 2017, Huber et al. 2016.
+    CarbonDioxide,
     /// Helium-4: Arp et al. 1998, Hands and Arp 1981.
     Helium,
 }
@@ -57,6 +61,7 @@ impl Transport {
         match self {
             Transport::LemmonJacobsen(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::Hydrogen => hydrogen::viscosity_pa_s(density_kg_m3, temperature_k),
+            Transport::CarbonDioxide => carbon_dioxide::viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::Helium => helium::viscosity_pa_s(density_kg_m3, temperature_k),
         }
     }
@@ -66,6 +71,7 @@ impl Transport {
         match self {
             Transport::LemmonJacobsen(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::Hydrogen => hydrogen::conductivity_w_m_k(density_kg_m3, temperature_k),
+            Transport::CarbonDioxide => carbon_dioxide::conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::Helium => helium::conductivity_w_m_k(density_kg_m3, temperature_k),
         }
     }
@@ -85,6 +91,9 @@ impl Transport {
                 data.critical.conductivity_w_m_k(state, viscosity, dp_drho_reference)
             }
             Transport::Hydrogen => hydrogen::CRITICAL.conductivity_w_m_k(state, viscosity, dp_drho_reference),
+            Transport::CarbonDioxide => {
+                carbon_dioxide::CRITICAL.conductivity_w_m_k(state, viscosity, dp_drho_reference)
+            }
             Transport::Helium => helium::critical::conductivity_w_m_k(state, viscosity),
         }
     }
@@ -96,6 +105,7 @@ impl Transport {
         match self {
             Transport::LemmonJacobsen(data) => Some(data.critical.reference_temperature_k),
             Transport::Hydrogen => Some(hydrogen::CRITICAL.reference_temperature_k),
+            Transport::CarbonDioxide => Some(carbon_dioxide::CRITICAL.reference_temperature_k),
             Transport::Helium => None,
         }
     }
