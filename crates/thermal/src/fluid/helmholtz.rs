@@ -115,7 +115,9 @@ pub(super) struct Multiparameter {
     highest_whole: usize,
     highest_d: usize,
     reducing_density_kg_m3: f64,
-    /// Neither terms about the critical point nor a departure function.
+    /// Power terms of a mixture for which the tables have no place.
+    overflow: Vec<PowerTerm>,
+    /// Neither terms about the critical point nor a departure function nor an overflow.
     plain: bool,
     /// Saturation at a few temperatures from the lowest to the highest that is resolved, found when one is asked for.
     pub saturation: [OnceLock<Option<Saturation>>; SATURATIONS],
@@ -129,17 +131,27 @@ impl Multiparameter {
     pub(super) fn new(data: &'static FluidData) -> Self {
         let mut exponents: Vec<f64> = Vec::new();
         let mut tau_index = |t: f64| {
-            exponents.iter().position(|&known| known == t).unwrap_or_else(|| {
-                exponents.push(t);
-                exponents.len() - 1
+            let known = exponents.iter().position(|&known| known == t);
+            known.or_else(|| {
+                (exponents.len() < MAX_TAU).then(|| exponents.push(t)).map(|()| exponents.len() - 1)
             })
         };
+        assert!(data.gaussian.len() <= MAX_GAUSSIAN, "{}: too many Gaussian terms", data.name);
+        let powers =
+            |&term: &GaussianTerm| (term, tau_index(term.t).expect("more powers than Gaussian terms"));
+        let gaussian: Vec<_> = data.gaussian.iter().map(powers).collect();
         let mut sorted: Vec<PowerTerm> = data.power.to_vec();
         sorted.sort_by_key(|term| (term.l, term.d));
         let (mut groups, mut slots, mut terms): (Vec<Group>, Vec<Slot>, Vec<Term>) = Default::default();
-        for &PowerTerm { n, d, t, l } in &sorted {
-            let (l, d, i) = (usize::from(l), usize::from(d), terms.len());
-            terms.push(Term { n, t, tau: tau_index(t) });
+        let mut overflow = Vec::new();
+        for &term in &sorted {
+            let PowerTerm { n, t, .. } = term;
+            let (l, d, i) = (usize::from(term.l), usize::from(term.d), terms.len());
+            let Some(tau) = tau_index(t).filter(|_| slots.len() < MAX_SLOTS) else {
+                overflow.push(term);
+                continue;
+            };
+            terms.push(Term { n, t, tau });
             match groups.last_mut() {
                 Some(group) if group.l == l => match slots.last_mut() {
                     Some(slot) if slot.d == d => slot.terms.end = i + 1,
@@ -154,16 +166,10 @@ impl Multiparameter {
                 }
             }
         }
-        let gaussian: Vec<_> = data.gaussian.iter().map(|&term| (term, tau_index(term.t))).collect();
         let in_table = |t: f64| (8.0 * t).fract() == 0.0 && (0.0..=32.0).contains(&t);
         let product = |&t: &f64| if in_table(t) { (t as usize, (8.0 * t) as usize % 8) } else { (0, 0) };
         let tau: Vec<(usize, usize)> = exponents.iter().map(product).collect();
         let tau_others = exponents.iter().copied().enumerate().filter(|&(_, t)| !in_table(t)).collect();
-        assert!(
-            slots.len() <= MAX_SLOTS && tau.len() <= MAX_TAU && gaussian.len() <= MAX_GAUSSIAN,
-            "{}",
-            data.name
-        );
         Self {
             highest_whole: tau.iter().map(|&(whole, _)| whole).max().unwrap_or(0),
             highest_d: sorted
@@ -174,7 +180,8 @@ impl Multiparameter {
                 .map_or(0, usize::from),
             reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
             saturation: [const { OnceLock::new() }; SATURATIONS],
-            plain: data.nonanalytic.is_empty() && data.departure.is_empty(),
+            plain: data.nonanalytic.is_empty() && data.departure.is_empty() && overflow.is_empty(),
+            overflow,
             groups,
             terms,
             slots,
@@ -215,10 +222,13 @@ impl Multiparameter {
         for term in self.data.nonanalytic {
             sum.add(&nonanalytic(term, delta, tau));
         }
-        if !self.data.departure.is_empty() {
+        if !(self.data.departure.is_empty() && self.overflow.is_empty()) {
             let ln_tau = tau.ln();
             for term in self.data.departure {
                 sum.add(&departure(term, delta, ln_tau));
+            }
+            for term in &self.overflow {
+                sum.add(&power(term, delta, ln_tau));
             }
         }
         sum
@@ -337,7 +347,7 @@ fn nonanalytic<D: Real>(term: &NonanalyticTerm, delta: D, tau: D) -> Reduced<D> 
         u += SHIFT - u.re();
     }
     let exponent = u * u * (-term.eta) - v * v * term.decay;
-    if !(exponent.re() >= NEGLIGIBLE) {
+    if exponent.re() < NEGLIGIBLE {
         return Reduced::zero();
     }
     let (square, p) = (u * u, 0.5 / term.beta);
@@ -363,6 +373,22 @@ fn nonanalytic<D: Real>(term: &NonanalyticTerm, delta: D, tau: D) -> Reduced<D> 
         dd: c * (x * x - 1.0 + delta * delta * curved),
         dt: c * (x * y + delta * tau * mixed),
         tt: c * (y * y + tau * tau * bent),
+    }
+}
+
+/// A power term by itself.
+fn power<D: Real>(term: &PowerTerm, delta: D, ln_tau: D) -> Reduced<D> {
+    let (d, l, t) = (f64::from(term.d), f64::from(term.l), term.t);
+    let decay = if term.l == 0 { D::from(0.0) } else { delta.powi(i32::from(term.l)) };
+    let c = delta.powi(i32::from(term.d)) * (ln_tau * t - decay).exp() * term.n;
+    let x = decay * (-l) + d;
+    Reduced {
+        a: c,
+        d: c * x,
+        t: c * t,
+        dd: c * (x * (x - 1.0) - decay * (l * l)),
+        dt: c * x * t,
+        tt: c * (t * (t - 1.0)),
     }
 }
 

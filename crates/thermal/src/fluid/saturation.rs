@@ -87,7 +87,7 @@ impl Fluid {
         let (low, high) = (self.data.lowest_temperature_k, self.edge_k());
         let last = SATURATIONS - 1;
         let position = (temperature_k - low) / (high - low) * last as f64;
-        if !(position >= 0.0) {
+        if position.is_nan() || position < 0.0 {
             return None;
         }
         let index = (position as usize).min(last);

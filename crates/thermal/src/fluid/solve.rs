@@ -135,32 +135,28 @@ impl Fluid {
             (state.internal_energy_j_kg - energy_j_kg, state.cv_j_kg_k)
         };
         let start = guess_k.filter(|guess| guess.is_finite()).unwrap_or(300.0);
-        match bracketed_newton(low, high, start, energy) {
-            Some(t) if t > low * 1.000_001 && t < high * 0.999_999 => {
-                Ok(self.warmest_root(density_kg_m3, t, energy).unwrap_or(t))
+        let inside = |t: &f64| *t > low * 1.000_001 && *t < high * 0.999_999;
+        match bracketed_newton(low, high, start, energy).filter(inside) {
+            Some(t)
+                if t >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, t).is_ok() =>
+            {
+                Ok(t)
             }
-            _ => Err(none),
+            Some(t) => Ok(self.warmest_root(t, energy).unwrap_or(t)),
+            None => self.warmest_root(low, energy).filter(inside).ok_or(none),
         }
     }
 
-    /// Between the phases the energy along an isochore need not increase, and a root there may have a warmer one above
-    /// it that is single-phase: the warmest one, if there is any.
-    fn warmest_root(
-        &self,
-        density_kg_m3: f64,
-        found_k: f64,
-        energy: impl Fn(f64) -> (f64, f64),
-    ) -> Option<f64> {
+    /// Between the phases the energy along an isochore need not increase, so that none is found or one that has a warmer
+    /// one above it that is single-phase: the warmest one, if there is any.
+    fn warmest_root(&self, above_k: f64, energy: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         const STEPS: i32 = 80;
         let top_k = self.data.critical_temperature_k * 1.01;
-        if found_k >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, found_k).is_ok() {
-            return None;
-        }
         if energy(top_k).0 <= 0.0 {
             return bracketed_newton(top_k, 2.0 * self.data.highest_temperature_k, 1.5 * top_k, energy);
         }
-        let at = |k: i32| found_k + (top_k - found_k) * f64::from(k) / f64::from(STEPS);
-        let below = (1..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
+        let at = |k: i32| above_k + (top_k - above_k) * f64::from(k) / f64::from(STEPS);
+        let below = (0..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
         bracketed_newton(at(below), at(below + 1), at(below + 1), energy)
     }
 

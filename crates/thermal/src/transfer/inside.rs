@@ -308,7 +308,9 @@ mod tests {
             let grid = FilmGrid::new(fluid.clone());
             let mut worst = [0.0_f64; 2];
             // Nearer to the critical point the groups bend more than the grid follows.
-            let coldest_k = 202.3_f64.max(1.35 * fluid.domain().critical_temperature_k);
+            let domain = fluid.domain();
+            let coldest_k =
+                202.3_f64.max(1.35 * domain.critical_temperature_k).max(domain.lowest_temperature_k + 8.7);
             for i in 0..40 {
                 let (t, p) = (coldest_k + 5.1 * f64::from(i), 1.7e5 * 1.127_f64.powi(i));
                 let (ln_k, ln_r) = film_groups_exact(&fluid, t, p).expect("inside the domain");

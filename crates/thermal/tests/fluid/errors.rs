@@ -1,9 +1,9 @@
 //! Inputs outside the domain: the right error, with value, bound and remedy in its words; never a panic or a wild state.
 use cylwatch_thermal::ThermalError;
-use cylwatch_thermal::fluid::{Equation, Fluid, State};
+use cylwatch_thermal::fluid::{Fluid, State};
 use proptest::prelude::*;
 
-use crate::support::{EQUATIONS, all, liquefies};
+use crate::support::{EQUATIONS, all, condenses, liquefies};
 
 fn nitrogen() -> Fluid {
     Fluid::named("nitrogen").unwrap()
@@ -30,9 +30,14 @@ fn unknown_fluid_names_the_nearest() {
 
 #[test]
 fn formulas_and_trade_names_are_answered_with_the_name() {
-    for (wrong, name) in
-        [("co2", "carbon-dioxide"), ("CO2", "carbon-dioxide"), ("n2", "nitrogen"), ("IG-100", "nitrogen")]
-    {
+    for (wrong, name) in [
+        ("co2", "carbon-dioxide"),
+        ("CO2", "carbon-dioxide"),
+        ("n2", "nitrogen"),
+        ("IG-100", "nitrogen"),
+        ("inergen", "ig-541"),
+        ("ig-55", "argon-nitrogen"),
+    ] {
         let error = Fluid::named(wrong).unwrap_err();
         says(&error, &[wrong, &format!("did you mean {name}?")]);
     }
@@ -115,7 +120,7 @@ fn too_high_a_pressure_for_the_cold_says_what_to_do() {
 
 #[test]
 fn two_phases_by_density_and_temperature_are_refused() {
-    for fluid in all().into_iter().filter(|fluid| fluid.equation() != Equation::IdealGas) {
+    for fluid in all().into_iter().filter(condenses) {
         let t = 0.9 * fluid.domain().critical_temperature_k;
         let saturation = fluid.saturation(t).unwrap().unwrap();
         let rho = 0.5 * (saturation.vapour_kg_m3 + saturation.liquid_kg_m3);
@@ -136,7 +141,7 @@ fn two_phases_by_density_and_temperature_are_refused() {
 
 #[test]
 fn two_phases_on_an_isobar_are_refused() {
-    for fluid in all().into_iter().filter(|fluid| fluid.equation() != Equation::IdealGas) {
+    for fluid in all().into_iter().filter(condenses) {
         let t = 0.9 * fluid.domain().critical_temperature_k;
         let found = fluid.saturation(t).unwrap().unwrap();
         let (vapour, liquid) = (fluid.state(found.vapour_kg_m3, t), fluid.state(found.liquid_kg_m3, t));
@@ -174,6 +179,21 @@ fn liquid_carbon_dioxide_in_a_cylinder_is_refused_with_the_pressure_that_condens
     // From its critical temperature on it is one phase at any pressure, and thin gas is gas all the way to it.
     assert!(fluid.density_from_pressure_temperature(150e5, 305.0).is_ok());
     assert!(fluid.density_from_pressure_temperature(60e5, 303.5).is_ok());
+}
+
+/// Below their bound mixtures may condense or freeze: one refusal, whatever the pressure and the equation.
+#[test]
+fn mixtures_are_refused_below_the_bound_of_their_dew_points() {
+    for (name, lowest) in [("argon-nitrogen", "150.687"), ("ig-541", "216.592")] {
+        for equation in EQUATIONS {
+            let fluid = Fluid::named(name).unwrap().with_equation(equation);
+            for p in [1e5, 5e6, 3e7] {
+                let error = fluid.density_from_pressure_temperature(p, 150.0).unwrap_err();
+                says(&error, &["150 K", name, lowest, "must lie between"]);
+                assert!(fluid.density_from_pressure_temperature(p, 220.0).is_ok(), "{name} {equation:?} {p}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -1,16 +1,21 @@
-//! Coefficients of the fluids, one file each. A further fluid is a further file and a line in [`ALL`].
+//! Coefficients of the fluids, one file each. A further fluid is a further file and a line in [`PURE`], a further mixture one in [`MIXTURES`].
 mod air;
 mod argon;
 mod carbon_dioxide;
 mod helium;
 mod hydrogen;
+mod inert;
+mod mixture;
 mod nitrogen;
 mod oxygen;
 
-use super::transport::Transport;
+use std::sync::LazyLock;
 
-/// All fluids.
-pub(super) static ALL: &[&FluidData] = &[
+use super::transport::Transport;
+pub(super) use mixture::Mixture;
+
+/// Fluids with an equation of their own.
+static PURE: &[&FluidData] = &[
     &nitrogen::NITROGEN,
     &argon::ARGON,
     &air::AIR,
@@ -19,6 +24,15 @@ pub(super) static ALL: &[&FluidData] = &[
     &oxygen::OXYGEN,
     &carbon_dioxide::CARBON_DIOXIDE,
 ];
+
+/// Mixtures of them.
+static MIXTURES: &[&Mixture] = &[&inert::ARGON_NITROGEN, &inert::IG_541];
+
+/// All fluids.
+pub(super) static ALL: LazyLock<Vec<&'static FluidData>> = LazyLock::new(|| {
+    let mixtures = MIXTURES.iter().map(|mixture| &*Box::leak(Box::new(mixture.data())));
+    PURE.iter().copied().chain(mixtures).collect()
+});
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
 #[derive(Clone, Copy, Debug)]
@@ -130,7 +144,7 @@ pub(super) struct FluidData {
     pub reducing_temperature_k: f64,
     /// Reducing density, mol/m³.
     pub reducing_density_mol_m3: f64,
-    /// Critical temperature, K; above it there is one phase.
+    /// Critical temperature, K; above it there is one phase. A mixture's is that of its cubic equation.
     pub critical_temperature_k: f64,
     /// Critical pressure, Pa.
     pub critical_pressure_pa: f64,

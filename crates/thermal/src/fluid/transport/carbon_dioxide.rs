@@ -39,7 +39,7 @@ const ROOT_AVOGADRO: f64 = 84_446_887.435_799_45;
 
 /// `a_i`: dilute viscosity.
 const A: [f64; 7] = [
-    1_749.354_893_188_350,
+    1_749.354_893_188_35,
     -369.069_300_007_128,
     5_423_856.348_876_91,
     -2.212_838_521_683_56,
@@ -84,7 +84,7 @@ pub(super) const CRITICAL: OlchowySengers = OlchowySengers {
     cutoff_per_m: 1.0 / 4e-10,
     reference_temperature_k: 456.19,
     critical_pressure_pa: 7_377_300.0,
-    critical_density_kg_m3: 10_624.9063 * MOLAR_MASS_KG_MOL,
+    critical_density_kg_m3: 10_624.906_3 * MOLAR_MASS_KG_MOL,
 };
 
 /// Viscosity, Pa s.

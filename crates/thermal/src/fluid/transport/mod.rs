@@ -10,6 +10,7 @@
 //! | hydrogen (normal) | Muzny, Huber and Kazakov 2013 | Assael et al. 2011 |
 //! | carbon dioxide | Laesecke and Muzny 2017 | Huber et al. 2016 |
 //! | helium | Arp, McCarty and Friend 1998 | Hands and Arp 1981 |
+//! | mixtures | Wilke 1950 | Mason and Saxena 1958 |
 //!
 //! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
 //! CoolProp 8.0.0; each module names its range of validity and the deviations.
@@ -18,11 +19,13 @@ mod critical;
 mod helium;
 mod hydrogen;
 mod lemmon_jacobsen;
+mod mixture;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use critical::OlchowySengers;
 pub(crate) use lemmon_jacobsen::{LemmonJacobsenData, Term};
+pub(crate) use mixture::{MixtureComponent, MixtureTransport};
 
 use crate::fluid::Real;
 
@@ -52,6 +55,8 @@ pub(super) enum Transport {
     CarbonDioxide,
     /// Helium-4: Arp et al. 1998, Hands and Arp 1981.
     Helium,
+    /// From the components: Wilke 1950, Mason and Saxena 1958.
+    Mixture(&'static MixtureTransport),
 }
 
 impl Transport {
@@ -63,6 +68,7 @@ impl Transport {
             Transport::Hydrogen => hydrogen::viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::CarbonDioxide => carbon_dioxide::viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::Helium => helium::viscosity_pa_s(density_kg_m3, temperature_k),
+            Transport::Mixture(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
         }
     }
 
@@ -73,6 +79,7 @@ impl Transport {
             Transport::Hydrogen => hydrogen::conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::CarbonDioxide => carbon_dioxide::conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::Helium => helium::conductivity_w_m_k(density_kg_m3, temperature_k),
+            Transport::Mixture(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
         }
     }
 
@@ -95,6 +102,7 @@ impl Transport {
                 carbon_dioxide::CRITICAL.conductivity_w_m_k(state, viscosity, dp_drho_reference)
             }
             Transport::Helium => helium::critical::conductivity_w_m_k(state, viscosity),
+            Transport::Mixture(_) => D::from(0.0),
         }
     }
 
@@ -107,6 +115,7 @@ impl Transport {
             Transport::Hydrogen => Some(hydrogen::CRITICAL.reference_temperature_k),
             Transport::CarbonDioxide => Some(carbon_dioxide::CRITICAL.reference_temperature_k),
             Transport::Helium => None,
+            Transport::Mixture(_) => Some(0.0),
         }
     }
 }
