@@ -169,8 +169,8 @@ pub enum ThermalError {
     },
     /// A gas that condenses at room temperature is liquid or two-phase.
     #[error(
-        "{fluid} at {temperature_k:.2} K condenses at {:.1} bar absolute, in a cylinder at 15 degC at {:.1} bar, and cylwatch treats one phase only: \
-         stay below that pressure, or above that temperature",
+        "{fluid} at {temperature_k:.2} K is liquid or two-phase from {:.1} bar absolute on, in a cylinder at 15 degC from {:.1} bar on, and cylwatch \
+         treats one phase only: stay below that pressure or above that temperature",
         .saturation_pa / 1e5, .at_15_degc_pa / 1e5
     )]
     Condensed {

@@ -216,6 +216,7 @@ impl Multiparameter {
     }
 
     /// Terms that few equations have. Out of line, so that the others do not pay for them.
+    #[cold]
     #[inline(never)]
     fn special<D: Real>(&self, delta: D, tau: D) -> Reduced<D> {
         let mut sum = Reduced::zero();

@@ -42,13 +42,17 @@ pub(crate) struct MixtureTransport {
 const MOST: usize = 6;
 
 impl MixtureTransport {
-    /// Viscosity, Pa s.
+    /// Viscosity, Pa s. Out of line, as is the other: pure gases do not pay for it.
+    #[cold]
+    #[inline(never)]
     pub(super) fn viscosity_pa_s<D: Real>(&self, rho: D, t: D) -> D {
         let dilute = self.dilute_viscosity(t);
         self.mixed(rho, &dilute, &dilute, |component, rho| component.viscosity_pa_s(rho, t))
     }
 
     /// Thermal conductivity, W/(m K).
+    #[cold]
+    #[inline(never)]
     pub(super) fn conductivity_w_m_k<D: Real>(&self, rho: D, t: D) -> D {
         let mut dilute = [D::from(0.0); MOST];
         for (value, component) in dilute.iter_mut().zip(self.components) {
