@@ -62,6 +62,7 @@ pub(super) enum Transport {
 impl Transport {
     /// Viscosity, Pa s. The critical enhancement of the viscosity, below 1 % except within 1 % of the
     /// critical temperature, is left out, as in the sources.
+    #[inline]
     pub(crate) fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
@@ -73,6 +74,7 @@ impl Transport {
     }
 
     /// Thermal conductivity without the critical enhancement, W/(m K).
+    #[inline]
     pub(crate) fn background_conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
@@ -109,6 +111,7 @@ impl Transport {
     /// Temperature from which on the critical enhancement is zero, K, and at which its reference derivative
     /// is to be taken. `None`: there is no such derivative; the enhancement of helium, zero from 12 K on,
     /// ignores it.
+    #[inline]
     pub(crate) fn reference_temperature_k(&self) -> Option<f64> {
         match self {
             Transport::LemmonJacobsen(data) => Some(data.critical.reference_temperature_k),
