@@ -1,7 +1,7 @@
 //! Reduced Helmholtz energy `alpha = a / (R T)` of a fluid and its exact first and second derivatives.
 //!
 //! `alphar(delta, tau) = sum n delta^d tau^t exp(-delta^l) + sum n delta^d tau^t exp(-eta (delta-epsilon)^2 - beta (tau-gamma)^2)`
-//! with `delta = rho / rho_r`, `tau = T_r / T`; carbon dioxide adds terms about its critical point ([`NonanalyticTerm`]). Derivatives are carried in the scaled form
+//! with `delta = rho / rho_r`, `tau = T_r / T`; few equations have the terms of [`super::special`], too. Derivatives are carried in the scaled form
 //! `delta d/d(delta) = rho d/d(rho)`, `tau d/d(tau) = -T d/dT`, which does not depend on the reducing values,
 //! so that every equation of state speaks the same language ([`HelmholtzEnergy`]).
 //!
@@ -12,7 +12,8 @@
 use std::ops::Range;
 use std::sync::{LazyLock, OnceLock};
 
-use super::data::{ALL, DepartureTerm, FluidData, GaussianTerm, NonanalyticTerm, PowerTerm};
+use super::data::{ALL, FluidData, GaussianTerm, PowerTerm};
+use super::special::{departure, nonanalytic, power};
 use super::{Real, Saturation};
 
 /// `alpha` and its scaled derivatives. `d`: `rho d/d(rho)`, `t`: `-T d/dT` (in `tau`: `tau d/d(tau)`); second ones are
@@ -65,7 +66,7 @@ pub(super) trait HelmholtzEnergy {
 /// Largest exponent of `delta` in any term.
 const MAX_D: usize = 16;
 /// Below this exponent a Gaussian term is below 1e-26 and left out.
-const NEGLIGIBLE: f64 = -60.0;
+pub(super) const NEGLIGIBLE: f64 = -60.0;
 
 /// Most pairs of (`l`, `d`), distinct exponents of `tau` and Gaussian terms of any equation.
 const MAX_SLOTS: usize = 40;
@@ -336,77 +337,6 @@ fn powers<D: Real, const N: usize>(x: D, highest: usize) -> [D; N] {
         powers[i] = powers[i / 2] * powers[i - i / 2];
     }
     powers
-}
-
-/// Least distance of `delta` from 1 in a non-analytic term, whose powers have no derivative there.
-const SHIFT: f64 = 1e-10;
-
-/// A term about the critical point, from the logarithmic derivatives of `delta Delta^b Psi`.
-fn nonanalytic<D: Real>(term: &NonanalyticTerm, delta: D, tau: D) -> Reduced<D> {
-    let (mut u, v) = (delta - 1.0, tau - 1.0);
-    if u.re().abs() < SHIFT {
-        u += SHIFT - u.re();
-    }
-    let exponent = u * u * (-term.eta) - v * v * term.decay;
-    if exponent.re() < NEGLIGIBLE {
-        return Reduced::zero();
-    }
-    let (square, p) = (u * u, 0.5 / term.beta);
-    // theta and Delta with their derivatives in delta; those in tau are -1 and -2 theta, 2.
-    let bend = square.powf(p - 1.0) * (2.0 * p * term.amplitude);
-    let theta = square.powf(p) * term.amplitude - v;
-    let (theta_d, theta_dd) = (bend * u, bend * (2.0 * p - 1.0));
-    let wide = square.powf(term.a - 1.0) * (2.0 * term.a * term.width);
-    let distance = theta * theta + square.powf(term.a) * term.width;
-    let distance_d = theta * theta_d * 2.0 + wide * u;
-    let distance_dd = (theta_d * theta_d + theta * theta_dd) * 2.0 + wide * (2.0 * term.a - 1.0);
-    let (by_d, by_t) = (distance_d / distance, -theta * 2.0 / distance);
-    let x = delta * (by_d * term.b - u * (2.0 * term.eta)) + 1.0;
-    let y = tau * (by_t * term.b - v * (2.0 * term.decay));
-    let c = delta * distance.powf(term.b) * exponent.exp() * term.n;
-    let curved = (distance_dd / distance - by_d * by_d) * term.b - 2.0 * term.eta;
-    let mixed = (-theta_d * 2.0 / distance - by_d * by_t) * term.b;
-    let bent = (distance.recip() * 2.0 - by_t * by_t) * term.b - 2.0 * term.decay;
-    Reduced {
-        a: c,
-        d: c * x,
-        t: c * y,
-        dd: c * (x * x - 1.0 + delta * delta * curved),
-        dt: c * (x * y + delta * tau * mixed),
-        tt: c * (y * y + tau * tau * bent),
-    }
-}
-
-/// A power term by itself.
-fn power<D: Real>(term: &PowerTerm, delta: D, ln_tau: D) -> Reduced<D> {
-    let (d, l, t) = (f64::from(term.d), f64::from(term.l), term.t);
-    let decay = if term.l == 0 { D::from(0.0) } else { delta.powi(i32::from(term.l)) };
-    let c = delta.powi(i32::from(term.d)) * (ln_tau * t - decay).exp() * term.n;
-    let x = decay * (-l) + d;
-    Reduced {
-        a: c,
-        d: c * x,
-        t: c * t,
-        dd: c * (x * (x - 1.0) - decay * (l * l)),
-        dt: c * x * t,
-        tt: c * (t * (t - 1.0)),
-    }
-}
-
-/// A term of a departure function.
-fn departure<D: Real>(term: &DepartureTerm, delta: D, ln_tau: D) -> Reduced<D> {
-    let (u, d) = (delta - term.epsilon, f64::from(term.d));
-    let exponent = ln_tau * term.t - u * u * term.eta - (delta - term.gamma) * term.beta;
-    let c = delta.powi(i32::from(term.d)) * exponent.exp() * term.n;
-    let x = delta * (-(u * (2.0 * term.eta)) - term.beta) + d;
-    Reduced {
-        a: c,
-        d: c * x,
-        t: c * term.t,
-        dd: c * (x * x - delta * delta * (2.0 * term.eta) - d),
-        dt: c * x * term.t,
-        tt: c * (term.t * (term.t - 1.0)),
-    }
 }
 
 impl HelmholtzEnergy for Multiparameter {

@@ -16,6 +16,7 @@ mod peng_robinson;
 mod root;
 mod saturation;
 mod solve;
+mod special;
 mod state;
 #[cfg(test)]
 mod tests;
