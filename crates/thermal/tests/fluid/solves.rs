@@ -190,3 +190,20 @@ fn saturation_of_every_fluid_is_an_equilibrium() {
         }
     }
 }
+
+/// No spinodal above the bound of their dew points: the density of a pressure is unique.
+#[test]
+fn pressure_of_a_mixture_rises_with_density_in_its_whole_domain() {
+    for fluid in all().into_iter().filter(|fluid| ["argon-nitrogen", "ig-541"].contains(&fluid.name())) {
+        let domain = fluid.domain();
+        for k in 0..40 {
+            let t = domain.lowest_temperature_k
+                * (domain.highest_temperature_k / domain.lowest_temperature_k).powf(f64::from(k) / 39.0);
+            for step in 1..=400 {
+                let rho = domain.highest_density_kg_m3 * f64::from(step) / 400.0;
+                let slope = fluid.state(rho, t).dp_drho_pa_m3_kg;
+                assert!(slope > 0.0, "{} {:?}, {t} K, {rho} kg/m3: {slope}", fluid.name(), fluid.equation());
+            }
+        }
+    }
+}

@@ -14,7 +14,7 @@ pub(super) static ARGON_NITROGEN: Mixture = Mixture {
 
 /// IG-541: 52 % nitrogen, 40 % argon, 8 % carbon dioxide. Dry ice is the first to come out of it, at 205 K and 6 to 8 MPa, where the
 /// fugacity of carbon dioxide (CoolProp 8.0.0 with these parameters) reaches that of the solid (sublimation line of Span and Wagner
-/// 1996, 28.5 cm³/mol). At the triple temperature of carbon dioxide, 216.592 K, it has 0.56 of it; liquid needs as much.
+/// 1996, 28.5 cm³/mol). At the triple temperature of carbon dioxide, 216.592 K, it is at most 0.55 of that of the solid and 0.53 of that of the liquid.
 pub(super) static IG_541: Mixture = Mixture {
     name: "ig-541",
     also: &["ig541", "inergen"],
