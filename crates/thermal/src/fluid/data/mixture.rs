@@ -53,7 +53,7 @@ struct Binary {
     departure: &'static [D],
 }
 
-/// Kunz and Wagner (2012), tables A8 (parameters) and A7 (departure function of nitrogen and carbon dioxide).
+/// Kunz and Wagner (2012), appendix.
 static BINARIES: &[Binary] = &[
     Binary {
         pair: ["nitrogen", "argon"],
