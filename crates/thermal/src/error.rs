@@ -167,6 +167,22 @@ pub enum ThermalError {
         /// Density of the saturated liquid, kg/m³.
         liquid_kg_m3: f64,
     },
+    /// A gas that condenses at room temperature is liquid or two-phase.
+    #[error(
+        "{fluid} at {temperature_k:.2} K is liquid or two-phase from {:.1} bar absolute on, in a cylinder at 15 degC from {:.1} bar on, and cylwatch \
+         treats one phase only: stay below that pressure or above that temperature",
+        .saturation_pa / 1e5, .at_15_degc_pa / 1e5
+    )]
+    Condensed {
+        /// Fluid.
+        fluid: &'static str,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Saturation pressure, Pa.
+        saturation_pa: f64,
+        /// Saturation pressure at 15 °C, Pa.
+        at_15_degc_pa: f64,
+    },
     /// An enthalpy or entropy between vapour and liquid.
     #[error(
         "{fluid} at {pressure_pa} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled"

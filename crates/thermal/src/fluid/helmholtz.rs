@@ -1,7 +1,7 @@
 //! Reduced Helmholtz energy `alpha = a / (R T)` of a fluid and its exact first and second derivatives.
 //!
 //! `alphar(delta, tau) = sum n delta^d tau^t exp(-delta^l) + sum n delta^d tau^t exp(-eta (delta-epsilon)^2 - beta (tau-gamma)^2)`
-//! with `delta = rho / rho_r`, `tau = T_r / T`. Derivatives are carried in the scaled form
+//! with `delta = rho / rho_r`, `tau = T_r / T`; few equations have the terms of [`super::special`], too. Derivatives are carried in the scaled form
 //! `delta d/d(delta) = rho d/d(rho)`, `tau d/d(tau) = -T d/dT`, which does not depend on the reducing values,
 //! so that every equation of state speaks the same language ([`HelmholtzEnergy`]).
 //!
@@ -10,10 +10,11 @@
 //! negligible are skipped. At a given temperature the power terms collapse into polynomials in `delta` ([`Isotherm`]).
 //! Arrays have a fixed size: nothing is allocated.
 use std::ops::Range;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
-use super::Real;
 use super::data::{ALL, FluidData, GaussianTerm, PowerTerm};
+use super::special::{departure, nonanalytic, power};
+use super::{Real, Saturation};
 
 /// `alpha` and its scaled derivatives. `d`: `rho d/d(rho)`, `t`: `-T d/dT` (in `tau`: `tau d/d(tau)`); second ones are
 /// `delta^2 d2/d(delta)^2`, `delta tau d2/d(delta)d(tau)`, `tau^2 d2/d(tau)^2`.
@@ -39,6 +40,15 @@ impl<D: Real> Reduced<D> {
         let zero = D::from(0.0);
         Self { a: zero, d: zero, t: zero, dd: zero, dt: zero, tt: zero }
     }
+
+    fn add(&mut self, other: &Self) {
+        self.a += other.a;
+        self.d += other.d;
+        self.t += other.t;
+        self.dd += other.dd;
+        self.dt += other.dt;
+        self.tt += other.tt;
+    }
 }
 
 /// An equation of state: its residual reduced Helmholtz energy.
@@ -56,12 +66,15 @@ pub(super) trait HelmholtzEnergy {
 /// Largest exponent of `delta` in any term.
 const MAX_D: usize = 16;
 /// Below this exponent a Gaussian term is below 1e-26 and left out.
-const NEGLIGIBLE: f64 = -60.0;
+pub(super) const NEGLIGIBLE: f64 = -60.0;
 
 /// Most pairs of (`l`, `d`), distinct exponents of `tau` and Gaussian terms of any equation.
 const MAX_SLOTS: usize = 40;
 const MAX_TAU: usize = 32;
 const MAX_GAUSSIAN: usize = 16;
+
+/// Temperatures at which a saturation is kept.
+pub(super) const SATURATIONS: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
 struct Term {
@@ -103,6 +116,12 @@ pub(super) struct Multiparameter {
     highest_whole: usize,
     highest_d: usize,
     reducing_density_kg_m3: f64,
+    /// Power terms of a mixture for which the tables have no place.
+    overflow: Vec<PowerTerm>,
+    /// Neither terms about the critical point nor a departure function nor an overflow.
+    plain: bool,
+    /// Saturation at a few temperatures from the lowest to the highest that is resolved, found when one is asked for.
+    pub saturation: [OnceLock<Option<Saturation>>; SATURATIONS],
 }
 
 /// Prepared equations, in the order of the data.
@@ -113,17 +132,27 @@ impl Multiparameter {
     pub(super) fn new(data: &'static FluidData) -> Self {
         let mut exponents: Vec<f64> = Vec::new();
         let mut tau_index = |t: f64| {
-            exponents.iter().position(|&known| known == t).unwrap_or_else(|| {
-                exponents.push(t);
-                exponents.len() - 1
+            let known = exponents.iter().position(|&known| known == t);
+            known.or_else(|| {
+                (exponents.len() < MAX_TAU).then(|| exponents.push(t)).map(|()| exponents.len() - 1)
             })
         };
+        assert!(data.gaussian.len() <= MAX_GAUSSIAN, "{}: too many Gaussian terms", data.name);
+        let powers =
+            |&term: &GaussianTerm| (term, tau_index(term.t).expect("more powers than Gaussian terms"));
+        let gaussian: Vec<_> = data.gaussian.iter().map(powers).collect();
         let mut sorted: Vec<PowerTerm> = data.power.to_vec();
         sorted.sort_by_key(|term| (term.l, term.d));
         let (mut groups, mut slots, mut terms): (Vec<Group>, Vec<Slot>, Vec<Term>) = Default::default();
-        for &PowerTerm { n, d, t, l } in &sorted {
-            let (l, d, i) = (usize::from(l), usize::from(d), terms.len());
-            terms.push(Term { n, t, tau: tau_index(t) });
+        let mut overflow = Vec::new();
+        for &term in &sorted {
+            let PowerTerm { n, t, .. } = term;
+            let (l, d, i) = (usize::from(term.l), usize::from(term.d), terms.len());
+            let Some(tau) = tau_index(t).filter(|_| slots.len() < MAX_SLOTS) else {
+                overflow.push(term);
+                continue;
+            };
+            terms.push(Term { n, t, tau });
             match groups.last_mut() {
                 Some(group) if group.l == l => match slots.last_mut() {
                     Some(slot) if slot.d == d => slot.terms.end = i + 1,
@@ -138,7 +167,6 @@ impl Multiparameter {
                 }
             }
         }
-        let gaussian: Vec<_> = data.gaussian.iter().map(|&term| (term, tau_index(term.t))).collect();
         let in_table = |t: f64| (8.0 * t).fract() == 0.0 && (0.0..=32.0).contains(&t);
         let product = |&t: &f64| if in_table(t) { (t as usize, (8.0 * t) as usize % 8) } else { (0, 0) };
         let tau: Vec<(usize, usize)> = exponents.iter().map(product).collect();
@@ -152,6 +180,9 @@ impl Multiparameter {
                 .max()
                 .map_or(0, usize::from),
             reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
+            saturation: [const { OnceLock::new() }; SATURATIONS],
+            plain: data.nonanalytic.is_empty() && data.departure.is_empty() && overflow.is_empty(),
+            overflow,
             groups,
             terms,
             slots,
@@ -185,6 +216,26 @@ impl Multiparameter {
         found
     }
 
+    /// Terms that few equations have. Out of line, so that the others do not pay for them.
+    #[cold]
+    #[inline(never)]
+    fn special<D: Real>(&self, delta: D, tau: D) -> Reduced<D> {
+        let mut sum = Reduced::zero();
+        for term in self.data.nonanalytic {
+            sum.add(&nonanalytic(term, delta, tau));
+        }
+        if !(self.data.departure.is_empty() && self.overflow.is_empty()) {
+            let ln_tau = tau.ln();
+            for term in self.data.departure {
+                sum.add(&departure(term, delta, ln_tau));
+            }
+            for term in &self.overflow {
+                sum.add(&power(term, delta, ln_tau));
+            }
+        }
+        sum
+    }
+
     /// Collapse the power terms at a temperature.
     #[inline]
     pub(crate) fn isotherm(&self, temperature_k: f64) -> Isotherm<'_> {
@@ -198,7 +249,7 @@ impl Multiparameter {
         for (i, factor) in gaussian.iter_mut().enumerate().take(self.gaussian.len()) {
             *factor = self.gaussian_factor(i, tau, &powers);
         }
-        Isotherm { equation: self, coefficients, gaussian }
+        Isotherm { equation: self, tau, coefficients, gaussian }
     }
 
     /// Sum of `n tau^t` of a slot.
@@ -226,6 +277,7 @@ impl Multiparameter {
     fn slopes(
         &self,
         density_kg_m3: f64,
+        tau: f64,
         coefficient: impl Fn(usize) -> f64,
         gaussian: impl Fn(usize) -> f64,
     ) -> (f64, f64) {
@@ -266,6 +318,11 @@ impl Multiparameter {
             let x = d - 2.0 * g.eta * delta * u;
             first += c * x;
             second += c * (x * x - 2.0 * g.eta * delta * delta - d);
+        }
+        if !self.plain {
+            let part = self.special(delta, tau);
+            first += part.d;
+            second += part.dd;
         }
         (first, second)
     }
@@ -346,6 +403,9 @@ impl HelmholtzEnergy for Multiparameter {
             sum.dt += c * x * y;
             sum.tt += c * (y * y - tau * tau * (2.0 * g.beta) - g.t);
         }
+        if !self.plain {
+            sum.add(&self.special(delta, tau));
+        }
         sum
     }
 
@@ -356,6 +416,7 @@ impl HelmholtzEnergy for Multiparameter {
         let powers = self.tau_powers(tau);
         self.slopes(
             density_kg_m3,
+            tau,
             |i| self.collapsed(&self.slots[i], &powers),
             |i| self.gaussian_factor(i, tau, &powers),
         )
@@ -365,6 +426,7 @@ impl HelmholtzEnergy for Multiparameter {
 /// The equation at one temperature: polynomials in density times exponentials.
 pub(super) struct Isotherm<'a> {
     equation: &'a Multiparameter,
+    tau: f64,
     /// Coefficient of each pair of `l` and `d`.
     coefficients: [f64; MAX_SLOTS],
     /// Factor of each Gaussian term; zero for those left out.
@@ -375,7 +437,7 @@ impl Isotherm<'_> {
     /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`.
     #[inline]
     pub(crate) fn slopes(&self, density_kg_m3: f64) -> (f64, f64) {
-        self.equation.slopes(density_kg_m3, |i| self.coefficients[i], |i| self.gaussian[i])
+        self.equation.slopes(density_kg_m3, self.tau, |i| self.coefficients[i], |i| self.gaussian[i])
     }
 }
 

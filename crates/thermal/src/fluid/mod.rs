@@ -16,6 +16,7 @@ mod peng_robinson;
 mod root;
 mod saturation;
 mod solve;
+mod special;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -106,10 +107,12 @@ impl Fluid {
         let wanted = name.to_ascii_lowercase();
         let index = data::ALL.iter().position(|data| data.name == wanted);
         let Some(index) = index else {
+            let meant = data::ALL.iter().find(|data| data.also.contains(&wanted.as_str()));
             #[cfg(feature = "files")]
             let nearest = crate::document::suggestion(&wanted, Self::names());
             #[cfg(not(feature = "files"))]
             let nearest = String::new();
+            let nearest = meant.map_or(nearest, |data| format!(", did you mean {}?", data.name));
             return Err(ThermalError::UnknownFluid {
                 name: name.to_owned(),
                 nearest,

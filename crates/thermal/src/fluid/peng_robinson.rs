@@ -20,17 +20,59 @@ pub(super) struct PengRobinson {
     strength_k: f64,
 }
 
+/// `b p_c / (R T_c)` and `a_c p_c / (R T_c)^2` of the equation.
+const COVOLUME: f64 = 0.077_796_073_903_888_46;
+const STRENGTH: f64 = 0.457_235_528_921_382_2;
+/// `kappa = K[0] + K[1] omega + K[2] omega^2`.
+const K: [f64; 3] = [0.374_64, 1.542_26, -0.269_92];
+
+fn kappa(acentric_factor: f64) -> f64 {
+    K[0] + (K[1] + K[2] * acentric_factor) * acentric_factor
+}
+
+/// Critical point and acentric factor of the fluid that has the equation of a mixture.
+pub(super) struct Equivalent {
+    /// Critical temperature, K.
+    pub temperature_k: f64,
+    /// Critical pressure, Pa.
+    pub pressure_pa: f64,
+    /// Acentric factor.
+    pub acentric_factor: f64,
+}
+
+/// Of a mixture by the van der Waals rules `b = sum x_i b_i`, `sqrt a = sum x_i sqrt a_i` (`k_ij = 0`): `sqrt a` is linear in `sqrt T` for each
+/// component and so for the mixture, which is the form of a pure fluid.
+pub(super) fn equivalent(components: &[(&FluidData, f64)], gas_constant_j_mol_k: f64) -> Equivalent {
+    let r = gas_constant_j_mol_k;
+    // sqrt a = constant - slope sqrt T
+    let (mut covolume, mut constant, mut slope) = (0.0, 0.0, 0.0);
+    for (data, x) in components {
+        let (t, p) = (data.critical_temperature_k, data.critical_pressure_pa);
+        let (root, kappa) = (STRENGTH.sqrt() * r * t / p.sqrt(), kappa(data.acentric_factor));
+        covolume += x * COVOLUME * r * t / p;
+        constant += x * root * (1.0 + kappa);
+        slope += x * root * kappa / t.sqrt();
+    }
+    // At the critical temperature a_c = STRENGTH / COVOLUME b R T_c.
+    let root_t = constant / (slope + (STRENGTH / COVOLUME * covolume * r).sqrt());
+    let kappa = slope * root_t / (constant - slope * root_t);
+    Equivalent {
+        temperature_k: root_t * root_t,
+        pressure_pa: COVOLUME * r * root_t * root_t / covolume,
+        acentric_factor: (-K[1] + (K[1] * K[1] - 4.0 * K[2] * (K[0] - kappa)).sqrt()) / (2.0 * K[2]),
+    }
+}
+
 impl PengRobinson {
     /// From critical point and acentric factor.
     pub(super) fn new(data: &FluidData) -> Self {
-        let w = data.acentric_factor;
-        let b = 0.077_796_073_903_888_46 * data.gas_constant_j_mol_k * data.critical_temperature_k
-            / data.critical_pressure_pa;
+        let b =
+            COVOLUME * data.gas_constant_j_mol_k * data.critical_temperature_k / data.critical_pressure_pa;
         Self {
             critical_temperature_k: data.critical_temperature_k,
-            kappa: 0.374_64 + 1.542_26 * w - 0.269_92 * w * w,
+            kappa: kappa(data.acentric_factor),
             covolume_m3_kg: b / data.molar_mass_kg_mol,
-            strength_k: 0.457_235_528_921_382_2 / 0.077_796_073_903_888_46 * data.critical_temperature_k,
+            strength_k: STRENGTH / COVOLUME * data.critical_temperature_k,
         }
     }
 

@@ -5,6 +5,7 @@
 //! unphysical loops of multiparameter equations in between do no harm. The saturation pressure is where the Gibbs
 //! energies of the branches agree; their slopes in pressure are the volumes, so that Newton's method finds it, inside a
 //! bracket. No ancillary equation is needed.
+use super::helmholtz::SATURATIONS;
 use super::root::bracketed_newton;
 use super::{Description, Fluid};
 use crate::ThermalError;
@@ -22,6 +23,8 @@ pub struct Saturation {
 
 /// Relative distance below the critical temperature within which phases are not told apart.
 pub(super) const CRITICAL_MARGIN: f64 = 0.005;
+/// Temperature at which cylinders are filled, 15 °C, K.
+const FILLING_TEMPERATURE_K: f64 = 288.15;
 /// Steps of the scans for the spinodals.
 const SCAN: usize = 400;
 
@@ -37,7 +40,7 @@ impl Fluid {
         }
         self.check_temperature(temperature_k)?;
         let undecided = || ThermalError::NearCritical { fluid: self.name(), temperature_k, critical_k };
-        if temperature_k > critical_k * (1.0 - CRITICAL_MARGIN) {
+        if temperature_k > self.edge_k() {
             return Err(undecided());
         }
         let densest = self.domain().highest_density_kg_m3;
@@ -70,7 +73,49 @@ impl Fluid {
         Ok(Some(Saturation { pressure_pa, vapour_kg_m3, liquid_kg_m3 }))
     }
 
-    /// Refuse a two-phase state.
+    /// Equilibrium at a temperature, within the margin below the critical one that at its edge. From there to the
+    /// critical temperature gas that is thinner than the vapour or below the pressure at the edge is gas.
+    pub(super) fn saturation_or_edge(&self, temperature_k: f64) -> Result<Option<Saturation>, ThermalError> {
+        self.saturation(temperature_k.min(self.edge_k()))
+    }
+
+    /// Saturation at a temperature not above, from the few that are kept; `None` where there is none. Pressure and density
+    /// of the vapour rise along the saturation line: what is below these is gas. A saturation of its own would cost
+    /// thousands of evaluations.
+    pub(super) fn saturation_not_above(&self, temperature_k: f64) -> Option<Saturation> {
+        let Description::Reference(equation) = &self.description else { return None };
+        let (low, high) = (self.data.lowest_temperature_k, self.edge_k());
+        let last = SATURATIONS - 1;
+        let position = (temperature_k - low) / (high - low) * last as f64;
+        if position.is_nan() || position < 0.0 {
+            return None;
+        }
+        let index = (position as usize).min(last);
+        let at_k = low + (high - low) * index as f64 / last as f64;
+        let found = equation.saturation[index].get_or_init(|| self.saturation(at_k.min(high)).ok().flatten());
+        found.filter(|_| at_k <= temperature_k)
+    }
+
+    /// Highest temperature below the critical one at which phases are told apart, K.
+    pub(super) fn edge_k(&self) -> f64 {
+        self.data.critical_temperature_k * (1.0 - CRITICAL_MARGIN)
+    }
+
+    /// Whether it condenses under pressure at 15 °C: a liquid of it is a mistake in the fill, not a cryogenic state.
+    pub(super) fn liquefies(&self) -> bool {
+        self.edge_k() > FILLING_TEMPERATURE_K
+    }
+
+    /// The refusal of a condensed state of such a gas.
+    pub(super) fn condensed(&self, temperature_k: f64, saturation_pa: f64) -> ThermalError {
+        let at_15_degc_pa = match self.saturation(FILLING_TEMPERATURE_K) {
+            Ok(Some(saturation)) => saturation.pressure_pa,
+            _ => f64::NAN,
+        };
+        ThermalError::Condensed { fluid: self.name(), temperature_k, saturation_pa, at_15_degc_pa }
+    }
+
+    /// Refuse a two-phase state, and a liquid one of a gas that condenses at 15 °C.
     pub(super) fn check_phase(&self, density_kg_m3: f64, temperature_k: f64) -> Result<(), ThermalError> {
         let critical_k = self.data.critical_temperature_k;
         if temperature_k >= critical_k {
@@ -81,9 +126,19 @@ impl Fluid {
         if temperature_k > 0.95 * critical_k && density_kg_m3 < 0.1 * critical_density {
             return Ok(());
         }
-        let Some(saturation) = self.saturation(temperature_k)? else { return Ok(()) };
-        if density_kg_m3 <= saturation.vapour_kg_m3 || density_kg_m3 >= saturation.liquid_kg_m3 {
+        if self.saturation_not_above(temperature_k).is_some_and(|known| density_kg_m3 <= known.vapour_kg_m3) {
             return Ok(());
+        }
+        let Some(saturation) = self.saturation_or_edge(temperature_k)? else { return Ok(()) };
+        let liquid = density_kg_m3 >= saturation.liquid_kg_m3;
+        if density_kg_m3 <= saturation.vapour_kg_m3 || liquid && !self.liquefies() {
+            return Ok(());
+        }
+        if temperature_k > self.edge_k() {
+            return Err(ThermalError::NearCritical { fluid: self.name(), temperature_k, critical_k });
+        }
+        if self.liquefies() {
+            return Err(self.condensed(temperature_k, saturation.pressure_pa));
         }
         Err(ThermalError::TwoPhase {
             fluid: self.name(),

@@ -10,7 +10,7 @@ use super::{Description, Fluid, Real, State};
 use crate::ThermalError;
 
 /// Up to this part of the critical pressure a gas above 0.8 critical temperatures is not near its saturation line.
-const DILUTE_REDUCED_PRESSURE: f64 = 0.2;
+const DILUTE_REDUCED_PRESSURE: f64 = 0.15;
 
 impl Fluid {
     /// Density, kg/m³, at a pressure, Pa, and temperature, K.
@@ -37,19 +37,10 @@ impl Fluid {
             || temperature_k < 0.8 * critical_k
         {
             // Near and above saturation the branch must be known.
-            let Some(saturation) = self.saturation(temperature_k)? else {
-                return Err(ThermalError::NearCritical { fluid: self.name(), temperature_k, critical_k });
-            };
-            let distance = pressure_pa / saturation.pressure_pa - 1.0;
-            if distance.abs() < 1e-9 {
-                return Err(ThermalError::OnSaturation {
-                    fluid: self.name(),
-                    pressure_pa,
-                    temperature_k,
-                    saturation_pa: saturation.pressure_pa,
-                });
+            match self.saturation_not_above(temperature_k) {
+                Some(known) if pressure_pa < known.pressure_pa => high = known.vapour_kg_m3,
+                _ => (low, high) = self.branch(pressure_pa, temperature_k, densest)?,
             }
-            if distance < 0.0 { high = saturation.vapour_kg_m3 } else { low = saturation.liquid_kg_m3 }
         } else if temperature_k < critical_k {
             // Thin gas below the critical temperature: stay on the vapour branch.
             high = 0.5 * self.data.reducing_density_mol_m3 * self.data.molar_mass_kg_mol;
@@ -64,6 +55,35 @@ impl Fluid {
             Some(rho) if rho < densest * (1.0 - 1e-9) => Ok(rho),
             _ => self.dense_enough(f64::INFINITY, pressure_pa),
         }
+    }
+
+    /// Densities between which the phase of a pressure and temperature below the critical one lies.
+    fn branch(&self, pressure_pa: f64, temperature_k: f64, densest: f64) -> Result<(f64, f64), ThermalError> {
+        let near_critical = || ThermalError::NearCritical {
+            fluid: self.name(),
+            temperature_k,
+            critical_k: self.data.critical_temperature_k,
+        };
+        let saturation = self.saturation_or_edge(temperature_k)?.ok_or_else(near_critical)?;
+        let distance = pressure_pa / saturation.pressure_pa - 1.0;
+        if distance <= -1e-9 {
+            return Ok((0.0, saturation.vapour_kg_m3));
+        }
+        if temperature_k > self.edge_k() {
+            return Err(near_critical());
+        }
+        if self.liquefies() {
+            return Err(self.condensed(temperature_k, saturation.pressure_pa));
+        }
+        if distance < 1e-9 {
+            return Err(ThermalError::OnSaturation {
+                fluid: self.name(),
+                pressure_pa,
+                temperature_k,
+                saturation_pa: saturation.pressure_pa,
+            });
+        }
+        Ok((saturation.liquid_kg_m3, densest))
     }
 
     /// Pressure, Pa, and its slope in density as functions of the density, the equation prepared for the temperature.
@@ -115,32 +135,28 @@ impl Fluid {
             (state.internal_energy_j_kg - energy_j_kg, state.cv_j_kg_k)
         };
         let start = guess_k.filter(|guess| guess.is_finite()).unwrap_or(300.0);
-        match bracketed_newton(low, high, start, energy) {
-            Some(t) if t > low * 1.000_001 && t < high * 0.999_999 => {
-                Ok(self.warmest_root(density_kg_m3, t, energy).unwrap_or(t))
+        let inside = |t: &f64| *t > low * 1.000_001 && *t < high * 0.999_999;
+        match bracketed_newton(low, high, start, energy).filter(inside) {
+            Some(t)
+                if t >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, t).is_ok() =>
+            {
+                Ok(t)
             }
-            _ => Err(none),
+            Some(t) => Ok(self.warmest_root(t, energy).unwrap_or(t)),
+            None => self.warmest_root(low, energy).filter(inside).ok_or(none),
         }
     }
 
-    /// Between the phases the energy along an isochore need not increase, and a root there may have a warmer one above
-    /// it that is single-phase: the warmest one, if there is any.
-    fn warmest_root(
-        &self,
-        density_kg_m3: f64,
-        found_k: f64,
-        energy: impl Fn(f64) -> (f64, f64),
-    ) -> Option<f64> {
+    /// Between the phases the energy along an isochore need not increase, so that none is found or one that has a warmer
+    /// one above it that is single-phase: the warmest one, if there is any.
+    fn warmest_root(&self, above_k: f64, energy: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         const STEPS: i32 = 80;
         let top_k = self.data.critical_temperature_k * 1.01;
-        if found_k >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, found_k).is_ok() {
-            return None;
-        }
         if energy(top_k).0 <= 0.0 {
             return bracketed_newton(top_k, 2.0 * self.data.highest_temperature_k, 1.5 * top_k, energy);
         }
-        let at = |k: i32| found_k + (top_k - found_k) * f64::from(k) / f64::from(STEPS);
-        let below = (1..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
+        let at = |k: i32| above_k + (top_k - above_k) * f64::from(k) / f64::from(STEPS);
+        let below = (0..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
         bracketed_newton(at(below), at(below + 1), at(below + 1), energy)
     }
 
@@ -262,15 +278,22 @@ impl Fluid {
         };
         let pressure_at =
             |t: f64| Ok::<f64, ThermalError>(self.saturation(t)?.map_or(0.0, |s| s.pressure_pa));
-        // Up to where the phase is told apart; thin gas is never in doubt.
-        let end = |density: Result<f64, ThermalError>| match density {
-            _ if pressure_pa <= DILUTE_REDUCED_PRESSURE * self.data.critical_pressure_pa => Ok(critical_k),
-            Ok(density) if value(&self.state(density, highest_k)).0 < target => Err(near_critical()),
-            _ => Ok(highest_k),
-        };
         let (mut low, mut high) = (lowest_k, highest_k);
-        if pressure_at(high)? < pressure_pa || pressure_at(low)? > pressure_pa {
-            return Ok((lowest_k, end(self.density_from_pressure_temperature(pressure_pa, highest_k))?));
+        if pressure_at(high)? < pressure_pa {
+            if self.liquefies() {
+                return Err(self.condensed(highest_k, pressure_at(highest_k)?));
+            }
+            // Up to where the phase is told apart; thin gas is never in doubt.
+            return match self.density_from_pressure_temperature(pressure_pa, highest_k) {
+                _ if pressure_pa <= DILUTE_REDUCED_PRESSURE * self.data.critical_pressure_pa => {
+                    Ok((lowest_k, critical_k))
+                }
+                Ok(density) if value(&self.state(density, highest_k)).0 < target => Err(near_critical()),
+                _ => Ok((lowest_k, highest_k)),
+            };
+        }
+        if pressure_at(low)? > pressure_pa {
+            return Ok((lowest_k, critical_k));
         }
         for _ in 0..45 {
             let middle = 0.5 * (low + high);
@@ -281,8 +304,10 @@ impl Fluid {
         let vapour = value(&self.state(saturation.vapour_kg_m3, saturation_k)).0;
         let liquid = value(&self.state(saturation.liquid_kg_m3, saturation_k)).0;
         if target >= vapour {
-            let end = end(self.density_from_pressure_temperature(pressure_pa, highest_k))?;
-            return Ok(((saturation_k * (1.0 + 1e-9)).min(end), end));
+            return Ok((saturation_k * (1.0 + 1e-9), critical_k));
+        }
+        if self.liquefies() {
+            return Err(self.condensed(saturation_k, pressure_pa));
         }
         if target <= liquid {
             return Ok((lowest_k, saturation_k * (1.0 - 1e-9)));

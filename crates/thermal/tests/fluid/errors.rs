@@ -1,9 +1,9 @@
 //! Inputs outside the domain: the right error, with value, bound and remedy in its words; never a panic or a wild state.
 use cylwatch_thermal::ThermalError;
-use cylwatch_thermal::fluid::{Equation, Fluid, State};
+use cylwatch_thermal::fluid::{Fluid, State};
 use proptest::prelude::*;
 
-use crate::support::{EQUATIONS, all};
+use crate::support::{EQUATIONS, all, condenses, liquefies};
 
 fn nitrogen() -> Fluid {
     Fluid::named("nitrogen").unwrap()
@@ -25,6 +25,21 @@ fn unknown_fluid_names_the_nearest() {
         let error = Fluid::named(wrong).unwrap_err();
         assert!(matches!(error, ThermalError::UnknownFluid { .. }), "{error:?}");
         says(&error, &[wrong, &format!("did you mean {nearest}?"), "nitrogen, argon, air, hydrogen, helium"]);
+    }
+}
+
+#[test]
+fn formulas_and_trade_names_are_answered_with_the_name() {
+    for (wrong, name) in [
+        ("co2", "carbon-dioxide"),
+        ("CO2", "carbon-dioxide"),
+        ("n2", "nitrogen"),
+        ("IG-100", "nitrogen"),
+        ("inergen", "ig-541"),
+        ("ig-55", "argon-nitrogen"),
+    ] {
+        let error = Fluid::named(wrong).unwrap_err();
+        says(&error, &[wrong, &format!("did you mean {name}?")]);
     }
 }
 
@@ -105,22 +120,28 @@ fn too_high_a_pressure_for_the_cold_says_what_to_do() {
 
 #[test]
 fn two_phases_by_density_and_temperature_are_refused() {
-    for fluid in all().into_iter().filter(|fluid| fluid.equation() != Equation::IdealGas) {
+    for fluid in all().into_iter().filter(condenses) {
         let t = 0.9 * fluid.domain().critical_temperature_k;
         let saturation = fluid.saturation(t).unwrap().unwrap();
         let rho = 0.5 * (saturation.vapour_kg_m3 + saturation.liquid_kg_m3);
         let error = fluid.checked_state(rho, t).unwrap_err();
+        assert!(fluid.checked_state(0.999 * saturation.vapour_kg_m3, t).is_ok());
+        if liquefies(&fluid) {
+            assert!(matches!(error, ThermalError::Condensed { .. }), "{error:?}");
+            let liquid = fluid.checked_state(1.001 * saturation.liquid_kg_m3, t).unwrap_err();
+            assert_eq!(liquid.to_string(), error.to_string());
+            continue;
+        }
         assert!(matches!(error, ThermalError::TwoPhase { .. }), "{error:?}");
         let vapour = format!("vapour up to {:.3}", saturation.vapour_kg_m3);
         says(&error, &[fluid.name(), &vapour, "only single-phase gas is modelled"]);
-        assert!(fluid.checked_state(0.999 * saturation.vapour_kg_m3, t).is_ok());
         assert!(fluid.checked_state(1.001 * saturation.liquid_kg_m3, t).is_ok());
     }
 }
 
 #[test]
 fn two_phases_on_an_isobar_are_refused() {
-    for fluid in all().into_iter().filter(|fluid| fluid.equation() != Equation::IdealGas) {
+    for fluid in all().into_iter().filter(condenses) {
         let t = 0.9 * fluid.domain().critical_temperature_k;
         let found = fluid.saturation(t).unwrap().unwrap();
         let (vapour, liquid) = (fluid.state(found.vapour_kg_m3, t), fluid.state(found.liquid_kg_m3, t));
@@ -133,8 +154,52 @@ fn two_phases_on_an_isobar_are_refused() {
                 .state_from_pressure_entropy(p, 0.5 * (vapour.entropy_j_kg_k + liquid.entropy_j_kg_k))
                 .unwrap_err(),
         ] {
+            if liquefies(&fluid) {
+                assert!(matches!(error, ThermalError::Condensed { .. }), "{error:?}");
+                continue;
+            }
             assert!(matches!(error, ThermalError::TwoPhaseIsobar { .. }), "{error:?}");
             says(&error, &[fluid.name(), &p.to_string(), "boiling temperature", "only single-phase states"]);
+        }
+    }
+}
+
+/// The saturation pressure is 50.871 bar at 15 °C and 19.696 bar at -20 °C (CoolProp 8.0.0).
+#[test]
+fn liquid_carbon_dioxide_in_a_cylinder_is_refused_with_the_pressure_that_condenses_it() {
+    let fluid = Fluid::named("carbon-dioxide").unwrap();
+    assert!(fluid.density_from_pressure_temperature(50.8e5, 288.15).is_ok());
+    for p in [50.9e5, 60e5, 200e5] {
+        let error = fluid.density_from_pressure_temperature(p, 288.15).unwrap_err();
+        assert!(matches!(error, ThermalError::Condensed { .. }), "{error:?}");
+        says(
+            &error,
+            &[
+                "carbon-dioxide",
+                "liquid or two-phase",
+                "at 15 degC from 50.9 bar on",
+                "cylwatch treats one phase only",
+            ],
+        );
+    }
+    let cold = fluid.check(70.0, 253.15).unwrap_err();
+    says(&cold, &["253.15 K", "from 19.7 bar absolute on", "at 15 degC from 50.9 bar on"]);
+    // From its critical temperature on it is one phase at any pressure, and thin gas is gas all the way to it.
+    assert!(fluid.density_from_pressure_temperature(150e5, 305.0).is_ok());
+    assert!(fluid.density_from_pressure_temperature(60e5, 303.5).is_ok());
+}
+
+/// Below their bound mixtures may condense or freeze: one refusal, whatever the pressure and the equation.
+#[test]
+fn mixtures_are_refused_below_the_bound_of_their_dew_points() {
+    for (name, lowest) in [("argon-nitrogen", "150.687"), ("ig-541", "216.592")] {
+        for equation in EQUATIONS {
+            let fluid = Fluid::named(name).unwrap().with_equation(equation);
+            for p in [1e5, 5e6, 3e7] {
+                let error = fluid.density_from_pressure_temperature(p, 150.0).unwrap_err();
+                says(&error, &["150 K", name, lowest, "must lie between"]);
+                assert!(fluid.density_from_pressure_temperature(p, 220.0).is_ok(), "{name} {equation:?} {p}");
+            }
         }
     }
 }
@@ -169,6 +234,10 @@ fn energies_that_no_state_has_are_refused() {
             assert!(matches!(error, ThermalError::NoTemperature { .. }), "{error:?}");
             says(&error, &[fluid.name(), "10 kg/m3", &energy.to_string()]);
             let error = fluid.state_from_pressure_enthalpy(1e6, energy).unwrap_err();
+            if liquefies(&fluid) && energy < 0.0 {
+                assert!(matches!(error, ThermalError::Condensed { .. }), "{error:?}");
+                continue;
+            }
             assert!(matches!(error, ThermalError::NoState { .. }), "{error:?}");
             says(&error, &[fluid.name(), "1000000 Pa", "enthalpy", &energy.to_string()]);
         }
@@ -208,7 +277,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_number_makes_a_panic_or_a_wild_state(name in 0_usize..5, equation in 0_usize..3, a in any_number(), b in any_number(), guess in any_number()) {
+    fn no_number_makes_a_panic_or_a_wild_state(name in 0..Fluid::names().len(), equation in 0_usize..3, a in any_number(), b in any_number(), guess in any_number()) {
         let fluid = Fluid::named(Fluid::names().nth(name).unwrap()).unwrap().with_equation(EQUATIONS[equation]);
         let what = format!("{} {:?} {a} {b}", fluid.name(), fluid.equation());
         // Unchecked functions promise no value, only an end.

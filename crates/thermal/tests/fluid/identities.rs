@@ -260,7 +260,8 @@ fn thin_gas_is_ideal() {
     for fluid in all() {
         let ideal = fluid.clone().with_equation(Equation::IdealGas);
         let r = fluid.specific_gas_constant_j_kg_k();
-        for t in [80.0, 200.0, 290.0, 650.0] {
+        let lowest_k = fluid.domain().lowest_temperature_k;
+        for t in [80.0, 200.0, 290.0, 650.0].into_iter().filter(|&t| t >= lowest_k) {
             // Second virial coefficients are below 0.02 m3/kg here: 1e-8 kg/m3 leaves less than 1e-9.
             let (thin, expected) = (fluid.state(1e-8, t), ideal.state(1e-8, t));
             let close = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-8 * size;

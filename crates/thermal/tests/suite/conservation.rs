@@ -3,7 +3,7 @@ use cylwatch_thermal::fluid::Fluid;
 use cylwatch_thermal::scenario;
 use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
-use cylwatch_thermal::vessel::{self, GasResolution, Stratification, Vessel};
+use cylwatch_thermal::vessel::{self, Fill, GasResolution, Stratification, Vessel};
 use cylwatch_thermal::wall::geometry::Orientation;
 
 fn run(vessel: &Vessel, scenario: &str, tolerance: f64, method: Method) -> Trajectory {
@@ -69,6 +69,11 @@ fn ledger_closes_for_every_gas() {
     for name in Fluid::names() {
         let mut vessel = vessel::presets::load("nitrogen-20l").unwrap();
         vessel.fluid = Fluid::named(name).unwrap();
-        assert_closed(name, &run(&vessel, "leak-after-tunnel", 1e-6, Method::Bdf), 1e-9);
+        let mut scenario = scenario::presets::load("leak-after-tunnel").unwrap();
+        if name == "carbon-dioxide" {
+            // It condenses at 26.5 bar and -10 degC.
+            scenario.initial.fill = Fill::Settled { pressure_pa: 20e5, temperature_k: 288.15 };
+        }
+        assert_closed(name, &simulate(&vessel, &scenario, &Default::default(), &mut |_| {}).unwrap(), 1e-9);
     }
 }

@@ -11,6 +11,7 @@ use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Tra
 /// Dry air.
 pub(super) static AIR: FluidData = FluidData {
     name: "air",
+    also: &[],
     reference: "Lemmon et al., J. Phys. Chem. Ref. Data 29 (2000) 331",
     gas_constant_j_mol_k: 8.31451,
     molar_mass_kg_mol: 0.02896546,
@@ -47,6 +48,8 @@ pub(super) static AIR: FluidData = FluidData {
         P { n: -0.00938782884667, d: 3, t: 15.0, l: 3 },
     ],
     gaussian: &[],
+    nonanalytic: &[],
+    departure: &[],
     ideal_constant: 10.3753039487406,
     ideal_tau: 3.31112445645577,
     ideal_ln_tau: 2.490888032,
@@ -86,6 +89,8 @@ pub(super) static AIR: FluidData = FluidData {
         critical: OlchowySengers {
             xi_0_m: 1.1e-10,
             amplitude: 0.055,
+            strength: 1.01,
+            gamma: 1.2415,
             cutoff_per_m: 1.0 / 0.310000000001e-9,
             reference_temperature_k: 265.262,
             critical_pressure_pa: 3785020.0,

@@ -11,6 +11,7 @@ use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Tra
 /// Argon.
 pub(super) static ARGON: FluidData = FluidData {
     name: "argon",
+    also: &["ar", "ig-01"],
     reference: "Tegeler, Span, Wagner, J. Phys. Chem. Ref. Data 28 (1999) 779",
     gas_constant_j_mol_k: 8.31451,
     molar_mass_kg_mol: 0.039948,
@@ -74,6 +75,8 @@ pub(super) static ARGON: FluidData = FluidData {
         G { n: 1.5315490030516, d: 2, t: 0.0, eta: 20.0, beta: 300.0, gamma: 1.17, epsilon: 1.0 },
         G { n: -0.0027380447449783, d: 3, t: 0.0, eta: 20.0, beta: 225.0, gamma: 1.11, epsilon: 1.0 },
     ],
+    nonanalytic: &[],
+    departure: &[],
     ideal_constant: -10.2938148008484,
     ideal_tau: -0.0003415235715795717,
     ideal_ln_tau: 1.5,
@@ -108,6 +111,8 @@ pub(super) static ARGON: FluidData = FluidData {
         critical: OlchowySengers {
             xi_0_m: 1.3e-10,
             amplitude: 0.055,
+            strength: 1.01,
+            gamma: 1.2415,
             cutoff_per_m: 1.0 / 0.32e-9,
             reference_temperature_k: 301.374,
             critical_pressure_pa: 4863000.0,

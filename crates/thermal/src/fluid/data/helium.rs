@@ -10,6 +10,7 @@ use crate::fluid::transport::Transport;
 /// Helium.
 pub(super) static HELIUM: FluidData = FluidData {
     name: "helium",
+    also: &["he"],
     reference: "Ortiz-Vega et al., helium-4 (2013)",
     gas_constant_j_mol_k: 8.3144598,
     molar_mass_kg_mol: 0.004002602,
@@ -51,6 +52,8 @@ pub(super) static HELIUM: FluidData = FluidData {
         G { n: 0.79224829, d: 2, t: 1.634, eta: 0.1668, beta: 0.1758, gamma: 0.6407, epsilon: 5.039 },
         G { n: -0.049386338, d: 2, t: 6.13, eta: 42.2358, beta: 1357.6577, gamma: 1.076, epsilon: 0.959 },
     ],
+    nonanalytic: &[],
+    departure: &[],
     ideal_constant: 0.17324879328357912,
     ideal_tau: 0.4674522201551032,
     ideal_ln_tau: 1.5,

@@ -9,6 +9,7 @@ use crate::fluid::transport::Transport;
 /// Hydrogen.
 pub(super) static HYDROGEN: FluidData = FluidData {
     name: "hydrogen",
+    also: &["h2"],
     reference: "Leachman et al., J. Phys. Chem. Ref. Data 38 (2009) 721",
     gas_constant_j_mol_k: 8.314472,
     molar_mass_kg_mol: 0.00201588,
@@ -41,6 +42,8 @@ pub(super) static HYDROGEN: FluidData = FluidData {
         G { n: -0.0231752, d: 1, t: 7.249, eta: 2.506, beta: 0.2785, gamma: 0.7204, epsilon: 0.67 },
         G { n: 0.0557346, d: 1, t: 2.986, eta: 1.607, beta: 0.3967, gamma: 1.5445, epsilon: 1.662 },
     ],
+    nonanalytic: &[],
+    departure: &[],
     ideal_constant: -1.4579856475,
     ideal_tau: 1.888076782,
     ideal_ln_tau: 1.5,

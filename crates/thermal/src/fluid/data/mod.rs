@@ -1,16 +1,38 @@
-//! Coefficients of the fluids, one file each. A further fluid is a further file and a line in [`ALL`].
+//! Coefficients of the fluids, one file each. A further fluid is a further file and a line in [`PURE`], a further mixture one in [`MIXTURES`].
 mod air;
 mod argon;
+mod carbon_dioxide;
 mod helium;
 mod hydrogen;
+mod inert;
+mod mixture;
 mod nitrogen;
 mod oxygen;
 
+use std::sync::LazyLock;
+
 use super::transport::Transport;
+pub(super) use mixture::Mixture;
+
+/// Fluids with an equation of their own.
+static PURE: &[&FluidData] = &[
+    &nitrogen::NITROGEN,
+    &argon::ARGON,
+    &air::AIR,
+    &hydrogen::HYDROGEN,
+    &helium::HELIUM,
+    &oxygen::OXYGEN,
+    &carbon_dioxide::CARBON_DIOXIDE,
+];
+
+/// Mixtures of them.
+static MIXTURES: &[&Mixture] = &[&inert::ARGON_NITROGEN, &inert::IG_541];
 
 /// All fluids.
-pub(super) static ALL: &[&FluidData] =
-    &[&nitrogen::NITROGEN, &argon::ARGON, &air::AIR, &hydrogen::HYDROGEN, &helium::HELIUM, &oxygen::OXYGEN];
+pub(super) static ALL: LazyLock<Vec<&'static FluidData>> = LazyLock::new(|| {
+    let mixtures = MIXTURES.iter().map(|mixture| &*Box::leak(Box::new(mixture.data())));
+    PURE.iter().copied().chain(mixtures).collect()
+});
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +66,48 @@ pub(super) struct GaussianTerm {
     pub epsilon: f64,
 }
 
+/// Term `n delta Delta^b Psi` of Span and Wagner about the critical point, with
+/// `Psi = exp(-C (delta-1)^2 - D (tau-1)^2)`, `Delta = theta^2 + B [(delta-1)^2]^a`,
+/// `theta = (1-tau) + A [(delta-1)^2]^(1/(2 beta))`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NonanalyticTerm {
+    /// Coefficient.
+    pub n: f64,
+    /// Exponent of the distance.
+    pub b: f64,
+    /// Exponent in density inside the distance.
+    pub a: f64,
+    /// Exponent `beta` of the coexistence curve.
+    pub beta: f64,
+    /// `A`.
+    pub amplitude: f64,
+    /// `B`.
+    pub width: f64,
+    /// `C`.
+    pub eta: f64,
+    /// `D`.
+    pub decay: f64,
+}
+
+/// Term `n delta^d tau^t exp(-eta (delta-epsilon)^2 - beta (delta-gamma))` of a departure function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DepartureTerm {
+    /// Coefficient.
+    pub n: f64,
+    /// Exponent of the reduced density.
+    pub d: u8,
+    /// Exponent of the inverse reduced temperature.
+    pub t: f64,
+    /// Width in density.
+    pub eta: f64,
+    /// Centre in density.
+    pub epsilon: f64,
+    /// Decay in density.
+    pub beta: f64,
+    /// Density where the decay is one.
+    pub gamma: f64,
+}
+
 /// Melting pressure `p_0 + sum a [(T/T_0)^t - 1]`: above it the fluid is solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Melting {
@@ -68,6 +132,8 @@ impl Melting {
 pub(super) struct FluidData {
     /// Name as files spell it.
     pub name: &'static str,
+    /// Other names that people type: refused, and answered with the one above.
+    pub also: &'static [&'static str],
     /// Source in short.
     pub reference: &'static str,
     /// Gas constant that the equation was fitted with, J/(mol K).
@@ -78,7 +144,7 @@ pub(super) struct FluidData {
     pub reducing_temperature_k: f64,
     /// Reducing density, mol/m³.
     pub reducing_density_mol_m3: f64,
-    /// Critical temperature, K; above it there is one phase.
+    /// Critical temperature, K; above it there is one phase. A mixture's is that of its cubic equation.
     pub critical_temperature_k: f64,
     /// Critical pressure, Pa.
     pub critical_pressure_pa: f64,
@@ -98,6 +164,10 @@ pub(super) struct FluidData {
     pub power: &'static [PowerTerm],
     /// Gaussian terms of the residual part.
     pub gaussian: &'static [GaussianTerm],
+    /// Terms about the critical point.
+    pub nonanalytic: &'static [NonanalyticTerm],
+    /// Departure functions of a mixture.
+    pub departure: &'static [DepartureTerm],
     /// Constant of the ideal part.
     pub ideal_constant: f64,
     /// Coefficient of `tau` in the ideal part.

@@ -11,6 +11,7 @@ use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Tra
 /// Nitrogen.
 pub(super) static NITROGEN: FluidData = FluidData {
     name: "nitrogen",
+    also: &["n2", "ig-100"],
     reference: "Span et al., J. Phys. Chem. Ref. Data 29 (2000) 1361",
     gas_constant_j_mol_k: 8.31451,
     molar_mass_kg_mol: 0.02801348,
@@ -65,6 +66,8 @@ pub(super) static NITROGEN: FluidData = FluidData {
         G { n: 0.0167788306989, d: 3, t: 2.0, eta: 15.0, beta: 300.0, gamma: 1.13, epsilon: 1.0 },
         G { n: 2627.67566274, d: 2, t: 3.0, eta: 25.0, beta: 275.0, gamma: 1.25, epsilon: 1.0 },
     ],
+    nonanalytic: &[],
+    departure: &[],
     ideal_constant: -12.76952708,
     ideal_tau: -0.00784163,
     ideal_ln_tau: 2.5,
@@ -97,6 +100,8 @@ pub(super) static NITROGEN: FluidData = FluidData {
         critical: OlchowySengers {
             xi_0_m: 1.7e-10,
             amplitude: 0.055,
+            strength: 1.01,
+            gamma: 1.2415,
             cutoff_per_m: 1.0 / 0.4e-9,
             reference_temperature_k: 252.384,
             critical_pressure_pa: 3395800.0,

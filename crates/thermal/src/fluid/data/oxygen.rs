@@ -12,6 +12,7 @@ use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Tra
 #[expect(clippy::approx_constant)]
 pub(super) static OXYGEN: FluidData = FluidData {
     name: "oxygen",
+    also: &["o2"],
     reference: "Stewart, Jacobsen, Wagner, J. Phys. Chem. Ref. Data 20 (1991) 917",
     gas_constant_j_mol_k: 8.31434,
     molar_mass_kg_mol: 0.0319988,
@@ -61,6 +62,8 @@ pub(super) static OXYGEN: FluidData = FluidData {
         P { n: -0.01011251078, d: 5, t: 23.0, l: 4 },
     ],
     gaussian: &[],
+    nonanalytic: &[],
+    departure: &[],
     ideal_constant: -14.716836666461498,
     ideal_tau: -0.011083985429237124,
     ideal_ln_tau: 2.51808732,
@@ -99,6 +102,8 @@ pub(super) static OXYGEN: FluidData = FluidData {
         critical: OlchowySengers {
             xi_0_m: 2.4e-10,
             amplitude: 0.055,
+            strength: 1.01,
+            gamma: 1.2415,
             cutoff_per_m: 1.0 / 0.51e-9,
             reference_temperature_k: 309.162,
             critical_pressure_pa: 5043000.0,

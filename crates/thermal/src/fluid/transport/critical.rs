@@ -23,11 +23,8 @@ use crate::fluid::Real;
 
 /// Boltzmann constant of the source's time, J/K (CODATA 2010; the SI of 2019 differs by 1e-7).
 const BOLTZMANN_J_K: f64 = 1.380_648_8e-23;
-/// Critical exponents `nu` (correlation length) and `gamma` (susceptibility).
+/// Critical exponent `nu` of the correlation length.
 const NU: f64 = 0.63;
-const GAMMA: f64 = 1.2415;
-/// Universal amplitude `R0`.
-const R0: f64 = 1.01;
 /// `chi` below which the enhancement is taken as zero: rounding of the difference.
 const CHI_ZERO: f64 = 10.0 * f64::EPSILON;
 
@@ -38,6 +35,10 @@ pub(crate) struct OlchowySengers {
     pub xi_0_m: f64,
     /// Amplitude of the susceptibility `Gamma`.
     pub amplitude: f64,
+    /// Universal amplitude `R0`.
+    pub strength: f64,
+    /// Critical exponent `gamma` of the susceptibility.
+    pub gamma: f64,
     /// Cut-off wave number `q_D`, 1/m.
     pub cutoff_per_m: f64,
     /// Reference temperature `Tref`, K.
@@ -66,13 +67,13 @@ impl OlchowySengers {
         if chi.re() < CHI_ZERO {
             return D::from(0.0);
         }
-        let xi = (chi / self.amplitude).powf(NU / GAMMA) * self.xi_0_m;
+        let xi = (chi / self.amplitude).powf(NU / self.gamma) * self.xi_0_m;
         let y = xi * self.cutoff_per_m;
         let delta = rho / rhoc;
         let kappa = state.cv_j_kg_k / state.cp_j_kg_k;
         let omega = (-kappa + 1.0) * y.atan() + kappa * y;
         let omega_0 = -(-(y.recip() + y * y / (delta * delta * 3.0)).recip()).exp_m1();
         rho * state.cp_j_kg_k * t * (omega - omega_0) / (viscosity * xi)
-            * (R0 * BOLTZMANN_J_K / (3.0 * PI * PI))
+            * (self.strength * BOLTZMANN_J_K / (3.0 * PI * PI))
     }
 }

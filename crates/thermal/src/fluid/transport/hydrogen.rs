@@ -61,6 +61,8 @@ const RESIDUAL: [[f64; 2]; 5] = [
 pub(super) const CRITICAL: OlchowySengers = OlchowySengers {
     xi_0_m: 0.15e-9,
     amplitude: 0.052,
+    strength: 1.01,
+    gamma: 1.2415,
     cutoff_per_m: 1.0 / 0.4e-9,
     reference_temperature_k: 1.5 * TC_K,
     critical_pressure_pa: 1.2964e6,

@@ -8,19 +8,24 @@
 //! |---|---|---|
 //! | nitrogen, argon, air | Lemmon and Jacobsen 2004 | the same |
 //! | hydrogen (normal) | Muzny, Huber and Kazakov 2013 | Assael et al. 2011 |
+//! | carbon dioxide | Laesecke and Muzny 2017 | Huber et al. 2016 |
 //! | helium | Arp, McCarty and Friend 1998 | Hands and Arp 1981 |
+//! | mixtures | Wilke 1950 | Mason and Saxena 1958 |
 //!
 //! All functions are generic over [`Real`], so dual numbers give exact derivatives. Values agree with
 //! CoolProp 8.0.0; each module names its range of validity and the deviations.
+mod carbon_dioxide;
 mod critical;
 mod helium;
 mod hydrogen;
 mod lemmon_jacobsen;
+mod mixture;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use critical::OlchowySengers;
 pub(crate) use lemmon_jacobsen::{LemmonJacobsenData, Term};
+pub(crate) use mixture::{MixtureComponent, MixtureTransport};
 
 use crate::fluid::Real;
 
@@ -46,27 +51,37 @@ pub(super) enum Transport {
     LemmonJacobsen(&'static LemmonJacobsenData),
     /// Normal hydrogen: Muzny et al. 2013, Assael et al. 2011.
     Hydrogen,
+    /// Carbon dioxide: Laesecke and Muzny 2017, Huber et al. 2016.
+    CarbonDioxide,
     /// Helium-4: Arp et al. 1998, Hands and Arp 1981.
     Helium,
+    /// From the components: Wilke 1950, Mason and Saxena 1958.
+    Mixture(&'static MixtureTransport),
 }
 
 impl Transport {
     /// Viscosity, Pa s. The critical enhancement of the viscosity, below 1 % except within 1 % of the
     /// critical temperature, is left out, as in the sources.
+    #[inline]
     pub(crate) fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::Hydrogen => hydrogen::viscosity_pa_s(density_kg_m3, temperature_k),
+            Transport::CarbonDioxide => carbon_dioxide::viscosity_pa_s(density_kg_m3, temperature_k),
             Transport::Helium => helium::viscosity_pa_s(density_kg_m3, temperature_k),
+            Transport::Mixture(data) => data.viscosity_pa_s(density_kg_m3, temperature_k),
         }
     }
 
     /// Thermal conductivity without the critical enhancement, W/(m K).
+    #[inline]
     pub(crate) fn background_conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
         match self {
             Transport::LemmonJacobsen(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::Hydrogen => hydrogen::conductivity_w_m_k(density_kg_m3, temperature_k),
+            Transport::CarbonDioxide => carbon_dioxide::conductivity_w_m_k(density_kg_m3, temperature_k),
             Transport::Helium => helium::conductivity_w_m_k(density_kg_m3, temperature_k),
+            Transport::Mixture(data) => data.conductivity_w_m_k(density_kg_m3, temperature_k),
         }
     }
 
@@ -85,18 +100,25 @@ impl Transport {
                 data.critical.conductivity_w_m_k(state, viscosity, dp_drho_reference)
             }
             Transport::Hydrogen => hydrogen::CRITICAL.conductivity_w_m_k(state, viscosity, dp_drho_reference),
+            Transport::CarbonDioxide => {
+                carbon_dioxide::CRITICAL.conductivity_w_m_k(state, viscosity, dp_drho_reference)
+            }
             Transport::Helium => helium::critical::conductivity_w_m_k(state, viscosity),
+            Transport::Mixture(_) => D::from(0.0),
         }
     }
 
     /// Temperature from which on the critical enhancement is zero, K, and at which its reference derivative
     /// is to be taken. `None`: there is no such derivative; the enhancement of helium, zero from 12 K on,
     /// ignores it.
+    #[inline]
     pub(crate) fn reference_temperature_k(&self) -> Option<f64> {
         match self {
             Transport::LemmonJacobsen(data) => Some(data.critical.reference_temperature_k),
             Transport::Hydrogen => Some(hydrogen::CRITICAL.reference_temperature_k),
+            Transport::CarbonDioxide => Some(carbon_dioxide::CRITICAL.reference_temperature_k),
             Transport::Helium => None,
+            Transport::Mixture(_) => Some(0.0),
         }
     }
 }

@@ -90,6 +90,11 @@ mod published {
     }
 
     #[test]
+    fn carbon_dioxide_agrees_with_coolprop() {
+        assert!(deviations(named("carbon-dioxide"), &coolprop::CARBON_DIOXIDE).iter().all(|d| *d < 1e-6));
+    }
+
+    #[test]
     fn hydrogen_agrees_with_coolprop() {
         assert!(deviations(named("hydrogen"), &coolprop::HYDROGEN).iter().all(|d| *d < 1e-6));
     }
@@ -110,18 +115,19 @@ mod analytic {
     use super::*;
 
     /// Values of CoolProp 8.0.0 at 1e-6 kg/m³ and 300 K: viscosity Pa s, conductivity W/(m K).
-    const DILUTE_300_K: [[f64; 2]; 5] = [
+    const DILUTE_300_K: [[f64; 2]; 6] = [
         [1.787706416e-05, 2.593608670e-02],
         [2.272410372e-05, 1.780423476e-02],
         [1.852299918e-05, 2.635290401e-02],
         [8.937929695e-06, 1.865612162e-01],
         [1.992618538e-05, 1.558956325e-01],
+        [1.499378645e-05, 1.671918174e-02],
     ];
 
     #[test]
     fn zero_density_is_the_dilute_gas() {
         for (name, expected) in
-            ["nitrogen", "argon", "air", "hydrogen", "helium"].into_iter().zip(DILUTE_300_K)
+            ["nitrogen", "argon", "air", "hydrogen", "helium", "carbon-dioxide"].into_iter().zip(DILUTE_300_K)
         {
             let values = [
                 named(name).viscosity_pa_s(0.0, 300.0),
@@ -183,9 +189,11 @@ mod analytic {
 mod property {
     use super::*;
 
-    /// Density of 500 bar at 200 K, kg/m³.
+    /// Density of 500 bar at 200 K, kg/m³, or at the lowest temperature above at which that is one phase.
     fn largest_density(data: &FluidData) -> f64 {
-        Fluid::named(data.name).unwrap().density_from_pressure_temperature(5e7, 200.0).unwrap()
+        let coldest_k = 200.0_f64.max(data.lowest_temperature_k);
+        let t = if data.name == "carbon-dioxide" { data.critical_temperature_k } else { coldest_k };
+        Fluid::named(data.name).unwrap().density_from_pressure_temperature(5e7, t).unwrap()
     }
 
     /// Equality to 1e-6 of the value per relative change of the argument.
@@ -247,10 +255,11 @@ mod property {
 
     #[test]
     fn dual_derivative_of_the_enhancement_is_the_central_difference() {
-        let tables: [(&str, &[Row]); 5] = [
+        let tables: [(&str, &[Row]); 6] = [
             ("nitrogen", &coolprop::NITROGEN),
             ("argon", &coolprop::ARGON),
             ("air", &coolprop::AIR),
+            ("carbon-dioxide", &coolprop::CARBON_DIOXIDE),
             ("hydrogen", &coolprop::HYDROGEN),
             ("helium", &coolprop::HELIUM),
         ];
