@@ -241,6 +241,14 @@ pub enum ThermalError {
         /// Fluid.
         fluid: String,
     },
+    /// The source of a refill has no usable state.
+    #[error("the source of {flow}: {cause}")]
+    Source {
+        /// Name of the refill.
+        flow: String,
+        /// What is wrong with its gas.
+        cause: Box<ThermalError>,
+    },
     /// No temperature and volume belong to the gas's mass and energy.
     #[error(
         "no gas state has mass {mass_kg} kg and internal energy {energy_j} J: the vessel is empty or the step was too long"

@@ -2,6 +2,7 @@
 use crate::ThermalError;
 use crate::flow::{Flow, FlowKind};
 use crate::model::Model;
+use crate::model::inputs::Inputs;
 use crate::scenario::Scenario;
 use crate::trajectory::EventKind;
 use crate::units::ATMOSPHERE_PA;
@@ -31,7 +32,9 @@ pub(super) struct FlowStates<'a> {
 /// Pressure at which a flow closes when it is reached from above, Pa.
 fn closes_below_pa(flow: &Flow) -> Option<f64> {
     match flow.kind {
-        FlowKind::Leak { .. } => Some(flow.closes_below_pa.unwrap_or(0.0).max(ATMOSPHERE_PA)),
+        FlowKind::Leak { .. } | FlowKind::LeakSeries { .. } => {
+            Some(flow.closes_below_pa.unwrap_or(0.0).max(ATMOSPHERE_PA))
+        }
         _ => flow.closes_below_pa,
     }
 }
@@ -102,7 +105,7 @@ enum Watch {
     ClosesBelow(usize, f64),
     /// Closing pressure, reached from below, of an open flow.
     ClosesAbove(usize, f64),
-    /// Choking margin of an open orifice.
+    /// Choking margin of an open orifice or valve.
     Choking(usize),
 }
 
@@ -133,7 +136,10 @@ impl Monitors {
             watches.extend(flow.opens_above_pa.map(|p| Watch::Opens(index, p)));
             watches.extend(closes_below_pa(flow).map(|p| Watch::ClosesBelow(index, p)));
             watches.extend(flow.closes_above_pa.map(|p| Watch::ClosesAbove(index, p)));
-            if matches!(flow.kind, FlowKind::Orifice { .. }) {
+            if matches!(
+                flow.kind,
+                FlowKind::Orifice { .. } | FlowKind::Release { .. } | FlowKind::Supply { .. }
+            ) {
                 watches.push(Watch::Choking(index));
             }
         }
@@ -152,8 +158,9 @@ impl Monitors {
         model: &Model,
         flows: &FlowStates<'_>,
         x: &[f64],
+        inputs: &Inputs,
     ) -> Result<(), ThermalError> {
-        self.values = self.evaluate(model, flows, x)?;
+        self.values = self.evaluate(model, flows, x, inputs)?;
         Ok(())
     }
 
@@ -163,11 +170,13 @@ impl Monitors {
         model: &Model,
         flows: &FlowStates<'_>,
         x: &[f64],
+        inputs: &Inputs,
     ) -> Result<Vec<Option<f64>>, ThermalError> {
         if self.watches.is_empty() {
             return Ok(Vec::new());
         }
         let pressure = model.gas_state(x)?.1;
+        let open = flows.open();
         self.watches
             .iter()
             .map(|watch| {
@@ -178,7 +187,9 @@ impl Monitors {
                     Watch::ClosesBelow(i, limit) | Watch::ClosesAbove(i, limit) => {
                         in_phase(i, Phase::Open).then_some(pressure - limit)
                     }
-                    Watch::Choking(i) if in_phase(i, Phase::Open) => model.choking_margin_pa(x, i)?,
+                    Watch::Choking(i) if in_phase(i, Phase::Open) => {
+                        model.choking_margin_pa(x, inputs, &open, i)?
+                    }
                     Watch::Choking(_) => None,
                 })
             })
@@ -194,11 +205,12 @@ impl Monitors {
         x_now: &[f64],
         before: f64,
         now: f64,
+        inputs_at: &dyn Fn(f64) -> Inputs,
         scratch: &mut [f64],
         interpolate: &mut Interpolation<'_>,
     ) -> Result<Located, ThermalError> {
         let mut located = Located { reports: Vec::new(), acts_at_s: None };
-        let values = self.evaluate(model, flows, x_now)?;
+        let values = self.evaluate(model, flows, x_now, &inputs_at(now))?;
         let mut acting: Vec<(f64, usize)> = Vec::new();
         for (index, (&old, &new)) in self.values.iter().zip(&values).enumerate() {
             let (Some(old), Some(new)) = (old, new) else { continue };
@@ -217,7 +229,7 @@ impl Monitors {
             for _ in 0..BISECTIONS {
                 let middle = 0.5 * (low + high);
                 interpolate(middle, scratch).map_err(|reason| ThermalError::SolverSetup { reason })?;
-                let value = self.evaluate(model, flows, scratch)?[index].unwrap_or(new);
+                let value = self.evaluate(model, flows, scratch, &inputs_at(middle))?[index].unwrap_or(new);
                 if (value > 0.0) == (old > 0.0) { low = middle } else { high = middle }
             }
             match watch {
