@@ -45,7 +45,8 @@ fn the_columns_are_those_of_the_contract() {
     assert_eq!(
         header.join(","),
         "time_s,ambient_degc,gas_mean_degc,gas_1_degc,wall_bottom_degc,wall_middle_degc,wall_neck_degc,shoulder_degc,\
-         valve_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc,\
+         valve_degc,wall_inner_mean_degc,wall_inner_bottom_degc,wall_inner_middle_degc,wall_inner_shoulder_degc,\
+         wall_inner_neck_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc,\
          measured_pressure_bar"
     );
 }

@@ -37,7 +37,7 @@ pub(crate) fn flow<D: Real>(
         return OpeningFlow { mass_flow_kg_s: D::from(0.0), choking_pressure_pa };
     }
     let x = if x.re() >= choking.re() { choking } else { x };
-    let root = x / (x * x + SMOOTH_BELOW * SMOOTH_BELOW).sqrt().sqrt();
+    let root = x * x * (x * x + SMOOTH_BELOW * SMOOTH_BELOW).powf(-0.75);
     let expansion = -(x / (choking * 3.0)) + 1.0;
     let mass_flow_kg_s = expansion * root * (upstream.density_kg_m3 * pressure).sqrt() * (kv_m3_h / 36_000.0);
     OpeningFlow { mass_flow_kg_s, choking_pressure_pa }

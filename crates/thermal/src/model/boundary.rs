@@ -32,6 +32,15 @@ pub(super) struct Exchange<D> {
     pub enthalpy_w: D,
 }
 
+/// How far a flow through an opening is from its changes of regime, Pa.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Margins {
+    /// Pressure at which it chokes over the pressure behind it: positive while choked.
+    pub choking_pa: f64,
+    /// Pressure before it over the pressure behind it: positive while gas flows.
+    pub driving_pa: f64,
+}
+
 impl Boundary<'_> {
     fn opened(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.flows.len()).filter(|&index| self.open[index])
@@ -106,33 +115,33 @@ impl Boundary<'_> {
         Ok(Exchange { mass_kg_s: mass, enthalpy_w: mass * enthalpy })
     }
 
-    /// Excess of the pressure at which an open flow chokes over the pressure behind it, Pa: positive while choked; `None` for flows
-    /// that do not choke.
+    /// How far a flow through an opening is from its changes of regime; `None` for other flows.
     ///
     /// # Errors
     /// As [`Boundary::exchange`].
-    pub(super) fn choking_margin_pa(
+    pub(super) fn margins(
         &self,
         index: usize,
         fluid: &Fluid,
         outlet: &State,
-    ) -> Result<Option<f64>, ThermalError> {
-        Ok(match &self.flows[index].kind {
-            FlowKind::Orifice { back_pressure_pa, .. } => {
-                let flux = orifice::mass_flux(fluid, outlet, *back_pressure_pa)?;
-                Some(flux.critical_pressure_pa - back_pressure_pa)
+    ) -> Result<Option<Margins>, ThermalError> {
+        let margins = |upstream: &State, downstream_pa: f64, choking_pressure_pa: f64| Margins {
+            choking_pa: choking_pressure_pa - downstream_pa,
+            driving_pa: upstream.pressure_pa - downstream_pa,
+        };
+        Ok(match (&self.flows[index].kind, &self.supplies[index]) {
+            (FlowKind::Orifice { back_pressure_pa: back, .. }, _) => {
+                let critical_pa = orifice::mass_flux(fluid, outlet, *back)?.critical_pressure_pa;
+                Some(margins(outlet, *back, critical_pa))
             }
-            FlowKind::Release { opening, back_pressure_pa } => {
-                Some(opening.flow(fluid, outlet, *back_pressure_pa)?.choking_pressure_pa - back_pressure_pa)
+            (FlowKind::Release { opening, back_pressure_pa: back }, _) => {
+                Some(margins(outlet, *back, opening.flow(fluid, outlet, *back)?.choking_pressure_pa))
             }
-            FlowKind::Supply { opening, .. } => match &self.supplies[index] {
-                Some(supply) => {
-                    let source = supply.state(fluid, &self.moment, self.drawn(index))?;
-                    let flow = opening.flow(fluid, &source, outlet.pressure_pa)?;
-                    Some(flow.choking_pressure_pa - outlet.pressure_pa)
-                }
-                None => None,
-            },
+            (FlowKind::Supply { opening, .. }, Some(supply)) => {
+                let source = supply.state(fluid, &self.moment, self.drawn(index))?;
+                let flow = opening.flow(fluid, &source, outlet.pressure_pa)?;
+                Some(margins(&source, outlet.pressure_pa, flow.choking_pressure_pa))
+            }
             _ => None,
         })
     }

@@ -1,5 +1,6 @@
 //! What a state vector means: temperatures, pressure, flows, balances.
 use super::Model;
+use super::boundary::Margins;
 use super::gas::GasPoint;
 use super::inputs::Inputs;
 use crate::ThermalError;
@@ -119,20 +120,20 @@ impl Model {
         self.wall_capacity_j_k
     }
 
-    /// Excess of the pressure at which a flow chokes over the pressure behind it, Pa: positive while choked; `None` for other flows.
+    /// How far a flow through an opening is from its changes of regime; `None` for other flows.
     ///
     /// # Errors
     /// As [`Model::rate`].
-    pub(crate) fn choking_margin_pa(
+    pub(crate) fn margins(
         &self,
         x: &[f64],
         inputs: &Inputs,
         open: &[bool],
         flow: usize,
-    ) -> Result<Option<f64>, ThermalError> {
+    ) -> Result<Option<Margins>, ThermalError> {
         let nodes = self.gas_nodes(x)?;
         let outlet = &nodes.as_slice()[self.grid.outlet].state;
-        self.boundary(x, inputs, open).choking_margin_pa(flow, &self.fluid, outlet)
+        self.boundary(x, inputs, open).margins(flow, &self.fluid, outlet)
     }
 
     /// Energy of gas, wall and valve, J, up to a constant.

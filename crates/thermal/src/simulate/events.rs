@@ -107,6 +107,11 @@ enum Watch {
     ClosesAbove(usize, f64),
     /// Choking margin of an open orifice or valve.
     Choking(usize),
+    /// What drives the gas through an open orifice or valve: where it changes its sign the flow begins or ends.
+    ///
+    /// A solver that steps over the end keeps the matrix of a stiff flow where nothing flows, takes its short corrections for
+    /// convergence, and drifts. So it begins anew there.
+    Driving(usize),
 }
 
 /// All watched quantities with their values at the start of the step.
@@ -124,7 +129,7 @@ pub(super) type Interpolation<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), Str
 pub(super) struct Located {
     /// Events to report, in order of time.
     pub reports: Vec<(f64, EventKind)>,
-    /// Time of the first crossing that acts on a flow, s.
+    /// Time of the first crossing that acts on a flow, or at which a flow begins or ends, s.
     pub acts_at_s: Option<f64>,
 }
 
@@ -140,7 +145,7 @@ impl Monitors {
                 flow.kind,
                 FlowKind::Orifice { .. } | FlowKind::Release { .. } | FlowKind::Supply { .. }
             ) {
-                watches.push(Watch::Choking(index));
+                watches.extend([Watch::Choking(index), Watch::Driving(index)]);
             }
         }
         let names = scenario.flows.iter().map(|flow| flow.name.clone()).collect();
@@ -181,16 +186,18 @@ impl Monitors {
             .iter()
             .map(|watch| {
                 let in_phase = |index: usize, phase: Phase| flows.phases[index] == phase;
+                let margins = |index: usize| match flows.phases[index] {
+                    Phase::Open => model.margins(x, inputs, &open, index),
+                    _ => Ok(None),
+                };
                 Ok(match *watch {
                     Watch::Limit(limit) => Some(pressure - limit),
                     Watch::Opens(i, limit) => in_phase(i, Phase::Armed).then_some(pressure - limit),
                     Watch::ClosesBelow(i, limit) | Watch::ClosesAbove(i, limit) => {
                         in_phase(i, Phase::Open).then_some(pressure - limit)
                     }
-                    Watch::Choking(i) if in_phase(i, Phase::Open) => {
-                        model.choking_margin_pa(x, inputs, &open, i)?
-                    }
-                    Watch::Choking(_) => None,
+                    Watch::Choking(i) => margins(i)?.map(|margins| margins.choking_pa),
+                    Watch::Driving(i) => margins(i)?.map(|margins| margins.driving_pa),
                 })
             })
             .collect()
@@ -211,7 +218,7 @@ impl Monitors {
     ) -> Result<Located, ThermalError> {
         let mut located = Located { reports: Vec::new(), acts_at_s: None };
         let values = self.evaluate(model, flows, x_now, &inputs_at(now))?;
-        let mut acting: Vec<(f64, usize)> = Vec::new();
+        let mut acting: Vec<(f64, Option<usize>)> = Vec::new();
         for (index, (&old, &new)) in self.values.iter().zip(&values).enumerate() {
             let (Some(old), Some(new)) = (old, new) else { continue };
             let falling = old > 0.0 && new <= 0.0;
@@ -221,6 +228,7 @@ impl Monitors {
                 Watch::Limit(_) => falling || rising,
                 Watch::Opens(..) | Watch::ClosesAbove(..) => rising,
                 Watch::ClosesBelow(..) | Watch::Choking(_) => falling,
+                Watch::Driving(_) => (old > 0.0) != (new > 0.0),
             };
             if !applies {
                 continue;
@@ -240,14 +248,16 @@ impl Monitors {
                     located.reports.push((high, EventKind::Unchoked { flow: self.names[flow].clone() }));
                 }
                 Watch::Opens(flow, _) | Watch::ClosesBelow(flow, _) | Watch::ClosesAbove(flow, _) => {
-                    acting.push((high, flow));
+                    acting.push((high, Some(flow)));
                 }
+                Watch::Driving(_) => acting.push((high, None)),
             }
         }
         self.values = values;
         located.acts_at_s = acting.iter().map(|&(t, _)| t).min_by(f64::total_cmp);
         if let Some(first) = located.acts_at_s {
-            self.fired = acting.into_iter().filter(|&(t, _)| t <= first).map(|(_, flow)| flow).collect();
+            self.fired =
+                acting.into_iter().filter(|&(t, _)| t <= first).filter_map(|(_, flow)| flow).collect();
             located.reports.retain(|&(t, _)| t <= first);
         }
         located.reports.sort_by(|a, b| a.0.total_cmp(&b.0));
