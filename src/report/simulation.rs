@@ -74,7 +74,7 @@ fn column_word(name: &str) -> String {
 /// A discharge coefficient that was converted, in words.
 pub(crate) fn conversion(of: &ConvertedCoefficient) -> String {
     format!(
-        "{}: discharge coefficient {} of an ideal gas is {} of the real one, at {} bar and {} °C",
+        "{}: discharge coefficient {} with an ideal gas is {} with the real one, at {} bar and {} °C",
         of.flow,
         number(of.ideal_gas, 4),
         number(of.real_gas, 4),

@@ -195,9 +195,10 @@ fn found<'a>(
 /// Whether a name in small letters is one of ours, with its unit.
 pub(super) fn is_ours(name: &str, sensors: &[String]) -> bool {
     let known = meaning(name, sensors);
-    known.is_ok_and(|known| {
-        !matches!(known, Meaning::Unknown | Meaning::Clock | Meaning::Time(TimeForm::Date))
-    })
+    is_simulated_only(name)
+        || known.is_ok_and(|known| {
+            !matches!(known, Meaning::Unknown | Meaning::Clock | Meaning::Time(TimeForm::Date))
+        })
 }
 
 /// Whether a name in small letters says that its column is a date or a time.

@@ -43,6 +43,7 @@ use stratified::{Stratified, WallAction};
 use supply::{Supply, supplies};
 use well_mixed::WellMixed;
 
+pub(crate) use boundary::Margins;
 pub use coefficients::{ConvertedCoefficient, with_real_gas_coefficients};
 pub(crate) use output::Output;
 

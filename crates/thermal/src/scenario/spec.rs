@@ -71,7 +71,7 @@ pub(crate) struct AmbientSpec {
     pub air_table: Option<AirTable>,
     /// Air temperature from a file.
     pub air_csv: Option<CsvSpec>,
-    /// Outside film coefficient; without it and without wind the air is still.
+    /// Outside film coefficient, 0 for an insulated surface; without it and without wind the air is still.
     pub film_w_m2_k: Option<f64>,
     /// Steps and ramps of the film coefficient, in order of time.
     #[serde(default)]

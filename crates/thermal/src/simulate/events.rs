@@ -1,8 +1,8 @@
 //! Flows that open and close, pressures that are crossed: the discrete part of a run.
 use crate::ThermalError;
 use crate::flow::{Flow, FlowKind};
-use crate::model::Model;
 use crate::model::inputs::Inputs;
+use crate::model::{Margins, Model};
 use crate::scenario::Scenario;
 use crate::trajectory::EventKind;
 use crate::units::ATMOSPHERE_PA;
@@ -182,14 +182,23 @@ impl Monitors {
         }
         let pressure = model.gas_state(x)?.1;
         let open = flows.open();
+        // Both watches of an opening stand side by side and need one throat.
+        let mut known = None;
+        let mut margins = |index: usize| -> Result<Option<Margins>, ThermalError> {
+            if let Some((_, margins)) = known.filter(|&(of, _)| of == index) {
+                return Ok(margins);
+            }
+            let margins = match flows.phases[index] {
+                Phase::Open => model.margins(x, inputs, &open, index)?,
+                _ => None,
+            };
+            known = Some((index, margins));
+            Ok(margins)
+        };
         self.watches
             .iter()
             .map(|watch| {
                 let in_phase = |index: usize, phase: Phase| flows.phases[index] == phase;
-                let margins = |index: usize| match flows.phases[index] {
-                    Phase::Open => model.margins(x, inputs, &open, index),
-                    _ => Ok(None),
-                };
                 Ok(match *watch {
                     Watch::Limit(limit) => Some(pressure - limit),
                     Watch::Opens(i, limit) => in_phase(i, Phase::Armed).then_some(pressure - limit),

@@ -318,12 +318,17 @@ impl Run<'_> {
 
     /// Open and close the flows whose pressure was reached; neighbours do so a little earlier or later.
     fn switch_flows(&mut self, at: f64) -> Result<(), ThermalError> {
+        let fired = self.monitors.take_fired();
+        // A flow that ends by itself changes no rate.
+        if fired.is_empty() {
+            return Ok(());
+        }
         let inputs = self.drive.pieces.get().at(at);
         let delays = self
             .tangents
             .as_ref()
             .map(|tangents| tangents.delays(self.model, &inputs, &self.drive.open.borrow(), &self.x));
-        let changed = self.flows.at_pressure(&self.monitors.take_fired());
+        let changed = self.flows.at_pressure(&fired);
         self.record_flows(at, changed)?;
         if let (Some(delays), Some(tangents)) = (delays.transpose()?, &mut self.tangents) {
             tangents.jump(&delays, self.model, &inputs, &self.drive.open.borrow(), &self.x)?;

@@ -116,7 +116,7 @@ fn vessel_is_physical(vessel: &Vessel) -> bool {
     });
     let film = match vessel.inside_film {
         InsideFilm::Rayleigh { factor, exponent, multiplier } => [factor, exponent, multiplier],
-        InsideFilm::Coefficient { film_w_m2_k } if film_w_m2_k == 0.0 => [1.0; 3],
+        InsideFilm::Coefficient { film_w_m2_k: 0.0 } => [1.0; 3],
         InsideFilm::Coefficient { film_w_m2_k } => [film_w_m2_k, 1.0, 1.0],
     };
     let valve = vessel

@@ -306,6 +306,8 @@ fn two_measured_tanks_end_at_the_pressure_that_the_slow_run_predicts() {
         assert_relative_eq!(p2, measured, max_relative = 0.005);
         assert_closed(run, 1e-8);
     }
+    let coldest = fast.sources[0].temperature_k.last().unwrap() - 273.15;
+    println!("adiabatic: {coldest:.1} degC and {:.1} degC", last(&fast.gas_mean_k) - 273.15);
     // Equal after half a second or so, as measured (0.8 s from the first row that moved).
     let equal =
         fast.time_s[fast.pressure_pa.iter().position(|&p| p > 0.99 * last(&fast.pressure_pa)).unwrap()];

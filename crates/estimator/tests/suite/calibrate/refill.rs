@@ -43,7 +43,11 @@ fn coefficient_lag_and_stem_follow_from_a_refill_through_an_orifice() {
             log,
             channels: suite.sensors().to_vec(),
         }],
-        parameters: kinds.into_iter().zip(starts).map(|(kind, start)| ParameterSpec::new(kind, start)).collect(),
+        parameters: kinds
+            .into_iter()
+            .zip(starts)
+            .map(|(kind, start)| ParameterSpec::new(kind, start))
+            .collect(),
         settings: CalibrationSettings::default(),
     };
     let calibrated = calibration.run().unwrap();
