@@ -4,7 +4,7 @@ use super::supply::Supply;
 use super::well_mixed::Node;
 use crate::ThermalError;
 use crate::flow::orifice;
-use crate::flow::{Flow, FlowKind};
+use crate::flow::{Flow, FlowKind, Opening, OpeningFlow};
 use crate::fluid::{Fluid, Real, State};
 use crate::transfer::inside::jet_film_w_m2_k;
 
@@ -103,16 +103,33 @@ impl Boundary<'_> {
             FlowKind::RefillSeries { mass_flow_kg_s, .. } => {
                 (D::from(self.moment.value(mass_flow_kg_s)), enthalpy()?)
             }
-            FlowKind::Supply { opening, .. } => match &self.supplies[index] {
-                Some(supply) => {
-                    let source = supply.state(fluid, &self.moment, drawn_kg)?;
-                    let flow = opening.flow(fluid, &source, outlet.pressure_pa)?;
-                    (flow.mass_flow_kg_s, source.enthalpy_j_kg)
-                }
-                None => unreachable!("every refill has a source"),
-            },
+            FlowKind::Supply { opening, .. } => {
+                let (source, flow) = self.supplied(index, opening, fluid, outlet, drawn_kg)?;
+                (flow.mass_flow_kg_s, source.enthalpy_j_kg)
+            }
         };
         Ok(Exchange { mass_kg_s: mass, enthalpy_w: mass * enthalpy })
+    }
+
+    /// State of the source of a refill through an opening, and what passes.
+    ///
+    /// # Errors
+    /// As [`Boundary::exchange`], with the refill's name.
+    fn supplied<D: Real>(
+        &self,
+        index: usize,
+        opening: &Opening,
+        fluid: &Fluid,
+        outlet: &State<D>,
+        drawn_kg: D,
+    ) -> Result<(State<D>, OpeningFlow<D>), ThermalError> {
+        let Some(supply) = &self.supplies[index] else { unreachable!("every refill has a source") };
+        let source = supply.state(fluid, &self.moment, drawn_kg);
+        let both = source.and_then(|source| Ok((source, opening.flow(fluid, &source, outlet.pressure_pa)?)));
+        both.map_err(|cause| ThermalError::Source {
+            flow: self.flows[index].name.clone(),
+            cause: Box::new(cause),
+        })
     }
 
     /// How far a flow through an opening is from its changes of regime; `None` for other flows.
@@ -129,17 +146,16 @@ impl Boundary<'_> {
             choking_pa: choking_pressure_pa - downstream_pa,
             driving_pa: upstream.pressure_pa - downstream_pa,
         };
-        Ok(match (&self.flows[index].kind, &self.supplies[index]) {
-            (FlowKind::Orifice { back_pressure_pa: back, .. }, _) => {
+        Ok(match &self.flows[index].kind {
+            FlowKind::Orifice { back_pressure_pa: back, .. } => {
                 let critical_pa = orifice::mass_flux(fluid, outlet, *back)?.critical_pressure_pa;
                 Some(margins(outlet, *back, critical_pa))
             }
-            (FlowKind::Release { opening, back_pressure_pa: back }, _) => {
+            FlowKind::Release { opening, back_pressure_pa: back } => {
                 Some(margins(outlet, *back, opening.flow(fluid, outlet, *back)?.choking_pressure_pa))
             }
-            (FlowKind::Supply { opening, .. }, Some(supply)) => {
-                let source = supply.state(fluid, &self.moment, self.drawn(index))?;
-                let flow = opening.flow(fluid, &source, outlet.pressure_pa)?;
+            FlowKind::Supply { opening, .. } => {
+                let (source, flow) = self.supplied(index, opening, fluid, outlet, self.drawn(index))?;
                 Some(margins(&source, outlet.pressure_pa, flow.choking_pressure_pa))
             }
             _ => None,

@@ -166,7 +166,7 @@ impl Signal<'_> {
             Dimension::MassFlow => {
                 let bound = "between 0 and 100 kg/s";
                 let remedy = "the direction is clear from [[leak]], [[discharge]] or [[refill]]; check the unit, _g_h or _kg_s";
-                check::within(path, value, (0.0, super::flows::MASS_FLOW_MAX_KG_S), bound, remedy)
+                check::within(path, value, (0.0, super::opening::MASS_FLOW_MAX_KG_S), bound, remedy)
             }
             Dimension::Film => {
                 let bound = "between 0 and 10000 W/m2/K";
