@@ -133,7 +133,7 @@ impl HowItFlows<'_> {
     fn valve(&self, path: PathOf<'_>, kv_m3_h: f64) -> Result<Opening, ThermalError> {
         let remedy = "give the flow coefficient of the data sheet, 0.01 to 100 are usual; Cv is 1.156 Kv";
         check::positive(&path("kv_m3_h"), kv_m3_h, remedy)?;
-        let kv_m3_h = check::within(&path("kv_m3_h"), kv_m3_h, (0.0, 1e5), "at most 100000 m3/h", remedy)?;
+        let kv_m3_h = check::within(&path("kv_m3_h"), kv_m3_h, (0.0, 1e4), "at most 10000 m3/h", remedy)?;
         let x_t = self.x_t.unwrap_or(X_T_GLOBE);
         let bound = "between 0.1 and 0.8";
         let remedy = "0.72 is a globe valve, 0.25 to 0.4 a ball or butterfly valve";
