@@ -122,7 +122,7 @@ fn two_phases_by_density_and_temperature_are_refused() {
     }
 }
 
-/// Dew and bubble pressures of Lemmon et al. (2000) at 100 K, as the library `chemicals` 1.1 prints them: 567424.1338937 and 663128.5894402 Pa.
+/// Dew and bubble pressures of Lemmon et al. (2000) at 100 K, as the library `chemicals` prints them: 567424.1338937 and 663128.5894402 Pa.
 #[test]
 fn air_between_its_dew_and_its_bubble_line_is_refused() {
     let air = Fluid::named("air").unwrap();
