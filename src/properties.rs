@@ -23,8 +23,9 @@ pub(crate) enum PropertyError {
     Fluid(#[from] ThermalError),
     /// No temperature belongs to pressure and density.
     #[error(
-        "no temperature between {LOWEST_K} K and {HIGHEST_K} K has pressure {pressure_pa:e} Pa at density {density_kg_m3:e} kg/m³ \
-         in the range of the equation of state: check both numbers and their units"
+        "no temperature between {LOWEST_K} K and {HIGHEST_K} K has pressure {} Pa at density {} kg/m³ \
+         in the range of the equation of state: check both numbers and their units",
+        number(*.pressure_pa, 10), number(*.density_kg_m3, 10)
     )]
     NoTemperature {
         /// Pressure, Pa.
@@ -125,12 +126,43 @@ fn temperature_k(fluid: &Fluid, pressure_pa: f64, density_kg_m3: f64) -> Result<
     Err(missing())
 }
 
+/// A row of a table of states.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Row {
+    /// A state.
+    Known(Properties),
+    /// What was given for one that the gas does not have.
+    Refused(FixedQuantities),
+}
+
+impl Row {
+    /// A property; NaN, an empty cell, for what a refused state does not have.
+    fn value(&self, name: &str, value: fn(&Properties) -> f64) -> f64 {
+        match self {
+            Self::Known(properties) => value(properties),
+            Self::Refused(given) => given.named(name).unwrap_or(f64::NAN),
+        }
+    }
+}
+
+impl FixedQuantities {
+    /// What was given of a column.
+    fn named(self, name: &str) -> Option<f64> {
+        match (self, name) {
+            (Self::TemperaturePressure(t, _) | Self::TemperatureDensity(t, _), "temperature_k") => Some(t),
+            (Self::TemperaturePressure(_, p) | Self::PressureDensity(p, _), "pressure_pa") => Some(p),
+            (Self::TemperatureDensity(_, rho) | Self::PressureDensity(_, rho), "density_kg_m3") => Some(rho),
+            _ => None,
+        }
+    }
+}
+
 /// The states as columns.
-pub(crate) fn table(states: &[Properties]) -> Table {
+pub(crate) fn table(rows: &[Row]) -> Table {
     // All digits of a double: such tables are compared with references.
     let mut table = Table::new();
     for (name, _, _, value) in PROPERTIES {
-        table.push(name, Digits::Significant(16), states.iter().map(value));
+        table.push(name, Digits::Significant(16), rows.iter().map(|row| row.value(name, value)));
     }
     table
 }
@@ -155,10 +187,11 @@ pub(crate) fn summary(fluid: &str, properties: &Properties) -> Report {
 }
 
 /// Many states for people.
-pub(crate) fn summary_of_many(fluid: &str, states: &[Properties]) -> Report {
+pub(crate) fn summary_of_many(fluid: &str, rows: &[Row]) -> Report {
     let mut table = Table::new();
-    for (_, name, unit, value) in PROPERTIES {
-        table.push_quantity(name, unit, Digits::Significant(6), states.iter().map(value));
+    for (column, name, unit, value) in PROPERTIES {
+        let values = rows.iter().map(|row| row.value(column, value));
+        table.push_quantity(name, unit, Digits::Significant(6), values);
     }
     Report::new(format!("Properties of {fluid}")).table("", table)
 }

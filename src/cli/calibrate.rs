@@ -14,6 +14,8 @@ use crate::estimator::sensor::SensorsSpec;
 use crate::report::Input;
 use crate::report::calibrate as report;
 use crate::report::calibrate::Study;
+use crate::report::simulation;
+use crate::thermal::model::with_real_gas_coefficients;
 use crate::thermal::vessel::{Vessel, VesselSpec};
 use anyhow::{Context, bail};
 use std::collections::BTreeMap;
@@ -138,7 +140,10 @@ impl Options {
             let recording = reading.read(log, of_log)?;
             let (recording, conditions) = match self.scenarios.get(log) {
                 Some(scenario) => {
-                    let conditions = exposure.of_scenario(&recording, inputs.scenario(scenario)?, of_log)?;
+                    let scenario = inputs.scenario(scenario)?;
+                    let (scenario, converted) = with_real_gas_coefficients(of_log, &scenario)?;
+                    converted.iter().for_each(|one| messages.say(&simulation::conversion(one)));
+                    let conditions = exposure.of_scenario(&recording, scenario, of_log)?;
                     (recording, conditions)
                 }
                 None => {

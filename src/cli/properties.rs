@@ -7,10 +7,10 @@ use super::output::Target;
 use super::states;
 use super::states::Quantities;
 use super::views::Views;
-use crate::properties::{self, Properties};
+use crate::properties::{self, Row};
 use crate::report::{Provenance, Report};
 use crate::thermal::fluid::{Equation, Fluid};
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::PathBuf;
@@ -48,7 +48,8 @@ pub(super) struct PropertiesArguments {
 }
 
 const PROPERTIES_EXAMPLES: &str = "\
-Without --output and --format one state is a table for people.
+Without --output and --format one state is a table for people. A state of --states that the gas does
+not have (two-phase, solid, out of range) leaves its cells empty and costs a caution.
 
 Examples:
   cylwatch properties nitrogen --temperature-degc 15 --pressure-bar 200
@@ -70,45 +71,53 @@ pub(super) fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow
     let many = arguments.states.is_some();
     let states = match &arguments.states {
         Some(path) => of_file(&fluid, &path.to_string_lossy(), &inputs, messages)?,
-        None => vec![properties::evaluate(&fluid, arguments.given.state()?)?],
+        None => vec![Row::Known(properties::evaluate(&fluid, arguments.given.state()?)?)],
     };
     let provenance = inputs.provenance();
     let for_people = arguments.data.format.is_none() && !many && matches!(target, Target::Stdout);
-    let text = match arguments.data.format() {
-        _ if for_people => {
-            Report { title: String::new(), ..properties::summary(&arguments.fluid, &states[0]) }.to_text()
+    let text = match (arguments.data.format(), &states[..]) {
+        (_, [Row::Known(one)]) if for_people => {
+            Report { title: String::new(), ..properties::summary(&arguments.fluid, one) }.to_text()
         }
-        Format::Csv => properties::table(&states).to_csv(&provenance, &[]),
-        Format::Json => document(&arguments, &states, &provenance)?,
+        (Format::Csv, _) => properties::table(&states).to_csv(&provenance, &[]),
+        (Format::Json, _) => document(&arguments, &states, &provenance)?,
     };
     let summary = || match &states[..] {
-        [one] => properties::summary(&arguments.fluid, one),
+        [Row::Known(one)] => properties::summary(&arguments.fluid, one),
         many => properties::summary_of_many(&arguments.fluid, many),
     };
     views.make_report(summary, Vec::new(), &provenance)?.write()?;
     target.write(text.as_bytes())
 }
 
-fn of_file(
-    fluid: &Fluid,
-    file: &str,
-    inputs: &Inputs,
-    messages: &Messages,
-) -> anyhow::Result<Vec<Properties>> {
+/// The states of a file. One that the gas does not have leaves its cells empty and is told; where it has none of them, the first is the error.
+fn of_file(fluid: &Fluid, file: &str, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Vec<Row>> {
     if file.is_empty() {
         bail!("--states has an empty name: write a file name or `-` for stdin");
     }
     let text = inputs.read(file)?;
     let shown = if file == "-" { "stdin" } else { file };
-    let evaluated = states::read(&text, shown, messages)?
-        .into_iter()
-        .map(|row| properties::evaluate(fluid, row.given).with_context(|| format!("{shown}:{}", row.line)));
-    evaluated.collect()
+    let mut rows = Vec::new();
+    let mut refused = Vec::new();
+    for states::Row { line, given } in states::read(&text, shown, messages)? {
+        match properties::evaluate(fluid, given) {
+            Ok(state) => rows.push(Row::Known(state)),
+            Err(error) => {
+                rows.push(Row::Refused(given));
+                refused.push(anyhow::Error::new(error).context(format!("{shown}:{line}")));
+            }
+        }
+    }
+    if refused.len() == rows.len() {
+        return Err(refused.swap_remove(0));
+    }
+    refused.iter().for_each(|error| messages.caution(&format!("{error:#}; its cells stay empty")));
+    Ok(rows)
 }
 
 fn document(
     arguments: &PropertiesArguments,
-    states: &[Properties],
+    states: &[Row],
     provenance: &Provenance,
 ) -> anyhow::Result<String> {
     let document = json!({

@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::views::Views;
 use crate::log::is_parquet;
 use crate::report::{Provenance, Readings, aligned, simulation};
+use crate::thermal::model::with_real_gas_coefficients;
 use crate::thermal::simulate::{SimulationSettings, simulate};
 use crate::thermal::trajectory::Trajectory;
 use crate::thermal::{scenario, vessel};
@@ -46,8 +47,9 @@ pub(super) struct SimulateArguments {
 
 const SIMULATE_EXAMPLES: &str = "\
 Columns: time_s, ambient_degc, gas_mean_degc, gas_<k>_degc (k = 1 at the bottom),
-wall_<name>_degc, shoulder_degc, valve_degc, pressure_bar (absolute), mass_kg, outflow_g_h,
-heat_to_gas_w, and what the scenario's sensors read: measured_<sensor>_degc, _bar or _barg; an
+wall_<name>_degc, shoulder_degc, valve_degc, wall_inner_mean_degc, wall_inner_<name>_degc,
+liner_mean_degc, pressure_bar (absolute), mass_kg, outflow_g_h, heat_to_gas_w,
+<refill>_source_degc and _bar of a source vessel, and what the scenario's sensors read: measured_<sensor>_degc, _bar or _barg; an
 empty cell is a lost reading.
 
 Examples:
@@ -96,7 +98,8 @@ pub(super) fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
     let vessel = inputs.vessel(&options.vessel, messages)?;
-    let scenario = inputs.scenario(&options.scenario)?;
+    let (scenario, converted) = with_real_gas_coefficients(&vessel, &inputs.scenario(&options.scenario)?)?;
+    converted.iter().for_each(|one| messages.say(&simulation::conversion(one)));
     let progress = Progress::new(messages);
     let run =
         simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;

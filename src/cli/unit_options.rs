@@ -26,13 +26,16 @@ pub(super) struct Quantity {
 }
 
 impl Quantity {
-    /// SI value; above zero, as an absolute temperature, pressure or density is.
+    /// SI value; above zero, as an absolute temperature, pressure or density is. A film may be 0: an insulated surface.
     pub(super) fn si(&self) -> anyhow::Result<f64> {
         let (name, value, unit) = (&self.name, self.value, self.unit);
         if !value.is_finite() {
             bail!("{name} = {value} must be a finite number");
         }
         let si = unit.to_si(value);
+        if self.dimension == Dimension::Film && si == 0.0 {
+            return Ok(si);
+        }
         if si <= 0.0 {
             bail!("{name} = {value} must be above {}: check the number and its unit", unit.from_si(0.0));
         }

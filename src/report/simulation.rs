@@ -3,6 +3,7 @@ use super::figure::{Figure, Item, Mark, Panel, style};
 use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Report, Table, number, readings};
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::{Sensor, Site};
+use crate::thermal::model::ConvertedCoefficient;
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 use serde_json::{Value, json};
@@ -18,7 +19,7 @@ fn bar(values_pa: &[f64]) -> impl Iterator<Item = f64> + '_ {
     values_pa.iter().map(|p| p / BAR_PA)
 }
 
-/// Columns of a simulation: time, temperatures, pressure, mass, flows, and the readings of the scenario's sensors.
+/// Columns of a simulation: time, temperatures, pressure, mass, flows, source vessels, and the readings of the scenario's sensors.
 pub(crate) fn table(run: &Trajectory, readings: &Readings) -> Table {
     let mut table = Table::new();
     table.push("time_s", DIGITS, run.time_s.iter().copied());
@@ -39,15 +40,47 @@ pub(crate) fn table(run: &Trajectory, readings: &Readings) -> Table {
             table.push(format!("{name}_degc"), DIGITS, celsius(&surface));
         }
     }
+    table.push("wall_inner_mean_degc", DIGITS, celsius(&run.wall_inner_mean_k));
+    for place in &run.places {
+        if let Some(surface) = run.inner_surface_k(place.name) {
+            table.push(format!("wall_inner_{}_degc", place.name), DIGITS, celsius(&surface));
+        }
+    }
+    if let Some(liner) = &run.liner_mean_k {
+        table.push("liner_mean_degc", DIGITS, celsius(liner));
+    }
     table.push("pressure_bar", DIGITS, bar(&run.pressure_pa));
     table.push("mass_kg", DIGITS, run.mass_kg.iter().copied());
     table.push("outflow_g_h", DIGITS, run.outflow_kg_s.iter().map(|flow| flow * GRAM_PER_HOUR));
     table.push("heat_to_gas_w", DIGITS, run.heat_to_gas_w.iter().copied());
+    for source in &run.sources {
+        let name = column_word(&source.flow);
+        table.push(format!("{name}_source_degc"), DIGITS, celsius(&source.temperature_k));
+        table.push(format!("{name}_source_bar"), DIGITS, bar(&source.pressure_pa));
+    }
     for (sensor, values) in readings.columns() {
         let (name, values) = readings::column(sensor, &values);
         table.push(name, DIGITS, values);
     }
     table
+}
+
+/// A name as part of a column's name.
+fn column_word(name: &str) -> String {
+    let word = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+    name.chars().map(word).collect()
+}
+
+/// A discharge coefficient that was converted, in words.
+pub(crate) fn conversion(of: &ConvertedCoefficient) -> String {
+    format!(
+        "{}: discharge coefficient {} with an ideal gas is {} with the real one, at {} bar and {} °C",
+        of.flow,
+        number(of.ideal_gas, 4),
+        number(of.real_gas, 4),
+        number(of.pressure_pa / BAR_PA, 5),
+        number(of.temperature_k - ZERO_CELSIUS_K, 4)
+    )
 }
 
 /// An event in words.

@@ -129,3 +129,38 @@ fn a_state_takes_two_quantities_of_its_three() {
     given(&["--pressure-bar", "2", "--states", "-"], &["cannot be used with"]);
     given(&["--states", "missing.csv"], &["missing.csv", "cannot be read"]);
 }
+
+#[test]
+fn a_state_that_the_gas_does_not_have_leaves_an_empty_row_and_a_caution() {
+    let folder = tempdir().unwrap();
+    let text = "temperature_k,pressure_bar\n300,1\n100,6\n97,6\n";
+    let outcome = run_with_stdin(folder.path(), &["properties", "air", "--states", "-"], text);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert_eq!(outcome.stderr.lines().count(), 1, "{}", outcome.stderr);
+    for words in ["stdin:3", "air at 600000 Pa and 100 K", "dew line", "stay empty"] {
+        assert!(outcome.stderr.contains(words), "{words} is missing in {}", outcome.stderr);
+    }
+    let (_, rows) = rows(&outcome.stdout);
+    assert_eq!(rows.len(), 3);
+    assert_eq!(rows[1][..4].join(","), "100,600000,,");
+    assert!(rows[0].iter().chain(&rows[2]).all(|cell| !cell.is_empty()));
+    // Where there is no state at all there is no table either.
+    let all_bad = run_with_stdin(
+        folder.path(),
+        &["properties", "air", "--states", "-", "-o", "out.csv"],
+        "temperature_degc,pressure_bar\n-173.15,6\n-173.15,6.1\n",
+    );
+    refusal(all_bad, &["stdin:2", "air at 600000 Pa and 100 K"]);
+    assert!(files(folder.path()).is_empty());
+}
+
+#[test]
+fn numbers_of_messages_are_those_that_were_typed() {
+    let folder = tempdir().unwrap();
+    let arguments = ["properties", "nitrogen", "--temperature-degc=-146.958", "--pressure-bar", "99999.1"];
+    let outcome = run(folder.path(), &arguments);
+    assert!(outcome.stderr.contains("9999910000 Pa"), "{}", outcome.stderr);
+    let arguments = ["properties", "nitrogen", "--temperature-degc=-246.958", "--pressure-bar", "1"];
+    let outcome = run(folder.path(), &arguments);
+    assert!(outcome.stderr.contains("temperature 26.192 K"), "{}", outcome.stderr);
+}

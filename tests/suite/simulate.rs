@@ -45,7 +45,8 @@ fn the_columns_are_those_of_the_contract() {
     assert_eq!(
         header.join(","),
         "time_s,ambient_degc,gas_mean_degc,gas_1_degc,wall_bottom_degc,wall_middle_degc,wall_neck_degc,shoulder_degc,\
-         valve_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc,\
+         valve_degc,wall_inner_mean_degc,wall_inner_bottom_degc,wall_inner_middle_degc,wall_inner_shoulder_degc,\
+         wall_inner_neck_degc,pressure_bar,mass_kg,outflow_g_h,heat_to_gas_w,measured_shoulder_degc,measured_valve_degc,\
          measured_pressure_bar"
     );
 }
@@ -325,4 +326,63 @@ fn parquet_is_refused_where_the_program_was_built_without_it() {
     let words = ["without Parquet", "--features parquet"];
     refused(folder.path(), &["simulate", "nitrogen-20l", "shock-cold", "-o", "run.parquet"], &words);
     assert!(files(folder.path()).is_empty());
+}
+
+#[test]
+fn an_ideal_gas_coefficient_is_converted_and_told() {
+    let folder = tempdir().unwrap();
+    let text = include_str!("../../crates/thermal/presets/scenarios/haque-i1.toml");
+    let text = text.replace("discharge_coefficient =", "discharge_coefficient_ideal_gas =");
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    let outcome = run(folder.path(), &["simulate", "haque-i1", "s.toml", "-o", "run.csv"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let told = "orifice: discharge coefficient 0.8 with an ideal gas is 0.7592 with the real one, at 150 bar and 14.85 °C";
+    assert!(outcome.stderr.contains(told), "{}", outcome.stderr);
+}
+
+#[test]
+fn a_source_vessel_and_a_liner_have_columns() {
+    let folder = tempdir().unwrap();
+    let scenario = include_str!("../../crates/thermal/presets/scenarios/refill-from-bank.toml")
+        .replace("[[refill]]", "[[refill]]\nname = \"Bank, left\"");
+    std::fs::write(folder.path().join("s.toml"), scenario).unwrap();
+    let steel = "[[layer]]\nmaterial = ";
+    let vessel = include_str!("../../crates/thermal/presets/vessels/nitrogen-20l.toml");
+    assert_eq!(vessel.matches(steel).count(), 1);
+    let lined = format!("[[layer]]\nmaterial = \"hdpe\"\nthickness_mm = 4\n\n{steel}");
+    std::fs::write(folder.path().join("v.toml"), vessel.replace(steel, &lined)).unwrap();
+    let outcome = run(folder.path(), &["simulate", "v.toml", "s.toml"]);
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let (header, _) = rows(&outcome.stdout);
+    assert!(header.contains(&"bank__left_source_bar"), "{header:?}");
+    let last = |name: &str| *column(&outcome.stdout, name).last().unwrap();
+    assert!((last("bank__left_source_bar") - last("pressure_bar")).abs() < 0.1);
+    assert!(last("bank__left_source_degc") < 0.0);
+    // A liner lies between the gas and the wall, and so does its temperature while they differ.
+    let at = |name: &str, k: usize| column(&outcome.stdout, name)[k];
+    let (gas, liner, outer) =
+        (at("gas_mean_degc", 20), at("liner_mean_degc", 20), at("wall_middle_degc", 20));
+    let inner = at("wall_inner_mean_degc", 20);
+    assert!(gas > inner && inner > liner && liner > outer, "{gas} {inner} {liner} {outer}");
+}
+
+#[test]
+fn a_refill_that_cannot_be_is_refused_with_its_line_or_its_time() {
+    let folder = tempdir().unwrap();
+    let scenario = |refill: &str| {
+        let text =
+            SHORT.replace("[[leak]]\nflow_g_h = 360\nstart_s = 60\n", &format!("[[refill]]\n{refill}\n"));
+        std::fs::write(folder.path().join("s.toml"), text).unwrap();
+        run(folder.path(), &["simulate", "nitrogen-20l", "s.toml", "-o", "run.csv"])
+    };
+    refusal(scenario("diameter_mm = 1"), &["s.toml:10", "source_temperature_degc is missing"]);
+    refusal(
+        scenario(
+            "kv_m3_h = 1\ndischarge_coefficient = 0.8\nsource_pressure_bar = 300\nsource_temperature_degc = 15",
+        ),
+        &["s.toml:12", "discharge_coefficient cannot stand beside kv"],
+    );
+    let cold = "diameter_mm = 1\nsource_pressure_bar = 20\nsource_temperature_degc = -170";
+    refusal(scenario(cold), &["the source of refill", "nitrogen"]);
+    assert_eq!(files(folder.path()), ["s.toml"]);
 }

@@ -2,6 +2,12 @@
 #[cfg(feature = "files")]
 use crate::document::Problem;
 
+/// A number of a message without the digits that a change of units leaves: 126.192 and not 126.19200000000001.
+fn short(value: &f64) -> String {
+    let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(*value);
+    rounded.to_string()
+}
+
 /// Errors of the thermal crate. Messages are fragments that name value, bound and remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -91,7 +97,8 @@ pub enum ThermalError {
     },
     /// The temperature is outside the equation's range.
     #[error(
-        "temperature {temperature_k} K of {fluid} must lie between {lowest_k} K and {highest_k} K, the range of its equation of state"
+        "temperature {} K of {fluid} must lie between {lowest_k} K and {highest_k} K, the range of its equation of state",
+        short(.temperature_k)
     )]
     TemperatureOutside {
         /// Fluid.
@@ -105,7 +112,8 @@ pub enum ThermalError {
     },
     /// The pressure is outside the equation's range.
     #[error(
-        "pressure {pressure_pa} Pa of {fluid} must be positive and at most {highest_pa} Pa, the range of its equation of state"
+        "pressure {} Pa of {fluid} must be positive and at most {highest_pa} Pa, the range of its equation of state",
+        short(.pressure_pa)
     )]
     PressureOutside {
         /// Fluid.
@@ -117,7 +125,8 @@ pub enum ThermalError {
     },
     /// The state is on the solid side of the melting line.
     #[error(
-        "{fluid} at {pressure_pa} Pa and {temperature_k} K is solid (melting pressure {melting_pa:.4e} Pa): lower the pressure or raise the temperature"
+        "{fluid} at {} Pa and {} K is solid (melting pressure {melting_pa:.4e} Pa): lower the pressure or raise the temperature",
+        short(.pressure_pa), short(.temperature_k)
     )]
     Solid {
         /// Fluid.
@@ -130,7 +139,7 @@ pub enum ThermalError {
         melting_pa: f64,
     },
     /// The density is outside the equation's range.
-    #[error("density {density_kg_m3} kg/m3 of {fluid} must be positive and at most {highest_kg_m3:.1} kg/m3")]
+    #[error("density {} kg/m3 of {fluid} must be positive and at most {highest_kg_m3:.1} kg/m3", short(.density_kg_m3))]
     DensityOutside {
         /// Fluid.
         fluid: &'static str,
@@ -141,7 +150,8 @@ pub enum ThermalError {
     },
     /// A pressure belongs to a density beyond the domain.
     #[error(
-        "{fluid} at {pressure_pa} Pa is denser than {highest_kg_m3:.1} kg/m3, the bound of its domain: lower the pressure or raise the temperature"
+        "{fluid} at {} Pa is denser than {highest_kg_m3:.1} kg/m3, the bound of its domain: lower the pressure or raise the temperature",
+        short(.pressure_pa)
     )]
     TooDense {
         /// Fluid.
@@ -183,9 +193,28 @@ pub enum ThermalError {
         /// Saturation pressure at 15 °C, Pa.
         at_15_degc_pa: f64,
     },
+    /// A mixture between its dew and its bubble line.
+    #[error(
+        "{fluid} at {} Pa and {} K is between its dew line ({dew_pa:.0} Pa) and its bubble line ({bubble_pa:.0} Pa), part vapour and part \
+         liquid: only single-phase states are modelled",
+        short(.pressure_pa), short(.temperature_k)
+    )]
+    BetweenDewAndBubble {
+        /// Fluid.
+        fluid: &'static str,
+        /// Pressure, Pa.
+        pressure_pa: f64,
+        /// Temperature, K.
+        temperature_k: f64,
+        /// Pressure at which the vapour begins to condense, Pa.
+        dew_pa: f64,
+        /// Pressure at which the liquid begins to boil, Pa.
+        bubble_pa: f64,
+    },
     /// An enthalpy or entropy between vapour and liquid.
     #[error(
-        "{fluid} at {pressure_pa} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled"
+        "{fluid} at {} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled",
+        short(.pressure_pa)
     )]
     TwoPhaseIsobar {
         /// Fluid.
@@ -197,7 +226,8 @@ pub enum ThermalError {
     },
     /// Pressure and temperature on the saturation line do not fix the density.
     #[error(
-        "{fluid} at {pressure_pa} Pa and {temperature_k} K is on its saturation line ({saturation_pa} Pa): pressure and temperature do not fix the density"
+        "{fluid} at {} Pa and {} K is on its saturation line ({} Pa): pressure and temperature do not fix the density",
+        short(.pressure_pa), short(.temperature_k), short(.saturation_pa)
     )]
     OnSaturation {
         /// Fluid.
@@ -211,7 +241,8 @@ pub enum ThermalError {
     },
     /// Too near the critical point.
     #[error(
-        "{fluid} at {temperature_k:.3} K is within 0.5 % below its critical temperature {critical_k} K, where its phase is not resolved: stay outside"
+        "{fluid} at {temperature_k:.3} K is within 0.5 % below its critical temperature {} K, where its phase is not resolved: stay outside",
+        short(.critical_k)
     )]
     NearCritical {
         /// Fluid.
@@ -222,7 +253,10 @@ pub enum ThermalError {
         critical_k: f64,
     },
     /// No temperature has the energy.
-    #[error("no temperature gives {fluid} at {density_kg_m3} kg/m3 the internal energy {energy_j_kg} J/kg")]
+    #[error(
+        "no temperature gives {fluid} at {} kg/m3 the internal energy {} J/kg",
+        short(.density_kg_m3), short(.energy_j_kg)
+    )]
     NoTemperature {
         /// Fluid.
         fluid: &'static str,
@@ -232,7 +266,10 @@ pub enum ThermalError {
         energy_j_kg: f64,
     },
     /// No state on an isobar.
-    #[error("no state of {fluid} at {pressure_pa} Pa inside the domain has the {property} {target} (SI)")]
+    #[error(
+        "no state of {fluid} at {} Pa inside the domain has the {property} {} (SI)",
+        short(.pressure_pa), short(.target)
+    )]
     NoState {
         /// Fluid.
         fluid: &'static str,
@@ -256,6 +293,14 @@ pub enum ThermalError {
         temperature_k: f64,
         /// Fluid.
         fluid: String,
+    },
+    /// The source of a refill has no usable state.
+    #[error("the source of {flow}: {cause}")]
+    Source {
+        /// Name of the refill.
+        flow: String,
+        /// What is wrong with its gas.
+        cause: Box<ThermalError>,
     },
     /// No temperature and volume belong to the gas's mass and energy.
     #[error(

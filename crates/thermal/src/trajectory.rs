@@ -23,6 +23,10 @@ pub struct Trajectory {
     pub wall_inner_k: Vec<Vec<f64>>,
     /// Mean wall temperature, K: that of a uniform wall of the same energy.
     pub wall_mean_k: Vec<f64>,
+    /// Mean temperature of the inner surface, K, by area.
+    pub wall_inner_mean_k: Vec<f64>,
+    /// Mean temperature of the innermost layer, K, by heat capacity, if the wall has several.
+    pub liner_mean_k: Option<Vec<f64>>,
     /// Valve temperature, K, if the vessel has a valve.
     pub valve_k: Option<Vec<f64>>,
     /// Gas pressure, Pa absolute.
@@ -33,6 +37,8 @@ pub struct Trajectory {
     pub outflow_kg_s: Vec<f64>,
     /// Heat flow from the wall to the gas, W.
     pub heat_to_gas_w: Vec<f64>,
+    /// The vessels that refills draw from.
+    pub sources: Vec<SourceCourse>,
     /// Names of places and the axial wall cell each stands for: bottom, middle, shoulder, neck.
     pub places: Vec<Place>,
     /// What happened, in order of time.
@@ -41,6 +47,17 @@ pub struct Trajectory {
     pub ledger: Ledger,
     /// What the solver did.
     pub statistics: SolverStatistics,
+}
+
+/// The gas of a vessel that a refill draws from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceCourse {
+    /// Name of the refill.
+    pub flow: String,
+    /// Temperature, K.
+    pub temperature_k: Vec<f64>,
+    /// Pressure, Pa absolute.
+    pub pressure_pa: Vec<f64>,
 }
 
 /// A named place on the wall.
@@ -53,6 +70,12 @@ pub struct Place {
 }
 
 impl Trajectory {
+    /// Inner surface temperature at a named place against time, K.
+    pub fn inner_surface_k(&self, place: &str) -> Option<Vec<f64>> {
+        let cell = self.places.iter().find(|p| p.name == place)?.axial_cell;
+        Some(self.wall_inner_k.iter().map(|sample| sample[cell]).collect())
+    }
+
     /// Outer surface temperature at a named place against time, K; `valve` is the valve body.
     pub fn surface_k(&self, place: &str) -> Option<Vec<f64>> {
         if place == "valve" {

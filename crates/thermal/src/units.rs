@@ -55,6 +55,8 @@ pub enum Dimension {
     Mass,
     /// Mass flow, kg/s.
     MassFlow,
+    /// Flow coefficient Kv of a valve, m³/h: the unit belongs to its definition.
+    FlowCoefficient,
     /// Density, kg/m³.
     Density,
     /// Film coefficient, W/(m² K).
@@ -174,6 +176,7 @@ pub const UNITS: &[Unit] = {
         unit("kg_s", MassFlow, 1.0, 0.0),
         unit("g_s", MassFlow, 1e-3, 0.0),
         unit("kg_h", MassFlow, 1.0 / 3_600.0, 0.0),
+        unit("m3_h", FlowCoefficient, 1.0, 0.0),
         unit("kg_m3", Density, 1.0, 0.0),
         unit("w_m2_k", Film, 1.0, 0.0),
         unit("w_k", Conductance, 1.0, 0.0),

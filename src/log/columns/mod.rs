@@ -32,8 +32,12 @@ static KNOWN: LazyLock<String> = LazyLock::new(|| {
     [whole, beginnings].concat().join(", ")
 });
 
-/// Columns of a simulation that no observer has a use for.
-const SIMULATED_ONLY: [&str; 1] = ["heat_to_gas_w"];
+/// Whether a column of a simulation is one that no observer has a use for: what only the model sees.
+fn is_simulated_only(header: &str) -> bool {
+    header == "heat_to_gas_w"
+        || ["wall_inner_", "liner_"].iter().any(|beginning| header.starts_with(beginning))
+        || ["_source_degc", "_source_bar"].iter().any(|end| header.ends_with(end))
+}
 
 /// Names of a column of dates, in small letters.
 const DATE: [&str; 3] = ["date", "datum", "tag"];
@@ -191,9 +195,10 @@ fn found<'a>(
 /// Whether a name in small letters is one of ours, with its unit.
 pub(super) fn is_ours(name: &str, sensors: &[String]) -> bool {
     let known = meaning(name, sensors);
-    known.is_ok_and(|known| {
-        !matches!(known, Meaning::Unknown | Meaning::Clock | Meaning::Time(TimeForm::Date))
-    })
+    is_simulated_only(name)
+        || known.is_ok_and(|known| {
+            !matches!(known, Meaning::Unknown | Meaning::Clock | Meaning::Time(TimeForm::Date))
+        })
 }
 
 /// Whether a name in small letters says that its column is a date or a time.
@@ -264,6 +269,10 @@ fn meaning(name: &str, sensors: &[String]) -> Result<Meaning, Problem> {
         if let Some(unit) = units::of(plain, base, dimension)? {
             return Ok(reading(base, unit).unwrap_or(Meaning::Unknown));
         }
+    }
+    // Inside is no place that a sensor of the surface sits at.
+    if plain.starts_with("wall_inner_") {
+        return Ok(Meaning::Unknown);
     }
     let prefixed = units::of_prefixed(plain)?;
     Ok(prefixed.and_then(|(base, unit)| reading(base, unit)).unwrap_or(Meaning::Unknown))
@@ -365,7 +374,7 @@ fn twice(second: &Found<'_>, first: &Found<'_>, at: &str) -> LogError {
 fn set_aside(found: &[Found<'_>], at: &str, cautions: &mut Cautions) {
     let simulated = found.iter().any(|c| matches!(c.meaning, Meaning::Reading { measured: true, .. }));
     let is_known = |column: &Found<'_>| {
-        column.meaning != Meaning::Unknown || (simulated && SIMULATED_ONLY.contains(&column.header))
+        column.meaning != Meaning::Unknown || (simulated && is_simulated_only(column.header))
     };
     let unknown: Vec<&str> = found.iter().filter(|c| !is_known(c)).map(|column| column.header).collect();
     if unknown.is_empty() {

@@ -68,8 +68,8 @@ impl Setup {
         match kind {
             ParameterKind::DischargeCoefficient { flow } => {
                 for flow in scenario.flows.iter_mut().filter(|known| known.name == *flow) {
-                    if let FlowKind::Orifice { discharge_coefficient, .. } = &mut flow.kind {
-                        *discharge_coefficient = value;
+                    if let Some(coefficient) = flow.kind.discharge_coefficient_mut() {
+                        *coefficient = value;
                     }
                 }
             }
@@ -119,8 +119,9 @@ impl Setup {
                 fail("a valve", "leave the parameter out, or give the vessel a valve")
             }
             ParameterKind::DischargeCoefficient { flow } => {
-                let orifice = |kind: &FlowKind| matches!(kind, FlowKind::Orifice { .. });
-                if self.scenario.flows.iter().any(|known| known.name == *flow && orifice(&known.kind)) {
+                let has_coefficient = |kind: &FlowKind| kind.clone().discharge_coefficient_mut().is_some();
+                if self.scenario.flows.iter().any(|known| known.name == *flow && has_coefficient(&known.kind))
+                {
                     Ok(())
                 } else {
                     fail("an orifice flow of this name", "name a flow of the scenario that has a bore")

@@ -4,5 +4,6 @@ mod blowdown;
 mod coverage;
 mod cylinder;
 mod joint;
+mod refill;
 mod refusals;
 mod study;

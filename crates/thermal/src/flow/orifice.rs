@@ -3,7 +3,8 @@
 //! Isentropic nozzle from stagnation to throat: `G = rho sqrt(2 (h_0 - h))` along `s = s_0`.
 //! Choked: the throat speed is the speed of sound, `2 (h_0 - h) = w^2`, which maximises `G`.
 //! Subsonic: the throat has the back pressure. Near equal pressures `sqrt` is replaced by a smooth root that
-//! stays differentiable, so that the flow ends without a singular derivative. Flow back into the cylinder does not occur.
+//! stays differentiable, so that the flow ends without a singular derivative. Nothing flows back. The direction does not matter: a refill has its source for stagnation
+//! and the cylinder for back pressure.
 //! Assumptions: the throat stays single-phase (a metastable state is accepted: condensation is slower than
 //! the passage), one discharge coefficient for both regimes.
 //! Real-gas critical flow is 4-6 % above the ideal gas at 65-150 bar nitrogen.
@@ -40,20 +41,34 @@ pub fn mass_flux<D: Real>(
     stagnation: &State<D>,
     back_pressure_pa: f64,
 ) -> Result<OrificeFlux<D>, ThermalError> {
+    mass_flux_into(fluid, stagnation, D::from(back_pressure_pa))
+}
+
+/// The same to a back pressure that has derivatives, as a cylinder's has that is filled.
+///
+/// # Errors
+/// As [`mass_flux`].
+pub(crate) fn mass_flux_into<D: Real>(
+    fluid: &Fluid,
+    stagnation: &State<D>,
+    back_pressure_pa: D,
+) -> Result<OrificeFlux<D>, ThermalError> {
     let real = Stagnation::of(stagnation);
+    let back_pa = back_pressure_pa.re();
     let critical = throat(fluid, &real, Condition::Sonic)?;
     let critical_pressure_pa = fluid.pressure_pa(critical[0], critical[1]);
-    let choked = critical_pressure_pa >= back_pressure_pa;
-    if real.pressure_pa <= back_pressure_pa {
+    let choked = critical_pressure_pa >= back_pa;
+    if real.pressure_pa <= back_pa {
         return Ok(OrificeFlux { mass_flux_kg_m2_s: D::from(0.0), critical_pressure_pa, choked: false });
     }
+    let at = if choked { critical } else { throat(fluid, &real, Condition::Pressure(back_pa))? };
     let condition = if choked { Condition::Sonic } else { Condition::Pressure(back_pressure_pa) };
-    let at = if choked { critical } else { throat(fluid, &real, condition)? };
     let state = lifted_throat(fluid, stagnation, condition, at);
     let drop = stagnation.enthalpy_j_kg - state.enthalpy_j_kg;
     let floor = SMOOTH_BELOW * real.pressure_pa / real.density_kg_m3;
-    // sqrt(x) for x >> floor, x / sqrt(floor) for x << floor.
-    let smooth_root = drop / (drop * drop + floor * floor).sqrt().sqrt();
+    // sqrt(x) for x >> floor, x^2 / floor^1.5 for x << floor: the slope ends at 0, as it is where nothing flows.
+    let square = drop * drop;
+    let smooth_root = square * (square + floor * floor).powf(-0.75);
     Ok(OrificeFlux {
         mass_flux_kg_m2_s: state.density_kg_m3 * smooth_root * std::f64::consts::SQRT_2,
         critical_pressure_pa,
@@ -63,9 +78,27 @@ pub fn mass_flux<D: Real>(
 
 /// What fixes the throat beside its entropy.
 #[derive(Clone, Copy, Debug)]
-enum Condition {
+enum Condition<D = f64> {
     Sonic,
-    Pressure(f64),
+    Pressure(D),
+}
+
+impl Condition {
+    fn lifted<D: Real>(self) -> Condition<D> {
+        match self {
+            Self::Sonic => Condition::Sonic,
+            Self::Pressure(p) => Condition::Pressure(D::from(p)),
+        }
+    }
+}
+
+impl<D: Real> Condition<D> {
+    fn re(&self) -> Condition {
+        match self {
+            Self::Sonic => Condition::Sonic,
+            Self::Pressure(p) => Condition::Pressure(p.re()),
+        }
+    }
 }
 
 /// Real parts of the stagnation state.
@@ -93,7 +126,7 @@ impl Stagnation {
 
 /// The two throat equations, scaled by the gas constant and by `R T`.
 fn residual<D: Real>(
-    condition: Condition,
+    condition: Condition<D>,
     throat: &State<D>,
     enthalpy_0: D,
     entropy_0: D,
@@ -122,7 +155,7 @@ fn linearised(
 ) -> ([f64; 2], [[f64; 2]; 2]) {
     let rho: Dual2 = Dual2::from(at[0].ln()).derivative(0).exp();
     let t: Dual2 = Dual2::from(at[1].ln()).derivative(1).exp();
-    let f = residual(condition, &fluid.state(rho, t), enthalpy_0.into(), entropy_0.into(), scale);
+    let f = residual(condition.lifted(), &fluid.state(rho, t), enthalpy_0.into(), entropy_0.into(), scale);
     let gradient = |x: Dual2| {
         let g = x.eps.unwrap_generic(Const::<2>, U1);
         [g[0], g[1]]
@@ -177,12 +210,12 @@ fn throat(fluid: &Fluid, stagnation: &Stagnation, condition: Condition) -> Resul
 fn lifted_throat<D: Real>(
     fluid: &Fluid,
     stagnation: &State<D>,
-    condition: Condition,
+    condition: Condition<D>,
     at: Throat,
 ) -> State<D> {
     let (h0, s0) = (stagnation.enthalpy_j_kg, stagnation.entropy_j_kg_k);
     let scale = scales(fluid, stagnation.temperature_k.re());
-    let (_, j) = linearised(fluid, at, condition, h0.re(), s0.re(), scale);
+    let (_, j) = linearised(fluid, at, condition.re(), h0.re(), s0.re(), scale);
     let fixed = fluid.state(D::from(at[0]), D::from(at[1]));
     let step = solve_2x2(j, residual(condition, &fixed, h0, s0, scale));
     fluid.state((-step[0]).exp() * at[0], (-step[1]).exp() * at[1])

@@ -5,6 +5,9 @@
 //! unphysical loops of multiparameter equations in between do no harm. The saturation pressure is where the Gibbs
 //! energies of the branches agree; their slopes in pressure are the volumes, so that Newton's method finds it, inside a
 //! bracket. No ancillary equation is needed.
+//!
+//! Air is a mixture that its equation takes as one substance. In truth it condenses between two pressures, dew and bubble line, and the
+//! equation's own line lies between them; what is between the two is refused.
 use super::helmholtz::SATURATIONS;
 use super::root::bracketed_newton;
 use super::{Description, Fluid};
@@ -28,7 +31,46 @@ const FILLING_TEMPERATURE_K: f64 = 288.15;
 /// Steps of the scans for the spinodals.
 const SCAN: usize = 400;
 
+/// `ln(p/p_j) = (T_j/T) sum n theta^(k/2)`, `theta = 1 - T/T_j`: Lemmon et al. (2000), equation 1, table 10. Terms (n, k).
+struct BoundaryLine(&'static [(f64, i32)]);
+
+/// Maxcondentherm of air, K, Pa.
+const AIR_J: (f64, f64) = (132.6312, 3.785_02e6);
+const AIR_DEW: BoundaryLine =
+    BoundaryLine(&[(-0.156_726_6, 1), (-5.539_635, 2), (0.756_721_2, 5), (-3.514_322, 8)]);
+const AIR_BUBBLE: BoundaryLine = BoundaryLine(&[
+    (0.226_072_4, 1),
+    (-7.080_499, 2),
+    (5.700_283, 3),
+    (-12.440_17, 4),
+    (17.819_26, 5),
+    (-10.813_64, 6),
+]);
+
+impl BoundaryLine {
+    fn pressure_pa(&self, temperature_k: f64) -> f64 {
+        let root = (1.0 - temperature_k / AIR_J.0).sqrt();
+        let sum: f64 = self.0.iter().map(|&(n, k)| n * root.powi(k)).sum();
+        AIR_J.1 * (AIR_J.0 / temperature_k * sum).exp()
+    }
+}
+
 impl Fluid {
+    /// Refuse what lies between the dew and the bubble line of a mixture.
+    pub(super) fn check_mixture(&self, pressure_pa: f64, temperature_k: f64) -> Result<(), ThermalError> {
+        let is_mixture = self.name() == "air" && matches!(self.description, Description::Reference(_));
+        if !is_mixture || temperature_k >= AIR_J.0 {
+            return Ok(());
+        }
+        let dew_pa = AIR_DEW.pressure_pa(temperature_k);
+        let bubble_pa = AIR_BUBBLE.pressure_pa(temperature_k);
+        if pressure_pa <= dew_pa || pressure_pa >= bubble_pa {
+            return Ok(());
+        }
+        let fluid = self.name();
+        Err(ThermalError::BetweenDewAndBubble { fluid, pressure_pa, temperature_k, dew_pa, bubble_pa })
+    }
+
     /// Vapour-liquid equilibrium at a temperature; `None` at or above the critical temperature and for the ideal gas.
     ///
     /// # Errors
@@ -126,13 +168,14 @@ impl Fluid {
         if temperature_k > 0.95 * critical_k && density_kg_m3 < 0.1 * critical_density {
             return Ok(());
         }
+        let mixture = || self.check_mixture(self.pressure_pa(density_kg_m3, temperature_k), temperature_k);
         if self.saturation_not_above(temperature_k).is_some_and(|known| density_kg_m3 <= known.vapour_kg_m3) {
-            return Ok(());
+            return mixture();
         }
         let Some(saturation) = self.saturation_or_edge(temperature_k)? else { return Ok(()) };
         let liquid = density_kg_m3 >= saturation.liquid_kg_m3;
         if density_kg_m3 <= saturation.vapour_kg_m3 || liquid && !self.liquefies() {
-            return Ok(());
+            return mixture();
         }
         if temperature_k > self.edge_k() {
             return Err(ThermalError::NearCritical { fluid: self.name(), temperature_k, critical_k });

@@ -24,6 +24,7 @@ impl Fluid {
     ) -> Result<f64, ThermalError> {
         self.check_temperature(temperature_k)?;
         self.check_pressure(pressure_pa, temperature_k)?;
+        self.check_mixture(pressure_pa, temperature_k)?;
         let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
         let ideal = pressure_pa / rt;
         if let Description::IdealGas(_) = self.description {
@@ -230,14 +231,19 @@ impl Fluid {
                 (low, high) = self.below_critical(pressure_pa, target, low, &value)?;
             }
         }
-        // The liquid below its melting line and what is too dense are not in the domain: raise the lower end until they are not in it.
-        if at(low).is_err() && at(high).is_ok() {
-            let mut outside = low;
-            low = high;
+        // The liquid below its melting line, what is too dense and the mixture below its dew line are not in the domain: raise the lower
+        // end until they are not in it. Lower the upper one until the mixture above its bubble line is not.
+        let inside = |mut outside: f64, mut inside: f64| {
             for _ in 0..50 {
-                let middle = 0.5 * (outside + low);
-                if at(middle).is_ok() { low = middle } else { outside = middle }
+                let middle = 0.5 * (outside + inside);
+                if at(middle).is_ok() { inside = middle } else { outside = middle }
             }
+            inside
+        };
+        match (at(low).is_ok(), at(high).is_ok()) {
+            (false, true) => low = inside(low, high),
+            (true, false) => high = inside(high, low),
+            _ => {}
         }
         let start = if (low..high).contains(&300.0) { 300.0 } else { 0.5 * (low + high) };
         let t = bracketed_newton(low, high, start, |t| {

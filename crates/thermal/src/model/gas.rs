@@ -1,8 +1,11 @@
 //! The model's gas side: states of the gas cells, what the wall does to them, their rates.
 use super::Model;
+use super::boundary::Boundary;
 use super::grid::Contact;
+use super::inputs::Inputs;
 use super::stratified::{Stratified, WallAction};
-use super::well_mixed::{Boundary, Node, WellMixed, jet_film};
+use super::supply::{SourceVessel, Supply};
+use super::well_mixed::{Node, WellMixed};
 use crate::ThermalError;
 use crate::transfer::inside::InsideFlux;
 use crate::wall::mesh::Facing;
@@ -48,17 +51,16 @@ impl Model {
     pub(super) fn gas_rates(
         &self,
         nodes: &GasNodes,
-        open: &[bool],
+        boundary: &Boundary<'_>,
         to_gas_w: f64,
         wall: &WallAction<f64>,
         mean_rate_k_s: f64,
         rate: &mut [f64],
     ) -> Result<(), ThermalError> {
         let layout = &self.layout;
-        let boundary = self.boundary(open);
         match (&self.gas, nodes) {
             (Gas::WellMixed(gas), GasNodes::One(node)) => {
-                let gas = gas.rates(node, &boundary, to_gas_w, mean_rate_k_s)?;
+                let gas = gas.rates(node, boundary, to_gas_w, mean_rate_k_s)?;
                 rate[layout.mass] = gas.mass_kg_s;
                 rate[layout.energy] = gas.energy_w;
                 rate[layout.enthalpy_in] = gas.enthalpy_w;
@@ -66,7 +68,7 @@ impl Model {
                 rate[layout.work_out] = gas.work_w;
             }
             (Gas::Stratified(gas), nodes) => {
-                let (cells, exchange) = gas.rates(nodes.as_slice(), &boundary, wall, mean_rate_k_s)?;
+                let (cells, exchange) = gas.rates(nodes.as_slice(), boundary, wall, mean_rate_k_s)?;
                 let mut work = 0.0;
                 for (i, cell) in cells.iter().enumerate() {
                     rate[layout.mass + i] = cell.mass_kg_s;
@@ -78,6 +80,14 @@ impl Model {
                 rate[layout.work_out] = work;
             }
             (Gas::WellMixed(_), GasNodes::Many(_)) => unreachable!("a well-mixed gas has one node"),
+        }
+        let outlet = &nodes.as_slice()[self.grid.outlet].state;
+        for (index, vessel) in self.source_vessels() {
+            let drawn = boundary.drawn_kg[vessel.place];
+            if boundary.open[index] {
+                rate[layout.drawn + vessel.place] =
+                    boundary.of_flow(index, &self.fluid, outlet, drawn)?.mass_kg_s;
+            }
         }
         Ok(())
     }
@@ -94,9 +104,16 @@ impl Model {
         }
     }
 
-    pub(super) fn jet_w_m2_k(&self, nodes: &GasNodes, open: &[bool]) -> f64 {
-        let outlet = &nodes.as_slice()[self.grid.outlet];
-        jet_film(&self.fluid, outlet, &self.flows, open, self.inner_diameter_m)
+    /// Source vessels with the indices of their flows.
+    pub(super) fn source_vessels(&self) -> impl Iterator<Item = (usize, &SourceVessel)> {
+        self.supplies.iter().enumerate().filter_map(|(index, supply)| match supply {
+            Some(Supply::Vessel(vessel)) => Some((index, vessel)),
+            _ => None,
+        })
+    }
+
+    pub(super) fn jet_w_m2_k(&self, nodes: &GasNodes, boundary: &Boundary<'_>) -> Result<f64, ThermalError> {
+        boundary.jet_film(&self.fluid, &nodes.as_slice()[self.grid.outlet], self.inner_diameter_m, None)
     }
 
     pub(super) fn reset_action(&self, wall: &mut WallAction<f64>) {
@@ -153,7 +170,13 @@ impl Model {
         self.inside.flux(contact.facing, surface_k, gas.temperature_k, gas.pressure_pa, jet_w_m2_k)
     }
 
-    pub(super) fn boundary<'a>(&'a self, open: &'a [bool]) -> Boundary<'a> {
-        Boundary { flows: &self.flows, open, source_enthalpy_j_kg: &self.source_enthalpy_j_kg }
+    pub(super) fn boundary<'a>(&'a self, x: &'a [f64], inputs: &Inputs, open: &'a [bool]) -> Boundary<'a> {
+        Boundary {
+            flows: &self.flows,
+            open,
+            supplies: &self.supplies,
+            moment: inputs.moment,
+            drawn_kg: &x[self.layout.drawn..],
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What acts on the cylinder at one instant, and its linear pieces between two edges of the scenario.
+use crate::flow::Flow;
 use crate::scenario::series::LinearPiece;
-use crate::scenario::{OutsideFilm, Scenario};
+use crate::scenario::{OutsideFilm, Scenario, Series};
 
 /// Relative difference above which a signal jumps at an edge: far above rounding, far below any effect.
 const JUMP_TOLERANCE: f64 = 1e-9;
@@ -19,9 +20,27 @@ pub enum FilmInput {
     },
 }
 
+/// An instant between two edges of the scenario: it says which side of a jump a table of a flow is taken from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// Time, s.
+    pub time_s: f64,
+    /// The edges before and after it, s.
+    pub between_s: (f64, f64),
+}
+
+impl Moment {
+    /// Value of a series.
+    pub(crate) fn value(&self, series: &Series) -> f64 {
+        series.segment(self.between_s.0, self.between_s.1).at(self.time_s)
+    }
+}
+
 /// Surroundings at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
+    /// When: flows may change with time.
+    pub moment: Moment,
     /// Air temperature, K.
     pub air_k: f64,
     /// Outside film.
@@ -35,8 +54,8 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Whether any signal differs by more than the rounding of a linear piece.
-    pub(crate) fn jumped_from(&self, before: &Self) -> bool {
+    /// Whether any signal, tables of flows included, differs by more than the rounding of a linear piece.
+    pub(crate) fn jumped_from(&self, before: &Self, flows: &[Flow]) -> bool {
         let signals = |inputs: &Self| {
             let (film, multiplier) = match inputs.film {
                 FilmInput::Coefficient(film) => (film, 1.0),
@@ -45,16 +64,18 @@ impl Inputs {
             let radiation_k = inputs.radiation_k.unwrap_or(0.0);
             [inputs.air_k, film, multiplier, radiation_k, inputs.irradiance_w_m2, inputs.air_difference_k]
         };
-        signals(self)
-            .iter()
-            .zip(signals(before))
-            .any(|(a, b)| (a - b).abs() > JUMP_TOLERANCE * (1.0 + a.abs()))
+        let differ = |a: f64, b: f64, scale: f64| (a - b).abs() > JUMP_TOLERANCE * (scale + a.abs());
+        // Mass flows are small numbers: 1e-6 kg/s is a leak.
+        let of_flows = || flows.iter().flat_map(|flow| flow.kind.series());
+        signals(self).iter().zip(signals(before)).any(|(a, b)| differ(*a, b, 1.0))
+            || of_flows().any(|series| differ(self.moment.value(series), before.moment.value(series), 1e-6))
     }
 }
 
 /// The surroundings between two edges, every signal linear in time.
 #[derive(Clone, Copy, Debug)]
 pub struct InputPieces {
+    between_s: (f64, f64),
     air: LinearPiece,
     film: LinearPiece,
     multiplier: Option<f64>,
@@ -72,6 +93,7 @@ impl InputPieces {
             OutsideFilm::Convection { multiplier, .. } => Some(multiplier),
         };
         Self {
+            between_s: (from_s, to_s),
             air: surroundings.air_k.segment(from_s, to_s),
             film: surroundings.film.signal().segment(from_s, to_s),
             multiplier,
@@ -85,6 +107,7 @@ impl InputPieces {
     pub fn at(&self, t_s: f64) -> Inputs {
         let film = self.film.at(t_s);
         Inputs {
+            moment: Moment { time_s: t_s, between_s: self.between_s },
             air_k: self.air.at(t_s),
             film: match self.multiplier {
                 None => FilmInput::Coefficient(film),
@@ -107,6 +130,8 @@ pub(crate) fn edges_s(scenario: &Scenario) -> Vec<f64> {
     edges.extend(surroundings.sun.iter().flat_map(|sun| sun.irradiance_w_m2.edges_s()));
     edges.extend(surroundings.axial.air_difference_k.iter().flat_map(|s| s.edges_s()));
     edges.extend(scenario.flows.iter().flat_map(|flow| [flow.start_s, flow.stop_s]));
+    let of_flows = scenario.flows.iter().flat_map(|flow| flow.kind.series());
+    edges.extend(of_flows.flat_map(|s| s.edges_s()));
     edges.retain(|&t| t > 0.0 && t < scenario.duration_s);
     edges.push(scenario.duration_s);
     edges.sort_by(f64::total_cmp);

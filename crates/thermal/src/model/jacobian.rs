@@ -5,11 +5,12 @@
 //! layout alone, never on the state, so that a sparsity pattern taken once holds for the whole run; a pair may
 //! occur more than once, and its values add.
 use nalgebra::{Const, DMatrix, U1};
-use num_dual::DualSVec64;
+use num_dual::{Dual64, DualSVec64};
 
-use super::gas::{Gas, GasPoint};
+use super::boundary::Boundary;
+use super::gas::{Gas, GasNodes, GasPoint};
 use super::inputs::Inputs;
-use super::well_mixed::{WellMixed, jet_film, jets};
+use super::well_mixed::{Node, WellMixed};
 use super::{Model, WallAction};
 use crate::ThermalError;
 use crate::wall::conduction::link_flow;
@@ -31,6 +32,19 @@ pub(super) struct GasBlock {
     pub cells: Vec<([f64; 3], [f64; 3])>,
     /// Film of the jet with the (mass, energy, mean wall) of the outlet's cell.
     pub jet: [f64; 3],
+    /// What the mass drawn from each source vessel does.
+    pub sources: Vec<SourceGradients>,
+}
+
+/// Derivatives of and by the mass drawn from a source vessel.
+#[derive(Debug)]
+pub(super) struct SourceGradients {
+    /// Its rate with the (mass, energy, mean wall) of the outlet's cell.
+    rate: [f64; 3],
+    /// With the drawn mass: rates of mass, energy, enthalpy in and work out of the outlet's cell.
+    by_drawn: [f64; 4],
+    /// Film of the jets with the drawn mass.
+    jet: f64,
 }
 
 impl GasBlock {
@@ -41,6 +55,9 @@ impl GasBlock {
             pressure[2] *= slope;
         }
         self.jet[2] *= slope;
+        for source in &mut self.sources {
+            source.rate[2] *= slope;
+        }
         let mut column = self.matrix.column_mut(2 * self.cells.len());
         column *= slope;
     }
@@ -60,33 +77,36 @@ struct LocalColumns {
     inner: usize,
     outer: usize,
     valve: usize,
+    sources: usize,
 }
 
 impl Model {
     fn gas_block(
         &self,
         x: &[f64],
-        open: &[bool],
+        boundary: &Boundary<'_>,
+        nodes: &GasNodes,
         wall: &WallAction<f64>,
         wall_rate: f64,
     ) -> Result<GasBlock, ThermalError> {
         let layout = &self.layout;
-        let boundary = self.boundary(open);
         let ((mass, energy), mean) = (layout.gas_of(x), self.mean_wall_k(x));
         let outlet = self.grid.outlet;
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
-        let jet_of = |gas: &WellMixed| -> Result<[f64; 3], ThermalError> {
-            if jets(&self.flows, open).next().is_none() {
-                return Ok([0.0; 3]);
+        let jet_and_sources = |gas: &WellMixed| -> Result<_, ThermalError> {
+            if !boundary.has_jet() && layout.states == layout.drawn {
+                return Ok(([0.0; 3], Vec::new()));
             }
             let node = gas.differentiated(seed(mass[outlet], 0), seed(energy[outlet], 1), seed(mean, 2))?;
-            Ok(gradient(jet_film(&self.fluid, &node, &self.flows, open, self.inner_diameter_m)))
+            let jet = boundary.jet_film(&self.fluid, &node, self.inner_diameter_m, None)?;
+            let sources = self.source_gradients(boundary, &nodes.as_slice()[outlet], &node)?;
+            Ok((gradient(jet), sources))
         };
         match &self.gas {
             Gas::WellMixed(gas) => {
                 let seed = |value: f64, index: usize| Dual5::from(value).derivative(index);
                 let node = gas.differentiated(seed(mass[0], 0), seed(energy[0], 1), seed(mean, 2))?;
-                let rates = gas.rates(&node, &boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
+                let rates = gas.rates(&node, boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
                 let mut matrix = DMatrix::zeros(5, 7);
                 let rows = [rates.mass_kg_s, rates.energy_w, rates.mass_kg_s, rates.enthalpy_w, rates.work_w];
                 for (row, value) in rows.into_iter().enumerate() {
@@ -99,13 +119,44 @@ impl Model {
                     [g[0], g[1], g[2]]
                 };
                 let cells = vec![(three(node.state.temperature_k), three(node.state.pressure_pa))];
-                Ok(GasBlock { matrix, cells, jet: jet_of(gas)? })
+                let (jet, sources) = jet_and_sources(gas)?;
+                Ok(GasBlock { matrix, cells, jet, sources })
             }
             Gas::Stratified(gas) => {
-                let (matrix, cells) = gas.jacobian(mass, energy, mean, &boundary, wall, wall_rate)?;
-                Ok(GasBlock { matrix, cells, jet: jet_of(gas.outlet_node())? })
+                let (matrix, cells) = gas.jacobian(mass, energy, mean, boundary, wall, wall_rate)?;
+                let (jet, sources) = jet_and_sources(gas.outlet_node())?;
+                Ok(GasBlock { matrix, cells, jet, sources })
             }
         }
+    }
+
+    /// Source vessels at the outlet's node, as a number and with derivatives.
+    fn source_gradients(
+        &self,
+        boundary: &Boundary<'_>,
+        outlet: &Node<f64>,
+        differentiated: &Node<Dual3>,
+    ) -> Result<Vec<SourceGradients>, ThermalError> {
+        let fixed = outlet.map(Dual64::from);
+        let mut all = Vec::new();
+        for (index, vessel) in self.source_vessels() {
+            if !boundary.open[index] {
+                all.push(SourceGradients { rate: [0.0; 3], by_drawn: [0.0; 4], jet: 0.0 });
+                continue;
+            }
+            let drawn = boundary.drawn_kg[vessel.place];
+            let rate =
+                boundary.of_flow(index, &self.fluid, &differentiated.state, Dual3::from(drawn))?.mass_kg_s;
+            let seeded = Dual64::from(drawn).derivative();
+            let by = boundary.of_flow(index, &self.fluid, &fixed.state, seeded)?;
+            // The node's rates are linear in what flows in.
+            let rates = outlet.balance(by.mass_kg_s.eps, by.enthalpy_w.eps, 0.0, 0.0);
+            let jet =
+                boundary.jet_film(&self.fluid, &fixed, self.inner_diameter_m, Some((index, seeded)))?.eps;
+            let by_drawn = [rates.mass_kg_s, rates.energy_w, rates.enthalpy_w, rates.work_w];
+            all.push(SourceGradients { rate: gradient(rate), by_drawn, jet });
+        }
+        Ok(all)
     }
 
     fn local_columns(&self) -> LocalColumns {
@@ -119,7 +170,9 @@ impl Model {
         state.extend((0..columns).map(|j| self.mesh.outer_cell(j)));
         let valve = state.len();
         state.extend(layout.valve);
-        LocalColumns { state, inner, outer, valve }
+        let sources = state.len();
+        state.extend(layout.drawn..layout.states);
+        LocalColumns { state, inner, outer, valve, sources }
     }
 
     /// Emit every entry of `d(dx/dt)/dx`.
@@ -137,13 +190,14 @@ impl Model {
         let mut rate = vec![0.0; layout.states];
         self.rate(x, inputs, open, &mut rate)?;
         let nodes = self.gas_nodes(x)?;
-        let jet = self.jet_w_m2_k(&nodes, open);
+        let boundary = self.boundary(x, inputs, open);
+        let jet = self.jet_w_m2_k(&nodes, &boundary)?;
         let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
         let wall = self.scratch.borrow().wall.clone();
         // The gas sees the wall's mean temperature; the state behind it is an energy.
         let mean_slope = self.mean_material.temperature_slope(x[layout.mean_wall]);
         let mean_rate = rate[layout.mean_wall];
-        let mut gas = self.gas_block(x, open, &wall, mean_slope * mean_rate)?;
+        let mut gas = self.gas_block(x, &boundary, &nodes, &wall, mean_slope * mean_rate)?;
         gas.scale_mean_wall(mean_slope);
         let mut temperature_k = Vec::with_capacity(layout.wall);
         self.node_temperatures(x, &mut temperature_k);
@@ -152,6 +206,7 @@ impl Model {
             .collect();
 
         self.emit_conduction(&temperature_k, &slope, emit);
+        self.emit_sources(&gas.sources, emit);
         let local = self.local_columns();
         // Derivatives of the gas's inputs with the local columns.
         let mut chain = DMatrix::zeros(5 * layout.gas + 2, local.state.len());
@@ -188,6 +243,24 @@ impl Model {
             }
         }
         Ok(())
+    }
+
+    fn emit_sources(&self, sources: &[SourceGradients], emit: &mut Assembly<'_>) {
+        let (layout, outlet) = (&self.layout, self.grid.outlet);
+        for (place, source) in sources.iter().enumerate() {
+            let drawn = layout.drawn + place;
+            let cell = [layout.mass + outlet, layout.energy + outlet, layout.mean_wall];
+            for (state, value) in cell.into_iter().zip(source.rate) {
+                emit(drawn, state, value);
+            }
+            let [mass, energy, enthalpy, work] = source.by_drawn;
+            emit(drawn, drawn, mass);
+            emit(cell[0], drawn, mass);
+            emit(cell[1], drawn, energy);
+            emit(layout.mass_in, drawn, mass);
+            emit(layout.enthalpy_in, drawn, enthalpy);
+            emit(layout.work_out, drawn, work);
+        }
     }
 
     fn emit_conduction(&self, temperature_k: &[f64], slope: &[f64], emit: &mut Assembly<'_>) {
@@ -248,12 +321,12 @@ impl Model {
                 entries.push(FaceEntry { column: state, surface: -value / total, own: Some((k, value)) });
             }
         }
-        for (i, state) in state_columns(self.grid.outlet).into_iter().enumerate() {
-            entries.push(FaceEntry { column: state, surface: -jet_area * gas.jet[i] / total, own: None });
+        let by_jet = state_columns(self.grid.outlet).into_iter().zip(gas.jet);
+        let by_sources = gas.sources.iter().enumerate().map(|(k, source)| (local.sources + k, source.jet));
+        for (state, jet) in by_jet.chain(by_sources) {
+            entries.push(FaceEntry { column: state, surface: -jet_area * jet / total, own: None });
             for (k, contact) in contacts.iter().enumerate() {
-                let own = contact.area_m2
-                    * (balance.surface_k - at.points[contact.cell].temperature_k)
-                    * gas.jet[i];
+                let own = contact.area_m2 * (balance.surface_k - at.points[contact.cell].temperature_k) * jet;
                 entries.push(FaceEntry { column: state, surface: 0.0, own: Some((k, own)) });
             }
         }

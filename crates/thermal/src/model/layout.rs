@@ -1,10 +1,11 @@
 //! Where each quantity stands in the state vector.
 //!
-//! `[wall cells | valve | mean wall | gas masses | gas energies | heat in | enthalpy in | mass in | work out]`
+//! `[wall cells | valve | mean wall | gas masses | gas energies | heat in | enthalpy in | mass in | work out | drawn]`
 //!
 //! Wall and valve carry energy as the temperature `x = T_ref + e / c_20` (see [`crate::wall::material`]); `mean wall` is
 //! their capacity-weighted mean without the valve, kept as a state so that the inner volume needs no dense coupling.
-//! The last four are the ledger: time integrals of what crosses the boundary.
+//! Heat, enthalpy, mass and work are the ledger: time integrals of what crosses the boundary. Last comes the mass that was drawn from each
+//! vessel that is the source of a refill.
 
 /// Indices into the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,13 +30,15 @@ pub struct Layout {
     pub(crate) mass_in: usize,
     /// Work done on the expanding vessel, J.
     pub(crate) work_out: usize,
+    /// Mass drawn from the first source vessel, kg.
+    pub(crate) drawn: usize,
     /// Number of states.
     pub states: usize,
 }
 
 impl Layout {
-    /// Layout for so many wall and gas cells.
-    pub(crate) fn new(wall: usize, valve: bool, gas: usize) -> Self {
+    /// Layout for so many wall and gas cells and source vessels.
+    pub(crate) fn new(wall: usize, valve: bool, gas: usize, sources: usize) -> Self {
         let mean_wall = wall + usize::from(valve);
         let mass = mean_wall + 1;
         let energy = mass + gas;
@@ -51,7 +54,8 @@ impl Layout {
             enthalpy_in: heat_in + 1,
             mass_in: heat_in + 2,
             work_out: heat_in + 3,
-            states: heat_in + 4,
+            drawn: heat_in + 4,
+            states: heat_in + 4 + sources,
         }
     }
 

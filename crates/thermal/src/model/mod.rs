@@ -9,6 +9,8 @@
 //! Every flow leaves one balance and enters another with the same number, so mass and energy are conserved by
 //! construction: `d(wall + valve + gas)/dt = heat in + enthalpy in - work out` holds exactly at every
 //! evaluation, and exactly too for the Jacobian, so that an implicit integrator keeps it to rounding.
+mod boundary;
+mod coefficients;
 mod faces;
 mod gas;
 mod grid;
@@ -18,12 +20,13 @@ mod jacobian;
 pub mod layout;
 mod output;
 mod stratified;
+mod supply;
 mod well_mixed;
 
 use std::cell::RefCell;
 
 use crate::ThermalError;
-use crate::flow::{Flow, FlowKind};
+use crate::flow::Flow;
 use crate::fluid::Fluid;
 use crate::scenario::{Scenario, Sun};
 use crate::transfer::inside::InsideConvection;
@@ -37,8 +40,11 @@ use grid::GasGrid;
 use inputs::Inputs;
 use layout::Layout;
 use stratified::{Stratified, WallAction};
+use supply::{Supply, supplies};
 use well_mixed::WellMixed;
 
+pub(crate) use boundary::Margins;
+pub use coefficients::{ConvertedCoefficient, with_real_gas_coefficients};
 pub(crate) use output::Output;
 
 /// The system of equations of one vessel with one set of flows.
@@ -67,7 +73,7 @@ pub struct Model {
     grid: GasGrid,
     inner_diameter_m: f64,
     flows: Vec<Flow>,
-    source_enthalpy_j_kg: Vec<f64>,
+    supplies: Vec<Option<Supply>>,
     scratch: RefCell<Scratch>,
 }
 
@@ -114,7 +120,9 @@ impl Model {
             height_m: geometry.outer_height_m(),
         };
         let grid = GasGrid::new(vessel, &mesh);
-        let layout = Layout::new(mesh.cells(), vessel.valve.is_some(), grid.cells.len());
+        let flows = coefficients::real_gas_flows(vessel, scenario)?;
+        let (supplies, sources) = supplies(&vessel.fluid, &flows)?;
+        let layout = Layout::new(mesh.cells(), vessel.valve.is_some(), grid.cells.len(), sources);
         let start_k = scenario.initial.gas_temperature_k;
         let absorptivity = vessel.surface.solar_absorptivity;
         let sun = scenario.surroundings.sun.as_ref();
@@ -154,8 +162,8 @@ impl Model {
             fluid: vessel.fluid.clone(),
             grid,
             inner_diameter_m: geometry.inner_diameter_m,
-            source_enthalpy_j_kg: source_enthalpies(vessel, &scenario.flows)?,
-            flows: scenario.flows.clone(),
+            supplies,
+            flows,
             mesh,
             scratch: RefCell::default(),
         })
@@ -193,7 +201,8 @@ impl Model {
             rate[link.b] += heat;
         }
         let nodes = self.gas_nodes(x)?;
-        let jet = self.jet_w_m2_k(&nodes, open);
+        let boundary = self.boundary(x, inputs, open);
+        let jet = self.jet_w_m2_k(&nodes, &boundary)?;
         scratch.points.clear();
         scratch.points.extend(nodes.as_slice().iter().map(GasPoint::from));
         let (points, wall) = (&scratch.points, &mut scratch.wall);
@@ -225,7 +234,7 @@ impl Model {
         rate[layout.mean_wall] = mean_rate;
         rate[layout.heat_in] = from_outside + valve_outside;
         let mean_rate_k_s = self.mean_material.temperature_slope(x[layout.mean_wall]) * mean_rate;
-        self.gas_rates(&nodes, open, to_gas, wall, mean_rate_k_s, rate)
+        self.gas_rates(&nodes, &boundary, to_gas, wall, mean_rate_k_s, rate)
     }
 
     /// Mean wall temperature, K: the one that a uniform wall of the same energy would have.
@@ -252,19 +261,6 @@ fn capacity_mixture(mesh: &Mesh, capacity_j_k: &[f64]) -> Material {
         parts[material].1 += capacity_j_k[cell] / (solid.density_kg_m3 * solid.heat_capacity_j_kg_k);
     }
     Material::mixture(&parts)
-}
-
-fn source_enthalpies(vessel: &Vessel, flows: &[Flow]) -> Result<Vec<f64>, ThermalError> {
-    flows
-        .iter()
-        .map(|flow| match flow.kind {
-            FlowKind::Refill { source_temperature_k: t, source_pressure_pa: p, .. } => {
-                let rho = vessel.fluid.density_from_pressure_temperature(p, t)?;
-                Ok(vessel.fluid.checked_state(rho, t)?.enthalpy_j_kg)
-            }
-            _ => Ok(0.0),
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -22,8 +22,9 @@
 use nalgebra::{Const, DMatrix, U1};
 use num_dual::DualSVec64;
 
+use super::boundary::{Boundary, Exchange};
 use super::grid::{GasCell, GasGrid};
-use super::well_mixed::{Boundary, Exchange, Node, Rates, WellMixed};
+use super::well_mixed::{Node, Rates, WellMixed};
 use crate::ThermalError;
 use crate::fluid::Real;
 use crate::transfer::inside::GRAVITY_M_S2;

@@ -7,11 +7,9 @@
 //! `dU/dt = [Q + H - p (V_m dm/dt + V_T dT_w/dt)] / (1 + p V_U)`.
 use std::cell::Cell;
 
+use super::boundary::Boundary;
 use crate::ThermalError;
-use crate::flow::orifice;
-use crate::flow::{Flow, FlowKind};
 use crate::fluid::{Fluid, Real, State};
-use crate::transfer::inside::jet_film_w_m2_k;
 use crate::vessel::InnerVolume;
 
 const MAX_ITERATIONS: usize = 60;
@@ -244,32 +242,6 @@ impl<D: Real> Node<D> {
     }
 }
 
-/// Jets of open refills: mass flow, kg/s, and inlet diameter, m.
-pub(crate) fn jets(flows: &[Flow], open: &[bool]) -> impl Iterator<Item = (f64, f64)> {
-    flows.iter().zip(open).filter(|&(_, &open)| open).filter_map(|(flow, _)| match flow.kind {
-        FlowKind::Refill { mass_flow_kg_s, inlet_diameter_m: Some(inlet), .. } => {
-            Some((mass_flow_kg_s, inlet))
-        }
-        _ => None,
-    })
-}
-
-/// Film of the jets of open refills, W/(m² K); 0 without one.
-pub(crate) fn jet_film<D: Real>(
-    fluid: &Fluid,
-    node: &Node<D>,
-    flows: &[Flow],
-    open: &[bool],
-    vessel_diameter_m: f64,
-) -> D {
-    let (rho, t) = (node.state.density_kg_m3, node.state.temperature_k);
-    jets(flows, open).fold(D::from(0.0), |sum, (mass_flow_kg_s, inlet_m)| {
-        let k = fluid.conductivity_w_m_k(rho, t);
-        let mu = fluid.viscosity_pa_s(rho, t);
-        sum + jet_film_w_m2_k(k, mu, mass_flow_kg_s, inlet_m, vessel_diameter_m)
-    })
-}
-
 /// The two node equations and their derivatives at a trial point.
 struct Linearised<D> {
     residual: [D; 2],
@@ -286,55 +258,5 @@ impl<D: Real> Linearised<D> {
         let j = &self.jacobian;
         let determinant = j[0][0] * j[1][1] - j[0][1] * j[1][0];
         [(f[0] * j[1][1] - f[1] * j[0][1]) / determinant, (f[1] * j[0][0] - f[0] * j[1][0]) / determinant]
-    }
-}
-
-/// The flows of a scenario as they are open now.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Boundary<'a> {
-    /// Flows of the scenario.
-    pub flows: &'a [Flow],
-    /// Which are open; same length.
-    pub open: &'a [bool],
-    /// Enthalpy of each refill's source, J/kg; 0 for flows out; same length.
-    pub source_enthalpy_j_kg: &'a [f64],
-}
-
-/// Gas and enthalpy that cross the boundary, both positive inwards.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Exchange<D> {
-    /// Net mass flow in, kg/s.
-    pub mass_kg_s: D,
-    /// Net enthalpy flow in, W.
-    pub enthalpy_w: D,
-}
-
-impl Boundary<'_> {
-    /// Sum over the open flows; gas leaves with the enthalpy of `outlet`.
-    ///
-    /// # Errors
-    /// An orifice without a throat state.
-    pub(crate) fn exchange<D: Real>(
-        &self,
-        fluid: &Fluid,
-        outlet: &State<D>,
-    ) -> Result<Exchange<D>, ThermalError> {
-        let mut sum = Exchange { mass_kg_s: D::from(0.0), enthalpy_w: D::from(0.0) };
-        for (index, flow) in self.flows.iter().enumerate().filter(|&(index, _)| self.open[index]) {
-            let (mass, enthalpy) = match flow.kind {
-                FlowKind::Leak { mass_flow_kg_s } => (D::from(-mass_flow_kg_s), outlet.enthalpy_j_kg),
-                FlowKind::Orifice { diameter_m, discharge_coefficient, back_pressure_pa } => {
-                    let flux = orifice::mass_flux(fluid, outlet, back_pressure_pa)?.mass_flux_kg_m2_s;
-                    let area = 0.25 * std::f64::consts::PI * diameter_m * diameter_m;
-                    (flux * (-discharge_coefficient * area), outlet.enthalpy_j_kg)
-                }
-                FlowKind::Refill { mass_flow_kg_s, .. } => {
-                    (D::from(mass_flow_kg_s), D::from(self.source_enthalpy_j_kg[index]))
-                }
-            };
-            sum.mass_kg_s += mass;
-            sum.enthalpy_w += mass * enthalpy;
-        }
-        Ok(sum)
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::Model;
-use crate::model::inputs::{FilmInput, Inputs};
+use crate::model::inputs::{FilmInput, Inputs, Moment};
 use crate::scenario::{AxialVariation, OutsideFilm, Series, Sun, Surroundings};
 use crate::simulate::{SimulationSettings, simulate};
 use crate::{scenario, vessel};
@@ -62,6 +62,7 @@ fn rates_are_those_of_the_simulation_on_the_same_wall() {
             reduced.rates(&x, &unknowns, &mut rate, None).unwrap();
             let energy_states = |x: &[f64]| full_state(&model, &vessel, &reduced, x);
             let inputs = Inputs {
+                moment: Moment::default(),
                 air_k: 265.0,
                 film: FilmInput::Coefficient(FILM),
                 radiation_k: None,

@@ -34,7 +34,7 @@ impl ScenarioSpec {
             name: self.name.clone(),
             initial: initial(&self.initial, before_k)?,
             surroundings: self.surroundings(air_k, files, duration_s)?,
-            flows: flows::build(self)?,
+            flows: flows::build(self, files, duration_s)?,
             pressure_limits_pa: self
                 .limits
                 .pressure_pa
@@ -134,6 +134,7 @@ impl ScenarioSpec {
 
 fn air(spec: &AmbientSpec) -> Signal<'_> {
     Signal {
+        of: "ambient",
         name: "air",
         dimension: Dimension::Temperature,
         constant: spec.air_k,
@@ -145,6 +146,7 @@ fn air(spec: &AmbientSpec) -> Signal<'_> {
 
 fn film(spec: &AmbientSpec) -> Signal<'_> {
     Signal {
+        of: "ambient",
         name: "film",
         dimension: Dimension::Film,
         constant: spec.film_w_m2_k,
@@ -156,6 +158,7 @@ fn film(spec: &AmbientSpec) -> Signal<'_> {
 
 fn wind(spec: &AmbientSpec) -> Signal<'_> {
     Signal {
+        of: "ambient",
         name: "wind",
         dimension: Dimension::Speed,
         constant: spec.wind_m_s,
@@ -167,6 +170,7 @@ fn wind(spec: &AmbientSpec) -> Signal<'_> {
 
 fn radiation(spec: &AmbientSpec) -> Signal<'_> {
     Signal {
+        of: "ambient",
         name: "radiation",
         dimension: Dimension::Temperature,
         constant: spec.radiation_k,
@@ -178,6 +182,7 @@ fn radiation(spec: &AmbientSpec) -> Signal<'_> {
 
 fn irradiance(spec: &AmbientSpec) -> Signal<'_> {
     Signal {
+        of: "ambient",
         name: "irradiance",
         dimension: Dimension::HeatFlux,
         constant: spec.irradiance_w_m2,

@@ -4,6 +4,7 @@
 //! CSV files it names) and gives a [`Scenario`].
 mod build;
 mod flows;
+mod opening;
 pub mod presets;
 mod read;
 pub(crate) mod series;

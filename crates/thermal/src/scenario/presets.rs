@@ -18,6 +18,7 @@ pub const FILES: Presets = Presets {
         ("bottle-step", include_str!("../../presets/scenarios/bottle-step.toml")),
         ("haque-i1", include_str!("../../presets/scenarios/haque-i1.toml")),
         ("railway-week", include_str!("../../presets/scenarios/railway-week.toml")),
+        ("refill-from-bank", include_str!("../../presets/scenarios/refill-from-bank.toml")),
     ],
 };
 

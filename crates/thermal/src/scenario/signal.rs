@@ -96,9 +96,20 @@ table!(
 table!(
     /// Irradiance against time.
     IrradianceTable, irradiance_w_m2);
+table!(
+    /// Mass flow against time.
+    FlowTable, flow_kg_s);
+table!(
+    /// Temperature against time.
+    TemperatureTable, temperature_k);
+table!(
+    /// Absolute pressure against time.
+    PressureTable, pressure_pa);
 
-/// One signal of the ambient in whatever form it was given.
+/// One signal in whatever form it was given.
 pub(super) struct Signal<'a> {
+    /// Path of the table it stands in, e.g. `ambient`.
+    pub of: &'a str,
     /// Name in keys, e.g. `air`.
     pub name: &'static str,
     pub dimension: Dimension,
@@ -111,7 +122,7 @@ pub(super) struct Signal<'a> {
 impl Signal<'_> {
     /// The series in a scenario of a duration, s, or `None` if the file says nothing about this signal.
     pub(super) fn series(&self, files: Files<'_>, duration_s: f64) -> Result<Option<Series>, ThermalError> {
-        let path = |form: &str| format!("ambient.{}{form}", self.name);
+        let path = |form: &str| format!("{}.{}{form}", self.of, self.name);
         let constant = path(&format!("_{}", crate::units::si_suffix(self.dimension)));
         let others = [
             (path("_change[0]"), !self.changes.is_empty()),
@@ -151,9 +162,16 @@ impl Signal<'_> {
     fn check(&self, path: &str, value: f64) -> Result<f64, ThermalError> {
         match self.dimension {
             Dimension::Temperature => check::temperature_k(path, value),
+            Dimension::Pressure => check::pressure_pa(path, value),
+            Dimension::MassFlow => {
+                let bound = "between 0 and 100 kg/s";
+                let remedy = "the direction is clear from [[leak]], [[discharge]] or [[refill]]; check the unit, _g_h or _kg_s";
+                check::within(path, value, (0.0, super::opening::MASS_FLOW_MAX_KG_S), bound, remedy)
+            }
             Dimension::Film => {
-                let bound = "positive and at most 10000 W/m2/K";
-                check::within(path, value, (1e-6, 1e4), bound, "still air has about 8, wind 20 to 100")
+                let bound = "between 0 and 10000 W/m2/K";
+                let remedy = "0 lets no heat through, still air has about 8, wind 20 to 100";
+                check::within(path, value, (0.0, 1e4), bound, remedy)
             }
             Dimension::Speed => {
                 let bound = "between 0 and 200 m/s";

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 pub use super::signal::*;
+use crate::flow::SourceProcess;
 use crate::sensor::SensorSpec;
 
 /// Raw content of a scenario file.
@@ -70,7 +71,7 @@ pub(crate) struct AmbientSpec {
     pub air_table: Option<AirTable>,
     /// Air temperature from a file.
     pub air_csv: Option<CsvSpec>,
-    /// Outside film coefficient; without it and without wind the air is still.
+    /// Outside film coefficient, 0 for an insulated surface; without it and without wind the air is still.
     pub film_w_m2_k: Option<f64>,
     /// Steps and ramps of the film coefficient, in order of time.
     #[serde(default)]
@@ -122,18 +123,30 @@ pub(crate) struct SunSpec {
     pub valve: Option<bool>,
 }
 
-/// A flow out: a constant mass flow, or an orifice.
+/// A flow out: a mass flow, an orifice, or a valve.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 pub(crate) struct OutflowSpec {
     /// Name for people and events; `leak` or `discharge` (with a number from the second on) by default.
     pub name: Option<String>,
     /// Constant mass flow.
     pub flow_kg_s: Option<f64>,
-    /// Bore of an orifice, instead of a constant flow.
+    /// Mass flow as a table.
+    pub flow_table: Option<FlowTable>,
+    /// Mass flow from a file.
+    pub flow_csv: Option<CsvSpec>,
+    /// Bore of an orifice, instead of a mass flow.
     pub diameter_m: Option<f64>,
-    /// Discharge coefficient of the orifice, 0.8 by default.
+    /// Discharge coefficient of the orifice, 0.8 by default. It belongs to the throat of the real gas: one that was found with the formula
+    /// of an ideal gas is 2 to 6 % too large for nitrogen of 65 to 150 bar and goes into `discharge_coefficient_ideal_gas`.
     pub discharge_coefficient: Option<f64>,
-    /// Absolute pressure behind the orifice, 1 atm by default.
+    /// Discharge coefficient that was found with the formula of an ideal gas, instead of `discharge_coefficient`: it is converted at the
+    /// state of the gas at time 0.
+    pub discharge_coefficient_ideal_gas: Option<f64>,
+    /// Flow coefficient Kv of a control valve, instead of a bore.
+    pub kv_m3_h: Option<f64>,
+    /// Pressure differential ratio factor of the valve, measured with air; 0.72 by default, as globe valves have it.
+    pub x_t: Option<f64>,
+    /// Absolute pressure behind the orifice or the valve, 1 atm by default.
     pub back_pressure_pa: Option<f64>,
     /// It can run from this time on, 0 by default.
     pub start_s: Option<f64>,
@@ -145,17 +158,44 @@ pub(crate) struct OutflowSpec {
     pub closes_below_pa: Option<f64>,
 }
 
-/// A flow in.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+/// A flow in: a mass flow, or what passes an orifice or a valve while the source has the higher pressure.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 pub(crate) struct RefillSpec {
     /// Name for people and events; `refill` (with a number from the second on) by default.
     pub name: Option<String>,
     /// Constant mass flow.
-    pub flow_kg_s: f64,
-    /// Temperature of the source.
-    pub source_temperature_k: f64,
-    /// Absolute pressure of the source.
-    pub source_pressure_pa: f64,
+    pub flow_kg_s: Option<f64>,
+    /// Mass flow as a table.
+    pub flow_table: Option<FlowTable>,
+    /// Mass flow from a file.
+    pub flow_csv: Option<CsvSpec>,
+    /// Bore of an orifice, instead of a mass flow.
+    pub diameter_m: Option<f64>,
+    /// Discharge coefficient of the orifice, 0.8 by default; for the throat of the real gas, as that of a leak.
+    pub discharge_coefficient: Option<f64>,
+    /// Discharge coefficient that was found with the formula of an ideal gas, instead of `discharge_coefficient`: it is converted at the
+    /// state of the source at time 0.
+    pub discharge_coefficient_ideal_gas: Option<f64>,
+    /// Flow coefficient Kv of a control valve, instead of a bore.
+    pub kv_m3_h: Option<f64>,
+    /// Pressure differential ratio factor of the valve, measured with air; 0.72 by default, as globe valves have it.
+    pub x_t: Option<f64>,
+    /// Temperature of the source; of a source vessel at time 0.
+    pub source_temperature_k: Option<f64>,
+    /// Temperature of the source as a table.
+    pub source_temperature_table: Option<TemperatureTable>,
+    /// Temperature of the source from a file.
+    pub source_temperature_csv: Option<CsvSpec>,
+    /// Absolute pressure of the source; of a source vessel at time 0.
+    pub source_pressure_pa: Option<f64>,
+    /// Absolute pressure of the source as a table.
+    pub source_pressure_table: Option<PressureTable>,
+    /// Absolute pressure of the source from a file.
+    pub source_pressure_csv: Option<CsvSpec>,
+    /// Volume of a vessel that the gas is taken from; by default the source does not run down.
+    pub source_volume_m3: Option<f64>,
+    /// What the gas of a source vessel does while it expands, adiabatic by default.
+    pub source_process: Option<SourceProcess>,
     /// Bore of the inlet, whose jet stirs the gas; no jet by default.
     pub inlet_diameter_m: Option<f64>,
     /// It can run from this time on, 0 by default.

@@ -1,7 +1,8 @@
 //! Flows that open and close, pressures that are crossed: the discrete part of a run.
 use crate::ThermalError;
 use crate::flow::{Flow, FlowKind};
-use crate::model::Model;
+use crate::model::inputs::Inputs;
+use crate::model::{Margins, Model};
 use crate::scenario::Scenario;
 use crate::trajectory::EventKind;
 use crate::units::ATMOSPHERE_PA;
@@ -31,7 +32,9 @@ pub(super) struct FlowStates<'a> {
 /// Pressure at which a flow closes when it is reached from above, Pa.
 fn closes_below_pa(flow: &Flow) -> Option<f64> {
     match flow.kind {
-        FlowKind::Leak { .. } => Some(flow.closes_below_pa.unwrap_or(0.0).max(ATMOSPHERE_PA)),
+        FlowKind::Leak { .. } | FlowKind::LeakSeries { .. } => {
+            Some(flow.closes_below_pa.unwrap_or(0.0).max(ATMOSPHERE_PA))
+        }
         _ => flow.closes_below_pa,
     }
 }
@@ -102,8 +105,13 @@ enum Watch {
     ClosesBelow(usize, f64),
     /// Closing pressure, reached from below, of an open flow.
     ClosesAbove(usize, f64),
-    /// Choking margin of an open orifice.
+    /// Choking margin of an open orifice or valve.
     Choking(usize),
+    /// What drives the gas through an open orifice or valve: where it changes its sign the flow begins or ends.
+    ///
+    /// A solver that steps over the end keeps the matrix of a stiff flow where nothing flows, takes its short corrections for
+    /// convergence, and drifts. So it begins anew there.
+    Driving(usize),
 }
 
 /// All watched quantities with their values at the start of the step.
@@ -121,7 +129,7 @@ pub(super) type Interpolation<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), Str
 pub(super) struct Located {
     /// Events to report, in order of time.
     pub reports: Vec<(f64, EventKind)>,
-    /// Time of the first crossing that acts on a flow, s.
+    /// Time of the first crossing that acts on a flow, or at which a flow begins or ends, s.
     pub acts_at_s: Option<f64>,
 }
 
@@ -133,8 +141,11 @@ impl Monitors {
             watches.extend(flow.opens_above_pa.map(|p| Watch::Opens(index, p)));
             watches.extend(closes_below_pa(flow).map(|p| Watch::ClosesBelow(index, p)));
             watches.extend(flow.closes_above_pa.map(|p| Watch::ClosesAbove(index, p)));
-            if matches!(flow.kind, FlowKind::Orifice { .. }) {
-                watches.push(Watch::Choking(index));
+            if matches!(
+                flow.kind,
+                FlowKind::Orifice { .. } | FlowKind::Release { .. } | FlowKind::Supply { .. }
+            ) {
+                watches.extend([Watch::Choking(index), Watch::Driving(index)]);
             }
         }
         let names = scenario.flows.iter().map(|flow| flow.name.clone()).collect();
@@ -152,8 +163,9 @@ impl Monitors {
         model: &Model,
         flows: &FlowStates<'_>,
         x: &[f64],
+        inputs: &Inputs,
     ) -> Result<(), ThermalError> {
-        self.values = self.evaluate(model, flows, x)?;
+        self.values = self.evaluate(model, flows, x, inputs)?;
         Ok(())
     }
 
@@ -163,11 +175,26 @@ impl Monitors {
         model: &Model,
         flows: &FlowStates<'_>,
         x: &[f64],
+        inputs: &Inputs,
     ) -> Result<Vec<Option<f64>>, ThermalError> {
         if self.watches.is_empty() {
             return Ok(Vec::new());
         }
         let pressure = model.gas_state(x)?.1;
+        let open = flows.open();
+        // Both watches of an opening stand side by side and need one throat.
+        let mut known = None;
+        let mut margins = |index: usize| -> Result<Option<Margins>, ThermalError> {
+            if let Some((_, margins)) = known.filter(|&(of, _)| of == index) {
+                return Ok(margins);
+            }
+            let margins = match flows.phases[index] {
+                Phase::Open => model.margins(x, inputs, &open, index)?,
+                _ => None,
+            };
+            known = Some((index, margins));
+            Ok(margins)
+        };
         self.watches
             .iter()
             .map(|watch| {
@@ -178,8 +205,8 @@ impl Monitors {
                     Watch::ClosesBelow(i, limit) | Watch::ClosesAbove(i, limit) => {
                         in_phase(i, Phase::Open).then_some(pressure - limit)
                     }
-                    Watch::Choking(i) if in_phase(i, Phase::Open) => model.choking_margin_pa(x, i)?,
-                    Watch::Choking(_) => None,
+                    Watch::Choking(i) => margins(i)?.map(|margins| margins.choking_pa),
+                    Watch::Driving(i) => margins(i)?.map(|margins| margins.driving_pa),
                 })
             })
             .collect()
@@ -194,12 +221,13 @@ impl Monitors {
         x_now: &[f64],
         before: f64,
         now: f64,
+        inputs_at: &dyn Fn(f64) -> Inputs,
         scratch: &mut [f64],
         interpolate: &mut Interpolation<'_>,
     ) -> Result<Located, ThermalError> {
         let mut located = Located { reports: Vec::new(), acts_at_s: None };
-        let values = self.evaluate(model, flows, x_now)?;
-        let mut acting: Vec<(f64, usize)> = Vec::new();
+        let values = self.evaluate(model, flows, x_now, &inputs_at(now))?;
+        let mut acting: Vec<(f64, Option<usize>)> = Vec::new();
         for (index, (&old, &new)) in self.values.iter().zip(&values).enumerate() {
             let (Some(old), Some(new)) = (old, new) else { continue };
             let falling = old > 0.0 && new <= 0.0;
@@ -209,6 +237,7 @@ impl Monitors {
                 Watch::Limit(_) => falling || rising,
                 Watch::Opens(..) | Watch::ClosesAbove(..) => rising,
                 Watch::ClosesBelow(..) | Watch::Choking(_) => falling,
+                Watch::Driving(_) => (old > 0.0) != (new > 0.0),
             };
             if !applies {
                 continue;
@@ -217,7 +246,7 @@ impl Monitors {
             for _ in 0..BISECTIONS {
                 let middle = 0.5 * (low + high);
                 interpolate(middle, scratch).map_err(|reason| ThermalError::SolverSetup { reason })?;
-                let value = self.evaluate(model, flows, scratch)?[index].unwrap_or(new);
+                let value = self.evaluate(model, flows, scratch, &inputs_at(middle))?[index].unwrap_or(new);
                 if (value > 0.0) == (old > 0.0) { low = middle } else { high = middle }
             }
             match watch {
@@ -228,14 +257,16 @@ impl Monitors {
                     located.reports.push((high, EventKind::Unchoked { flow: self.names[flow].clone() }));
                 }
                 Watch::Opens(flow, _) | Watch::ClosesBelow(flow, _) | Watch::ClosesAbove(flow, _) => {
-                    acting.push((high, flow));
+                    acting.push((high, Some(flow)));
                 }
+                Watch::Driving(_) => acting.push((high, None)),
             }
         }
         self.values = values;
         located.acts_at_s = acting.iter().map(|&(t, _)| t).min_by(f64::total_cmp);
         if let Some(first) = located.acts_at_s {
-            self.fired = acting.into_iter().filter(|&(t, _)| t <= first).map(|(_, flow)| flow).collect();
+            self.fired =
+                acting.into_iter().filter(|&(t, _)| t <= first).filter_map(|(_, flow)| flow).collect();
             located.reports.retain(|&(t, _)| t <= first);
         }
         located.reports.sort_by(|a, b| a.0.total_cmp(&b.0));

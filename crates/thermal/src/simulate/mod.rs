@@ -183,6 +183,9 @@ fn absolute_tolerances(
     absolute[layout.enthalpy_in] = heat;
     absolute[layout.work_out] = heat;
     absolute[layout.mass_in] = settings.relative_tolerance * mass;
+    for (tolerance, source_kg) in absolute[layout.drawn..].iter_mut().zip(model.source_masses_kg()) {
+        *tolerance = settings.relative_tolerance * source_kg;
+    }
     absolute
 }
 
@@ -263,7 +266,7 @@ impl Run<'_> {
         if let Some(tangents) = &mut self.tangents {
             tangents.begin_segment(from, to);
         }
-        let jumped = self.drive.pieces.get().at(from).jumped_from(&before);
+        let jumped = self.drive.pieces.get().at(from).jumped_from(&before, &self.scenario.flows);
         let changed = self.flows.at_time(from, self.pressure(from)?);
         Ok(self.record_flows(from, changed)? || jumped)
     }
@@ -315,12 +318,17 @@ impl Run<'_> {
 
     /// Open and close the flows whose pressure was reached; neighbours do so a little earlier or later.
     fn switch_flows(&mut self, at: f64) -> Result<(), ThermalError> {
+        let fired = self.monitors.take_fired();
+        // A flow that ends by itself changes no rate.
+        if fired.is_empty() {
+            return Ok(());
+        }
         let inputs = self.drive.pieces.get().at(at);
         let delays = self
             .tangents
             .as_ref()
             .map(|tangents| tangents.delays(self.model, &inputs, &self.drive.open.borrow(), &self.x));
-        let changed = self.flows.at_pressure(&self.monitors.take_fired());
+        let changed = self.flows.at_pressure(&fired);
         self.record_flows(at, changed)?;
         if let (Some(delays), Some(tangents)) = (delays.transpose()?, &mut self.tangents) {
             tangents.jump(&delays, self.model, &inputs, &self.drive.open.borrow(), &self.x)?;
@@ -330,7 +338,8 @@ impl Run<'_> {
 
     fn arm(&mut self, now: f64, stepper: &mut dyn Stepper, to: f64) -> Result<(), ThermalError> {
         stepper.set_stop(to).map_err(|reason| self.cannot_go_on(now, reason))?;
-        self.monitors.reset(self.model, &self.flows, &self.x).map_err(|error| error.at_time(now))
+        let inputs = self.drive.pieces.get().at(now);
+        self.monitors.reset(self.model, &self.flows, &self.x, &inputs).map_err(|error| error.at_time(now))
     }
 
     /// Record what was crossed in the last step; returns the time of the first crossing that acts on a flow.
@@ -341,10 +350,20 @@ impl Run<'_> {
         now: f64,
     ) -> Result<Option<f64>, ThermalError> {
         let mut x = self.x.clone();
+        let pieces = self.drive.pieces.get();
         let mut interpolate = |t: f64, x: &mut [f64]| stepper.interpolate(t, x);
         let located = self
             .monitors
-            .crossed(self.model, &self.flows, &self.x, before, now, &mut x, &mut interpolate)
+            .crossed(
+                self.model,
+                &self.flows,
+                &self.x,
+                before,
+                now,
+                &|t| pieces.at(t),
+                &mut x,
+                &mut interpolate,
+            )
             .map_err(|error| error.at_time(now))?;
         for (time_s, kind) in located.reports {
             interpolate(time_s, &mut x).map_err(|reason| self.cannot_go_on(time_s, reason))?;
@@ -425,7 +444,7 @@ impl Run<'_> {
         let run = Trajectory {
             ledger,
             statistics,
-            ..self.samples.into_trajectory(vessel, self.scenario, self.model.mesh())
+            ..self.samples.into_trajectory(vessel, self.scenario, self.model)
         };
         let neighbours = self.tangents.into_iter().flat_map(Tangents::into_trajectories);
         let neighbours = neighbours.map(|pair| {

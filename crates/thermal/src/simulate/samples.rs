@@ -1,9 +1,8 @@
 //! The output samples of a run: at multiples of the sample time, and at the end.
-use crate::model::Output;
+use crate::model::{Model, Output};
 use crate::scenario::Scenario;
-use crate::trajectory::{Ledger, Place, SolverStatistics, Trajectory};
+use crate::trajectory::{Ledger, Place, SolverStatistics, SourceCourse, Trajectory};
 use crate::vessel::Vessel;
-use crate::wall::mesh::Mesh;
 
 /// The samples taken so far.
 pub(super) struct Samples {
@@ -46,18 +45,26 @@ impl Samples {
     }
 
     /// The samples of a vessel's run, so far without events and balance.
-    pub(super) fn into_trajectory(self, vessel: &Vessel, scenario: &Scenario, mesh: &Mesh) -> Trajectory {
+    pub(super) fn into_trajectory(self, vessel: &Vessel, scenario: &Scenario, model: &Model) -> Trajectory {
         let Self { time_s, ambient_k, outputs, .. } = self;
         let pick = |value: fn(&Output) -> f64| outputs.iter().map(value).collect::<Vec<f64>>();
         let places = ["bottom", "middle", "shoulder", "neck"]
             .into_iter()
-            .filter_map(|name| Some(Place { name, axial_cell: mesh.column_of(name)? }))
+            .filter_map(|name| Some(Place { name, axial_cell: model.mesh().column_of(name)? }))
             .collect();
+        let of_source = |k: usize, flow: &str| SourceCourse {
+            flow: flow.to_owned(),
+            temperature_k: outputs.iter().map(|o| o.sources[k].0).collect(),
+            pressure_pa: outputs.iter().map(|o| o.sources[k].1).collect(),
+        };
         Trajectory {
             vessel: vessel.clone(),
             scenario: scenario.clone(),
             gas_mean_k: pick(|o| o.gas_mean_k),
             wall_mean_k: pick(|o| o.wall_mean_k),
+            wall_inner_mean_k: pick(|o| o.wall_inner_mean_k),
+            liner_mean_k: outputs.iter().map(|o| o.liner_mean_k).collect(),
+            sources: model.source_names().enumerate().map(|(k, flow)| of_source(k, flow)).collect(),
             valve_k: outputs.iter().map(|o| o.valve_k).collect(),
             pressure_pa: pick(|o| o.pressure_pa),
             mass_kg: pick(|o| o.mass_kg),

@@ -103,6 +103,11 @@ impl<'m> Rhs<'m> {
     }
 
     fn evaluate(&self, x: &[f64], t: f64, rate: &mut [f64]) {
+        // A state that is no number follows from an earlier failure, which is the cause.
+        if x.iter().any(|value| value.is_nan()) {
+            rate.fill(f64::NAN);
+            return;
+        }
         let inputs = self.drive.pieces.get().at(t);
         if let Err(error) = self.model.rate(x, &inputs, &self.drive.open.borrow(), rate) {
             *self.drive.failure.borrow_mut() = Some(error);

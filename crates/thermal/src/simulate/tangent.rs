@@ -273,7 +273,7 @@ impl Tangents {
     pub(super) fn into_trajectories(self) -> impl Iterator<Item = [Trajectory; 2]> {
         self.sides.into_iter().map(|pair| {
             pair.map(|Side { vessel, scenario, model, samples, .. }| {
-                samples.into_trajectory(&vessel, &scenario, model.mesh())
+                samples.into_trajectory(&vessel, &scenario, &model)
             })
         })
     }

@@ -26,6 +26,9 @@ use crate::wall::mesh::Facing;
 pub(crate) const GRAVITY_M_S2: f64 = 9.806_65;
 /// Temperature difference below which the film coefficient becomes constant, K.
 const FLAT_BELOW_K: f64 = 0.01;
+/// Reynolds number of a jet below which its film becomes linear in it.
+#[cfg(feature = "simulate")]
+const LINEAR_BELOW_RE: f64 = 10.0;
 /// Factor and exponent of a plate that stirs the gas (hot floor, cold ceiling) and of one that does not, length D/4.
 const PLATE_STIRRED: (f64, f64) = (0.15, 1.0 / 3.0);
 const PLATE_RESTING: (f64, f64) = (0.27, 0.25);
@@ -265,13 +268,14 @@ impl InsideConvection {
 pub(crate) fn jet_film_w_m2_k<D: Real>(
     conductivity_w_m_k: D,
     viscosity_pa_s: D,
-    mass_flow_kg_s: f64,
+    mass_flow_kg_s: D,
     inlet_diameter_m: f64,
     vessel_diameter_m: f64,
 ) -> D {
-    let reynolds =
-        viscosity_pa_s.recip() * (4.0 * mass_flow_kg_s / (std::f64::consts::PI * inlet_diameter_m));
-    reynolds.powf(0.67) * conductivity_w_m_k * (0.56 / vessel_diameter_m)
+    let reynolds = mass_flow_kg_s / viscosity_pa_s * (4.0 / (std::f64::consts::PI * inlet_diameter_m));
+    // Re^0.67, but linear where the jet dies.
+    let power = reynolds * (reynolds * reynolds + LINEAR_BELOW_RE * LINEAR_BELOW_RE).powf(-0.165);
+    power * conductivity_w_m_k * (0.56 / vessel_diameter_m)
 }
 
 #[cfg(test)]

@@ -220,7 +220,10 @@ fn inside_film(spec: &InsideFilmSpec) -> Result<InsideFilm, ThermalError> {
             power(needed("factor", spec.factor)?, exponent)
         }
         LawChoice::Coefficient => {
-            InsideFilm::Coefficient { film_w_m2_k: needed("film_w_m2_k", spec.film_w_m2_k)? }
+            let path = "inside_film.film_w_m2_k";
+            let film = spec.film_w_m2_k.ok_or_else(|| check::missing(path, "this law needs it"))?;
+            let remedy = "0 lets no heat through; a full cylinder has 50 to 150";
+            InsideFilm::Coefficient { film_w_m2_k: check::not_negative(path, film, remedy)? }
         }
     })
 }

@@ -224,7 +224,7 @@ pub struct InsideFilmSpec {
     pub factor: Option<f64>,
     /// Exponent `n` of `Nu = c Ra^n`, for the law `rayleigh`.
     pub exponent: Option<f64>,
-    /// Film coefficient, for the law `coefficient`.
+    /// Film coefficient, for the law `coefficient`; 0 lets no heat through.
     pub film_w_m2_k: Option<f64>,
     /// Multiplier of the power laws, 1 by default.
     pub multiplier: Option<f64>,

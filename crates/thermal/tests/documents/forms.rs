@@ -1,6 +1,8 @@
 //! The forms in which a file can say the same thing, and what holds where it says nothing.
 use approx::assert_relative_eq;
+use cylwatch_thermal::flow::{FlowKind, Opening, Source, SourceProcess};
 use cylwatch_thermal::scenario::OutsideFilm;
+use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{
     GasResolution, InsideFilm, Vessel, VesselSpec, presets, read_specification, read_vessel,
@@ -187,4 +189,47 @@ fn a_refill_and_a_relief_device_are_read() {
     assert_relative_eq!(scenario.flows[2].opens_above_pa.unwrap(), 2.5e7);
     assert_relative_eq!(scenario.flows[3].closes_above_pa.unwrap(), 2.2e7);
     assert_eq!((scenario.flows[0].start_s, scenario.flows[0].stop_s), (60.0, 120.0));
+}
+
+#[test]
+fn flows_are_read_from_tables_files_and_openings() {
+    let flows = "film_w_m2_k = 0\n[[leak]]\nflow_csv = {file = \"flow.csv\", column = \"leak_g_s\"}\n\
+                 [[discharge]]\nkv_m3_h = 0.4\nback_pressure_bar = 2\n\
+                 [[discharge]]\ndiameter_mm = 1\ndischarge_coefficient_ideal_gas = 0.8\n\
+                 [[refill]]\ndiameter_mm = 2\ndischarge_coefficient = 0.7\nsource_temperature_degc = 20\nsource_pressure_bar = 300\n\
+                 [[refill]]\nkv_m3_h = 1\nx_t = 0.4\nsource_temperature_degc = 20\nsource_pressure_csv = {file = \"flow.csv\", column = \"source_barg\"}\n\
+                 [[refill]]\ndiameter_mm = 3\nsource_volume_l = 50\nsource_process = \"isothermal\"\nsource_temperature_degc = 20\nsource_pressure_bar = 300\n\
+                 [[refill]]\nflow_g_s = 2\nsource_pressure_bar = 10\nsource_temperature_table = {time_min = [0, 1], temperature_degc = [0, 10]}\n";
+    let scenario = scenario_with("film_w_m2_k = 8", flows).unwrap();
+    let kind = |k: usize| &scenario.flows[k].kind;
+    let FlowKind::LeakSeries { mass_flow_kg_s } = kind(0) else { panic!("a table") };
+    assert_relative_eq!(mass_flow_kg_s.at(30.0), 1.25e-3, max_relative = 1e-12);
+    let valve = Opening::Valve { kv_m3_h: 0.4, x_t: 0.72 };
+    assert_eq!(*kind(1), FlowKind::Release { opening: valve, back_pressure_pa: 2e5 });
+    assert!(matches!(kind(2), FlowKind::Release { opening: Opening::IdealGasOrifice { .. }, .. }));
+    let FlowKind::Supply { opening: Opening::Orifice { discharge_coefficient, .. }, .. } = kind(3) else {
+        panic!("an orifice")
+    };
+    assert_eq!(*discharge_coefficient, 0.7);
+    let FlowKind::Supply { source: Source::Supply { pressure_pa, .. }, .. } = kind(4) else {
+        panic!("a table")
+    };
+    assert_relative_eq!(pressure_pa.at(30.0), 195e5 + 101_325.0, max_relative = 1e-12);
+    let FlowKind::Supply { source: Source::Vessel { volume_m3, process, .. }, .. } = kind(5) else {
+        panic!("a vessel")
+    };
+    assert_eq!((*volume_m3, *process), (0.05, SourceProcess::Isothermal));
+    assert!(matches!(kind(6), FlowKind::RefillSeries { .. }));
+}
+
+#[test]
+fn a_film_of_zero_is_an_insulated_wall() {
+    let vessel = super::vessel_with("law = \"mcadams\"", "law = \"coefficient\"\nfilm_w_m2_k = 0");
+    let vessel = read_vessel(&vessel, "x.toml").unwrap();
+    let mut scenario = scenario_with("film_w_m2_k = 8", "film_w_m2_k = 0").unwrap();
+    scenario.initial.gas_temperature_k = 310.0;
+    scenario.initial.wall_temperature_k = 280.0;
+    let run = simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| {}).unwrap();
+    assert_relative_eq!(*run.gas_mean_k.last().unwrap(), 310.0, max_relative = 1e-7);
+    assert_relative_eq!(*run.wall_mean_k.last().unwrap(), 280.0, max_relative = 1e-9);
 }

@@ -1,5 +1,5 @@
 //! No text makes the readers panic, and what they accept is physical.
-use cylwatch_thermal::flow::FlowKind;
+use cylwatch_thermal::flow::{FlowKind, Opening};
 use cylwatch_thermal::scenario::{self, OutsideFilm, Scenario};
 use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{self, InsideFilm, Vessel};
@@ -116,6 +116,7 @@ fn vessel_is_physical(vessel: &Vessel) -> bool {
     });
     let film = match vessel.inside_film {
         InsideFilm::Rayleigh { factor, exponent, multiplier } => [factor, exponent, multiplier],
+        InsideFilm::Coefficient { film_w_m2_k: 0.0 } => [1.0; 3],
         InsideFilm::Coefficient { film_w_m2_k } => [film_w_m2_k, 1.0, 1.0],
     };
     let valve = vessel
@@ -139,7 +140,9 @@ fn scenario_is_physical(scenario: &Scenario) -> bool {
         Fill::Mass { mass_kg } => [mass_kg, 1.0],
     };
     let film = match &scenario.surroundings.film {
-        OutsideFilm::Coefficient { film_w_m2_k } => positive([film_w_m2_k.range().0, film_w_m2_k.range().1]),
+        OutsideFilm::Coefficient { film_w_m2_k } => {
+            film_w_m2_k.range().0 >= 0.0 && film_w_m2_k.range().1.is_finite()
+        }
         OutsideFilm::Convection { wind_m_s, multiplier } => {
             wind_m_s.range().0 >= 0.0 && wind_m_s.range().1.is_finite() && positive([*multiplier])
         }
@@ -148,6 +151,20 @@ fn scenario_is_physical(scenario: &Scenario) -> bool {
         let size = match flow.kind {
             FlowKind::Leak { mass_flow_kg_s } | FlowKind::Refill { mass_flow_kg_s, .. } => mass_flow_kg_s,
             FlowKind::Orifice { diameter_m, .. } => diameter_m,
+            FlowKind::LeakSeries { ref mass_flow_kg_s }
+            | FlowKind::RefillSeries { ref mass_flow_kg_s, .. } => {
+                if mass_flow_kg_s.range().0 >= 0.0 {
+                    1.0
+                } else {
+                    -1.0
+                }
+            }
+            FlowKind::Release { opening, .. } | FlowKind::Supply { opening, .. } => match opening {
+                Opening::Orifice { diameter_m, .. } | Opening::IdealGasOrifice { diameter_m, .. } => {
+                    diameter_m
+                }
+                Opening::Valve { kv_m3_h, .. } => kv_m3_h,
+            },
         };
         positive([size]) && flow.start_s >= 0.0 && flow.stop_s > flow.start_s
     });

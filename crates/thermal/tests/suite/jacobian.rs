@@ -1,9 +1,9 @@
 //! The exact Jacobian against central differences, in every regime.
-use cylwatch_thermal::flow::{Flow, FlowKind};
+use cylwatch_thermal::flow::{Flow, FlowKind, Opening, Source, SourceProcess};
 use cylwatch_thermal::model::Model;
-use cylwatch_thermal::model::inputs::{FilmInput, Inputs};
+use cylwatch_thermal::model::inputs::{FilmInput, Inputs, Moment};
 use cylwatch_thermal::model::layout::Layout;
-use cylwatch_thermal::scenario::Scenario;
+use cylwatch_thermal::scenario::{Scenario, Series};
 use cylwatch_thermal::vessel::{GasResolution, InnerVolume, Stratification, Surface, Valve, Vessel};
 use cylwatch_thermal::wall::geometry::{End, EndShape, Geometry, Layer, Neck, Orientation};
 use cylwatch_thermal::wall::material::Material;
@@ -114,6 +114,8 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
             c if (layout.mass..layout.energy).contains(&c) => 1e-6,
             c if (layout.energy..layout.heat_in).contains(&c) => 0.2,
             c if c <= layout.mean_wall => 1e-4,
+            // Mass drawn from a source vessel comes after the four entries of the ledger.
+            c if c >= layout.heat_in + 4 => 1e-5,
             _ => 1.0,
         };
         let mut rates = [vec![0.0; n], vec![0.0; n]];
@@ -139,6 +141,7 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
 }
 
 const STILL: Inputs = Inputs {
+    moment: Moment { time_s: 0.0, between_s: (0.0, 3_600.0) },
     air_k: 275.0,
     film: FilmInput::Coefficient(12.0),
     radiation_k: None,
@@ -196,6 +199,51 @@ fn jacobian_is_the_derivative_in_a_blowdown_and_a_refill() {
         &STILL,
         6.0,
     );
+}
+
+/// Refills through openings, choked and not, from sources that do and do not run down, with their jets.
+#[test]
+fn jacobian_is_the_derivative_of_a_refill_through_an_opening() {
+    let hole = Opening::Orifice { diameter_m: 0.003, discharge_coefficient: 0.8 };
+    let valve = Opening::Valve { kv_m3_h: 0.3, x_t: 0.7 };
+    let vessel =
+        |pressure_pa, process| Source::Vessel { volume_m3: 0.05, temperature_k: 290.0, pressure_pa, process };
+    let constant =
+        Source::Supply { temperature_k: Series::constant(290.0), pressure_pa: Series::constant(300e5) };
+    let supply = |opening, source, inlet_diameter_m| FlowKind::Supply { opening, source, inlet_diameter_m };
+    let stacked = GasResolution::Stratified(Stratification {
+        cells: 4,
+        exchange_length_diameters: 1.0,
+        core_mixing: 0.05,
+    });
+    for gas in [GasResolution::WellMixed, stacked] {
+        let vessel_of = Vessel { gas, ..full() };
+        for opening in [hole, valve] {
+            let flows = vec![
+                supply(opening, constant.clone(), Some(0.004)),
+                supply(opening, vessel(700e5, SourceProcess::Adiabatic), Some(0.006)),
+                supply(opening, vessel(260e5, SourceProcess::Isothermal), None),
+                FlowKind::Release { opening, back_pressure_pa: 150e5 },
+            ];
+            check(&vessel_of, &with_flows(flows), &STILL, 4.0);
+        }
+    }
+}
+
+/// Where the pressures are equal or the wrong way round nothing flows, and the derivative says so.
+#[test]
+fn jacobian_is_the_derivative_where_the_source_is_no_longer_above() {
+    let supply = FlowKind::Supply {
+        opening: Opening::Orifice { diameter_m: 0.003, discharge_coefficient: 0.8 },
+        source: Source::Vessel {
+            volume_m3: 0.05,
+            temperature_k: 290.0,
+            pressure_pa: 100e5,
+            process: SourceProcess::Adiabatic,
+        },
+        inlet_diameter_m: Some(0.004),
+    };
+    check(&full(), &with_flows(vec![supply]), &STILL, 0.0);
 }
 
 proptest! {

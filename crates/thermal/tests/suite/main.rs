@@ -4,6 +4,7 @@ mod analytic;
 mod blowdown;
 mod conservation;
 mod convergence;
+mod filling;
 mod jacobian;
 mod preset_runs;
 mod support;

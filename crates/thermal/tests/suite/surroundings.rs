@@ -1,7 +1,7 @@
 //! Signals with many bends, and surroundings that change along the axis.
 use approx::assert_relative_eq;
 use cylwatch_thermal::model::Model;
-use cylwatch_thermal::model::inputs::{FilmInput, Inputs};
+use cylwatch_thermal::model::inputs::{FilmInput, Inputs, Moment};
 use cylwatch_thermal::scenario::{AxialVariation, OutsideFilm, Scenario, Series};
 use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
@@ -104,6 +104,7 @@ fn film_slope_scales_the_loss_of_each_height() {
     let model = Model::new(&vessel, &scenario).unwrap();
     let x = model.initial_state(&vessel, &scenario.initial).unwrap();
     let inputs = Inputs {
+        moment: Moment::default(),
         air_k: 280.0,
         film: FilmInput::Coefficient(10.0),
         radiation_k: None,
