@@ -94,6 +94,8 @@ fn reports(folder: &Path) -> Vec<&'static str> {
     ran(&["inspect", "run.csv", "-o", "inspection.txt", "--report", "inspect.html"], &[0]);
     ran(&["estimate", n, "run.csv", "-o", "est.csv", "--report", "estimate.html"], &[0]);
     ran(&["monitor", n, "run.csv", "-o", "rows.csv", "--report", "monitor.html"], &[0, 1, 3]);
+    let fill = ["--fill-pressure-bar", "200", "--fill-temperature-degc", "15"];
+    ran(&[&["inspection", n, "run.csv"], &fill[..], &["--report", "inspection.html"]].concat(), &[0]);
     let columns = ["--input", "shoulder", "--output", "gas_mean"];
     ran(&[&["identify", "run.csv"], &columns[..], &["--report", "identify.html"]].concat(), &[0]);
     ran(&["calibrate", n, "run.csv", "--scenario", "tunnel-winter", "--report", "calibrate.html"], &[0]);
