@@ -110,6 +110,7 @@ fn reports(folder: &Path) -> Vec<&'static str> {
         "inspect.html",
         "estimate.html",
         "monitor.html",
+        "inspection.html",
         "identify.html",
         "calibrate.html",
         "place.html",
