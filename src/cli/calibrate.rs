@@ -8,7 +8,7 @@ use super::progress::Progress;
 use super::selection;
 use super::views::Views;
 use crate::estimator::calibrate::{
-    Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, SearchStep,
+    CalibrateError, Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, SearchStep,
 };
 use crate::estimator::sensor::SensorsSpec;
 use crate::report::Input;
@@ -17,7 +17,7 @@ use crate::report::calibrate::Study;
 use crate::report::simulation;
 use crate::thermal::model::with_real_gas_coefficients;
 use crate::thermal::vessel::{Vessel, VesselSpec};
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -191,9 +191,9 @@ impl Options {
             progress.say(&format!("step {number}: {distance_sd:.2} standard deviations from the minimum"));
         };
         let (calibrated, scores) = match &held_out {
-            None => (calibration.run_watched(&mut watch)?, Vec::new()),
+            None => (calibration.run_watched(&mut watch).map_err(explained)?, Vec::new()),
             Some((hold_out, _)) => {
-                let validation = calibration.validate_watched(hold_out, &mut watch)?;
+                let validation = calibration.validate_watched(hold_out, &mut watch).map_err(explained)?;
                 (validation.calibrated, validation.scores)
             }
         };
@@ -293,6 +293,14 @@ impl Case {
             channels: self.recording.sensors,
         }
     }
+}
+
+/// An error of a fit, with the option that helps where parameters cannot be told apart.
+fn explained(error: CalibrateError) -> anyhow::Error {
+    let CalibrateError::Undetermined { combination, .. } = &error else { return error.into() };
+    let names: Vec<&str> =
+        combination.split_whitespace().filter(|word| !matches!(*word, "with" | "against")).collect();
+    anyhow!("{error}; {}", report::remedy(&names))
 }
 
 #[cfg(test)]

@@ -56,14 +56,14 @@ fn options(known: &'static [Choice]) -> impl Iterator<Item = (&'static Choice, S
 fn augment<C: Choices>(command: Command) -> Command {
     options(C::CHOICES).fold(command, |command, (&(quantity, dimension, words), name, unit, first)| {
         let others: Vec<&str> = units::units_of(dimension).skip(1).map(|unit| unit.suffix).collect();
-        let absolute = if quantity.ends_with("pressure") { "absolute; " } else { "" };
+        let absolute = if dimension == Dimension::Pressure { " absolute" } else { "" };
         let (words, default) = words.split_at(words.find(" [default").unwrap_or(words.len()));
         let [help, long_help] = match others.len() {
             0 => [format!("{words}{default}"), format!("{words}{default}")],
             _ => [
-                format!("{words}, in {}{default}", unit.suffix),
+                format!("{words}, in {}{absolute}{default}", unit.suffix),
                 format!(
-                    "{words}, in {} ({absolute}other units: {}){default}",
+                    "{words}, in {}{absolute} (other units: {}){default}",
                     unit.suffix,
                     others.join(", ")
                 ),

@@ -84,6 +84,25 @@ fn a_file_in_the_place_of_another_is_named_for_what_it_is() {
 }
 
 #[test]
+fn limits_at_which_the_gas_has_no_state_are_refused_with_their_options() {
+    let folder = tempdir().unwrap();
+    start(folder.path());
+    edited(folder.path(), "vessel.toml", "fluid = \"nitrogen\"", "fluid = \"carbon-dioxide\"");
+    let rows = "time_s,shoulder_degc,pressure_bar\n0,20,30\n60,20,30\n";
+    std::fs::write(folder.path().join("co2.csv"), rows).unwrap();
+    let monitor =
+        |options: &[&str]| run(folder.path(), &[&["monitor", "vessel.toml", "co2.csv"], options].concat());
+    for options in [&[][..], &["--limit-bar", "25"]] {
+        let outcome = monitor(options);
+        assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+        for words in ["--limit-bar", "--coldest-degc", "condense"] {
+            assert!(outcome.stderr.contains(words) || words == "condense", "{words}: {}", outcome.stderr);
+        }
+    }
+    assert_eq!(monitor(&["--limit-bar", "25", "--coldest-degc", "5"]).code, Some(3));
+}
+
+#[test]
 fn options_that_make_no_sense_are_refused_with_what_would() {
     let folder = tempdir().unwrap();
     start(folder.path());

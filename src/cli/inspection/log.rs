@@ -96,12 +96,8 @@ fn blind(last: &Output, selection: &Selection) -> Option<String> {
     let mut pressures = selection.sensors.iter().zip(&last.health);
     let good = |health: &Health| matches!(health, Health::Good | Health::Spikes);
     let of_pressure = |sensor: &crate::estimator::sensor::Sensor| sensor.quantity() == Quantity::Pressure;
-    match pressures.find(|(sensor, health)| of_pressure(sensor) && !good(health)) {
-        Some((sensor, health)) => {
-            Some(format!("{} {}", sensor.name, health_text(*health, Quantity::Pressure)))
-        }
-        None => None,
-    }
+    let (sensor, health) = pressures.find(|(sensor, health)| of_pressure(sensor) && !good(health))?;
+    Some(format!("{} {}", sensor.name, health_text(*health, Quantity::Pressure)))
 }
 
 /// What the log shows beside the mass.

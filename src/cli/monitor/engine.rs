@@ -6,8 +6,8 @@ use crate::detector::monitor::alarm::AlarmSettings;
 use crate::detector::monitor::{Limits, Monitor, MonitorSettings};
 use crate::detector::prognosis::{Contents, ReactionSettings};
 use crate::estimator::log::Quantity;
-use crate::thermal::units::BAR_PA;
-use crate::thermal::units::QUOTED_K;
+use crate::report::monitor::OperatingLimits;
+use crate::thermal::units::{BAR_PA, QUOTED_K, ZERO_CELSIUS_K};
 use crate::thermal::vessel::Fill;
 
 /// A monitor and what a run must know beside it.
@@ -42,6 +42,22 @@ fn settings(options: &Options, beginning: &RunStart, settled: bool) -> anyhow::R
         reaction: ReactionSettings { next_service_s: limits.next_service_s, ..defaults.reaction },
         alarms: AlarmSettings::with_limit(limits.limit_pa),
         ..defaults
+    })
+}
+
+/// Refuses limits at which the gas has no state: carbon dioxide condenses on a cold night.
+fn check_limits(options: &Options, contents: &Contents, mass_kg: f64) -> anyhow::Result<()> {
+    let OperatingLimits { limit_pa, coldest_k, .. } = options.limits;
+    let states = contents
+        .pressure_pa(mass_kg, coldest_k)
+        .and_then(|_| contents.mass_kg(limit_pa, coldest_k))
+        .and_then(|_| contents.mass_kg(limit_pa, QUOTED_K));
+    states.map(|_| ()).with_context(|| {
+        format!(
+            "state --limit-bar and --coldest-degc for this cylinder: at {} bar or {} \u{b0}C its gas has no state",
+            limit_pa / BAR_PA,
+            coldest_k - ZERO_CELSIUS_K
+        )
     })
 }
 
@@ -102,6 +118,7 @@ impl Engine {
         {
             messages.caution(&format!("{}: {doubt}", begin()));
         }
+        check_limits(options, &contents, mass_kg)?;
         let settings = settings(options, beginning, options.fill.is_settled())?;
         let mut monitor = Monitor::new(vessel, &selection.sensors, &commissioning, &settings)?;
         if let Some(learned) = learned {

@@ -1,9 +1,12 @@
 //! What to know before a calibrated vessel is used, in words.
 use super::Study;
-use crate::estimator::calibrate::{Combination, ParameterKind};
+use crate::estimator::calibrate::{ChannelResiduals, Combination, ParameterKind};
+use crate::report::number;
 
 /// Ratio of residuals and noise from which on the model is said to miss something.
 const MISSES: f64 = 2.0;
+/// Probability from which on residuals count as white.
+const WHITE: f64 = 0.05;
 /// Movement by a finer wall, in standard deviations, with which an estimate leaves its interval of 95 %.
 const COARSE_SD: f64 = 1.96;
 /// The same as a part of what such parameters are usually off: smaller deviations do not matter.
@@ -41,11 +44,38 @@ fn inseparable(combination: &Combination) -> String {
         ),
         _ => format!(
             "the logs do not separate {}: together they are known to {:.1} times what such parameters are usually off; \
-             give one a prior, hold it, or record an experiment that tells them apart",
+             {}, or record an experiment that tells them apart",
             names.join(" and "),
-            combination.deviation
+            combination.deviation,
+            remedy(&names)
         ),
     }
+}
+
+/// Options that part parameters which the logs do not: what a drawing or a data sheet knows gets a prior, what is fitted beside the
+/// vessel is held, and of two that nobody knows one is not fitted.
+pub(crate) fn remedy(names: &[impl AsRef<str>]) -> String {
+    let find = |known: &dyn Fn(&str) -> bool| names.iter().map(AsRef::as_ref).find(|name| known(name));
+    if let Some((name, prior)) =
+        PRIORS.iter().find(|(name, _)| names.iter().any(|other| other.as_ref() == *name))
+    {
+        return format!("where the drawing is right, add --prior {name}={prior}");
+    }
+    match (find(&is_beside), names.last()) {
+        (Some(name), _) => format!("add --hold {name} if that is known"),
+        (None, Some(name)) => format!("leave {} out of --fit", name.as_ref()),
+        (None, None) => String::new(),
+    }
+}
+
+/// How well drawings and data sheets know factors: mean and standard deviation.
+const PRIORS: [(&str, &str); 3] =
+    [("wall-capacity", "1,0.05"), ("volume", "1,0.02"), ("valve-capacity", "1,0.2")];
+
+/// Whether a parameter is fitted without being asked for: of a sensor, or of the beginning of a log.
+fn is_beside(name: &str) -> bool {
+    name.contains(':') && !name.starts_with("discharge")
+        || ["fill-mass", "initial-temperature", "air-offset"].contains(&name)
 }
 
 /// What a coarse wall does to the estimates.
@@ -74,15 +104,33 @@ fn coarse(study: &Study) -> Option<String> {
 }
 
 fn misfits(study: &Study) -> impl Iterator<Item = String> + '_ {
-    let missed = |channel: &&crate::estimator::calibrate::ChannelResiduals| channel.rms_over_noise > MISSES;
+    let missed = |channel: &&ChannelResiduals| channel.rms_over_noise > MISSES;
     study.calibrated.channels.iter().filter(missed).map(|channel| {
+        let ChannelResiduals { experiment, channel: name, rms_over_noise, .. } = channel;
+        let widened = channel.variance_factor.sqrt();
+        if channel.whiteness_p_value.is_some_and(|p_value| p_value > WHITE) {
+            let (noise, unit) = study.shown_noise(channel);
+            return format!(
+                "{name} of {experiment} scatters {rms_over_noise:.1} times as much as its stated noise, and without any pattern: \
+                 the model fits, and its noise is rather {} {unit}: state it with --sensors",
+                number(noise, 2)
+            );
+        }
+        let leak = if study.is_pressure(experiment, name) { ", as a leak would: `monitor` tells one" } else { "" };
         format!(
-            "{} of {} misses the model by {:.1} times its noise: something is not in the model; the intervals are \
-             widened by up to {:.1}",
-            channel.channel,
-            channel.experiment,
-            channel.rms_over_noise,
-            channel.variance_factor.sqrt()
+            "{name} of {experiment} misses the model by {rms_over_noise:.1} times its noise: something is not in the model{leak}; the \
+             intervals are widened by up to {widened:.1}"
         )
     })
+}
+
+impl Study {
+    /// Noise that the residuals have, in the unit that a sensor's file states it in.
+    fn shown_noise(&self, channel: &ChannelResiduals) -> (f64, &'static str) {
+        if self.is_pressure(&channel.experiment, &channel.channel) {
+            (1e-2 * channel.rms, "mbar")
+        } else {
+            (channel.rms, "K")
+        }
+    }
 }

@@ -5,7 +5,7 @@ mod figure;
 mod study;
 mod summary;
 
-pub(crate) use caution::cautions;
+pub(crate) use caution::{cautions, remedy};
 pub(crate) use document::document;
 pub(crate) use figure::figure;
 pub(crate) use study::{Line, Study, shown_unit};

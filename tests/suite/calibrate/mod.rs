@@ -1,4 +1,5 @@
 //! `cylwatch calibrate`.
+mod advice;
 mod bad_input;
 mod outputs;
 mod session;
