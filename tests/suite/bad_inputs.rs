@@ -84,6 +84,104 @@ fn a_file_in_the_place_of_another_is_named_for_what_it_is() {
 }
 
 #[test]
+fn a_table_that_ends_before_the_scenario_is_refused_with_its_last_row() {
+    let folder = tempdir().unwrap();
+    let path = folder.path();
+    start(path);
+    edited(path, "scenario.toml", "air_degc = 21", "air_csv = { file = \"air.csv\", column = \"air_degc\" }");
+    for line in ["[[ambient.air_change]]", "at_min = 0", "to_degc = -25"] {
+        edited(path, "scenario.toml", line, "");
+    }
+    let simulate = ["simulate", "vessel.toml", "scenario.toml", "-o", "run.csv"];
+    for (rows, words) in [
+        (
+            "0,20\n3600,0\n",
+            &["air.csv:3", "time_s = 3600", "the end of the scenario", "let the table go on"][..],
+        ),
+        ("0,20\n", &["air.csv:2", "the end of the scenario"]),
+        ("0,20\n3600,0\n3500,0\n10800,0\n", &["air.csv:4", "sort the rows"]),
+        ("0,20\n3600,warm\n10800,0\n", &["air.csv:3", "warm"]),
+        ("0,20\n3600,9000\n10800,0\n", &["air.csv:3", "9000"]),
+    ] {
+        std::fs::write(path.join("air.csv"), format!("time_s,air_degc\n{rows}")).unwrap();
+        refused(path, &simulate, words);
+    }
+    std::fs::write(path.join("air.csv"), "time_s,air_degc\n0,20\n5400,0\n10000,0\n").unwrap();
+    assert_eq!(run(path, &simulate).code, Some(0));
+}
+
+#[test]
+fn wrong_words_of_a_command_line_are_refused_with_the_right_ones() {
+    let folder = tempdir().unwrap();
+    let path = folder.path();
+    start(path);
+    let cases: [(&[&str], &str); 30] = [
+        (&["simulate", "vessel.toml", "scenario.toml", "--seed", "-1"], "a whole number of at least 0"),
+        (&["simulate", "vessel.toml", "scenario.toml", "--seed", "1.5"], "a whole number of at least 0"),
+        (&["simulate", "vessel.toml", "scenario.toml", "--format", "xml"], "[possible values: csv"),
+        (
+            &["simulate", "vessel.toml", "scenario.toml", "-o", "no/run.csv"],
+            "there is no folder no, make it first",
+        ),
+        (&["simulate", "vessel.toml", "scenario.toml", "-o", "vessel.toml"], "is an input of this run"),
+        (&["estimate", "-", "-"], "stdin can be the vessel or the log, not both"),
+        (
+            &["properties", "nitrogen", "--temperature-degc", "15"],
+            "a state takes two of temperature, pressure and density",
+        ),
+        (
+            &["properties", "nitrogen", "--temperature-degc", "-300", "--pressure-bar", "1"],
+            "must be above -273.15",
+        ),
+        (
+            &["properties", "nitrogen", "--temperature-degc", "15", "--pressure-barg", "-2"],
+            "must be above -1.01325",
+        ),
+        (
+            &["properties", "co2", "--temperature-degc", "15", "--pressure-bar", "40"],
+            "did you mean carbon-dioxide?",
+        ),
+        (
+            &["properties", "ig541", "--temperature-degc", "15", "--pressure-bar", "40"],
+            "did you mean ig-541?",
+        ),
+        (
+            &["properties", "carbon-dioxide", "--temperature-degc", "15", "--pressure-bar", "60"],
+            "in a cylinder at 15 degC from 50.9 bar on",
+        ),
+        (&["place", "vessel.toml", "--sensors", "0"], "a whole number of at least 1"),
+        (&["place", "vessel.toml", "--sensors", "99"], "only 15 candidates may be taken"),
+        (&["commission", "vessel.toml", "-o", "x.json", "--cylinders", "0"], "a whole number of at least 1"),
+        (&["bench-detector", "nonsense"], "no built-in plan is called so, the nearest is"),
+        (&["inspect", "."], "is a folder: name a file in it"),
+        (
+            &["identify", "log.csv", "--input", "shoulder", "--output", "shoulder"],
+            "name the same column shoulder",
+        ),
+        (
+            &["calibrate", "vessel.toml", "log.csv", "--fit", "nothing"],
+            "there is no such parameter; known are",
+        ),
+        (&["schema", "vesel"], "[possible values: vessel, scenario"),
+        (&["completions", "powershel"], "[possible values: bash"),
+        (&["man", "--out", "log.csv"], "is a file where the output folder should be"),
+        (&["reproduce", "--out", "log.csv"], "is a file where the output folder should be"),
+        (&["monitor", "vessel.toml", "log.csv", "--zone", "Mars/Phobos"], "is no zone"),
+        (&["monitor", "vessel.toml", "log.csv", "--map", "x"], "write OURS=THEIRS"),
+        (&["monitor", "vessel.toml", "log.csv", "--map", "shoulder_degc="], "write OURS=THEIRS"),
+        (&["monitor", "vessel.toml", "log.csv", "--state", "."], "is a folder: name a file in it"),
+        (&["monitor", "vessel.toml", "log.csv", "--announced", "5"], "write FROM..UNTIL"),
+        (&["inspection", "vessel.toml", "log.csv", "--fill-mass-kg", "0"], "must be above 0"),
+        (&["simulte"], "similar subcommand"),
+    ];
+    let before = files(path);
+    for (arguments, words) in cases {
+        refused(path, arguments, &[words]);
+    }
+    assert_eq!(files(path), before);
+}
+
+#[test]
 fn limits_at_which_the_gas_has_no_state_are_refused_with_their_options() {
     let folder = tempdir().unwrap();
     start(folder.path());
@@ -95,8 +193,8 @@ fn limits_at_which_the_gas_has_no_state_are_refused_with_their_options() {
     for options in [&[][..], &["--limit-bar", "25"]] {
         let outcome = monitor(options);
         assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
-        for words in ["--limit-bar", "--coldest-degc", "condense"] {
-            assert!(outcome.stderr.contains(words) || words == "condense", "{words}: {}", outcome.stderr);
+        for words in ["--limit-bar", "--coldest-degc", "liquid or two-phase"] {
+            assert!(outcome.stderr.contains(words), "{words}: {}", outcome.stderr);
         }
     }
     assert_eq!(monitor(&["--limit-bar", "25", "--coldest-degc", "5"]).code, Some(3));

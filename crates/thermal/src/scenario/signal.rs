@@ -142,7 +142,7 @@ impl Signal<'_> {
             return self.series_of_table(&path("_table"), table).map(Some);
         }
         if let Some(csv) = self.csv {
-            return self.series_of_csv(&path("_csv"), csv, files).map(Some);
+            return self.series_of_csv(&path("_csv"), csv, files, duration_s).map(Some);
         }
         let Some(value) = self.constant else {
             if self.changes.is_empty() {
@@ -260,7 +260,13 @@ impl Signal<'_> {
         Series::try_new(time_s.to_vec(), value.to_vec())
     }
 
-    fn series_of_csv(&self, path: &str, csv: &CsvSpec, files: Files<'_>) -> Result<Series, ThermalError> {
+    fn series_of_csv(
+        &self,
+        path: &str,
+        csv: &CsvSpec,
+        files: Files<'_>,
+        duration_s: f64,
+    ) -> Result<Series, ThermalError> {
         let text = files(&csv.file).map_err(|error| {
             let remedy = format!("the name counts from the scenario's folder ({error})");
             check::broken(
@@ -293,8 +299,21 @@ impl Signal<'_> {
             let (key, text) = (column.time_name.clone(), column.text[i].0.clone());
             return Err(fault(i, Problem::Value { key, text, bound, remedy }));
         }
+        if let Some(i) = ends_early(&column.time_s, duration_s) {
+            let (key, text) = (column.time_name.clone(), column.text[i].0.clone());
+            let bound = format!("at least {}, the end of the scenario", check::time_text(duration_s));
+            let remedy = "let the table go on, or the scenario end with it".to_owned();
+            return Err(fault(i, Problem::Value { key, text, bound, remedy }));
+        }
         Series::try_new(column.time_s, column.value)
     }
+}
+
+/// The last row, if it lies more than the interval before it ahead of the end: what was recorded does not say what came then.
+fn ends_early(time_s: &[f64], duration_s: f64) -> Option<usize> {
+    let last = time_s.len().checked_sub(1)?;
+    let interval_s = if last > 0 { time_s[last] - time_s[last - 1] } else { 0.0 };
+    (time_s[last] + interval_s < duration_s).then_some(last)
 }
 
 /// The first row that is out of order, and what it would have to be.

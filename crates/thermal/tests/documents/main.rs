@@ -36,7 +36,7 @@ fn files(name: &str) -> std::io::Result<String> {
         "ragged.csv" => Ok("time_s,air_degc\n0,10\n60\n".to_owned()),
         "timeless.csv" => Ok("t,air_degc\n0,10\n".to_owned()),
         "flow.csv" => {
-            Ok("# a flow meter\ntime_min,leak_g_s,back_g_s,source_barg\n0,0,0,200\n1,2.5,-1,190\n".to_owned())
+            Ok("# a flow meter\ntime_min,leak_g_s,back_g_s,source_barg\n0,0,0,200\n1,2.5,-1,190\n120,2.5,0,150\n".to_owned())
         }
         "empty.csv" => Ok("time_s,air_degc\n".to_owned()),
         _ => Err(std::io::Error::from(std::io::ErrorKind::NotFound)),
