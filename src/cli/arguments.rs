@@ -7,7 +7,7 @@ use super::estimate::EstimateArguments;
 use super::identify::IdentifyArguments;
 use super::init::InitArguments;
 use super::inspect::InspectArguments;
-use super::inspection::InspectionArguments;
+use super::inspection::{InspectionArguments, without_fill_of_log};
 use super::man::ManArguments;
 use super::monitor::MonitorArguments;
 use super::number::with_negative_numbers;
@@ -34,7 +34,8 @@ pub(super) struct Arguments {
 impl Arguments {
     /// The command line with what concerns all options.
     pub(super) fn prepared() -> clap::Command {
-        without_experts(with_negative_numbers(Self::command()))
+        let command = Self::command().mut_subcommand("inspection", without_fill_of_log);
+        without_experts(with_negative_numbers(command))
     }
 }
 

@@ -4,7 +4,7 @@ mod log;
 mod round;
 mod single;
 
-pub(super) use arguments::InspectionArguments;
+pub(super) use arguments::{InspectionArguments, without_fill_of_log};
 
 use super::fill::FillSource;
 use super::format::Format;

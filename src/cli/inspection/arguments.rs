@@ -6,7 +6,7 @@ use crate::cli::options::{
 };
 use crate::cli::unit_options::{Choice, Choices, QuantityArguments};
 use crate::thermal::units::Dimension;
-use clap::{Args, ValueEnum};
+use clap::{Arg, Args, Command, ValueEnum};
 use jiff::civil::Date;
 
 /// What was read, and what pressures are adjusted to.
@@ -84,6 +84,26 @@ pub(crate) struct InspectionArguments {
     pub reading: LogArguments,
     #[command(flatten)]
     pub sensors: SensorArguments,
+}
+
+/// The options of the fill without what a log would say of it: here nothing is taken from a log.
+pub(in crate::cli) fn without_fill_of_log(command: Command) -> Command {
+    let needed = |arg: Arg| match arg.get_id().as_str() {
+        "fill-pressure-bar" => {
+            arg.help("Pressure that the cylinder was filled to, in bar absolute").long_help(None::<&str>)
+        }
+        "fill-temperature-degc" => {
+            arg.help("Temperature at which it was so, in degc").long_help(None::<&str>)
+        }
+        "mass_sd_percent" => arg
+            .help("Standard deviation of the gas mass of the fill, in % [default: 1]")
+            .long_help(None::<&str>),
+        "settled" => {
+            arg.help("Gas, wall and air had one temperature at the first row of the log, within 1 K")
+        }
+        _ => arg,
+    };
+    command.mut_args(needed)
 }
 
 const HELP: &str = "\

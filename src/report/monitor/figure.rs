@@ -27,6 +27,8 @@ pub(crate) struct FigureData {
     marks: Marks,
     limit_pa: f64,
     full_pa: f64,
+    /// Whether gas was in truth lost.
+    has_outflow: bool,
 }
 
 impl FigureData {
@@ -38,6 +40,7 @@ impl FigureData {
             marks: Marks::default(),
             limit_pa,
             full_pa,
+            has_outflow: false,
         }
     }
 
@@ -52,6 +55,7 @@ impl FigureData {
         });
         let others = [truth.outflow_kg_s, e.leak_kg_s].map(|rate| rate * GRAM_PER_HOUR);
         self.curves.push(e.time_s, pressures.into_iter().chain(mass).chain(found).chain(others));
+        self.has_outflow |= truth.outflow_kg_s > 0.0;
         self.strip.push(e.time_s, output.decision.verdict);
         output.events.iter().for_each(|event| self.marks.event(event));
         output.alarms.iter().for_each(|alarm| self.marks.alarm(alarm));
@@ -86,15 +90,17 @@ impl FigureData {
     }
 
     fn leak(&self) -> Option<Panel> {
-        let found = self.curves.has(LEAK[0]);
+        // Without a leak there is nothing but what the observer thinks of one.
+        if !self.curves.has(LEAK[0]) && !self.has_outflow {
+            return None;
+        }
         let items = [
             self.curves.band_item("95 %", LEAK),
             self.curves.item("leak found", LEAK[0], style::GAS_MEAN),
-            // Before a leak is found there is nothing but what the observer thinks.
             self.curves.item("observer", OBSERVED, style::MIDDLE),
             self.curves.item("truth", LEAK[3], style::FIRST),
         ];
-        (found || self.curves.has(OBSERVED)).then(|| panel("leak rate in g/h", items, 0.7))
+        Some(panel("leak rate in g/h", items, 0.7))
     }
 
     fn verdict(&self) -> Panel {

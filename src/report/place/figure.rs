@@ -8,13 +8,16 @@ use crate::report::figure::style::{self, Stroke};
 use crate::report::figure::{
     Cell, Column, Elevation, Figure, Grid, Horizontal, Item, Mark, Panel, Part, Picture, Place, Profile,
 };
+use crate::thermal::units;
 use crate::thermal::wall::geometry::Orientation;
 
 impl PlacementReport<'_> {
     /// Places beside the cylinder, cost, failures; parts that a partial study lacks are left out.
     pub fn figure(&self) -> Picture {
         let mut parts = vec![Part::Elevation(self.map())];
-        if !self.study.judged.is_empty() {
+        // Layouts of one cost say nothing of what accuracy costs.
+        let costs = || self.study.judged.iter().map(|judged| judged.cost);
+        if costs().any(|cost| Some(cost) != costs().next()) {
             parts.push(Part::Figure(self.costs()));
         }
         if !self.study.failures.is_empty() {
@@ -208,7 +211,8 @@ impl PlacementReport<'_> {
             ]),
             None => {
                 let unseen = failure.unseen.as_deref().unwrap_or("a state");
-                cells.extend([warning("unseen:".into()), warning(unseen.to_owned())]);
+                let unseen = units::split(unseen).map_or(unseen, |(quantity, _)| quantity);
+                cells.extend([warning(format!("no {}", unseen.replace('_', " "))), warning("none".into())]);
             }
         }
         cells.push(plain(unit.with_symbol(failure.found)));
