@@ -1,5 +1,6 @@
 //! `cylwatch bench-detector`: leak detectors side by side on simulated cylinders, as a plan of the judge says.
 use super::input::Inputs;
+use super::interrupt;
 use super::message::Messages;
 use super::number::at_least;
 use super::options::{OUTPUT, ViewArguments};
@@ -155,9 +156,14 @@ enum Folder {
 impl Folder {
     fn new(out: Option<PathBuf>) -> anyhow::Result<Self> {
         let Some(folder) = out else {
-            return Ok(Self::Temporary(
-                tempfile::tempdir().context("no temporary folder can be made: give --out")?,
-            ));
+            let folder = tempfile::tempdir().context("no temporary folder can be made: give --out")?;
+            let path = folder.path().to_owned();
+            // Nobody asked for what is in it.
+            interrupt::listen(move || {
+                _ = std::fs::remove_dir_all(&path);
+                std::process::exit(interrupt::CODE);
+            })?;
+            return Ok(Self::Temporary(folder));
         };
         make_folder(&folder)?;
         Ok(Self::Kept(folder))

@@ -2,7 +2,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a shell expects of a program that SIGINT ended.
-const INTERRUPTED_CODE: i32 = 130;
+pub(super) const CODE: i32 = 130;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -10,7 +10,7 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 pub(super) fn listen(mut first: impl FnMut() + Send + 'static) -> anyhow::Result<()> {
     let interrupt = move || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED_CODE);
+            std::process::exit(CODE);
         }
         first();
     };

@@ -2,7 +2,7 @@
 use super::input::Inputs;
 use super::message::Messages;
 use crate::estimator::log::{Channel, Quantity};
-use crate::estimator::sensor::{ParameterKind, Sensor, SensorsSpec, read_sensors};
+use crate::estimator::sensor::{Sensor, SensorsSpec, read_sensors};
 use crate::log::{LogReader, Row};
 use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
@@ -160,7 +160,7 @@ impl Selection {
     /// Standard deviation of what the first transmitter is off by all the time, Pa; 0 without one.
     pub(super) fn pressure_offset_sd_pa(&self) -> f64 {
         let transmitter = self.sensors.iter().find(|sensor| sensor.quantity() == Quantity::Pressure);
-        transmitter.map_or(0.0, offset_sd_pa)
+        transmitter.map_or(0.0, Sensor::offset_sd)
     }
 
     /// Mean of a row's temperatures, K; 15 °C where it has none.
@@ -173,11 +173,6 @@ impl Selection {
             .collect();
         if known.is_empty() { 288.15 } else { known.iter().sum::<f64>() / known.len() as f64 }
     }
-}
-
-/// Standard deviation of what a transmitter is off by all the time, Pa.
-pub(super) fn offset_sd_pa(transmitter: &Sensor) -> f64 {
-    transmitter.parameters().iter().filter(|of| of.kind == ParameterKind::Offset).map(|of| of.sd).sum()
 }
 
 /// The typical sensor of a column, or why it is not used without a file of sensors; `outside`: there are thermometers on the outside.

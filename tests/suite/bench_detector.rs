@@ -128,3 +128,22 @@ fn mistakes_in_plan_and_command_are_refused_by_name_before_anything_runs() {
     refuse(&["tiny.toml", "--out", "line.toml"], &["line.toml", "is a file"]);
     assert_eq!(files(folder), ["kind.toml", "line.toml", "tight.toml", "tiny.toml"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_run_without_out_that_is_ended_leaves_no_folder() {
+    let folder = tempdir().unwrap();
+    let mut command = crate::support::program(folder.path(), &["bench-detector", "fault", "-q"]);
+    let mut child = command.env("TMPDIR", folder.path()).spawn().unwrap();
+    let begin = std::time::Instant::now();
+    while crate::support::files(folder.path()).is_empty() {
+        assert!(begin.elapsed() < std::time::Duration::from_secs(60));
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    // The folder is there before anybody listens for a signal.
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let ended = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(ended.unwrap().success());
+    assert!(!child.wait().unwrap().success());
+    assert!(crate::support::files(folder.path()).is_empty());
+}

@@ -14,7 +14,7 @@
 //! ISO 14520-1 as [`ISO_14520_LOSS`](crate::prognosis::ISO_14520_LOSS) quotes it: a loss of pressure, adjusted for temperature, of more than 5 %. It is a criterion
 //! here, and the outcome no certificate.
 use cylwatch_estimator::observer::{Commissioning, Estimate, Observer, ObserverSettings};
-use cylwatch_estimator::sensor::{ParameterKind, Sensor, Site};
+use cylwatch_estimator::sensor::{Sensor, Site};
 use cylwatch_estimator::thermal::vessel::{Fill, Vessel};
 
 use crate::DetectorError;
@@ -212,19 +212,14 @@ impl SingleReading {
     ) -> Result<UncertainMass, DetectorError> {
         let Self { pressure_pa, temperature_k, .. } = *self;
         let away_k = if in_air { FROM_AIR_K } else { FROM_WALL_K };
-        let sd_k = away_k.hypot(offset_sd(thermometer));
+        let sd_k = away_k.hypot(thermometer.offset_sd());
         let mass_kg = contents.mass_kg(pressure_pa, temperature_k)?;
         let of_temperature_kg = 0.5
             * (contents.mass_kg(pressure_pa, temperature_k - sd_k)?
                 - contents.mass_kg(pressure_pa, temperature_k + sd_k)?);
-        let of_gauge_kg = contents.mass_kg(pressure_pa + offset_sd(gauge), temperature_k)? - mass_kg;
+        let of_gauge_kg = contents.mass_kg(pressure_pa + gauge.offset_sd(), temperature_k)? - mass_kg;
         Ok(UncertainMass { mass_kg, sd_kg: of_temperature_kg.hypot(of_gauge_kg) })
     }
-}
-
-/// Standard deviation of what a sensor is off by all the time, in its unit.
-fn offset_sd(sensor: &Sensor) -> f64 {
-    sensor.parameters().iter().filter(|of| of.kind == ParameterKind::Offset).map(|of| of.sd).sum()
 }
 
 #[cfg(test)]

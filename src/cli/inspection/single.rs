@@ -1,7 +1,6 @@
 //! One reading of gauge and thermometer.
 use super::Round;
 use super::arguments::InspectionArguments;
-use crate::cli::selection::offset_sd_pa;
 use crate::detector::inspection::{Judgement, SingleReading};
 use crate::report::inspection::{Basis, Inspected, remedy, rest_text};
 use crate::thermal::units::{Dimension, HOUR_S};
@@ -54,7 +53,7 @@ impl Round<'_> {
             anyhow::Ok(self.criterion.judge(&self.contents, filled, now)?)
         };
         let rested_s = look.reading.rested_s;
-        let gauge_sd_pa = offset_sd_pa(&gauge);
+        let gauge_sd_pa = gauge.offset_sd();
         let found = judged(rested_s).context("the reading cannot be one of this vessel")?;
         let mut reason = String::new();
         if found.judgement == Judgement::CannotBeTold {

@@ -71,6 +71,12 @@ impl Sensor {
         &self.parameters
     }
 
+    /// Standard deviation of what it is off by all the time, in its unit; 0: nothing.
+    pub fn offset_sd(&self) -> f64 {
+        let offset = self.parameters.iter().find(|parameter| parameter.kind == ParameterKind::Offset);
+        offset.map_or(0.0, |offset| offset.sd)
+    }
+
     /// The parameter of a kind, to change its prior; `None` for a kind that this sensor does not have.
     pub fn parameter_mut(&mut self, kind: ParameterKind) -> Option<&mut Parameter> {
         self.parameters.iter_mut().find(|parameter| parameter.kind == kind)
