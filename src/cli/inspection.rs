@@ -13,7 +13,7 @@ use super::message::Messages;
 use super::output::Target;
 use super::selection::{self, USUAL_FILL_PA};
 use super::views::Views;
-use crate::detector::inspection::{Criterion, Judgement, UncertainMass};
+use crate::detector::inspection::{Criterion, Instruments, Judgement, UncertainMass};
 use crate::detector::prognosis::Contents;
 use crate::estimator::sensor::Sensor;
 use crate::report::inspection::{self as report, Inspected, Rules};
@@ -127,17 +127,19 @@ impl Round<'_> {
         Ok(UncertainMass { mass_kg, sd_kg: commissioning.mass_sd * mass_kg })
     }
 
-    /// The gauge that a person reads: of the class that is stated and the range for the fill.
-    fn gauge(&self, filled: UncertainMass) -> anyhow::Result<Sensor> {
+    /// What a person reads: a gauge of the class that is stated and the range for the fill, and typical thermometers.
+    fn instruments(&self, filled: UncertainMass) -> anyhow::Result<Instruments> {
         let full_pa = self.contents.pressure_pa(filled.mass_kg, QUOTED_K).unwrap_or(USUAL_FILL_PA);
-        Ok(Sensor::typical_gauge("pressure", full_pa, self.arguments.gauge_class_percent / 100.0)?)
-    }
-
-    fn thermometer(&self) -> anyhow::Result<Sensor> {
-        Ok(Sensor::typical(match self.arguments.thermometer {
+        let class = self.arguments.gauge_class_percent / 100.0;
+        let thermometer = match self.arguments.thermometer {
             ThermometerPlace::Wall => "shoulder",
             ThermometerPlace::Air => "ambient",
-        })?)
+        };
+        Ok(Instruments {
+            thermometer: Sensor::typical(thermometer)?,
+            air: Sensor::typical("ambient")?,
+            gauge: Sensor::typical_gauge("pressure", full_pa, class)?,
+        })
     }
 
     /// All logs, folders of logs, and files of single readings. In a folder one that cannot be read does not end the others.

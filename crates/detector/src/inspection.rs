@@ -11,7 +11,7 @@
 //! interval too wide, never too narrow. Nothing is supposed of the loss beforehand.
 //!
 //! # Source
-//! ISO 14520-1 as [`ISO_14520_LOSS`](crate::prognosis::ISO_14520_LOSS) quotes it: a loss of pressure, adjusted for temperature, of more than 5 %. It is a criterion
+//! ISO 14520-1 as [`ISO_14520_LOSS`] quotes it: a loss of pressure, adjusted for temperature, of more than 5 %. It is a criterion
 //! here, and the outcome no certificate.
 use cylwatch_estimator::observer::{Commissioning, Estimate, Observer, ObserverSettings};
 use cylwatch_estimator::sensor::{Sensor, Site};
@@ -168,6 +168,17 @@ pub struct SingleReading {
     pub rested_s: f64,
 }
 
+/// What a single reading is taken with.
+#[derive(Clone, Debug)]
+pub struct Instruments {
+    /// Thermometer, on the cylinder or in the air.
+    pub thermometer: Sensor,
+    /// What the temperature of the surroundings is known by: a thermometer in the air.
+    pub air: Sensor,
+    /// Pressure gauge.
+    pub gauge: Sensor,
+}
+
 impl SingleReading {
     /// The mass that a cylinder holds by it. Without known rest the gas is as far from the thermometer as it is in railway winters. With it, an observer begins
     /// with wall and gas 10 K from the thermometer, sees the air at one temperature for the time of rest, and then the thermometer and the
@@ -175,12 +186,8 @@ impl SingleReading {
     ///
     /// # Errors
     /// The reading is no state of the gas, or a sensor has no place on the vessel.
-    pub fn mass(
-        &self,
-        vessel: &Vessel,
-        thermometer: &Sensor,
-        gauge: &Sensor,
-    ) -> Result<UncertainMass, DetectorError> {
+    pub fn mass(&self, vessel: &Vessel, with: &Instruments) -> Result<UncertainMass, DetectorError> {
+        let Instruments { thermometer, air, gauge } = with;
         let Self { pressure_pa, temperature_k, rested_s } = *self;
         let in_air = thermometer.site() == Site::Air;
         if rested_s == 0.0 {
@@ -189,8 +196,7 @@ impl SingleReading {
         let commissioning = commissioning(pressure_pa, false);
         let mut settings = ObserverSettings::default();
         settings.air.prior_sd = AIR_SD_K;
-        let air = if in_air { thermometer.clone() } else { Sensor::typical("ambient")? };
-        let mut sensors = vec![air, gauge.clone()];
+        let mut sensors = vec![if in_air { thermometer.clone() } else { air.clone() }, gauge.clone()];
         sensors.extend((!in_air).then(|| thermometer.clone()));
         let mut observer = Observer::new(vessel, &sensors, &commissioning, &settings)?;
         let looks = (rested_s / LOOK_S).ceil();
@@ -315,7 +321,9 @@ mod tests {
             rested_s: 3600.0 * rested_h,
         };
         let part = |thermometer: &Sensor, rested_h: f64| {
-            let mass = reading(rested_h).mass(&vessel, thermometer, &gauge).unwrap();
+            let with =
+                Instruments { thermometer: thermometer.clone(), air: air.clone(), gauge: gauge.clone() };
+            let mass = reading(rested_h).mass(&vessel, &with).unwrap();
             let truth = contents.mass_kg(200.0 * BAR_PA, QUOTED_K).unwrap();
             assert!((mass.mass_kg / truth - 1.0).abs() < 0.01, "{rested_h} h: {mass:?} for {truth}");
             mass.sd_kg / mass.mass_kg

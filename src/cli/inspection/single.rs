@@ -46,14 +46,14 @@ impl Round<'_> {
     /// Judges a cylinder by one reading.
     pub(super) fn of_look(&self, cylinder: String, look: &Look) -> anyhow::Result<Inspected> {
         let filled = self.filled(look.fill)?;
-        let (thermometer, gauge) = (self.thermometer()?, self.gauge(filled)?);
+        let with = self.instruments(filled)?;
         let judged = |rested_s: f64| {
             let reading = SingleReading { rested_s, ..look.reading };
-            let now = reading.mass(&self.vessel, &thermometer, &gauge)?;
+            let now = reading.mass(&self.vessel, &with)?;
             anyhow::Ok(self.criterion.judge(&self.contents, filled, now)?)
         };
         let rested_s = look.reading.rested_s;
-        let gauge_sd_pa = gauge.offset_sd();
+        let gauge_sd_pa = with.gauge.offset_sd();
         let found = judged(rested_s).context("the reading cannot be one of this vessel")?;
         let mut reason = String::new();
         if found.judgement == Judgement::CannotBeTold {

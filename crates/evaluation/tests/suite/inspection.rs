@@ -3,7 +3,9 @@
 //! A tight world is cut to a log or to its last row. What it was filled with is drawn so that 0 to 10 % have been lost, uniformly, which is what an inspection
 //! that supposes nothing of the loss stands for; the fill is stated with an error of 1 % of its mass. Stated probabilities of a refill are then
 //! sorted into bins, and the share of cylinders that have lost more than 5 % must be what was stated.
-use cylwatch_detector::inspection::{Criterion, Inspection, SingleReading, UncertainMass, commissioning};
+use cylwatch_detector::inspection::{
+    Criterion, Inspection, Instruments, SingleReading, UncertainMass, commissioning,
+};
 use cylwatch_detector::monitor::{Monitor, MonitorSettings};
 use cylwatch_detector::prognosis::Contents;
 use cylwatch_estimator::log::Quantity;
@@ -85,7 +87,8 @@ fn by_reading(world: &World, rested_s: f64, random: &mut ChaCha8Rng) -> Stated {
         temperature_k: last(world, Quantity::Temperature),
         rested_s,
     };
-    let mass = reading.mass(vessel, &Sensor::typical("shoulder").unwrap(), &gauge).unwrap();
+    let [thermometer, air] = ["shoulder", "ambient"].map(|name| Sensor::typical(name).unwrap());
+    let mass = reading.mass(vessel, &Instruments { thermometer, air, gauge }).unwrap();
     judged(world, mass, random)
 }
 
