@@ -136,6 +136,12 @@ fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {
     Ok(html! {
         figure {
             div.wide { (PreEscaped(drawing)) }
+            @for key in picture.keys() {
+                p.key {
+                    (key.quantity) ": "
+                    @for (name, style) in key.entries { span { i style=(style) {} " " (name) } " " }
+                }
+            }
             @if !caption.is_empty() { figcaption { (caption) } }
             details.words { summary { "The picture in words" } p { (picture.described()) } }
         }

@@ -11,6 +11,7 @@ mod described;
 mod diagram;
 mod elevation;
 mod grid;
+mod key;
 mod output;
 mod panel;
 mod path;
