@@ -153,9 +153,9 @@ pub struct Stratification {
 }
 
 impl Default for Stratification {
-    /// Eight cells, an exchange length of one diameter, hardly any mixing of the core.
+    /// Twenty cells, an exchange length of one diameter, hardly any mixing of the core.
     fn default() -> Self {
-        Self { cells: 8, exchange_length_diameters: 1.0, core_mixing: 0.05 }
+        Self { cells: 20, exchange_length_diameters: 1.0, core_mixing: 0.05 }
     }
 }
 

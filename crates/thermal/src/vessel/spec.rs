@@ -251,7 +251,7 @@ pub struct GasSpec {
     /// Model, well mixed by default.
     #[serde(default)]
     pub model: GasChoice,
-    /// Gas cells of the stratified model, 8 by default.
+    /// Gas cells of the stratified model, 2 to 100; 20 by default.
     pub cells: Option<usize>,
     /// Length, in inner diameters, over which the wall's boundary layer gives its heat back, 1 by default.
     pub exchange_length_diameters: Option<f64>,

@@ -33,7 +33,7 @@ fn hole(diameter_m: f64) -> Opening {
     Opening::Orifice { diameter_m, discharge_coefficient: 0.8 }
 }
 
-fn supply(opening: Opening, source: Source) -> Flow {
+pub(crate) fn supply(opening: Opening, source: Source) -> Flow {
     Flow {
         name: "refill".into(),
         kind: FlowKind::Supply { opening, source, inlet_diameter_m: None },
@@ -45,7 +45,7 @@ fn supply(opening: Opening, source: Source) -> Flow {
     }
 }
 
-fn filled(start_pa: f64, start_k: f64, seconds: f64, flow: Flow) -> Scenario {
+pub(crate) fn filled(start_pa: f64, start_k: f64, seconds: f64, flow: Flow) -> Scenario {
     let mut scenario = still(start_k, start_k, 0.0, seconds / 3_600.0);
     scenario.initial.fill = Fill::Pressure { pressure_pa: start_pa };
     scenario.sample_time_s = seconds / 200.0;
