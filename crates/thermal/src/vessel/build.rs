@@ -35,6 +35,11 @@ impl VesselSpec {
             valve,
             surface: surface(&self.surface)?,
             inside_film: inside_film(&self.inside_film)?,
+            jet_film_factor: check::not_negative(
+                "inside_film.jet_multiplier",
+                self.inside_film.jet_multiplier.unwrap_or(1.0),
+                "1 is the law as published",
+            )?,
             gas: gas(&self.gas)?,
         })
     }

@@ -42,6 +42,8 @@ pub struct Vessel {
     pub surface: Surface,
     /// Heat transfer between wall and gas.
     pub inside_film: InsideFilm,
+    /// Factor on the film of gas that a refill's jet stirs, 1 unless calibrated.
+    pub jet_film_factor: f64,
     /// How the gas is resolved.
     pub gas: GasResolution,
 }

@@ -228,6 +228,8 @@ pub struct InsideFilmSpec {
     pub film_w_m2_k: Option<f64>,
     /// Multiplier of the power laws, 1 by default.
     pub multiplier: Option<f64>,
+    /// Multiplier of what the jet of a refill adds, whatever the law; 1 by default, 0 leaves it out.
+    pub jet_multiplier: Option<f64>,
 }
 
 /// Film law inside.
