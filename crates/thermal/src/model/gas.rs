@@ -48,10 +48,9 @@ impl GasNodes {
 }
 
 impl Model {
-    /// Rates of the gas, of its ledger entries, of its sources and of its motion.
+    /// Rates of the gas, of its ledger entries and of its sources.
     pub(super) fn gas_rates(
         &self,
-        x: &[f64],
         nodes: &GasNodes,
         boundary: &Boundary<'_>,
         to_gas_w: f64,
@@ -83,12 +82,7 @@ impl Model {
             }
             (Gas::WellMixed(_), GasNodes::Many(_)) => unreachable!("a well-mixed gas has one node"),
         }
-        let node = &nodes.as_slice()[self.grid.outlet];
-        let outlet = &node.state;
-        if let Some(stirring) = layout.stirring {
-            rate[stirring] =
-                boundary.stirring_per_s(&self.fluid, node, self.inner_diameter_m, x[stirring], None)?;
-        }
+        let outlet = &nodes.as_slice()[self.grid.outlet].state;
         for (index, vessel) in self.source_vessels() {
             let drawn = boundary.drawn_kg[vessel.place];
             if boundary.open[index] {

@@ -237,7 +237,12 @@ impl Model {
         rate[layout.mean_wall] = mean_rate;
         rate[layout.heat_in] = from_outside + valve_outside;
         let mean_rate_k_s = self.mean_material.temperature_slope(x[layout.mean_wall]) * mean_rate;
-        self.gas_rates(x, &nodes, &boundary, to_gas, wall, mean_rate_k_s, rate)
+        if let Some(stirring) = layout.stirring {
+            let outlet = &nodes.as_slice()[self.grid.outlet];
+            let diameter_m = self.inner_diameter_m;
+            rate[stirring] = boundary.stirring_per_s(&self.fluid, outlet, diameter_m, x[stirring], None)?;
+        }
+        self.gas_rates(&nodes, &boundary, to_gas, wall, mean_rate_k_s, rate)
     }
 
     /// Mean wall temperature, K: the one that a uniform wall of the same energy would have.
