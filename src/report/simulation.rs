@@ -3,9 +3,12 @@ use super::figure::{Figure, Item, Mark, Panel, style};
 use super::{Digits, GRAM_PER_HOUR, Provenance, Readings, Report, Table, number, readings};
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::{Sensor, Site};
+use crate::thermal::flow::FlowKind;
 use crate::thermal::model::ConvertedCoefficient;
+use crate::thermal::scenario::Scenario;
 use crate::thermal::trajectory::{Event, EventKind, Trajectory};
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
+use crate::thermal::vessel::{GasResolution, Vessel};
 use serde_json::{Value, json};
 
 /// Significant digits of a simulated number: beyond what the solver's tolerance carries, short enough to read.
@@ -81,6 +84,20 @@ pub(crate) fn conversion(of: &ConvertedCoefficient) -> String {
         number(of.pressure_pa / BAR_PA, 5),
         number(of.temperature_k - ZERO_CELSIUS_K, 4)
     )
+}
+
+/// What to think of a stratified gas that is filled; `None` where there is none.
+pub(crate) fn fill_of_layers(vessel: &Vessel, scenario: &Scenario) -> Option<String> {
+    let has_layers = matches!(vessel.gas, GasResolution::Stratified(gas) if gas.cells > 1);
+    let refill = scenario.flows.iter().find(|flow| {
+        matches!(flow.kind, FlowKind::Refill { .. } | FlowKind::RefillSeries { .. } | FlowKind::Supply { .. })
+    })?;
+    has_layers.then(|| {
+        format!(
+            "{}: what a refill's jet mixes is not modelled in stratified gas, use its mean temperature and pressure only",
+            refill.name
+        )
+    })
 }
 
 /// An event in words.

@@ -151,6 +151,19 @@ fn a_sensor_that_the_vessel_has_no_place_for_is_left_out_with_a_caution() {
 }
 
 #[test]
+fn a_refill_of_stratified_gas_costs_a_caution() {
+    let folder = tempdir().unwrap();
+    let text = include_str!("../../crates/thermal/presets/vessels/nitrogen-20l.toml");
+    std::fs::write(folder.path().join("v.toml"), text.replace("\"well-mixed\"", "\"stratified\"\ncells = 3"))
+        .unwrap();
+    let cautioned = |vessel: &str| {
+        let outcome = run(folder.path(), &["simulate", vessel, "refill-from-bank"]);
+        outcome.stderr.contains("caution: refill: what a refill's jet mixes is not modelled")
+    };
+    assert!(cautioned("v.toml") && !cautioned("nitrogen-20l"));
+}
+
+#[test]
 fn a_leak_is_taken_from_the_mass_at_its_rate() {
     let folder = tempdir().unwrap();
     std::fs::write(folder.path().join("s.toml"), SHORT).unwrap();

@@ -89,7 +89,7 @@ fn watched(week: &Week, seeds: u64) -> Result<Vec<Counts>, Failure> {
     let mut vessel = presets::load("nitrogen-20l")?;
     let told = vessel.clone();
     if week.layers {
-        vessel.gas = GasResolution::Stratified(Stratification::default());
+        vessel.gas = GasResolution::Stratified(Stratification { cells: 8, ..Stratification::default() });
     }
     let scenario = changed(week)?;
     let suite = SensorSuite::try_new(scenario.sensors.iter().map(Sensor::from).collect())?;

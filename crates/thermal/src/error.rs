@@ -312,6 +312,21 @@ pub enum ThermalError {
         /// Internal energy, J.
         energy_j: f64,
     },
+    /// A gas cell is too small for what flows through it.
+    #[error(
+        "{flow_kg_s:.3} kg/s through a gas cell of {mass_kg:.1e} kg, one of {cells}, is more than neighbours of one pressure pass on: \
+         take at most {at_most} gas cells, or model = \"well-mixed\""
+    )]
+    GasCellTooSmall {
+        /// Mass flow across the vessel's boundary, kg/s.
+        flow_kg_s: f64,
+        /// Gas in the cell at the valve, kg.
+        mass_kg: f64,
+        /// Number of gas cells.
+        cells: usize,
+        /// Number with which the cell would be large enough, roughly.
+        at_most: usize,
+    },
     /// A setting of the simulation is out of range.
     #[error("setting {setting} = {value} must lie between {low} and {high}")]
     Setting {

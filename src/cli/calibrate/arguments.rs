@@ -89,7 +89,7 @@ pub(crate) enum CalibrationFormat {
 
 const EXAMPLES: &str = "\
 Names of what can be fitted. Factors on what the vessel file says: outside-film, inside-film,
-wall-capacity, valve-capacity, valve-contact, volume. Of a flow of the scenario:
+jet-film, wall-capacity, valve-capacity, valve-contact, volume. Of a flow of the scenario:
 discharge-coefficient:NAME. Of each log, fitted beside them by default: initial-temperature (K
 above the first readings), fill-mass (factor), air-offset (K, of the thermometer of the air that
 all others are compared with; not with a scenario). Numbers of a sensor, fitted by default within its

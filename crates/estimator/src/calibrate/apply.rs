@@ -86,6 +86,7 @@ impl Setup {
             }
             ParameterKind::OutsideFilm
             | ParameterKind::InsideFilm
+            | ParameterKind::JetFilm
             | ParameterKind::WallCapacity
             | ParameterKind::ValveCapacity
             | ParameterKind::ValveContact
@@ -117,6 +118,9 @@ impl Setup {
         match kind {
             ParameterKind::ValveCapacity | ParameterKind::ValveContact if self.vessel.valve.is_none() => {
                 fail("a valve", "leave the parameter out, or give the vessel a valve")
+            }
+            ParameterKind::JetFilm if !self.scenario.flows.iter().any(|flow| flow.kind.has_jet()) => {
+                fail("a refill with an inlet", "give the refill of the scenario its inlet_diameter_mm")
             }
             ParameterKind::DischargeCoefficient { flow } => {
                 let has_coefficient = |kind: &FlowKind| kind.clone().discharge_coefficient_mut().is_some();
@@ -157,6 +161,7 @@ pub(super) fn apply_to_vessel(vessel: &mut Vessel, kind: &ParameterKind, factor:
             InsideFilm::Rayleigh { multiplier, .. } => *multiplier *= factor,
             InsideFilm::Coefficient { film_w_m2_k } => *film_w_m2_k *= factor,
         },
+        ParameterKind::JetFilm => vessel.jet_film_factor *= factor,
         ParameterKind::WallCapacity => {
             for layer in &mut vessel.geometry.layers {
                 layer.material.heat_capacity_j_kg_k *= factor;

@@ -4,9 +4,10 @@ use std::str::FromStr;
 use super::ParameterKind;
 
 /// Names without an object.
-const GLOBAL_NAMES: [(&str, ParameterKind); 9] = [
+const GLOBAL_NAMES: [(&str, ParameterKind); 10] = [
     ("outside-film", ParameterKind::OutsideFilm),
     ("inside-film", ParameterKind::InsideFilm),
+    ("jet-film", ParameterKind::JetFilm),
     ("wall-capacity", ParameterKind::WallCapacity),
     ("valve-capacity", ParameterKind::ValveCapacity),
     ("valve-contact", ParameterKind::ValveContact),

@@ -11,6 +11,8 @@ pub enum ParameterKind {
     OutsideFilm,
     /// Factor on the inside film.
     InsideFilm,
+    /// Factor on the film of gas that the jet of a refill stirs.
+    JetFilm,
     /// Factor on the heat capacity of the wall.
     WallCapacity,
     /// Factor on the heat capacity of the valve.
@@ -151,6 +153,7 @@ impl fmt::Display for ParameterKind {
         match self {
             Self::OutsideFilm => f.write_str("outside film"),
             Self::InsideFilm => f.write_str("inside film"),
+            Self::JetFilm => f.write_str("jet film"),
             Self::WallCapacity => f.write_str("wall capacity"),
             Self::ValveCapacity => f.write_str("valve capacity"),
             Self::ValveContact => f.write_str("valve contact"),

@@ -114,6 +114,7 @@ fn apply(spec: &mut VesselSpec, kind: &ParameterKind, factor: f64) -> Result<(),
             spec.inside_film.film_w_m2_k = spec.inside_film.film_w_m2_k.map(|film| factor * film);
         }
         ParameterKind::InsideFilm => scaled(&mut spec.inside_film.multiplier, 1.0),
+        ParameterKind::JetFilm => scaled(&mut spec.inside_film.jet_multiplier, 1.0),
         ParameterKind::WallCapacity => {
             for layer in &mut spec.layer {
                 scaled(&mut layer.heat_capacity_factor, 1.0);
@@ -146,9 +147,10 @@ mod tests {
     use approx::assert_relative_eq;
     use cylwatch_thermal::vessel::{InsideFilm, Vessel, presets, read_specification};
 
-    const KINDS: [ParameterKind; 6] = [
+    const KINDS: [ParameterKind; 7] = [
         ParameterKind::OutsideFilm,
         ParameterKind::InsideFilm,
+        ParameterKind::JetFilm,
         ParameterKind::WallCapacity,
         ParameterKind::ValveCapacity,
         ParameterKind::ValveContact,
@@ -163,7 +165,7 @@ mod tests {
         };
         let valve = vessel.valve.as_ref().map(|valve| [valve.capacity_j_k(), valve.contact_w_k]);
         let walls = vessel.geometry.layers.iter().map(|layer| layer.material.heat_capacity_j_kg_k);
-        let single = [inside, vessel.surface.film_factor, vessel.volume.volume_m3];
+        let single = [inside, vessel.jet_film_factor, vessel.surface.film_factor, vessel.volume.volume_m3];
         single.into_iter().chain(valve.into_iter().flatten()).chain(walls).collect()
     }
 

@@ -207,6 +207,21 @@ impl FlowKind {
         }
     }
 
+    /// Whether it is a refill whose jet stirs the gas.
+    pub fn has_jet(&self) -> bool {
+        self.inlet_diameter_m().is_some()
+    }
+
+    /// Bore of a refill's inlet, m, if it has a jet.
+    pub(crate) fn inlet_diameter_m(&self) -> Option<f64> {
+        match self {
+            Self::Refill { inlet_diameter_m, .. }
+            | Self::RefillSeries { inlet_diameter_m, .. }
+            | Self::Supply { inlet_diameter_m, .. } => *inlet_diameter_m,
+            _ => None,
+        }
+    }
+
     /// Everything of the flow that changes with time.
     pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
         let flow = match self {

@@ -6,7 +6,7 @@ use crate::ThermalError;
 use crate::flow::orifice;
 use crate::flow::{Flow, FlowKind, Opening, OpeningFlow};
 use crate::fluid::{Fluid, Real, State};
-use crate::transfer::inside::jet_film_w_m2_k;
+use crate::transfer::inside::stirring_rate_per_s;
 
 /// The flows of a scenario as they are open now.
 #[derive(Clone, Copy, Debug)]
@@ -164,43 +164,35 @@ impl Boundary<'_> {
 
     /// Open refills with an inlet, and its bore, m.
     fn jets(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        self.opened().filter_map(|index| match self.flows[index].kind {
-            FlowKind::Refill { inlet_diameter_m, .. }
-            | FlowKind::RefillSeries { inlet_diameter_m, .. }
-            | FlowKind::Supply { inlet_diameter_m, .. } => Some((index, inlet_diameter_m?)),
-            _ => None,
-        })
+        self.opened().filter_map(|index| Some((index, self.flows[index].kind.inlet_diameter_m()?)))
     }
 
-    /// Whether an open refill has a jet.
-    pub(super) fn has_jet(&self) -> bool {
-        self.jets().next().is_some()
-    }
-
-    /// Film of the jets of open refills, W/(m² K), 0 without one. `drawn_kg` is what the flow of an index has drawn from its source
-    /// vessel; `None`: what the state says.
+    /// Rate of the Reynolds number that stands for the motion of the gas, 1/s. `drawn_kg` is what the flow of an index has drawn from its
+    /// source vessel; `None`: what the state says. Momenta of jets add, and so do squares.
     ///
     /// # Errors
     /// As [`Boundary::exchange`].
-    pub(super) fn jet_film<D: Real>(
+    pub(super) fn stirring_per_s<D: Real>(
         &self,
         fluid: &Fluid,
         node: &Node<D>,
         vessel_diameter_m: f64,
+        reynolds: f64,
         drawn_kg: Option<(usize, D)>,
     ) -> Result<D, ThermalError> {
         let (rho, t) = (node.state.density_kg_m3, node.state.temperature_k);
-        let mut sum = D::from(0.0);
+        let mu = fluid.viscosity_pa_s(rho, t);
+        // Odd, so that a trial below zero comes back.
+        let mut sum = D::from(-reynolds * reynolds.abs());
         for (index, inlet_m) in self.jets() {
             let drawn = match drawn_kg {
                 Some((of, drawn)) if of == index => drawn,
                 _ => self.drawn(index),
             };
             let mass_flow = self.of_flow(index, fluid, &node.state, drawn)?.mass_kg_s;
-            let k = fluid.conductivity_w_m_k(rho, t);
-            let mu = fluid.viscosity_pa_s(rho, t);
-            sum += jet_film_w_m2_k(k, mu, mass_flow, inlet_m, vessel_diameter_m);
+            let inlet = mass_flow / mu * (4.0 / (std::f64::consts::PI * inlet_m));
+            sum += inlet * inlet;
         }
-        Ok(sum)
+        Ok(sum * stirring_rate_per_s(mu, rho, vessel_diameter_m))
     }
 }

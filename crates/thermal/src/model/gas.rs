@@ -7,7 +7,8 @@ use super::stratified::{Stratified, WallAction};
 use super::supply::{SourceVessel, Supply};
 use super::well_mixed::{Node, WellMixed};
 use crate::ThermalError;
-use crate::transfer::inside::InsideFlux;
+use crate::fluid::Real;
+use crate::transfer::inside::{InsideFlux, jet_film_w_m2_k};
 use crate::wall::mesh::Facing;
 
 /// How the gas is resolved.
@@ -47,7 +48,7 @@ impl GasNodes {
 }
 
 impl Model {
-    /// Rates of the gas and of its ledger entries.
+    /// Rates of the gas, of its ledger entries and of its sources.
     pub(super) fn gas_rates(
         &self,
         nodes: &GasNodes,
@@ -112,8 +113,16 @@ impl Model {
         })
     }
 
-    pub(super) fn jet_w_m2_k(&self, nodes: &GasNodes, boundary: &Boundary<'_>) -> Result<f64, ThermalError> {
-        boundary.jet_film(&self.fluid, &nodes.as_slice()[self.grid.outlet], self.inner_diameter_m, None)
+    /// Film of the gas that jets stir, W/(m² K), 0 without one; properties of the outlet's cell.
+    pub(super) fn jet_w_m2_k(&self, nodes: &GasNodes, x: &[f64]) -> f64 {
+        let Some(stirring) = self.layout.stirring else { return 0.0 };
+        self.jet_film(&nodes.as_slice()[self.grid.outlet], x[stirring])
+    }
+
+    pub(super) fn jet_film<D: Real>(&self, outlet: &Node<D>, reynolds: D) -> D {
+        let state = &outlet.state;
+        let k = self.fluid.conductivity_w_m_k(state.density_kg_m3, state.temperature_k);
+        jet_film_w_m2_k(k, reynolds, self.inner_diameter_m) * self.jet_film_factor
     }
 
     pub(super) fn reset_action(&self, wall: &mut WallAction<f64>) {

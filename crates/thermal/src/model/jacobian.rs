@@ -13,6 +13,7 @@ use super::inputs::Inputs;
 use super::well_mixed::{Node, WellMixed};
 use super::{Model, WallAction};
 use crate::ThermalError;
+use crate::transfer::inside::stirring_rate_per_s;
 use crate::wall::conduction::link_flow;
 use crate::wall::mesh::Facing;
 
@@ -30,8 +31,10 @@ pub(super) struct GasBlock {
     pub matrix: DMatrix<f64>,
     /// Temperature and pressure of each cell with its (mass, energy, mean wall).
     pub cells: Vec<([f64; 3], [f64; 3])>,
-    /// Film of the jet with the (mass, energy, mean wall) of the outlet's cell.
-    pub jet: [f64; 3],
+    /// Film of the stirred gas with the (mass, energy, mean wall) of the outlet's cell.
+    jet: [f64; 3],
+    /// What the motion of the gas does, if it is a state.
+    stirring: Option<StirringGradients>,
     /// What the mass drawn from each source vessel does.
     pub sources: Vec<SourceGradients>,
 }
@@ -43,8 +46,19 @@ pub(super) struct SourceGradients {
     rate: [f64; 3],
     /// With the drawn mass: rates of mass, energy, enthalpy in and work out of the outlet's cell.
     by_drawn: [f64; 4],
-    /// Film of the jets with the drawn mass.
-    jet: f64,
+    /// Rate of the stirring with the drawn mass.
+    stirring: f64,
+}
+
+/// Derivatives of and by the motion of the gas.
+#[derive(Debug)]
+struct StirringGradients {
+    /// Its rate with the (mass, energy, mean wall) of the outlet's cell.
+    rate: [f64; 3],
+    /// Its rate with itself.
+    own: f64,
+    /// Film with it.
+    film: f64,
 }
 
 impl GasBlock {
@@ -55,6 +69,9 @@ impl GasBlock {
             pressure[2] *= slope;
         }
         self.jet[2] *= slope;
+        if let Some(stirring) = &mut self.stirring {
+            stirring.rate[2] *= slope;
+        }
         for source in &mut self.sources {
             source.rate[2] *= slope;
         }
@@ -70,14 +87,13 @@ fn gradient<const N: usize>(value: DualSVec64<N>) -> [f64; N] {
     value.eps.unwrap_generic(Const::<N>, U1).into()
 }
 
-/// Local columns of the gas's chain rule: gas states first, then inner cells, outer cells, valve.
+/// Local columns of the gas's chain rule: gas states first, then inner cells, outer cells, valve, stirring.
 struct LocalColumns {
     /// State index of each local column.
     state: Vec<usize>,
     inner: usize,
     outer: usize,
     valve: usize,
-    sources: usize,
 }
 
 impl Model {
@@ -94,13 +110,28 @@ impl Model {
         let outlet = self.grid.outlet;
         let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
         let jet_and_sources = |gas: &WellMixed| -> Result<_, ThermalError> {
-            if !boundary.has_jet() && layout.states == layout.drawn {
-                return Ok(([0.0; 3], Vec::new()));
+            if layout.states == layout.drawn {
+                return Ok(([0.0; 3], None, Vec::new()));
             }
+            let fixed = &nodes.as_slice()[outlet];
             let node = gas.differentiated(seed(mass[outlet], 0), seed(energy[outlet], 1), seed(mean, 2))?;
-            let jet = boundary.jet_film(&self.fluid, &node, self.inner_diameter_m, None)?;
-            let sources = self.source_gradients(boundary, &nodes.as_slice()[outlet], &node)?;
-            Ok((gradient(jet), sources))
+            let reynolds = layout.stirring.map(|index| x[index]);
+            let (mut jet, mut stirring) = ([0.0; 3], None);
+            if let Some(reynolds) = reynolds {
+                jet = gradient(self.jet_film(&node, Dual3::from(reynolds)));
+                let rate =
+                    boundary.stirring_per_s(&self.fluid, &node, self.inner_diameter_m, reynolds, None)?;
+                let state = &fixed.state;
+                let mu = self.fluid.viscosity_pa_s(state.density_kg_m3, state.temperature_k);
+                let per_s = stirring_rate_per_s(mu, state.density_kg_m3, self.inner_diameter_m);
+                stirring = Some(StirringGradients {
+                    rate: gradient(rate),
+                    own: -2.0 * reynolds.abs() * per_s,
+                    film: self.jet_film(&fixed.map(Dual64::from), Dual64::from(reynolds).derivative()).eps,
+                });
+            }
+            let sources = self.source_gradients(boundary, fixed, &node, reynolds)?;
+            Ok((jet, stirring, sources))
         };
         match &self.gas {
             Gas::WellMixed(gas) => {
@@ -119,13 +150,13 @@ impl Model {
                     [g[0], g[1], g[2]]
                 };
                 let cells = vec![(three(node.state.temperature_k), three(node.state.pressure_pa))];
-                let (jet, sources) = jet_and_sources(gas)?;
-                Ok(GasBlock { matrix, cells, jet, sources })
+                let (jet, stirring, sources) = jet_and_sources(gas)?;
+                Ok(GasBlock { matrix, cells, jet, stirring, sources })
             }
             Gas::Stratified(gas) => {
                 let (matrix, cells) = gas.jacobian(mass, energy, mean, boundary, wall, wall_rate)?;
-                let (jet, sources) = jet_and_sources(gas.outlet_node())?;
-                Ok(GasBlock { matrix, cells, jet, sources })
+                let (jet, stirring, sources) = jet_and_sources(gas.outlet_node())?;
+                Ok(GasBlock { matrix, cells, jet, stirring, sources })
             }
         }
     }
@@ -136,12 +167,13 @@ impl Model {
         boundary: &Boundary<'_>,
         outlet: &Node<f64>,
         differentiated: &Node<Dual3>,
+        reynolds: Option<f64>,
     ) -> Result<Vec<SourceGradients>, ThermalError> {
         let fixed = outlet.map(Dual64::from);
         let mut all = Vec::new();
         for (index, vessel) in self.source_vessels() {
             if !boundary.open[index] {
-                all.push(SourceGradients { rate: [0.0; 3], by_drawn: [0.0; 4], jet: 0.0 });
+                all.push(SourceGradients { rate: [0.0; 3], by_drawn: [0.0; 4], stirring: 0.0 });
                 continue;
             }
             let drawn = boundary.drawn_kg[vessel.place];
@@ -151,10 +183,13 @@ impl Model {
             let by = boundary.of_flow(index, &self.fluid, &fixed.state, seeded)?;
             // The node's rates are linear in what flows in.
             let rates = outlet.balance(by.mass_kg_s.eps, by.enthalpy_w.eps, 0.0, 0.0);
-            let jet =
-                boundary.jet_film(&self.fluid, &fixed, self.inner_diameter_m, Some((index, seeded)))?.eps;
+            let stirring = reynolds.map_or(Ok(0.0), |reynolds| {
+                let drawn = Some((index, seeded));
+                let diameter_m = self.inner_diameter_m;
+                boundary.stirring_per_s(&self.fluid, &fixed, diameter_m, reynolds, drawn).map(|rate| rate.eps)
+            })?;
             let by_drawn = [rates.mass_kg_s, rates.energy_w, rates.enthalpy_w, rates.work_w];
-            all.push(SourceGradients { rate: gradient(rate), by_drawn, jet });
+            all.push(SourceGradients { rate: gradient(rate), by_drawn, stirring });
         }
         Ok(all)
     }
@@ -170,9 +205,9 @@ impl Model {
         state.extend((0..columns).map(|j| self.mesh.outer_cell(j)));
         let valve = state.len();
         state.extend(layout.valve);
-        let sources = state.len();
-        state.extend(layout.drawn..layout.states);
-        LocalColumns { state, inner, outer, valve, sources }
+        // Last, since the film depends on it.
+        state.extend(layout.stirring);
+        LocalColumns { state, inner, outer, valve }
     }
 
     /// Emit every entry of `d(dx/dt)/dx`.
@@ -191,7 +226,7 @@ impl Model {
         self.rate(x, inputs, open, &mut rate)?;
         let nodes = self.gas_nodes(x)?;
         let boundary = self.boundary(x, inputs, open);
-        let jet = self.jet_w_m2_k(&nodes, &boundary)?;
+        let jet = self.jet_w_m2_k(&nodes, x);
         let points: Vec<GasPoint> = nodes.as_slice().iter().map(GasPoint::from).collect();
         let wall = self.scratch.borrow().wall.clone();
         // The gas sees the wall's mean temperature; the state behind it is an energy.
@@ -206,7 +241,7 @@ impl Model {
             .collect();
 
         self.emit_conduction(&temperature_k, &slope, emit);
-        self.emit_sources(&gas.sources, emit);
+        self.emit_sources(&gas, emit);
         let local = self.local_columns();
         // Derivatives of the gas's inputs with the local columns.
         let mut chain = DMatrix::zeros(5 * layout.gas + 2, local.state.len());
@@ -245,11 +280,18 @@ impl Model {
         Ok(())
     }
 
-    fn emit_sources(&self, sources: &[SourceGradients], emit: &mut Assembly<'_>) {
+    fn emit_sources(&self, gas: &GasBlock, emit: &mut Assembly<'_>) {
         let (layout, outlet) = (&self.layout, self.grid.outlet);
-        for (place, source) in sources.iter().enumerate() {
+        let cell = [layout.mass + outlet, layout.energy + outlet, layout.mean_wall];
+        if let (Some(index), Some(stirring)) = (layout.stirring, &gas.stirring) {
+            cell.into_iter().zip(stirring.rate).for_each(|(state, value)| emit(index, state, value));
+            emit(index, index, stirring.own);
+            for (place, source) in gas.sources.iter().enumerate() {
+                emit(index, layout.drawn + place, source.stirring);
+            }
+        }
+        for (place, source) in gas.sources.iter().enumerate() {
             let drawn = layout.drawn + place;
-            let cell = [layout.mass + outlet, layout.energy + outlet, layout.mean_wall];
             for (state, value) in cell.into_iter().zip(source.rate) {
                 emit(drawn, state, value);
             }
@@ -322,8 +364,8 @@ impl Model {
             }
         }
         let by_jet = state_columns(self.grid.outlet).into_iter().zip(gas.jet);
-        let by_sources = gas.sources.iter().enumerate().map(|(k, source)| (local.sources + k, source.jet));
-        for (state, jet) in by_jet.chain(by_sources) {
+        let by_stirring = gas.stirring.iter().map(|stirring| (local.state.len() - 1, stirring.film));
+        for (state, jet) in by_jet.chain(by_stirring) {
             entries.push(FaceEntry { column: state, surface: -jet_area * jet / total, own: None });
             for (k, contact) in contacts.iter().enumerate() {
                 let own = contact.area_m2 * (balance.surface_k - at.points[contact.cell].temperature_k) * jet;

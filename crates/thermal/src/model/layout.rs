@@ -1,11 +1,11 @@
 //! Where each quantity stands in the state vector.
 //!
-//! `[wall cells | valve | mean wall | gas masses | gas energies | heat in | enthalpy in | mass in | work out | drawn]`
+//! `[wall cells | valve | mean wall | gas masses | gas energies | heat in | enthalpy in | mass in | work out | drawn | stirring]`
 //!
 //! Wall and valve carry energy as the temperature `x = T_ref + e / c_20` (see [`crate::wall::material`]); `mean wall` is
 //! their capacity-weighted mean without the valve, kept as a state so that the inner volume needs no dense coupling.
-//! Heat, enthalpy, mass and work are the ledger: time integrals of what crosses the boundary. Last comes the mass that was drawn from each
-//! vessel that is the source of a refill.
+//! Heat, enthalpy, mass and work are the ledger: time integrals of what crosses the boundary. Then comes the mass that was drawn from each
+//! vessel that is the source of a refill, and last the motion of the gas that jets stir, where a refill has an inlet.
 
 /// Indices into the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,17 +32,20 @@ pub struct Layout {
     pub(crate) work_out: usize,
     /// Mass drawn from the first source vessel, kg.
     pub(crate) drawn: usize,
+    /// Reynolds number of the jet that keeps the gas in its motion, if a refill has an inlet.
+    pub(crate) stirring: Option<usize>,
     /// Number of states.
     pub states: usize,
 }
 
 impl Layout {
-    /// Layout for so many wall and gas cells and source vessels.
-    pub(crate) fn new(wall: usize, valve: bool, gas: usize, sources: usize) -> Self {
+    /// Layout for so many wall and gas cells and source vessels, with or without jets.
+    pub(crate) fn new(wall: usize, valve: bool, gas: usize, sources: usize, jets: bool) -> Self {
         let mean_wall = wall + usize::from(valve);
         let mass = mean_wall + 1;
         let energy = mass + gas;
         let heat_in = energy + gas;
+        let stirring = heat_in + 4 + sources;
         Self {
             wall,
             valve: valve.then_some(wall),
@@ -55,7 +58,8 @@ impl Layout {
             mass_in: heat_in + 2,
             work_out: heat_in + 3,
             drawn: heat_in + 4,
-            states: heat_in + 4 + sources,
+            stirring: jets.then_some(stirring),
+            states: stirring + usize::from(jets),
         }
     }
 

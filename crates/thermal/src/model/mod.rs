@@ -72,6 +72,7 @@ pub struct Model {
     gas: Gas,
     grid: GasGrid,
     inner_diameter_m: f64,
+    jet_film_factor: f64,
     flows: Vec<Flow>,
     supplies: Vec<Option<Supply>>,
     scratch: RefCell<Scratch>,
@@ -122,7 +123,8 @@ impl Model {
         let grid = GasGrid::new(vessel, &mesh);
         let flows = coefficients::real_gas_flows(vessel, scenario)?;
         let (supplies, sources) = supplies(&vessel.fluid, &flows)?;
-        let layout = Layout::new(mesh.cells(), vessel.valve.is_some(), grid.cells.len(), sources);
+        let jets = flows.iter().any(|flow| flow.kind.has_jet());
+        let layout = Layout::new(mesh.cells(), vessel.valve.is_some(), grid.cells.len(), sources, jets);
         let start_k = scenario.initial.gas_temperature_k;
         let absorptivity = vessel.surface.solar_absorptivity;
         let sun = scenario.surroundings.sun.as_ref();
@@ -162,6 +164,7 @@ impl Model {
             fluid: vessel.fluid.clone(),
             grid,
             inner_diameter_m: geometry.inner_diameter_m,
+            jet_film_factor: vessel.jet_film_factor,
             supplies,
             flows,
             mesh,
@@ -202,7 +205,7 @@ impl Model {
         }
         let nodes = self.gas_nodes(x)?;
         let boundary = self.boundary(x, inputs, open);
-        let jet = self.jet_w_m2_k(&nodes, &boundary)?;
+        let jet = self.jet_w_m2_k(&nodes, x);
         scratch.points.clear();
         scratch.points.extend(nodes.as_slice().iter().map(GasPoint::from));
         let (points, wall) = (&scratch.points, &mut scratch.wall);
@@ -234,6 +237,11 @@ impl Model {
         rate[layout.mean_wall] = mean_rate;
         rate[layout.heat_in] = from_outside + valve_outside;
         let mean_rate_k_s = self.mean_material.temperature_slope(x[layout.mean_wall]) * mean_rate;
+        if let Some(stirring) = layout.stirring {
+            let outlet = &nodes.as_slice()[self.grid.outlet];
+            let diameter_m = self.inner_diameter_m;
+            rate[stirring] = boundary.stirring_per_s(&self.fluid, outlet, diameter_m, x[stirring], None)?;
+        }
         self.gas_rates(&nodes, &boundary, to_gas, wall, mean_rate_k_s, rate)
     }
 

@@ -56,7 +56,7 @@ impl Model {
         let mut temperature_k = Vec::new();
         self.node_temperatures(x, &mut temperature_k);
         let boundary = self.boundary(x, inputs, open);
-        let jet = self.jet_w_m2_k(&nodes, &boundary)?;
+        let jet = self.jet_w_m2_k(&nodes, x);
         let columns = self.mesh.columns.len();
         let inner: Vec<_> = (0..columns).map(|j| self.inner_face(j, &temperature_k, &points, jet)).collect();
         Ok(Output {

@@ -15,7 +15,8 @@
 //! # Validity
 //! `lambda` (exchange length) and `c` (core mixing) are **uncertain**: they were fitted to one measured
 //! blowdown (run I1) and not confirmed on others. The end cells' temperatures depend on the cell count unless `c > 0`.
-//! Mean temperature and pressure are as good with one node. Use 20 cells or more per vessel.
+//! Mean temperature and pressure are as good with one node. 20 cells are the default; the book states what other counts change.
+//! What flows in mixes with the cell at the valve alone, whatever its jet: no fill is predicted.
 //!
 //! # References
 //! Eckert and Jackson, NACA TN 2207 (1950); end plates: McAdams (1954) as in Incropera et al.
@@ -33,6 +34,8 @@ use crate::vessel::{InnerVolume, Stratification, Vessel};
 /// Time in which a pressure difference between neighbours dies out, s: shorter than that of sound through a cell. And the sound speed that scales it, m/s.
 const EQUALISATION_S: f64 = 1e-4;
 const SOUND_M_S: f64 = 350.0;
+/// Largest part of its content that the cell at the valve may exchange with the outside within [`EQUALISATION_S`]: about what its pressure differs by.
+const LARGEST_EXCHANGE: f64 = 0.3;
 /// Smoothing of sign changes: heat flow W, temperature difference K, enthalpy J/kg, mass flow kg/s.
 const SMOOTH_W: f64 = 0.05;
 const SMOOTH_K: f64 = 2e-2;
@@ -193,7 +196,7 @@ impl Stratified {
     /// Rates of every cell and of the whole, for the wall's action and the rate of the mean wall temperature.
     ///
     /// # Errors
-    /// An orifice without a throat state.
+    /// An orifice without a throat state, or more flow than the cell at the valve can bear.
     pub(crate) fn rates(
         &self,
         nodes: &[Node<f64>],
@@ -204,6 +207,7 @@ impl Stratified {
         let cores: Vec<Core<f64>> = nodes.iter().map(|node| self.core(node)).collect();
         let network = self.network(&cores, wall);
         let exchange = boundary.exchange(self.nodes[0].fluid(), &nodes[self.outlet].state)?;
+        self.check_exchange(exchange.mass_kg_s.abs(), &nodes[self.outlet])?;
         let rates = nodes
             .iter()
             .enumerate()
@@ -217,6 +221,17 @@ impl Stratified {
             })
             .collect();
         Ok((rates, exchange))
+    }
+
+    fn check_exchange(&self, flow_kg_s: f64, outlet: &Node<f64>) -> Result<(), ThermalError> {
+        let mass_kg = outlet.state.density_kg_m3 * outlet.volume_m3;
+        let room = LARGEST_EXCHANGE * mass_kg / (flow_kg_s * EQUALISATION_S);
+        if room >= 1.0 {
+            return Ok(());
+        }
+        let cells = self.nodes.len();
+        let at_most = ((0.8 * cells as f64 * room) as usize).max(1);
+        Err(ThermalError::GasCellTooSmall { flow_kg_s, mass_kg, cells, at_most })
     }
 
     fn network<D: Real>(&self, cores: &[Core<D>], wall: &WallAction<D>) -> Network<D> {

@@ -76,3 +76,18 @@ fn the_state_of_the_gas_does_not_depend_on_what_was_asked_before() {
         assert_relative_eq!(energy, energy_j, max_relative = 1e-12);
     }
 }
+
+/// A trial of the solver may ask for what is no gas: a mass and an energy between the phases, or a compressed liquid.
+#[test]
+fn a_trial_that_is_no_gas_does_not_lead_astray_what_follows() {
+    let vessel = presets::load("nitrogen-20l").unwrap();
+    let gas = || WellMixed::new(vessel.fluid.clone(), vessel.volume, 288.0);
+    let right = gas().node(4.5, 8.5e5, 288.0).unwrap().state.temperature_k;
+    for (mass_kg, energy_j) in [(4.5, -1.2e5), (4.4, -3e5), (12.0, -1.1e6), (14.5, -1.2e6), (1.0, -1e5)] {
+        let one = gas();
+        one.node(4.4, 8.4e5, 288.0).unwrap();
+        let _ = one.node(mass_kg, energy_j, 288.0);
+        let found = one.node(4.5, 8.5e5, 288.0).unwrap().state.temperature_k;
+        assert_relative_eq!(found, right, max_relative = 1e-12);
+    }
+}

@@ -49,7 +49,7 @@ pub(super) struct WellMixed {
     volume: InnerVolume,
     /// Temperature at which the first solution is sought, K.
     start_k: f64,
-    /// Last solution: the answer to the same question, else it leads to where Newton starts, without influence on where that ends.
+    /// Last solution that is a gas: the answer to the same question, else it leads to where Newton starts, without influence on where that ends.
     last: Cell<Option<Solved>>,
 }
 
@@ -115,7 +115,15 @@ impl WellMixed {
         let (v, t) = self.solve(inputs)?;
         let (node, temperature_by) = self.node_at(inputs, v, t);
         let solved = Solved { inputs, node, temperature_by };
-        self.last.set(Some(solved));
+        // Between the phases an energy has more than one temperature. A trial of the solver may land there; what follows must not.
+        let state = &node.state;
+        let domain = self.fluid.domain();
+        let is_gas = state.temperature_k > domain.critical_temperature_k
+            && state.pressure_pa <= domain.highest_pressure_pa
+            || self.fluid.check(state.density_kg_m3, state.temperature_k).is_ok();
+        if is_gas {
+            self.last.set(Some(solved));
+        }
         Ok(solved)
     }
 
@@ -181,13 +189,18 @@ impl WellMixed {
         Err(ThermalError::NoGasState { mass_kg: m, energy_j: energy })
     }
 
-    /// Where Newton starts: along the slopes of the last solution, if that does not lead far.
+    /// Where Newton starts: along the slopes of the last solution, if that does not lead far; else no colder than at the beginning, since
+    /// from the warm side it finds the gas and not what the equation of state has between the phases.
     fn start(&self, inputs: [f64; 3]) -> (f64, f64) {
         let Some(last) = self.last.get() else { return (self.volume.volume_m3, self.start_k) };
         let from = (last.node.volume_m3, last.node.state.temperature_k);
         let to = last.along(inputs);
         let is_near = |to: f64, from: f64| (to - from).abs() <= WARM_START_RANGE * from;
-        if is_near(to.0, from.0) && is_near(to.1, from.1) { to } else { from }
+        if is_near(inputs[0], last.inputs[0]) && is_near(to.0, from.0) && is_near(to.1, from.1) {
+            to
+        } else {
+            (from.0, from.1.max(self.start_k))
+        }
     }
 
     /// Rates of change for a heat flow from the wall and a rate of change of the mean wall temperature.

@@ -196,7 +196,7 @@ pub(crate) struct RefillSpec {
     pub source_volume_m3: Option<f64>,
     /// What the gas of a source vessel does while it expands, adiabatic by default.
     pub source_process: Option<SourceProcess>,
-    /// Bore of the inlet, whose jet stirs the gas; no jet by default.
+    /// Bore through which the gas enters the cylinder, whose jet stirs it, be it that of the orifice or of a pipe behind it; no jet by default.
     pub inlet_diameter_m: Option<f64>,
     /// It can run from this time on, 0 by default.
     pub start_s: Option<f64>,

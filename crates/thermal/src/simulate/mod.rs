@@ -64,6 +64,8 @@ impl Default for SimulationSettings {
 
 /// Mean wall temperature that scales the ledger's tolerance, K.
 const LEDGER_SCALE_K: f64 = 300.0;
+/// Reynolds number that scales the tolerance of the gas's motion: jets of fills have 1e4 to 1e6.
+const STIRRING_SCALE_RE: f64 = 1e4;
 /// Edges so close to each other, relative to their time, are one: a rounding lies between them.
 const SAME_EDGE: f64 = 1e3 * f64::EPSILON;
 
@@ -185,6 +187,9 @@ fn absolute_tolerances(
     absolute[layout.mass_in] = settings.relative_tolerance * mass;
     for (tolerance, source_kg) in absolute[layout.drawn..].iter_mut().zip(model.source_masses_kg()) {
         *tolerance = settings.relative_tolerance * source_kg;
+    }
+    if let Some(stirring) = layout.stirring {
+        absolute[stirring] = settings.relative_tolerance * STIRRING_SCALE_RE;
     }
     absolute
 }

@@ -10,7 +10,9 @@
 //! and in the cell beside its saturation line (4 K, 5 % of the pressure) 1 % and more.
 //!
 //! Sources: McAdams, Heat Transmission (1954), 0.13 Ra^(1/3); Daney, Cryogenics 16 (1976) 345, 0.104 Ra^0.352
-//! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / D.
+//! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / D;
+//! Sreenivasan, Phys. Fluids 10 (1998) 528; Skrbek and Stalp, Phys. Fluids 12 (2000) 1997; Touil, Bertoglio and Shao,
+//! J. Turbulence 3 (2002) 049.
 use std::array::from_fn;
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
@@ -26,7 +28,7 @@ use crate::wall::mesh::Facing;
 pub(crate) const GRAVITY_M_S2: f64 = 9.806_65;
 /// Temperature difference below which the film coefficient becomes constant, K.
 const FLAT_BELOW_K: f64 = 0.01;
-/// Reynolds number of a jet below which its film becomes linear in it.
+/// Reynolds number of stirred gas below which its film becomes linear in it.
 #[cfg(feature = "simulate")]
 const LINEAR_BELOW_RE: f64 = 10.0;
 /// Factor and exponent of a plate that stirs the gas (hot floor, cold ceiling) and of one that does not, length D/4.
@@ -260,22 +262,29 @@ impl InsideConvection {
     }
 }
 
-/// Forced convection of an inlet jet, `h = 0.56 k / D Re_in^0.67` with `Re_in = 4 m / (pi d mu)`, W/(m² K).
+/// Film of gas that jets stir, `h = 0.56 k / D Re^0.67`, W/(m² K), by the Reynolds number of the jet that keeps it in its motion.
 ///
 /// # References
 /// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon.
 #[cfg(feature = "simulate")]
-pub(crate) fn jet_film_w_m2_k<D: Real>(
-    conductivity_w_m_k: D,
-    viscosity_pa_s: D,
-    mass_flow_kg_s: D,
-    inlet_diameter_m: f64,
-    vessel_diameter_m: f64,
-) -> D {
-    let reynolds = mass_flow_kg_s / viscosity_pa_s * (4.0 / (std::f64::consts::PI * inlet_diameter_m));
-    // Re^0.67, but linear where the jet dies.
+pub(crate) fn jet_film_w_m2_k<D: Real>(conductivity_w_m_k: D, reynolds: D, vessel_diameter_m: f64) -> D {
+    // Re^0.67, but linear where the motion dies.
     let power = reynolds * (reynolds * reynolds + LINEAR_BELOW_RE * LINEAR_BELOW_RE).powf(-0.165);
     power * conductivity_w_m_k * (0.56 / vessel_diameter_m)
+}
+
+/// Rate per square of a Reynolds number, 1/s, at which stirred gas follows its jet and comes to rest without one:
+/// `dRe/dt = B (Re_in² - Re²)`, `B = sqrt(pi)/2 nu / (3 D²)`.
+///
+/// The jet's momentum `rho u² D²` moves the gas at `u = sqrt(pi)/2 nu Re/D`. Turbulence whose eddies fill a vessel of half its diameter `l`
+/// loses `epsilon = u³/(2 l)`, so that `du/dt = -u²/(3 D)`: the energy falls as `t^-2`.
+///
+/// # References
+/// `epsilon` with the factor 1/2: Sreenivasan 1998; `t^-2` in a vessel: Skrbek and Stalp 2000 (measured), Touil et al. 2002 (simulated).
+#[cfg(feature = "simulate")]
+pub(crate) fn stirring_rate_per_s<D: Real>(viscosity_pa_s: D, density_kg_m3: D, vessel_diameter_m: f64) -> D {
+    let per_viscosity = 0.5 * std::f64::consts::PI.sqrt() / (3.0 * vessel_diameter_m * vessel_diameter_m);
+    viscosity_pa_s / density_kg_m3 * per_viscosity
 }
 
 #[cfg(test)]

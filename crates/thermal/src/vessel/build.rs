@@ -35,6 +35,11 @@ impl VesselSpec {
             valve,
             surface: surface(&self.surface)?,
             inside_film: inside_film(&self.inside_film)?,
+            jet_film_factor: check::not_negative(
+                "inside_film.jet_multiplier",
+                self.inside_film.jet_multiplier.unwrap_or(1.0),
+                "1 is the law as published",
+            )?,
             gas: gas(&self.gas)?,
         })
     }
@@ -228,6 +233,14 @@ fn inside_film(spec: &InsideFilmSpec) -> Result<InsideFilm, ThermalError> {
     })
 }
 
+fn gas_cells(cells: usize) -> Result<usize, ThermalError> {
+    if (2..=100).contains(&cells) {
+        return Ok(cells);
+    }
+    let remedy = "20 are usual; model = \"well-mixed\" is the gas of one temperature";
+    Err(check::broken("gas.cells", cells, "between 2 and 100", remedy))
+}
+
 fn gas(spec: &GasSpec) -> Result<GasResolution, ThermalError> {
     if spec.model == GasChoice::WellMixed {
         let given = [
@@ -245,7 +258,7 @@ fn gas(spec: &GasSpec) -> Result<GasResolution, ThermalError> {
     let exchange = spec.exchange_length_diameters.unwrap_or(usual.exchange_length_diameters);
     let mixing = spec.core_mixing.unwrap_or(usual.core_mixing);
     Ok(GasResolution::Stratified(Stratification {
-        cells: check::cells("gas.cells", spec.cells.unwrap_or(usual.cells), 2)?,
+        cells: gas_cells(spec.cells.unwrap_or(usual.cells))?,
         exchange_length_diameters: check::positive(
             "gas.exchange_length_diameters",
             exchange,

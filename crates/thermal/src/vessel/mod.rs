@@ -42,6 +42,8 @@ pub struct Vessel {
     pub surface: Surface,
     /// Heat transfer between wall and gas.
     pub inside_film: InsideFilm,
+    /// Factor on the film of gas that a refill's jet stirs, 1 unless calibrated.
+    pub jet_film_factor: f64,
     /// How the gas is resolved.
     pub gas: GasResolution,
 }
@@ -153,9 +155,9 @@ pub struct Stratification {
 }
 
 impl Default for Stratification {
-    /// Eight cells, an exchange length of one diameter, hardly any mixing of the core.
+    /// Twenty cells, an exchange length of one diameter, hardly any mixing of the core.
     fn default() -> Self {
-        Self { cells: 8, exchange_length_diameters: 1.0, core_mixing: 0.05 }
+        Self { cells: 20, exchange_length_diameters: 1.0, core_mixing: 0.05 }
     }
 }
 

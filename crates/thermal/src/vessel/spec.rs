@@ -228,6 +228,8 @@ pub struct InsideFilmSpec {
     pub film_w_m2_k: Option<f64>,
     /// Multiplier of the power laws, 1 by default.
     pub multiplier: Option<f64>,
+    /// Multiplier of what the jet of a refill adds, whatever the law; 1 by default, 0 leaves it out.
+    pub jet_multiplier: Option<f64>,
 }
 
 /// Film law inside.
@@ -251,7 +253,7 @@ pub struct GasSpec {
     /// Model, well mixed by default.
     #[serde(default)]
     pub model: GasChoice,
-    /// Gas cells of the stratified model, 8 by default.
+    /// Gas cells of the stratified model, 2 to 100; 20 by default.
     pub cells: Option<usize>,
     /// Length, in inner diameters, over which the wall's boundary layer gives its heat back, 1 by default.
     pub exchange_length_diameters: Option<f64>,

@@ -117,6 +117,11 @@ fn each_fault_of_a_vessel_names_line_key_and_remedy() {
             "model = \"well-mixed\"\ncells = 4",
             "60: gas cells cannot stand beside model = \"well-mixed\": leave it out, or use model = \"stratified\"",
         ),
+        (
+            "model = \"well-mixed\"",
+            "model = \"stratified\"\ncells = 101",
+            "60: gas cells = 101 must be between 2 and 100: 20 are usual; model = \"well-mixed\" is the gas of one temperature",
+        ),
         ("[gas]", "[gas", "58: the text cannot be read: unclosed table, expected `]`"),
         (
             "[surface]",

@@ -33,7 +33,7 @@ fn hole(diameter_m: f64) -> Opening {
     Opening::Orifice { diameter_m, discharge_coefficient: 0.8 }
 }
 
-fn supply(opening: Opening, source: Source) -> Flow {
+pub(crate) fn supply(opening: Opening, source: Source) -> Flow {
     Flow {
         name: "refill".into(),
         kind: FlowKind::Supply { opening, source, inlet_diameter_m: None },
@@ -45,7 +45,7 @@ fn supply(opening: Opening, source: Source) -> Flow {
     }
 }
 
-fn filled(start_pa: f64, start_k: f64, seconds: f64, flow: Flow) -> Scenario {
+pub(crate) fn filled(start_pa: f64, start_k: f64, seconds: f64, flow: Flow) -> Scenario {
     let mut scenario = still(start_k, start_k, 0.0, seconds / 3_600.0);
     scenario.initial.fill = Fill::Pressure { pressure_pa: start_pa };
     scenario.sample_time_s = seconds / 200.0;
@@ -364,4 +364,42 @@ fn an_ideal_gas_coefficient_becomes_five_percent_smaller_at_150_bar() {
     let ideal_flux = 150e5 * (1.4_f64 / (r * 289.0)).sqrt() * (2.0_f64 / 2.4).powf(3.0);
     let area = 0.25 * std::f64::consts::PI * 0.003_f64.powi(2);
     assert_relative_eq!(first, 0.8 * area * ideal_flux, max_relative = 1e-3);
+}
+
+/// With the refill shut, the film of the gas that its jet stirred falls as `(1 + t/tau)^-0.67`, `tau = 3 D/u` with
+/// `u = sqrt(M/rho)/D` from the momentum `M` of the jet: hydrogen, that its properties change little meanwhile.
+#[test]
+fn the_film_of_a_jet_decays_when_the_refill_is_shut() {
+    let fluid = Fluid::named("hydrogen").unwrap();
+    // The wall keeps its temperature, and natural convection is left out: all heat is the jet's.
+    let mut vessel = adiabatic(fluid.clone());
+    vessel.geometry.layers[0].material.heat_capacity_j_kg_k = 1e7;
+    let (flow_kg_s, inlet_m, diameter_m) = (2e-4, 0.005, vessel.geometry.inner_diameter_m);
+    let kind = FlowKind::Refill {
+        mass_flow_kg_s: flow_kg_s,
+        source_temperature_k: 300.0,
+        source_pressure_pa: 400e5,
+        inlet_diameter_m: Some(inlet_m),
+    };
+    let flow = Flow { kind, stop_s: 60.0, ..supply(hole(0.001), constant(1e5, 300.0)) };
+    let mut scenario = filled(100e5, 290.0, 200.0, flow);
+    scenario.initial.gas_temperature_k = 300.0;
+    let run = run(&vessel, &scenario, 1e-9);
+    let film = |k: usize| run.heat_to_gas_w[k] / (run.wall_inner_mean_k[k] - run.gas_mean_k[k]);
+    let at = |t: f64| run.time_s.iter().position(|&s| s == t).unwrap();
+    let (shut, later) = (at(60.0), at(70.0));
+    let rho = run.mass_kg[shut] / vessel.volume.volume_m3;
+    let momentum = 4.0 * flow_kg_s * flow_kg_s / (std::f64::consts::PI * rho * inlet_m * inlet_m);
+    let speed_m_s = (momentum / rho).sqrt() / diameter_m;
+    let tau_s = 3.0 * diameter_m / speed_m_s;
+    println!("film {:.2} W/K, tau {tau_s:.1} s, then {:.2} W/K", film(shut), film(later));
+    assert_relative_eq!(film(later) / film(shut), (1.0 + 10.0 / tau_s).powf(-0.67), max_relative = 0.02);
+    // Under the jet it is what Woodfield et al. measured, `0.56 k/D Re^0.67`.
+    let mu = fluid.viscosity_pa_s(rho, run.gas_mean_k[shut]);
+    let reynolds = 4.0 * flow_kg_s / (std::f64::consts::PI * inlet_m * mu);
+    let area_m2 = std::f64::consts::PI * diameter_m * (vessel.geometry.cylinder_length_m + 0.5 * diameter_m);
+    let expected =
+        0.56 * fluid.conductivity_w_m_k(rho, run.gas_mean_k[shut]) / diameter_m * reynolds.powf(0.67);
+    assert_relative_eq!(film(shut), expected * area_m2, max_relative = 0.02);
+    assert_closed(&run, 1e-8);
 }

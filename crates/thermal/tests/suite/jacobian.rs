@@ -105,6 +105,11 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
     }
     let open = vec![true; scenario.flows.len()];
     let n = layout.states;
+    // The motion of the gas is the last state.
+    let stirring = scenario.flows.iter().any(|flow| flow.kind.has_jet()).then_some(n - 1);
+    if let Some(stirring) = stirring {
+        x[stirring] = 2e4;
+    }
     let mut jacobian = vec![vec![0.0; n]; n];
     model.jacobian(&x, inputs, &open, &mut |i, j, v| jacobian[i][j] += v).unwrap();
     let capacity = |row: usize| if row <= layout.mean_wall { 1.0 } else { 1e-3 };
@@ -114,6 +119,7 @@ fn check(vessel: &Vessel, scenario: &Scenario, inputs: &Inputs, gas_offset_k: f6
             c if (layout.mass..layout.energy).contains(&c) => 1e-6,
             c if (layout.energy..layout.heat_in).contains(&c) => 0.2,
             c if c <= layout.mean_wall => 1e-4,
+            c if Some(c) == stirring => 1.0,
             // Mass drawn from a source vessel comes after the four entries of the ledger.
             c if c >= layout.heat_in + 4 => 1e-5,
             _ => 1.0,

@@ -7,6 +7,7 @@ mod convergence;
 mod filling;
 mod jacobian;
 mod preset_runs;
+mod stratified;
 mod support;
 mod surroundings;
 mod tangents;

@@ -45,6 +45,7 @@ pub(crate) fn closed_bottle() -> Vessel {
         valve: None,
         surface: Surface { emissivity: 0.0, solar_absorptivity: 0.0, film_factor: 1.0 },
         inside_film: MCADAMS,
+        jet_film_factor: 1.0,
         gas: GasResolution::WellMixed,
     }
 }

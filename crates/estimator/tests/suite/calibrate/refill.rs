@@ -2,11 +2,11 @@
 use cylwatch_estimator::calibrate::{
     Calibration, CalibrationSettings, Experiment, ParameterKind, ParameterSpec,
 };
-use cylwatch_estimator::sensor::{read_sensors, sample};
+use cylwatch_estimator::sensor::{SensorSuite, read_sensors, sample};
 use cylwatch_thermal::flow::FlowKind;
-use cylwatch_thermal::vessel;
+use cylwatch_thermal::vessel::{self, Vessel};
 
-use super::study::{preset, run};
+use super::study::{known, preset, run};
 
 /// True coefficient, lag in s and coupling.
 const TRUTH: [f64; 3] = [0.72, 6.0, 0.12];
@@ -55,4 +55,26 @@ fn coefficient_lag_and_stem_follow_from_a_refill_through_an_orifice() {
         println!("{:.4} [{:.4}, {:.4}] of {truth}", found.value, found.interval.0, found.interval.1);
         assert!((found.value - truth).abs() < within, "{found:?}");
     }
+}
+
+/// A jet that gives 1.5 times the film of the law, in the preset whose refill has an inlet; without one there is nothing to fit.
+#[test]
+fn the_film_of_a_jet_is_found_from_pressure_and_gas() {
+    let scenario = preset("refill-from-bank");
+    let vessel = vessel::presets::load("nitrogen-20l").unwrap();
+    let truth = Vessel { jet_film_factor: 1.5, ..vessel.clone() };
+    let channels = vec![known("shoulder", 0.05), known("pressure", 1e3)];
+    let suite = SensorSuite::try_new(channels.clone()).unwrap();
+    let log = sample(&run(&truth, &scenario), &suite.nominal(), 3).unwrap();
+    let experiment = Experiment { source: "fill".into(), vessel: None, scenario, log, channels };
+    let mut calibration = Calibration {
+        vessel,
+        experiments: vec![experiment],
+        parameters: vec![ParameterSpec::new(ParameterKind::JetFilm, 1.0).with_prior(1.0, 0.5)],
+        settings: CalibrationSettings::default(),
+    };
+    let found = calibration.run().unwrap().estimates[0].clone();
+    assert!((found.value - 1.5).abs() < 4.0 * found.sd && found.sd < 0.1, "{found:?}");
+    calibration.experiments[0].scenario.flows.clear();
+    assert!(calibration.run().unwrap_err().to_string().contains("a refill with an inlet"));
 }
