@@ -29,8 +29,6 @@ impl Choices for FillQuantities {
 const MASS_SD_PERCENT: f64 = 1.0;
 /// Standard deviation of the gas temperature where the first row's readings stand for it and the cylinder is at rest, K.
 const SETTLED_SD_K: f64 = 1.0;
-/// Standard deviation of the air about the cylinder where it need not be at rest, K: a train may leave a tunnel.
-const UNSETTLED_AIR_SD_K: f64 = 20.0;
 
 /// A fill that is the transmitter's own first reading is off by what the transmitter is. The observer takes that reading once more: the prior
 /// is so much wider that it does not count twice.
@@ -131,7 +129,7 @@ impl GivenFill {
 pub(super) fn settings(settings: ObserverSettings, settled: bool) -> ObserverSettings {
     let mut settings = settings;
     if !settled {
-        settings.air.prior_sd = UNSETTLED_AIR_SD_K;
+        settings.air.prior_sd = Commissioning::UNSETTLED_AIR_SD_K;
     }
     settings
 }

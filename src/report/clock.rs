@@ -3,6 +3,7 @@
 //! Inside, time goes on where the clock of the log jumped. Here it is told as the clock showed it, before a jump as before, after it as after.
 use crate::log::Zone;
 use jiff::Timestamp;
+use jiff::civil::Date;
 use serde::{Deserialize, Serialize};
 
 /// Jumps that are remembered.
@@ -91,6 +92,12 @@ impl Clock {
         Some(self.zone.as_ref().unwrap_or(&Zone::UTC).text(instant))
     }
 
+    /// The day of a time as the log has it, in its zone.
+    pub(crate) fn day_of_log(&self, time_s: f64) -> Option<Date> {
+        let text = self.date_of_log(time_s)?;
+        text.split_once('T')?.0.parse().ok()
+    }
+
     /// The time in words: a date, or the time of the log in the unit that people would say.
     pub(crate) fn text(&self, time_s: f64) -> String {
         self.text_of_log(self.shown.at(time_s))
@@ -150,6 +157,9 @@ mod tests {
 
     #[test]
     fn dates_are_in_the_zone_of_the_log() {
+        let midnight =
+            Clock::new(Some("2026-10-30T23:00:00Z".parse().unwrap()), "Europe/Berlin".parse().ok());
+        assert_eq!(midnight.day_of_log(0.0).unwrap().to_string(), "2026-10-31");
         let zone: Zone = "Europe/Berlin".parse().unwrap();
         let clock = Clock::new(Some("2026-10-25T00:59:00Z".parse().unwrap()), Some(zone));
         assert_eq!(

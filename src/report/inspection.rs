@@ -1,6 +1,6 @@
 //! The outcome of inspections: a table of cylinders, a page with what it rests on and what it is not.
 use super::{Digits, GRAM_PER_HOUR, Provenance, Report, Table, number};
-use crate::detector::inspection::{Criterion, Inspection, Judgement};
+use crate::detector::inspection::{BOUND_SD, Criterion, Inspection, Judgement};
 use crate::detector::monitor::{Interval, LeakFinding};
 use crate::report::estimate::duration;
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
@@ -104,9 +104,6 @@ impl Shares {
         Self { gauge_pa, cylinder_pa, fill_pa: half(found.filled_pa) }
     }
 }
-
-/// Standard deviations from the middle to the bounds of a 95 % interval.
-const BOUND_SD: f64 = 1.959_963_984_540_054;
 
 /// What is most uncertain about a cylinder of which it cannot be told, and what would help.
 pub(crate) fn remedy(found: &Inspection, gauge_sd_pa: f64) -> &'static str {

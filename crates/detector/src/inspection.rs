@@ -23,15 +23,11 @@ use crate::prognosis::{Contents, ISO_14520_LOSS, normal_probability};
 use crate::units::QUOTED_K;
 
 /// Standard deviations from the middle to the bounds of a 95 % interval.
-const BOUND_SD: f64 = 1.959_963_984_540_054;
-/// Step of a mass for the slope of its pressure, relative.
-const STEP: f64 = 1e-4;
+pub const BOUND_SD: f64 = 1.959_963_984_540_054;
 /// Interval at which an observer looks at a cylinder that rests, s.
 const LOOK_S: f64 = 600.0;
 /// Standard deviation of the mass before the pressure has been read, a part of it: nothing is known of it.
 const UNKNOWN_MASS_SD: f64 = 0.2;
-/// Standard deviation of the air about a cylinder at the first reading, K.
-const AIR_SD_K: f64 = 20.0;
 
 /// A mass of gas and its standard deviation, kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,11 +129,9 @@ impl Criterion {
 
     /// Pressure of a mass at the reference temperature with its standard deviation, Pa.
     fn pressure_pa(&self, contents: &Contents, mass: UncertainMass) -> Result<(f64, f64), DetectorError> {
-        let at = |mass_kg: f64| contents.pressure_pa(mass_kg, self.reference_k);
         let UncertainMass { mass_kg, sd_kg } = mass;
-        let pressure_pa = at(mass_kg)?;
-        let slope_pa_kg =
-            (at(mass_kg * (1.0 + STEP))? - at(mass_kg * (1.0 - STEP))?) / (2.0 * STEP * mass_kg);
+        let pressure_pa = contents.pressure_pa(mass_kg, self.reference_k)?;
+        let slope_pa_kg = contents.slope_pa_kg(mass_kg, self.reference_k)?;
         Ok((pressure_pa, slope_pa_kg * sd_kg))
     }
 }
@@ -195,7 +189,7 @@ impl SingleReading {
         }
         let commissioning = commissioning(pressure_pa, false);
         let mut settings = ObserverSettings::default();
-        settings.air.prior_sd = AIR_SD_K;
+        settings.air.prior_sd = Commissioning::UNSETTLED_AIR_SD_K;
         let mut sensors = vec![if in_air { thermometer.clone() } else { air.clone() }, gauge.clone()];
         sensors.extend((!in_air).then(|| thermometer.clone()));
         let mut observer = Observer::new(vessel, &sensors, &commissioning, &settings)?;
@@ -330,7 +324,6 @@ mod tests {
         };
         let rests_h = [0.0, 1.0, 3.0, 6.0, 12.0];
         let [on_wall, in_air] = [&wall, &air].map(|thermometer| rests_h.map(|h| part(thermometer, h)));
-        println!("on the wall {on_wall:.4?}, in the air {in_air:.4?}");
         for parts in [on_wall, in_air] {
             assert!(parts.is_sorted_by(|a, b| a + 1e-4 >= *b), "{parts:?}");
         }

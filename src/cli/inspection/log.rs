@@ -5,16 +5,15 @@ use crate::cli::fill::FillSource;
 use crate::cli::selection::Selection;
 use crate::cli::start;
 use crate::detector::inspection::{self, Judgement};
-use crate::detector::monitor::intake::IntakeSettings;
 use crate::detector::monitor::{Health, Monitor, MonitorSettings, Output};
 use crate::estimator::log::Quantity;
 use crate::log::LogOptions;
+use crate::report::Clock;
 use crate::report::inspection::{Basis, Inspected, leak_text, remedy};
 use crate::report::monitor::health_text;
 use crate::thermal::units::QUOTED_K;
 use crate::thermal::vessel::Fill;
 use anyhow::{Context, bail};
-use jiff::civil::Date;
 use std::path::Path;
 
 impl Round<'_> {
@@ -35,12 +34,7 @@ impl Round<'_> {
         let Fill::Pressure { pressure_pa } = fill else { bail!("{name}: no row has a pressure") };
         let commissioning = inspection::commissioning(pressure_pa, settled);
         let defaults = MonitorSettings::default();
-        let settings = MonitorSettings {
-            observer: fill::settings(defaults.observer, settled),
-            // Every row counts at the end of a short log.
-            intake: IntakeSettings { lateness_s: 0.0, ..defaults.intake },
-            ..defaults
-        };
+        let settings = MonitorSettings { observer: fill::settings(defaults.observer, settled), ..defaults };
         let mut monitor = Monitor::new(&self.vessel, &selection.sensors, &commissioning, &settings)?;
         let mut last = None;
         let mut readings = Vec::new();
@@ -64,8 +58,8 @@ impl Round<'_> {
         let Some(last) = last else { bail!("{name}: no row could be used") };
         let sampling = log.reader.sampling();
         let basis = Basis::Log { duration_s: sampling.duration_s(), rows: sampling.rows() };
-        let of_row = log.reader.origin_instant().and_then(|origin| date_of(origin, last.stamp_s));
-        let date = self.arguments.date.or(of_row);
+        let clock = Clock::new(log.reader.origin_instant(), log.reader.zone().cloned());
+        let date = self.arguments.date.or_else(|| clock.day_of_log(last.stamp_s));
         let remarks = remarks(&last, &selection);
         if let Some(reason) = blind(&last, &selection) {
             let others = remarks.into_iter().filter(|remark| *remark != reason).collect();
@@ -84,11 +78,6 @@ impl Round<'_> {
             ..Inspected::blank(name_of(path), date, basis, remarks)
         })
     }
-}
-
-fn date_of(origin: jiff::Timestamp, time_s: f64) -> Option<Date> {
-    let instant = origin.checked_add(jiff::SignedDuration::try_from_secs_f64(time_s).ok()?).ok()?;
-    Some(jiff::tz::Offset::UTC.to_datetime(instant).date())
 }
 
 /// Why a log says nothing of the mass: no pressure that can be believed.

@@ -12,8 +12,6 @@ use serde_json::{Map, json};
 
 /// Relative width of the classes of mass that share a slope of the settled pressure.
 const CLASS: f64 = 1e-3;
-/// Step of the mass for that slope, relative.
-const STEP: f64 = 1e-4;
 
 /// Rows that are being written.
 pub(super) struct Rows {
@@ -93,9 +91,7 @@ impl Slope {
         let class = (mass_kg.ln() / CLASS).round() as i64;
         if self.class != Some(class) {
             let middle_kg = (class as f64 * CLASS).exp();
-            let above = self.contents.pressure_pa(middle_kg * (1.0 + STEP), QUOTED_K)?;
-            let below = self.contents.pressure_pa(middle_kg * (1.0 - STEP), QUOTED_K)?;
-            (self.class, self.pa_kg) = (Some(class), (above - below) / (2.0 * STEP * middle_kg));
+            (self.class, self.pa_kg) = (Some(class), self.contents.slope_pa_kg(middle_kg, QUOTED_K)?);
         }
         Ok(self.pa_kg)
     }

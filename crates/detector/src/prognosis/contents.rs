@@ -11,6 +11,9 @@ use crate::DetectorError;
 /// Loss of pressure, corrected for temperature, at which ISO 14520 has an inert gas container refilled or replaced.
 pub const ISO_14520_LOSS: f64 = 0.05;
 
+/// Step of a mass for the slope of its pressure, relative.
+const STEP: f64 = 1e-4;
+
 /// Gas and volume.
 #[derive(Clone, Debug)]
 pub struct Contents {
@@ -53,6 +56,16 @@ impl Contents {
             }
         }
         Err(DetectorError::NoPressure { mass_kg, temperature_k, volume_m3 })
+    }
+
+    /// Slope of the pressure in the mass at a temperature, K, Pa/kg.
+    ///
+    /// # Errors
+    /// As of [`Contents::pressure_pa`].
+    pub fn slope_pa_kg(&self, mass_kg: f64, temperature_k: f64) -> Result<f64, DetectorError> {
+        let above_pa = self.pressure_pa(mass_kg * (1.0 + STEP), temperature_k)?;
+        let below_pa = self.pressure_pa(mass_kg * (1.0 - STEP), temperature_k)?;
+        Ok((above_pa - below_pa) / (2.0 * STEP * mass_kg))
     }
 
     /// Mass, kg, at which the pressure at 15 °C has fallen by `share` of that of a full cylinder, e.g.

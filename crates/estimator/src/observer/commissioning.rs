@@ -39,6 +39,9 @@ impl Commissioning {
     /// read 10 K more than a wall that is 65 K colder than the air.
     pub const UNSETTLED_SD_K: f64 = 10.0;
 
+    /// Standard deviation of the air about such a cylinder, K: a train may leave a tunnel.
+    pub const UNSETTLED_AIR_SD_K: f64 = 20.0;
+
     /// A settled cylinder that was filled to a pressure at a temperature.
     pub fn filled(pressure_pa: f64, temperature_k: f64) -> Self {
         let fill = Fill::Settled { pressure_pa, temperature_k };

@@ -32,7 +32,7 @@ fn exchanges(world: &World, from: usize) -> Vec<EventKind> {
         settled: false,
     };
     let mut settings = MonitorSettings::default();
-    settings.observer.air.prior_sd = 20.0;
+    settings.observer.air.prior_sd = Commissioning::UNSETTLED_AIR_SD_K;
     let known = &world.operator_data;
     let mut monitor = Monitor::new(&known.vessel, &known.sensors, &filled, &settings).unwrap();
     let rows = (from..from + ROWS).map(|row| (world.log.time_s[row], readings(row)));

@@ -9,6 +9,7 @@ use cylwatch_detector::inspection::{
 use cylwatch_detector::monitor::{Monitor, MonitorSettings};
 use cylwatch_detector::prognosis::Contents;
 use cylwatch_estimator::log::Quantity;
+use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_evaluation::world::{Request, SensorClass, World, generate};
 use cylwatch_thermal::units::{HOUR_S, QUOTED_K};
@@ -64,7 +65,7 @@ fn by_log(world: &World, random: &mut ChaCha8Rng) -> Stated {
         world.log.rows().map(|(_, row)| row[column]).find(|value| value.is_finite()).unwrap()
     };
     let mut settings = MonitorSettings::default();
-    settings.observer.air.prior_sd = 20.0;
+    settings.observer.air.prior_sd = Commissioning::UNSETTLED_AIR_SD_K;
     let mut monitor =
         Monitor::new(&known.vessel, &known.sensors, &commissioning(first_pa, false), &settings).unwrap();
     let mut outputs = Vec::new();

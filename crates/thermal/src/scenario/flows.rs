@@ -53,22 +53,29 @@ fn outflow(
     Ok(Flow { name, kind, start_s, stop_s, opens_above_pa, closes_below_pa, closes_above_pa: None })
 }
 
+/// The keys that flows out and refills have alike.
+macro_rules! how_it_flows {
+    ($spec:expr) => {
+        HowItFlows {
+            flow_kg_s: $spec.flow_kg_s,
+            flow_table: $spec.flow_table.as_ref(),
+            flow_csv: $spec.flow_csv.as_ref(),
+            diameter_m: $spec.diameter_m,
+            discharge_coefficient: $spec.discharge_coefficient,
+            discharge_coefficient_ideal_gas: $spec.discharge_coefficient_ideal_gas,
+            kv_m3_h: $spec.kv_m3_h,
+            x_t: $spec.x_t,
+        }
+    };
+}
+
 /// A mass flow, an orifice or a valve, whichever the file describes.
 fn outflow_kind(
     table: &str,
     spec: &OutflowSpec,
     reader: &SignalReader<'_>,
 ) -> Result<FlowKind, ThermalError> {
-    let how = HowItFlows {
-        flow_kg_s: spec.flow_kg_s,
-        flow_table: spec.flow_table.as_ref(),
-        flow_csv: spec.flow_csv.as_ref(),
-        diameter_m: spec.diameter_m,
-        discharge_coefficient: spec.discharge_coefficient,
-        discharge_coefficient_ideal_gas: spec.discharge_coefficient_ideal_gas,
-        kv_m3_h: spec.kv_m3_h,
-        x_t: spec.x_t,
-    };
+    let how = how_it_flows!(spec);
     let stated = how.stated(table, reader)?;
     let back = format!("{table}.back_pressure_pa");
     if spec.back_pressure_pa.is_some() && !matches!(stated, Stated::Opening(_)) {
@@ -97,16 +104,7 @@ fn refill(i: usize, spec: &RefillSpec, reader: &SignalReader<'_>) -> Result<Flow
         spec.inlet_diameter_m.map(|value| bore(&path("inlet_diameter_m"), value)).transpose()?;
     let closes =
         spec.closes_above_pa.map(|value| check::pressure_pa(&path("closes_above_pa"), value)).transpose()?;
-    let how = HowItFlows {
-        flow_kg_s: spec.flow_kg_s,
-        flow_table: spec.flow_table.as_ref(),
-        flow_csv: spec.flow_csv.as_ref(),
-        diameter_m: spec.diameter_m,
-        discharge_coefficient: spec.discharge_coefficient,
-        discharge_coefficient_ideal_gas: spec.discharge_coefficient_ideal_gas,
-        kv_m3_h: spec.kv_m3_h,
-        x_t: spec.x_t,
-    };
+    let how = how_it_flows!(spec);
     let stated = how.stated(&table, reader)?;
     let source = source(&table, spec, reader)?;
     let kind = match (stated, source) {

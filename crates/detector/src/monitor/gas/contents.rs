@@ -4,9 +4,8 @@ use serde::{Deserialize, Serialize};
 use crate::DetectorError;
 use crate::prognosis::Contents;
 
-/// Relative change of the mass after which the tangent is renewed, and the step that it is taken with.
+/// Relative change of the mass after which the tangent is renewed.
 const RENEWED_AFTER: f64 = 2e-4;
-const STEP: f64 = 1e-4;
 
 /// Pressure of a mass at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,10 +37,8 @@ impl Tangent {
         // Not a number at first.
         let near = (mass_kg - self.mass_kg).abs() <= RENEWED_AFTER * self.mass_kg;
         if !near {
-            let at = |mass_kg: f64| contents.pressure_pa(mass_kg, self.temperature_k);
-            let (below, above) = (at(mass_kg * (1.0 - STEP))?, at(mass_kg * (1.0 + STEP))?);
-            self.pressure_pa = at(mass_kg)?;
-            self.slope_pa_kg = (above - below) / (2.0 * STEP * mass_kg);
+            self.slope_pa_kg = contents.slope_pa_kg(mass_kg, self.temperature_k)?;
+            self.pressure_pa = contents.pressure_pa(mass_kg, self.temperature_k)?;
             self.mass_kg = mass_kg;
         }
         Ok(self.pressure_pa + self.slope_pa_kg * (mass_kg - self.mass_kg))
