@@ -1,9 +1,11 @@
 //! A report as a page for a browser: one file that refers to nothing outside, with its pictures inside.
 //!
-//! The page is legible without scripts, on a phone (wide tables and pictures scroll in their own frames), in grey (curves differ in dash and
+//! The page is legible without scripts, on a phone (pictures of panels are drawn a second time for it; wide tables and
+//! other pictures scroll in their own frames), in grey (curves differ in dash and
 //! width), and on paper. Every picture has its words for who cannot see it.
 use super::content::{Block, Report};
 use super::figure::Picture;
+use super::figure::style::Sheet;
 use super::{Provenance, ReportError};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -132,10 +134,14 @@ fn element(index: usize, block: &Block) -> Result<Markup, ReportError> {
 }
 
 fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {
-    let drawing = picture.to_element()?;
+    let desk = picture.to_element(Sheet::DESK)?;
+    let phone = picture.is_narrowable().then(|| picture.to_element(Sheet::PHONE)).transpose()?;
     Ok(html! {
         figure {
-            div.wide { (PreEscaped(drawing)) }
+            @match phone {
+                Some(phone) => { div.desk { (PreEscaped(desk)) } div.phone { (PreEscaped(phone)) } },
+                None => { div.wide { (PreEscaped(desk)) } },
+            }
             @for key in picture.keys() {
                 p.key {
                     (key.quantity) ": "

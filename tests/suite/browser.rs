@@ -1,7 +1,7 @@
 //! Reports of all commands, and how a real browser shows them.
 //!
 //! With Chromium or Chrome on the path (or named by `CYLWATCH_BROWSER`) each report is opened on a desk and on a phone: nothing is
-//! loaded from elsewhere, nothing is wider than the window, every picture has a size, no two labels of a picture cover each other.
+//! loaded from elsewhere, nothing is wider than the window, every picture has a size, no label of a picture lies over another one, over a curve, or over the edge.
 //! Without one this is skipped with a message. `CYLWATCH_LOOK=DIR` keeps the reports.
 use crate::support::{Outcome, TINY_PLAN, reproduced, run};
 use std::path::{Path, PathBuf};
@@ -23,12 +23,13 @@ struct Seen {
 }
 
 /// Frames the report, looks at it when it is there, and leaves what was found as the text of the page.
-const LOOK: &str = r#"<!doctype html><meta charset="utf-8"><body style="margin:0">
+const LOOK: &str = r##"<!doctype html><meta charset="utf-8"><body style="margin:0">
 <iframe id="f" src="REPORT" style="border:0;width:WIDTHpx;height:900px"></iframe><pre id="seen"></pre><script>
 const frame = document.getElementById('f');
 frame.onload = () => {
   const d = frame.contentDocument, w = frame.contentWindow, covered = [];
   for (const svg of d.querySelectorAll('figure svg')) {
+    if (!svg.getBoundingClientRect().height) continue;
     const texts = [...svg.querySelectorAll('text')].map(t => [t.textContent.trim(), t.getBoundingClientRect()]);
     for (let i = 0; i < texts.length; i++) for (let j = i + 1; j < texts.length; j++) {
       const a = texts[i][1], b = texts[j][1];
@@ -37,15 +38,32 @@ frame.onload = () => {
       // A text's box is higher than its letters.
       if (x > 1 && y > 0.45 * Math.min(a.height, b.height)) covered.push(texts[i][0] + ' | ' + texts[j][0]);
     }
+    const sheet = svg.getBoundingClientRect(), scale = sheet.width / svg.viewBox.baseVal.width;
+    for (const [words, box] of texts)
+      if (box.left < sheet.left - 1 || box.right > sheet.right + 1) covered.push(words + ' | edge');
+    // Lines of the grid may pass below a text, curves may not.
+    for (const line of svg.querySelectorAll('polyline:not([stroke="#DEDEDE"])')) {
+      const points = [...line.points].map(p => [sheet.left + scale * p.x, sheet.top + scale * p.y]);
+      for (const [words, box] of texts) {
+        const [top, bottom] = [box.top + 0.3 * box.height, box.bottom - 0.3 * box.height];
+        const inside = ([x, y]) => x > box.left + 1 && x < box.right - 1 && y > top && y < bottom;
+        const crossed = points.some((b, k) => {
+          const a = points[Math.max(k - 1, 0)], steps = 1 + Math.ceil(Math.hypot(b[0] - a[0], b[1] - a[1]));
+          for (let n = 0; n <= steps; n++)
+            if (inside([a[0] + n / steps * (b[0] - a[0]), a[1] + n / steps * (b[1] - a[1])])) return true;
+        });
+        if (crossed && !covered.includes(words + ' | curve')) covered.push(words + ' | curve');
+      }
+    }
   }
   document.getElementById('seen').textContent = JSON.stringify({
     title: d.title, window: w.innerWidth, wide: d.documentElement.scrollWidth,
     headings: d.querySelectorAll('h1,h2').length, rows: d.querySelectorAll('tr').length,
-    pictures: [...d.querySelectorAll('figure svg')].map(s => s.getBoundingClientRect().height),
+    pictures: [...d.querySelectorAll('figure svg')].map(s => s.getBoundingClientRect().height).filter(h => h > 0),
     unnamed: [...d.querySelectorAll('figure svg')].filter(s => !(s.getAttribute('aria-label') || '').length).length,
     loaded: w.performance.getEntriesByType('resource').length, covered });
 };
-</script>"#;
+</script>"##;
 
 /// Chromium or Chrome, if there is one.
 fn browser() -> Option<PathBuf> {
@@ -140,6 +158,7 @@ fn every_command_writes_a_report_that_a_browser_shows_on_a_desk_and_on_a_phone()
         eprintln!("skipped: no Chromium or Chrome is installed to look at the reports");
         return;
     };
+    let mut covered = Vec::new();
     for name in names {
         for width in [1200, 390] {
             let seen = seen(&browser, &folder.join(name), width);
@@ -147,9 +166,16 @@ fn every_command_writes_a_report_that_a_browser_shows_on_a_desk_and_on_a_phone()
             assert!(!seen.title.is_empty() && seen.headings >= 2 && seen.rows >= 4, "{at}");
             assert_eq!(seen.loaded, 0, "{at}");
             assert!(seen.wide <= seen.window, "{at}");
-            assert_eq!(seen.pictures.is_empty(), ["properties.html", "inspect.html"].contains(&name), "{at}");
+            assert_eq!(
+                seen.pictures.is_empty(),
+                ["properties.html", "inspect.html", "inspection.html"].contains(&name),
+                "{at}"
+            );
             assert!(seen.pictures.iter().all(|height| *height > 100.0) && seen.unnamed == 0, "{at}");
-            assert!(seen.covered.is_empty(), "{at}");
+            if !seen.covered.is_empty() {
+                covered.push(at);
+            }
         }
     }
+    assert!(covered.is_empty(), "{covered:#?}");
 }

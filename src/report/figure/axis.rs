@@ -1,5 +1,5 @@
 //! Axes: from values to paper, and the ticks on them.
-use super::style;
+use super::style::{self, Sheet};
 use super::ticks::{Ticks, logarithmic_ticks, ticks, time_unit};
 use super::{Figure, Horizontal, Item, Panel};
 
@@ -78,7 +78,7 @@ pub(super) struct Abscissa {
 }
 
 /// The horizontal axis of all panels.
-pub(super) fn abscissa(figure: &Figure) -> Abscissa {
+pub(super) fn abscissa(figure: &Figure, sheet: &Sheet) -> Abscissa {
     let all = figure.panels.iter().flat_map(|panel| &panel.items).flat_map(|item| match item {
         Item::Line { x, .. } | Item::Points { x, .. } | Item::Intervals { x, .. } | Item::Band { x, .. } => {
             x.as_slice()
@@ -86,7 +86,7 @@ pub(super) fn abscissa(figure: &Figure) -> Abscissa {
         // A strip accompanies curves.
         Item::Limit { .. } | Item::Strip { .. } => &[],
     });
-    let paper = (style::LEFT, style::WIDTH - style::RIGHT);
+    let paper = sheet.panels();
     let scale = |kind: Kind, margin| {
         let ends = widened(range(all.copied().map(|value| kind.of(value))), margin);
         Scale { kind, ends, paper }
@@ -95,12 +95,13 @@ pub(super) fn abscissa(figure: &Figure) -> Abscissa {
         Horizontal::Time => {
             let scale = scale(Kind::Linear, 0.0);
             let unit = time_unit(scale.ends.1 - scale.ends.0);
-            let ticks = ticks(scale.ends.0 / unit.seconds, scale.ends.1 / unit.seconds, 8, unit.steps);
+            let ticks =
+                ticks(scale.ends.0 / unit.seconds, scale.ends.1 / unit.seconds, sheet.ticks, unit.steps);
             Abscissa { scale, unit: unit.seconds, ticks, name: format!("time in {}", unit.symbol) }
         }
         Horizontal::Quantity(name) => {
             let scale = scale(Kind::Linear, 0.0);
-            let ticks = ticks(scale.ends.0, scale.ends.1, 8, &[]);
+            let ticks = ticks(scale.ends.0, scale.ends.1, sheet.ticks, &[]);
             Abscissa { scale, unit: 1.0, ticks, name: name.clone() }
         }
         Horizontal::LogLog(name) => {

@@ -1,6 +1,6 @@
 //! Paper to draw on: figure units in, plotters' integer pixels out.
 use super::path::{Point, dashes, smooth_pieces};
-use super::style::{Rgb, SMALL, Stroke};
+use super::style::{Rgb, SMALL, Sheet, Stroke};
 use crate::report::ReportError;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -42,6 +42,8 @@ pub(super) struct Canvas<'a, DB: DrawingBackend> {
     area: &'a DrawingArea<DB, Shift>,
     /// Whether it is made of pixels.
     raster: bool,
+    /// How wide it is, and what stands on it.
+    pub sheet: Sheet,
 }
 
 fn color(rgb: Rgb) -> RGBColor {
@@ -54,13 +56,13 @@ fn pixel(point: Point) -> (i32, i32) {
 
 impl<'a, DB: DrawingBackend> Canvas<'a, DB> {
     /// Paper of a vector picture, where the viewer sets the text.
-    pub(super) fn vector(area: &'a DrawingArea<DB, Shift>) -> Self {
-        Self { area, raster: false }
+    pub(super) fn vector(area: &'a DrawingArea<DB, Shift>, sheet: Sheet) -> Self {
+        Self { area, raster: false, sheet }
     }
 
     /// Paper of pixels.
     pub(super) fn raster(area: &'a DrawingArea<DB, Shift>) -> Self {
-        Self { area, raster: true }
+        Self { area, raster: true, sheet: Sheet::DESK }
     }
 
     fn draw<E>(&self, element: &E) -> Result<(), ReportError>

@@ -1,6 +1,7 @@
 //! A picture as SVG text or PNG bytes.
 use super::canvas::{Canvas, FINE, FONT};
-use super::{Part, Picture, style};
+use super::style::{self, Sheet};
+use super::{Part, Picture};
 use crate::report::{Provenance, ReportError};
 use maud::html;
 use plotters::backend::{BitMapBackend, SVGBackend};
@@ -31,8 +32,8 @@ impl Picture {
     /// # Errors
     /// The embedded font cannot be used, or the drawing library fails.
     pub fn to_svg(&self, provenance: &Provenance) -> Result<String, ReportError> {
-        let (text, fine) = self.drawing()?;
-        let size = self.fine_size();
+        let (text, fine) = self.drawing(Sheet::DESK)?;
+        let size = self.fine_size(Sheet::DESK);
         // The fine grid stays in the view box; the picture opens at its natural size.
         let shown = format!("width=\"{}\" height=\"{}\"", style::WIDTH, f64::from(size.1) / FINE);
         let about = format!(
@@ -50,7 +51,7 @@ impl Picture {
     pub fn to_png(&self, provenance: &Provenance) -> Result<Vec<u8>, ReportError> {
         fonts()?;
         let over = FINE as usize / PNG_PER_UNIT;
-        let (width, height) = self.fine_size();
+        let (width, height) = self.fine_size(Sheet::DESK);
         let mut fine = vec![255; width as usize * height as usize * 3];
         {
             let area = BitMapBackend::with_buffer(&mut fine, (width, height)).into_drawing_area();
@@ -68,25 +69,30 @@ impl Picture {
     ///
     /// # Errors
     /// As [`Picture::to_svg`].
-    pub(crate) fn to_element(&self) -> Result<String, ReportError> {
-        let (text, fine) = self.drawing()?;
+    pub(crate) fn to_element(&self, sheet: Sheet) -> Result<String, ReportError> {
+        let (text, fine) = self.drawing(sheet)?;
         let named = format!("role=\"img\" aria-label=\"{}\"", escaped(&self.described()));
         Ok(text.replacen(&fine, &named, 1))
     }
 
-    fn fine_size(&self) -> (u32, u32) {
+    /// Whether all of it can be drawn on any sheet.
+    pub(crate) fn is_narrowable(&self) -> bool {
+        self.parts.iter().all(|part| matches!(part, Part::Figure(_)))
+    }
+
+    fn fine_size(&self, sheet: Sheet) -> (u32, u32) {
         let height: f64 = self.parts.iter().map(Part::height).sum();
-        ((style::WIDTH * FINE) as u32, (height * FINE).ceil() as u32)
+        ((sheet.width * FINE) as u32, (height * FINE).ceil() as u32)
     }
 
     /// What plotters writes, and the attributes of its size on the fine grid.
-    fn drawing(&self) -> Result<(String, String), ReportError> {
+    fn drawing(&self, sheet: Sheet) -> Result<(String, String), ReportError> {
         fonts()?;
-        let size = self.fine_size();
+        let size = self.fine_size(sheet);
         let mut text = String::new();
         {
             let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            let canvas = Canvas::vector(&area);
+            let canvas = Canvas::vector(&area, sheet);
             canvas.paper()?;
             self.draw(&canvas)?;
             area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;

@@ -19,9 +19,8 @@ pub(super) fn draw<DB: DrawingBackend>(
     canvas: &Canvas<DB>,
     from: f64,
 ) -> Result<(), ReportError> {
-    let title = Text { size: style::LARGE, bold: true, ..PLAIN };
-    canvas.text(&figure.title, (style::LEFT, from + 0.5 * style::TOP), title)?;
-    let x = abscissa(figure);
+    title(canvas, &figure.title, from)?;
+    let x = abscissa(figure, &canvas.sheet);
     let mut top = from + style::TOP;
     for (index, panel) in figure.panels.iter().enumerate() {
         let bottom = top + panel.height * style::PANEL_HEIGHT;
@@ -39,13 +38,32 @@ pub(super) fn draw<DB: DrawingBackend>(
             }
         }
         mark_names(canvas, &frame, named)?;
-        legend(canvas, panel, top)?;
+        if canvas.sheet.legend {
+            legend(canvas, panel, top)?;
+        }
         if index + 1 == figure.panels.len() {
             horizontal_labels(canvas, &frame)?;
         }
         top = bottom + style::GAP;
     }
     Ok(())
+}
+
+/// The title above the panels, in two smaller lines where one is too long for the sheet.
+fn title<DB: DrawingBackend>(canvas: &Canvas<DB>, words: &str, from: f64) -> Result<(), ReportError> {
+    let text = Text { size: style::LARGE, bold: true, ..PLAIN };
+    let (left, middle) = (canvas.sheet.margins.0, from + 0.5 * style::TOP);
+    if words.chars().count() <= canvas.sheet.title {
+        return canvas.text(words, (left, middle), text);
+    }
+    let text = Text { size: style::NORMAL, ..text };
+    let half = words.len() / 2;
+    let spaces = words.match_indices(' ').map(|(at, _)| at);
+    let Some(at) = spaces.min_by_key(|at| at.abs_diff(half)) else {
+        return canvas.text(words, (style::AXIS_NAME, middle), text);
+    };
+    canvas.text(&words[..at], (style::AXIS_NAME, middle - 9.0), text)?;
+    canvas.text(&words[at + 1..], (style::AXIS_NAME, middle + 9.0), text)
 }
 
 fn grid<DB: DrawingBackend>(canvas: &Canvas<DB>, frame: &Frame, panel: &Panel) -> Result<(), ReportError> {
@@ -220,7 +238,7 @@ fn mark_names<DB: DrawingBackend>(
 
 /// Legend to the right of the panel, outside of it.
 fn legend<DB: DrawingBackend>(canvas: &Canvas<DB>, panel: &Panel, top: f64) -> Result<(), ReportError> {
-    let left = style::WIDTH - style::RIGHT + 14.0;
+    let left = canvas.sheet.panels().1 + 14.0;
     let mut at = top + 0.5 * style::LEGEND_LINE;
     if panel.items.iter().all(|item| item.name().is_empty()) {
         return canvas.text("curves as above", (left, at), PLAIN);

@@ -153,7 +153,7 @@ pub(crate) fn below_model(stroke: Stroke) -> Stroke {
     Stroke { width: 3.4, ..stroke }
 }
 
-/// Width of a figure; an SVG opens at this many pixels.
+/// Width of a figure on a desk.
 pub const WIDTH: f64 = 860.0;
 /// Height of a panel of weight 1.
 pub(crate) const PANEL_HEIGHT: f64 = 250.0;
@@ -163,8 +163,35 @@ pub(crate) const MARGIN: f64 = 24.0;
 pub(crate) const AXIS_NAME: f64 = 14.0;
 /// Room on the left for tick labels and the axis name.
 pub(crate) const LEFT: f64 = 84.0;
-/// Room on the right for the legend.
-pub(crate) const RIGHT: f64 = 182.0;
+
+/// A width of paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sheet {
+    /// Width; an SVG opens at this many pixels.
+    pub width: f64,
+    /// Where panels begin, and how far from the right edge they end.
+    pub margins: (f64, f64),
+    /// Whether the legend stands beside the panels.
+    pub legend: bool,
+    /// Ticks of a horizontal axis, about.
+    pub ticks: usize,
+    /// Letters of a title in a line.
+    pub title: usize,
+}
+
+impl Sheet {
+    /// A desk, a printed page, a file of its own.
+    pub(crate) const DESK: Self =
+        Self { width: WIDTH, margins: (LEFT, 182.0), legend: true, ticks: 8, title: 90 };
+    /// A phone: the legend is below the picture ([`Picture::keys`](super::Picture::keys)).
+    pub(crate) const PHONE: Self =
+        Self { width: 380.0, margins: (70.0, 14.0), legend: false, ticks: 5, title: 34 };
+
+    /// Ends of the horizontal axes.
+    pub(crate) fn panels(&self) -> (f64, f64) {
+        (self.margins.0, self.width - self.margins.1)
+    }
+}
 /// Room above the first panel for the title.
 pub(crate) const TOP: f64 = 42.0;
 /// Room below the last panel for tick labels and the axis name.
