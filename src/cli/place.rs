@@ -18,8 +18,8 @@ use crate::estimator::placement::search::SearchControl;
 use crate::estimator::placement::study::{Placement, Study, StudySettings};
 use crate::estimator::placement::{Candidates, Status, read_candidates};
 use crate::evaluation::placement::{ClosedLoop, ClosedLoopSettings, confirm_study};
+use crate::report::Provenance;
 use crate::report::place::{CAPTION, PlacementReport, matrices};
-use crate::report::{Provenance, Report};
 use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
 use anyhow::bail;
@@ -133,13 +133,12 @@ impl Options {
         (inputs, provenance): (&Inputs, &Provenance),
         messages: &Messages,
     ) -> anyhow::Result<()> {
-        let title = format!("Where sensors should sit: {}", placed.vessel.name);
         let contents = Contents {
             summary: placed.summary(),
             csv: &|provenance| placed.csv(provenance),
             json: &|provenance| placed.document(provenance),
             picture: &|| placed.figure(),
-            report: &|picture, summary| Report::new(title.clone()).picture(picture, CAPTION).then(summary),
+            report: &|picture, _| placed.answer().picture(picture, CAPTION).then(placed.tables()),
         };
         let matrices = self.matrices.as_ref().map(|target| {
             anyhow::Ok((target, serde_json::to_string(&matrices(placement, provenance))? + "\n"))

@@ -72,7 +72,7 @@ fn words_go_to_stdout_and_csv_has_a_row_for_each_judged_layout() {
     let folder = tempdir().unwrap();
     let text = run(folder.path(), &small(&[]));
     assert_eq!(text.code, Some(0), "{}", text.stderr);
-    assert!(text.stdout.starts_with("Where sensors should sit on: nitrogen cylinder"), "{}", text.stdout);
+    assert!(text.stdout.starts_with("Where sensors should sit: nitrogen cylinder"), "{}", text.stdout);
     assert!(text.stdout.lines().all(|line| line.chars().count() <= 110), "{}", text.stdout);
     let csv = run(folder.path(), &small(&["--format", "csv", "--quiet"]));
     assert_eq!((csv.code, csv.stderr.as_str()), (Some(0), ""));

@@ -23,7 +23,7 @@ impl PlacementReport<'_> {
         if !self.study.failures.is_empty() {
             parts.push(Part::Grid(self.failures()));
         }
-        Picture { title: format!("Where sensors should sit on: {}", self.study.vessel), parts }
+        Picture { title: format!("Where sensors should sit: {}", self.study.vessel), parts }
     }
 
     /// The cylinder with the best layout on it, and numbers against the height.

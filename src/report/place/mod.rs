@@ -2,7 +2,7 @@
 //!
 //! | part | what it says |
 //! |---|---|
-//! | `summary` | what was asked, and the order of the tables |
+//! | `summary` | the answer, what was asked, and the order of the tables |
 //! | `rankings` | the best layouts, and layouts by every number |
 //! | `places` | cost against accuracy, and one thermometer anywhere |
 //! | `faults` | sensors lost and at fault, unknown errors |
