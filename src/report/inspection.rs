@@ -205,9 +205,13 @@ pub(crate) fn summary(rules: &Rules, cylinders: &[Inspected]) -> Report {
             Report::new(title).facts(facts(rules, one)).heading("What it rests on")
         }
         many => {
-            let rows = many.iter().map(|one| row(rules, one)).collect();
-            let header =
-                ["cylinder", "judgement", "probability", "at reference, bar", "loss, %", "next", "remarks"];
+            let rows: Vec<_> = many.iter().map(|one| row(rules, one)).collect();
+            // Without dates nothing is due, without remarks nothing is seen.
+            let is_used = |column: &usize| rows.iter().any(|row| !row[*column].is_empty());
+            let used: Vec<usize> = (0..HEADER.len()).filter(is_used).collect();
+            let header: Vec<&str> = used.iter().map(|column| HEADER[*column]).collect();
+            let rows =
+                rows.iter().map(|row| used.iter().map(|column| row[*column].clone()).collect()).collect();
             Report::new(format!("Inspection of {} cylinders: {}", many.len(), rules.vessel))
                 .facts(counts(rules, many))
                 .rows("", &header, rows)
@@ -277,7 +281,10 @@ fn facts(rules: &Rules, one: &Inspected) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn row(rules: &Rules, one: &Inspected) -> Vec<String> {
+const HEADER: [&str; 7] =
+    ["cylinder", "judgement", "probability", "at reference, bar", "loss, %", "next", "remarks"];
+
+fn row(rules: &Rules, one: &Inspected) -> [String; HEADER.len()] {
     let found = one.outcome.as_ref();
     let probability = found.map_or(String::new(), |found| percent(stated(found)));
     let adjusted = found.map_or(String::new(), |found| range(found.adjusted_pa, 1.0 / BAR_PA));
@@ -287,7 +294,7 @@ fn row(rules: &Rules, one: &Inspected) -> Vec<String> {
         .chain(one.remarks.clone())
         .filter(|words| !words.is_empty())
         .collect();
-    vec![
+    [
         one.cylinder.clone(),
         word(one.judgement()).to_owned(),
         probability,

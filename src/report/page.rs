@@ -112,16 +112,18 @@ fn element(index: usize, block: &Block) -> Result<Markup, ReportError> {
     Ok(match block {
         Block::Heading(words) => html! { h2 id=(anchor(index)) { (words) } },
         Block::Text(words) => {
+            let words = joined(words);
             html! { p { @for (k, line) in words.lines().enumerate() { @if k > 0 { br; } (line) } } }
         }
         Block::Remark(words) => {
+            let words = joined(words);
             html! { p.remark { @for (k, line) in words.lines().enumerate() { @if k > 0 { br; } (line) } } }
         }
-        Block::Caution(words) => html! { p.caution { strong { "Caution: " } (words) } },
+        Block::Caution(words) => html! { p.caution { strong { "Caution: " } (joined(words)) } },
         Block::Facts(facts) => html! {
             div.wide { table.facts { tbody {
                 @for (name, value) in facts {
-                    tr { th scope="row" { (name) } td { (value) } }
+                    tr { th scope="row" { (name) } td { (joined(value)) } }
                 }
             } } }
         },
@@ -131,6 +133,20 @@ fn element(index: usize, block: &Block) -> Result<Markup, ReportError> {
             details { summary { (name) } pre { (text) } }
         },
     })
+}
+
+/// No line ends between a number and its unit.
+fn joined(words: &str) -> String {
+    const UNITS: [&str; 11] = ["\u{b0}C", "%", "bar", "K", "kg", "g", "g/h", "h", "d", "s", "min"];
+    let mut pieces = words.split(' ');
+    let mut out = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let unit = piece.lines().next().unwrap_or_default().trim_end_matches([',', ';', '.', ':', ')']);
+        let is_unit = out.ends_with(|letter: char| letter.is_ascii_digit()) && UNITS.contains(&unit);
+        out.push(if is_unit { '\u{a0}' } else { ' ' });
+        out.push_str(piece);
+    }
+    out
 }
 
 fn figure(picture: &Picture, caption: &str) -> Result<Markup, ReportError> {
@@ -189,6 +205,12 @@ mod tests {
         }
         assert!(!page.contains("<script"));
         assert!(page.contains("A &lt;b&gt;run&lt;/b&gt;") && page.contains("5 &lt; 6 &amp; 7 &gt; 3"));
+    }
+
+    #[test]
+    fn a_number_keeps_its_unit() {
+        let kept = "at \u{2212}25\u{a0}\u{b0}C (160\u{a0}bar), 5\u{a0}%\n3 dogs";
+        assert_eq!(joined("at \u{2212}25 \u{b0}C (160 bar), 5 %\n3 dogs"), kept);
     }
 
     #[test]
