@@ -202,9 +202,19 @@ impl Options {
             profiles.into_iter().map(|place| calibrated.profile(place)).collect::<Result<_, _>>()?;
         progress.say("a finer wall");
         let mesh_shift_sd = calibrated.mesh_shift_sd().unwrap_or_default();
+        let apparent_leaks = calibrated.apparent_leaks();
         drop(progress);
         let held_out = held_out.map(|(_, words)| words);
-        Ok(Study { calibration, calibrated, conditions, scores, held_out, profiles, mesh_shift_sd })
+        Ok(Study {
+            calibration,
+            calibrated,
+            conditions,
+            scores,
+            held_out,
+            profiles,
+            mesh_shift_sd,
+            apparent_leaks,
+        })
     }
 
     fn hold_out(&self, cases: &[Case]) -> Option<(HoldOut, String)> {

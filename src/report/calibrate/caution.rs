@@ -1,7 +1,7 @@
 //! What to know before a calibrated vessel is used, in words.
 use super::Study;
-use crate::estimator::calibrate::{ChannelResiduals, Combination, ParameterKind};
-use crate::report::number;
+use crate::estimator::calibrate::{ApparentLeak, ChannelResiduals, Combination, ParameterKind};
+use crate::report::{GRAM_PER_HOUR, number};
 
 /// Ratio of residuals and noise from which on the model is said to miss something.
 const MISSES: f64 = 2.0;
@@ -19,6 +19,7 @@ pub(crate) fn cautions(study: &Study) -> Vec<String> {
     let found = &study.calibrated.identifiability;
     let mut cautions: Vec<String> = found.inseparable.iter().map(inseparable).collect();
     cautions.extend(misfits(study));
+    cautions.extend(study.apparent_leaks.iter().map(leak));
     cautions.extend(coarse(study));
     let of_vessel = |kind: &ParameterKind| kind.sensor().is_none() && !kind.is_of_experiment();
     for line in
@@ -78,6 +79,14 @@ fn is_beside(name: &str) -> bool {
         || ["fill-mass", "initial-temperature", "air-offset"].contains(&name)
 }
 
+fn leak(found: &ApparentLeak) -> String {
+    format!(
+        "what is left of {} looks like a leak of about {} g/h: does it leak? `monitor` tells; the parameters are wrong by what they took up of it",
+        found.experiment,
+        number(GRAM_PER_HOUR * found.rate_kg_s, 2)
+    )
+}
+
 /// What a coarse wall does to the estimates.
 fn coarse(study: &Study) -> Option<String> {
     let lines = study.lines();
@@ -116,9 +125,8 @@ fn misfits(study: &Study) -> impl Iterator<Item = String> + '_ {
                 number(noise, 2)
             );
         }
-        let leak = if study.is_pressure(experiment, name) { ", as a leak would: `monitor` tells one" } else { "" };
         format!(
-            "{name} of {experiment} misses the model by {rms_over_noise:.1} times its noise: something is not in the model{leak}; the \
+            "{name} of {experiment} misses the model by {rms_over_noise:.1} times its noise: something is not in the model; the \
              intervals are widened by up to {widened:.1}"
         )
     })

@@ -1,6 +1,8 @@
 //! A calibration as JSON.
 use super::Study;
-use crate::estimator::calibrate::{ChannelResiduals, ChannelScore, Combination, ParameterKind, Profile};
+use crate::estimator::calibrate::{
+    ApparentLeak, ChannelResiduals, ChannelScore, Combination, ParameterKind, Profile,
+};
 use crate::report::{Provenance, rounded};
 use serde_json::{Value, json};
 
@@ -34,8 +36,13 @@ pub(crate) fn document(study: &Study, date: &str, provenance: &Provenance) -> Va
             json!({ "what": what, "scores": study.scores.iter().map(|one| score(study, one)).collect::<Vec<_>>() })
         }),
         "profiles": study.profiles.iter().map(|one| profile(study, one)).collect::<Vec<_>>(),
+        "apparent_leaks": study.apparent_leaks.iter().map(leak).collect::<Vec<_>>(),
         "cautions": super::cautions(study),
     })
+}
+
+fn leak(found: &ApparentLeak) -> Value {
+    json!({ "log": found.experiment, "rate_kg_s": found.rate_kg_s, "sd_kg_s": found.sd_kg_s })
 }
 
 fn parameters(study: &Study) -> Vec<Value> {

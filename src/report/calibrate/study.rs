@@ -1,7 +1,7 @@
 //! What a calibration found, with everything that it is reported with.
 use crate::estimator::calibrate::{
-    Calibrated, Calibration, ChannelResiduals, ChannelScore, Estimate, Experiment, ParameterKind,
-    ParameterSpec, Profile, Scope,
+    ApparentLeak, Calibrated, Calibration, ChannelResiduals, ChannelScore, Estimate, Experiment,
+    ParameterKind, ParameterSpec, Profile, Scope,
 };
 use crate::estimator::log::Quantity;
 use crate::thermal::units::BAR_PA;
@@ -26,6 +26,8 @@ pub(crate) struct Study {
     pub profiles: Vec<Profile>,
     /// What a finer wall would change ([`Calibrated::mesh_shift_sd`]), in the order of the parameters; empty: not known.
     pub mesh_shift_sd: Vec<f64>,
+    /// Logs whose residuals look like a loss of gas ([`Calibrated::apparent_leaks`]).
+    pub apparent_leaks: Vec<ApparentLeak>,
 }
 
 /// A fitted parameter for people.

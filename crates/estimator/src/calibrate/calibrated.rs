@@ -4,9 +4,11 @@ use cylwatch_thermal::scenario::Scenario;
 use cylwatch_thermal::vessel::Vessel;
 use nalgebra::DMatrix;
 
+use super::apparent_leak::apparent_leaks;
 use super::fit::Fit;
 use super::identifiability::{check_determined, identifiability};
 use super::residuals::{channel_residuals, check_misfit};
+use super::sensitivity::sensitivities;
 use super::solution::Solution;
 use super::solve::{SearchStep, search_watched};
 use super::uncertainty::covariance;
@@ -65,12 +67,21 @@ pub struct Calibrated {
 /// Search, then judge.
 pub(super) fn calibrate(fit: &Fit, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
     let start: Vec<f64> = fit.specs.iter().map(|spec| spec.coordinate(spec.start)).collect();
-    let solution = search_watched(fit, start, &fit.absent(), watch)?;
+    let held = fit.absent();
+    let solution = search_watched(fit, start.clone(), &held, watch).map_err(|error| match error {
+        CalibrateError::NotConverged { .. } => error.with_leak(|| {
+            let mut here = Solution::at(fit, start, &held)?;
+            here.jacobian = sensitivities(fit, &here.z, &here.evaluation, &held)?;
+            Ok(apparent_leaks(fit, &here))
+        }),
+        _ => error,
+    })?;
+    let asked = |error: CalibrateError| error.with_leak(|| Ok(apparent_leaks(fit, &solution)));
     let channels = channel_residuals(fit, &solution.evaluation);
-    check_misfit(fit, &channels)?;
+    check_misfit(fit, &channels).map_err(asked)?;
     let identifiability = identifiability(fit, &solution);
     check_determined(fit, &identifiability)?;
-    check_bounds(fit, &solution, &identifiability)?;
+    check_bounds(fit, &solution, &identifiability).map_err(asked)?;
     let Some(covariance) = covariance(fit, &solution, &channels) else {
         let combination = "all parameters together".to_owned();
         return Err(CalibrateError::Undetermined { combination, deviation: f64::INFINITY });

@@ -1,5 +1,8 @@
 //! Why nothing can be calibrated.
 use cylwatch_thermal::ThermalError;
+use cylwatch_thermal::units::HOUR_S;
+
+use super::ApparentLeak;
 
 /// What is wrong, with value, bound and remedy.
 #[derive(Debug, thiserror::Error)]
@@ -230,6 +233,18 @@ pub enum CalibrateError {
         /// The usual one.
         usual: f64,
     },
+    /// A fit that failed, and what a leak would explain of it.
+    #[error(
+        "{failed}; the readings of `{experiment}` look like a leak of about {rate_g_h:.2} g/h: does it leak?"
+    )]
+    Leaking {
+        /// What failed.
+        failed: Box<CalibrateError>,
+        /// Source of the experiment.
+        experiment: String,
+        /// Mass flow out, g/h.
+        rate_g_h: f64,
+    },
     /// The start, or a difference beside it, cannot be simulated.
     #[error("`{experiment}` cannot be simulated with the parameters given: {source}")]
     Simulation {
@@ -254,4 +269,18 @@ pub enum CalibrateError {
         /// Number of parameters.
         parameters: usize,
     },
+}
+
+impl CalibrateError {
+    /// The same, with the leak that would explain it, where there is one.
+    pub(super) fn with_leak(self, leaks: impl FnOnce() -> Result<Vec<ApparentLeak>, Self>) -> Self {
+        let largest =
+            |leaks: Vec<ApparentLeak>| leaks.into_iter().max_by(|a, b| a.rate_kg_s.total_cmp(&b.rate_kg_s));
+        match leaks().ok().and_then(largest) {
+            Some(ApparentLeak { experiment, rate_kg_s, .. }) => {
+                Self::Leaking { failed: Box::new(self), experiment, rate_g_h: 1e3 * HOUR_S * rate_kg_s }
+            }
+            None => self,
+        }
+    }
 }

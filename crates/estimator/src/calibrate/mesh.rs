@@ -6,8 +6,7 @@
 use nalgebra::DVector;
 
 use super::Calibrated;
-use super::uncertainty::{of_free, prior_information};
-use crate::least_squares::solve;
+use super::uncertainty::first_order_step;
 
 /// Cells that each cell becomes, along the wall and through it.
 const REFINEMENT: usize = 2;
@@ -29,14 +28,12 @@ impl Calibrated {
             finer.residuals.len(),
             finer.residuals.iter().zip(&solution.evaluation.residuals).map(|(fine, coarse)| fine - coarse),
         );
-        let free: Vec<usize> = (0..fit.specs.len()).filter(|&i| !solution.held[i]).collect();
-        let information = solution.jacobian.tr_mul(&solution.jacobian) + prior_information(fit);
-        let rhs = solution.jacobian.tr_mul(&change);
-        let step = solve(&of_free(&information, &free), &DVector::from_fn(free.len(), |i, _| rhs[free[i]]))?;
-        let mut shift = vec![0.0; fit.specs.len()];
-        for (&i, step) in free.iter().zip(step.iter()) {
-            shift[i] = step / self.estimates[i].coordinate_sd();
-        }
-        Some(shift)
+        let step = first_order_step(fit, solution, &solution.jacobian.tr_mul(&change))?;
+        Some(
+            step.iter()
+                .zip(&self.estimates)
+                .map(|(step, estimate)| step / estimate.coordinate_sd())
+                .collect(),
+        )
     }
 }

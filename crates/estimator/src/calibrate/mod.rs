@@ -21,6 +21,7 @@
 //! ([`Calibrated::mesh_shift_sd`]).
 //!
 //! Source: Ljung 1999 (sections 9 and 10), Seber and Wild 1989 (sections 5.9 and 14), Raue et al. 2009 for the profile.
+mod apparent_leak;
 mod apply;
 mod calibrated;
 mod error;
@@ -40,6 +41,7 @@ mod specification;
 mod uncertainty;
 mod validation;
 
+pub use apparent_leak::ApparentLeak;
 pub use calibrated::{Calibrated, Estimate};
 pub use error::CalibrateError;
 pub use experiment::Experiment;

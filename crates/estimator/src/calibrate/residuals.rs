@@ -10,7 +10,7 @@ const LAGS: usize = 20;
 const CORRELATION_QUANTILE: f64 = 1.96;
 
 /// A deviation of so many standard deviations of the noise is no chance.
-const SIGNIFICANT_SD: f64 = 5.0;
+pub(super) const SIGNIFICANT_SD: f64 = 5.0;
 
 /// What is left of one channel.
 #[derive(Clone, Debug, PartialEq)]

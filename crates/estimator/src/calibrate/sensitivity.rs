@@ -21,7 +21,7 @@ const TEMPERATURE_SCALE_K: f64 = 20.0;
 
 /// Relative tolerance of the run along which derivatives are taken. Their error, some hundred times as large, costs the search
 /// nothing: where it ends depends on the readings alone.
-const TOLERANCE: f64 = 1e-8;
+pub(super) const TOLERANCE: f64 = 1e-8;
 
 /// Relative error of derivatives to what the course depends on.
 const RELATIVE_ERROR: f64 = 2e-5;

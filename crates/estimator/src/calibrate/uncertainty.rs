@@ -1,10 +1,10 @@
 //! Covariance of the estimates.
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::fit::Fit;
 use super::residuals::ChannelResiduals;
 use super::solution::Solution;
-use crate::least_squares::invert;
+use crate::least_squares::{invert, solve};
 
 /// Information of the readings, `J^T J`, and the same with a factor on each channel.
 pub(super) fn information(
@@ -30,7 +30,18 @@ pub(super) fn information(
 pub(super) fn prior_information(fit: &Fit) -> DMatrix<f64> {
     let of_prior =
         |spec: &super::ParameterSpec| spec.prior_coordinate().map_or(0.0, |(_, sd)| 1.0 / (sd * sd));
-    DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(fit.specs.len(), fit.specs.iter().map(of_prior)))
+    DMatrix::from_diagonal(&DVector::from_iterator(fit.specs.len(), fit.specs.iter().map(of_prior)))
+}
+
+/// Where the minimum is from here, to first order, in the search's coordinates: `A^-1 rhs` with `A = J^T J + prior`; zero for held
+/// parameters. `None` if `A` is singular.
+pub(super) fn first_order_step(fit: &Fit, solution: &Solution, rhs: &DVector<f64>) -> Option<DVector<f64>> {
+    let free: Vec<usize> = (0..fit.specs.len()).filter(|&i| !solution.held[i]).collect();
+    let information = solution.jacobian.tr_mul(&solution.jacobian) + prior_information(fit);
+    let found = solve(&of_free(&information, &free), &DVector::from_fn(free.len(), |i, _| rhs[free[i]]))?;
+    let mut step = DVector::zeros(fit.specs.len());
+    free.iter().zip(found.iter()).for_each(|(&i, found)| step[i] = *found);
+    Some(step)
 }
 
 /// Rows and columns of the parameters that are free.

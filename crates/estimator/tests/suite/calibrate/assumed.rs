@@ -1,6 +1,8 @@
 //! What a calibration takes for granted and says so: the mesh of the wall, the thermometer of the air.
-use cylwatch_estimator::calibrate::{Calibrated, Estimate, ParameterKind, ParameterSpec};
+use cylwatch_estimator::calibrate::{CalibrateError, Calibrated, Estimate, ParameterKind, ParameterSpec};
 use cylwatch_estimator::sensor::SensorSuite;
+use cylwatch_thermal::flow::{Flow, FlowKind};
+use cylwatch_thermal::scenario::{Scenario, Series, Sun};
 
 use crate::calibrate::study::{Case, preset, sensors};
 
@@ -35,6 +37,46 @@ fn what_twice_as_many_cells_would_change_is_what_they_change() {
         moved += usize::from(found.abs() > 1.0);
     }
     assert!(moved >= 2, "the coarse wall must matter");
+}
+
+/// A leak of 5 and one of 20 g/h are found in what it leaves, also where no fit is found; a tight cylinder's residuals look like none, also where the sun that shines on
+/// it is not in the model.
+#[test]
+fn a_leak_is_asked_about_and_other_gaps_of_the_model_are_not() {
+    const LEAKS_G_H: [f64; 2] = [5.0, 20.0];
+    let case = Case::new(5);
+    let known = preset("shock-cold");
+    let leaks = |truth: &Scenario| -> Vec<f64> {
+        let mut calibration = case.calibration(&known);
+        calibration.experiments[0].log = case.log(truth);
+        match calibration.run() {
+            Ok(found) => found.apparent_leaks().iter().map(|leak| 3.6e6 * leak.rate_kg_s).collect(),
+            Err(CalibrateError::Leaking { rate_g_h, .. }) => vec![rate_g_h],
+            Err(other) => panic!("{other}"),
+        }
+    };
+    for leak_g_h in LEAKS_G_H {
+        let mut leaking = known.clone();
+        leaking.flows.push(Flow {
+            name: "leak".into(),
+            kind: FlowKind::Leak { mass_flow_kg_s: leak_g_h / 3.6e6 },
+            start_s: 0.0,
+            stop_s: f64::INFINITY,
+            opens_above_pa: None,
+            closes_below_pa: None,
+            closes_above_pa: None,
+        });
+        let found = leaks(&leaking);
+        println!("{leak_g_h} g/h: {found:?}");
+        let [one] = &found[..] else { panic!("{leak_g_h} g/h: {found:?}") };
+        assert!((one / leak_g_h - 1.0).abs() < 0.3, "{leak_g_h} g/h: {one}");
+    }
+    let mut sunny = known.clone();
+    let irradiance_w_m2 = Series::constant(150.0);
+    sunny.surroundings.sun = Some(Sun { irradiance_w_m2, from_fraction: 0.5, to_fraction: 1.0, valve: true });
+    for tight in [&known, &sunny] {
+        assert!(leaks(tight).is_empty());
+    }
 }
 
 #[test]
