@@ -14,6 +14,7 @@ use cylwatch_thermal::vessel::{Vessel, read_vessel};
 
 mod discharges;
 mod fills;
+mod layers;
 mod thermometer;
 
 /// Points of a measured curve, (time s, value).
