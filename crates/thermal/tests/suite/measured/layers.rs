@@ -28,7 +28,7 @@ fn spread(run: &Trajectory, high: &Curve, low: &Curve) -> (f64, f64) {
 
 /// Woodfield et al. 2007: 0.94 L of hydrogen, standing. Two thermometers span less than the extremes do; warmest and coldest are met to 11 and 7 K.
 #[test]
-fn layers_of_a_standing_vessel_spread_by_twice_what_two_thermometers_say() {
+fn layers_of_a_standing_vessel_spread_by_half_more_than_two_thermometers_say() {
     let run = in_layers("woodfield_2007");
     let (high, low) =
         (curve("woodfield_2007", "discharge_gas_high"), curve("woodfield_2007", "discharge_gas_low"));
