@@ -70,7 +70,7 @@ fn an_evacuated_tank_is_too_cold_under_the_film_of_its_jet() {
 fn a_type_iii_tank_ends_within_5_k_of_its_mean() {
     let (vessel, scenario) = case("dicken_2007", "fill");
     let run = run(&vessel, &scenario);
-    let end_k = at(&run.time_s, &run.gas_mean_k, 36.9);
+    let end_k = run.gas_mean_k[run.gas_mean_k.len() - 1];
     println!("dicken_2007 fill: {:.1} degC at the end, measured 68.9", end_k - 273.15);
     assert!((end_k - 342.05).abs() < 5.2);
 }
