@@ -100,8 +100,8 @@ pub(super) fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::
     let vessel = inputs.vessel(&options.vessel, messages)?;
     let (scenario, converted) = with_real_gas_coefficients(&vessel, &inputs.scenario(&options.scenario)?)?;
     converted.iter().for_each(|one| messages.say(&simulation::conversion(one)));
-    if let Some(words) = simulation::fill_of_layers(&vessel, &scenario) {
-        messages.caution(&words);
+    if let Some(words) = simulation::lying_layers(&vessel) {
+        messages.caution(words);
     }
     let progress = Progress::new(messages);
     let run =

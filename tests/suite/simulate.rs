@@ -151,16 +151,30 @@ fn a_sensor_that_the_vessel_has_no_place_for_is_left_out_with_a_caution() {
 }
 
 #[test]
-fn a_refill_of_stratified_gas_costs_a_caution() {
+fn a_refill_of_stratified_gas_is_refused_with_the_model_to_take() {
     let folder = tempdir().unwrap();
     let text = include_str!("../../crates/thermal/presets/vessels/nitrogen-20l.toml");
     std::fs::write(folder.path().join("v.toml"), text.replace("\"well-mixed\"", "\"stratified\"\ncells = 3"))
         .unwrap();
+    let words =
+        ["refill: a refill of stratified gas is not simulated", "take model = \"well-mixed\" under [gas]"];
+    refused(folder.path(), &["simulate", "v.toml", "refill-from-bank"], &words);
+}
+
+#[test]
+fn layers_of_a_lying_vessel_cost_a_caution() {
+    let folder = tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), SHORT).unwrap();
+    let standing = include_str!("../../crates/thermal/presets/vessels/nitrogen-20l.toml")
+        .replace("\"well-mixed\"", "\"stratified\"\ncells = 3");
+    std::fs::write(folder.path().join("lying.toml"), standing.replace("\"vertical\"", "\"horizontal\""))
+        .unwrap();
+    std::fs::write(folder.path().join("standing.toml"), standing).unwrap();
     let cautioned = |vessel: &str| {
-        let outcome = run(folder.path(), &["simulate", vessel, "refill-from-bank"]);
-        outcome.stderr.contains("caution: refill: what a refill's jet mixes is not modelled")
+        let outcome = run(folder.path(), &["simulate", vessel, "s.toml"]);
+        outcome.stderr.contains("caution: gas in layers in a lying vessel")
     };
-    assert!(cautioned("v.toml") && !cautioned("nitrogen-20l"));
+    assert!(cautioned("lying.toml") && !cautioned("standing.toml"));
 }
 
 #[test]

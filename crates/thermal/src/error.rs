@@ -327,6 +327,15 @@ pub enum ThermalError {
         /// Number with which the cell would be large enough, roughly.
         at_most: usize,
     },
+    /// A refill of gas in layers.
+    #[error(
+        "{flow}: a refill of stratified gas is not simulated, since no model of what its jet mixes holds on measured fills: \
+         take model = \"well-mixed\" under [gas]"
+    )]
+    FillOfLayers {
+        /// Name of the refill.
+        flow: String,
+    },
     /// A setting of the simulation is out of range.
     #[error("setting {setting} = {value} must lie between {low} and {high}")]
     Setting {

@@ -333,7 +333,10 @@ fn run(
     variant: Variant,
 ) -> Result<(Run, Vec<f64>), EstimatorError> {
     let vessel = variant.vessel(vessel);
-    let trajectory = simulate(&vessel, scenario, &SimulationSettings::default(), &mut |_| {})?;
+    // The variant only has to differ from the observer's gas.
+    let fills_layers = variant == Variant::StratifiedGas;
+    let settings = SimulationSettings { fills_layers, ..SimulationSettings::default() };
+    let trajectory = simulate(&vessel, scenario, &settings, &mut |_| {})?;
     let specimens: Vec<Specimen> = candidates.iter().map(|sensor| variant.specimen(sensor)).collect();
     let log = sample(&trajectory, &SuiteTruth { specimens: specimens.clone() }, 0)?;
     let rows = log.rows().map(|(_, row)| row.to_vec()).collect();

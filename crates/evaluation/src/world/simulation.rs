@@ -84,8 +84,12 @@ fn simulate_with(
     let mass_kg = density * vessel.volume.volume_m3(QUOTED_K, pressure_pa);
     let filled = Filled { inlet_m, vessel, seed: key.seed, pressure_pa, mass_kg, lead_s };
     scenario.flows = filled.flows(overlay)?;
-    let settings =
-        SimulationSettings { relative_tolerance: key.gas.tolerance(), ..SimulationSettings::default() };
+    // Worlds of stratified gas only have to differ from the observer's.
+    let settings = SimulationSettings {
+        relative_tolerance: key.gas.tolerance(),
+        fills_layers: true,
+        ..SimulationSettings::default()
+    };
     match *overlay {
         Overlay::Fault { row, onset_s, .. } => {
             let (seed, onset_s) = (key.seed, onset_s + lead_s);

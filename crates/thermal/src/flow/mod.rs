@@ -207,6 +207,11 @@ impl FlowKind {
         }
     }
 
+    /// Whether gas enters by it.
+    pub fn is_refill(&self) -> bool {
+        matches!(self, Self::Refill { .. } | Self::RefillSeries { .. } | Self::Supply { .. })
+    }
+
     /// Whether it is a refill whose jet stirs the gas.
     pub fn has_jet(&self) -> bool {
         self.inlet_diameter_m().is_some()

@@ -13,10 +13,11 @@
 //! * **End plates**: `0.15 Ra^(1/3)` where they destabilise, `0.27 Ra^(1/4)` where they do not, length D/4.
 //!
 //! # Validity
-//! `lambda` (exchange length) and `c` (core mixing) are **uncertain**: they were fitted to one measured
-//! blowdown (run I1) and not confirmed on others. The end cells' temperatures depend on the cell count unless `c > 0`.
+//! `lambda` (exchange length) and `c` (core mixing) are **uncertain**: they were fitted to one measured blowdown (run I1). In two discharges that they
+//! were not fitted to, warmest and coldest gas differ by 1.5 times what two thermometers did (standing), and by a tenth of it (lying, where the wall
+//! here has one temperature around its circumference). The end cells' temperatures depend on the cell count unless `c > 0`.
 //! Mean temperature and pressure are as good with one node. 20 cells are the default; the book states what other counts change.
-//! What flows in mixes with the cell at the valve alone, whatever its jet: no fill is predicted.
+//! What flows in mixes with the cell at the valve alone, whatever its jet, so `simulate` refuses refills unless its settings want them.
 //!
 //! # References
 //! Eckert and Jackson, NACA TN 2207 (1950); end plates: McAdams (1954) as in Incropera et al.

@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::model::inputs::{InputPieces, edges_s};
 use crate::scenario::Scenario;
 use crate::trajectory::{Event, EventKind, Ledger, SolverStatistics, Trajectory};
-use crate::vessel::Vessel;
+use crate::vessel::{GasResolution, Vessel};
 use events::{FlowStates, Monitors};
 use samples::Samples;
 use solver::{Drive, Step, Stepper, with_stepper};
@@ -48,6 +48,8 @@ pub struct SimulationSettings {
     pub first_step_s: f64,
     /// Steps after which a run is given up.
     pub maximum_steps: usize,
+    /// Fill gas in layers, though no model of it holds; false by default. For gas that only has to differ from that of an observer.
+    pub fills_layers: bool,
 }
 
 impl Default for SimulationSettings {
@@ -58,6 +60,7 @@ impl Default for SimulationSettings {
             method: Method::Bdf,
             first_step_s: 0.1,
             maximum_steps: 20_000_000,
+            fills_layers: false,
         }
     }
 }
@@ -86,6 +89,16 @@ impl SimulationSettings {
         check("absolute_tolerance_k", self.absolute_tolerance_k.unwrap_or(1e-4), 1e-12, 1.0)?;
         check("first_step_s", self.first_step_s, 1e-9, 1e4)
     }
+
+    fn admit(&self, vessel: &Vessel, scenario: &Scenario) -> Result<(), ThermalError> {
+        let has_layers = matches!(vessel.gas, GasResolution::Stratified(gas) if gas.cells > 1);
+        match scenario.flows.iter().find(|flow| flow.kind.is_refill()) {
+            Some(refill) if has_layers && !self.fills_layers => {
+                Err(ThermalError::FillOfLayers { flow: refill.name.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Run a scenario.
@@ -93,7 +106,7 @@ impl SimulationSettings {
 /// `progress` is called now and then with the fraction that is done, 0 to 1.
 ///
 /// # Errors
-/// Settings out of range; an initial or later gas state that is two-phase or outside the equation of
+/// Settings out of range; a refill of stratified gas; an initial or later gas state that is two-phase or outside the equation of
 /// state, with the time and state at which it happened; a solver that cannot go on.
 pub fn simulate(
     vessel: &Vessel,
@@ -128,6 +141,7 @@ fn run(
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Trajectory, Vec<[Trajectory; 2]>), ThermalError> {
     settings.validate()?;
+    settings.admit(vessel, scenario)?;
     let model = Model::new(vessel, scenario)?;
     let x0 = model.initial_state(vessel, &scenario.initial)?;
     let edges = edges_s(scenario);

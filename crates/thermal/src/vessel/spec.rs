@@ -268,6 +268,6 @@ pub enum GasChoice {
     /// One node.
     #[default]
     WellMixed,
-    /// Stacked cells of common pressure.
+    /// Stacked cells of common pressure; no refills.
     Stratified,
 }

@@ -9,35 +9,7 @@ use cylwatch_thermal::simulate::{SimulationSettings, simulate};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::vessel::{self, GasResolution, InsideFilm, Stratification};
 
-type Curve = Vec<(f64, f64)>;
-
-fn curve(text: &str) -> Curve {
-    let number = |field: &str| field.trim().parse::<f64>();
-    text.lines()
-        .filter_map(|line| line.split_once(','))
-        .filter_map(|(t, v)| Some((number(t).ok()?, number(v).ok()?)))
-        .collect()
-}
-
-macro_rules! measured {
-    ($name:literal) => {
-        curve(include_str!(concat!("../../../../data/haque_i1/", $name, ".csv")))
-    };
-}
-
-/// (bias, root mean square) of a model curve against measured points.
-fn score(times_s: &[f64], model: &[f64], points: &Curve) -> (f64, f64) {
-    let errors: Vec<f64> = points
-        .iter()
-        .map(|&(t, measured)| {
-            let k = times_s.partition_point(|&x| x <= t).clamp(1, times_s.len() - 1);
-            let weight = (t - times_s[k - 1]) / (times_s[k] - times_s[k - 1]);
-            model[k - 1] + weight * (model[k] - model[k - 1]) - measured
-        })
-        .collect();
-    let n = errors.len() as f64;
-    (errors.iter().sum::<f64>() / n, (errors.iter().map(|e| e * e).sum::<f64>() / n).sqrt())
-}
+use crate::measured::{Curve, curve, extreme, score};
 
 fn run(discharge_coefficient: f64, gas: GasResolution, film: InsideFilm) -> Trajectory {
     let mut vessel = vessel::presets::load("haque-i1").unwrap();
@@ -58,9 +30,9 @@ const MCADAMS: InsideFilm = crate::support::MCADAMS;
 const DANEY: InsideFilm = InsideFilm::Rayleigh { factor: 0.104, exponent: 0.352, multiplier: 1.0 };
 
 fn gas_score(run: &Trajectory) -> f64 {
-    let middle: Curve = measured!("gas_high")
+    let middle: Curve = curve("haque_i1", "gas_high")
         .iter()
-        .zip(&measured!("gas_low"))
+        .zip(&curve("haque_i1", "gas_low"))
         .map(|(high, low)| (0.5 * (high.0 + low.0), 0.5 * (high.1 + low.1)))
         .collect();
     score(&run.time_s, &run.gas_mean_k, &middle).1
@@ -68,15 +40,11 @@ fn gas_score(run: &Trajectory) -> f64 {
 
 fn pressure_score(run: &Trajectory) -> f64 {
     let bar: Vec<f64> = run.pressure_pa.iter().map(|p| p / 1e5).collect();
-    score(&run.time_s, &bar, &measured!("pressure")).1
-}
-
-fn extreme(cells: &[Vec<f64>], pick: fn(f64, f64) -> f64) -> Vec<f64> {
-    cells.iter().map(|sample| sample.iter().copied().reduce(pick).unwrap()).collect()
+    score(&run.time_s, &bar, &curve("haque_i1", "pressure")).1
 }
 
 fn wall_high_score(run: &Trajectory) -> f64 {
-    score(&run.time_s, &extreme(&run.wall_inner_k, f64::max), &measured!("wall_high")).1
+    score(&run.time_s, &extreme(&run.wall_inner_k, f64::max), &curve("haque_i1", "wall_high")).1
 }
 
 /// HydDown 0.50 on the same points: 3.9 K, 2.4 bar, 1.0 K. The real-gas throat passes 4 to 6 % more at the carrier's Cd.
@@ -117,8 +85,8 @@ fn stratified_gas_reaches_both_edges_of_the_band_at_a_converged_cell_count() {
         let run = run(0.75, GasResolution::Stratified(constants), DANEY);
         let (high, low) = (extreme(&run.gas_cells_k, f64::max), extreme(&run.gas_cells_k, f64::min));
         let scores = (
-            score(&run.time_s, &high, &measured!("gas_high")),
-            score(&run.time_s, &low, &measured!("gas_low")),
+            score(&run.time_s, &high, &curve("haque_i1", "gas_high")),
+            score(&run.time_s, &low, &curve("haque_i1", "gas_low")),
         );
         println!(
             "I1, {cells} gas cells: high {:+.2}/{:.2} K, low {:+.2}/{:.2} K",

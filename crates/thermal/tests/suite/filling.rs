@@ -9,7 +9,7 @@ use cylwatch_thermal::vessel::{
     Fill, GasResolution, InnerVolume, InsideFilm, Stratification, Vessel, presets,
 };
 
-use crate::support::{closed_bottle, rigid, run, still};
+use crate::support::{closed_bottle, rigid, run, run_layers, still};
 
 const GAMMA: f64 = 5.0 / 3.0;
 
@@ -234,7 +234,7 @@ fn the_ledger_closes_for_stacked_gas_that_is_filled_from_a_vessel() {
     if let FlowKind::Supply { inlet_diameter_m, .. } = &mut flow.kind {
         *inlet_diameter_m = Some(0.004);
     }
-    let run = run(&vessel, &filled(30e5, 290.0, 1_800.0, flow), 1e-6);
+    let run = run_layers(&vessel, &filled(30e5, 290.0, 1_800.0, flow), 1e-6);
     assert_closed(&run, 1e-8);
     assert_relative_eq!(last(&run.pressure_pa), last(&run.sources[0].pressure_pa), max_relative = 1e-3);
 }

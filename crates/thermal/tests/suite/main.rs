@@ -6,6 +6,7 @@ mod conservation;
 mod convergence;
 mod filling;
 mod jacobian;
+mod measured;
 mod preset_runs;
 mod stratified;
 mod support;

@@ -6,7 +6,7 @@ use cylwatch_thermal::vessel::{GasResolution, Stratification, Vessel};
 use cylwatch_thermal::wall::geometry::Orientation;
 
 use crate::filling::{filled, supply};
-use crate::support::{closed_bottle, rigid, run, still};
+use crate::support::{closed_bottle, rigid, run, run_layers, still};
 
 fn stacked(diameter_m: f64, length_m: f64, orientation: Orientation, cells: usize) -> Vessel {
     let mut vessel = closed_bottle();
@@ -57,7 +57,7 @@ fn many_cells_in_a_small_vessel_survive_rest_and_a_fill() {
         Source::Supply { temperature_k: Series::constant(288.15), pressure_pa: Series::constant(250e5) };
     let refill = supply(Opening::Orifice { diameter_m: 0.006, discharge_coefficient: 0.8 }, source);
     let filled =
-        run(&stacked(0.17, 0.44, Orientation::Vertical, 30), &filled(5e5, 288.15, 1.0, refill), 1e-6);
+        run_layers(&stacked(0.17, 0.44, Orientation::Vertical, 30), &filled(5e5, 288.15, 1.0, refill), 1e-6);
     assert!(filled.ledger.energy_residual().abs() < 1e-8);
 }
 
@@ -70,9 +70,25 @@ fn more_flow_than_a_cell_can_pass_on_is_refused_with_a_number_that_works() {
     let scenario = filled(5e5, 288.15, 1.0, refill);
     let result = |cells: usize| {
         let vessel = stacked(0.1, 0.26, Orientation::Horizontal, cells);
-        simulate(&vessel, &scenario, &SimulationSettings::default(), &mut |_| {})
+        let settings = SimulationSettings { fills_layers: true, ..SimulationSettings::default() };
+        simulate(&vessel, &scenario, &settings, &mut |_| {})
     };
     let message = result(60).unwrap_err().to_string();
     let number = message.split("at most ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
     assert!(result(number.parse().unwrap()).is_ok(), "{message}");
+}
+
+/// No model of what a jet mixes holds on measured fills; without layers the same fill runs.
+#[test]
+fn a_refill_of_layers_is_refused_with_the_model_to_take() {
+    let source =
+        Source::Supply { temperature_k: Series::constant(288.15), pressure_pa: Series::constant(250e5) };
+    let refill = supply(Opening::Orifice { diameter_m: 0.001, discharge_coefficient: 0.8 }, source);
+    let scenario = filled(5e5, 288.15, 1.0, refill);
+    let result = |vessel: &Vessel| simulate(vessel, &scenario, &SimulationSettings::default(), &mut |_| {});
+    let mut vessel = stacked(0.17, 0.44, Orientation::Vertical, 20);
+    let message = result(&vessel).unwrap_err().to_string();
+    assert!(message.starts_with("refill: ") && message.contains("model = \"well-mixed\""), "{message}");
+    vessel.gas = GasResolution::WellMixed;
+    assert!(result(&vessel).is_ok());
 }

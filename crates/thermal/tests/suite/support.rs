@@ -89,6 +89,13 @@ pub(crate) fn run(vessel: &Vessel, scenario: &Scenario, relative_tolerance: f64)
     simulate(vessel, scenario, &settings, &mut |_| {}).unwrap()
 }
 
+/// Layers of gas may be filled: for balances, which hold whatever is mixed.
+pub(crate) fn run_layers(vessel: &Vessel, scenario: &Scenario, relative_tolerance: f64) -> Trajectory {
+    let settings =
+        SimulationSettings { relative_tolerance, fills_layers: true, ..SimulationSettings::default() };
+    simulate(vessel, scenario, &settings, &mut |_| {}).unwrap()
+}
+
 pub(crate) fn insulated(fluid: Fluid) -> Vessel {
     Vessel { fluid, inside_film: InsideFilm::Coefficient { film_w_m2_k: 1e-9 }, ..closed_bottle() }
 }
