@@ -122,7 +122,7 @@ impl Model {
     pub(super) fn jet_film<D: Real>(&self, outlet: &Node<D>, reynolds: D) -> D {
         let state = &outlet.state;
         let k = self.fluid.conductivity_w_m_k(state.density_kg_m3, state.temperature_k);
-        jet_film_w_m2_k(k, reynolds, self.inner_diameter_m) * self.jet_film_factor
+        jet_film_w_m2_k(k, reynolds, self.gas_height_m) * self.jet_film_factor
     }
 
     pub(super) fn reset_action(&self, wall: &mut WallAction<f64>) {

@@ -69,8 +69,7 @@ impl GasGrid {
 
     fn stacked(geometry: &Geometry, mesh: &Mesh, count: usize) -> Self {
         let lying = geometry.orientation == Orientation::Horizontal;
-        let top = if lying { geometry.inner_diameter_m } else { geometry.inner_height_m() };
-        let height_m = top / count as f64;
+        let height_m = geometry.gas_height_m() / count as f64;
         // Cross-section at a height, up to a factor.
         let section = |z: f64| {
             if lying {

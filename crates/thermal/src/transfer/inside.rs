@@ -10,7 +10,7 @@
 //! and in the cell beside its saturation line (4 K, 5 % of the pressure) 1 % and more.
 //!
 //! Sources: McAdams, Heat Transmission (1954), 0.13 Ra^(1/3); Daney, Cryogenics 16 (1976) 345, 0.104 Ra^0.352
-//! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / D;
+//! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / H;
 //! Sreenivasan, Phys. Fluids 10 (1998) 528; Skrbek and Stalp, Phys. Fluids 12 (2000) 1997; Touil, Bertoglio and Shao,
 //! J. Turbulence 3 (2002) 049.
 use std::array::from_fn;
@@ -262,15 +262,17 @@ impl InsideConvection {
     }
 }
 
-/// Film of gas that jets stir, `h = 0.56 k / D Re^0.67`, W/(m² K), by the Reynolds number of the jet that keeps it in its motion.
+/// Film of gas that jets stir, `h = 0.56 k / H Re^0.67`, W/(m² K), by the Reynolds number of the jet that keeps it in its motion.
+///
+/// `H` is the height of the gas. The law is one Nusselt number, `h H / k = 0.56 Re_d^0.67 + 0.104 Ra_H^0.352`, so both terms have one length.
 ///
 /// # References
-/// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon.
+/// Woodfield et al. 2007, measured while filling hydrogen, nitrogen and argon into a standing vessel.
 #[cfg(feature = "simulate")]
-pub(crate) fn jet_film_w_m2_k<D: Real>(conductivity_w_m_k: D, reynolds: D, vessel_diameter_m: f64) -> D {
+pub(crate) fn jet_film_w_m2_k<D: Real>(conductivity_w_m_k: D, reynolds: D, gas_height_m: f64) -> D {
     // Re^0.67, but linear where the motion dies.
     let power = reynolds * (reynolds * reynolds + LINEAR_BELOW_RE * LINEAR_BELOW_RE).powf(-0.165);
-    power * conductivity_w_m_k * (0.56 / vessel_diameter_m)
+    power * conductivity_w_m_k * (0.56 / gas_height_m)
 }
 
 /// Rate per square of a Reynolds number, 1/s, at which stirred gas follows its jet and comes to rest without one:

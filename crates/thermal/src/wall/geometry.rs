@@ -118,6 +118,14 @@ impl Geometry {
             + self.neck.map_or(0.0, |n| n.length_m)
     }
 
+    /// Height of the gas as the vessel stands or lies, m.
+    pub(crate) fn gas_height_m(&self) -> f64 {
+        match self.orientation {
+            Orientation::Vertical => self.inner_height_m(),
+            Orientation::Horizontal => self.inner_diameter_m,
+        }
+    }
+
     /// Height of the outer contour along the axis, without the valve, m.
     pub fn outer_height_m(&self) -> f64 {
         let top = if self.neck.is_some() { 0.0 } else { self.shoulder.thickness_m };

@@ -394,12 +394,12 @@ fn the_film_of_a_jet_decays_when_the_refill_is_shut() {
     let tau_s = 3.0 * diameter_m / speed_m_s;
     println!("film {:.2} W/K, tau {tau_s:.1} s, then {:.2} W/K", film(shut), film(later));
     assert_relative_eq!(film(later) / film(shut), (1.0 + 10.0 / tau_s).powf(-0.67), max_relative = 0.02);
-    // Under the jet it is what Woodfield et al. measured, `0.56 k/D Re^0.67`.
+    // Under the jet it is what Woodfield et al. measured, `0.56 k/H Re^0.67`.
     let mu = fluid.viscosity_pa_s(rho, run.gas_mean_k[shut]);
     let reynolds = 4.0 * flow_kg_s / (std::f64::consts::PI * inlet_m * mu);
     let area_m2 = std::f64::consts::PI * diameter_m * (vessel.geometry.cylinder_length_m + 0.5 * diameter_m);
-    let expected =
-        0.56 * fluid.conductivity_w_m_k(rho, run.gas_mean_k[shut]) / diameter_m * reynolds.powf(0.67);
+    let conductivity = fluid.conductivity_w_m_k(rho, run.gas_mean_k[shut]);
+    let expected = 0.56 * conductivity / vessel.geometry.inner_height_m() * reynolds.powf(0.67);
     assert_relative_eq!(film(shut), expected * area_m2, max_relative = 0.02);
     assert_closed(&run, 1e-8);
 }

@@ -25,27 +25,23 @@ fn a_steel_tank_that_is_filled_at_three_rates_is_within_4_k() {
 
 /// Woodfield et al. 2007, hydrogen to 104 bar in 18 s into 0.94 L, along the measured pressure; nothing is fitted. Two thermometers up to 13 K apart.
 ///
-/// Misses 4 K: the gas gives away twice the heat that it measurably did. The law of the jet was found in this vessel; its Nusselt number is taken with
-/// the diameter here, and its Rayleigh number is stated with the height. With the height for both the jet would be 0.35 as strong, and 7.3 K be left.
-/// The inlet, 5 mm, is the carrier's: 30 mm leave 7.8 K, no jet at all 23 K.
+/// Misses 4 K: the thermometers differ by up to 13 K, and where they hung and how the gas entered is not said. The inlet, 5 mm, is the carrier's. With the
+/// vessel's diameter for the length of the jet's film in place of the height of the gas it would be 12.7 K, with no jet at all 23 K.
 #[test]
-fn a_small_vessel_is_too_cold_under_the_film_of_its_jet() {
+fn a_small_vessel_is_filled_to_8_k_by_the_height_of_its_gas() {
     let (one, other) = (curve("woodfield_2007", "fill_gas_1"), curve("woodfield_2007", "fill_gas_2"));
     let middle = middle(&one, &other);
     let (vessel, mut scenario) = case("woodfield_2007", "fill");
     println!("woodfield_2007 fill");
     let filled = run(&vessel, &scenario);
     let jet = rms("middle of two thermometers", &filled.time_s, &filled.gas_mean_k, &middle);
-    let weaker = Vessel { jet_film_factor: 75.0 / 212.0, ..vessel.clone() };
-    let filled = run(&weaker, &scenario);
-    let by_height = rms("with the height for the length", &filled.time_s, &filled.gas_mean_k, &middle);
-    set_inlet(&mut scenario, Some(0.03));
-    let filled = run(&vessel, &scenario);
-    let wider = rms("through 30 mm", &filled.time_s, &filled.gas_mean_k, &middle);
+    let stronger = Vessel { jet_film_factor: 212.0 / 75.0, ..vessel.clone() };
+    let filled = run(&stronger, &scenario);
+    let by_diameter = rms("with the diameter for the length", &filled.time_s, &filled.gas_mean_k, &middle);
     set_inlet(&mut scenario, None);
     let filled = run(&vessel, &scenario);
     let without = rms("without a jet", &filled.time_s, &filled.gas_mean_k, &middle);
-    assert!(jet <= 13.0 && by_height <= 7.6 && wider <= 8.0 && without <= 25.0);
+    assert!(jet <= 7.6 && by_diameter <= 13.0 && without <= 25.0);
 }
 
 /// Thorncroft et al. 2007, air of the room into 16 L of 37 mbar through 2.71 mm. Fitted: the coefficient, to the pressure.
