@@ -82,6 +82,13 @@ impl Clock {
         self.date_of_log(self.shown.at(time_s))
     }
 
+    /// The same to the minute, as it stands below a figure.
+    pub(crate) fn minute(&self, time_s: f64) -> Option<String> {
+        let date = self.date(time_s)?;
+        let (day, time) = date.split_once('T')?;
+        Some(format!("{day} {} {}", time.get(..5)?, time.get(8..)?.replace('Z', "UTC")))
+    }
+
     /// The same of a time as the log has it.
     pub(crate) fn date_of_log(&self, time_s: f64) -> Option<String> {
         let origin = self.origin?;
@@ -125,6 +132,7 @@ mod tests {
         let clock = Clock::new(Some("2026-01-31T23:59:59.6Z".parse().unwrap()), None);
         assert_eq!(clock.text(0.1), "2026-02-01T00:00:00Z");
         assert_eq!(clock.date(86_400.4).as_deref(), Some("2026-02-02T00:00:00Z"));
+        assert_eq!(clock.minute(0.4).as_deref(), Some("2026-02-01 00:00 UTC"));
         assert_eq!((clock.date(1e300), clock.date(f64::NAN).is_some()), (None, true));
     }
 
@@ -160,6 +168,7 @@ mod tests {
         let midnight =
             Clock::new(Some("2026-10-30T23:00:00Z".parse().unwrap()), "Europe/Berlin".parse().ok());
         assert_eq!(midnight.day_of_log(0.0).unwrap().to_string(), "2026-10-31");
+        assert_eq!(midnight.minute(0.0).as_deref(), Some("2026-10-31 00:00 +01:00"));
         let zone: Zone = "Europe/Berlin".parse().unwrap();
         let clock = Clock::new(Some("2026-10-25T00:59:00Z".parse().unwrap()), Some(zone));
         assert_eq!(

@@ -101,9 +101,10 @@ impl<'a> Rows<'a> {
         results.stream.tail(inputs, log, summary_json)?;
         let provenance = inputs.provenance();
         // Everything is made before any file appears.
+        let clock = results.clock.clone();
         let views = match results.figure.take() {
             Some(data) => {
-                let picture = || report::figure(&summary.title, &data);
+                let picture = || report::figure(&summary.title, &data, &clock);
                 let with = |picture| {
                     let cautions =
                         summary.cautions.iter().map(ToString::to_string).chain(report::doubts(&summary));

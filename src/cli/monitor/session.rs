@@ -321,7 +321,7 @@ impl<'a> Session<'a> {
         // Everything is made before any file appears.
         let views = match self.figure.take().zip(summary.as_ref()) {
             Some((data, summary)) => {
-                let picture = || report::figure(&summary.title, &data);
+                let picture = || report::figure(&summary.title, &data, &summary.naming.clock);
                 let with = |picture| {
                     let cautions = summary.cautions.iter().map(ToString::to_string);
                     report::summary(summary).cautions(cautions).picture(picture, report::CAPTION)

@@ -3,8 +3,8 @@ use super::decimation::DecimatedCurves;
 use super::innovation::normalised;
 use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::Truth;
-use crate::report::GRAM_PER_HOUR;
 use crate::report::figure::{Figure, Item, Panel, style};
+use crate::report::{Clock, GRAM_PER_HOUR};
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
 
 /// Curves before those of the innovations.
@@ -76,8 +76,8 @@ impl FigureData {
     }
 }
 
-/// The figure of a run.
-pub(crate) fn figure(title: &str, data: &FigureData) -> Figure {
+/// The figure of a run, whose times a clock names.
+pub(crate) fn figure(title: &str, data: &FigureData, clock: &Clock) -> Figure {
     let panels = [
         data.estimate("gas temperature in °C", GAS, 1.0),
         data.estimate("gas mass in kg", MASS, 0.8),
@@ -87,6 +87,7 @@ pub(crate) fn figure(title: &str, data: &FigureData) -> Figure {
         Some(data.innovations()),
     ];
     Figure::over_time(title, panels.into_iter().flatten().collect())
+        .since(clock.minute(data.curves.origin_s()))
 }
 
 #[cfg(test)]
@@ -120,6 +121,6 @@ mod tests {
         assert!((low[0] - 13.5).abs() < 1e-9 && (high[0] - 16.5).abs() < 1e-9, "{} {}", low[0], high[0]);
         assert!((low[50] - 14.5).abs() < 1e-9 && (high[50] - 15.5).abs() < 1e-9);
         // Without a leak rate there is no panel for it.
-        assert_eq!(figure("", &data).panels.len(), 5);
+        assert_eq!(figure("", &data, &Clock::default()).panels.len(), 5);
     }
 }

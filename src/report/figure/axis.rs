@@ -97,7 +97,9 @@ pub(super) fn abscissa(figure: &Figure, sheet: &Sheet) -> Abscissa {
             let unit = time_unit(scale.ends.1 - scale.ends.0);
             let ticks =
                 ticks(scale.ends.0 / unit.seconds, scale.ends.1 / unit.seconds, sheet.ticks, unit.steps);
-            Abscissa { scale, unit: unit.seconds, ticks, name: format!("time in {}", unit.symbol) }
+            let since = if figure.since.is_empty() { "" } else { " since " };
+            let name = format!("time in {}{since}{}", unit.symbol, figure.since);
+            Abscissa { scale, unit: unit.seconds, ticks, name }
         }
         Horizontal::Quantity(name) => {
             let scale = scale(Kind::Linear, 0.0);

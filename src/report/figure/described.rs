@@ -49,6 +49,7 @@ fn horizontal(figure: &Figure) -> String {
     let all = figure.panels.iter().flat_map(|panel| &panel.items).flat_map(horizontal_values);
     let (low, high) = extent(all);
     let name = match &figure.horizontal {
+        Horizontal::Time if !figure.since.is_empty() => &format!("time since {}", figure.since),
         Horizontal::Time => "time",
         Horizontal::Quantity(name) | Horizontal::LogLog(name) => name,
     };

@@ -34,6 +34,8 @@ pub struct Figure {
     pub title: String,
     /// The horizontal axis of all panels.
     pub horizontal: Horizontal,
+    /// What a time axis counts from, in words; empty: a run's own beginning.
+    pub since: String,
     /// Panels from the top down.
     pub panels: Vec<Panel>,
     /// Instants (or values of the horizontal axis) marked in all panels, named in the first.
@@ -156,7 +158,12 @@ impl Figure {
 
     /// Panels against a horizontal axis.
     pub fn new(title: impl Into<String>, horizontal: Horizontal, panels: Vec<Panel>) -> Self {
-        Self { title: title.into(), horizontal, panels, marks: Vec::new() }
+        Self { title: title.into(), horizontal, since: String::new(), panels, marks: Vec::new() }
+    }
+
+    /// With the instant that its time counts from.
+    pub(crate) fn since(self, instant: Option<String>) -> Self {
+        Self { since: instant.unwrap_or_default(), ..self }
     }
 
     /// With marked instants.

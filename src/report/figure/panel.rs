@@ -11,6 +11,7 @@ use plotters::prelude::DrawingBackend;
 struct Frame<'a> {
     x: &'a Abscissa,
     y: Scale,
+    marks: &'a [Mark],
 }
 
 /// Draws title, panels and axis of a figure from a place downwards.
@@ -25,15 +26,20 @@ pub(super) fn draw<DB: DrawingBackend>(
     for (index, panel) in figure.panels.iter().enumerate() {
         let bottom = top + panel.height * style::PANEL_HEIGHT;
         let named: &[Mark] = if index == 0 { &figure.marks } else { &[] };
-        let frame = Frame { x: &x, y: ordinate(panel, x.scale.kind, named.len(), (bottom, top)) };
+        let frame = Frame {
+            x: &x,
+            y: ordinate(panel, x.scale.kind, named.len(), (bottom, top)),
+            marks: &figure.marks,
+        };
         grid(canvas, &frame, panel)?;
         for mark in &figure.marks {
             let at = x.scale.at(mark.at);
             canvas.line(&[(at, bottom), (at, top)], &style::EVENT)?;
         }
+        let mut taken = Vec::new();
         for item in &panel.items {
             match item {
-                Item::Limit { name, value } => limit(canvas, &frame, panel, (name, *value))?,
+                Item::Limit { name, value } => limit(canvas, &frame, panel, (name, *value), &mut taken)?,
                 _ => draw_item(canvas, &frame, item)?,
             }
         }
@@ -171,6 +177,7 @@ fn limit<DB: DrawingBackend>(
     frame: &Frame,
     panel: &Panel,
     (name, value): (&str, f64),
+    taken: &mut Vec<Extent>,
 ) -> Result<(), ReportError> {
     let (left, right) = frame.x.scale.paper;
     let (bottom, top) = frame.y.paper;
@@ -184,20 +191,36 @@ fn limit<DB: DrawingBackend>(
     }
     let at = frame.y.at(value);
     canvas.line(&[(left, at), (right, at)], &style::LIMIT)?;
-    let sides = [(Side::Right, right - 8.0), (Side::Left, left + 8.0)];
-    let heights = [at - 9.0, at + 10.0].into_iter().filter(|y| (top + 9.0..bottom - 8.0).contains(y));
-    let places = heights.flat_map(|y| sides.map(|(side, x)| (side, (x, y))));
     let width = 0.62 * style::SMALL * name.chars().count() as f64;
-    let crossed = |(side, (x, y)): &(Side, Point)| {
-        let from = if *side == Side::Right { x - width } else { *x };
-        crossings(frame, panel, (from, from + width), (y - 8.0, y + 8.0))
-    };
-    let Some((side, place)) = places.min_by_key(crossed) else { return Ok(()) };
-    canvas.text(name, place, Text { side, ..text })
+    let steps = ((right - left - width - 16.0) / NAME_STEP).max(0.0) as usize;
+    let ends = (0..=steps).map(|step| right - 8.0 - NAME_STEP * step as f64);
+    let places = ends.flat_map(|end| [(end, at - 9.0), (end, at + 10.0)]);
+    let places = places.filter(|(_, y)| (top + 9.0..bottom - 8.0).contains(y));
+    let extent = |(end, y): Point| ((end - width, end), (y - 8.0, y + 8.0));
+    let is_free = |place: &Point| !taken.iter().any(|other| overlap(*other, extent(*place)));
+    let crossed = |place: &Point| crossings(frame, panel, extent(*place));
+    let Some(place) = places.filter(is_free).min_by_key(crossed) else { return Ok(()) };
+    let (end, y) = place;
+    if crossed(&place) > 0 {
+        // No place is free of curves: they go below the name.
+        canvas.rectangle((end - width, y - 7.5), (end + 2.0, y + 7.5), Rgb::WHITE)?;
+    }
+    taken.push(extent(place));
+    canvas.text(name, place, text)
 }
 
-/// Points of curves in a box on paper, looked for every other unit.
-fn crossings(frame: &Frame, panel: &Panel, (left, right): (f64, f64), (top, bottom): (f64, f64)) -> usize {
+/// Left and right end, top and bottom on paper.
+type Extent = ((f64, f64), (f64, f64));
+
+fn overlap((a, b): Extent, (c, d): Extent) -> bool {
+    a.0 < c.1 && c.0 < a.1 && b.0 < d.1 && d.0 < b.1
+}
+
+/// Distance of the places that a name of a limit may have.
+const NAME_STEP: f64 = 12.0;
+
+/// Points of curves in a box on paper, looked for every other unit, and lines of marks.
+fn crossings(frame: &Frame, panel: &Panel, ((left, right), (top, bottom)): Extent) -> usize {
     let of_curve = |x: &[f64], y: &[f64]| {
         let paper = x.iter().zip(y).map(|(&x, &y)| (frame.x.scale.at(x), frame.y.at(y)));
         let points: Vec<Point> = paper.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
@@ -215,7 +238,8 @@ fn crossings(frame: &Frame, panel: &Panel, (left, right): (f64, f64), (top, bott
         Item::Line { x, y, .. } | Item::Points { x, y, .. } => of_curve(x, y),
         _ => 0,
     });
-    curves.sum()
+    let lines = frame.marks.iter().filter(|mark| (left..right).contains(&frame.x.scale.at(mark.at)));
+    curves.sum::<usize>() + lines.count()
 }
 
 /// Names of marks beside their lines, in up to three rows so that near ones do not cover each other.

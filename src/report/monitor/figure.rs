@@ -3,9 +3,9 @@ use super::VerdictStrip;
 use super::marks::Marks;
 use crate::detector::monitor::Output;
 use crate::log::Truth;
-use crate::report::GRAM_PER_HOUR;
 use crate::report::estimate::DecimatedCurves;
 use crate::report::figure::{Figure, Item, Panel, style};
+use crate::report::{Clock, GRAM_PER_HOUR};
 use crate::thermal::units::BAR_PA;
 
 /// Curves: places in the course.
@@ -113,11 +113,12 @@ fn panel<const N: usize>(quantity: &str, items: [Option<Item>; N], height: f64) 
     Panel::new(quantity, height, items.into_iter().flatten().collect())
 }
 
-/// The figure of a run.
-pub(crate) fn figure(title: &str, data: &FigureData) -> Figure {
+/// The figure of a run, whose times a clock names.
+pub(crate) fn figure(title: &str, data: &FigureData, clock: &Clock) -> Figure {
     let panels = [Some(data.pressures()), Some(data.mass()), data.leak(), Some(data.verdict())];
     Figure::over_time(title, panels.into_iter().flatten().collect())
         .with_marks(data.marks.shifted(data.curves.origin_s()))
+        .since(clock.minute(data.curves.origin_s()))
 }
 
 #[cfg(test)]
@@ -140,7 +141,7 @@ mod tests {
             }
             data.push(&output, &Truth::UNKNOWN);
         }
-        let figure = figure("a cylinder", &data);
+        let figure = figure("a cylinder", &data, &Clock::default());
         assert_eq!(figure.marks[0].at, 1200.0);
         let provenance = Provenance { command: "cylwatch".into(), inputs: Vec::new(), seed: None };
         let picture = Picture::from(figure);
