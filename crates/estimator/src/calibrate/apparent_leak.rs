@@ -6,8 +6,9 @@
 //!
 //! `w = s^T (r - J A^-1 (J^T r - g)) / s^T p`,  `sd(w)^2 = sum_c f_c |p_c|^2 / (s^T p)^2`
 //!
-//! where the gradient `J^T r - g`, with the priors' part `g`, is zero at a minimum; a search that found none is judged where it began. The factors `f_c >= 1` of the channels ([`ChannelResiduals::variance_factor`](super::ChannelResiduals::variance_factor)) are those of what
-//! the step leaves: what remains may be as long-lived as it likes, and a leak does not count as noise against itself.
+//! where the gradient `J^T r - g`, with the priors' part `g`, is zero at a minimum; a search that found none is judged where it began. The
+//! factors `f_c >= 1` of the channels ([`ChannelResiduals::variance_factor`](super::ChannelResiduals::variance_factor)) are those of what the
+//! step leaves: what remains may be as long-lived as it likes, and a leak does not count as noise against itself.
 //!
 //! Assumes that a leak is small to the fill, and that what else the model lacks looks unlike one; a leak that begins in the middle is
 //! underestimated. It is a question to who calibrates: the parameters take up what they can of a leak, and are wrong by that.
