@@ -36,7 +36,9 @@ impl Slope {
         let mass_kg = estimate.mass_kg;
         let age = (mass_kg / self.known.0 - 1.0).abs();
         if age.is_nan() || age > SLOPE_AGES {
-            let model = self.cylinder.model();
+            // A model remembers where it found the last state: a fresh one gives the same bits whatever came before.
+            let mut cylinder = self.cylinder.clone();
+            let model = cylinder.model();
             let above = model.settled_pressure_pa(mass_kg * (1.0 + SLOPE_STEP), SETTLED_K)?;
             let below = model.settled_pressure_pa(mass_kg * (1.0 - SLOPE_STEP), SETTLED_K)?;
             self.known = (mass_kg, (above - below) / (2.0 * SLOPE_STEP * mass_kg));

@@ -4,9 +4,13 @@ use crate::cli::steps::{self, Frame, LONGEST_WAIT, StepTime};
 use crate::estimator::observer::{Estimate, Snapshot};
 use crate::log::{LogOptions, RowScreen};
 use crate::report::{Clock, RowFormat, Rows as Fields, Table};
+use crate::thermal::units::YEAR_S;
 use crate::thermal::vessel::VesselSpec;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+
+/// Longest time between two rows, s: a year. The model goes through all of it, and nothing is left to be known then.
+const LONGEST_GAP_S: f64 = YEAR_S;
 
 /// An observer that is fed row by row.
 pub(crate) struct Steps {
@@ -31,6 +35,8 @@ struct Running {
     slope: Slope,
     clock: Clock,
     origin: Option<Timestamp>,
+    /// Time of the last row, s.
+    last_s: f64,
 }
 
 /// What is saved: the first rows, from which an observer of the same kind is made, and what it has become.
@@ -38,7 +44,7 @@ struct Running {
 struct Saved {
     identity: String,
     frame: Frame,
-    state: Option<(Snapshot, (f64, f64))>,
+    state: Option<(Snapshot, (f64, f64), f64)>,
 }
 
 impl Steps {
@@ -83,7 +89,10 @@ impl Steps {
 
     /// All of it as bytes.
     pub(crate) fn save(&self) -> anyhow::Result<Vec<u8>> {
-        let state = self.running.as_ref().map(|running| (running.observer.snapshot(), running.slope.known));
+        let state = self
+            .running
+            .as_ref()
+            .map(|running| (running.observer.snapshot(), running.slope.known, running.last_s));
         steps::encoded(&Saved { identity: self.identity.clone(), frame: self.frame.clone(), state })
             .context("only an observer with the filter ekf can be saved")
     }
@@ -98,10 +107,11 @@ impl Steps {
         }
         let running = match state {
             None => None,
-            Some((snapshot, slope)) => {
+            Some((snapshot, slope, last_s)) => {
                 let (mut running, _) = self.begun(&frame)?;
                 running.observer.try_restore(&snapshot)?;
                 running.slope.known = slope;
+                running.last_s = last_s;
                 Some(running)
             }
         };
@@ -147,6 +157,7 @@ impl Steps {
             screen: log.reader.row_screen(),
             clock: Clock::new(log.reader.origin_instant(), log.reader.zone().cloned()),
             origin: log.reader.origin_instant(),
+            last_s: f64::NAN,
         };
         Ok((running, first))
     }
@@ -160,8 +171,17 @@ impl Steps {
 
 impl Running {
     fn push(&mut self, row: &Row) -> anyhow::Result<Estimate> {
+        let gap_s = row.time_s - self.last_s;
+        if gap_s > LONGEST_GAP_S {
+            bail!(
+                "time {} s is {gap_s} s after the row before it: check its unit, or begin with a new object",
+                row.time_s
+            );
+        }
         let readings: Vec<f64> = self.selection.readings(row).collect();
-        Ok(self.observer.step(row.time_s, &readings)?)
+        let estimate = self.observer.step(row.time_s, &readings)?;
+        self.last_s = row.time_s;
+        Ok(estimate)
     }
 
     fn told(&mut self, estimates: Vec<Estimate>) -> anyhow::Result<Table> {
