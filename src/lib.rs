@@ -66,6 +66,7 @@ pub mod log;
 mod properties;
 pub mod report;
 pub mod reproduce;
+pub mod run;
 
 pub use cli::main;
 

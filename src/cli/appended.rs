@@ -36,6 +36,7 @@ impl Appended {
     /// Begins or goes on at the end of what is there.
     pub(super) fn open(target: &Target, goes_on: bool, messages: &Messages) -> anyhow::Result<Self> {
         let (writer, shown): (Box<dyn Write>, String) = match target {
+            Target::Memory => (Box::new(std::io::sink()), "memory".to_owned()),
             Target::Stdout => (Box::new(std::io::stdout()), "stdout".to_owned()),
             Target::File(path) | Target::Device(path) => {
                 let shown = path.display().to_string();
@@ -54,7 +55,16 @@ impl Appended {
 
     fn to(writer: Box<dyn Write>, shown: String, messages: &Messages) -> Self {
         let (waiting, tried) = (Vec::new(), Instant::now());
-        Self { writer, table: None, shown, messages: *messages, waiting, length: 0, tried, failure: None }
+        Self {
+            writer,
+            table: None,
+            shown,
+            messages: messages.clone(),
+            waiting,
+            length: 0,
+            tried,
+            failure: None,
+        }
     }
 
     /// Goes on with a table whose names of columns stand in `header`; `None`: there is none yet. A line without an end goes.

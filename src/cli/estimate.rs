@@ -1,6 +1,7 @@
 //! `cylwatch estimate`: the observer on a log, row by row.
 use super::fill::{self, FillSource, GivenFill};
 use super::format::Format;
+use super::host::Kept;
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::options::LogArguments;
@@ -15,17 +16,21 @@ use crate::estimator::sensor::Sensor;
 use crate::log::Row;
 use crate::report::estimate as report;
 use crate::thermal::vessel::Vessel;
-use anyhow::Context;
+use anyhow::{Context, bail};
 use serde_json::json;
 use std::path::PathBuf;
 
 mod arguments;
 mod pass;
 mod rows;
+mod slope;
+mod steps;
 
 pub(super) use arguments::EstimateArguments;
 use pass::Pass;
-use rows::Rows;
+use rows::{Finished, Rows};
+use slope::Slope;
+pub(crate) use steps::Steps;
 
 /// Validated options.
 struct Options {
@@ -47,24 +52,49 @@ struct Options {
 /// Estimates row by row and writes.
 pub(super) fn run(arguments: EstimateArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
-    let inputs = Inputs::default();
+    let finished = ran(&options, &Inputs::default(), messages)?;
+    messages.say(&report::summary(&finished.summary).to_text());
+    Ok(())
+}
+
+/// The same for a caller: nothing is written.
+pub(super) fn kept(
+    arguments: EstimateArguments,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<Kept> {
+    let options = Options { data: Target::Memory, views: Views::kept(), ..Options::checked(arguments)? };
+    let finished = ran(&options, inputs, messages)?;
+    Ok(Kept {
+        rows: finished.rows.unwrap_or_default(),
+        zone: finished.zone,
+        events: Vec::new(),
+        summary: report::document(&finished.summary),
+        verdict: "",
+        exit_code: 0,
+        report: finished.report.unwrap_or_else(|| report::summary(&finished.summary)),
+        provenance: inputs.provenance(),
+    })
+}
+
+/// Opens the log and runs the observer over it.
+fn ran(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Finished> {
     let vessel = inputs.vessel(&options.vessel, messages)?;
-    let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
+    let sensors = options.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
     let learned =
-        options.learned_in.as_deref().map(|path| start::learned(&inputs, path, &vessel)).transpose()?;
+        options.learned_in.as_deref().map(|path| start::learned(inputs, path, &vessel)).transpose()?;
     let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
     let mut log = inputs.log(&options.log, &options.reading.options(names))?;
-    let outcome = estimate(&options, &inputs, &vessel, sensors, learned, &mut log, messages);
+    let outcome = estimate(options, inputs, &vessel, sensors, learned, &mut log, messages);
     // What was strange about the log may explain an error.
     for caution in log.reader.cautions() {
         messages.caution(&caution.to_string());
     }
-    let summary = outcome?;
-    for doubt in report::doubts(&summary) {
+    let finished = outcome?;
+    for doubt in report::doubts(&finished.summary) {
         messages.caution(&doubt);
     }
-    messages.say(&report::summary(&summary).to_text());
-    Ok(())
+    Ok(finished)
 }
 
 impl Options {
@@ -107,7 +137,33 @@ fn estimate(
     learned: Option<Learned>,
     log: &mut LogInput,
     messages: &Messages,
-) -> anyhow::Result<report::Summary> {
+) -> anyhow::Result<Finished> {
+    let (selection, first, observer) = begun(options, vessel, sensors, learned, log, messages)?;
+    let title = format!("{} \u{2013} {}", vessel.name, selection.names().join(", "));
+    let progress = Progress::new(messages);
+    let mut rows = Rows::begin(observer, &selection, options, inputs, log)?;
+    for row in &first {
+        rows.push(row, &log.reader).with_context(|| log.reader.place(row))?;
+    }
+    loop {
+        progress.show(&options.log, log.fraction());
+        let Some(row) = log.reader.next_row()? else { break };
+        let row = row.clone();
+        rows.push(&row, &log.reader).with_context(|| log.reader.place(&row))?;
+    }
+    drop(progress);
+    rows.finish(title, inputs, log, options)
+}
+
+/// The observer that a log begins with, its sensors, and the rows that were read to find the fill.
+fn begun(
+    options: &Options,
+    vessel: &Vessel,
+    sensors: Option<Vec<Sensor>>,
+    learned: Option<Learned>,
+    log: &mut LogInput,
+    messages: &Messages,
+) -> anyhow::Result<(Selection, Vec<Row>, Observer)> {
     let mut selection = Selection::new(&mut log.reader, sensors, vessel, &[], messages)?;
     let (first, fill) = start::first_rows(&mut log.reader, &mut selection, options.source, vessel)?;
     let first_k = selection.mean_temperature_k(first.first());
@@ -129,18 +185,5 @@ fn estimate(
     if let Some(learned) = learned {
         observer = observer.with_learned(learned);
     }
-    let title = format!("{} \u{2013} {}", vessel.name, selection.names().join(", "));
-    let progress = Progress::new(messages);
-    let mut rows = Rows::begin(observer, &selection, options, inputs, log)?;
-    for row in &first {
-        rows.push(row, &log.reader).with_context(|| log.reader.place(row))?;
-    }
-    loop {
-        progress.show(&options.log, log.fraction());
-        let Some(row) = log.reader.next_row()? else { break };
-        let row = row.clone();
-        rows.push(&row, &log.reader).with_context(|| log.reader.place(&row))?;
-    }
-    drop(progress);
-    rows.finish(title, inputs, log, options)
+    Ok((selection, first, observer))
 }

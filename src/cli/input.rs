@@ -1,11 +1,12 @@
 //! What a run reads: files, stdin, built-in vessels, scenarios and plans. Everything read is recorded with its SHA-256.
+use super::host::Host;
 use super::live::Live;
 use super::message::Messages;
 use super::output::command_line;
 use crate::evaluation::judge::candidate::Registry;
 use crate::evaluation::judge::plan::{self, Plan};
 use crate::log::inspect::Inspector;
-use crate::log::{LogError, LogOptions, LogReader, is_parquet};
+use crate::log::{LogError, LogOptions, LogReader, MemoryLog, is_parquet};
 use crate::report::{Fingerprint, Input, Provenance};
 use crate::thermal::ThermalError;
 use crate::thermal::document::Presets;
@@ -19,8 +20,10 @@ use std::path::Path;
 use std::rc::Rc;
 
 /// The inputs of a run.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Inputs {
+    /// What a caller brings instead of files.
+    host: Host,
     records: RefCell<Vec<Input>>,
     /// Texts of the documents, which a report shows: names and texts.
     sources: RefCell<Vec<(String, String)>>,
@@ -35,14 +38,25 @@ struct Document {
 }
 
 impl Inputs {
+    /// The inputs of a call from a program.
+    pub(super) fn of(host: Host) -> Self {
+        Self { host, ..Self::default() }
+    }
+
     /// Where the outputs of this run come from.
     pub(super) fn provenance(&self) -> Provenance {
-        Provenance { command: command_line(), inputs: self.records.borrow().clone(), seed: None }
+        let command = match self.host.command.as_str() {
+            "" => command_line(),
+            command => command.to_owned(),
+        };
+        Provenance { command, inputs: self.records.borrow().clone(), seed: None }
     }
 
     /// Reads a file, or stdin for `-`.
     pub(super) fn read(&self, name: &str) -> anyhow::Result<String> {
-        let bytes = if name == "-" {
+        let bytes = if let Some(text) = self.host.document(name) {
+            text.as_bytes().to_vec()
+        } else if name == "-" {
             if self.stdin_taken.replace(true) {
                 bail!("stdin can be read once: give the other input as a file");
             }
@@ -131,11 +145,34 @@ impl Inputs {
 
     /// Opens a log for reading row by row; - is stdin.
     pub(super) fn log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
-        self.opened(name, false, |content, shown| log_reader(content, shown, options))
+        if let Some(log) = self.host.take_log(name) {
+            return self.memory_log(log, options);
+        }
+        let mut log = self.opened(name, false, |content, shown| log_reader(content, shown, options))?;
+        self.stop_with_caller(&mut log.reader);
+        Ok(log)
+    }
+
+    /// The log of a caller.
+    fn memory_log(&self, log: MemoryLog, options: &LogOptions) -> anyhow::Result<LogInput> {
+        let name = log.name.clone();
+        self.records.borrow_mut().push(log.fingerprint());
+        let mut reader = LogReader::from_memory(log, options)?;
+        self.stop_with_caller(&mut reader);
+        Ok(LogInput { reader, name, passed: Rc::default(), length: Some(0), live: None })
+    }
+
+    fn stop_with_caller(&self, reader: &mut LogReader) {
+        if let Some(stop) = self.host.stop.clone() {
+            reader.stops_when(move || stop.borrow_mut()());
+        }
     }
 
     /// The same for a log that may be written while it is read: a row from a pipe is there when it has come.
     pub(super) fn live_log(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput> {
+        if !self.host.command.is_empty() {
+            return self.log(name, options);
+        }
         let mut log = self.opened(name, true, |content, shown| log_reader(content, shown, options))?;
         if let Some(live) = log.live.clone() {
             log.reader.hands_out_while(move || live.is_waiting());
@@ -212,7 +249,8 @@ impl Inputs {
     /// A document by file name, by built-in name, or from stdin; `listed_by` is the command that lists the built-in ones.
     fn document(&self, name: &str, presets: &Presets, listed_by: &str) -> anyhow::Result<Document> {
         let path = Path::new(name);
-        if name == "-" || (path.exists() && !path.is_dir()) {
+        let is_given = self.host.document(name).is_some();
+        if is_given || name == "-" || (path.exists() && !path.is_dir()) {
             return Ok(Document { text: self.read(name)?, shown: shown(name), built_in: false });
         }
         let text = presets.text(name).map_err(|_| unknown(name, presets, listed_by))?;

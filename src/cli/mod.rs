@@ -6,11 +6,13 @@ mod appended;
 mod arguments;
 mod bench_detector;
 mod calibrate;
+mod call;
 mod commission;
 mod completions;
 mod estimate;
 mod fill;
 mod format;
+mod host;
 mod identify;
 mod init;
 mod input;
@@ -35,13 +37,19 @@ mod selection;
 mod simulate;
 mod start;
 mod states;
+mod steps;
 mod unit_options;
 mod views;
 
 use arguments::{Arguments, Command};
+pub(crate) use call::{called, estimate_steps, monitor_steps, properties_of};
 use clap::FromArgMatches;
+pub(crate) use estimate::Steps as EstimateSteps;
+pub(crate) use host::Host;
 use message::Messages;
+pub(crate) use monitor::Steps as MonitorStepper;
 use std::process::ExitCode;
+pub use steps::StepTime;
 
 /// Exit code of an error.
 const ERROR: u8 = 2;

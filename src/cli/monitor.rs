@@ -1,6 +1,7 @@
 //! `cylwatch monitor`: the monitor on a log, row by row: verdict, events, alarms, a state to go on from.
 use super::fill::{self, FillSource, GivenFill};
 use super::format::Format;
+use super::host::Kept;
 use super::input::{Inputs, LogInput};
 use super::interrupt;
 use super::message::Messages;
@@ -11,7 +12,6 @@ use super::start;
 use super::views::{RenderedViews, Views};
 use crate::detector::monitor::Outcome;
 use crate::log::{LogError, LogOptions, Row};
-use crate::report::monitor::Summary;
 use anyhow::{Context, bail};
 use std::path::Path;
 use std::process::ExitCode;
@@ -26,22 +26,61 @@ mod resume;
 mod rows;
 mod session;
 mod state;
+mod steps;
 
 use announced::Announced;
 pub(super) use arguments::MonitorArguments;
+pub(crate) use steps::Steps;
 
 use engine::Engine;
 use options::Options;
 use order::Order;
 use resume::RunStart;
-use session::{RunContext, Session};
+use session::{Finished, RunContext, Session};
 
 /// Monitors row by row and writes.
 pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let options = Options::checked(arguments)?;
-    let inputs = Inputs::default();
-    let beginning = RunStart::find(&options, &inputs, messages)?;
-    let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
+    let finished = ran(&options, &Inputs::default(), messages)?;
+    let outcome = match &finished.summary {
+        Some(summary) => {
+            messages.say(&crate::report::monitor::summary(summary).to_text());
+            summary.outcome()
+        }
+        None => {
+            messages.say("no verdict yet: all rows wait in the state for late ones");
+            Outcome::Unknown
+        }
+    };
+    finished.written.map(|()| ExitCode::from(outcome.exit_code()))
+}
+
+/// The same for a caller: nothing is written.
+pub(super) fn kept(
+    arguments: MonitorArguments,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<Kept> {
+    let options = Options::checked(arguments)?.kept()?;
+    let finished = ran(&options, inputs, messages)?;
+    finished.written?;
+    let summary = finished.summary.context("a log that was read without an error has a row")?;
+    Ok(Kept {
+        rows: finished.rows.unwrap_or_default(),
+        zone: finished.zone,
+        events: finished.events,
+        summary: crate::report::monitor::document(&summary),
+        verdict: summary.last.decision.verdict.as_str(),
+        exit_code: summary.outcome().exit_code(),
+        report: finished.report.unwrap_or_else(|| crate::report::monitor::summary(&summary)),
+        provenance: inputs.provenance(),
+    })
+}
+
+/// Opens the log and runs the monitor over it.
+fn ran(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Finished> {
+    let beginning = RunStart::find(options, inputs, messages)?;
+    let sensors = options.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
     let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
     let log_options =
         LogOptions { origin: beginning.origin()?, any_order: true, ..options.reading.options(names) };
@@ -52,22 +91,11 @@ pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::R
     }
     let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
     let outcome =
-        selection.and_then(|selection| monitor(&options, &inputs, beginning, selection, &mut log, messages));
+        selection.and_then(|selection| monitor(options, inputs, beginning, selection, &mut log, messages));
     for caution in log.reader.cautions() {
         messages.caution(&caution.to_string());
     }
-    let (summary, written) = outcome?;
-    let outcome = match &summary {
-        Some(summary) => {
-            messages.say(&crate::report::monitor::summary(summary).to_text());
-            summary.outcome()
-        }
-        None => {
-            messages.say("no verdict yet: all rows wait in the state for late ones");
-            Outcome::Unknown
-        }
-    };
-    written.map(|()| ExitCode::from(outcome.exit_code()))
+    outcome
 }
 
 /// Runs the monitor over the log. Without a state nothing is left behind if it fails; with one, what was done before a
@@ -79,7 +107,7 @@ fn monitor(
     mut selection: Selection,
     log: &mut LogInput,
     messages: &Messages,
-) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
+) -> anyhow::Result<Finished> {
     let (engine, identity) = match &beginning.state {
         None => {
             let engine = Engine::cold(options, inputs, &beginning, &mut selection, log, messages)?;

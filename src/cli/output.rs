@@ -19,6 +19,8 @@ pub(super) enum Target {
     File(PathBuf),
     /// Something that cannot be replaced, as a terminal or a pipe with a name.
     Device(PathBuf),
+    /// Memory, from which the caller of [`crate::run`] takes it.
+    Memory,
 }
 
 impl Target {
@@ -59,6 +61,7 @@ impl Target {
     fn shown(&self) -> String {
         match self {
             Self::Stdout => "stdout".to_owned(),
+            Self::Memory => "memory".to_owned(),
             Self::File(path) | Self::Device(path) => path.display().to_string(),
         }
     }
@@ -69,6 +72,7 @@ impl Target {
         let failed = || format!("{shown} cannot be written");
         let writer = match self {
             Self::Stdout => Writer::Plain(Box::new(std::io::stdout())),
+            Self::Memory => Writer::Plain(Box::new(std::io::sink())),
             Self::File(path) => Writer::File(temporary(folder_of(path)).with_context(failed)?, path.clone()),
             Self::Device(path) => {
                 Writer::Plain(Box::new(File::options().write(true).open(path).with_context(failed)?))
@@ -84,6 +88,7 @@ impl Target {
                 let mut stdout = std::io::stdout().lock();
                 stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout cannot be written")
             }
+            Self::Memory => Ok(()),
             Self::File(path) => write_file(path, bytes),
             Self::Device(path) => {
                 let write = File::options().write(true).open(path).and_then(|mut file| file.write_all(bytes));

@@ -8,7 +8,7 @@ use super::states;
 use super::states::Quantities;
 use super::views::Views;
 use crate::properties::{self, Row};
-use crate::report::{Provenance, Report};
+use crate::report::{Provenance, Report, Table};
 use crate::thermal::fluid::{Equation, Fluid};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
@@ -61,12 +61,7 @@ pub(super) fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow
     let inputs: Vec<&std::path::Path> = arguments.states.as_deref().into_iter().collect();
     let target = Target::checked(arguments.data.output.as_deref(), &inputs)?;
     let views = Views::checked(&arguments.report.clone().into(), &inputs, &[&target])?;
-    let equation = match arguments.equation {
-        EquationName::Reference => Equation::Reference,
-        EquationName::IdealGas => Equation::IdealGas,
-        EquationName::PengRobinson => Equation::PengRobinson,
-    };
-    let fluid = Fluid::named(&arguments.fluid)?.with_equation(equation);
+    let fluid = fluid(&arguments)?;
     let inputs = Inputs::default();
     let many = arguments.states.is_some();
     let states = match &arguments.states {
@@ -88,6 +83,21 @@ pub(super) fn run(arguments: PropertiesArguments, messages: &Messages) -> anyhow
     };
     views.make_report(summary, Vec::new(), &provenance)?.write()?;
     target.write(text.as_bytes())
+}
+
+/// The properties for a caller: a row.
+pub(super) fn kept(arguments: &PropertiesArguments) -> anyhow::Result<Table> {
+    let state = properties::evaluate(&fluid(arguments)?, arguments.given.state()?)?;
+    Ok(properties::table(&[Row::Known(state)]))
+}
+
+fn fluid(arguments: &PropertiesArguments) -> anyhow::Result<Fluid> {
+    let equation = match arguments.equation {
+        EquationName::Reference => Equation::Reference,
+        EquationName::IdealGas => Equation::IdealGas,
+        EquationName::PengRobinson => Equation::PengRobinson,
+    };
+    Ok(Fluid::named(&arguments.fluid)?.with_equation(equation))
 }
 
 /// The states of a file. One that the gas does not have leaves its cells empty and is told; where it has none of them, the first is the error.

@@ -4,7 +4,7 @@ use super::format::Format;
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::output::{Stream, Target};
-use crate::report::{Field, RowFormat, Rows};
+use crate::report::{Field, RowFormat, Rows, Table};
 use serde_json::{Map, Value, json};
 
 /// A stream of records with declared columns.
@@ -20,6 +20,8 @@ enum Sink {
     Stream(Stream),
     /// A table that a later run goes on with.
     Table(Appended),
+    /// Columns in memory.
+    Kept(Table),
 }
 
 impl Sink {
@@ -27,6 +29,7 @@ impl Sink {
         match self {
             Self::Stream(stream) => stream.write(text),
             Self::Table(table) => table.write(text),
+            Self::Kept(_) => Ok(()),
         }
     }
 }
@@ -46,6 +49,9 @@ impl<R> RowStream<R> {
             Format::Json => RowFormat::Json,
         };
         let rows = Rows::new(fields, format);
+        if matches!(target, Target::Memory) {
+            return Ok(Self { sink: Sink::Kept(rows.empty_table()), format, rows });
+        }
         let mut stream = Self { sink: Sink::Stream(target.open()?), format, rows };
         if format == RowFormat::Csv {
             stream.sink.write(&comments(inputs, sensors, log, true))?;
@@ -82,7 +88,7 @@ impl<R> RowStream<R> {
     /// Takes back what a table has beyond a length, bytes.
     pub(super) fn cut(&mut self, length: u64) -> anyhow::Result<()> {
         match &mut self.sink {
-            Sink::Stream(_) => Ok(()),
+            Sink::Stream(_) | Sink::Kept(_) => Ok(()),
             Sink::Table(table) => table.cut(length),
         }
     }
@@ -90,13 +96,17 @@ impl<R> RowStream<R> {
     /// Bytes of a table, if all that was written is there.
     pub(super) fn complete_length(&self) -> Option<u64> {
         match &self.sink {
-            Sink::Stream(_) => Some(0),
+            Sink::Stream(_) | Sink::Kept(_) => Some(0),
             Sink::Table(table) => table.complete_length(),
         }
     }
 
     /// Writes a record.
     pub(super) fn push(&mut self, record: &R) -> anyhow::Result<()> {
+        if let Sink::Kept(table) = &mut self.sink {
+            self.rows.keep(record, table);
+            return Ok(());
+        }
         self.sink.write(self.rows.row(record))
     }
 
@@ -105,6 +115,7 @@ impl<R> RowStream<R> {
         match &mut self.sink {
             Sink::Stream(stream) => stream.flush(),
             Sink::Table(table) => table.flush(),
+            Sink::Kept(_) => Ok(()),
         }
     }
 
@@ -119,7 +130,7 @@ impl<R> RowStream<R> {
         let hashed_late = inputs.record_log(log);
         let tail = match self.format {
             // A table goes on: no line is its last one.
-            RowFormat::Csv if matches!(self.sink, Sink::Table(_)) => return Ok(()),
+            RowFormat::Csv if matches!(self.sink, Sink::Table(_) | Sink::Kept(_)) => return Ok(()),
             RowFormat::Csv => hashed_late.map_or(String::new(), |input| input.comment_line() + "\n"),
             RowFormat::Json => {
                 let mut document = Map::from_iter([("origin".to_owned(), json!(log.reader.origin()))]);
@@ -131,11 +142,12 @@ impl<R> RowStream<R> {
         self.sink.write(&tail)
     }
 
-    /// Ends the output: a file appears here.
-    pub(super) fn finish(self) -> anyhow::Result<()> {
+    /// Ends the output: a file appears here, or the table in memory is handed out.
+    pub(super) fn finish(self) -> anyhow::Result<Option<Table>> {
         match self.sink {
-            Sink::Stream(stream) => stream.finish(),
-            Sink::Table(table) => table.finish(),
+            Sink::Stream(stream) => stream.finish().map(|()| None),
+            Sink::Table(table) => table.finish().map(|()| None),
+            Sink::Kept(table) => Ok(Some(table)),
         }
     }
 }

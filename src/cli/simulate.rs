@@ -1,5 +1,6 @@
 //! `cylwatch simulate`: a vessel in a scenario.
 use super::format::Format;
+use super::host::Kept;
 use super::input::Inputs;
 use super::message::Messages;
 use super::number::at_least;
@@ -97,6 +98,51 @@ pub(super) fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::
     }
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
+    let (run, readings) = simulated(&options, &inputs, messages)?;
+    let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
+    // Everything is made before anything is written.
+    let data = data(&run, &readings, options.format, &provenance)?;
+    let summary = simulation::summary(&run);
+    let picture = || simulation::figure(&run, &readings);
+    let with = |picture| summary.clone().picture(picture, simulation::CAPTION);
+    let views = options.views.make(picture, with, inputs.sources(), &provenance)?;
+    views.write()?;
+    options.data.write(&data)?;
+    messages.say(&summary.to_text());
+    Ok(())
+}
+
+/// The same for a caller: nothing is written.
+pub(super) fn kept(
+    arguments: SimulateArguments,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<Kept> {
+    let options = Options::checked(arguments)?;
+    let (run, readings) = simulated(&options, inputs, messages)?;
+    let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
+    let mut summary = simulation::document(&run, &readings, &provenance);
+    if let Some(members) = summary.as_object_mut() {
+        members.shift_remove("columns");
+    }
+    Ok(Kept {
+        rows: simulation::table(&run, &readings),
+        zone: None,
+        events: Vec::new(),
+        summary,
+        verdict: "",
+        exit_code: 0,
+        report: simulation::summary(&run).picture(simulation::figure(&run, &readings), simulation::CAPTION),
+        provenance,
+    })
+}
+
+/// Simulates, and reads the sensors.
+fn simulated(
+    options: &Options,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<(Trajectory, Readings)> {
     let vessel = inputs.vessel(&options.vessel, messages)?;
     let (scenario, converted) = with_real_gas_coefficients(&vessel, &inputs.scenario(&options.scenario)?)?;
     converted.iter().for_each(|one| messages.say(&simulation::conversion(one)));
@@ -113,17 +159,7 @@ pub(super) fn run(arguments: SimulateArguments, messages: &Messages) -> anyhow::
         messages
             .caution(&format!("sensor {} is left out: {} does not have {needs}", sensor.name, vessel.name));
     }
-    let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
-    // Everything is made before anything is written.
-    let data = data(&run, &readings, options.format, &provenance)?;
-    let summary = simulation::summary(&run);
-    let picture = || simulation::figure(&run, &readings);
-    let with = |picture| summary.clone().picture(picture, simulation::CAPTION);
-    let views = options.views.make(picture, with, inputs.sources(), &provenance)?;
-    views.write()?;
-    options.data.write(&data)?;
-    messages.say(&summary.to_text());
-    Ok(())
+    Ok((run, readings))
 }
 
 impl Options {

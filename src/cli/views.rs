@@ -11,6 +11,8 @@ use std::path::Path;
 pub(super) struct Views {
     plot: Option<(Target, Format)>,
     report: Option<Target>,
+    /// Whether the report is handed to a caller.
+    kept: bool,
 }
 
 /// Picture format.
@@ -48,12 +50,17 @@ impl Views {
             }
             place("report", path, &others)
         });
-        Ok(Self { plot, report: report.transpose()? })
+        Ok(Self { plot, report: report.transpose()?, kept: false })
+    }
+
+    /// A report for a caller, who may turn it into a page, and no file.
+    pub(super) fn kept() -> Self {
+        Self { kept: true, ..Self::default() }
     }
 
     /// Whether either is wanted: what a picture is made of has to be kept during the run.
     pub(super) fn is_any_requested(&self) -> bool {
-        self.plot.is_some() || self.report.is_some()
+        self.plot.is_some() || self.report.is_some() || self.kept
     }
 
     /// Makes the requested files, so that nothing is written if one fails. The report contains the picture and gets `sources`, what was
@@ -70,6 +77,10 @@ impl Views {
             return Ok(made);
         }
         let picture = picture().into();
+        if self.kept {
+            made.kept = Some(with_sources(report(picture), sources));
+            return Ok(made);
+        }
         if let Some((target, format)) = &self.plot {
             made.files.push((
                 target,
@@ -104,6 +115,8 @@ impl Views {
 #[derive(Debug, Default)]
 pub(super) struct RenderedViews<'a> {
     files: Vec<(&'a Target, Vec<u8>)>,
+    /// The report of a caller.
+    pub kept: Option<Report>,
 }
 
 impl RenderedViews<'_> {
@@ -114,9 +127,13 @@ impl RenderedViews<'_> {
 }
 
 fn page(report: Report, sources: Vec<(String, String)>, provenance: &Provenance) -> anyhow::Result<Vec<u8>> {
-    let report = if sources.is_empty() { report } else { report.heading("What was read") };
-    let report = sources.into_iter().fold(report, |report, (name, text)| report.source(name, text));
+    let report = with_sources(report, sources);
     Ok(Page { report: &report, provenance }.to_html()?.into_bytes())
+}
+
+fn with_sources(report: Report, sources: Vec<(String, String)>) -> Report {
+    let report = if sources.is_empty() { report } else { report.heading("What was read") };
+    sources.into_iter().fold(report, |report, (name, text)| report.source(name, text))
 }
 
 fn ending(path: &Path) -> Option<String> {

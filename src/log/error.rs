@@ -145,6 +145,24 @@ pub enum LogError {
         /// A likely cause, or nothing.
         hint: &'static str,
     },
+    /// A column of a log in memory that holds something else than is read from it.
+    #[error("{at}: column {column} has {found} and must have {expected}")]
+    Cell {
+        /// Log.
+        at: String,
+        /// Column.
+        column: String,
+        /// What it has.
+        found: String,
+        /// What it must have.
+        expected: &'static str,
+    },
+    /// The caller wanted the run to end.
+    #[error("{at}: stopped")]
+    Stopped {
+        /// Place of the next row.
+        at: String,
+    },
     /// A time that is none.
     #[error("{at}: {column} = {text} must be {expected}")]
     Time {

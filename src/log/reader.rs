@@ -3,10 +3,11 @@ use super::caution::{Caution, Cautions, Kind};
 use super::columns::{Columns, TimeForm, ValueColumn};
 use super::csv::CsvSource;
 use super::inspect::{Survey, Tap};
-use super::row::{self, RawRow, Row, Truth};
+use super::memory::{MemoryLog, MemorySource};
+use super::row::{self, RawRow, Row, RowScreen, Truth};
 use super::sampling::Sampling;
+use super::source::Source;
 use super::stuck::StuckWatch;
-use super::time::TimeReader;
 use super::unit_check::{Doubt, UnitCheck, gauge_of};
 use super::zone::Zone;
 use super::{LogError, LogOptions};
@@ -18,55 +19,8 @@ use std::path::Path;
 /// What may have set a local clock back.
 const WINTER_TIME: &str = "; if summer time ended there, say the zone, as --zone Europe/Berlin";
 
-/// Where rows come from.
-enum Source {
-    Csv(Box<CsvSource>),
-    #[cfg(feature = "parquet")]
-    Parquet(Box<super::parquet::ParquetSource>),
-}
-
-impl Source {
-    fn next(&mut self, row: &mut RawRow, cautions: &mut Cautions) -> Result<bool, LogError> {
-        match self {
-            Self::Csv(source) => source.next(row, cautions),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(source) => source.next(row, cautions),
-        }
-    }
-
-    /// Why a row is wrong: because the packed stream is damaged, if it is; else as it was said.
-    fn explained(&mut self, error: LogError) -> LogError {
-        match self {
-            Self::Csv(source) => source.damage().unwrap_or(error),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(_) => error,
-        }
-    }
-
-    fn is_drained(&self) -> bool {
-        match self {
-            Self::Csv(source) => source.is_drained(),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(_) => false,
-        }
-    }
-
-    fn place(&self, number: u64) -> String {
-        match self {
-            Self::Csv(source) => source.place(number),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(source) => source.place(number),
-        }
-    }
-
-    fn time_reader(&self) -> &TimeReader {
-        match self {
-            Self::Csv(source) => source.time_reader(),
-            #[cfg(feature = "parquet")]
-            Self::Parquet(source) => source.time_reader(),
-        }
-    }
-}
+/// Rows between two questions whether the run is to end.
+const BLOCK: u64 = 1024;
 
 /// Reads a log row by row.
 pub struct LogReader {
@@ -87,6 +41,8 @@ pub struct LogReader {
     any_order: bool,
     /// Tells whether the input has nothing more at once.
     is_waiting: Option<Box<dyn Fn() -> bool>>,
+    /// Tells whether the caller wants the run to end.
+    is_stopped: Option<Box<dyn FnMut() -> bool>>,
     /// Whether readings in another unit than their column's are told, not refused.
     any_unit: bool,
     ended: bool,
@@ -115,6 +71,17 @@ impl LogReader {
         let mut cautions = Cautions::default();
         let (source, columns) = CsvSource::open(input, file, options, &mut cautions)?;
         Ok(Self::new(Source::Csv(Box::new(source)), columns, file, options, cautions))
+    }
+
+    /// Reads a log in memory.
+    ///
+    /// # Errors
+    /// The names of its columns do not say what they mean, or a column that is read has no numbers or dates.
+    pub fn from_memory(log: MemoryLog, options: &LogOptions) -> Result<Self, LogError> {
+        let mut cautions = Cautions::default();
+        let file = log.name.clone();
+        let (source, columns) = MemorySource::open(log, options, &mut cautions)?;
+        Ok(Self::new(Source::Memory(Box::new(source)), columns, &file, options, cautions))
     }
 
     /// Reads a Parquet file; `file` is what messages call it.
@@ -159,11 +126,7 @@ impl LogReader {
 
     /// What counted the cells of a log that is inspected.
     pub(super) fn tap(&self) -> Option<&Tap> {
-        match &self.source {
-            Source::Csv(source) => source.tap(),
-            #[cfg(feature = "parquet")]
-            Source::Parquet(_) => None,
-        }
+        self.source.tap()
     }
 
     fn new(source: Source, columns: Columns, file: &str, options: &LogOptions, cautions: Cautions) -> Self {
@@ -182,6 +145,7 @@ impl LogReader {
             cautions,
             any_order: options.any_order,
             is_waiting: None,
+            is_stopped: None,
             any_unit: false,
             ended: false,
             columns,
@@ -204,9 +168,20 @@ impl LogReader {
         self.is_waiting = Some(Box::new(is_waiting));
     }
 
+    /// Asks every thousand rows whether the run is to end, which is then an error.
+    pub(crate) fn stops_when(&mut self, is_stopped: impl FnMut() -> bool + 'static) {
+        self.is_stopped = Some(Box::new(is_stopped));
+    }
+
     /// Narrows what a channel can read, SI; what lies outside is taken as missing.
     pub fn set_range(&mut self, channel: usize, low: f64, high: f64) {
         self.ranges[channel] = (low, high);
+    }
+
+    /// What becomes of rows that come later, without a log.
+    pub(crate) fn row_screen(&self) -> RowScreen {
+        let columns = self.columns.readings.iter().zip(&self.ranges);
+        RowScreen(columns.map(|(column, &range)| (column.index, column.unit, range)).collect())
     }
 
     /// The option that makes a channel's pressure count from the air; `None`: it does, or it is no pressure.
@@ -237,11 +212,7 @@ impl LogReader {
 
     /// Share of the log that has been read, where the file says how long it is.
     pub fn fraction(&self) -> Option<f64> {
-        match &self.source {
-            Source::Csv(_) => None,
-            #[cfg(feature = "parquet")]
-            Source::Parquet(source) => Some(source.fraction()),
-        }
+        self.source.fraction()
     }
 
     /// Place of a row for a message: file and line.
@@ -267,6 +238,11 @@ impl LogReader {
         let found = self.advance();
         if !found.map_err(|error| self.source.explained(error))? {
             return self.end().map(|()| None);
+        }
+        if self.sampling.rows().is_multiple_of(BLOCK)
+            && self.is_stopped.as_mut().is_some_and(|is_stopped| is_stopped())
+        {
+            return Err(LogError::Stopped { at: self.place(&self.row) });
         }
         self.screen()?;
         self.sampling.push(self.row.time_s);

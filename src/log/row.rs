@@ -1,5 +1,6 @@
 //! A row of a log, as a source gives it and as a reader does.
 use super::columns::{Columns, TruthQuantity};
+use crate::thermal::units::Unit;
 
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +29,22 @@ pub struct Truth {
 impl Truth {
     /// Nothing is known.
     pub(crate) const UNKNOWN: Self = Self { gas_mean_k: f64::NAN, mass_kg: f64::NAN, outflow_kg_s: f64::NAN };
+}
+
+/// What becomes of the cells of a row that comes without a log: units and ranges of the channels.
+#[derive(Clone, Debug)]
+pub(crate) struct RowScreen(pub(super) Vec<(usize, &'static Unit, (f64, f64))>);
+
+impl RowScreen {
+    /// Readings in the order of the channels, SI, from the cells by the positions of their columns; NaN for one that is missing or
+    /// that no sensor can read.
+    pub(crate) fn readings(&self, cell: impl Fn(usize) -> f64) -> Vec<f64> {
+        let reading = |&(column, unit, (low, high)): &(usize, &'static Unit, (f64, f64))| {
+            let value = unit.to_si(cell(column));
+            if (low..=high).contains(&value) { value } else { f64::NAN }
+        };
+        self.0.iter().map(reading).collect()
+    }
 }
 
 /// A row as a source gives it: readings, then truth, SI.

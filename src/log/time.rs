@@ -72,6 +72,24 @@ impl TimeReader {
         }
     }
 
+    /// The zone in which the dates themselves are told.
+    pub(super) fn set_own_zone(&mut self, zone: Option<Zone>) {
+        self.own_zone = zone.map(|zone| (zone, Vec::new()));
+    }
+
+    /// A time that is a number in the column's unit, s; `None` is a missing one.
+    ///
+    /// # Errors
+    /// It is infinite, or the column has dates.
+    pub(super) fn number(&self, value: f64) -> Result<Option<f64>, ()> {
+        match self.form {
+            TimeForm::Number(unit) if !value.is_infinite() => {
+                Ok(Some(unit.to_si(value)).filter(|time_s| !time_s.is_nan()))
+            }
+            _ => Err(()),
+        }
+    }
+
     /// Counts a date without zone where nobody has said which one it has.
     pub(super) fn without_zone(&self, shown: impl FnOnce() -> (String, String), cautions: &mut Cautions) {
         if self.zone.is_none() {

@@ -7,6 +7,7 @@ mod bench_detector;
 mod book;
 mod browser;
 mod calibrate;
+mod calls;
 mod commission;
 mod estimate;
 mod examples;

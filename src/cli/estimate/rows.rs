@@ -2,19 +2,11 @@
 use super::*;
 use crate::cli::row_stream::RowStream;
 use crate::cli::views::RenderedViews;
-use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::{Estimate, Innovation};
 use crate::log::{LogReader, Truth};
-use crate::report::Clock;
 use crate::report::estimate::{EstimateRow, FigureData, Innovations, Score, Summary};
+use crate::report::{Clock, Report, Table};
 use serde_json::Map;
-
-/// Change of the mass, relative, after which the slope of the settled pressure is taken anew.
-const SLOPE_AGES: f64 = 1e-3;
-/// Step of the mass for that slope, relative.
-const SLOPE_STEP: f64 = 1e-4;
-/// Temperature at which pressures are compared, K: 15 °C.
-const SETTLED_K: f64 = 288.15;
 
 /// A run that is under way.
 pub(super) struct Rows<'a> {
@@ -22,6 +14,18 @@ pub(super) struct Rows<'a> {
     selection: &'a Selection,
     readings: Vec<f64>,
     results: Results,
+}
+
+/// A run that has ended.
+pub(super) struct Finished {
+    /// What is left of it.
+    pub summary: Summary,
+    /// Rows that a caller takes.
+    pub rows: Option<Table>,
+    /// Report that a caller takes.
+    pub report: Option<Report>,
+    /// Zone in which the dates of the log are told.
+    pub zone: Option<String>,
 }
 
 /// Where estimates go.
@@ -32,10 +36,7 @@ struct Results {
     innovations: Innovations,
     score: Score,
     last: Option<EstimateRow>,
-    /// Model of the gas for the slope of its settled pressure.
-    cylinder: Cylinder,
-    /// Mass, kg, and slope of the settled pressure there, Pa/kg.
-    slope: (f64, f64),
+    slope: Slope,
 }
 
 impl<'a> Rows<'a> {
@@ -58,8 +59,7 @@ impl<'a> Rows<'a> {
             innovations: Innovations::new(&names),
             score: Score::default(),
             last: None,
-            slope: (f64::NAN, f64::NAN),
-            cylinder,
+            slope: Slope::of(cylinder),
             figure: options.views.is_any_requested().then(|| FigureData::new(names)),
         };
         Ok(Self { pass, selection, readings: Vec::new(), results })
@@ -83,7 +83,7 @@ impl<'a> Rows<'a> {
         inputs: &Inputs,
         log: &LogInput,
         options: &Options,
-    ) -> anyhow::Result<Summary> {
+    ) -> anyhow::Result<Finished> {
         let mut results = self.results;
         let observer =
             self.pass.finish(|estimate, truth, innovations| results.take(estimate, truth, innovations))?;
@@ -120,17 +120,16 @@ impl<'a> Rows<'a> {
             let document = json!({ "provenance": provenance.to_json(), "learned": learned });
             target.write(format!("{}\n", serde_json::to_string_pretty(&document)?).as_bytes())?;
         }
-        results.stream.finish()?;
-        Ok(summary)
+        let report = views.kept;
+        let zone = log.reader.zone().map(ToString::to_string);
+        Ok(Finished { rows: results.stream.finish()?, summary, report, zone })
     }
 }
 
 impl Results {
     /// Writes an estimate and counts it.
     fn take(&mut self, estimate: Estimate, truth: &Truth, innovations: &[Innovation]) -> anyhow::Result<()> {
-        let leak_pa_s = estimate.leak_kg_s * self.slope_pa_kg(&estimate)?;
-        let time = self.clock.date_of_log(estimate.time_s).unwrap_or_default();
-        let row = EstimateRow { time, estimate, leak_pa_s, verdict: "" };
+        let row = self.slope.row(estimate, &self.clock)?;
         self.stream.push(&row)?;
         self.innovations.push(innovations);
         self.score.push(&estimate, truth);
@@ -139,18 +138,5 @@ impl Results {
         }
         self.last = Some(row);
         Ok(())
-    }
-
-    /// Slope of the settled pressure in the mass, Pa/kg.
-    fn slope_pa_kg(&mut self, estimate: &Estimate) -> anyhow::Result<f64> {
-        let mass_kg = estimate.mass_kg;
-        let age = (mass_kg / self.slope.0 - 1.0).abs();
-        if age.is_nan() || age > SLOPE_AGES {
-            let model = self.cylinder.model();
-            let above = model.settled_pressure_pa(mass_kg * (1.0 + SLOPE_STEP), SETTLED_K)?;
-            let below = model.settled_pressure_pa(mass_kg * (1.0 - SLOPE_STEP), SETTLED_K)?;
-            self.slope = (mass_kg, (above - below) / (2.0 * SLOPE_STEP * mass_kg));
-        }
-        Ok(self.slope.1)
     }
 }

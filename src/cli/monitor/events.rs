@@ -14,12 +14,15 @@ pub(super) enum EventSink {
     File(Appended),
     /// Words.
     Stderr,
+    /// Lines of JSON in memory.
+    Kept(Vec<String>),
 }
 
 impl EventSink {
     /// Opens the file, if one is wanted; `goes_on` keeps what it has.
     pub(super) fn open(target: Option<&Target>, goes_on: bool, messages: &Messages) -> anyhow::Result<Self> {
         Ok(match target {
+            Some(Target::Memory) => Self::Kept(Vec::new()),
             Some(target) => Self::File(Appended::open(target, goes_on, messages)?),
             None => Self::Stderr,
         })
@@ -30,6 +33,10 @@ impl EventSink {
         match self {
             Self::File(file) => file.line(&event_line(event, naming)),
             Self::Stderr => console.print(&event_text(event, naming)),
+            Self::Kept(lines) => {
+                lines.push(event_line(event, naming));
+                Ok(())
+            }
         }
     }
 
@@ -43,14 +50,19 @@ impl EventSink {
         match self {
             Self::File(file) => file.line(&alarm_line(alarm, &naming.clock)),
             Self::Stderr => console.print(&alarm_text(alarm, &naming.clock)),
+            Self::Kept(lines) => {
+                lines.push(alarm_line(alarm, &naming.clock));
+                Ok(())
+            }
         }
     }
 
-    /// Ends the file.
-    pub(super) fn finish(self) -> anyhow::Result<()> {
+    /// Ends the file, or hands out the lines in memory.
+    pub(super) fn finish(self) -> anyhow::Result<Vec<String>> {
         match self {
-            Self::File(file) => file.finish(),
-            Self::Stderr => Ok(()),
+            Self::File(file) => file.finish().map(|()| Vec::new()),
+            Self::Stderr => Ok(Vec::new()),
+            Self::Kept(lines) => Ok(lines),
         }
     }
 
@@ -58,7 +70,7 @@ impl EventSink {
     pub(super) fn cold_start(&mut self, reason: &str) -> anyhow::Result<()> {
         match self {
             Self::File(file) => file.line(&json!({ "event": "cold-start", "reason": reason }).to_string()),
-            Self::Stderr => Ok(()),
+            Self::Stderr | Self::Kept(_) => Ok(()),
         }
     }
 }

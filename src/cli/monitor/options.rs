@@ -93,6 +93,11 @@ impl Options {
         })
     }
 
+    /// The same for a caller: nothing is written.
+    pub(super) fn kept(self) -> anyhow::Result<Self> {
+        Ok(Self { data: Target::Memory, events: Some(Target::Memory), views: Views::kept(), ..self })
+    }
+
     /// Whether rows come one by one through a pipe, so that each result must go out at once.
     pub(super) fn is_live(&self) -> bool {
         self.log == "-" || Path::new(&self.log).metadata().is_ok_and(|found| !found.is_file())
@@ -123,7 +128,7 @@ fn limits(given: &QuantityArguments<super::arguments::MonitorQuantities>) -> any
 fn state_file(target: Target) -> anyhow::Result<PathBuf> {
     match target {
         Target::File(path) => Ok(path),
-        Target::Stdout | Target::Device(_) => {
+        Target::Stdout | Target::Device(_) | Target::Memory => {
             bail!("--state must be a file: a state is read before the run and replaced after it")
         }
     }

@@ -4,8 +4,8 @@ use super::*;
 use crate::cli::row_stream::RowStream;
 use crate::detector::monitor::Output;
 use crate::detector::prognosis::Contents;
-use crate::report::Clock;
 use crate::report::monitor::{self as report, MonitorRow, Summary};
+use crate::report::{Clock, Table};
 use crate::thermal::units::QUOTED_K;
 use crate::thermal::vessel::Vessel;
 use serde_json::{Map, json};
@@ -21,7 +21,7 @@ pub(super) struct Rows {
 
 /// Slope of the settled pressure in the mass. It depends on the class of the mass alone, not on what came before, so that a run that goes
 /// on from a state writes what one run would have.
-struct Slope {
+pub(super) struct Slope {
     contents: Contents,
     class: Option<i64>,
     pa_kg: f64,
@@ -44,8 +44,7 @@ impl Rows {
         } else {
             RowStream::begin(data, options.format, fields, inputs, &names, log)?
         };
-        let slope = Slope { contents: Contents::of(vessel), class: None, pa_kg: f64::NAN };
-        Ok(Self { stream, slope })
+        Ok(Self { stream, slope: Slope::of(vessel) })
     }
 
     /// Writes an output.
@@ -77,7 +76,7 @@ impl Rows {
         log: &LogInput,
         summary: Option<&Summary>,
         error: Option<&str>,
-    ) -> anyhow::Result<()> {
+    ) -> anyhow::Result<Option<Table>> {
         let members = [("summary", json!(summary.map(report::document))), ("error", json!(error))];
         let members = members.map(|(name, value)| (name.to_owned(), value));
         self.stream.tail(inputs, log, Map::from_iter(members))?;
@@ -86,8 +85,13 @@ impl Rows {
 }
 
 impl Slope {
+    /// Of the gas in a vessel.
+    pub(super) fn of(vessel: &Vessel) -> Self {
+        Self { contents: Contents::of(vessel), class: None, pa_kg: f64::NAN }
+    }
+
     /// Slope at a mass, Pa/kg.
-    fn at(&mut self, mass_kg: f64) -> anyhow::Result<f64> {
+    pub(super) fn at(&mut self, mass_kg: f64) -> anyhow::Result<f64> {
         let class = (mass_kg.ln() / CLASS).round() as i64;
         if self.class != Some(class) {
             let middle_kg = (class as f64 * CLASS).exp();

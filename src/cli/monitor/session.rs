@@ -8,13 +8,29 @@ use crate::detector::monitor::intake::Counts;
 use crate::detector::monitor::{Monitor, Outcome, Output};
 use crate::log::Truth;
 use crate::report::monitor::{self as report, FigureData, Naming, RowCounts, Summary};
-use crate::report::{Clock, Shown};
+use crate::report::{Clock, Report, Shown, Table};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Instant;
 
 /// Most logs whose beginning is remembered.
 const MOST_LOGS: usize = 64;
+
+/// A run that has ended.
+pub(super) struct Finished {
+    /// What is left of it; `None`: no row has come out yet.
+    pub summary: Option<Summary>,
+    /// What could not be written at the end.
+    pub written: anyhow::Result<()>,
+    /// Rows that a caller takes.
+    pub rows: Option<Table>,
+    /// Events and alarms that a caller takes.
+    pub events: Vec<String>,
+    /// Report that a caller takes.
+    pub report: Option<Report>,
+    /// Zone in which the dates of the log are told.
+    pub zone: Option<String>,
+}
 
 /// What a run uses.
 pub(super) struct RunContext<'a> {
@@ -281,16 +297,16 @@ impl<'a> Session<'a> {
         self.rows.flush()?;
         self.save(log)?;
         self.rows.finish(inputs, log, None, Some(&format!("{error:#}")))?;
-        self.sink.finish()
+        self.sink.finish().map(|_| ())
     }
 
-    /// Ends the run; files appear here. No summary: no row has come out yet. With it, what could not be written at the end.
+    /// Ends the run; files appear here.
     pub(super) fn finish(
         mut self,
         title: String,
         log: &LogInput,
         progress: &Progress,
-    ) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
+    ) -> anyhow::Result<Finished> {
         let RunContext { options, inputs, messages, .. } = self.context;
         if self.known_rows > 0 && self.known_rows == log.reader.sampling().rows() {
             let until = self.naming.clock.text_of_log(self.last_stamp_s);
@@ -331,10 +347,14 @@ impl<'a> Session<'a> {
             None => RenderedViews::default(),
         };
         views.write()?;
+        let report = views.kept;
         self.rows.flush()?;
         let saved = self.save(log);
-        let written = self.rows.finish(inputs, log, summary.as_ref(), None).and(self.sink.finish());
-        Ok((summary, written.and(saved)))
+        let (mut rows, mut events) = (None, Vec::new());
+        let written = self.rows.finish(inputs, log, summary.as_ref(), None).map(|table| rows = table);
+        let written = written.and(self.sink.finish().map(|lines| events = lines)).and(saved);
+        let zone = log.reader.zone().map(ToString::to_string);
+        Ok(Finished { summary, written, rows, events, report, zone })
     }
 }
 

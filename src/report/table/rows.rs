@@ -1,7 +1,7 @@
 //! Rows that are written while a log is read.
 use super::csv::Records;
 use super::json::RowFormatter;
-use super::{Cell, Digits, Field, Source};
+use super::{Cell, Column, Digits, Field, Source, Table, Values};
 use serde::ser::{SerializeSeq, Serializer as _};
 use serde_json::{Serializer, json};
 
@@ -58,6 +58,30 @@ impl<R> Rows<R> {
         }
         self.is_first = false;
         &self.text
+    }
+
+    /// A table with these columns and no row.
+    pub(crate) fn empty_table(&self) -> Table {
+        let column = |field: &Field<R>| Column {
+            name: field.name.to_owned(),
+            unit: "",
+            values: match field.source {
+                Source::Number(digits, _) => Values::Numbers(digits, Vec::new()),
+                Source::Text(_) => Values::Texts(Vec::new()),
+            },
+        };
+        Table { columns: self.fields.iter().map(column).collect() }
+    }
+
+    /// Adds a record to a table with these columns, with all digits.
+    pub(crate) fn keep(&self, record: &R, table: &mut Table) {
+        for (field, column) in self.fields.iter().zip(&mut table.columns) {
+            match (&field.source, &mut column.values) {
+                (Source::Number(_, value), Values::Numbers(_, cells)) => cells.push(value(record)),
+                (Source::Text(value), Values::Texts(cells)) => cells.push(value(record).to_owned()),
+                _ => {}
+            }
+        }
     }
 
     fn json(&mut self, record: &R) {

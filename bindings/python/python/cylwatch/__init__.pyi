@@ -1,0 +1,170 @@
+"""Types of cylwatch. Columns and options carry their units in their names; pressures are absolute unless ``_barg``."""
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from os import PathLike
+from typing import Any, Protocol, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+
+class ArrowTable(Protocol):
+    """A table of pandas (2.2 or later), Polars, pyarrow or any other library with Arrow's PyCapsule interface."""
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
+
+Document = str | PathLike[str] | Mapping[str, Any]
+"""Name of a built-in vessel or scenario, path of a TOML file, TOML as text, or the content of such a file as a dict."""
+
+Option = bool | int | float | str | datetime | PathLike[str] | Sequence[Any] | Mapping[str, Any] | None
+"""Value of an option: ``limit_bar=150`` is ``--limit-bar 150``, ``settled=True`` is ``--settled``, a list is the option several times."""
+
+class CylwatchError(ValueError):
+    """What the program refuses, in its words."""
+
+    file: str | None
+    """File that is wrong; ``<frame>`` is a table, ``<vessel>`` a text or dict."""
+    line: int | None
+    """Line of the file, or row of the table, from 1."""
+    remedy: str | None
+    """What to do."""
+
+class Rows:
+    """Rows of a result: shape (rows, columns), all digits, missing values null (NaN in numpy).
+
+    ``pandas.DataFrame.from_arrow(rows)``, ``polars.DataFrame(rows)`` and ``pyarrow.table(rows)`` take it as it is. The column
+    ``time`` (logs with dates) has timestamps in the zone of the log, in whole seconds; ``time_s`` counts from the first row.
+    """
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, which end in their units."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        """A column, shape (rows,): float64, datetime64[ns] in UTC for ``time``, or objects for texts."""
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
+    def __arrow_c_schema__(self) -> object: ...
+
+class Result:
+    """Result of a call. A notebook shows its report with the figure, ``print`` its summary."""
+
+    @property
+    def rows(self) -> Rows:
+        """Rows in the columns of the command's data."""
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """Events and alarms as of ``monitor --events``, in the order in which they happened."""
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The summary of the command's JSON."""
+
+    @property
+    def verdict(self) -> str | None:
+        """Verdict at the end: tight, leak, discharge, refill, sensor fault or unknown; None where none is given."""
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive."""
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions, which the command writes to stderr."""
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        """A column of the rows, shape (rows,)."""
+
+    def __len__(self) -> int: ...
+    def to_csv(self) -> str:
+        """The rows as the command writes them, with its digits."""
+
+    def to_html(self) -> str:
+        """The report as one page that refers to nothing outside."""
+
+    def _repr_html_(self) -> str: ...
+
+def monitor(vessel: Document, log: ArrowTable | str | PathLike[str], **options: Option) -> Result:
+    """Decides for every row of a log whether gas is being lost: ``cylwatch monitor``.
+
+    log: shape (rows, columns) with ``time_s`` (or another unit) or ``time`` (datetimes), and readings such as ``shoulder_degc``,
+    ``valve_degc``, ``pressure_bar``; NaN, null and NaT are missing. A path is a CSV file.
+
+    Options, as of the command: ``limit_bar=160``, ``coldest_degc=-25``, ``next_service_d=30``, ``lateness_s=0``, ``step_min=1``,
+    ``false_alarm_years=10``, ``fill_pressure_bar``, ``fill_temperature_degc``, ``fill_mass_kg``, ``settled=False``,
+    ``map={"shoulder_degc": "T1"}``, ``zone="Europe/Berlin"``, ``announced=[(from, until)]``; ``sensors``, ``commissioned``,
+    ``learned_in`` as path, text or dict.
+    """
+
+def estimate(vessel: Document, log: ArrowTable | str | PathLike[str], **options: Option) -> Result:
+    """Estimates gas temperature, mass and leak rate with standard deviations: ``cylwatch estimate``.
+
+    log as of ``monitor``. Options: those of the fill and the log, ``filter="ekf"``, ``smooth=False``, ``sensors``, ``learned_in``.
+    """
+
+def simulate(vessel: Document, scenario: Document, seed: int = 0, **options: Option) -> Result:
+    """Simulates a vessel in a scenario: ``cylwatch simulate``.
+
+    The rows have temperatures in degC, pressure in bar, mass in kg, and the readings of the scenario's sensors with the errors that
+    ``seed`` draws (``measured_<sensor>_<unit>``); they are a log for ``monitor`` and ``estimate``. Option: ``relative_tolerance=1e-6``.
+    """
+
+def properties(gas: str, **options: Option) -> dict[str, float | None]:
+    """Properties of a gas at a state: ``cylwatch properties``; values in SI, the unit in the key.
+
+    Two of temperature, pressure and density fix the state: ``temperature_degc=15, pressure_bar=200``. ``equation="reference"``,
+    ``"ideal-gas"`` or ``"peng-robinson"``.
+    """
+
+class Step(TypedDict):
+    """What has become final with a step."""
+
+    rows: list[dict[str, Any]]
+    """Rows in the columns of the command's data; None is a missing value."""
+
+class MonitorStep(Step):
+    """The same of a monitor."""
+
+    events: list[dict[str, Any]]
+    """Events and alarms of these rows."""
+
+class Monitor:
+    """A monitor that is fed row by row. Its rows are those of ``monitor`` on the same log, to the last bit."""
+
+    def __init__(self, vessel: Document, **options: Option) -> None:
+        """Options as of ``monitor``. Without a stated fill, rows wait until one has a pressure."""
+
+    def step(self, time: float | datetime, readings: Mapping[str, float | None]) -> MonitorStep:
+        """Takes in a row. time: s, or a datetime with its zone. The first step names all readings, with units."""
+
+    def finish(self) -> MonitorStep:
+        """The rows that are held back, as at the end of a log."""
+
+    @property
+    def verdict(self) -> str:
+        """Verdict of the last row that came out; unknown before."""
+
+    def save(self) -> bytes:
+        """All of it as bytes, at any row."""
+
+    def restore(self, state: bytes) -> None:
+        """Goes on from bytes as if there had been no stop; vessel and options must be the same."""
+
+class Observer:
+    """An observer that is fed row by row. Its rows are those of ``estimate`` on the same log, to the last bit."""
+
+    def __init__(self, vessel: Document, **options: Option) -> None:
+        """Options as of ``estimate``, but for ``smooth``. Without a stated fill, rows wait until one has a pressure."""
+
+    def step(self, time: float | datetime, readings: Mapping[str, float | None]) -> Step:
+        """Takes in a row. time: s, or a datetime with its zone. The first step names all readings, with units."""
+
+    def save(self) -> bytes:
+        """All of it as bytes, at any row; filter ekf only."""
+
+    def restore(self, state: bytes) -> None:
+        """Goes on from bytes as if there had been no stop; vessel and options must be the same."""

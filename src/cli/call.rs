@@ -1,0 +1,98 @@
+//! Calls from a program ([`crate::run`]): the arguments of a command line, without a shell.
+use super::arguments::{Arguments, Command};
+use super::host::{Host, Kept};
+use super::input::Inputs;
+use super::message::Messages;
+use super::{estimate, monitor, properties, simulate};
+use crate::report::Table;
+use anyhow::{anyhow, bail};
+use clap::FromArgMatches;
+use std::ffi::OsString;
+
+/// Options that name a place for a result or belong to a terminal: a caller has the result in memory.
+const FOR_A_SHELL: [&str; 12] = [
+    "output",
+    "format",
+    "events",
+    "plot",
+    "report",
+    "quiet",
+    "state",
+    "save-every",
+    "cold-start",
+    "acknowledge",
+    "learned-out",
+    "list",
+];
+
+/// Runs a command for a caller; beside the result, the cautions of the run, which are there with an error, too.
+pub(crate) fn called(host: Host, arguments: &[OsString]) -> (anyhow::Result<Kept>, Vec<String>) {
+    let messages = Messages::kept();
+    let kept = parsed(arguments).and_then(|command| {
+        let inputs = Inputs::of(host);
+        match command {
+            Command::Monitor(arguments) => monitor::kept(*arguments, &inputs, &messages),
+            Command::Estimate(arguments) => estimate::kept(*arguments, &inputs, &messages),
+            Command::Simulate(arguments) => simulate::kept(arguments, &inputs, &messages),
+            _ => bail!("only monitor, estimate and simulate have a result in rows"),
+        }
+    });
+    (kept, messages.take())
+}
+
+/// The properties of a gas at the state that the arguments give: a table of one row.
+pub(crate) fn properties_of(arguments: &[OsString]) -> anyhow::Result<Table> {
+    match parsed(arguments)? {
+        Command::Properties(arguments) => properties::kept(&arguments),
+        _ => bail!("this is no command for properties"),
+    }
+}
+
+/// A monitor step by step.
+pub(crate) fn monitor_steps(
+    arguments: &[OsString],
+    documents: Vec<(String, String)>,
+) -> anyhow::Result<monitor::Steps> {
+    match parsed(arguments)? {
+        Command::Monitor(arguments) => monitor::Steps::new(*arguments, documents),
+        _ => bail!("this is no call of monitor"),
+    }
+}
+
+/// An observer step by step.
+pub(crate) fn estimate_steps(
+    arguments: &[OsString],
+    documents: Vec<(String, String)>,
+) -> anyhow::Result<estimate::Steps> {
+    match parsed(arguments)? {
+        Command::Estimate(arguments) => estimate::Steps::new(*arguments, documents),
+        _ => bail!("this is no call of estimate"),
+    }
+}
+
+fn parsed(arguments: &[OsString]) -> anyhow::Result<Command> {
+    for argument in arguments {
+        let text = argument.to_string_lossy();
+        let option = text.strip_prefix("--").map(|option| option.split('=').next().unwrap_or(option));
+        if let Some(option) =
+            option.filter(|option| FOR_A_SHELL.contains(option) || option.starts_with("save-every"))
+        {
+            bail!("--{option} is for the command line: the result is in memory");
+        }
+        if text.starts_with('-') && option.is_none() {
+            bail!("{text} is no input: standard input is for the command line");
+        }
+    }
+    let words = std::iter::once(OsString::from("cylwatch")).chain(arguments.iter().cloned());
+    let refused = |error: clap::Error| anyhow!(words_of(&error));
+    let mut matches = Arguments::prepared().try_get_matches_from(words).map_err(refused)?;
+    Ok(Arguments::from_arg_matches_mut(&mut matches).map_err(refused)?.command)
+}
+
+/// The words of a refused argument, without what only a terminal has use for.
+fn words_of(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+    let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
+    lines.join("; ").trim_start_matches("error: ").to_owned()
+}

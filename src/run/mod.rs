@@ -1,0 +1,230 @@
+//! The commands for programs: what `cylwatch monitor`, `estimate`, `simulate` and `properties` do, without a shell.
+//!
+//! A [`Call`] names vessel, log and options as a command line does; the log may be columns in memory ([`MemoryLog`]). The run goes
+//! the way of the command, so that every number is the command's, and hands out an [`Outcome`] instead of files: rows with all
+//! digits, events, the summary, the report with its figure.
+//!
+//! ```
+//! use cylwatch::log::{Cells, MemoryLog};
+//! use cylwatch::run::{self, Call};
+//!
+//! # fn main() -> Result<(), run::RunError> {
+//! let hours: Vec<f64> = (0..48).map(f64::from).collect();
+//! let log = MemoryLog {
+//!     name: "frame".to_owned(),
+//!     columns: vec![
+//!         ("shoulder_degc".to_owned(), Cells::Numbers(hours.iter().map(|h| 15.0 + (0.26 * h).sin()).collect())),
+//!         ("pressure_bar".to_owned(), Cells::Numbers(hours.iter().map(|h| 200.0 + 0.7 * (0.26 * h).sin()).collect())),
+//!         ("time_h".to_owned(), Cells::Numbers(hours)),
+//!     ],
+//! };
+//! let outcome = run::monitor(Call::new("nitrogen-20l").log(log).option("settled", None))?;
+//! assert_eq!((outcome.rows.columns[0].name.as_str(), outcome.exit_code == 2), ("time_s", false));
+//! # Ok(())
+//! # }
+//! ```
+mod error;
+mod steps;
+
+pub use crate::log::{Cells, MemoryLog};
+pub use error::RunError;
+pub use steps::{MonitorSteps, ObserverSteps, StepTime};
+
+use crate::cli::{Host, called, properties_of};
+use crate::report::{Page, Provenance, Report, Table};
+use serde_json::Value;
+use std::cell::RefCell;
+use std::ffi::OsString;
+use std::path::Path;
+use std::rc::Rc;
+
+/// What messages call a vessel that is given as text.
+const VESSEL: &str = "<vessel>";
+/// What messages call a scenario that is given as text.
+const SCENARIO: &str = "<scenario>";
+
+/// A call of a command.
+#[derive(Default)]
+pub struct Call {
+    host: Host,
+    vessel: OsString,
+    /// Log or scenario.
+    second: Option<OsString>,
+    options: Vec<OsString>,
+}
+
+impl Call {
+    /// A call for a vessel: the name of a built-in one, or the path of a file.
+    pub fn new(vessel: impl Into<OsString>) -> Self {
+        let host = Host { command: "a call from a program".to_owned(), ..Host::default() };
+        Self { host, vessel: vessel.into(), ..Self::default() }
+    }
+
+    /// A call for a vessel that is given as TOML.
+    pub fn of_text(vessel: impl Into<String>) -> Self {
+        Self::new(VESSEL).document(VESSEL, vessel)
+    }
+
+    /// The call as provenance shows it.
+    #[must_use]
+    pub fn shown_as(mut self, command: impl Into<String>) -> Self {
+        self.host.command = command.into();
+        self
+    }
+
+    /// With a log in memory.
+    #[must_use]
+    pub fn log(mut self, log: MemoryLog) -> Self {
+        self.second = Some(OsString::from(&log.name));
+        self.host.log = RefCell::new(Some(log));
+        self
+    }
+
+    /// With the log of a file.
+    #[must_use]
+    pub fn log_file(mut self, path: &Path) -> Self {
+        self.second = Some(path.into());
+        self
+    }
+
+    /// With a scenario: the name of a built-in one, or the path of a file.
+    #[must_use]
+    pub fn scenario(mut self, scenario: impl Into<OsString>) -> Self {
+        self.second = Some(scenario.into());
+        self
+    }
+
+    /// With a scenario that is given as TOML.
+    #[must_use]
+    pub fn scenario_of_text(self, scenario: impl Into<String>) -> Self {
+        self.scenario(SCENARIO).document(SCENARIO, scenario)
+    }
+
+    /// With an option of the command line, without its dashes (`limit-bar`), and its value; `None`: a switch. Options that name
+    /// places of results are refused by the run.
+    #[must_use]
+    pub fn option(mut self, name: &str, value: Option<&str>) -> Self {
+        self.options.push(match value {
+            Some(value) => format!("--{name}={value}").into(),
+            None => format!("--{name}").into(),
+        });
+        self
+    }
+
+    /// With a text that stands for the file `name` wherever an option names it.
+    #[must_use]
+    pub fn document(mut self, name: &str, text: impl Into<String>) -> Self {
+        self.host.documents.push((name.to_owned(), text.into()));
+        self
+    }
+
+    /// With a question that is asked every thousand rows: whether the run is to end, which is then
+    /// [an error](RunError::is_stopped).
+    #[must_use]
+    pub fn stopped_by(mut self, stop: impl FnMut() -> bool + 'static) -> Self {
+        self.host.stop = Some(Rc::new(RefCell::new(stop)));
+        self
+    }
+
+    fn arguments(&self, command: &str) -> Vec<OsString> {
+        let places = [Some(command.into()), Some(self.vessel.clone()), self.second.clone()];
+        places.into_iter().flatten().chain(self.options.iter().cloned()).collect()
+    }
+
+    /// A log's place is filled by what never is a file.
+    fn arguments_without_log(&self, command: &str) -> Vec<OsString> {
+        let places = [command.into(), self.vessel.clone(), "<steps>".into()];
+        places.into_iter().chain(self.options.iter().cloned()).collect()
+    }
+
+    fn run(self, command: &str) -> Result<Outcome, RunError> {
+        let arguments = self.arguments(command);
+        let (kept, cautions) = called(self.host, &arguments);
+        let kept = kept.map_err(|error| RunError::of(&error))?;
+        Ok(Outcome {
+            rows: kept.rows,
+            zone: kept.zone,
+            events: kept.events,
+            summary: kept.summary,
+            verdict: kept.verdict,
+            exit_code: kept.exit_code,
+            cautions,
+            report: kept.report,
+            provenance: kept.provenance,
+        })
+    }
+}
+
+/// What a run hands out.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Rows with all digits, in the columns and units of the command's data; its files have fewer digits.
+    pub rows: Table,
+    /// Zone of the dates in the column `time`, as `Europe/Berlin` or `+01:00`; `None`: UTC, or there are none.
+    pub zone: Option<String>,
+    /// Events and alarms in the order in which they happened, each a JSON object as of the command's `--events`.
+    pub events: Vec<String>,
+    /// The summary, as the command's JSON has it.
+    pub summary: Value,
+    /// Verdict at the end; empty: none is given.
+    pub verdict: &'static str,
+    /// Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive.
+    pub exit_code: u8,
+    /// Cautions, which the command writes to stderr.
+    pub cautions: Vec<String>,
+    /// The summary for people with its figure.
+    pub report: Report,
+    /// Where all this comes from.
+    pub provenance: Provenance,
+}
+
+impl Outcome {
+    /// The rows as the command writes them, with comment lines at the top.
+    pub fn to_csv(&self) -> String {
+        self.rows.to_csv(&self.provenance, &[])
+    }
+
+    /// The report as a page that refers to nothing outside.
+    ///
+    /// # Errors
+    /// The figure cannot be drawn.
+    pub fn to_html(&self) -> Result<String, RunError> {
+        let page = Page { report: &self.report, provenance: &self.provenance }.to_html();
+        page.map_err(|error| RunError::of(&error.into()))
+    }
+}
+
+/// Monitors a log: `cylwatch monitor`.
+///
+/// # Errors
+/// As of the command: vessel, log or an option is refused, or the run was stopped.
+pub fn monitor(call: Call) -> Result<Outcome, RunError> {
+    call.run("monitor")
+}
+
+/// Estimates gas temperature, mass and leak rate from a log: `cylwatch estimate`.
+///
+/// # Errors
+/// As of the command: vessel, log or an option is refused, or the run was stopped.
+pub fn estimate(call: Call) -> Result<Outcome, RunError> {
+    call.run("estimate")
+}
+
+/// Simulates a vessel in a scenario: `cylwatch simulate`.
+///
+/// # Errors
+/// As of the command: vessel, scenario or an option is refused, or the solver fails.
+pub fn simulate(call: Call) -> Result<Outcome, RunError> {
+    call.run("simulate")
+}
+
+/// Properties of a gas at a state: `cylwatch properties`; a table of one row with the units in the names of its columns. The
+/// options fix two of temperature, pressure and density, as `("temperature-degc", "15")`.
+///
+/// # Errors
+/// The gas is unknown, an option is refused, or the gas does not have the state.
+pub fn properties(gas: &str, options: &[(String, String)]) -> Result<Table, RunError> {
+    let options = options.iter().map(|(name, value)| format!("--{name}={value}").into());
+    let arguments: Vec<OsString> = ["properties".into(), gas.into()].into_iter().chain(options).collect();
+    properties_of(&arguments).map_err(|error| RunError::of(&error))
+}

@@ -1,0 +1,172 @@
+//! Calls from a program: the commands on logs in memory, and step by step.
+use crate::support;
+use cylwatch::log::LogError;
+use cylwatch::report::{Table, Values};
+use cylwatch::run::{self, Call, Cells, MemoryLog, MonitorSteps, ObserverSteps, StepTime};
+
+const VESSEL: &str = "nitrogen-20l";
+
+/// A day of a cylinder in air that swings by 8 K, with a row a minute and a thermometer that is missing for a while.
+fn columns() -> [(&'static str, Vec<f64>); 3] {
+    let minutes = || (0..1440).map(f64::from);
+    let warm = |minute: f64| 4.0 * (minute / 230.0).sin();
+    let noise = |minute: f64| 0.02 * (7.3 * minute).sin();
+    let shoulder =
+        minutes().map(|m| if (50.0..70.0).contains(&m) { f64::NAN } else { 15.0 + warm(m) + noise(m) });
+    [
+        ("time_s", minutes().map(|minute| 60.0 * minute).collect()),
+        ("shoulder_degc", shoulder.collect()),
+        (
+            "pressure_bar",
+            minutes().map(|minute| 200.0 + 0.7 * warm(minute - 20.0) + noise(minute + 3.0)).collect(),
+        ),
+    ]
+}
+
+fn log() -> MemoryLog {
+    let columns = columns().map(|(name, cells)| (name.to_owned(), Cells::Numbers(cells)));
+    MemoryLog { name: "frame".to_owned(), columns: columns.into() }
+}
+
+fn csv() -> String {
+    let [(time, times), (shoulder, temperatures), (pressure, pressures)] = columns();
+    let mut text = format!("{time},{shoulder},{pressure}\n");
+    for ((time, temperature), pressure) in times.iter().zip(&temperatures).zip(&pressures) {
+        text.push_str(&format!("{time},{temperature},{pressure}\n"));
+    }
+    text
+}
+
+/// Lines that are not about where the rows come from.
+fn body(csv: &str) -> Vec<&str> {
+    csv.lines().filter(|line| !line.starts_with('#')).collect()
+}
+
+/// Cells with all their bits.
+fn bits(table: &Table) -> Vec<Vec<u64>> {
+    let bits = |values: &Values| match values {
+        Values::Numbers(_, cells) => cells.iter().map(|cell| cell.to_bits()).collect(),
+        _ => Vec::new(),
+    };
+    table.columns.iter().map(|column| bits(&column.values)).collect()
+}
+
+/// Adds the rows of a table to those of another.
+fn extend(all: &mut Vec<Vec<u64>>, table: &Table) {
+    all.resize(all.len().max(table.columns.len()), Vec::new());
+    all.iter_mut().zip(bits(table)).for_each(|(all, more)| all.extend(more));
+}
+
+fn row(index: usize) -> (StepTime, [(&'static str, f64); 2]) {
+    let [(_, times), (shoulder, temperatures), (pressure, pressures)] = columns();
+    (StepTime::Second(times[index]), [(shoulder, temperatures[index]), (pressure, pressures[index])])
+}
+
+#[test]
+fn a_log_in_memory_gives_the_rows_and_the_summary_that_the_command_writes_for_its_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("log.csv"), csv()).unwrap();
+    for (command, call) in [("monitor", run::monitor as fn(Call) -> _), ("estimate", run::estimate)] {
+        let told = support::run(folder.path(), &[command, VESSEL, "log.csv", "-o", "rows.csv"]);
+        support::run(folder.path(), &[command, VESSEL, "log.csv", "-o", "rows.json"]);
+        let outcome = call(Call::new(VESSEL).log(log())).unwrap();
+        let rows = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
+        assert_eq!(body(&outcome.to_csv()), body(&rows), "{command}");
+        let json = std::fs::read_to_string(folder.path().join("rows.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert_eq!((&outcome.summary, i32::from(outcome.exit_code)), (&json["summary"], told.code.unwrap()));
+        let file = call(Call::new(VESSEL).log_file(&folder.path().join("log.csv"))).unwrap();
+        assert_eq!(bits(&file.rows), bits(&outcome.rows), "{command}");
+        assert!(outcome.to_html().unwrap().contains("<svg"));
+    }
+}
+
+#[test]
+fn a_monitor_that_is_saved_and_restored_at_rows_is_the_whole_log_bit_by_bit() {
+    let mut steps = MonitorSteps::new(Call::new(VESSEL)).unwrap();
+    let mut rows = Vec::new();
+    for index in 0..1440 {
+        if index % 97 == 0 {
+            let state = steps.save().unwrap();
+            steps = MonitorSteps::new(Call::new(VESSEL)).unwrap();
+            steps.restore(&state).unwrap();
+            assert_eq!(steps.save().unwrap(), state);
+        }
+        let (time, readings) = row(index);
+        extend(&mut rows, &steps.step(time, &readings).unwrap().0);
+    }
+    extend(&mut rows, &steps.finish().unwrap().0);
+    assert_eq!(rows, bits(&run::monitor(Call::new(VESSEL).log(log())).unwrap().rows));
+}
+
+#[test]
+fn an_observer_that_is_saved_and_restored_at_rows_is_the_whole_log_bit_by_bit() {
+    let mut steps = ObserverSteps::new(Call::new(VESSEL)).unwrap();
+    let mut rows = Vec::new();
+    for index in 0..1440 {
+        if index % 97 == 0 {
+            let state = steps.save().unwrap();
+            steps = ObserverSteps::new(Call::new(VESSEL)).unwrap();
+            steps.restore(&state).unwrap();
+        }
+        let (time, readings) = row(index);
+        extend(&mut rows, &steps.step(time, &readings).unwrap());
+    }
+    assert_eq!(rows, bits(&run::estimate(Call::new(VESSEL).log(log())).unwrap().rows));
+    let late = steps.step(StepTime::Second(1e308), &row(0).1).unwrap_err();
+    assert!(late.to_string().contains("after the row before it"), "{late}");
+}
+
+#[test]
+fn what_a_caller_gives_wrong_is_refused_with_the_parts_of_the_message() {
+    let call = || Call::new(VESSEL).log(log());
+    let words = |call: Call| run::monitor(call).unwrap_err().to_string();
+    assert!(words(call().option("limit-bra", Some("5"))).contains("--limit-bra"));
+    assert!(words(call().option("output", Some("x.csv"))).contains("the result is in memory"));
+    assert!(words(Call::new("-").log(log())).contains("standard input"));
+    let mut backwards = log();
+    if let Cells::Numbers(times) = &mut backwards.columns[0].1 {
+        times[9] = -1.0;
+    }
+    let error = run::estimate(Call::new(VESSEL).log(backwards)).unwrap_err();
+    assert_eq!((error.file(), error.line()), (Some("frame"), Some(10)));
+    assert!(error.remedy().unwrap().starts_with("sort the rows"), "{error}");
+    let stopped = run::monitor(call().stopped_by(|| true)).unwrap_err();
+    assert!(stopped.is_stopped() && !error.is_stopped());
+}
+
+#[test]
+fn a_column_of_another_type_is_refused_only_where_it_is_read() {
+    let with = |name: &str, cells: Cells| {
+        let mut log = log();
+        log.columns.retain(|(known, _)| known != name);
+        log.columns.push((name.to_owned(), cells));
+        run::monitor(Call::new(VESSEL).log(log))
+    };
+    let dates = |zone: Option<&str>| Cells::Instants {
+        nanoseconds: (0..1440).map(|minute| Some(60_000_000_000 * minute)).collect(),
+        zone: zone.map(|zone| zone.parse().unwrap()),
+    };
+    assert!(with("note", Cells::Other("List".to_owned())).is_ok());
+    for (name, cells) in [
+        ("pressure_bar", Cells::Other("List".to_owned())),
+        ("pressure_bar", dates(None)),
+        ("time_s", dates(None)),
+        ("shoulder_degc", Cells::Numbers(vec![15.0])),
+    ] {
+        let error = with(name, cells).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("must have"), "{error}");
+    }
+    let mut dated = log();
+    dated.columns[0] = ("time".to_owned(), dates(Some("Europe/Berlin")));
+    let outcome = run::monitor(Call::new(VESSEL).log(dated)).unwrap();
+    assert_eq!(outcome.zone.as_deref(), Some("Europe/Berlin"));
+    assert!(outcome.to_csv().contains("1970-01-01T01:01:00+01:00"));
+    let texts = |cells: &[f64]| Cells::Texts(cells.iter().map(|cell| Some(cell.to_string())).collect());
+    let as_texts = with("pressure_bar", texts(&columns()[2].1)).unwrap();
+    assert_eq!(bits(&as_texts.rows), bits(&run::monitor(Call::new(VESSEL).log(log())).unwrap().rows));
+    assert!(matches!(
+        cylwatch::log::LogReader::from_memory(MemoryLog::default(), &Default::default()),
+        Err(LogError::NoTime { .. })
+    ));
+}
