@@ -54,7 +54,16 @@ impl Appended {
 
     fn to(writer: Box<dyn Write>, shown: String, messages: &Messages) -> Self {
         let (waiting, tried) = (Vec::new(), Instant::now());
-        Self { writer, table: None, shown, messages: *messages, waiting, length: 0, tried, failure: None }
+        Self {
+            writer,
+            table: None,
+            shown,
+            messages: messages.clone(),
+            waiting,
+            length: 0,
+            tried,
+            failure: None,
+        }
     }
 
     /// Goes on with a table whose names of columns stand in `header`; `None`: there is none yet. A line without an end goes.

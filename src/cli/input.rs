@@ -25,6 +25,8 @@ pub(super) struct Inputs {
     /// Texts of the documents, which a report shows: names and texts.
     sources: RefCell<Vec<(String, String)>>,
     stdin_taken: Cell<bool>,
+    /// The command line that outputs name; `None`: as it was typed.
+    command: Option<String>,
 }
 
 /// A text, and what a message calls it.
@@ -35,9 +37,15 @@ struct Document {
 }
 
 impl Inputs {
+    /// Inputs of a run whose outputs name another command line than the one that was typed.
+    pub(super) fn of_command(command: String) -> Self {
+        Self { command: Some(command), ..Self::default() }
+    }
+
     /// Where the outputs of this run come from.
     pub(super) fn provenance(&self) -> Provenance {
-        Provenance { command: command_line(), inputs: self.records.borrow().clone(), seed: None }
+        let command = self.command.clone().unwrap_or_else(command_line);
+        Provenance { command, inputs: self.records.borrow().clone(), seed: None }
     }
 
     /// Reads a file, or stdin for `-`.

@@ -1,18 +1,32 @@
 //! Words for people, on stderr.
 use std::io::{IsTerminal, Write};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where words go.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Messages {
     quiet: bool,
     color: bool,
+    /// Cautions that are kept instead of printed.
+    kept: Option<Arc<Mutex<Vec<String>>>>,
 }
 
 impl Messages {
     /// Words on stderr; `quiet` keeps all but errors to itself. Colour on a terminal without `NO_COLOR`.
     pub(super) fn new(quiet: bool) -> Self {
         let forbidden = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        Self { quiet, color: std::io::stderr().is_terminal() && !forbidden }
+        Self { quiet, color: std::io::stderr().is_terminal() && !forbidden, kept: None }
+    }
+
+    /// Prints nothing and keeps cautions, for one of many runs side by side.
+    pub(super) fn kept() -> Self {
+        Self { quiet: true, color: false, kept: Some(Arc::default()) }
+    }
+
+    /// The cautions that were kept, in their order.
+    pub(super) fn take_cautions(&self) -> Vec<String> {
+        let kept = self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        kept.map(|mut kept| std::mem::take(&mut *kept)).unwrap_or_default()
     }
 
     /// Whether only errors are wanted.
@@ -29,6 +43,9 @@ impl Messages {
 
     /// Prints a caution.
     pub(super) fn caution(&self, words: &str) {
+        if let Some(kept) = &self.kept {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).push(words.to_owned());
+        }
         if !self.quiet {
             self.write(&format!("{} {words}", self.label("caution:", "33")));
         }

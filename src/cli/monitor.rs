@@ -20,6 +20,7 @@ mod announced;
 mod arguments;
 mod engine;
 mod events;
+mod kept;
 mod options;
 mod order;
 mod resume;
@@ -28,10 +29,12 @@ mod session;
 mod state;
 
 use announced::Announced;
-pub(super) use arguments::MonitorArguments;
+pub(super) use arguments::{MonitorArguments, MonitorQuantities};
+pub(super) use kept::{Kept, Told};
+pub(super) use options::{Options, Places};
 
 use engine::Engine;
-use options::Options;
+use events::Console;
 use order::Order;
 use resume::RunStart;
 use session::{RunContext, Session};
@@ -39,24 +42,13 @@ use session::{RunContext, Session};
 /// Monitors row by row and writes.
 pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let options = Options::checked(arguments)?;
-    let inputs = Inputs::default();
-    let beginning = RunStart::find(&options, &inputs, messages)?;
-    let sensors = options.sensors.as_deref().map(|path| selection::read(&inputs, path)).transpose()?;
-    let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
-    let log_options =
-        LogOptions { origin: beginning.origin()?, any_order: true, ..options.reading.options(names) };
-    let mut log = inputs.live_log(&options.log, &log_options)?;
-    if options.state.is_some() && !options.is_live() {
+    if options.state.is_some() && !options.is_live {
         // What is done until then stays in the state.
         interrupt::listen(|| {})?;
     }
-    let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
-    let outcome =
-        selection.and_then(|selection| monitor(&options, &inputs, beginning, selection, &mut log, messages));
-    for caution in log.reader.cautions() {
-        messages.caution(&caution.to_string());
-    }
-    let (summary, written) = outcome?;
+    let progress = Progress::new(messages);
+    let (summary, written) = watch(&options, &Inputs::default(), None, (messages, &progress))?;
+    drop(progress);
     let outcome = match &summary {
         Some(summary) => {
             messages.say(&crate::report::monitor::summary(summary).to_text());
@@ -70,16 +62,45 @@ pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::R
     written.map(|()| ExitCode::from(outcome.exit_code()))
 }
 
+/// Monitors one log, as `monitor` does and `fleet` for each cylinder: the summary, and what could not be written at the end. `kept` takes
+/// what happens on the way.
+pub(super) fn watch(
+    options: &Options,
+    inputs: &Inputs,
+    kept: Option<&mut Kept>,
+    (messages, progress): (&Messages, &Progress),
+) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
+    let beginning = RunStart::find(options, inputs, messages)?;
+    let sensors = options.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
+    let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
+    let log_options = LogOptions {
+        origin: beginning.origin()?,
+        any_order: true,
+        cylinder: options.cylinder.clone(),
+        ..options.reading.options(names)
+    };
+    let mut log = inputs.live_log(&options.log, &log_options)?;
+    let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
+    let console = Console { messages, progress };
+    let outcome = selection
+        .and_then(|selection| monitor((options, inputs), beginning, selection, &mut log, kept, &console));
+    for caution in log.reader.cautions() {
+        messages.caution(&caution.to_string());
+    }
+    outcome
+}
+
 /// Runs the monitor over the log. Without a state nothing is left behind if it fails; with one, what was done before a
 /// bad row stays.
 fn monitor(
-    options: &Options,
-    inputs: &Inputs,
+    (options, inputs): (&Options, &Inputs),
     beginning: RunStart,
     mut selection: Selection,
     log: &mut LogInput,
-    messages: &Messages,
+    kept: Option<&mut Kept>,
+    console: &Console<'_>,
 ) -> anyhow::Result<(Option<Summary>, anyhow::Result<()>)> {
+    let Console { messages, progress } = *console;
     let (engine, identity) = match &beginning.state {
         None => {
             let engine = Engine::cold(options, inputs, &beginning, &mut selection, log, messages)?;
@@ -101,10 +122,9 @@ fn monitor(
     let title = format!("{} \u{2013} {}", beginning.vessel.name, selection.names().join(", "));
     let first = engine.first.clone();
     let context = RunContext { options, inputs, selection: &selection, messages, identity };
-    let mut session = Session::begin(context, &beginning, engine, log)?;
-    let progress = Progress::new(messages);
-    session.acknowledge(&progress)?;
-    if let Err(error) = read(&mut session, &first, options, log, &progress) {
+    let mut session = Session::begin(context, &beginning, engine, log, kept)?;
+    session.acknowledge(progress)?;
+    if let Err(error) = read(&mut session, &first, options, log, progress) {
         session.abandon(inputs, log, &error)?;
         return Err(error);
     }
@@ -114,7 +134,7 @@ fn monitor(
             None => "stopped by a signal",
         });
     }
-    session.finish(title, log, &progress)
+    session.finish(title, log, progress)
 }
 
 /// Takes in all rows.
@@ -132,7 +152,7 @@ fn read(
     }
     loop {
         progress.show(&options.log, log.fraction());
-        if interrupt::has_come() && !options.is_live() {
+        if interrupt::has_come() && !options.is_live {
             return Ok(());
         }
         let row = match log.reader.next_row() {

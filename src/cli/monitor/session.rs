@@ -34,7 +34,10 @@ pub(super) struct Session<'a> {
     stated: bool,
     naming: Naming,
     sink: EventSink,
-    rows: Rows,
+    /// `None`: no rows are wanted.
+    rows: Option<Rows>,
+    /// Takes what happens, beside the sink.
+    kept: Option<&'a mut Kept>,
     figure: Option<FigureData>,
     readings: Vec<f64>,
     /// Truths of the rows that may be held back, with their stamps, s; only for a figure.
@@ -66,6 +69,7 @@ impl<'a> Session<'a> {
         start: &RunStart,
         engine: Engine,
         log: &LogInput,
+        kept: Option<&'a mut Kept>,
     ) -> anyhow::Result<Self> {
         let state = start.state.as_ref();
         let options = context.options;
@@ -94,14 +98,8 @@ impl<'a> Session<'a> {
             stated: engine.stated,
             naming,
             sink,
-            rows: Rows::begin(
-                options,
-                context.inputs,
-                context.selection,
-                log,
-                &start.vessel,
-                (state, context.messages),
-            )?,
+            rows: Rows::begin(&context, log, &start.vessel, state)?,
+            kept,
             table: state.and_then(|state| state.table.clone()),
             figure: options
                 .views
@@ -154,8 +152,8 @@ impl<'a> Session<'a> {
         for output in outputs {
             self.take(output, progress)?;
         }
-        if self.context.options.is_live() {
-            self.rows.flush()?;
+        if self.context.options.is_live {
+            self.flush()?;
         }
         self.broken = false;
         if self.saved.elapsed() >= self.context.options.save_every {
@@ -166,7 +164,7 @@ impl<'a> Session<'a> {
 
     /// Saves the state during the run. What hinders it costs one caution: it is tried again.
     fn try_to_save(&mut self, log: &LogInput) -> anyhow::Result<()> {
-        self.rows.flush()?;
+        self.flush()?;
         let messages = self.context.messages;
         match (self.save(log), self.unsaved.take()) {
             (Ok(()), Some(_)) => messages.caution("the state is saved again"),
@@ -203,13 +201,14 @@ impl<'a> Session<'a> {
             self.log_starts_s.drain(..surplus);
         }
         let RunContext { options, .. } = self.context;
-        if !again && options.is_live() {
+        if !again && options.is_live {
             return Ok(f64::NAN);
         }
-        if let (Some((path, length)), Target::File(now)) = (&self.table, &options.data)
+        if let (Some((path, length)), Some(Target::File(now)), Some(rows)) =
+            (&self.table, &options.data, &mut self.rows)
             && now.canonicalize().is_ok_and(|now| *path == now)
         {
-            self.rows.take_back(*length)?;
+            rows.take_back(*length)?;
         }
         Ok(self.last_stamp_s - options.lateness_s)
     }
@@ -230,7 +229,12 @@ impl<'a> Session<'a> {
         for alarm in &output.alarms {
             self.sink.alarm(alarm, &self.naming, &console)?;
         }
-        self.rows.push(&output, &self.naming.clock)?;
+        if let Some(rows) = &mut self.rows {
+            rows.push(&output, &self.naming.clock)?;
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.push(&output, &self.naming);
+        }
         let truth = self.truth_of(output.stamp_s);
         if let Some(figure) = &mut self.figure {
             figure.push(&output, &truth);
@@ -239,17 +243,22 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
+    /// Hands on the rows that wait.
+    fn flush(&mut self) -> anyhow::Result<()> {
+        self.rows.as_mut().map_or(Ok(()), Rows::flush)
+    }
+
     /// Saves the state, if one is wanted.
     fn save(&mut self, log: &LogInput) -> anyhow::Result<()> {
         self.saved = Instant::now();
         let options = self.context.options;
         let Some(path) = &options.state else { return Ok(()) };
         // A state that knows rows which the table lacks would lose them.
-        let Some(length) = self.rows.complete_length() else {
+        let Some(length) = self.rows.as_ref().map_or(Some(0), Rows::complete_length) else {
             bail!("{} is not saved: rows wait for room in their file", path.display());
         };
         let table = match &options.data {
-            Target::File(rows) if options.has_table() => Some((rows.canonicalize()?, length)),
+            Some(Target::File(rows)) if options.has_table() => Some((rows.canonicalize()?, length)),
             _ => None,
         };
         let state = State {
@@ -278,9 +287,11 @@ impl<'a> Session<'a> {
         if self.broken || self.context.options.state.is_none() {
             return Ok(());
         }
-        self.rows.flush()?;
+        self.flush()?;
         self.save(log)?;
-        self.rows.finish(inputs, log, None, Some(&format!("{error:#}")))?;
+        if let Some(rows) = self.rows {
+            rows.finish(inputs, log, None, Some(&format!("{error:#}")))?;
+        }
         self.sink.finish()
     }
 
@@ -331,9 +342,10 @@ impl<'a> Session<'a> {
             None => RenderedViews::default(),
         };
         views.write()?;
-        self.rows.flush()?;
+        self.flush()?;
         let saved = self.save(log);
-        let written = self.rows.finish(inputs, log, summary.as_ref(), None).and(self.sink.finish());
+        let written = self.rows.map_or(Ok(()), |rows| rows.finish(inputs, log, summary.as_ref(), None));
+        let written = written.and(self.sink.finish());
         Ok((summary, written.and(saved)))
     }
 }
