@@ -4,6 +4,7 @@ use super::calibrate::CalibrateArguments;
 use super::commission::CommissionArguments;
 use super::completions::CompletionsArguments;
 use super::estimate::EstimateArguments;
+use super::fleet::{FleetArguments, without_single_runs};
 use super::identify::IdentifyArguments;
 use super::init::InitArguments;
 use super::inspect::InspectArguments;
@@ -34,7 +35,9 @@ pub(super) struct Arguments {
 impl Arguments {
     /// The command line with what concerns all options.
     pub(super) fn prepared() -> clap::Command {
-        let command = Self::command().mut_subcommand("inspection", without_fill_of_log);
+        let command = Self::command()
+            .mut_subcommand("inspection", without_fill_of_log)
+            .mut_subcommand("fleet", without_single_runs);
         without_experts(with_negative_numbers(command))
     }
 }
@@ -45,6 +48,7 @@ Examples:
   cylwatch inspect logger.csv
   cylwatch estimate nitrogen-20l run.csv -o est.csv --plot est.svg
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
+  cylwatch fleet logs/ --vessels fleet.csv -o fleet
   cylwatch commission nitrogen-20l -o thresholds.json
   cylwatch inspection nitrogen-20l week.csv --fill-pressure-bar 200 --fill-temperature-degc 15
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
@@ -54,7 +58,7 @@ Examples:
   cylwatch init my-cylinder
   cylwatch reproduce --out out/reproduce
 
-Exit codes: 0 done and no leak, 1 leak found (monitor), 2 error, 3 inconclusive (monitor), ended early (place) or with worlds missing (bench-detector). Data goes to stdout, words to stderr; NO_COLOR is respected.";
+Exit codes: 0 done and no leak, 1 leak found (monitor, fleet), 2 error, 3 inconclusive (monitor, fleet), ended early (place) or with worlds missing (bench-detector). Data goes to stdout, words to stderr; NO_COLOR is respected.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -69,6 +73,8 @@ pub(super) enum Command {
     Estimate(Box<EstimateArguments>),
     /// Decide whether gas is being lost: verdict, leak rate, onset, time left, events and alarms from a log.
     Monitor(Box<MonitorArguments>),
+    /// Monitor many cylinders at once, on all cores: tables with the most urgent first, states, and a page.
+    Fleet(Box<FleetArguments>),
     /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; twenty minutes.
     Commission(Box<CommissionArguments>),
     /// Judge the loss of pressure adjusted for temperature since the fill, as ISO 14520 words it: pass, refill or cannot be told.

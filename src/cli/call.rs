@@ -37,7 +37,7 @@ pub(crate) fn called(host: Host, arguments: &[OsString]) -> (anyhow::Result<Kept
             _ => bail!("only monitor, estimate and simulate have a result in rows"),
         }
     });
-    (kept, messages.take())
+    (kept, messages.take_cautions())
 }
 
 /// The properties of a gas at the state that the arguments give: a table of one row.

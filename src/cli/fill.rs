@@ -60,6 +60,15 @@ pub(super) enum FillSource {
 }
 
 impl GivenFill {
+    /// What is given here, and what is not as in `defaults`: a fill goes as a whole.
+    pub(super) fn or(self, defaults: &Self) -> Self {
+        Self {
+            given: if self.given.quantities.is_empty() { defaults.given.clone() } else { self.given },
+            mass_sd_percent: self.mass_sd_percent.or(defaults.mass_sd_percent),
+            settled: self.settled || defaults.settled,
+        }
+    }
+
     /// What fixes the mass.
     pub(super) fn source(&self) -> anyhow::Result<FillSource> {
         let pressure_pa = self.given.si("fill-pressure", Dimension::Pressure)?;

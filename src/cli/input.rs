@@ -28,6 +28,8 @@ pub(super) struct Inputs {
     /// Texts of the documents, which a report shows: names and texts.
     sources: RefCell<Vec<(String, String)>>,
     stdin_taken: Cell<bool>,
+    /// The command line that outputs name; `None`: as it was typed.
+    command: Option<String>,
 }
 
 /// A text, and what a message calls it.
@@ -43,12 +45,15 @@ impl Inputs {
         Self { host, ..Self::default() }
     }
 
+    /// Inputs of a run whose outputs name another command line than the one that was typed.
+    pub(super) fn of_command(command: String) -> Self {
+        Self { command: Some(command), ..Self::default() }
+    }
+
     /// Where the outputs of this run come from.
     pub(super) fn provenance(&self) -> Provenance {
-        let command = match self.host.command.as_str() {
-            "" => command_line(),
-            command => command.to_owned(),
-        };
+        let of_call = Some(&self.host.command).filter(|command| !command.is_empty());
+        let command = self.command.as_ref().or(of_call).cloned().unwrap_or_else(command_line);
         Provenance { command, inputs: self.records.borrow().clone(), seed: None }
     }
 

@@ -176,7 +176,7 @@ impl Round<'_> {
 }
 
 /// Whether a file of a folder is a log, by its name.
-fn is_log(path: &Path) -> bool {
+pub(super) fn is_log(path: &Path) -> bool {
     let name = path.file_name().map(|name| name.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let endings = [".csv", ".csv.gz", ".txt", ".txt.gz", ".parquet"];
     !name.starts_with('.') && path.is_file() && endings.iter().any(|ending| name.ends_with(ending))

@@ -1,13 +1,13 @@
 //! Words for people, on stderr.
 use std::io::{IsTerminal, Write};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where words go.
 #[derive(Clone, Debug)]
 pub(super) struct Messages {
     quiet: bool,
     color: bool,
-    /// Cautions, where the caller takes them instead of stderr.
+    /// Cautions that are kept instead of printed.
     kept: Option<Arc<Mutex<Vec<String>>>>,
 }
 
@@ -18,14 +18,14 @@ impl Messages {
         Self { quiet, color: std::io::stderr().is_terminal() && !forbidden, kept: None }
     }
 
-    /// Nothing on stderr: cautions are kept for the caller.
+    /// Prints nothing and keeps cautions, for one of many runs side by side.
     pub(super) fn kept() -> Self {
         Self { quiet: true, color: false, kept: Some(Arc::default()) }
     }
 
-    /// Takes the cautions that were kept.
-    pub(super) fn take(&self) -> Vec<String> {
-        let kept = self.kept.as_ref().and_then(|kept| kept.lock().ok());
+    /// The cautions that were kept, in their order.
+    pub(super) fn take_cautions(&self) -> Vec<String> {
+        let kept = self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
         kept.map(|mut kept| std::mem::take(&mut *kept)).unwrap_or_default()
     }
 
@@ -43,8 +43,8 @@ impl Messages {
 
     /// Prints a caution.
     pub(super) fn caution(&self, words: &str) {
-        if let Some(mut kept) = self.kept.as_ref().and_then(|kept| kept.lock().ok()) {
-            kept.push(words.to_owned());
+        if let Some(kept) = &self.kept {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).push(words.to_owned());
         }
         if !self.quiet {
             self.write(&format!("{} {words}", self.label("caution:", "33")));

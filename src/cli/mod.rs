@@ -1,7 +1,7 @@
 //! The command line: raw arguments ([`arguments`]), validated options (the start of every command), the run, the output.
 //!
 //! Data goes to stdout, words to stderr. Exit codes: 0 done (also when the reader of a pipe has gone), 2 error; of `monitor`
-//! also 1 leak found, 3 inconclusive; of `place` 3 ended early; of `bench-detector` 3 worlds failed or are missing.
+//! and `fleet` also 1 leak found, 3 inconclusive; of `place` 3 ended early; of `bench-detector` 3 worlds failed or are missing.
 mod appended;
 mod arguments;
 mod bench_detector;
@@ -11,6 +11,7 @@ mod commission;
 mod completions;
 mod estimate;
 mod fill;
+mod fleet;
 mod format;
 mod host;
 mod identify;
@@ -72,6 +73,7 @@ pub fn main() -> ExitCode {
 fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
     let done = match command {
         Command::Monitor(arguments) => return monitor::run(*arguments, messages),
+        Command::Fleet(arguments) => return fleet::run(*arguments, messages),
         Command::Place(arguments) => return place::run(*arguments, messages),
         Command::Inspection(arguments) => return inspection::run(*arguments, messages),
         Command::BenchDetector(arguments) => return bench_detector::run(arguments, messages),

@@ -18,6 +18,7 @@ use std::process::ExitCode;
 
 mod announced;
 mod arguments;
+mod course;
 mod engine;
 mod events;
 mod options;
@@ -29,11 +30,13 @@ mod state;
 mod steps;
 
 use announced::Announced;
-pub(super) use arguments::MonitorArguments;
+pub(super) use arguments::{MonitorArguments, MonitorQuantities};
+pub(super) use course::{Course, Told};
+pub(super) use options::{Options, Places};
 pub(crate) use steps::Steps;
 
 use engine::Engine;
-use options::Options;
+use events::Console;
 use order::Order;
 use resume::RunStart;
 use session::{Finished, RunContext, Session};
@@ -41,7 +44,13 @@ use session::{Finished, RunContext, Session};
 /// Monitors row by row and writes.
 pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let options = Options::checked(arguments)?;
-    let finished = ran(&options, &Inputs::default(), messages)?;
+    if options.state.is_some() && !options.is_live {
+        // What is done until then stays in the state.
+        interrupt::listen(|| {})?;
+    }
+    let progress = Progress::new(messages);
+    let finished = watch(&options, &Inputs::default(), None, (messages, &progress))?;
+    drop(progress);
     let outcome = match &finished.summary {
         Some(summary) => {
             messages.say(&crate::report::monitor::summary(summary).to_text());
@@ -62,7 +71,7 @@ pub(super) fn kept(
     messages: &Messages,
 ) -> anyhow::Result<Kept> {
     let options = Options::checked(arguments)?.kept()?;
-    let finished = ran(&options, inputs, messages)?;
+    let finished = watch(&options, inputs, None, (messages, &Progress::new(messages)))?;
     finished.written?;
     let summary = finished.summary.context("a log that was read without an error has a row")?;
     Ok(Kept {
@@ -77,21 +86,28 @@ pub(super) fn kept(
     })
 }
 
-/// Opens the log and runs the monitor over it.
-fn ran(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Result<Finished> {
+/// Monitors one log, as `monitor` does and `fleet` for each cylinder: the summary, and what could not be written at the end. `course`
+/// takes what happens on the way.
+pub(super) fn watch(
+    options: &Options,
+    inputs: &Inputs,
+    course: Option<&mut Course>,
+    (messages, progress): (&Messages, &Progress),
+) -> anyhow::Result<Finished> {
     let beginning = RunStart::find(options, inputs, messages)?;
     let sensors = options.sensors.as_deref().map(|path| selection::read(inputs, path)).transpose()?;
     let names = sensors.iter().flatten().map(|sensor| sensor.name.clone()).collect();
-    let log_options =
-        LogOptions { origin: beginning.origin()?, any_order: true, ..options.reading.options(names) };
+    let log_options = LogOptions {
+        origin: beginning.origin()?,
+        any_order: true,
+        cylinder: options.cylinder.clone(),
+        ..options.reading.options(names)
+    };
     let mut log = inputs.live_log(&options.log, &log_options)?;
-    if options.state.is_some() && !options.is_live() {
-        // What is done until then stays in the state.
-        interrupt::listen(|| {})?;
-    }
     let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
-    let outcome =
-        selection.and_then(|selection| monitor(options, inputs, beginning, selection, &mut log, messages));
+    let console = Console { messages, progress };
+    let outcome = selection
+        .and_then(|selection| monitor((options, inputs), beginning, selection, &mut log, course, &console));
     for caution in log.reader.cautions() {
         messages.caution(&caution.to_string());
     }
@@ -101,13 +117,14 @@ fn ran(options: &Options, inputs: &Inputs, messages: &Messages) -> anyhow::Resul
 /// Runs the monitor over the log. Without a state nothing is left behind if it fails; with one, what was done before a
 /// bad row stays.
 fn monitor(
-    options: &Options,
-    inputs: &Inputs,
+    (options, inputs): (&Options, &Inputs),
     beginning: RunStart,
     mut selection: Selection,
     log: &mut LogInput,
-    messages: &Messages,
+    course: Option<&mut Course>,
+    console: &Console<'_>,
 ) -> anyhow::Result<Finished> {
+    let Console { messages, progress } = *console;
     let (engine, identity) = match &beginning.state {
         None => {
             let engine = Engine::cold(options, inputs, &beginning, &mut selection, log, messages)?;
@@ -129,10 +146,9 @@ fn monitor(
     let title = format!("{} \u{2013} {}", beginning.vessel.name, selection.names().join(", "));
     let first = engine.first.clone();
     let context = RunContext { options, inputs, selection: &selection, messages, identity };
-    let mut session = Session::begin(context, &beginning, engine, log)?;
-    let progress = Progress::new(messages);
-    session.acknowledge(&progress)?;
-    if let Err(error) = read(&mut session, &first, options, log, &progress) {
+    let mut session = Session::begin(context, &beginning, engine, log, course)?;
+    session.acknowledge(progress)?;
+    if let Err(error) = read(&mut session, &first, options, log, progress) {
         session.abandon(inputs, log, &error)?;
         return Err(error);
     }
@@ -142,7 +158,7 @@ fn monitor(
             None => "stopped by a signal",
         });
     }
-    session.finish(title, log, &progress)
+    session.finish(title, log, progress)
 }
 
 /// Takes in all rows.
@@ -160,7 +176,7 @@ fn read(
     }
     loop {
         progress.show(&options.log, log.fraction());
-        if interrupt::has_come() && !options.is_live() {
+        if interrupt::has_come() && !options.is_live {
             return Ok(());
         }
         let row = match log.reader.next_row() {

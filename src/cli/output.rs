@@ -4,6 +4,7 @@
 //! so that a reader never meets half of it and an older file stays until the new one is there.
 use crate::report::quoted;
 use anyhow::{Context, anyhow, bail};
+use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -251,7 +252,7 @@ fn temporary(folder: &Path) -> std::io::Result<NamedTempFile> {
 }
 
 /// Removes what runs that were killed have left in `folder`.
-fn remove_orphans(folder: &Path) {
+pub(super) fn remove_orphans(folder: &Path) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let is_part = name.to_str().is_some_and(|name| name.starts_with(PART.0) && name.ends_with(PART.1));
@@ -269,7 +270,22 @@ fn remove_orphans(folder: &Path) {
 
 /// The command line as it was typed, quoted so that a shell runs it again.
 pub(super) fn command_line() -> String {
-    let words = std::env::args_os().enumerate().map(|(k, word)| {
+    quoted_line(std::env::args_os())
+}
+
+/// The same without an option and its value that change nothing about the results.
+pub(super) fn command_line_without(option: &str) -> String {
+    let mut is_value = false;
+    let kept = std::env::args_os().filter(|word| {
+        let was_value = std::mem::replace(&mut is_value, word == option);
+        let is_whole = word.to_str().is_some_and(|word| word.starts_with(&format!("{option}=")));
+        !(was_value || is_value || is_whole)
+    });
+    quoted_line(kept)
+}
+
+fn quoted_line(words: impl Iterator<Item = OsString>) -> String {
+    let words = words.enumerate().map(|(k, word)| {
         let word = word.to_string_lossy().into_owned();
         if k == 0 { "cylwatch".to_owned() } else { quoted(&word) }
     });

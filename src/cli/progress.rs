@@ -35,6 +35,27 @@ impl Progress {
         progress
     }
 
+    /// No bar: for one of many runs side by side.
+    pub(super) fn hidden() -> Self {
+        Self { bar: ProgressBar::hidden() }
+    }
+
+    /// A bar of many logs: those that are done, rows a second, time left by their bytes.
+    pub(super) fn of_bytes(messages: &Messages, bytes: u64) -> Self {
+        let progress = Self::new(messages);
+        progress.bar.set_length(bytes);
+        if let Ok(style) = ProgressStyle::with_template("[{bar:40}] {percent:>3} %  {msg}  {eta} left") {
+            progress.bar.set_style(style.progress_chars("=> "));
+        }
+        progress
+    }
+
+    /// Counts bytes that are done, and says so.
+    pub(super) fn advance(&self, bytes: u64, what: String) {
+        self.bar.inc(bytes);
+        self.bar.set_message(what);
+    }
+
     /// Says what is being done.
     pub(super) fn say(&self, what: &str) {
         self.bar.set_message(what.to_owned());

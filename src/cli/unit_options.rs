@@ -127,6 +127,16 @@ impl<C: Choices> QuantityArguments<C> {
             .filter(move |given| given.dimension == dimension && given.name.starts_with(&start))
     }
 
+    /// What is given here, and what is not as in `defaults`.
+    pub(super) fn or(mut self, defaults: &Self) -> Self {
+        for (option, dimension, _) in C::CHOICES {
+            if self.of(option, *dimension).next().is_none() {
+                self.quantities.extend(defaults.of(option, *dimension).cloned());
+            }
+        }
+        self
+    }
+
     /// SI value of an option; given twice, in two units, it is refused.
     pub(super) fn si(&self, option: &str, dimension: Dimension) -> anyhow::Result<Option<f64>> {
         self.once(option, dimension)?.map(Quantity::si).transpose()

@@ -10,7 +10,7 @@ use super::inspect::{Survey, Tap};
 use super::record::Records;
 use super::row::RawRow;
 use super::time::TimeReader;
-use super::{LogError, LogOptions, Packing, date};
+use super::{LogError, LogOptions, Packing, cylinders, date};
 use crate::thermal::units::Unit;
 use std::io::Read;
 
@@ -27,6 +27,8 @@ pub(super) struct CsvSource {
     clock_at: Option<usize>,
     /// Position, name, unit of every number.
     values: Vec<(usize, String, &'static Unit)>,
+    /// Position of the column `cylinder` and the name whose rows are wanted.
+    only: Option<(usize, Vec<u8>)>,
     /// What counts all cells, where a log is inspected.
     tap: Option<Box<Tap>>,
 }
@@ -80,7 +82,10 @@ impl CsvSource {
     fn of(file: &str, records: Records, header: Header, columns: &Columns, options: &LogOptions) -> Self {
         let decimal_comma = header.separator != b',';
         let time = &columns.time;
+        let named = header.names.iter().position(|name| cylinders::is_column(name));
+        let wanted = options.cylinder.as_ref().map(|name| name.as_bytes().to_vec());
         Self {
+            only: named.zip(wanted),
             file: file.to_owned(),
             records,
             header: header.cells,
@@ -100,6 +105,9 @@ impl CsvSource {
                 continue;
             }
             if self.records.len() != self.header.len() && !self.has_width(cautions)? {
+                continue;
+            }
+            if self.only.as_ref().is_some_and(|(at, name)| self.records.cell(*at).trim_ascii() != name) {
                 continue;
             }
             let Some(time_s) = self.time(cautions)? else {

@@ -18,6 +18,7 @@ mod caution;
 mod cell;
 pub(crate) mod columns;
 mod csv;
+pub(crate) mod cylinders;
 mod date;
 mod error;
 mod header;
@@ -71,6 +72,8 @@ pub struct LogOptions {
     /// Whether rows whose time runs backwards are handed out as they come, for whoever can sort late ones in, and rows of
     /// one time that contradict each other cost a caution; else they are refused.
     pub any_order: bool,
+    /// Hands out the rows alone whose column `cylinder` says this. `None`: all rows.
+    pub cylinder: Option<String>,
 }
 
 impl Default for LogOptions {
@@ -84,6 +87,7 @@ impl Default for LogOptions {
             zone: None,
             origin: None,
             any_order: false,
+            cylinder: None,
         }
     }
 }

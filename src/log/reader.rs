@@ -94,6 +94,9 @@ impl LogReader {
         file: &str,
         options: &LogOptions,
     ) -> Result<Self, LogError> {
+        if options.cylinder.is_some() {
+            return Self::from_text(Box::new(super::parquet::text(input, file)?), file, options);
+        }
         let mut cautions = Cautions::default();
         let (source, columns) = super::parquet::ParquetSource::open(input, file, options, &mut cautions)?;
         Ok(Self::new(Source::Parquet(Box::new(source)), columns, file, options, cautions))

@@ -11,6 +11,7 @@ pub(crate) mod commission;
 mod content;
 pub(crate) mod estimate;
 pub mod figure;
+pub(crate) mod fleet;
 pub(crate) mod identify;
 pub(crate) mod inspect;
 pub(crate) mod inspection;

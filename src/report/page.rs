@@ -10,7 +10,7 @@ use super::{Provenance, ReportError};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Looks of all pages.
-const STYLE: &str = include_str!("page.css");
+pub(super) const STYLE: &str = include_str!("page.css");
 
 /// A page.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ impl Page<'_> {
     }
 
     /// Command, inputs and seed.
-    fn origin(&self) -> Markup {
+    pub(super) fn origin(&self) -> Markup {
         let provenance = self.provenance;
         html! {
             footer {

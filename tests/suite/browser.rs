@@ -190,3 +190,33 @@ fn every_command_writes_a_report_that_a_browser_shows_on_a_desk_and_on_a_phone()
     }
     assert!(covered.is_empty(), "{covered:#?}");
 }
+
+#[test]
+fn the_page_of_a_fleet_fits_a_desk_and_a_phone_and_runs_no_name_as_a_script() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path().canonicalize().unwrap();
+    std::fs::create_dir(folder.join("logs")).unwrap();
+    let rows: Vec<String> =
+        (0..200).map(|minute| format!("{},15.0,{}\n", 60 * minute, 200 - minute % 2)).collect();
+    let text = format!("time_s,shoulder_degc,pressure_bar\n{}", rows.concat());
+    let long = "a cylinder with a name that is longer than a phone is wide ".repeat(3);
+    for name in ["A-1", "<img src=x onerror=document.title='ran'>", "<script>document.title='ran'", &long] {
+        std::fs::write(folder.join("logs").join(format!("{name}.csv")), &text).unwrap();
+    }
+    std::fs::write(folder.join("logs/empty.csv"), "").unwrap();
+    let options = ["fleet", "logs", "--vessel", "nitrogen-20l", "-o", "fleet", "-q"];
+    assert_eq!(run(&folder, &options).code, Some(3));
+    if let Some(kept) = std::env::var_os("CYLWATCH_LOOK") {
+        std::fs::copy(folder.join("fleet/page.html"), Path::new(&kept).join("fleet.html")).unwrap();
+    }
+    let Some(browser) = browser() else {
+        eprintln!("skipped: no Chromium or Chrome is installed to look at the page");
+        return;
+    };
+    for width in [1280, 390] {
+        let seen = seen(&browser, &folder.join("fleet/page.html"), width);
+        assert_eq!((seen.title.as_str(), seen.loaded), ("Fleet of 5 cylinders", 0), "{seen:?}");
+        // Five rows that the script draws, with the heads, what could not be read, and what the words mean.
+        assert!(seen.rows >= 12 && seen.wide <= seen.window, "{width}: {seen:?}");
+    }
+}

@@ -12,6 +12,7 @@ mod commission;
 mod estimate;
 mod examples;
 mod files;
+mod fleet;
 mod foreign_log;
 mod foreign_units;
 mod identify;

@@ -4,7 +4,7 @@ use jiff::Timestamp;
 
 /// An exchange of gas that was ordered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Announced {
+pub(in crate::cli) struct Announced {
     from: Moment,
     until: Moment,
 }

@@ -12,11 +12,26 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::time::Duration;
 
+/// Where the outputs of a run go.
+pub(in crate::cli) struct Places {
+    /// Rows; `None`: nowhere.
+    pub data: Option<Target>,
+    /// Lines of events; `None`: words on stderr.
+    pub events: Option<Target>,
+    /// State to go on from and to save.
+    pub state: Option<PathBuf>,
+    /// Figure and report.
+    pub views: Views,
+}
+
 /// Options that passed all checks that need no file to be read.
-pub(super) struct Options {
+pub(in crate::cli) struct Options {
     pub vessel: String,
     pub log: String,
-    pub data: Target,
+    /// Whether rows come one by one through a pipe, so that each result must go out at once.
+    pub is_live: bool,
+    /// Where the rows go; `None`: nowhere.
+    pub data: Option<Target>,
     pub format: Format,
     pub views: Views,
     pub reading: LogArguments,
@@ -36,16 +51,16 @@ pub(super) struct Options {
     pub save_every: Duration,
     pub acknowledge: Option<String>,
     pub announced: Vec<Announced>,
+    /// The rows of this cylinder alone, of a log with a column `cylinder`.
+    pub cylinder: Option<String>,
 }
 
 impl Options {
     /// Checks places and numbers.
     pub(super) fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
-        let MonitorArguments { inputs: places, fill, given, reading, learned_in, commissioned, .. } =
-            arguments;
-        let sensors = arguments.sensors.sensors;
-        let mut inputs = places.paths()?;
-        let others = [sensors.as_deref(), learned_in.as_deref(), commissioned.as_deref()];
+        let mut inputs = arguments.inputs.paths()?;
+        let others = [&arguments.sensors.sensors, &arguments.learned_in, &arguments.commissioned];
+        let others = others.map(Option::as_deref);
         inputs.extend(others.into_iter().flatten());
         let data = Target::checked(arguments.data.output.as_deref(), &inputs)?;
         let events = arguments.events.as_deref();
@@ -60,6 +75,14 @@ impl Options {
         let state = state.map(state_file).transpose()?;
         let others: Vec<&Target> = std::iter::once(&data).chain(&events).collect();
         let views = Views::checked(&arguments.views, &inputs, &others)?;
+        let places = Places { data: Some(data), events, state, views };
+        Self::of(arguments, places)
+    }
+
+    /// The same with checked places.
+    pub(in crate::cli) fn of(arguments: MonitorArguments, places: Places) -> anyhow::Result<Self> {
+        let MonitorArguments { inputs, fill, given, reading, learned_in, commissioned, .. } = arguments;
+        let Places { data, events, state, views } = places;
         let time = |option: &str| given.si(option, Dimension::Time);
         let from_zero = |option: &str| given.si_from_zero(option, Dimension::Time);
         let save_every_s = time("save-every")?.unwrap_or(600.0).min(365.0 * DAY_S);
@@ -79,12 +102,15 @@ impl Options {
                 .iter()
                 .map(|text| Announced::parse(text))
                 .collect::<anyhow::Result<_>>()?,
-            vessel: places.vessel,
-            log: places.log,
+            cylinder: None,
+            is_live: inputs.log == "-"
+                || Path::new(&inputs.log).metadata().is_ok_and(|found| !found.is_file()),
+            vessel: inputs.vessel,
+            log: inputs.log,
             data,
             views,
             reading,
-            sensors,
+            sensors: arguments.sensors.sensors,
             fill,
             learned_in,
             commissioned,
@@ -95,17 +121,12 @@ impl Options {
 
     /// The same for a caller: nothing is written.
     pub(super) fn kept(self) -> anyhow::Result<Self> {
-        Ok(Self { data: Target::Memory, events: Some(Target::Memory), views: Views::kept(), ..self })
-    }
-
-    /// Whether rows come one by one through a pipe, so that each result must go out at once.
-    pub(super) fn is_live(&self) -> bool {
-        self.log == "-" || Path::new(&self.log).metadata().is_ok_and(|found| !found.is_file())
+        Ok(Self { data: Some(Target::Memory), events: Some(Target::Memory), views: Views::kept(), ..self })
     }
 
     /// Whether the rows are a table that grows from run to run.
     pub(super) fn has_table(&self) -> bool {
-        self.state.is_some() && self.format == Format::Csv && matches!(self.data, Target::File(_))
+        self.state.is_some() && self.format == Format::Csv && matches!(self.data, Some(Target::File(_)))
     }
 }
 

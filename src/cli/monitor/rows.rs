@@ -1,4 +1,5 @@
 //! Outputs as rows of the data.
+use super::session::RunContext;
 use super::state::State;
 use super::*;
 use crate::cli::row_stream::RowStream;
@@ -28,23 +29,23 @@ pub(super) struct Slope {
 }
 
 impl Rows {
-    /// Opens the output and writes what stands above the rows.
+    /// Opens the output and writes what stands above the rows; `None`: no rows are wanted.
     pub(super) fn begin(
-        options: &Options,
-        inputs: &Inputs,
-        selection: &Selection,
+        context: &RunContext<'_>,
         log: &LogInput,
         vessel: &Vessel,
-        (state, messages): (Option<&State>, &Messages),
-    ) -> anyhow::Result<Self> {
+        state: Option<&State>,
+    ) -> anyhow::Result<Option<Self>> {
+        let RunContext { options, inputs, selection, messages, .. } = context;
+        let Some(data) = &options.data else { return Ok(None) };
         let fields = report::fields(log.reader.has_dates());
-        let (names, data) = (selection.names(), &options.data);
+        let names = selection.names();
         let stream = if options.has_table() {
             RowStream::table(data, state.is_some(), fields, inputs, &names, log, messages)?
         } else {
             RowStream::begin(data, options.format, fields, inputs, &names, log)?
         };
-        Ok(Self { stream, slope: Slope::of(vessel) })
+        Ok(Some(Self { stream, slope: Slope::of(vessel) }))
     }
 
     /// Writes an output.

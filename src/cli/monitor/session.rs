@@ -17,7 +17,7 @@ use std::time::Instant;
 const MOST_LOGS: usize = 64;
 
 /// A run that has ended.
-pub(super) struct Finished {
+pub(in crate::cli) struct Finished {
     /// What is left of it; `None`: no row has come out yet.
     pub summary: Option<Summary>,
     /// What could not be written at the end.
@@ -50,7 +50,10 @@ pub(super) struct Session<'a> {
     stated: bool,
     naming: Naming,
     sink: EventSink,
-    rows: Rows,
+    /// `None`: no rows are wanted.
+    rows: Option<Rows>,
+    /// Takes what happens, beside the sink.
+    course: Option<&'a mut Course>,
     figure: Option<FigureData>,
     readings: Vec<f64>,
     /// Truths of the rows that may be held back, with their stamps, s; only for a figure.
@@ -82,6 +85,7 @@ impl<'a> Session<'a> {
         start: &RunStart,
         engine: Engine,
         log: &LogInput,
+        course: Option<&'a mut Course>,
     ) -> anyhow::Result<Self> {
         let state = start.state.as_ref();
         let options = context.options;
@@ -110,14 +114,8 @@ impl<'a> Session<'a> {
             stated: engine.stated,
             naming,
             sink,
-            rows: Rows::begin(
-                options,
-                context.inputs,
-                context.selection,
-                log,
-                &start.vessel,
-                (state, context.messages),
-            )?,
+            rows: Rows::begin(&context, log, &start.vessel, state)?,
+            course,
             table: state.and_then(|state| state.table.clone()),
             figure: options
                 .views
@@ -170,8 +168,8 @@ impl<'a> Session<'a> {
         for output in outputs {
             self.take(output, progress)?;
         }
-        if self.context.options.is_live() {
-            self.rows.flush()?;
+        if self.context.options.is_live {
+            self.flush()?;
         }
         self.broken = false;
         if self.saved.elapsed() >= self.context.options.save_every {
@@ -182,7 +180,7 @@ impl<'a> Session<'a> {
 
     /// Saves the state during the run. What hinders it costs one caution: it is tried again.
     fn try_to_save(&mut self, log: &LogInput) -> anyhow::Result<()> {
-        self.rows.flush()?;
+        self.flush()?;
         let messages = self.context.messages;
         match (self.save(log), self.unsaved.take()) {
             (Ok(()), Some(_)) => messages.caution("the state is saved again"),
@@ -219,13 +217,14 @@ impl<'a> Session<'a> {
             self.log_starts_s.drain(..surplus);
         }
         let RunContext { options, .. } = self.context;
-        if !again && options.is_live() {
+        if !again && options.is_live {
             return Ok(f64::NAN);
         }
-        if let (Some((path, length)), Target::File(now)) = (&self.table, &options.data)
+        if let (Some((path, length)), Some(Target::File(now)), Some(rows)) =
+            (&self.table, &options.data, &mut self.rows)
             && now.canonicalize().is_ok_and(|now| *path == now)
         {
-            self.rows.take_back(*length)?;
+            rows.take_back(*length)?;
         }
         Ok(self.last_stamp_s - options.lateness_s)
     }
@@ -246,7 +245,12 @@ impl<'a> Session<'a> {
         for alarm in &output.alarms {
             self.sink.alarm(alarm, &self.naming, &console)?;
         }
-        self.rows.push(&output, &self.naming.clock)?;
+        if let Some(rows) = &mut self.rows {
+            rows.push(&output, &self.naming.clock)?;
+        }
+        if let Some(course) = &mut self.course {
+            course.push(&output, &self.naming);
+        }
         let truth = self.truth_of(output.stamp_s);
         if let Some(figure) = &mut self.figure {
             figure.push(&output, &truth);
@@ -255,17 +259,22 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
+    /// Hands on the rows that wait.
+    fn flush(&mut self) -> anyhow::Result<()> {
+        self.rows.as_mut().map_or(Ok(()), Rows::flush)
+    }
+
     /// Saves the state, if one is wanted.
     fn save(&mut self, log: &LogInput) -> anyhow::Result<()> {
         self.saved = Instant::now();
         let options = self.context.options;
         let Some(path) = &options.state else { return Ok(()) };
         // A state that knows rows which the table lacks would lose them.
-        let Some(length) = self.rows.complete_length() else {
+        let Some(length) = self.rows.as_ref().map_or(Some(0), Rows::complete_length) else {
             bail!("{} is not saved: rows wait for room in their file", path.display());
         };
         let table = match &options.data {
-            Target::File(rows) if options.has_table() => Some((rows.canonicalize()?, length)),
+            Some(Target::File(rows)) if options.has_table() => Some((rows.canonicalize()?, length)),
             _ => None,
         };
         let state = State {
@@ -294,9 +303,11 @@ impl<'a> Session<'a> {
         if self.broken || self.context.options.state.is_none() {
             return Ok(());
         }
-        self.rows.flush()?;
+        self.flush()?;
         self.save(log)?;
-        self.rows.finish(inputs, log, None, Some(&format!("{error:#}")))?;
+        if let Some(rows) = self.rows {
+            rows.finish(inputs, log, None, Some(&format!("{error:#}")))?;
+        }
         self.sink.finish().map(|_| ())
     }
 
@@ -348,10 +359,13 @@ impl<'a> Session<'a> {
         };
         views.write()?;
         let report = views.kept;
-        self.rows.flush()?;
+        self.flush()?;
         let saved = self.save(log);
         let (mut rows, mut events) = (None, Vec::new());
-        let written = self.rows.finish(inputs, log, summary.as_ref(), None).map(|table| rows = table);
+        let written = match self.rows {
+            Some(of_run) => of_run.finish(inputs, log, summary.as_ref(), None).map(|table| rows = table),
+            None => Ok(()),
+        };
         let written = written.and(self.sink.finish().map(|lines| events = lines)).and(saved);
         let zone = log.reader.zone().map(ToString::to_string);
         Ok(Finished { summary, written, rows, events, report, zone })

@@ -18,7 +18,7 @@ pub(super) use survey::survey;
 
 use super::caution::{Cautions, Kind};
 use super::label::Label;
-use super::{LogError, LogOptions};
+use super::{LogError, LogOptions, cylinders};
 use crate::estimator::log::{Channel, Quantity};
 use crate::estimator::sensor::KindChoice;
 use crate::thermal::document::Problem;
@@ -149,7 +149,7 @@ impl Columns {
     ) -> Result<Self, LogError> {
         let mut found = found(names, at, options, Err)?;
         pair(&mut found);
-        set_aside(&found, at, cautions);
+        set_aside(&found, at, options, cautions);
         let columns = Self {
             time: time(&found, at)?,
             readings: readings(&found, at, options, cautions)?,
@@ -371,10 +371,12 @@ fn twice(second: &Found<'_>, first: &Found<'_>, at: &str) -> LogError {
 }
 
 /// Names the unrecognised columns, once, and what the first of them that looks like a slip may have meant.
-fn set_aside(found: &[Found<'_>], at: &str, cautions: &mut Cautions) {
+fn set_aside(found: &[Found<'_>], at: &str, options: &LogOptions, cautions: &mut Cautions) {
     let simulated = found.iter().any(|c| matches!(c.meaning, Meaning::Reading { measured: true, .. }));
     let is_known = |column: &Found<'_>| {
-        column.meaning != Meaning::Unknown || (simulated && is_simulated_only(column.header))
+        column.meaning != Meaning::Unknown
+            || (simulated && is_simulated_only(column.header))
+            || (options.cylinder.is_some() && cylinders::is_column(column.header))
     };
     let unknown: Vec<&str> = found.iter().filter(|c| !is_known(c)).map(|column| column.header).collect();
     if unknown.is_empty() {

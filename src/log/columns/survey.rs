@@ -21,7 +21,7 @@ pub(in crate::log) fn survey(
     *cautions = before;
     let mut found = found(names, at, options, |_| Ok(Meaning::Unknown))?;
     pair(&mut found);
-    set_aside(&found, at, cautions);
+    set_aside(&found, at, options, cautions);
     let none = TimeColumn { index: 0, header: "row".to_owned(), form: TimeForm::Rows, clock: None };
     let columns = Columns {
         time: time(&found, at).unwrap_or(none),

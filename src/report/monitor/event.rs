@@ -178,7 +178,7 @@ pub(super) fn finding(leak: &LeakFinding, clock: &Clock) -> Value {
 }
 
 /// A health as one word.
-pub(super) fn health_word(health: Health) -> &'static str {
+pub(crate) fn health_word(health: Health) -> &'static str {
     match health {
         Health::Good => "good",
         Health::Missing => "missing",

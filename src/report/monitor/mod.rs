@@ -11,7 +11,7 @@ mod strip;
 mod summary;
 
 pub(crate) use alarm::{alarm_line, alarm_text};
-pub(crate) use event::{Naming, event_line, event_text, health_text};
+pub(crate) use event::{Naming, event_line, event_text, health_text, health_word};
 pub(crate) use figure::{FigureData, figure};
 pub(crate) use prognosis::{passage_text, reaction_reason, reaction_text, reaction_word};
 pub(crate) use row::{DOCUMENTATION, MonitorRow, fields};

@@ -1,0 +1,179 @@
+//! The raw arguments of `fleet`.
+use crate::cli::fill::GivenFill;
+use crate::cli::monitor::{MonitorArguments, MonitorQuantities};
+use crate::cli::number::within;
+use crate::cli::options::{
+    DataArguments, EXPERT, FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, SensorArguments,
+    VesselAndLog, ViewArguments,
+};
+use crate::cli::unit_options::QuantityArguments;
+use crate::report::fleet;
+use clap::{Args, Command, ValueEnum};
+use std::path::PathBuf;
+
+/// Format of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TableFormat {
+    /// Comma-separated columns; lines that begin with # say where they come from.
+    Csv,
+    /// Parquet, with where it comes from as metadata.
+    #[cfg(feature = "parquet")]
+    Parquet,
+}
+
+impl TableFormat {
+    #[cfg(feature = "parquet")]
+    pub(super) const USUAL: Self = Self::Parquet;
+    #[cfg(not(feature = "parquet"))]
+    pub(super) const USUAL: Self = Self::Csv;
+
+    /// Ending of a file's name.
+    pub(super) fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            #[cfg(feature = "parquet")]
+            Self::Parquet => "parquet",
+        }
+    }
+}
+
+/// What can differ from cylinder to cylinder: options of `monitor`, and columns of the file of vessels.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct CylinderArguments {
+    #[command(flatten)]
+    pub given: QuantityArguments<MonitorQuantities>,
+    #[command(flatten)]
+    pub sensors: SensorArguments,
+    #[command(flatten)]
+    pub fill: GivenFill,
+    /// Time of an ordered exchange of gas, which is no loss: in seconds of the log or as dates; may be given again.
+    #[arg(long, value_name = "FROM..UNTIL", help_heading = EXPERT)]
+    pub announced: Vec<String>,
+    /// JSON file of `commission`: thresholds for the vessel [default: those common to seven vessels].
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
+    pub commissioned: Option<PathBuf>,
+    /// JSON file of `estimate --learned-out`: what it has learnt of cylinder and sensors.
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
+    pub learned_in: Option<PathBuf>,
+}
+
+impl CylinderArguments {
+    /// What is given here, and what is not as in `defaults`.
+    pub(super) fn or(self, defaults: &Self) -> Self {
+        let announced = if self.announced.is_empty() { defaults.announced.clone() } else { self.announced };
+        Self {
+            given: self.given.or(&defaults.given),
+            sensors: SensorArguments {
+                sensors: self.sensors.sensors.or_else(|| defaults.sensors.sensors.clone()),
+            },
+            fill: self.fill.or(&defaults.fill),
+            announced,
+            commissioned: self.commissioned.or_else(|| defaults.commissioned.clone()),
+            learned_in: self.learned_in.or_else(|| defaults.learned_in.clone()),
+        }
+    }
+
+    /// The arguments of `monitor` for a vessel and a log.
+    pub(super) fn of_monitor(&self, vessel: &str, log: &str, fleet: &FleetArguments) -> MonitorArguments {
+        let one = self.clone();
+        MonitorArguments {
+            inputs: VesselAndLog { vessel: vessel.to_owned(), log: log.to_owned() },
+            given: one.given,
+            false_alarms: fleet.false_alarms.clone(),
+            state: None,
+            data: DataArguments { output: None, format: None },
+            events: None,
+            views: ViewArguments::default(),
+            reading: fleet.reading.clone(),
+            sensors: one.sensors,
+            fill: one.fill,
+            cold_start: false,
+            acknowledge: None,
+            announced: one.announced,
+            commissioned: one.commissioned,
+            learned_in: one.learned_in,
+        }
+    }
+
+    /// Files that are named.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        [&self.sensors.sensors, &self.commissioned, &self.learned_in].into_iter().flatten()
+    }
+}
+
+/// Arguments of `fleet`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP_FOOTER, after_long_help = help())]
+pub(crate) struct FleetArguments {
+    /// Folder of logs in CSV or Parquet: a file for each cylinder, named after it; folders cylinder=NAME; or files with a column
+    /// `cylinder`.
+    pub logs: PathBuf,
+    /// CSV file with a row for each cylinder: cylinder, vessel, and what differs from the options below.
+    #[arg(long, value_name = "FILE", help_heading = INPUT, required_unless_present = "vessel", conflicts_with = "vessel")]
+    pub vessels: Option<PathBuf>,
+    /// Vessel of all cylinders, where they are alike: a TOML file or the name of a built-in one.
+    #[arg(long, value_name = "VESSEL", help_heading = INPUT)]
+    pub vessel: Option<String>,
+    /// Folder for the results, made if it is not there.
+    #[arg(long, short, value_name = "DIR", help_heading = OUTPUT)]
+    pub output: PathBuf,
+    /// Format of the tables [default: parquet where the program was built with it, else csv].
+    #[arg(long, value_enum, help_heading = OUTPUT)]
+    pub format: Option<TableFormat>,
+    /// Write the rows of each cylinder, too, as CSV in the folder `rows`.
+    #[arg(long, help_heading = OUTPUT)]
+    pub rows: bool,
+    /// Threads; the results do not depend on it [default: the number of cores].
+    #[arg(long, value_name = "NUMBER", value_parser = within(1_usize, 1024))]
+    pub threads: Option<usize>,
+    #[command(flatten)]
+    pub reading: LogArguments,
+    #[command(flatten)]
+    pub false_alarms: FalseAlarmArguments,
+    #[command(flatten)]
+    pub cylinder: CylinderArguments,
+}
+
+/// Hides what concerns a single run alone.
+pub(in crate::cli) fn without_single_runs(command: Command) -> Command {
+    command.mut_args(|arg| {
+        let is_single = arg.get_long().is_some_and(|name| name.starts_with(SAVE_EVERY));
+        if is_single { arg.hide(true) } else { arg }
+    })
+}
+
+/// Beginning of the names of options that say when a run saves its state: a fleet saves each once, at its end.
+pub(super) const SAVE_EVERY: &str = "save-every";
+
+fn help() -> String {
+    format!(
+        "\
+Each cylinder is monitored as by `cylwatch monitor VESSEL LOG --state FILE` with the same options.
+
+The file of vessels has the columns cylinder, vessel (a TOML file beside it, or a built-in name), and
+any option of `cylwatch monitor` with _ for -, such as fill_pressure_bar, fill_temperature_degc,
+settled (yes or no), limit_bar, coldest_degc, sensors. An empty cell means the option of this command.
+  cylinder,vessel,fill_pressure_bar,fill_temperature_degc,limit_bar
+  A12,nitrogen-20l,200,15,160
+  A13,nitrogen-20l,,,
+
+Several files in a folder cylinder=NAME, and several files with a column `cylinder`, continue each
+other in the order of their names.
+
+The output folder holds summary, events and errors as tables, page.html, states/ (to go on with
+`cylwatch monitor --state`) and records/. A run that was stopped or killed is resumed by the same
+command: cylinders whose log, options and vessel are the same are not done again. A log that cannot be
+read does not end the run: its cylinder is unknown, and errors says why.
+
+{}
+
+Exit codes: 1 gas was lost from a cylinder, 3 from none, and of one it cannot be told or its log
+cannot be read, 0 from none; 2 nothing could be read or the arguments are wrong, 130 stopped by Ctrl-C.
+
+Examples:
+  cylwatch fleet logs/ --vessels fleet.csv -o fleet
+  cylwatch fleet logs/ --vessel nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 -o fleet
+  cylwatch fleet logs/ --vessels fleet.csv -o fleet --rows --format csv --threads 2",
+        fleet::DOCUMENTATION
+    )
+}
