@@ -65,12 +65,13 @@ fn tag<'a>(svg: &'a str, words: &str) -> &'a str {
 }
 
 #[test]
-fn a_limit_is_named_at_the_end_where_no_curve_passes() {
+fn a_limit_is_named_where_no_curve_passes() {
     let named = |from: f64, to: f64| {
         let x: Vec<f64> = (0..=100).map(f64::from).collect();
-        let values = x.iter().map(|t| if *t < 50.0 { from } else { to });
+        let values = |less: f64| x.iter().map(move |t| if *t < 50.0 { from - less } else { to - less });
         let items = vec![
-            Item::line("pressure", &x, values, style::PRESSURE),
+            Item::line("pressure", &x, values(0.0), style::PRESSURE),
+            Item::line("lower", &x, values(10.0), style::PRESSURE),
             Item::line("floor", &x, x.iter().map(|_| 100.0), style::AIR),
             Item::line("top", &x, x.iter().map(|_| 220.0), style::GAS_MEAN),
             Item::Limit { name: "the limit".into(), value: 160.0 },
@@ -78,10 +79,15 @@ fn a_limit_is_named_at_the_end_where_no_curve_passes() {
         let figure = Figure::over_time("t", vec![Panel::new("pressure in bar", 1.0, items)]);
         Picture::from(figure).to_svg(&provenance()).unwrap()
     };
-    // A curve that covers both places above and below the line on its half.
+    // Two curves that cover the places above and below the line on their half.
     let (right, left) = (named(110.0, 165.0), named(165.0, 110.0));
-    assert!(tag(&right, "the limit").contains("text-anchor=\"start\""), "{}", tag(&right, "the limit"));
-    assert!(tag(&left, "the limit").contains("text-anchor=\"end\""), "{}", tag(&left, "the limit"));
+    let end = |svg: &str| {
+        let tag = tag(svg, "the limit");
+        assert!(tag.contains("text-anchor=\"end\""), "{tag}");
+        tag.split_once(" x=\"").unwrap().1.split('"').next().unwrap().parse::<f64>().unwrap()
+    };
+    let middle = 2.0 * style::WIDTH;
+    assert!(end(&right) < middle && middle < end(&left), "{} {}", end(&right), end(&left));
 }
 
 #[test]
