@@ -98,7 +98,9 @@ def test_dates_are_told_in_the_zone_of_the_frame_through_the_hour_that_comes_twi
     log = leak.drop(columns="time_s").assign(time=start + pd.to_timedelta(leak["time_s"], unit="s"))
     result = cw.monitor(VESSEL, log)
     csv = result.to_csv()
-    assert "2026-10-25T02:59:50+02:00" in csv and "2026-10-25T02:00:00+01:00" in csv
+    # The same hour of the clock, once in summer time and once in winter time.
+    assert ",2026-10-25T02:30" in csv and "+02:00," in csv and "+01:00," in csv
+    assert (np.diff(result["time"]) > np.timedelta64(0)).all()
     assert body(cw.monitor(VESSEL, leak).to_csv()).count("\n") == body(csv).count("\n")
 
 
