@@ -23,7 +23,7 @@ const FAULTS: usize = 200;
 
 /// Heads of the columns.
 const HEADS: [&str; 9] = [
-    "state",
+    "light",
     "cylinder",
     "verdict",
     "at 15 °C / limit",
@@ -82,7 +82,7 @@ pub(crate) fn page(cylinders: &[Cylinder], faults: &[Fault], provenance: &Proven
 /// How many there are of each, as buttons that filter.
 fn lights(cylinders: &[Cylinder]) -> Markup {
     html! {
-        div.lights role="group" aria-label="Filter by state" {
+        div.lights role="group" aria-label="Filter by light" {
             @for (light, count) in counts(cylinders) {
                 button type="button" class=(light.word()) aria-pressed="false" { (light.word()) " " (count) }
             }
