@@ -119,6 +119,7 @@ impl Geometry {
     }
 
     /// Height of the gas as the vessel stands or lies, m.
+    #[cfg(feature = "simulate")]
     pub(crate) fn gas_height_m(&self) -> f64 {
         match self.orientation {
             Orientation::Vertical => self.inner_height_m(),
