@@ -15,6 +15,8 @@ use crate::estimator::observer::{Engine, Learned, Observer, ObserverSettings};
 use crate::estimator::sensor::Sensor;
 use crate::log::Row;
 use crate::report::estimate as report;
+use crate::report::number;
+use crate::thermal::units::{DAY_S, YEAR_S};
 use crate::thermal::vessel::Vessel;
 use anyhow::{Context, bail};
 use serde_json::json;
@@ -186,4 +188,21 @@ fn begun(
         observer = observer.with_learned(learned);
     }
     Ok((selection, first, observer))
+}
+
+/// Longest time between two rows, s: a year. The model goes through all of it, and nothing is left to be known then.
+const LONGEST_GAP_S: f64 = YEAR_S;
+
+/// A row must not come later after the one before it, whose time is NaN for the first row.
+fn check_gap(last_s: f64, time_s: f64) -> anyhow::Result<()> {
+    let gap_s = time_s - last_s;
+    if gap_s > LONGEST_GAP_S {
+        bail!(
+            "time {} s is {} d after the row before it, and no estimate goes on for more than {} d: check its unit, or begin anew there",
+            number(time_s, 10),
+            number(gap_s / DAY_S, 3),
+            number(LONGEST_GAP_S / DAY_S, 3)
+        );
+    }
+    Ok(())
 }

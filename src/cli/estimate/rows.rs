@@ -13,6 +13,8 @@ pub(super) struct Rows<'a> {
     pass: Pass,
     selection: &'a Selection,
     readings: Vec<f64>,
+    /// Time of the last row, s; NaN: there was none.
+    last_s: f64,
     results: Results,
 }
 
@@ -62,12 +64,14 @@ impl<'a> Rows<'a> {
             slope: Slope::of(cylinder),
             figure: options.views.is_any_requested().then(|| FigureData::new(names)),
         };
-        Ok(Self { pass, selection, readings: Vec::new(), results })
+        Ok(Self { pass, selection, readings: Vec::new(), last_s: f64::NAN, results })
     }
 
     /// Takes in a row and writes the estimates that are final.
     pub(super) fn push(&mut self, row: &Row, log: &LogReader) -> anyhow::Result<()> {
         self.results.clock.set(log.origin_instant(), log.zone());
+        check_gap(self.last_s, row.time_s)?;
+        self.last_s = row.time_s;
         self.readings.clear();
         self.readings.extend(self.selection.readings(row));
         let results = &mut self.results;

@@ -4,13 +4,9 @@ use crate::cli::steps::{self, Frame, LONGEST_WAIT, StepTime};
 use crate::estimator::observer::{Estimate, Snapshot};
 use crate::log::{LogOptions, RowScreen};
 use crate::report::{Clock, RowFormat, Rows as Fields, Table};
-use crate::thermal::units::YEAR_S;
 use crate::thermal::vessel::VesselSpec;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
-
-/// Longest time between two rows, s: a year. The model goes through all of it, and nothing is left to be known then.
-const LONGEST_GAP_S: f64 = YEAR_S;
 
 /// An observer that is fed row by row.
 pub(crate) struct Steps {
@@ -171,13 +167,7 @@ impl Steps {
 
 impl Running {
     fn push(&mut self, row: &Row) -> anyhow::Result<Estimate> {
-        let gap_s = row.time_s - self.last_s;
-        if gap_s > LONGEST_GAP_S {
-            bail!(
-                "time {} s is {gap_s} s after the row before it: check its unit, or begin with a new object",
-                row.time_s
-            );
-        }
+        check_gap(self.last_s, row.time_s)?;
         let readings: Vec<f64> = self.selection.readings(row).collect();
         let estimate = self.observer.step(row.time_s, &readings)?;
         self.last_s = row.time_s;

@@ -79,6 +79,16 @@ fn a_stuck_thermometer_is_named_with_its_value_while_another_moves() {
 }
 
 #[test]
+fn a_row_years_after_the_one_before_is_refused_and_does_not_hang() {
+    for far in ["1e9", "1e300"] {
+        refused(
+            &with(&format!("{far},20,18,200\n")),
+            &["after the row before it", "more than 365 d", "check its unit"],
+        );
+    }
+}
+
+#[test]
 fn time_that_runs_backwards_is_refused_with_both_lines() {
     refused(
         &with("1700,15,15,200\n"),
