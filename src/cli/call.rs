@@ -1,6 +1,6 @@
 //! Calls from a program ([`crate::run`]): the arguments of a command line, without a shell.
 use super::arguments::{Arguments, Command};
-use super::host::{Host, Kept};
+use super::host::{Host, Outcome};
 use super::input::Inputs;
 use super::message::Messages;
 use super::{estimate, monitor, properties, simulate};
@@ -25,19 +25,16 @@ const FOR_A_SHELL: [&str; 12] = [
     "list",
 ];
 
-/// Runs a command for a caller; beside the result, the cautions of the run, which are there with an error, too.
-pub(crate) fn called(host: Host, arguments: &[OsString]) -> (anyhow::Result<Kept>, Vec<String>) {
-    let messages = Messages::kept();
-    let kept = parsed(arguments).and_then(|command| {
-        let inputs = Inputs::of(host);
-        match command {
-            Command::Monitor(arguments) => monitor::kept(*arguments, &inputs, &messages),
-            Command::Estimate(arguments) => estimate::kept(*arguments, &inputs, &messages),
-            Command::Simulate(arguments) => simulate::kept(arguments, &inputs, &messages),
-            _ => bail!("only monitor, estimate and simulate have a result in rows"),
-        }
-    });
-    (kept, messages.take_cautions())
+/// Runs a command for a caller.
+pub(crate) fn called(host: Host, arguments: &[OsString]) -> anyhow::Result<Outcome> {
+    let (messages, inputs) = (Messages::kept(), Inputs::of(host));
+    let outcome = match parsed(arguments)? {
+        Command::Monitor(arguments) => monitor::kept(*arguments, &inputs, &messages),
+        Command::Estimate(arguments) => estimate::kept(*arguments, &inputs, &messages),
+        Command::Simulate(arguments) => simulate::kept(arguments, &inputs, &messages),
+        _ => bail!("only monitor, estimate and simulate have a result in rows"),
+    };
+    Ok(Outcome { cautions: messages.take_cautions(), ..outcome? })
 }
 
 /// The properties of a gas at the state that the arguments give: a table of one row.

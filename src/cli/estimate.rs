@@ -1,7 +1,7 @@
 //! `cylwatch estimate`: the observer on a log, row by row.
 use super::fill::{self, FillSource, GivenFill};
 use super::format::Format;
-use super::host::Kept;
+use super::host::Outcome;
 use super::input::{Inputs, LogInput};
 use super::message::Messages;
 use super::options::LogArguments;
@@ -64,16 +64,17 @@ pub(super) fn kept(
     arguments: EstimateArguments,
     inputs: &Inputs,
     messages: &Messages,
-) -> anyhow::Result<Kept> {
+) -> anyhow::Result<Outcome> {
     let options = Options { data: Target::Memory, views: Views::kept(), ..Options::checked(arguments)? };
     let finished = ran(&options, inputs, messages)?;
-    Ok(Kept {
+    Ok(Outcome {
         rows: finished.rows.unwrap_or_default(),
         zone: finished.zone,
         events: Vec::new(),
         summary: report::document(&finished.summary),
         verdict: "",
         exit_code: 0,
+        cautions: Vec::new(),
         report: finished.report.unwrap_or_else(|| report::summary(&finished.summary)),
         provenance: inputs.provenance(),
     })

@@ -33,22 +33,24 @@ impl Host {
     }
 }
 
-/// What a caller takes.
+/// What a run hands out.
 #[derive(Debug)]
-pub(crate) struct Kept {
-    /// Rows with all digits.
+pub struct Outcome {
+    /// Rows with all digits, in the columns and units of the command's data; its files have fewer digits.
     pub rows: Table,
-    /// Zone in which the dates of the rows are told.
+    /// Zone of the dates in the column `time`, as `Europe/Berlin` or `+01:00`; `None`: UTC, or there are none.
     pub zone: Option<String>,
-    /// Lines of JSON.
+    /// Events and alarms in the order in which they happened, each a JSON object as of the command's `--events`.
     pub events: Vec<String>,
-    /// The summary, as the JSON of the command has it.
+    /// The summary, as the command's JSON has it.
     pub summary: Value,
-    /// Verdict at the end; empty: there is none.
+    /// Verdict at the end; empty: none is given.
     pub verdict: &'static str,
-    /// Exit code of the command.
+    /// Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive.
     pub exit_code: u8,
-    /// The report with its figure.
+    /// Cautions, which the command writes to stderr.
+    pub cautions: Vec<String>,
+    /// The summary for people with its figure.
     pub report: Report,
     /// Where all this comes from.
     pub provenance: Provenance,

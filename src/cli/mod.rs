@@ -47,6 +47,7 @@ pub(crate) use call::{called, estimate_steps, monitor_steps, properties_of};
 use clap::FromArgMatches;
 pub(crate) use estimate::Steps as EstimateSteps;
 pub(crate) use host::Host;
+pub use host::Outcome;
 use message::Messages;
 pub(crate) use monitor::Steps as MonitorStepper;
 use std::process::ExitCode;

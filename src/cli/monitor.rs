@@ -1,7 +1,7 @@
 //! `cylwatch monitor`: the monitor on a log, row by row: verdict, events, alarms, a state to go on from.
 use super::fill::{self, FillSource, GivenFill};
 use super::format::Format;
-use super::host::Kept;
+use super::host;
 use super::input::{Inputs, LogInput};
 use super::interrupt;
 use super::message::Messages;
@@ -30,7 +30,7 @@ mod state;
 mod steps;
 
 use announced::Announced;
-pub(super) use arguments::{MonitorArguments, MonitorQuantities};
+pub(super) use arguments::{CylinderArguments, MonitorArguments};
 pub(super) use course::{Course, Told};
 pub(super) use options::{Options, Places};
 pub(crate) use steps::Steps;
@@ -69,18 +69,19 @@ pub(super) fn kept(
     arguments: MonitorArguments,
     inputs: &Inputs,
     messages: &Messages,
-) -> anyhow::Result<Kept> {
+) -> anyhow::Result<host::Outcome> {
     let options = Options::checked(arguments)?.kept()?;
     let finished = watch(&options, inputs, None, (messages, &Progress::new(messages)))?;
     finished.written?;
     let summary = finished.summary.context("a log that was read without an error has a row")?;
-    Ok(Kept {
+    Ok(host::Outcome {
         rows: finished.rows.unwrap_or_default(),
         zone: finished.zone,
         events: finished.events,
         summary: crate::report::monitor::document(&summary),
         verdict: summary.last.decision.verdict.as_str(),
         exit_code: summary.outcome().exit_code(),
+        cautions: Vec::new(),
         report: finished.report.unwrap_or_else(|| crate::report::monitor::summary(&summary)),
         provenance: inputs.provenance(),
     })

@@ -1,6 +1,6 @@
 //! `cylwatch simulate`: a vessel in a scenario.
 use super::format::Format;
-use super::host::Kept;
+use super::host::Outcome;
 use super::input::Inputs;
 use super::message::Messages;
 use super::number::at_least;
@@ -117,7 +117,7 @@ pub(super) fn kept(
     arguments: SimulateArguments,
     inputs: &Inputs,
     messages: &Messages,
-) -> anyhow::Result<Kept> {
+) -> anyhow::Result<Outcome> {
     let options = Options::checked(arguments)?;
     let (run, readings) = simulated(&options, inputs, messages)?;
     let provenance = Provenance { seed: Some(options.seed), ..inputs.provenance() };
@@ -125,13 +125,14 @@ pub(super) fn kept(
     if let Some(members) = summary.as_object_mut() {
         members.shift_remove("columns");
     }
-    Ok(Kept {
+    Ok(Outcome {
         rows: simulation::table(&run, &readings),
         zone: None,
         events: Vec::new(),
         summary,
         verdict: "",
         exit_code: 0,
+        cautions: Vec::new(),
         report: simulation::summary(&run).picture(simulation::figure(&run, &readings), simulation::CAPTION),
         provenance,
     })

@@ -1,7 +1,7 @@
 //! What the stepping forms of `monitor` and `estimate` share: rows one by one, until the fill is known kept, and their bytes.
 use super::host::Host;
 use super::input::{Inputs, LogInput};
-use crate::log::{Cells, LogOptions, MemoryLog, RowScreen, Zone};
+use crate::log::{Cells, LogOptions, MemoryLog, Row, RowScreen, Truth, Zone};
 use crate::report::Input;
 use anyhow::{Context, bail};
 use jiff::Timestamp;
@@ -156,11 +156,25 @@ pub(super) fn inputs(documents: &[(String, String)], log: Option<MemoryLog>) -> 
     })
 }
 
+/// A row after the first ones, and the zone of its time.
+///
+/// # Errors
+/// Its time is a date where the first row is none, or the other way round, or no number.
+pub(super) fn row(
+    time: &StepTime,
+    origin: Option<Timestamp>,
+    screen: &RowScreen,
+    cells: &[f64],
+) -> anyhow::Result<(Row, Option<Zone>)> {
+    let (time_s, zone) = (second(time, origin)?, zone(time)?);
+    Ok((Row { time_s, readings: screened(screen, cells), truth: Truth::UNKNOWN, number: 0 }, zone))
+}
+
 /// A time of a row after the first ones, s.
 ///
 /// # Errors
 /// It is a date where the first row is none, or the other way round, or no number.
-pub(super) fn second(time: &StepTime, origin: Option<Timestamp>) -> anyhow::Result<f64> {
+fn second(time: &StepTime, origin: Option<Timestamp>) -> anyhow::Result<f64> {
     match (time, origin) {
         (StepTime::Second(second), None) if second.is_finite() => Ok(*second),
         (StepTime::Second(second), None) => bail!("time = {second} must be a finite number"),
@@ -175,7 +189,7 @@ pub(super) fn second(time: &StepTime, origin: Option<Timestamp>) -> anyhow::Resu
 ///
 /// # Errors
 /// It is none.
-pub(super) fn zone(time: &StepTime) -> anyhow::Result<Option<Zone>> {
+fn zone(time: &StepTime) -> anyhow::Result<Option<Zone>> {
     Ok(match time {
         StepTime::Second(_) => None,
         StepTime::Instant(_, name) => Some(name.parse()?),

@@ -10,7 +10,7 @@ use super::{Provenance, ReportError};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Looks of all pages.
-pub(super) const STYLE: &str = include_str!("page.css");
+const STYLE: &str = include_str!("page.css");
 
 /// A page.
 #[derive(Clone, Copy, Debug)]
@@ -32,48 +32,60 @@ impl Page<'_> {
         let page = html! {
             (DOCTYPE)
             html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="generator" content={ "cylwatch " (Provenance::VERSION) };
-                    title { (self.report.title) }
-                    style { (PreEscaped(STYLE)) }
-                }
+                (head(&self.report.title, &html! {}))
                 body {
-                    header { p.program { "cylwatch " (Provenance::VERSION) } h1 { (self.report.title) } }
+                    (banner(&self.report.title))
                     (contents(&self.report.blocks))
                     main { @for block in &blocks { (block) } }
-                    (self.origin())
+                    (origin(self.provenance))
                 }
             }
         };
         Ok(page.into_string())
     }
+}
 
-    /// Command, inputs and seed.
-    pub(super) fn origin(&self) -> Markup {
-        let provenance = self.provenance;
-        html! {
-            footer {
-                h2 #origin { "Where this comes from" }
-                div.wide {
-                    table {
-                        tbody {
-                            tr { th scope="row" { "program" } td { "cylwatch " (Provenance::VERSION) } }
-                            tr { th scope="row" { "command" } td { code { (provenance.command) } } }
-                            @for input in &provenance.inputs {
-                                tr {
-                                    th scope="row" { "input" }
-                                    td { (input.name) br; small { "SHA-256 " code { (input.sha256) } } }
-                                }
-                            }
+/// The head of a page, with what it has beside the others.
+pub(super) fn head(title: &str, own: &Markup) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="generator" content={ "cylwatch " (Provenance::VERSION) };
+            title { (title) }
+            style { (PreEscaped(STYLE)) }
+            (own)
+        }
+    }
+}
+
+/// Program and title.
+pub(super) fn banner(title: &str) -> Markup {
+    html! { header { p.program { "cylwatch " (Provenance::VERSION) } h1 { (title) } } }
+}
+
+/// Command, inputs and seed.
+pub(super) fn origin(provenance: &Provenance) -> Markup {
+    html! {
+        footer {
+            h2 #origin { "Where this comes from" }
+            div.wide {
+                table {
+                    tbody {
+                        tr { th scope="row" { "program" } td { "cylwatch " (Provenance::VERSION) } }
+                        tr { th scope="row" { "command" } td { code { (provenance.command) } } }
+                        @for input in &provenance.inputs {
                             tr {
-                                th scope="row" { "seed" }
-                                td {
-                                    @match provenance.seed {
-                                        Some(seed) => (seed),
-                                        None => "none, nothing is random",
-                                    }
+                                th scope="row" { "input" }
+                                td { (input.name) br; small { "SHA-256 " code { (input.sha256) } } }
+                            }
+                        }
+                        tr {
+                            th scope="row" { "seed" }
+                            td {
+                                @match provenance.seed {
+                                    Some(seed) => (seed),
+                                    None => "none, nothing is random",
                                 }
                             }
                         }

@@ -30,9 +30,9 @@ pub use crate::log::{Cells, MemoryLog};
 pub use error::RunError;
 pub use steps::{MonitorSteps, ObserverSteps, StepTime};
 
+pub use crate::cli::Outcome;
 use crate::cli::{Host, called, properties_of};
-use crate::report::{Page, Provenance, Report, Table};
-use serde_json::Value;
+use crate::report::{Page, Table};
 use std::cell::RefCell;
 use std::ffi::OsString;
 use std::path::Path;
@@ -44,7 +44,6 @@ const VESSEL: &str = "<vessel>";
 const SCENARIO: &str = "<scenario>";
 
 /// A call of a command.
-#[derive(Default)]
 pub struct Call {
     host: Host,
     vessel: OsString,
@@ -57,7 +56,7 @@ impl Call {
     /// A call for a vessel: the name of a built-in one, or the path of a file.
     pub fn new(vessel: impl Into<OsString>) -> Self {
         let host = Host { command: "a call from a program".to_owned(), ..Host::default() };
-        Self { host, vessel: vessel.into(), ..Self::default() }
+        Self { host, vessel: vessel.into(), second: None, options: Vec::new() }
     }
 
     /// A call for a vessel that is given as TOML.
@@ -139,43 +138,8 @@ impl Call {
 
     fn run(self, command: &str) -> Result<Outcome, RunError> {
         let arguments = self.arguments(command);
-        let (kept, cautions) = called(self.host, &arguments);
-        let kept = kept.map_err(|error| RunError::of(&error))?;
-        Ok(Outcome {
-            rows: kept.rows,
-            zone: kept.zone,
-            events: kept.events,
-            summary: kept.summary,
-            verdict: kept.verdict,
-            exit_code: kept.exit_code,
-            cautions,
-            report: kept.report,
-            provenance: kept.provenance,
-        })
+        called(self.host, &arguments).map_err(|error| RunError::of(&error))
     }
-}
-
-/// What a run hands out.
-#[derive(Debug)]
-pub struct Outcome {
-    /// Rows with all digits, in the columns and units of the command's data; its files have fewer digits.
-    pub rows: Table,
-    /// Zone of the dates in the column `time`, as `Europe/Berlin` or `+01:00`; `None`: UTC, or there are none.
-    pub zone: Option<String>,
-    /// Events and alarms in the order in which they happened, each a JSON object as of the command's `--events`.
-    pub events: Vec<String>,
-    /// The summary, as the command's JSON has it.
-    pub summary: Value,
-    /// Verdict at the end; empty: none is given.
-    pub verdict: &'static str,
-    /// Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive.
-    pub exit_code: u8,
-    /// Cautions, which the command writes to stderr.
-    pub cautions: Vec<String>,
-    /// The summary for people with its figure.
-    pub report: Report,
-    /// Where all this comes from.
-    pub provenance: Provenance,
 }
 
 impl Outcome {

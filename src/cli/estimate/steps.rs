@@ -74,11 +74,8 @@ impl Steps {
             }
             return begun;
         };
-        let time_s = steps::second(&time, running.origin)?;
-        let zone = steps::zone(&time)?;
+        let (row, zone) = steps::row(&time, running.origin, &running.screen, &cells)?;
         running.clock.set(running.origin, zone.as_ref());
-        let readings = steps::screened(&running.screen, &cells);
-        let row = Row { time_s, readings, truth: crate::log::Truth::UNKNOWN, number: 0 };
         let estimate = running.push(&row)?;
         running.told(vec![estimate])
     }

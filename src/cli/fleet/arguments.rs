@@ -1,12 +1,9 @@
 //! The raw arguments of `fleet`.
-use crate::cli::fill::GivenFill;
-use crate::cli::monitor::{MonitorArguments, MonitorQuantities};
+use crate::cli::monitor::{CylinderArguments, MonitorArguments};
 use crate::cli::number::within;
 use crate::cli::options::{
-    DataArguments, EXPERT, FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, SensorArguments,
-    VesselAndLog, ViewArguments,
+    DataArguments, FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog, ViewArguments,
 };
-use crate::cli::unit_options::QuantityArguments;
 use crate::report::fleet;
 use clap::{Args, Command, ValueEnum};
 use std::path::PathBuf;
@@ -34,70 +31,6 @@ impl TableFormat {
             #[cfg(feature = "parquet")]
             Self::Parquet => "parquet",
         }
-    }
-}
-
-/// What can differ from cylinder to cylinder: options of `monitor`, and columns of the file of vessels.
-#[derive(Clone, Debug, Args)]
-pub(crate) struct CylinderArguments {
-    #[command(flatten)]
-    pub given: QuantityArguments<MonitorQuantities>,
-    #[command(flatten)]
-    pub sensors: SensorArguments,
-    #[command(flatten)]
-    pub fill: GivenFill,
-    /// Time of an ordered exchange of gas, which is no loss: in seconds of the log or as dates; may be given again.
-    #[arg(long, value_name = "FROM..UNTIL", help_heading = EXPERT)]
-    pub announced: Vec<String>,
-    /// JSON file of `commission`: thresholds for the vessel [default: those common to seven vessels].
-    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
-    pub commissioned: Option<PathBuf>,
-    /// JSON file of `estimate --learned-out`: what it has learnt of cylinder and sensors.
-    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
-    pub learned_in: Option<PathBuf>,
-}
-
-impl CylinderArguments {
-    /// What is given here, and what is not as in `defaults`.
-    pub(super) fn or(self, defaults: &Self) -> Self {
-        let announced = if self.announced.is_empty() { defaults.announced.clone() } else { self.announced };
-        Self {
-            given: self.given.or(&defaults.given),
-            sensors: SensorArguments {
-                sensors: self.sensors.sensors.or_else(|| defaults.sensors.sensors.clone()),
-            },
-            fill: self.fill.or(&defaults.fill),
-            announced,
-            commissioned: self.commissioned.or_else(|| defaults.commissioned.clone()),
-            learned_in: self.learned_in.or_else(|| defaults.learned_in.clone()),
-        }
-    }
-
-    /// The arguments of `monitor` for a vessel and a log.
-    pub(super) fn of_monitor(&self, vessel: &str, log: &str, fleet: &FleetArguments) -> MonitorArguments {
-        let one = self.clone();
-        MonitorArguments {
-            inputs: VesselAndLog { vessel: vessel.to_owned(), log: log.to_owned() },
-            given: one.given,
-            false_alarms: fleet.false_alarms.clone(),
-            state: None,
-            data: DataArguments { output: None, format: None },
-            events: None,
-            views: ViewArguments::default(),
-            reading: fleet.reading.clone(),
-            sensors: one.sensors,
-            fill: one.fill,
-            cold_start: false,
-            acknowledge: None,
-            announced: one.announced,
-            commissioned: one.commissioned,
-            learned_in: one.learned_in,
-        }
-    }
-
-    /// Files that are named.
-    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        [&self.sensors.sensors, &self.commissioned, &self.learned_in].into_iter().flatten()
     }
 }
 
@@ -132,6 +65,29 @@ pub(crate) struct FleetArguments {
     pub false_alarms: FalseAlarmArguments,
     #[command(flatten)]
     pub cylinder: CylinderArguments,
+}
+
+impl FleetArguments {
+    /// The arguments of `monitor` for the log of a cylinder.
+    pub(super) fn of_monitor(
+        &self,
+        vessel: &str,
+        log: &str,
+        cylinder: CylinderArguments,
+    ) -> MonitorArguments {
+        MonitorArguments {
+            inputs: VesselAndLog { vessel: vessel.to_owned(), log: log.to_owned() },
+            cylinder,
+            false_alarms: self.false_alarms.clone(),
+            state: None,
+            data: DataArguments { output: None, format: None },
+            events: None,
+            views: ViewArguments::default(),
+            reading: self.reading.clone(),
+            cold_start: false,
+            acknowledge: None,
+        }
+    }
 }
 
 /// Hides what concerns a single run alone.

@@ -153,7 +153,7 @@ impl Fleet<'_> {
             state: Some(files.state.clone()),
             views: Views::default(),
         };
-        let options = Options::of(arguments.of_monitor(vessel, log, self.arguments), places)?;
+        let options = Options::of(self.arguments.of_monitor(vessel, log, arguments.clone()), places)?;
         let cylinder = (job.logs.naming == Naming::Column).then(|| job.name.to_owned());
         Ok(Options { cylinder, save_every: Duration::MAX, ..options })
     }

@@ -1,8 +1,8 @@
 //! The file of vessels: a row for each cylinder.
-use super::arguments::{CylinderArguments, FleetArguments, SAVE_EVERY};
+use super::arguments::{FleetArguments, SAVE_EVERY};
 use crate::cli::input::Inputs;
 use crate::cli::message::Messages;
-use crate::cli::monitor::{Options, Places};
+use crate::cli::monitor::{CylinderArguments, Options, Places};
 use crate::cli::views::Views;
 use crate::thermal::vessel;
 use anyhow::{Context, anyhow, bail};
@@ -98,7 +98,7 @@ fn check(
 /// Finds out whether `monitor` takes the options.
 fn options(assigned: &Assigned, fleet: &FleetArguments) -> anyhow::Result<()> {
     let places = Places { data: None, events: None, state: None, views: Views::default() };
-    Options::of(assigned.arguments.of_monitor(&assigned.vessel, "", fleet), places)?;
+    Options::of(fleet.of_monitor(&assigned.vessel, "", assigned.arguments.clone()), places)?;
     match assigned.arguments.files().find(|file| !file.is_file()) {
         Some(file) => {
             bail!("{} is no file: name one that is there, beside the file of vessels", file.display())

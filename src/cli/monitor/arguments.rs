@@ -30,6 +30,49 @@ impl Choices for MonitorQuantities {
     const EXPERT: &'static [&'static str] = &["lateness", "step", "save-every"];
 }
 
+/// What can differ from cylinder to cylinder: for a fleet the columns of its file of vessels, too.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct CylinderArguments {
+    #[command(flatten)]
+    pub given: QuantityArguments<MonitorQuantities>,
+    #[command(flatten)]
+    pub sensors: SensorArguments,
+    #[command(flatten)]
+    pub fill: GivenFill,
+    /// Time of an ordered exchange of gas, such as a test of the system, which is no loss: in seconds of the log or as dates; may be
+    /// given again.
+    #[arg(long, value_name = "FROM..UNTIL", help_heading = EXPERT)]
+    pub announced: Vec<String>,
+    /// JSON file of `commission`: thresholds for this vessel [default: those common to seven vessels].
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
+    pub commissioned: Option<PathBuf>,
+    /// JSON file of `estimate --learned-out`: what it has learnt of cylinder and sensors.
+    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
+    pub learned_in: Option<PathBuf>,
+}
+
+impl CylinderArguments {
+    /// What is given here, and what is not as in `defaults`.
+    pub(in crate::cli) fn or(self, defaults: &Self) -> Self {
+        let announced = if self.announced.is_empty() { defaults.announced.clone() } else { self.announced };
+        Self {
+            given: self.given.or(&defaults.given),
+            sensors: SensorArguments {
+                sensors: self.sensors.sensors.or_else(|| defaults.sensors.sensors.clone()),
+            },
+            fill: self.fill.or(&defaults.fill),
+            announced,
+            commissioned: self.commissioned.or_else(|| defaults.commissioned.clone()),
+            learned_in: self.learned_in.or_else(|| defaults.learned_in.clone()),
+        }
+    }
+
+    /// Files that are named.
+    pub(in crate::cli) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        [&self.sensors.sensors, &self.commissioned, &self.learned_in].into_iter().flatten()
+    }
+}
+
 /// Arguments of `monitor`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP_FOOTER, after_long_help = help())]
@@ -37,7 +80,7 @@ pub(crate) struct MonitorArguments {
     #[command(flatten)]
     pub inputs: VesselAndLog,
     #[command(flatten)]
-    pub given: QuantityArguments<MonitorQuantities>,
+    pub cylinder: CylinderArguments,
     #[command(flatten)]
     pub false_alarms: FalseAlarmArguments,
     /// Continue from FILE if it exists, and save the state to it.
@@ -56,26 +99,12 @@ pub(crate) struct MonitorArguments {
     pub views: ViewArguments,
     #[command(flatten)]
     pub reading: LogArguments,
-    #[command(flatten)]
-    pub sensors: SensorArguments,
-    #[command(flatten)]
-    pub fill: GivenFill,
     /// Ignore an existing state and start fresh; reported as an event.
     #[arg(long, requires = "state", help_heading = EXPERT)]
     pub cold_start: bool,
     /// Acknowledge and confirm all alarms of the state with a comment, and reset those that are back to normal.
     #[arg(long, value_name = "COMMENT", requires = "state", conflicts_with = "cold_start", help_heading = EXPERT)]
     pub acknowledge: Option<String>,
-    /// Time of an ordered exchange of gas, such as a test of the system, which is no loss: in seconds of the log or as dates; may be
-    /// given again.
-    #[arg(long, value_name = "FROM..UNTIL", help_heading = EXPERT)]
-    pub announced: Vec<String>,
-    /// JSON file of `commission`: thresholds for this vessel [default: those common to seven vessels].
-    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
-    pub commissioned: Option<PathBuf>,
-    /// JSON file of `estimate --learned-out`: what it has learnt of cylinder and sensors.
-    #[arg(long, value_name = "FILE", help_heading = EXPERT)]
-    pub learned_in: Option<PathBuf>,
 }
 
 fn help() -> String {

@@ -1,5 +1,5 @@
 //! Validated options of `monitor`.
-use super::arguments::MonitorArguments;
+use super::arguments::{CylinderArguments, MonitorArguments};
 use super::*;
 use crate::cli::options::LogArguments;
 use crate::cli::output::check_distinct;
@@ -59,9 +59,7 @@ impl Options {
     /// Checks places and numbers.
     pub(super) fn checked(arguments: MonitorArguments) -> anyhow::Result<Self> {
         let mut inputs = arguments.inputs.paths()?;
-        let others = [&arguments.sensors.sensors, &arguments.learned_in, &arguments.commissioned];
-        let others = others.map(Option::as_deref);
-        inputs.extend(others.into_iter().flatten());
+        inputs.extend(arguments.cylinder.files().map(PathBuf::as_path));
         let data = Target::checked(arguments.data.output.as_deref(), &inputs)?;
         let events = arguments.events.as_deref();
         let events = events.map(|path| Target::checked(Some(path), &inputs)).transpose()?;
@@ -81,7 +79,8 @@ impl Options {
 
     /// The same with checked places.
     pub(in crate::cli) fn of(arguments: MonitorArguments, places: Places) -> anyhow::Result<Self> {
-        let MonitorArguments { inputs, fill, given, reading, learned_in, commissioned, .. } = arguments;
+        let MonitorArguments { inputs, cylinder, reading, .. } = arguments;
+        let CylinderArguments { given, sensors, fill, announced, commissioned, learned_in } = cylinder;
         let Places { data, events, state, views } = places;
         let time = |option: &str| given.si(option, Dimension::Time);
         let from_zero = |option: &str| given.si_from_zero(option, Dimension::Time);
@@ -97,11 +96,7 @@ impl Options {
             between_false_alarms_s: arguments.false_alarms.mean_time_s(),
             cold_start: arguments.cold_start,
             acknowledge: arguments.acknowledge,
-            announced: arguments
-                .announced
-                .iter()
-                .map(|text| Announced::parse(text))
-                .collect::<anyhow::Result<_>>()?,
+            announced: announced.iter().map(|text| Announced::parse(text)).collect::<anyhow::Result<_>>()?,
             cylinder: None,
             is_live: inputs.log == "-"
                 || Path::new(&inputs.log).metadata().is_ok_and(|found| !found.is_file()),
@@ -110,7 +105,7 @@ impl Options {
             data,
             views,
             reading,
-            sensors: arguments.sensors.sensors,
+            sensors: sensors.sensors,
             fill,
             learned_in,
             commissioned,

@@ -75,11 +75,8 @@ impl Steps {
             }
             return begun;
         };
-        let time_s = steps::second(&time, running.origin)?;
-        let zone = steps::zone(&time)?;
+        let (row, zone) = steps::row(&time, running.origin, &running.screen, &cells)?;
         running.naming.clock.set(running.origin, zone.as_ref());
-        let channels = steps::screened(&running.screen, &cells);
-        let row = Row { time_s, readings: channels, truth: crate::log::Truth::UNKNOWN, number: 0 };
         let outputs = running.push(&row)?;
         running.told(outputs)
     }

@@ -5,8 +5,7 @@
 use super::order::Light;
 use super::row::{Cylinder, Fault, Finding};
 use super::words::{Words, counts, in_words};
-use crate::report::content::Report;
-use crate::report::page::{Page, STYLE};
+use crate::report::page::{banner, head, origin};
 use crate::report::{Provenance, Table, number};
 use crate::thermal::units::BAR_PA;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -40,21 +39,17 @@ pub(crate) fn page(cylinders: &[Cylinder], faults: &[Fault], provenance: &Proven
         [_] => "Fleet of 1 cylinder".to_owned(),
         many => format!("Fleet of {} cylinders", many.len()),
     };
-    let empty = Report::new(&title);
+    let own = html! {
+        meta http-equiv="Content-Security-Policy" content=(POLICY);
+        style { (PreEscaped(OWN_STYLE)) }
+    };
     let heads = html! { thead { tr { @for head in HEADS { th scope="col" { (head) } } } } };
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content={ "cylwatch " (Provenance::VERSION) };
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { (title) }
-                style { (PreEscaped(STYLE)) (PreEscaped(OWN_STYLE)) }
-            }
+            (head(&title, &own))
             body {
-                header { p.program { "cylwatch " (Provenance::VERSION) } h1 { (title) } }
+                (banner(&title))
                 main {
                     (lights(cylinders))
                     input #find .find .script type="search" placeholder="Search: name, verdict, sensor \u{2026}" aria-label="Search";
@@ -70,7 +65,7 @@ pub(crate) fn page(cylinders: &[Cylinder], faults: &[Fault], provenance: &Proven
                     (unread(faults))
                     (meaning())
                 }
-                (Page { report: &empty, provenance }.origin())
+                (origin(provenance))
                 script #data type="application/json" { (PreEscaped(data(cylinders))) }
                 script { (PreEscaped(SCRIPT)) }
             }

@@ -19,15 +19,14 @@ impl PlacementReport<'_> {
 
     fn loss(&self, failure: &Failure) -> Vec<String> {
         let mut cells = vec![self.name(failure.sensor).to_owned()];
-        match (&failure.without, &failure.unseen) {
-            (Some(left), _) => cells.extend([
+        match &failure.without {
+            Some(left) => cells.extend([
                 KELVIN.number(left.gas_sd_k),
                 GRAM.number(left.mass_sd_kg),
                 GRAM_PER_HOUR.number(left.leak_sd_kg_s),
                 GRAM_PER_HOUR.number(left.smallest_leak_kg_s),
             ]),
-            (None, Some(state)) => cells.push(format!("the others do not see {state}")),
-            (None, None) => cells.push("the others have no steady state".into()),
+            None => cells.push(unseen(failure)),
         }
         cells
     }
@@ -98,6 +97,14 @@ impl PlacementReport<'_> {
             cells.extend(values.map(|value| short(unit, value)));
         }
         cells
+    }
+}
+
+/// Why nothing can be said without a sensor.
+pub(super) fn unseen(failure: &Failure) -> String {
+    match &failure.unseen {
+        Some(state) => format!("the others do not see {state}"),
+        None => "the others have no steady state".into(),
     }
 }
 

@@ -1,4 +1,5 @@
 //! A study as a report: the answer and what was asked, then one table after the other.
+use super::faults::unseen;
 use super::{BAR, DIGITS, GRAM, GRAM_PER_HOUR, HOUR, KELVIN, PlacementReport};
 use crate::estimator::placement::study::{BestLayouts, Failure};
 use crate::report::{Report, number};
@@ -75,14 +76,13 @@ impl PlacementReport<'_> {
     /// What the best layout of most sensors is worth without one of them.
     fn lost(&self, failure: &Failure) -> String {
         let name = self.name(failure.sensor);
-        match (&failure.without, &failure.unseen) {
-            (Some(left), _) => format!(
+        match &failure.without {
+            Some(left) => format!(
                 "without {name}: sd of gas {}; finds {}",
                 KELVIN.with_symbol(left.gas_sd_k),
                 GRAM_PER_HOUR.with_symbol(left.smallest_leak_kg_s)
             ),
-            (None, Some(state)) => format!("without {name}: the others do not see {state}"),
-            (None, None) => format!("without {name}: the others have no steady state"),
+            None => format!("without {name}: {}", unseen(failure)),
         }
     }
 

@@ -16,13 +16,13 @@
 //! Source: Rao 1948 (score test).
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::flow::{Flow, FlowKind};
-use cylwatch_thermal::simulate::{Neighbours, SimulationSettings, simulate_with_neighbours};
+use cylwatch_thermal::simulate::{Neighbours, simulate_with_neighbours};
 use nalgebra::DVector;
 
 use super::apply::Setup;
 use super::fit::{Case, Evaluation, Fit};
 use super::residuals::{SIGNIFICANT_SD, channel_residuals};
-use super::sensitivity::TOLERANCE;
+use super::sensitivity::settings;
 use super::solution::Solution;
 use super::uncertainty::first_order_step;
 use super::{CalibrateError, Calibrated, ParameterSpec};
@@ -128,11 +128,9 @@ fn of_leak(
         (vessel.clone(), scenario)
     };
     let neighbours = Neighbours { below: leaking(0.5 * trial_kg_s), above: leaking(1.5 * trial_kg_s) };
-    let settings = &fit.settings.simulation;
-    let settings =
-        SimulationSettings { relative_tolerance: settings.relative_tolerance.max(TOLERANCE), ..*settings };
     let (_, here) = leaking(trial_kg_s);
-    let (_, courses) = simulate_with_neighbours(&vessel, &here, &[neighbours], &settings).map_err(with)?;
+    let (_, courses) =
+        simulate_with_neighbours(&vessel, &here, &[neighbours], &settings(fit)).map_err(with)?;
     let readings = |course| fit.readings(case, &values, course);
     let [below, above] = &courses[0];
     let (below, above) = (DVector::from_vec(readings(below)?), DVector::from_vec(readings(above)?));

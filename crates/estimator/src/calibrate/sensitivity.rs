@@ -21,7 +21,13 @@ const TEMPERATURE_SCALE_K: f64 = 20.0;
 
 /// Relative tolerance of the run along which derivatives are taken. Their error, some hundred times as large, costs the search
 /// nothing: where it ends depends on the readings alone.
-pub(super) const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-8;
+
+/// How courses are run along which derivatives are taken.
+pub(super) fn settings(fit: &Fit) -> SimulationSettings {
+    let settings = fit.settings.simulation;
+    SimulationSettings { relative_tolerance: settings.relative_tolerance.max(TOLERANCE), ..settings }
+}
 
 /// Relative error of derivatives to what the course depends on.
 const RELATIVE_ERROR: f64 = 2e-5;
@@ -114,13 +120,8 @@ impl Task<'_> {
                     Ok(Neighbours { below: side(parameter, -half)?, above: side(parameter, half)? })
                 })
                 .collect::<Result<_, EstimatorError>>()?;
-            let settings = &fit.settings.simulation;
-            let settings = SimulationSettings {
-                relative_tolerance: settings.relative_tolerance.max(TOLERANCE),
-                ..*settings
-            };
             let Setup { vessel, scenario, .. } = setup(z)?;
-            Ok(simulate_with_neighbours(&vessel, &scenario, &neighbours, &settings)?.1)
+            Ok(simulate_with_neighbours(&vessel, &scenario, &neighbours, &settings(fit))?.1)
         };
         let values = fit.values(z);
         let courses = run().map_err(failed)?;
