@@ -82,6 +82,22 @@ fn a_log_in_memory_gives_the_rows_and_the_summary_that_the_command_writes_for_it
 }
 
 #[test]
+fn a_call_hands_out_the_cautions_that_the_command_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    let local = "time,shoulder_degc,pressure_bar\n2026-01-12 00:00,15,200\n2026-01-12 00:01,15,200\n2026-01-12 00:02,15,200\n";
+    let file = folder.path().join("local.csv");
+    std::fs::write(&file, local).unwrap();
+    let told = support::run(folder.path(), &["estimate", VESSEL, "local.csv"]).stderr;
+    let told: Vec<&str> = told.lines().filter_map(|line| line.strip_prefix("caution: ")).collect();
+    let cautions = run::estimate(Call::new(VESSEL).log_file(&file)).unwrap().cautions;
+    // The command names the file as it was typed.
+    let shown = file.display().to_string();
+    let cautions: Vec<String> = cautions.iter().map(|words| words.replace(&shown, "local.csv")).collect();
+    assert!(told.iter().any(|words| words.contains("no zone")), "{told:?}");
+    assert_eq!(cautions, told);
+}
+
+#[test]
 fn a_monitor_that_is_saved_and_restored_at_rows_is_the_whole_log_bit_by_bit() {
     let mut steps = MonitorSteps::new(Call::new(VESSEL)).unwrap();
     let mut rows = Vec::new();
