@@ -104,6 +104,7 @@ pub(crate) fn report(cylinders: &[Cylinder], faults: &[Fault], page: &str) -> Re
     let header = ["cylinder", "light", "verdict", "at 15 °C / limit", "lost", "to the limit", "what to do"];
     let unread = match faults.len() {
         0 => String::new(),
+        1 => "1 thing could not be read: see the table of errors. ".to_owned(),
         count => format!("{count} things could not be read: see the table of errors. "),
     };
     Report::new(format!("Fleet of {} cylinders", cylinders.len()))
