@@ -3,7 +3,8 @@ use super::arguments::{Arguments, Command};
 use super::host::{Host, Outcome};
 use super::input::Inputs;
 use super::message::Messages;
-use super::{estimate, monitor, properties, simulate};
+use super::output::quoted_line_without;
+use super::{estimate, fleet, monitor, properties, simulate};
 use crate::report::Table;
 use anyhow::{anyhow, bail};
 use clap::FromArgMatches;
@@ -35,6 +36,16 @@ pub(crate) fn called(host: Host, arguments: &[OsString]) -> anyhow::Result<Outco
         _ => bail!("only monitor, estimate and simulate have a result in rows"),
     };
     Ok(Outcome { cautions: messages.take_cautions(), ..outcome? })
+}
+
+/// Monitors a fleet for a caller; provenance shows the command line that does the same.
+pub(crate) fn fleet_of(host: Host, arguments: &[OsString]) -> anyhow::Result<fleet::FleetOutcome> {
+    let words = std::iter::once(OsString::from("cylwatch")).chain(arguments.iter().cloned());
+    let host = Host { command: quoted_line_without(words, "--threads"), ..host };
+    match parsed(arguments)? {
+        Command::Fleet(arguments) => fleet::kept(&arguments, &host, &Messages::kept()),
+        _ => bail!("this is no call of fleet"),
+    }
 }
 
 /// The properties of a gas at the state that the arguments give: a table of one row.
@@ -71,8 +82,11 @@ fn parsed(arguments: &[OsString]) -> anyhow::Result<Command> {
     for argument in arguments {
         let text = argument.to_string_lossy();
         let option = text.strip_prefix("--").map(|option| option.split('=').next().unwrap_or(option));
-        if let Some(option) =
-            option.filter(|option| FOR_A_SHELL.contains(option) || option.starts_with("save-every"))
+        // A fleet has its results in a folder.
+        let is_place = arguments.first().is_some_and(|command| command == "fleet")
+            && option.is_some_and(|option| ["output", "format"].contains(&option));
+        if let Some(option) = option
+            .filter(|option| !is_place && (FOR_A_SHELL.contains(option) || option.starts_with("save-every")))
         {
             bail!("--{option} is for the command line: the result is in memory");
         }

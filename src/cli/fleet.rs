@@ -1,16 +1,21 @@
 //! `cylwatch fleet`: many cylinders on all cores, each as by `cylwatch monitor`.
 //!
-//! Memory does not grow with the logs: each is streamed, and of a cylinder its row stays. Results do not depend on the number of threads: every cylinder is
+//! Memory does not grow with the logs: each is streamed, the rows of a log of several cylinders wait in files, and of a cylinder its row stays. Results do not depend on the number of threads: every cylinder is
 //! computed by one of them, and what is written is sorted.
 mod arguments;
+mod columns;
 mod folder;
 mod job;
+mod kept;
 mod logs;
+mod plan;
 mod record;
 mod results;
 mod vessels;
 
 pub(super) use arguments::{FleetArguments, without_single_runs};
+pub use kept::FleetOutcome;
+pub(super) use kept::kept;
 
 use super::input::Inputs;
 use super::interrupt;
@@ -18,28 +23,69 @@ use super::message::Messages;
 use super::output::command_line_without;
 use super::progress::Progress;
 use crate::detector::monitor::Outcome;
-use crate::log::LogOptions;
+use crate::log::{LogError, LogOptions};
 use crate::report::fleet::{Cylinder, Fault, report, sort_by_urgency};
-use crate::report::{Input, number};
+use crate::report::{Input, Provenance, number};
 use anyhow::{Context, bail};
 use arguments::TableFormat;
 use folder::Folder;
 use job::{Done, Fleet, Job};
 use logs::Found;
+use plan::Changes;
 use rayon::prelude::*;
+use record::Record;
 use results::Results;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 use vessels::Vessels;
 
+/// Tells whether a run is to end.
+type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
+
+/// A run that came to its end.
+struct Fleeted {
+    /// Cylinders, the most urgent first.
+    cylinders: Vec<Cylinder>,
+    /// What could not be read, sorted.
+    faults: Vec<Fault>,
+    folder: Folder,
+    provenance: Provenance,
+}
+
 /// Monitors the fleet and writes.
 pub(super) fn run(arguments: FleetArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
+    interrupt::listen(|| {})?;
     let command = command_line_without("--threads");
-    let inputs = Inputs::of_command(command.clone());
-    let vessels = Vessels::read(&arguments, &inputs, messages)?;
+    let done = match monitored(&arguments, &command, Arc::new(interrupt::has_come), messages) {
+        Err(error) if interrupt::has_come() && is_stopped(&error) => {
+            messages.say(&format!("{error:#}"));
+            return Ok(ExitCode::from(interrupt::CODE as u8));
+        }
+        done => done?,
+    };
+    let page = done.folder.file("page.html").display().to_string();
+    messages.say(&report(&done.cylinders, &done.faults, &page).to_text());
+    done.exit_code().map(ExitCode::from)
+}
+
+/// Whether a run ended because it was to.
+fn is_stopped(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| matches!(cause.downcast_ref(), Some(LogError::Stopped { .. })))
+}
+
+/// Monitors the fleet and writes tables and page.
+fn monitored(
+    arguments: &FleetArguments,
+    command: &str,
+    stop: Stop,
+    messages: &Messages,
+) -> anyhow::Result<Fleeted> {
+    let inputs = Inputs::of_command(command.to_owned());
+    let vessels = Vessels::read(arguments, &inputs, messages)?;
     let mut builder = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = arguments.threads {
         builder = builder.num_threads(threads);
@@ -48,29 +94,28 @@ pub(super) fn run(arguments: FleetArguments, messages: &Messages) -> anyhow::Res
     let others: Vec<_> =
         arguments.vessels.iter().map(|path| path.as_path()).chain([arguments.output.as_path()]).collect();
     let options = LogOptions { any_order: true, ..arguments.reading.options(Vec::new()) };
-    let mut found = pool.install(|| logs::find(&arguments.logs, &others, &options))?;
+    let files = logs::files(&arguments.logs, &others)?;
     let folder = Folder::make(&arguments.output, arguments.rows)?;
-    interrupt::listen(|| {})?;
-    let mut cylinders = unmatched(&arguments, &vessels, &mut found);
+    let mut found = pool.install(|| logs::find(files, &options, &folder, &*stop))?;
+    let mut cylinders = unmatched(arguments, &vessels, &mut found, &folder);
     let hashes = hashes(&vessels, &inputs)?;
     let jobs: Vec<Job<'_>> = found
         .logs
         .iter()
         .filter_map(|(name, logs)| Some(Job { name, logs, assigned: vessels.of(name)? }))
         .collect();
-    if jobs.is_empty() {
+    if jobs.is_empty() && !cylinders.iter().any(|one| one.found.is_some()) {
         let first = found.faults.first().map(Fault::words).unwrap_or_default();
         bail!("none of the logs belongs to a cylinder with a vessel; the first reason is {first}");
     }
-    let fleet = Fleet { arguments: &arguments, folder: &folder, command: &command, hashes: &hashes };
+    let (hashes, columns, changes) = (&hashes, &found.columns, Changes::default());
+    let fleet = Fleet { arguments, folder: &folder, command, hashes, columns, changes, stop };
     let done = pool.install(|| all(&fleet, &jobs, messages))?;
     let finished = done.iter().flatten().count();
     if finished < jobs.len() {
-        messages.say(&format!(
-            "stopped by a signal: {finished} of {} cylinders are done; the same command does the rest",
-            jobs.len()
-        ));
-        return Ok(ExitCode::from(interrupt::CODE as u8));
+        let at =
+            format!("{finished} of {} cylinders are done and the same command does the rest", jobs.len());
+        return Err(LogError::Stopped { at }.into());
     }
     for Done { cylinder, fault, .. } in done.into_iter().flatten() {
         found.faults.extend(fault);
@@ -78,16 +123,19 @@ pub(super) fn run(arguments: FleetArguments, messages: &Messages) -> anyhow::Res
     }
     found.faults.sort();
     sort_by_urgency(&mut cylinders);
-    let provenance = inputs.provenance();
-    let results = Results { cylinders: &cylinders, faults: &found.faults, provenance: &provenance };
-    results.write(&folder, arguments.format.unwrap_or(TableFormat::USUAL))?;
-    messages
-        .say(&report(&cylinders, &found.faults, &folder.file("page.html").display().to_string()).to_text());
-    exit_code(&cylinders, &found.faults)
+    let done = Fleeted { cylinders, faults: found.faults, folder, provenance: inputs.provenance() };
+    done.write(arguments.format.unwrap_or(TableFormat::USUAL))?;
+    Ok(done)
 }
 
 /// Cylinders of which nothing can be said because they have a log and no vessel, or a vessel and no log.
-fn unmatched(arguments: &FleetArguments, vessels: &Vessels, found: &mut Found) -> Vec<Cylinder> {
+/// Where the run goes on, one without a new log is as it was.
+fn unmatched(
+    arguments: &FleetArguments,
+    vessels: &Vessels,
+    found: &mut Found,
+    folder: &Folder,
+) -> Vec<Cylinder> {
     let file = arguments.vessels.as_deref().unwrap_or(std::path::Path::new("")).display().to_string();
     let mut missing = Vec::new();
     for (name, logs) in found.logs.iter().filter(|(name, _)| vessels.of(name).is_none()) {
@@ -124,7 +172,12 @@ fn unmatched(arguments: &FleetArguments, vessels: &Vessels, found: &mut Found) -
         events: 0,
         last_events: Vec::new(),
     };
-    let cylinders = missing.iter().map(blank).collect();
+    let known = |fault: &Fault| {
+        let record = Record::recovered(&folder.files(&fault.cylinder)).filter(|_| arguments.go_on);
+        record.map(|record| record.cylinder)
+    };
+    let cylinders =
+        missing.iter().map(|unmatched| known(&unmatched.1).unwrap_or_else(|| blank(unmatched))).collect();
     found.faults.extend(missing.into_iter().map(|(_, fault)| fault));
     cylinders
 }
@@ -166,9 +219,7 @@ fn all(fleet: &Fleet<'_>, jobs: &[Job<'_>], messages: &Messages) -> anyhow::Resu
         .map(|job| {
             let done = fleet.done(job)?;
             if let Some(done) = &done {
-                let found = done.cylinder.found.as_ref().filter(|_| !done.was_known);
-                let new = found.map_or(0, |found| found.rows);
-                let so_far = rows.fetch_add(new, Ordering::Relaxed) + new;
+                let so_far = rows.fetch_add(done.new_rows, Ordering::Relaxed) + done.new_rows;
                 let number_done = count.fetch_add(1, Ordering::Relaxed) + 1;
                 let rate = so_far as f64 / began.elapsed().as_secs_f64().max(1e-3);
                 let words = format!("{number_done} of {} cylinders, {} rows/s", jobs.len(), number(rate, 2));
@@ -179,20 +230,33 @@ fn all(fleet: &Fleet<'_>, jobs: &[Job<'_>], messages: &Messages) -> anyhow::Resu
         .collect()
 }
 
-/// The worst of the fleet.
-fn exit_code(cylinders: &[Cylinder], faults: &[Fault]) -> anyhow::Result<ExitCode> {
-    let outcomes: Vec<Option<Outcome>> =
-        cylinders.iter().map(|one| one.found.as_ref().map(|found| found.outcome)).collect();
-    if outcomes.iter().all(Option::is_none) {
-        let first = faults.first().map(Fault::words).unwrap_or_default();
-        bail!("none of the {} cylinders could be read; the first reason is {first}", cylinders.len());
+impl Fleeted {
+    fn results(&self) -> Results<'_> {
+        Results { cylinders: &self.cylinders, faults: &self.faults, provenance: &self.provenance }
     }
-    let has = |outcome| outcomes.contains(&Some(outcome));
-    let worst =
-        match (has(Outcome::Loss), has(Outcome::Unknown) || outcomes.contains(&None) || !faults.is_empty()) {
+
+    fn write(&self, format: TableFormat) -> anyhow::Result<()> {
+        self.results().write(&self.folder, format)?;
+        self.folder.tidy();
+        Ok(())
+    }
+
+    /// The worst of the fleet.
+    fn exit_code(&self) -> anyhow::Result<u8> {
+        let Self { cylinders, faults, .. } = self;
+        let outcomes: Vec<Option<Outcome>> =
+            cylinders.iter().map(|one| one.found.as_ref().map(|found| found.outcome)).collect();
+        if outcomes.iter().all(Option::is_none) {
+            let first = faults.first().map(Fault::words).unwrap_or_default();
+            bail!("none of the {} cylinders could be read; the first reason is {first}", cylinders.len());
+        }
+        let has = |outcome| outcomes.contains(&Some(outcome));
+        let is_unknown = has(Outcome::Unknown) || outcomes.contains(&None) || !faults.is_empty();
+        let worst = match (has(Outcome::Loss), is_unknown) {
             (true, _) => Outcome::Loss,
             (false, true) => Outcome::Unknown,
             (false, false) => Outcome::NoLoss,
         };
-    Ok(ExitCode::from(worst.exit_code()))
+        Ok(worst.exit_code())
+    }
 }

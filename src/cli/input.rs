@@ -16,7 +16,7 @@ use anyhow::{Context, anyhow, bail};
 use std::cell::{Cell, RefCell};
 use std::fs::File;
 use std::io::{Read, Seek};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 /// The inputs of a run.
@@ -185,6 +185,20 @@ impl Inputs {
         Ok(log)
     }
 
+    /// The rows of a cylinder that were taken out of a log of several.
+    pub(super) fn spooled_log(&self, spooled: &Spooled, options: &LogOptions) -> anyhow::Result<LogInput> {
+        let name = &spooled.log.name;
+        let open = |path: &Path| {
+            File::open(path).with_context(|| format!("{name} cannot be read by cylinder: {}", path.display()))
+        };
+        self.records.borrow_mut().push(spooled.log.clone());
+        let (text, rows) = (open(Path::new(name))?, open(&spooled.rows)?);
+        let mut reader = LogReader::from_spool(text, Box::new(rows), name, options)?;
+        self.stop_with_caller(&mut reader);
+        let length = Some(spooled.length);
+        Ok(LogInput { reader, name: name.clone(), passed: Rc::default(), length, live: None })
+    }
+
     /// Opens a log for inspection; - is stdin.
     pub(super) fn inspector(&self, name: &str, options: &LogOptions) -> anyhow::Result<LogInput<Inspector>> {
         self.opened(name, false, |content, shown| match content {
@@ -227,6 +241,7 @@ impl Inputs {
         }
         let passed = Rc::new(Passed::default());
         let (record, length) = hashed(&mut file, &name).with_context(failed)?;
+        file.rewind().with_context(failed)?;
         self.records.borrow_mut().push(record);
         let content = if is_parquet(Path::new(&name)) {
             Content::Parquet(file)
@@ -282,6 +297,19 @@ enum Content {
     Parquet(File),
 }
 
+/// The rows of a cylinder, taken out of a log of several.
+#[derive(Clone, Debug)]
+pub(super) struct Spooled {
+    /// The cylinder.
+    pub cylinder: String,
+    /// The log.
+    pub log: Input,
+    /// Its length, bytes.
+    pub length: u64,
+    /// File of the rows.
+    pub rows: PathBuf,
+}
+
 /// A log that is being read.
 pub(super) struct LogInput<R = LogReader> {
     /// Its rows.
@@ -317,6 +345,11 @@ impl<R> LogInput<R> {
     /// Whether its hash is known at its end only.
     pub(super) fn is_hashed_late(&self) -> bool {
         self.length.is_none()
+    }
+
+    /// Bytes, where they are known beforehand.
+    pub(super) fn length(&self) -> Option<u64> {
+        self.length
     }
 
     /// Share of the bytes that has been read, as they are in the file; 0 where the total is unknown.
@@ -357,20 +390,19 @@ impl<R: Read> Read for Metered<R> {
     }
 }
 
-/// Hash and length of a file, which then stands at its start again.
-fn hashed(file: &mut File, name: &str) -> std::io::Result<(Input, u64)> {
+/// Hash and length of an input, which is read to its end.
+pub(super) fn hashed(input: &mut impl Read, name: &str) -> std::io::Result<(Input, u64)> {
     let mut fingerprint = Fingerprint::default();
     let mut piece = vec![0; 1 << 16];
     let mut length = 0;
     loop {
-        let count = file.read(&mut piece)?;
+        let count = input.read(&mut piece)?;
         if count == 0 {
             break;
         }
         fingerprint.update(&piece[..count]);
         length += count as u64;
     }
-    file.rewind()?;
     Ok((fingerprint.input(name), length))
 }
 

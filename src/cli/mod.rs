@@ -43,9 +43,10 @@ mod unit_options;
 mod views;
 
 use arguments::{Arguments, Command};
-pub(crate) use call::{called, estimate_steps, monitor_steps, properties_of};
+pub(crate) use call::{called, estimate_steps, fleet_of, monitor_steps, properties_of};
 use clap::FromArgMatches;
 pub(crate) use estimate::Steps as EstimateSteps;
+pub use fleet::FleetOutcome;
 pub(crate) use host::Host;
 pub use host::Outcome;
 use message::Messages;

@@ -23,6 +23,7 @@ mod engine;
 mod events;
 mod options;
 mod order;
+mod reading;
 mod resume;
 mod rows;
 mod session;
@@ -101,10 +102,13 @@ pub(super) fn watch(
     let log_options = LogOptions {
         origin: beginning.origin()?,
         any_order: true,
-        cylinder: options.cylinder.clone(),
+        cylinder: options.spooled.as_ref().map(|spooled| spooled.cylinder.clone()),
         ..options.reading.options(names)
     };
-    let mut log = inputs.live_log(&options.log, &log_options)?;
+    let mut log = match &options.spooled {
+        Some(spooled) => inputs.spooled_log(spooled, &log_options)?,
+        None => inputs.live_log(&options.log, &log_options)?,
+    };
     let selection = Selection::new(&mut log.reader, sensors, &beginning.vessel, &[], messages);
     let console = Console { messages, progress };
     let outcome = selection

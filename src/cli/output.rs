@@ -275,8 +275,13 @@ pub(super) fn command_line() -> String {
 
 /// The same without an option and its value that change nothing about the results.
 pub(super) fn command_line_without(option: &str) -> String {
+    quoted_line_without(std::env::args_os(), option)
+}
+
+/// The same of any words, the first of which is the program.
+pub(super) fn quoted_line_without(words: impl Iterator<Item = OsString>, option: &str) -> String {
     let mut is_value = false;
-    let kept = std::env::args_os().filter(|word| {
+    let kept = words.filter(|word| {
         let was_value = std::mem::replace(&mut is_value, word == option);
         let is_whole = word.to_str().is_some_and(|word| word.starts_with(&format!("{option}=")));
         !(was_value || is_value || is_whole)

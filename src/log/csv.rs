@@ -20,6 +20,7 @@ pub(super) struct CsvSource {
     records: Records,
     /// Cells of the header, as it was read.
     header: Vec<Vec<u8>>,
+    separator: u8,
     decimal_comma: bool,
     time: TimeReader,
     time_at: usize,
@@ -48,6 +49,19 @@ impl CsvSource {
         say(&header, cautions);
         let columns = Columns::find(&header.names, &header.at, options, cautions)?;
         Ok((Self::of(file, records, header, &columns, options), columns))
+    }
+
+    /// As [`CsvSource::open`] for a log whose rows have been taken out of it into a spool: the text is read for its header alone.
+    pub(super) fn of_spool(
+        text: Box<dyn Read>,
+        rows: Box<dyn Read>,
+        file: &str,
+        options: &LogOptions,
+        cautions: &mut Cautions,
+    ) -> Result<(Self, Columns), LogError> {
+        let (source, columns) = Self::open(text, file, options, cautions)?;
+        let records = Records::of_spool(rows, file, source.separator);
+        Ok((Self { records, ..source }, columns))
     }
 
     /// As [`CsvSource::open`] for a log that is inspected: what a run would refuse is told, not refused.
@@ -89,6 +103,7 @@ impl CsvSource {
             file: file.to_owned(),
             records,
             header: header.cells,
+            separator: header.separator,
             decimal_comma,
             time: TimeReader::new(&time.header, time.form, decimal_comma, options),
             time_at: time.index,

@@ -33,6 +33,7 @@ mod record;
 mod row;
 mod sampling;
 mod source;
+mod spool;
 mod stuck;
 mod time;
 mod unit_check;

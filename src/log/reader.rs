@@ -2,6 +2,7 @@
 use super::caution::{Caution, Cautions, Kind};
 use super::columns::{Columns, TimeForm, ValueColumn};
 use super::csv::CsvSource;
+use super::cylinders;
 use super::inspect::{Survey, Tap};
 use super::memory::{MemoryLog, MemorySource};
 use super::row::{self, RawRow, Row, RowScreen, Truth};
@@ -73,6 +74,22 @@ impl LogReader {
         Ok(Self::new(Source::Csv(Box::new(source)), columns, file, options, cautions))
     }
 
+    /// Reads the rows that were taken out of a log into a spool; the file is read for its header alone.
+    ///
+    /// # Errors
+    /// The header does not say what the columns mean.
+    pub(crate) fn from_spool(
+        file: std::fs::File,
+        rows: Box<dyn Read>,
+        name: &str,
+        options: &LogOptions,
+    ) -> Result<Self, LogError> {
+        let mut cautions = Cautions::default();
+        let text = cylinders::text(file, name, u64::MAX)?;
+        let (source, columns) = CsvSource::of_spool(text, rows, name, options, &mut cautions)?;
+        Ok(Self::new(Source::Csv(Box::new(source)), columns, name, options, cautions))
+    }
+
     /// Reads a log in memory.
     ///
     /// # Errors
@@ -95,7 +112,7 @@ impl LogReader {
         options: &LogOptions,
     ) -> Result<Self, LogError> {
         if options.cylinder.is_some() {
-            return Self::from_text(Box::new(super::parquet::text(input, file)?), file, options);
+            return Self::from_text(cylinders::text(input, file, u64::MAX)?, file, options);
         }
         let mut cautions = Cautions::default();
         let (source, columns) = super::parquet::ParquetSource::open(input, file, options, &mut cautions)?;

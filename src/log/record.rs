@@ -1,5 +1,6 @@
 //! Records of a text: lines cut into cells, with the line they stand in.
 use super::LogError;
+use super::spool;
 use super::unpack::{Packing, unpacked};
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read};
@@ -27,6 +28,8 @@ pub(super) struct Records {
     lines: u64,
     /// Whether the record's last line had an end.
     is_ended: bool,
+    /// Whether the input is a [spool](super::spool), not a text.
+    is_spool: bool,
 }
 
 impl Records {
@@ -44,7 +47,25 @@ impl Records {
             line: 0,
             lines: 0,
             is_ended: true,
+            is_spool: false,
         })
+    }
+
+    /// The records of a spool, which were those of a text.
+    pub(super) fn of_spool(input: Box<dyn Read>, file: &str, separator: u8) -> Self {
+        Self {
+            file: file.to_owned(),
+            input: BufReader::with_capacity(BUFFER, input),
+            packing: Packing::Plain,
+            ahead: VecDeque::new(),
+            separator: Some(separator),
+            bytes: Vec::new(),
+            cells: Vec::new(),
+            line: 0,
+            lines: 0,
+            is_ended: true,
+            is_spool: true,
+        }
     }
 
     /// How the text is packed.
@@ -74,8 +95,19 @@ impl Records {
         self.lines += self.ahead.drain(..lines.min(self.ahead.len())).len() as u64;
     }
 
+    /// Appends the record to a spool.
+    pub(super) fn spool(&self, out: &mut Vec<u8>) {
+        spool::write(out, (self.line, self.is_ended), &self.bytes, &self.cells);
+    }
+
     /// Reads the next record; `false` at the end.
     pub(super) fn advance(&mut self) -> Result<bool, LogError> {
+        if self.is_spool {
+            let frame = spool::read(&mut self.input, &mut self.bytes, &mut self.cells);
+            let frame = frame.map_err(|error| self.failed(error))?;
+            (self.line, self.is_ended) = frame.unwrap_or_default();
+            return Ok(frame.is_some());
+        }
         loop {
             self.bytes.clear();
             self.line = self.lines + 1;

@@ -1,4 +1,4 @@
-//! The commands for programs: what `cylwatch monitor`, `estimate`, `simulate` and `properties` do, without a shell.
+//! The commands for programs: what `cylwatch monitor`, `fleet`, `estimate`, `simulate` and `properties` do, without a shell.
 //!
 //! A [`Call`] names vessel, log and options as a command line does; the log may be columns in memory ([`MemoryLog`]). The run goes
 //! the way of the command, so that every number is the command's, and hands out an [`Outcome`] instead of files: rows with all
@@ -30,8 +30,8 @@ pub use crate::log::{Cells, MemoryLog};
 pub use error::RunError;
 pub use steps::{MonitorSteps, ObserverSteps, StepTime};
 
-pub use crate::cli::Outcome;
-use crate::cli::{Host, called, properties_of};
+use crate::cli::{self, Host, called, properties_of};
+pub use crate::cli::{FleetOutcome, Outcome};
 use crate::report::{Page, Table};
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -62,6 +62,15 @@ impl Call {
     /// A call for a vessel that is given as TOML.
     pub fn of_text(vessel: impl Into<String>) -> Self {
         Self::new(VESSEL).document(VESSEL, vessel)
+    }
+
+    /// A call for a fleet: the folder of its logs, and the folder for the results. The option `vessels` names the file with a row
+    /// for each cylinder, or `vessel` the vessel of all.
+    pub fn of_fleet(logs: &Path, output: &Path) -> Self {
+        let mut place = OsString::from("--output=");
+        place.push(output);
+        let call = Self::new(logs);
+        Self { options: vec![place], ..call }
     }
 
     /// The call as provenance shows it.
@@ -180,6 +189,16 @@ pub fn estimate(call: Call) -> Result<Outcome, RunError> {
 /// As of the command: vessel, scenario or an option is refused, or the solver fails.
 pub fn simulate(call: Call) -> Result<Outcome, RunError> {
     call.run("simulate")
+}
+
+/// Monitors many cylinders on all cores: `cylwatch fleet`. The folder of results is the command's, to the last byte; the tables are
+/// handed out as well. A run that was stopped is resumed by the same call.
+///
+/// # Errors
+/// As of the command: a folder, the file of vessels or an option is refused, nothing could be read, or the run was stopped.
+pub fn fleet(call: Call) -> Result<FleetOutcome, RunError> {
+    let arguments = call.arguments("fleet");
+    cli::fleet_of(call.host, &arguments).map_err(|error| RunError::of(&error))
 }
 
 /// Properties of a gas at a state: `cylwatch properties`; a table of one row with the units in the names of its columns. The

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use tempfile::tempdir;
 
 /// A column of optional values.
-enum Cells {
+pub(crate) enum Cells {
     Doubles(Vec<Option<f64>>),
     Ticks(Vec<Option<i64>>),
     Texts(Vec<Option<&'static str>>),
@@ -24,7 +24,7 @@ fn part<T, V: Clone>(cells: &[Option<T>], convert: impl Fn(&T) -> V) -> (Vec<V>,
 }
 
 /// Writes a file with so many rows a group.
-fn write(path: &Path, schema: &str, columns: &[Cells], rows: usize, group: usize) {
+pub(crate) fn write(path: &Path, schema: &str, columns: &[Cells], rows: usize, group: usize) {
     let schema = Arc::new(parse_message_type(schema).unwrap());
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
     let file = std::fs::File::create(path).unwrap();

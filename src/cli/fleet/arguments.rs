@@ -56,6 +56,11 @@ pub(crate) struct FleetArguments {
     /// Write the rows of each cylinder, too, as CSV in the folder `rows`.
     #[arg(long, help_heading = OUTPUT)]
     pub rows: bool,
+    /// Go on from the states although logs before are gone or changed, as in a folder that holds what is new alone.
+    ///
+    /// Logs that have grown, by rows at their end or by files after the last, go on without it.
+    #[arg(long)]
+    pub go_on: bool,
     /// Threads; the results do not depend on it [default: the number of cores].
     #[arg(long, value_name = "NUMBER", value_parser = within(1_usize, 1024))]
     pub threads: Option<usize>,
@@ -116,10 +121,11 @@ settled (yes or no), limit_bar, coldest_degc, sensors. An empty cell means the o
 Several files in a folder cylinder=NAME, and several files with a column `cylinder`, continue each
 other in the order of their names.
 
-The output folder holds summary, events and errors as tables, page.html, states/ (to go on with
-`cylwatch monitor --state`) and records/. A run that was stopped or killed is resumed by the same
-command: cylinders whose log, options and vessel are the same are not done again. A log that cannot be
-read does not end the run: its cylinder is unknown, and errors says why.
+The output folder holds summary, events and errors as tables, page.html, states/ and records/. A run
+that was stopped or killed is resumed by the same command: cylinders whose logs, options and vessel are
+the same are not done again. Logs that have grown since, by lines at the end or by files after the last,
+go on from the states, with the result of one run over all of them. A log that cannot be read does not
+end the run: its cylinder is unknown, and errors says why.
 
 {}
 
@@ -129,7 +135,8 @@ cannot be read, 0 from none; 2 nothing could be read or the arguments are wrong,
 Examples:
   cylwatch fleet logs/ --vessels fleet.csv -o fleet
   cylwatch fleet logs/ --vessel nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 -o fleet
-  cylwatch fleet logs/ --vessels fleet.csv -o fleet --rows --format csv --threads 2",
+  cylwatch fleet logs/ --vessels fleet.csv -o fleet --rows --format csv --threads 2
+  cylwatch fleet tonight/ --vessels fleet.csv -o fleet --go-on",
         fleet::DOCUMENTATION
     )
 }

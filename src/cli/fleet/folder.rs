@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// Longest name of a file, without its ending.
 const LONGEST: usize = 80;
+/// Folder of what waits during a run.
+const WORK: &str = ".work";
 
 /// A checked output folder, which no other run writes while this one is there.
 pub(super) struct Folder {
@@ -24,13 +26,15 @@ pub(super) struct Files {
     pub rows: PathBuf,
     /// What is known of it when it is done.
     pub record: PathBuf,
+    /// A new state that waits for its record.
+    pub work: PathBuf,
 }
 
 impl Folder {
     /// Makes the folder.
     pub(super) fn make(root: &Path, with_rows: bool) -> anyhow::Result<Self> {
         make_folder(root)?;
-        let folders = ["states", "records"].into_iter().chain(with_rows.then_some("rows"));
+        let folders = ["states", "records", WORK].into_iter().chain(with_rows.then_some("rows"));
         remove_orphans(root);
         for folder in folders.map(|name| root.join(name)) {
             make_folder(&folder)?;
@@ -53,12 +57,33 @@ impl Folder {
     pub(super) fn files(&self, cylinder: &str) -> Files {
         let stem = stem(cylinder);
         let of = |folder: &str, ending: &str| self.root.join(folder).join(format!("{stem}.{ending}"));
-        Files { state: of("states", "state"), rows: of("rows", "csv"), record: of("records", "record") }
+        Files {
+            state: of("states", "state"),
+            rows: of("rows", "csv"),
+            record: of("records", "record"),
+            work: of(WORK, "state"),
+        }
+    }
+
+    /// What is known of a log of several cylinders.
+    pub(super) fn index(&self, log: &str) -> PathBuf {
+        self.root.join("records").join(format!("{log}.index"))
+    }
+
+    /// Where its rows wait.
+    pub(super) fn spool(&self, log: &str) -> PathBuf {
+        self.root.join(WORK).join(log)
+    }
+
+    /// Removes what only a run that is resumed has a use for.
+    pub(super) fn tidy(&self) {
+        // What stays costs room and nothing else.
+        _ = std::fs::remove_dir_all(self.root.join(WORK));
     }
 }
 
 /// A name of a file for any name of a cylinder: letters beyond plain ones are escaped, no two names become one.
-fn stem(cylinder: &str) -> String {
+pub(super) fn stem(cylinder: &str) -> String {
     let mut stem = String::new();
     for (k, byte) in cylinder.bytes().enumerate() {
         let is_plain =

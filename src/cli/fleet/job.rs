@@ -1,25 +1,32 @@
-//! One cylinder: monitored as by `cylwatch monitor`, or known from an earlier run.
+//! One cylinder: monitored as by `cylwatch monitor`, known from an earlier run, or gone on with.
 use super::arguments::FleetArguments;
+use super::columns::ColumnLog;
 use super::folder::{Files, Folder};
 use super::logs::{Logs, Naming};
-use super::record::{Record, VERSION};
+use super::plan::{Changes, Plan, Step, mark};
+use super::record::{LogRecord, Record, VERSION, file_hash};
 use super::vessels::Assigned;
+use crate::cli::host::Host;
 use crate::cli::input::Inputs;
-use crate::cli::interrupt;
 use crate::cli::message::Messages;
-use crate::cli::monitor::{Course, Options, Places, watch};
+use crate::cli::monitor::{Course, Options, Places, Told, watch};
 use crate::cli::output::Target;
 use crate::cli::progress::Progress;
 use crate::cli::views::Views;
 use crate::report::fleet::{Cylinder, Fault, Finding, Source};
 use crate::report::{Input, Provenance};
-use anyhow::Context;
+use anyhow::{Context, bail};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::Path;
-use std::time::{Duration, UNIX_EPOCH};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// Events that a cylinder's row keeps.
 const LAST_EVENTS: usize = 5;
+/// Why a cylinder with a few rows has no verdict.
+const NO_VERDICT: &str = "no verdict yet, all rows wait for later ones: give a longer log";
 
 /// What all cylinders of a run have in common.
 pub(super) struct Fleet<'a> {
@@ -31,6 +38,12 @@ pub(super) struct Fleet<'a> {
     pub command: &'a str,
     /// SHA-256 of vessels, sensors and the like, by their names.
     pub hashes: &'a BTreeMap<String, String>,
+    /// Logs of several cylinders, by their paths.
+    pub columns: &'a BTreeMap<PathBuf, ColumnLog>,
+    /// Compares logs with what they were.
+    pub changes: Changes,
+    /// Tells whether the run is to end.
+    pub stop: Arc<dyn Fn() -> bool + Send + Sync>,
 }
 
 /// A cylinder that is to be done.
@@ -49,125 +62,250 @@ pub(super) struct Done {
     pub cylinder: Cylinder,
     /// What could not be read.
     pub fault: Option<Fault>,
-    /// Whether an earlier run had done it.
-    pub was_known: bool,
+    /// Rows that this run has taken in.
+    pub new_rows: u64,
 }
 
 /// What a cylinder comes to before it is put on record.
 #[derive(Default)]
 struct Run {
-    logs: Vec<Source>,
+    logs: Vec<LogRecord>,
     found: Option<Finding>,
     course: Course,
-    cautions: Vec<String>,
+    new_rows: u64,
 }
 
+/// Why a log has no result: the file and the reason.
+type Failure = (String, anyhow::Error);
+
 impl Fleet<'_> {
-    /// Does a cylinder; `None`: a signal came first.
+    /// Does a cylinder; `None`: the run is to end.
     ///
     /// # Errors
     /// The output folder cannot be written.
     pub(super) fn done(&self, job: &Job<'_>) -> anyhow::Result<Option<Done>> {
-        if interrupt::has_come() {
+        if (self.stop)() {
             return Ok(None);
         }
         let files = self.folder.files(job.name);
-        let key = self.key(job);
-        if let Some(record) = Record::read(&files.record).filter(|record| record.key == key)
-            && files.state.is_file()
-            && (!self.arguments.rows || files.rows.is_file())
-        {
-            return Ok(Some(Done { cylinder: record.cylinder, fault: None, was_known: true }));
+        let settings = self.settings(job);
+        let before = Record::recovered(&files);
+        if self.arguments.go_on && before.is_none() && files.record.is_file() {
+            let reason = format!("{}: {OTHER_STATE}", files.state.display());
+            let fault = Fault::of(job.name, &files.state.display().to_string(), &reason);
+            return Ok(Some(Done {
+                cylinder: self.row(job, Run::default(), Some(&fault)),
+                fault: Some(fault),
+                new_rows: 0,
+            }));
         }
-        for path in [&files.record, &files.state, &files.rows] {
-            remove(path)?;
-        }
-        let mut run = Run::default();
-        let outcome = job.logs.files.iter().try_for_each(|file| self.log(job, file, &files, &mut run));
-        if interrupt::has_come() {
-            return Ok(None);
-        }
-        let last = job.logs.files.last().map(|file| file.display().to_string()).unwrap_or_default();
-        let fault = match (outcome, &run.found) {
-            (Ok(()), Some(_)) => None,
-            (Ok(()), None) => Some(Fault::of(job.name, &last, NO_VERDICT)),
-            (Err((file, error)), _) => {
-                remove(&files.state)?;
-                remove(&files.rows)?;
-                run.found = None;
-                Some(Fault::of(job.name, &file, &format!("{error:#}")))
+        let plan = before.as_ref().map_or(Plan::Anew, |record| self.plan(job, record, &settings, &files));
+        remove(&files.work)?;
+        let (mut run, steps) = match (plan, &before) {
+            (Plan::Known, Some(record)) => {
+                return Ok(Some(Done { cylinder: record.cylinder.clone(), fault: None, new_rows: 0 }));
+            }
+            (Plan::GoOn(steps), Some(record)) => {
+                let copied = std::fs::copy(&files.state, &files.work);
+                copied.with_context(|| format!("{} cannot be written", files.work.display()))?;
+                (Run::after(record), steps)
+            }
+            _ => {
+                for path in [&files.record, &files.state, &files.rows] {
+                    remove(path)?;
+                }
+                let step = |file: &PathBuf| Step { file: file.clone(), grown: None };
+                (Run::default(), job.logs.files.iter().map(step).collect())
             }
         };
-        let Run { logs, found, course, cautions } = run;
-        let told = if fault.is_none() { course.told } else { Vec::new() };
-        let first = told.len().saturating_sub(LAST_EVENTS);
-        let cylinder = Cylinder {
-            name: job.name.to_owned(),
-            vessel: job.assigned.vessel.clone(),
-            logs,
-            found,
-            fault: fault.as_ref().map_or(String::new(), Fault::words),
-            cautions,
-            events: told.len(),
-            last_events: told[first..].iter().map(|told| told.words.clone()).collect(),
-        };
-        if fault.is_none() {
-            Record { key, cylinder: cylinder.clone(), told }.write(&files.record)?;
+        let outcome = steps.iter().try_for_each(|step| self.log(job, step, &files, &mut run));
+        if (self.stop)() {
+            return Ok(None);
         }
-        Ok(Some(Done { cylinder, fault, was_known: false }))
+        self.put_on_record(job, (settings, &files), run, outcome).map(Some)
     }
 
-    /// Monitors one log of a cylinder; on an error the file it is about.
-    fn log(
-        &self,
-        job: &Job<'_>,
-        file: &Path,
-        files: &Files,
-        run: &mut Run,
-    ) -> Result<(), (String, anyhow::Error)> {
-        let name = file.display().to_string();
-        let messages = Messages::kept();
-        let inputs = Inputs::of_command(self.command.to_owned());
-        let watched = self.options(job, &name, files).and_then(|options| {
+    fn plan(&self, job: &Job<'_>, record: &Record, settings: &str, files: &Files) -> Plan {
+        let goes_on = self.arguments.go_on;
+        let is_same = record.settings == settings && (!self.arguments.rows || files.rows.is_file());
+        if !is_same && !goes_on {
+            return Plan::Anew;
+        }
+        self.changes.plan(&record.logs, &job.logs.files, job.logs.naming == Naming::Column, goes_on)
+    }
+
+    /// Reads one log of a cylinder.
+    fn log(&self, job: &Job<'_>, step: &Step, files: &Files, run: &mut Run) -> Result<(), Failure> {
+        let name = step.file.display().to_string();
+        let (messages, inputs) = (Messages::kept(), self.inputs());
+        let earlier = step.grown.map(|at| run.logs[at].clone());
+        let changed_ns = mark(&step.file).and_then(|(_, changed_ns)| changed_ns);
+        let watched = self.options(job, step, files, earlier.as_ref()).and_then(|options| {
             let finished = watch(&options, &inputs, Some(&mut run.course), (&messages, &Progress::hidden()))?;
-            finished.written.map(|()| finished.summary)
+            finished.written.map(|()| (finished.summary, finished.reading))
         });
-        run.cautions.extend(messages.take_cautions());
-        run.logs.extend(inputs.record_of(&name).map(Source::from));
-        let summary = watched.map_err(|error| (name, error))?;
-        if let Some(summary) = summary {
+        let cautions = messages.take_cautions();
+        let source = inputs.record_of(&name).map(Source::from).unwrap_or_default();
+        let (summary, reading) = match watched {
+            Ok(watched) => watched,
+            Err(error) => {
+                if !source.name.is_empty() {
+                    run.take(step.grown, LogRecord { source, before_rows: cautions, ..LogRecord::default() });
+                }
+                return Err((name, error));
+            }
+        };
+        let shared = self.columns.get(&step.file).map_or(&[][..], |column| &column.index.cautions);
+        let before_rows = cautions.len() - reading.cautions.len().min(cautions.len());
+        let mut log = LogRecord {
+            source,
+            length: reading.length.unwrap_or_default(),
+            changed_ns,
+            rows: reading.rows,
+            known_rows: reading.known_rows,
+            before_rows: cautions[..before_rows].to_vec(),
+            of_rows: shared.iter().chain(&reading.cautions).cloned().collect(),
+            ..LogRecord::default()
+        };
+        if let Some(earlier) = earlier {
+            log = LogRecord {
+                known_rows: earlier.known_rows,
+                counts: earlier.counts,
+                first: earlier.first,
+                before_rows: earlier.before_rows,
+                ..log
+            };
+        }
+        let is_news = reading.rows > reading.known_rows;
+        if let Some(mut summary) = summary.filter(|_| is_news) {
+            log.counts = summary.row_counts.and(log.counts);
+            (summary.row_counts, summary.known_rows) = (log.counts, log.known_rows);
             let found = Finding::of(&summary, run.course.trace.means());
+            log.first = log.first.or(Some((found.span_s.0, found.span.0.clone())));
             run.found = Some(match &run.found {
                 Some(earlier) => found.after(earlier),
                 None => found,
             });
         }
+        run.new_rows += reading.rows - reading.known_rows;
+        run.take(step.grown, log);
         Ok(())
     }
 
-    fn options(&self, job: &Job<'_>, log: &str, files: &Files) -> anyhow::Result<Options> {
+    fn options(
+        &self,
+        job: &Job<'_>,
+        step: &Step,
+        files: &Files,
+        earlier: Option<&LogRecord>,
+    ) -> anyhow::Result<Options> {
+        let column = self.columns.get(&step.file);
+        if let Some(damage) = column.and_then(|column| column.index.damage.as_ref()) {
+            bail!("{damage}");
+        }
         let Assigned { vessel, arguments, .. } = job.assigned;
         let places = Places {
             data: self.arguments.rows.then(|| Target::File(files.rows.clone())),
             events: None,
-            state: Some(files.state.clone()),
+            state: Some(files.work.clone()),
             views: Views::default(),
         };
-        let options = Options::of(self.arguments.of_monitor(vessel, log, arguments.clone()), places)?;
-        let cylinder = (job.logs.naming == Naming::Column).then(|| job.name.to_owned());
-        Ok(Options { cylinder, save_every: Duration::MAX, ..options })
+        let mut arguments = arguments.clone();
+        if files.work.is_file() {
+            // The state has it.
+            arguments.learned_in = None;
+        }
+        let log = step.file.display().to_string();
+        let options = Options::of(self.arguments.of_monitor(vessel, &log, arguments), places)?;
+        let spooled = column.map(|column| column.spooled(job.name, &*self.stop)).transpose()?;
+        let known_rows = earlier.map(|earlier| earlier.rows);
+        Ok(Options { spooled, known_rows, save_every: Duration::MAX, ..options })
     }
 
-    /// Hash of everything that the result of a cylinder follows from.
-    fn key(&self, job: &Job<'_>) -> String {
+    /// The inputs of a log, which end when the run is to end.
+    fn inputs(&self) -> Inputs {
+        let stop = Arc::clone(&self.stop);
+        Inputs::of(Host {
+            command: self.command.to_owned(),
+            stop: Some(Rc::new(RefCell::new(move || stop()))),
+            ..Host::default()
+        })
+    }
+
+    /// Puts a cylinder on record if nothing is wrong with it.
+    fn put_on_record(
+        &self,
+        job: &Job<'_>,
+        (settings, files): (String, &Files),
+        run: Run,
+        outcome: Result<(), Failure>,
+    ) -> anyhow::Result<Done> {
+        let last = job.logs.files.last().map(|file| file.display().to_string()).unwrap_or_default();
+        let fault = match (outcome, &run.found) {
+            (Ok(()), Some(_)) => None,
+            (Ok(()), None) => Some(Fault::of(job.name, &last, NO_VERDICT)),
+            (Err((file, error)), _) => {
+                let message = format!("{error:#}").replace(COLD_START, FLEET_COLD_START);
+                Some(Fault::of(job.name, &file, &message))
+            }
+        };
+        let new_rows = run.new_rows;
+        if fault.is_some() {
+            remove(&files.work)?;
+            if !files.record.is_file() {
+                remove(&files.rows)?;
+            }
+            return Ok(Done { cylinder: self.row(job, run, fault.as_ref()), fault, new_rows });
+        }
+        let Run { logs, course, .. } = &run;
+        let state = file_hash(&files.work);
+        let state = state.with_context(|| format!("{} cannot be read", files.work.display()))?;
+        let (logs, told, trace) = (logs.clone(), course.told.clone(), course.trace.clone());
+        let cylinder = self.row(job, run, None);
+        let record = Record { settings, logs, state, cylinder, told, trace };
+        record.commit(files)?;
+        Ok(Done { cylinder: record.cylinder, fault, new_rows })
+    }
+
+    /// The row of a cylinder; of one with a fault the events are those on record.
+    fn row(&self, job: &Job<'_>, run: Run, fault: Option<&Fault>) -> Cylinder {
+        let on_record = fault.and_then(|_| Record::recovered(&self.folder.files(job.name)));
+        let told: &[Told] = match (fault, &on_record) {
+            (None, _) => &run.course.told,
+            (Some(_), Some(record)) => &record.told,
+            (Some(_), None) => &[],
+        };
+        let rows = run.logs.iter().map(|log| log.rows - log.known_rows).sum();
+        let first = run.logs.iter().find_map(|log| log.first.clone());
+        let found = run.found.filter(|_| fault.is_none()).map(|found| {
+            let (first_s, date) = first.unwrap_or((found.span_s.0, found.span.0));
+            Finding { rows, span_s: (first_s, found.span_s.1), span: (date, found.span.1), ..found }
+        });
+        let cautions = run.logs.iter().flat_map(|log| log.before_rows.iter().chain(&log.of_rows));
+        Cylinder {
+            name: job.name.to_owned(),
+            vessel: job.assigned.vessel.clone(),
+            logs: run.logs.iter().map(|log| log.source.clone()).collect(),
+            found,
+            fault: fault.map_or(String::new(), Fault::words),
+            cautions: cautions.cloned().collect(),
+            events: told.len(),
+            last_events: told[told.len().saturating_sub(LAST_EVENTS)..]
+                .iter()
+                .map(|told| told.words.clone())
+                .collect(),
+        }
+    }
+
+    /// Hash of everything but the logs that the result of a cylinder follows from.
+    fn settings(&self, job: &Job<'_>) -> String {
         let FleetArguments { reading, false_alarms, rows, .. } = self.arguments;
         let Assigned { vessel, arguments, .. } = job.assigned;
         let files = std::iter::once(vessel.clone())
             .chain(arguments.files().map(|file| file.to_string_lossy().into_owned()));
         let hashes: Vec<_> = files.map(|file| self.hashes.get(&file)).collect();
-        let marks: Vec<_> = job.logs.files.iter().map(|file| (file, mark(file))).collect();
         let all = format!(
-            "{} {VERSION} {vessel:?} {arguments:?} {hashes:?} {reading:?} {false_alarms:?} {rows} {:?} {marks:?}",
+            "{} {VERSION} {vessel:?} {arguments:?} {hashes:?} {reading:?} {false_alarms:?} {rows} {:?}",
             Provenance::VERSION,
             job.logs.naming
         );
@@ -175,14 +313,30 @@ impl Fleet<'_> {
     }
 }
 
-/// Why a cylinder with a few rows has no verdict.
-const NO_VERDICT: &str = "no verdict yet, all rows wait in the state for later ones: give a longer log";
+/// Why a cylinder cannot be gone on with.
+const OTHER_STATE: &str = "it is not the state that the record of the folder belongs to: put that back, or choose another output folder";
+/// What `monitor` says of a state that does not fit, and what is said here.
+const COLD_START: &str = "--cold-start starts fresh and replaces it";
+const FLEET_COLD_START: &str = "choose another output folder to start fresh";
 
-/// Size and time of change of a file, ns.
-fn mark(file: &Path) -> Option<(u64, u128)> {
-    let metadata = file.metadata().ok()?;
-    let changed = metadata.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
-    Some((metadata.len(), changed.as_nanos()))
+impl Run {
+    /// A run that goes on.
+    fn after(record: &Record) -> Self {
+        Self {
+            logs: record.logs.clone(),
+            found: record.cylinder.found.clone(),
+            course: record.course(),
+            new_rows: 0,
+        }
+    }
+
+    /// Takes a log: in place of what it was before it grew, or after the others.
+    fn take(&mut self, grown: Option<usize>, log: LogRecord) {
+        match grown {
+            Some(at) => self.logs[at] = log,
+            None => self.logs.push(log),
+        }
+    }
 }
 
 fn remove(path: &Path) -> anyhow::Result<()> {

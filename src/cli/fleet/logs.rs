@@ -1,8 +1,10 @@
 //! Which logs there are, and whose they are.
+use super::columns::{ColumnLog, Index};
+use super::folder::Folder;
 use super::vessels::is_same;
 use crate::cli::inspection::is_log;
 use crate::log::LogOptions;
-use crate::log::cylinders::cylinders;
+use crate::log::cylinders::has_column;
 use crate::report::fleet::Fault;
 use anyhow::{Context, bail};
 use rayon::prelude::*;
@@ -34,58 +36,80 @@ pub(super) struct Logs {
     pub files: Vec<PathBuf>,
 }
 
+/// A log and the cylinder that its folder names.
+type Named = (PathBuf, Option<String>);
+
 /// The logs of a folder by cylinder, and what is wrong with it.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Found {
     /// By the name of the cylinder.
     pub logs: BTreeMap<String, Logs>,
     /// What cannot be used.
     pub faults: Vec<Fault>,
+    /// Logs of several cylinders, by their paths.
+    pub columns: BTreeMap<PathBuf, ColumnLog>,
 }
 
-/// Finds the logs of a folder; `others` are files and folders in it that are no logs.
-pub(super) fn find(folder: &Path, others: &[&Path], options: &LogOptions) -> anyhow::Result<Found> {
+/// The logs of a folder in the order of their names, and what is wrong with it; `others` are files and folders in it that are no logs.
+pub(super) fn files(folder: &Path, others: &[&Path]) -> anyhow::Result<(Vec<Named>, Vec<Fault>)> {
     let shown = folder.display();
     if folder.is_file() {
         bail!("{shown} is a file: name a folder of logs, or use `cylwatch monitor` for one log");
     }
-    let mut found = Found::default();
-    let mut files = Vec::new();
-    walk(folder, others, None, &mut files, &mut found.faults)
-        .with_context(|| format!("{shown} cannot be read"))?;
+    let (mut files, mut faults) = (Vec::new(), Vec::new());
+    walk(folder, others, None, &mut files, &mut faults).with_context(|| format!("{shown} cannot be read"))?;
     if files.is_empty() {
         bail!("{shown} has no log: files that end in .csv, .csv.gz, .txt or .parquet");
     }
     files.sort();
-    // Where a header cannot be read the run says so.
-    let columns: Vec<_> = files
-        .par_iter()
-        .map(|(file, of_folder)| match of_folder {
-            Some(_) => None,
-            None => cylinders(file, options).ok().flatten(),
-        })
-        .collect();
-    for ((file, of_folder), column) in files.into_iter().zip(columns) {
+    Ok((files, faults))
+}
+
+/// Finds out whose the logs are; those of several cylinders are read for that, with all cores of the pool.
+pub(super) fn find(
+    (files, faults): (Vec<Named>, Vec<Fault>),
+    options: &LogOptions,
+    folder: &Folder,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> anyhow::Result<Found> {
+    let read = |(file, of_folder): &Named| match of_folder {
+        // Where a header cannot be read the run says so.
+        None if has_column(file, options).unwrap_or(false) => {
+            ColumnLog::read(file, options, folder, stop).map(Some)
+        }
+        _ => Ok(None),
+    };
+    let columns: anyhow::Result<Vec<_>> = files.par_iter().map(read).collect();
+    let mut found = Found { faults, ..Found::default() };
+    for ((file, of_folder), column) in files.into_iter().zip(columns?) {
         match (of_folder, column) {
             (Some(name), _) => found.add(name, Naming::Folder, file),
             (None, None) => found.add(name_of(&file), Naming::File, file),
             (None, Some(column)) => {
-                if let Some(line) = column.nameless {
-                    found.faults.push(Fault {
-                        cylinder: String::new(),
-                        file: file.display().to_string(),
-                        line: Some(line),
-                        reason: "a row names no cylinder".to_owned(),
-                        remedy: "complete the column cylinder; the row is left out".to_owned(),
-                    });
+                found.faults.extend(faults_of(&column.index, &file));
+                for name in &column.index.names {
+                    found.add(name.clone(), Naming::Column, file.clone());
                 }
-                for name in column.names {
-                    found.add(name, Naming::Column, file.clone());
-                }
+                found.columns.insert(file, column);
             }
         }
     }
     Ok(found)
+}
+
+/// What is wrong with a log of several cylinders, of none of them in particular.
+fn faults_of(index: &Index, file: &Path) -> Vec<Fault> {
+    let shown = file.display().to_string();
+    let nameless = index.nameless.map(|line| Fault {
+        cylinder: String::new(),
+        file: shown.clone(),
+        line: Some(line),
+        reason: "a row names no cylinder".to_owned(),
+        remedy: "complete the column cylinder; the row is left out".to_owned(),
+    });
+    // Otherwise each of its cylinders says so.
+    let damage = index.damage.as_ref().filter(|_| index.names.is_empty());
+    nameless.into_iter().chain(damage.map(|damage| Fault::of("", &shown, damage))).collect()
 }
 
 impl Found {
@@ -114,7 +138,7 @@ fn walk(
     folder: &Path,
     others: &[&Path],
     cylinder: Option<&str>,
-    files: &mut Vec<(PathBuf, Option<String>)>,
+    files: &mut Vec<Named>,
     faults: &mut Vec<Fault>,
 ) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder)? {

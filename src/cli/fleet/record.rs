@@ -1,43 +1,102 @@
-//! What is kept of a cylinder that is done, so that a run which is resumed need not do it again.
+//! What is kept of a cylinder that is done, so that a run which is resumed need not do it again, and a later one goes on from it.
 //!
-//! A record is written after state and rows, whole or not at all. It is of use only for the same inputs: it has a key of them.
-use crate::cli::monitor::Told;
+//! A record is written whole or not at all, and belongs to one state, whose hash it has. A new state first waits in another place, then
+//! the record is written, then the state takes its place: whenever a run is killed, the record finds the state that it belongs to.
+use super::folder::Files;
+use crate::cli::monitor::{Course, Told};
 use crate::cli::output::write_file;
 use crate::report::Input;
-use crate::report::fleet::Cylinder;
+use crate::report::fleet::{Cylinder, Source, Trace};
+use crate::report::monitor::RowCounts;
 use anyhow::Context;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Version of the form of records.
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 /// Length of the hash at the beginning of a file.
 const HASH: usize = 64;
 
 /// A cylinder that is done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
-    /// Hash of everything that the result follows from.
-    pub key: String,
+    /// Hash of everything but the logs that the result follows from.
+    pub settings: String,
+    /// The logs that the result follows from, in the order in which they were read.
+    pub logs: Vec<LogRecord>,
+    /// SHA-256 of its state.
+    pub state: String,
     /// Its row.
     pub cylinder: Cylinder,
     /// Events and changes of alarms.
     pub told: Vec<Told>,
+    /// Course of the pressure at 15 °C.
+    pub trace: Trace,
+}
+
+/// A log that was read, of a cylinder.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct LogRecord {
+    /// Its path and hash.
+    pub source: Source,
+    /// Its length, bytes.
+    pub length: u64,
+    /// When it was changed, ns; `None`: nobody knows.
+    pub changed_ns: Option<u128>,
+    /// Rows that it has of the cylinder.
+    pub rows: u64,
+    /// Those among them that a log before had brought.
+    pub known_rows: u64,
+    /// What became of rows that were not simply used.
+    pub counts: RowCounts,
+    /// Time of its first row, s and as date; `None`: none has come out.
+    pub first: Option<(f64, String)>,
+    /// What a run cautioned about before its rows.
+    pub before_rows: Vec<String>,
+    /// What its rows cautioned about.
+    pub of_rows: Vec<String>,
 }
 
 impl Record {
-    /// Reads a record; `None`: there is none, or it is damaged or of another version.
-    pub(super) fn read(path: &Path) -> Option<Self> {
-        let bytes = std::fs::read(path).ok()?;
-        let (hash, content) = bytes.split_at_checked(HASH)?;
-        (hash == Input::of("", content).sha256.as_bytes()).then_some(())?;
-        postcard::from_bytes(content).ok()
+    /// The record of a cylinder and its state, which takes its place if it has not yet; `None`: there is none, or they do not fit.
+    pub(super) fn recovered(files: &Files) -> Option<Self> {
+        let record: Self = read(&files.record)?;
+        let is_its = |path: &Path| file_hash(path).is_some_and(|hash| hash == record.state);
+        let is_there = is_its(&files.state)
+            || (is_its(&files.work) && std::fs::rename(&files.work, &files.state).is_ok());
+        is_there.then_some(record)
     }
 
-    /// Writes it.
-    pub(super) fn write(&self, path: &Path) -> anyhow::Result<()> {
-        let content = postcard::to_stdvec(self).context("a record cannot be put into bytes")?;
-        let hash = Input::of("", &content).sha256;
-        write_file(path, &[hash.as_bytes(), &content].concat())
+    /// Writes the record of the state that waits, and lets that take its place.
+    pub(super) fn commit(&self, files: &Files) -> anyhow::Result<()> {
+        write(self, &files.record)?;
+        std::fs::rename(&files.work, &files.state)
+            .with_context(|| format!("{} cannot be written", files.state.display()))
     }
+
+    /// What a run that goes on has happened to the cylinder before.
+    pub(super) fn course(&self) -> Course {
+        Course { told: self.told.clone(), trace: self.trace.clone() }
+    }
+}
+
+/// SHA-256 of a file; `None`: it cannot be read.
+pub(super) fn file_hash(path: &Path) -> Option<String> {
+    Some(Input::of("", &std::fs::read(path).ok()?).sha256)
+}
+
+/// Reads a value; `None`: there is none, or it is damaged or of another version.
+pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Option<T> {
+    let bytes = std::fs::read(path).ok()?;
+    let (hash, content) = bytes.split_at_checked(HASH)?;
+    (hash == Input::of("", content).sha256.as_bytes()).then_some(())?;
+    postcard::from_bytes(content).ok()
+}
+
+/// Writes a value with its hash.
+pub(super) fn write<T: Serialize>(value: &T, path: &Path) -> anyhow::Result<()> {
+    let content = postcard::to_stdvec(value).context("a record cannot be put into bytes")?;
+    let hash = Input::of("", &content).sha256;
+    write_file(path, &[hash.as_bytes(), &content].concat())
 }

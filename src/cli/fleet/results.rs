@@ -1,7 +1,7 @@
 //! The tables and the page of a fleet that is done.
 use super::arguments::TableFormat;
 use super::folder::Folder;
-use super::record::Record;
+use super::record::{self, Record};
 use crate::cli::output::write_file;
 use crate::report::fleet::{self, Cylinder, EventRow, Fault};
 use crate::report::{Provenance, Table};
@@ -20,12 +20,7 @@ pub(super) struct Results<'a> {
 impl Results<'_> {
     /// Writes tables and page; what another format has left goes.
     pub(super) fn write(&self, folder: &Folder, format: TableFormat) -> anyhow::Result<()> {
-        let tables = [
-            ("summary", fleet::summary(self.cylinders)),
-            ("events", self.events(folder)),
-            ("errors", fleet::errors(self.faults)),
-        ];
-        for (name, table) in tables {
+        for (name, table) in self.tables(folder) {
             let path = |ending: &str| folder.file(&format!("{name}.{ending}"));
             write_file(&path(format.ending()), &bytes(&table, self.provenance, format)?)?;
             for other in ["csv", "parquet"].into_iter().filter(|other| *other != format.ending()) {
@@ -38,13 +33,24 @@ impl Results<'_> {
         )
     }
 
+    /// The tables with their names.
+    pub(super) fn tables(&self, folder: &Folder) -> [(&'static str, Table); 3] {
+        [
+            ("summary", fleet::summary(self.cylinders)),
+            ("events", self.events(folder)),
+            ("errors", fleet::errors(self.faults)),
+        ]
+    }
+
     /// All events, by cylinder and in their order; from the records, so that a run holds none of them.
     fn events(&self, folder: &Folder) -> Table {
-        let mut names: Vec<&str> = self.cylinders.iter().map(|one| one.name.as_str()).collect();
+        let with_events = self.cylinders.iter().filter(|one| one.events > 0);
+        let mut names: Vec<&str> = with_events.map(|one| one.name.as_str()).collect();
         names.sort_unstable();
         let mut rows = Vec::new();
         for name in names {
-            let told = Record::read(&folder.files(name).record).map(|record| record.told).unwrap_or_default();
+            let told = record::read::<Record>(&folder.files(name).record);
+            let told = told.map(|record| record.told).unwrap_or_default();
             rows.extend(told.into_iter().map(|told| EventRow {
                 cylinder: name.to_owned(),
                 time_s: told.time_s,

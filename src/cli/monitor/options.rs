@@ -1,6 +1,7 @@
 //! Validated options of `monitor`.
 use super::arguments::{CylinderArguments, MonitorArguments};
 use super::*;
+use crate::cli::input::Spooled;
 use crate::cli::options::LogArguments;
 use crate::cli::output::check_distinct;
 use crate::cli::unit_options::QuantityArguments;
@@ -51,8 +52,10 @@ pub(in crate::cli) struct Options {
     pub save_every: Duration,
     pub acknowledge: Option<String>,
     pub announced: Vec<Announced>,
-    /// The rows of this cylinder alone, of a log with a column `cylinder`.
-    pub cylinder: Option<String>,
+    /// The rows to read, where they were taken out of a log of several cylinders.
+    pub spooled: Option<Spooled>,
+    /// Rows at the beginning of the log that the state has taken in; `None`: their times tell.
+    pub known_rows: Option<u64>,
 }
 
 impl Options {
@@ -97,7 +100,8 @@ impl Options {
             cold_start: arguments.cold_start,
             acknowledge: arguments.acknowledge,
             announced: announced.iter().map(|text| Announced::parse(text)).collect::<anyhow::Result<_>>()?,
-            cylinder: None,
+            spooled: None,
+            known_rows: None,
             is_live: inputs.log == "-"
                 || Path::new(&inputs.log).metadata().is_ok_and(|found| !found.is_file()),
             vessel: inputs.vessel,

@@ -1,5 +1,6 @@
 //! A run: rows in, outputs out, the state saved now and then.
 use super::events::{Console, EventSink};
+use super::reading::Reading;
 use super::resume::refused;
 use super::rows::Rows;
 use super::state::{Identity, Refusal, State};
@@ -30,6 +31,8 @@ pub(in crate::cli) struct Finished {
     pub report: Option<Report>,
     /// Zone in which the dates of the log are told.
     pub zone: Option<String>,
+    /// What was read.
+    pub reading: Reading,
 }
 
 /// What a run uses.
@@ -202,7 +205,10 @@ impl<'a> Session<'a> {
             Some(until_s) => until_s,
             None => self.looked_back(row.time_s)?,
         };
-        let known = row.time_s <= until_s;
+        let known = match self.context.options.known_rows {
+            Some(rows) => self.known_rows < rows,
+            None => row.time_s <= until_s,
+        };
         self.known_until_s = Some(if known { until_s } else { f64::NAN });
         Ok(known)
     }
@@ -368,7 +374,8 @@ impl<'a> Session<'a> {
         };
         let written = written.and(self.sink.finish().map(|lines| events = lines)).and(saved);
         let zone = log.reader.zone().map(ToString::to_string);
-        Ok(Finished { summary, written, rows, events, report, zone })
+        let reading = Reading::of(log, self.known_rows);
+        Ok(Finished { summary, written, rows, events, report, zone, reading })
     }
 }
 

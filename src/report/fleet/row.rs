@@ -6,7 +6,7 @@ use crate::report::{Block, Input};
 use serde::{Deserialize, Serialize};
 
 /// A file that was read, with the SHA-256 of its bytes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Source {
     /// Path.
     pub name: String,
@@ -135,14 +135,11 @@ impl Finding {
         }
     }
 
-    /// The same with what an earlier log of the cylinder adds: its rows, its beginning, and whether gas was lost in it.
+    /// The same after earlier rows of the cylinder: whether gas was lost in those counts, too.
     pub(crate) fn after(mut self, earlier: &Self) -> Self {
         if earlier.outcome == Outcome::Loss {
             self.outcome = Outcome::Loss;
         }
-        self.rows += earlier.rows;
-        self.span_s.0 = earlier.span_s.0;
-        self.span.0.clone_from(&earlier.span.0);
         self
     }
 

@@ -10,6 +10,7 @@ use crate::report::Report;
 use crate::report::estimate::sampling_text;
 use crate::report::{BAR_PER_HOUR, GRAM, GRAM_PER_HOUR};
 use crate::thermal::units::{BAR_PA, ZERO_CELSIUS_K};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// What the verdict is held against.
@@ -24,7 +25,7 @@ pub(crate) struct OperatingLimits {
 }
 
 /// Rows that were not simply used, and jumps of the clock.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct RowCounts {
     /// With nothing new.
     pub duplicates: u64,
@@ -36,6 +37,19 @@ pub(crate) struct RowCounts {
     pub wild: u64,
     /// Jumps of the clock.
     pub jumps: u64,
+}
+
+impl RowCounts {
+    /// Together with those of an earlier run.
+    pub(crate) fn and(self, earlier: Self) -> Self {
+        Self {
+            duplicates: self.duplicates + earlier.duplicates,
+            contradictions: self.contradictions + earlier.contradictions,
+            too_late: self.too_late + earlier.too_late,
+            wild: self.wild + earlier.wild,
+            jumps: self.jumps + earlier.jumps,
+        }
+    }
 }
 
 /// What is left of a run when its rows have gone.

@@ -1,4 +1,9 @@
 //! `cylwatch fleet`: each cylinder as by `monitor`, whatever the threads, through kills and bad files; tables and page.
+mod called;
+mod columns;
+mod nights;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod vessels;
 
 use crate::support::{Outcome, program, refused, run};
