@@ -1,7 +1,7 @@
 //! `cylwatch fleet`: many cylinders on all cores, each as by `cylwatch monitor`.
 //!
-//! Memory does not grow with the logs: each is streamed, the rows of a log of several cylinders wait in files, and of a cylinder its row stays. Results do not depend on the number of threads: every cylinder is
-//! computed by one of them, and what is written is sorted.
+//! Memory does not grow with the logs: each is streamed, the rows of a log of several cylinders wait in files, and of a cylinder its row
+//! stays. Results do not depend on the number of threads: every cylinder is computed by one of them, and what is written is sorted.
 mod arguments;
 mod columns;
 mod folder;
@@ -11,6 +11,7 @@ mod logs;
 mod plan;
 mod record;
 mod results;
+mod run;
 mod vessels;
 
 pub(super) use arguments::{FleetArguments, without_single_runs};

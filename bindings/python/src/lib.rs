@@ -8,6 +8,7 @@ mod arguments;
 mod arrow;
 mod border;
 mod error;
+mod fleet;
 mod outcome;
 mod request;
 mod rows;
@@ -81,6 +82,8 @@ fn _cylwatch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<Outcome>()?;
     module.add_class::<rows::Rows>()?;
+    module.add_class::<fleet::Fleet>()?;
+    module.add_function(wrap_pyfunction!(fleet::fleet, module)?)?;
     module.add_class::<steps::Monitor>()?;
     module.add_class::<steps::Observer>()?;
     module.add_function(wrap_pyfunction!(monitor, module)?)?;

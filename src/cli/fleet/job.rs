@@ -5,11 +5,12 @@ use super::folder::{Files, Folder};
 use super::logs::{Logs, Naming};
 use super::plan::{Changes, Plan, Step, mark};
 use super::record::{LogRecord, Record, VERSION, file_hash};
+use super::run::Run;
 use super::vessels::Assigned;
 use crate::cli::host::Host;
 use crate::cli::input::Inputs;
 use crate::cli::message::Messages;
-use crate::cli::monitor::{Course, Options, Places, Told, watch};
+use crate::cli::monitor::{Options, Places, watch};
 use crate::cli::output::Target;
 use crate::cli::progress::Progress;
 use crate::cli::views::Views;
@@ -23,8 +24,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Events that a cylinder's row keeps.
-const LAST_EVENTS: usize = 5;
 /// Why a cylinder with a few rows has no verdict.
 const NO_VERDICT: &str = "no verdict yet, all rows wait for later ones: give a longer log";
 
@@ -66,15 +65,6 @@ pub(super) struct Done {
     pub new_rows: u64,
 }
 
-/// What a cylinder comes to before it is put on record.
-#[derive(Default)]
-struct Run {
-    logs: Vec<LogRecord>,
-    found: Option<Finding>,
-    course: Course,
-    new_rows: u64,
-}
-
 /// Why a log has no result: the file and the reason.
 type Failure = (String, anyhow::Error);
 
@@ -94,29 +84,17 @@ impl Fleet<'_> {
             let reason = format!("{}: {OTHER_STATE}", files.state.display());
             let fault = Fault::of(job.name, &files.state.display().to_string(), &reason);
             return Ok(Some(Done {
-                cylinder: self.row(job, Run::default(), Some(&fault)),
+                cylinder: Run::default().row(job, Some(&fault), &files),
                 fault: Some(fault),
                 new_rows: 0,
             }));
         }
         let plan = before.as_ref().map_or(Plan::Anew, |record| self.plan(job, record, &settings, &files));
-        remove(&files.work)?;
-        let (mut run, steps) = match (plan, &before) {
+        let (mut run, steps) = match (plan, before) {
             (Plan::Known, Some(record)) => {
-                return Ok(Some(Done { cylinder: record.cylinder.clone(), fault: None, new_rows: 0 }));
+                return Ok(Some(Done { cylinder: record.cylinder, fault: None, new_rows: 0 }));
             }
-            (Plan::GoOn(steps), Some(record)) => {
-                let copied = std::fs::copy(&files.state, &files.work);
-                copied.with_context(|| format!("{} cannot be written", files.work.display()))?;
-                (Run::after(record), steps)
-            }
-            _ => {
-                for path in [&files.record, &files.state, &files.rows] {
-                    remove(path)?;
-                }
-                let step = |file: &PathBuf| Step { file: file.clone(), grown: None };
-                (Run::default(), job.logs.files.iter().map(step).collect())
-            }
+            (plan, before) => begun(job, plan, before, &files)?,
         };
         let outcome = steps.iter().try_for_each(|step| self.log(job, step, &files, &mut run));
         if (self.stop)() {
@@ -255,46 +233,16 @@ impl Fleet<'_> {
             if !files.record.is_file() {
                 remove(&files.rows)?;
             }
-            return Ok(Done { cylinder: self.row(job, run, fault.as_ref()), fault, new_rows });
+            return Ok(Done { cylinder: run.row(job, fault.as_ref(), files), fault, new_rows });
         }
         let Run { logs, course, .. } = &run;
         let state = file_hash(&files.work);
         let state = state.with_context(|| format!("{} cannot be read", files.work.display()))?;
         let (logs, told, trace) = (logs.clone(), course.told.clone(), course.trace.clone());
-        let cylinder = self.row(job, run, None);
+        let cylinder = run.row(job, None, files);
         let record = Record { settings, logs, state, cylinder, told, trace };
         record.commit(files)?;
         Ok(Done { cylinder: record.cylinder, fault, new_rows })
-    }
-
-    /// The row of a cylinder; of one with a fault the events are those on record.
-    fn row(&self, job: &Job<'_>, run: Run, fault: Option<&Fault>) -> Cylinder {
-        let on_record = fault.and_then(|_| Record::recovered(&self.folder.files(job.name)));
-        let told: &[Told] = match (fault, &on_record) {
-            (None, _) => &run.course.told,
-            (Some(_), Some(record)) => &record.told,
-            (Some(_), None) => &[],
-        };
-        let rows = run.logs.iter().map(|log| log.rows - log.known_rows).sum();
-        let first = run.logs.iter().find_map(|log| log.first.clone());
-        let found = run.found.filter(|_| fault.is_none()).map(|found| {
-            let (first_s, date) = first.unwrap_or((found.span_s.0, found.span.0));
-            Finding { rows, span_s: (first_s, found.span_s.1), span: (date, found.span.1), ..found }
-        });
-        let cautions = run.logs.iter().flat_map(|log| log.before_rows.iter().chain(&log.of_rows));
-        Cylinder {
-            name: job.name.to_owned(),
-            vessel: job.assigned.vessel.clone(),
-            logs: run.logs.iter().map(|log| log.source.clone()).collect(),
-            found,
-            fault: fault.map_or(String::new(), Fault::words),
-            cautions: cautions.cloned().collect(),
-            events: told.len(),
-            last_events: told[told.len().saturating_sub(LAST_EVENTS)..]
-                .iter()
-                .map(|told| told.words.clone())
-                .collect(),
-        }
     }
 
     /// Hash of everything but the logs that the result of a cylinder follows from.
@@ -319,24 +267,24 @@ const OTHER_STATE: &str = "it is not the state that the record of the folder bel
 const COLD_START: &str = "--cold-start starts fresh and replaces it";
 const FLEET_COLD_START: &str = "choose another output folder to start fresh";
 
-impl Run {
-    /// A run that goes on.
-    fn after(record: &Record) -> Self {
-        Self {
-            logs: record.logs.clone(),
-            found: record.cylinder.found.clone(),
-            course: record.course(),
-            new_rows: 0,
-        }
+/// A run that goes on, or begins anew, and the logs that it reads.
+fn begun(
+    job: &Job<'_>,
+    plan: Plan,
+    before: Option<Record>,
+    files: &Files,
+) -> anyhow::Result<(Run, Vec<Step>)> {
+    remove(&files.work)?;
+    if let (Plan::GoOn(steps), Some(record)) = (plan, before) {
+        let copied = std::fs::copy(&files.state, &files.work);
+        copied.with_context(|| format!("{} cannot be written", files.work.display()))?;
+        return Ok((Run::after(record), steps));
     }
-
-    /// Takes a log: in place of what it was before it grew, or after the others.
-    fn take(&mut self, grown: Option<usize>, log: LogRecord) {
-        match grown {
-            Some(at) => self.logs[at] = log,
-            None => self.logs.push(log),
-        }
+    for path in [&files.record, &files.state, &files.rows] {
+        remove(path)?;
     }
+    let step = |file: &PathBuf| Step { file: file.clone(), grown: None };
+    Ok((Run::default(), job.logs.files.iter().map(step).collect()))
 }
 
 fn remove(path: &Path) -> anyhow::Result<()> {

@@ -3,7 +3,7 @@
 //! A record is written whole or not at all, and belongs to one state, whose hash it has. A new state first waits in another place, then
 //! the record is written, then the state takes its place: whenever a run is killed, the record finds the state that it belongs to.
 use super::folder::Files;
-use crate::cli::monitor::{Course, Told};
+use crate::cli::monitor::Told;
 use crate::cli::output::write_file;
 use crate::report::Input;
 use crate::report::fleet::{Cylinder, Source, Trace};
@@ -73,11 +73,6 @@ impl Record {
         write(self, &files.record)?;
         std::fs::rename(&files.work, &files.state)
             .with_context(|| format!("{} cannot be written", files.state.display()))
-    }
-
-    /// What a run that goes on has happened to the cylinder before.
-    pub(super) fn course(&self) -> Course {
-        Course { told: self.told.clone(), trace: self.trace.clone() }
     }
 }
 

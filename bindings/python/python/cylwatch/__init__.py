@@ -12,12 +12,14 @@ Logs come as tables of pandas (2.2 or later), Polars or pyarrow, or as paths; na
 
 from ._cylwatch import (
     CylwatchError,
+    Fleet,
     Monitor,
     Observer,
     Result,
     Rows,
     __version__,
     estimate,
+    fleet,
     monitor,
     properties,
     simulate,
@@ -25,12 +27,14 @@ from ._cylwatch import (
 
 __all__ = [
     "CylwatchError",
+    "Fleet",
     "Monitor",
     "Observer",
     "Result",
     "Rows",
     "__version__",
     "estimate",
+    "fleet",
     "monitor",
     "properties",
     "simulate",

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from datetime import datetime
 from os import PathLike
+from pathlib import Path
 from typing import Any, Protocol, TypedDict
 
 import numpy as np
@@ -92,12 +93,48 @@ def monitor(vessel: Document, log: ArrowTable | str | PathLike[str], **options: 
     """Decides for every row of a log whether gas is being lost: ``cylwatch monitor``.
 
     log: shape (rows, columns) with ``time_s`` (or another unit) or ``time`` (datetimes), and readings such as ``shoulder_degc``,
-    ``valve_degc``, ``pressure_bar``; NaN, null and NaT are missing. A path is a CSV file.
+    ``valve_degc``, ``pressure_bar``; NaN, null and NaT are missing. A path is a CSV or Parquet file.
 
     Options, as of the command: ``limit_bar=160``, ``coldest_degc=-25``, ``next_service_d=30``, ``lateness_s=0``, ``step_min=1``,
     ``false_alarm_years=10``, ``fill_pressure_bar``, ``fill_temperature_degc``, ``fill_mass_kg``, ``settled=False``,
     ``map={"shoulder_degc": "T1"}``, ``zone="Europe/Berlin"``, ``announced=[(from, until)]``; ``sensors``, ``commissioned``,
     ``learned_in`` as path, text or dict.
+    """
+
+class Fleet:
+    """What a run over a fleet comes to. The tables are those of its folder: shape (rows, columns), missing values null."""
+
+    @property
+    def summary(self) -> Rows:
+        """A row for each cylinder, the most urgent first: ``cylinder``, ``light``, ``verdict``, ``p15_bar``, ``lost_g`` and more."""
+
+    @property
+    def events(self) -> Rows:
+        """A row for each event and change of an alarm, by cylinder; ``time`` in UTC, ``line`` the JSON of ``monitor --events``."""
+
+    @property
+    def errors(self) -> Rows:
+        """A row for everything that could not be read: ``cylinder``, ``file``, ``line``, ``reason``, ``remedy``."""
+
+    @property
+    def exit_code(self) -> int:
+        """Exit code of the command: 0 no cylinder lost gas, 1 one did, 3 of one it cannot be told."""
+
+    @property
+    def page(self) -> Path:
+        """The page that was written."""
+
+    def __len__(self) -> int: ...
+
+def fleet(logs: str | PathLike[str], output: str | PathLike[str], **options: Option) -> Fleet:
+    """Monitors many cylinders on all cores: ``cylwatch fleet``.
+
+    logs: a folder of CSV or Parquet files, one for each cylinder, folders ``cylinder=NAME``, or files with a column ``cylinder``.
+    output: the folder of the command, to the last byte. The same call resumes a run that was stopped or killed, and goes on from it
+    when the logs have grown. Ctrl-C ends it within a thousand rows of a cylinder.
+
+    Options: ``vessels="fleet.csv"`` (a row for each cylinder) or ``vessel="nitrogen-20l"``, ``format="parquet"`` or ``"csv"``,
+    ``rows=False``, ``threads``, ``go_on=False``, and those of ``monitor``; ``sensors``, ``commissioned``, ``learned_in`` as paths.
     """
 
 def estimate(vessel: Document, log: ArrowTable | str | PathLike[str], **options: Option) -> Result:
