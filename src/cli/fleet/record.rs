@@ -95,3 +95,49 @@ pub(super) fn write<T: Serialize>(value: &T, path: &Path) -> anyhow::Result<()> 
     let hash = Input::of("", &content).sha256;
     write_file(path, &[hash.as_bytes(), &content].concat())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tempfile::tempdir;
+
+    #[test]
+    fn a_record_finds_its_state_wherever_a_kill_left_it_and_takes_no_other() {
+        let folder = tempdir().unwrap();
+        let of = |name: &str| folder.path().join(name);
+        let files = Files { state: of("state"), rows: of("rows"), record: of("record"), work: of("work") };
+        let cylinder = Cylinder {
+            name: "A".to_owned(),
+            vessel: String::new(),
+            logs: Vec::new(),
+            found: None,
+            fault: String::new(),
+            cautions: Vec::new(),
+            events: 0,
+            last_events: Vec::new(),
+        };
+        let record = |state: &[u8]| Record {
+            settings: String::new(),
+            logs: vec![LogRecord { rows: 7, ..LogRecord::default() }],
+            state: Input::of("", state).sha256,
+            cylinder: cylinder.clone(),
+            told: Vec::new(),
+            trace: Trace::default(),
+        };
+        let lay = |place: &Path, bytes: &[u8]| std::fs::write(place, bytes).unwrap();
+        lay(&files.work, b"first");
+        record(b"first").commit(&files).unwrap();
+        assert_eq!(Record::recovered(&files), Some(record(b"first")));
+        // Killed before the record: the new state goes.
+        lay(&files.work, b"second");
+        assert_eq!(Record::recovered(&files), Some(record(b"first")));
+        // Killed after it: the new state takes its place.
+        write(&record(b"second"), &files.record).unwrap();
+        assert_eq!(Record::recovered(&files), Some(record(b"second")));
+        assert_eq!((std::fs::read(&files.state).unwrap(), files.work.exists()), (b"second".to_vec(), false));
+        lay(&files.state, b"of someone else");
+        assert_eq!(Record::recovered(&files), None);
+        lay(&files.record, b"damaged");
+        assert_eq!(Record::recovered(&files), None);
+    }
+}

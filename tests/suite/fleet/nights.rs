@@ -165,7 +165,7 @@ fn a_folder_that_holds_what_is_new_alone_goes_on_when_it_is_told_to() {
     for day in [0..1100, 1100..1800] {
         let logs = folder.path().join("logs");
         std::fs::remove_dir_all(&logs).unwrap();
-        let logs = days(&[day.clone()]);
+        let logs = days(std::slice::from_ref(&day));
         lay(
             folder.path(),
             &logs.iter().map(|(name, text)| (name.as_str(), text.clone())).collect::<Vec<_>>(),
