@@ -21,7 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 WEEK = ROOT / "scenarios" / "railway-week.csv"
 LEAK = '[[leak]]\nname = "leak"\nflow_g_h = 3\nstart_h = 12\n\n[limits]'
-OPTIONS = ["--vessel", "nitrogen-20l", "--fill-pressure-bar", "200", "--fill-temperature-degc", "15", "--format", "csv", "--rows"]
+OPTIONS = ["--vessel", "nitrogen-20l", "--fill-pressure-bar", "200", "--fill-temperature-degc", "15", "--format", "csv"]
 
 
 def simulated(program: Path, folder: Path, days: float, kind: int) -> tuple[str, list[str]]:
@@ -121,10 +121,12 @@ def main() -> None:
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1, help="of the moments of the kills")
     parser.add_argument("--together", action="store_true", help="all cylinders in one log with a column `cylinder`")
+    parser.add_argument("--rows", action="store_true", help="write the rows of each cylinder, too")
     parser.add_argument("--program", type=Path, default=ROOT / "target" / "release" / "cylwatch")
     parser.add_argument("--folder", type=Path, help="where the fleet is made [the system's place for temporary files]")
     given = parser.parse_args()
     program = given.program.resolve()
+    OPTIONS.extend(["--rows"] if given.rows else [])
     with tempfile.TemporaryDirectory(dir=given.folder, prefix="cylwatch-fleet-") as name:
         folder = Path(name)
         rows = write_logs(program, folder, given.cylinders, given.days, given.together)
