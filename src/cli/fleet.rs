@@ -97,7 +97,9 @@ fn monitored(
     let options = LogOptions { any_order: true, ..arguments.reading.options(Vec::new()) };
     let files = logs::files(&arguments.logs, &others)?;
     let folder = Folder::make(&arguments.output, arguments.rows)?;
+    let reading = Progress::open_ended(messages, "reading whose the logs are");
     let mut found = pool.install(|| logs::find(files, &options, &folder, &*stop))?;
+    drop(reading);
     let mut cylinders = unmatched(arguments, &vessels, &mut found, &folder);
     let hashes = hashes(&vessels, &inputs)?;
     let jobs: Vec<Job<'_>> = found
