@@ -3,7 +3,7 @@
 //! Names of columns mean what they mean in a file. Numbers and instants come as they are, texts as the cells of a text log.
 use super::caution::{Cautions, Kind};
 use super::cell::{Cell, shown};
-use super::columns::{Columns, TimeForm};
+use super::columns::{Columns, TimeForm, one_line};
 use super::row::RawRow;
 use super::time::TimeReader;
 use super::{LogError, LogOptions, Zone};
@@ -101,10 +101,11 @@ pub(super) struct MemorySource {
 impl MemorySource {
     /// Finds the columns.
     pub(super) fn open(
-        log: MemoryLog,
+        mut log: MemoryLog,
         options: &LogOptions,
         cautions: &mut Cautions,
     ) -> Result<(Self, Columns), LogError> {
+        log.columns.iter_mut().for_each(|(name, _)| *name = one_line(name));
         let names: Vec<String> = log.columns.iter().map(|(name, _)| name.clone()).collect();
         let found = Columns::find(&names, &log.name, options, cautions)?;
         let (time_at, header, form) = (found.time.index, &found.time.header, found.time.form);

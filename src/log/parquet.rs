@@ -7,7 +7,7 @@ mod text;
 pub(super) use text::text;
 
 use super::caution::{Cautions, Kind};
-use super::columns::{Columns, TimeForm};
+use super::columns::{Columns, TimeForm, one_line};
 use super::row::RawRow;
 use super::time::TimeReader;
 use super::{LogError, LogOptions};
@@ -75,7 +75,8 @@ impl ParquetSource {
     ) -> Result<(Self, Columns), LogError> {
         let reader = SerializedFileReader::new(input).map_err(|error| refused(file, &error))?;
         let schema = reader.metadata().file_metadata().schema_descr_ptr();
-        let names: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
+        let names: Vec<String> =
+            schema.columns().iter().map(|column| one_line(&column.path().string())).collect();
         let found = Columns::find(&names, file, options, cautions)?;
         let (time_at, time_name, form) = (found.time.index, &found.time.header, found.time.form);
         if found.time.clock.is_some() {

@@ -387,6 +387,11 @@ fn set_aside(found: &[Found<'_>], at: &str, options: &LogOptions, cautions: &mut
     cautions.count(Kind::SetAside, &unknown.join(", "), || (at.to_owned(), hint));
 }
 
+/// A name of a table that is no text file as one line of text, as messages show it and mappings name it.
+pub(super) fn one_line(name: &str) -> String {
+    name.replace(char::is_control, " ").trim().to_owned()
+}
+
 fn headers(found: &[Found<'_>]) -> String {
     found.iter().map(|column| column.header).collect::<Vec<_>>().join(", ")
 }

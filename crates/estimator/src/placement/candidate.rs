@@ -269,7 +269,7 @@ impl CandidatesSpec {
             Candidates::of_vessel(vessel)?
         } else {
             let suite = SensorsSpec { sensor: self.sensor.clone() }.build()?;
-            Candidates::of_sensors(vessel, suite.sensors().to_vec())?
+            Candidates::of_sensors(vessel, suite.sensors().to_vec()).map_err(|error| self.placed(error))?
         };
         for number in 0..self.rule.len() {
             candidates.rule(number, &self.rule)?;
@@ -280,6 +280,15 @@ impl CandidatesSpec {
         candidates.minimum_distance_m = self.minimum_distance_m.unwrap_or(0.0);
         candidates.check_distance()?;
         Ok(candidates)
+    }
+
+    /// A sensor that the vessel has no place for, as an error about its name.
+    fn placed(&self, error: EstimatorError) -> EstimatorError {
+        let EstimatorError::SensorMisfit { name, vessel, missing } = error else { return error };
+        let number = self.sensor.iter().position(|sensor| sensor.name == name).unwrap_or(0);
+        let bound = format!("a sensor on a place that vessel {vessel} has");
+        let remedy = format!("it needs {missing}; give it another place or leave it out");
+        check::broken(&format!("sensor[{number}].name"), format!("{name:?}"), &bound, &remedy).into()
     }
 }
 

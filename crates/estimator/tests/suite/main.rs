@@ -1,6 +1,7 @@
 //! The tests of this crate in one binary, modules by kind.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod allocations;
+mod any_document;
 mod bound_linear;
 mod calibrate;
 mod consistency_rates;

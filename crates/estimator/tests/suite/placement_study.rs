@@ -103,7 +103,7 @@ fn what_is_wrong_in_a_file_is_told_with_line_and_remedy() {
         ("at_most = 1", "at_least = 3", &["at_least", "at most 2"]),
         ("status = \"forbidden\"", "status = \"never\"", &["never", "forbidden"]),
         ("minimum_distance_mm = 100", "minimum_distance_mm = -1", &["minimum_distance_mm", "at least 0"]),
-        ("height_mm = 500", "height_mm = 5000", &["side", "5 m"]),
+        ("height_mm = 500", "height_mm = 5000", &["few.toml:12", "side", "5 m"]),
         ("[[group]]", "[[grup]]", &["grup", "group"]),
     ] {
         let text = FEW.replace(from, to);

@@ -1,41 +1,23 @@
-//! Tables through Arrow's C stream interface: what a frame hands over becomes a log, and rows become what a frame takes.
-use crate::error::refused;
+//! Tables of Arrow without Python: what a stream holds becomes a log, and rows become a batch.
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::{FFI_ArrowArrayStream, RecordBatchStreamReader};
 use arrow_array::types::*;
 use arrow_array::{
-    Array, ArrayRef, ArrowPrimitiveType, Float64Array, RecordBatch, RecordBatchIterator, StringArray,
+    Array, ArrayRef, ArrowPrimitiveType, Float64Array, RecordBatch, RecordBatchReader, StringArray,
     TimestampNanosecondArray,
 };
 use arrow_schema::{ArrowError, DataType, Field, Schema, TimeUnit};
 use cylwatch::report::{Table, Values};
 use cylwatch::run::{Cells, MemoryLog};
-use pyo3::prelude::*;
-use pyo3::types::PyCapsule;
-use std::ffi::CStr;
 use std::sync::Arc;
 
-/// Name of the capsule, by the interface.
-const STREAM: &CStr = c"arrow_array_stream";
 /// What messages call a table.
-const FRAME: &str = "<frame>";
+pub(crate) const FRAME: &str = "<frame>";
 
-/// A table as a log: its numbers are copied once.
-pub(crate) fn log(table: &Bound<'_, PyAny>) -> PyResult<MemoryLog> {
-    let capsule = table.call_method0("__arrow_c_stream__")?;
-    let capsule = capsule.cast::<PyCapsule>()?;
-    let pointer = capsule.pointer_checked(Some(STREAM))?.cast::<FFI_ArrowArrayStream>();
-    // SAFETY: a capsule of this name holds a stream, which lives as long as the capsule. `from_raw` moves it out and leaves one that
-    // is released, as the interface asks of a consumer.
-    #[allow(unsafe_code)]
-    let stream = unsafe { FFI_ArrowArrayStream::from_raw(pointer.as_ptr()) };
-    read(stream)
-        .map_err(|error| refused(table.py(), &format!("{FRAME}: {error}: convert the table with pyarrow")))
-}
-
-fn read(stream: FFI_ArrowArrayStream) -> Result<MemoryLog, ArrowError> {
+/// A stream as a log: its numbers are copied once.
+pub(crate) fn read(stream: FFI_ArrowArrayStream) -> Result<MemoryLog, ArrowError> {
     let reader = RecordBatchStreamReader::try_new(stream)?;
-    let schema = arrow_array::RecordBatchReader::schema(&reader);
+    let schema = reader.schema();
     let mut columns: Vec<(String, Cells)> =
         schema.fields().iter().map(|field| (field.name().clone(), empty(field.data_type()))).collect();
     for batch in reader {
@@ -161,17 +143,4 @@ pub(crate) fn batch(table: &Table, zone: Option<&str>) -> Result<RecordBatch, Ar
 pub(crate) fn nanosecond(date: &str) -> Option<i64> {
     let instant = date.parse::<jiff::Timestamp>().ok()?;
     i64::try_from(instant.as_nanosecond()).ok()
-}
-
-/// A batch as the capsule that a frame takes.
-pub(crate) fn stream<'py>(py: Python<'py>, batch: &RecordBatch) -> PyResult<Bound<'py, PyCapsule>> {
-    let batches = RecordBatchIterator::new([Ok(batch.clone())], batch.schema());
-    PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(batches)), STREAM)
-}
-
-/// The schema of a batch as a capsule.
-pub(crate) fn schema<'py>(py: Python<'py>, batch: &RecordBatch) -> PyResult<Bound<'py, PyCapsule>> {
-    let schema = arrow_schema::ffi::FFI_ArrowSchema::try_from(batch.schema().as_ref());
-    let schema = schema.map_err(|error| refused(py, &error.to_string()))?;
-    PyCapsule::new_with_value(py, schema, c"arrow_schema")
 }
