@@ -5,6 +5,7 @@
 mod appended;
 mod arguments;
 mod bench_detector;
+mod beside;
 mod calibrate;
 mod call;
 mod commission;
@@ -46,8 +47,8 @@ use arguments::{Arguments, Command};
 pub(crate) use call::{called, estimate_steps, monitor_steps, properties_of};
 use clap::FromArgMatches;
 pub(crate) use estimate::Steps as EstimateSteps;
-pub(crate) use host::Host;
 pub use host::Outcome;
+pub(crate) use host::{Host, Stopped};
 use message::Messages;
 pub(crate) use monitor::Steps as MonitorStepper;
 use std::process::ExitCode;
