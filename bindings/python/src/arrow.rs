@@ -17,11 +17,8 @@ use std::sync::Arc;
 
 /// Name of the capsule, by the interface.
 const STREAM: &CStr = c"arrow_array_stream";
-/// What messages call a table.
-const FRAME: &str = "<frame>";
-
-/// A table as a log: its numbers are copied once.
-pub(crate) fn log(table: &Bound<'_, PyAny>) -> PyResult<MemoryLog> {
+/// A table as a log of this name: its numbers are copied once.
+pub(crate) fn log(table: &Bound<'_, PyAny>, name: &str) -> PyResult<MemoryLog> {
     let capsule = table.call_method0("__arrow_c_stream__")?;
     let capsule = capsule.cast::<PyCapsule>()?;
     let pointer = capsule.pointer_checked(Some(STREAM))?.cast::<FFI_ArrowArrayStream>();
@@ -29,11 +26,12 @@ pub(crate) fn log(table: &Bound<'_, PyAny>) -> PyResult<MemoryLog> {
     // is released, as the interface asks of a consumer.
     #[allow(unsafe_code)]
     let stream = unsafe { FFI_ArrowArrayStream::from_raw(pointer.as_ptr()) };
-    read(stream)
-        .map_err(|error| refused(table.py(), &format!("{FRAME}: {error}: convert the table with pyarrow")))
+    let columns = read(stream)
+        .map_err(|error| refused(table.py(), &format!("{name}: {error}: convert the table with pyarrow")))?;
+    Ok(MemoryLog { name: name.to_owned(), columns })
 }
 
-fn read(stream: FFI_ArrowArrayStream) -> Result<MemoryLog, ArrowError> {
+fn read(stream: FFI_ArrowArrayStream) -> Result<Vec<(String, Cells)>, ArrowError> {
     let reader = RecordBatchStreamReader::try_new(stream)?;
     let schema = arrow_array::RecordBatchReader::schema(&reader);
     let mut columns: Vec<(String, Cells)> =
@@ -43,7 +41,7 @@ fn read(stream: FFI_ArrowArrayStream) -> Result<MemoryLog, ArrowError> {
             append(array, cells)?;
         }
     }
-    Ok(MemoryLog { name: FRAME.to_owned(), columns })
+    Ok(columns)
 }
 
 /// A column of a type, without cells.

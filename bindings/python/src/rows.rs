@@ -1,7 +1,7 @@
 //! Rows of a result: columns for frames by Arrow, for numpy, and as Python values.
 use crate::{arrow, error};
 use arrow_array::cast::AsArray;
-use arrow_array::types::{Float64Type, TimestampNanosecondType};
+use arrow_array::types::{Float64Type, Int64Type, TimestampNanosecondType};
 use arrow_array::{Array, RecordBatch};
 use arrow_schema::DataType;
 use cylwatch::report::{Table, Values};
@@ -39,7 +39,7 @@ impl Rows {
         format!("<cylwatch.Rows: {} rows of {}>", self.count(), self.columns().join(", "))
     }
 
-    /// A column as an array of numpy: numbers as float64, dates as datetime64[ns] in UTC, texts as objects.
+    /// A column as an array of numpy: numbers as float64, counts as int64, dates as datetime64[ns] in UTC, texts as objects.
     pub(crate) fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let Some(array) = self.0.column_by_name(name) else {
             let columns = self.columns().join(", ");
@@ -59,9 +59,15 @@ impl Rows {
                 let ticks = array.as_primitive::<TimestampNanosecondType>().iter();
                 of_bytes(ticks.flat_map(|tick| tick.unwrap_or(i64::MIN).to_le_bytes()).collect(), "<M8[ns]")
             }
-            _ => {
-                let list = PyList::new(py, array.as_string::<i32>().iter().collect::<Vec<_>>())?;
-                numpy.call_method1("array", (list, "object"))
+            // What is missing is None, among objects.
+            kind => {
+                let (list, kind) = match kind {
+                    DataType::Int64 => (PyList::new(py, array.as_primitive::<Int64Type>())?, "int64"),
+                    DataType::Boolean => (PyList::new(py, array.as_boolean())?, "bool"),
+                    _ => (PyList::new(py, array.as_string::<i32>().iter().collect::<Vec<_>>())?, "object"),
+                };
+                let kind = if array.null_count() == 0 { kind } else { "object" };
+                numpy.call_method1("array", (list, kind))
             }
         }
     }

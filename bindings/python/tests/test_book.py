@@ -10,7 +10,7 @@ def blocks(page):
     return re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
 
 
-@pytest.mark.parametrize("page, count", [("book/src/python.md", 2), ("README.md", 1)])
+@pytest.mark.parametrize("page, count", [("book/src/python.md", 3), ("README.md", 1)])
 def test_the_blocks_of_a_page_run(page, count, leak, capsys):
     found = blocks(page)
     assert len(found) == count
