@@ -86,7 +86,7 @@ def test_dates_of_numpy_and_datetimes_without_a_zone_are_of_the_stated_one(leak)
     assert body(result.to_csv()) == body(expected.to_csv())
     assert any("no zone" in words for words in cw.monitor(VESSEL, plain | {"time": naive.to_numpy()}).cautions)
     gap = naive.to_numpy().copy()
-    gap[7] = np.datetime64("NaT")
+    gap[7] = np.datetime64("NaT", "ns")
     of_frame = leak.drop(columns="time_s").assign(time=gap)
     assert len(cw.monitor(VESSEL, plain | {"time": gap}, zone="UTC")) == len(cw.monitor(VESSEL, of_frame, zone="UTC"))
 
