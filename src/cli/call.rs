@@ -4,15 +4,19 @@ use super::host::{Host, Outcome};
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::quoted_line_without;
-use super::{estimate, fleet, monitor, properties, simulate};
+use super::{calibrate, estimate, fleet, identify, monitor, place, properties, simulate};
 use crate::report::Table;
 use anyhow::{anyhow, bail};
 use clap::FromArgMatches;
 use std::ffi::OsString;
 
 /// Options that name a place for a result or belong to a terminal: a caller has the result in memory.
-const FOR_A_SHELL: [&str; 12] = [
+const FOR_A_SHELL: [&str; 16] = [
     "output",
+    "out",
+    "sensors-out",
+    "matrices",
+    "json",
     "format",
     "events",
     "plot",
@@ -33,7 +37,10 @@ pub(crate) fn called(host: Host, arguments: &[OsString]) -> anyhow::Result<Outco
         Command::Monitor(arguments) => monitor::kept(*arguments, &inputs, &messages),
         Command::Estimate(arguments) => estimate::kept(*arguments, &inputs, &messages),
         Command::Simulate(arguments) => simulate::kept(arguments, &inputs, &messages),
-        _ => bail!("only monitor, estimate and simulate have a result in rows"),
+        Command::Identify(arguments) => identify::kept(*arguments, &inputs, &messages),
+        Command::Calibrate(arguments) => calibrate::kept(*arguments, &inputs, &messages),
+        Command::Place(arguments) => place::kept(*arguments, &inputs, &messages),
+        _ => bail!("this command has no result in rows"),
     };
     Ok(Outcome { cautions: messages.take_cautions(), ..outcome? })
 }
@@ -79,14 +86,17 @@ pub(crate) fn estimate_steps(
 }
 
 fn parsed(arguments: &[OsString]) -> anyhow::Result<Command> {
+    // The output of `identify` names a column, and a fleet has its results in a folder.
+    let allowed: &[&str] = match arguments.first().and_then(|command| command.to_str()) {
+        Some("identify") => &["output"],
+        Some("fleet") => &["output", "format"],
+        _ => &[],
+    };
     for argument in arguments {
         let text = argument.to_string_lossy();
         let option = text.strip_prefix("--").map(|option| option.split('=').next().unwrap_or(option));
-        // A fleet has its results in a folder.
-        let is_place = arguments.first().is_some_and(|command| command == "fleet")
-            && option.is_some_and(|option| ["output", "format"].contains(&option));
-        if let Some(option) = option
-            .filter(|option| !is_place && (FOR_A_SHELL.contains(option) || option.starts_with("save-every")))
+        if let Some(option) = option.filter(|option| !allowed.contains(option))
+            && (FOR_A_SHELL.contains(&option) || option.starts_with("save-every"))
         {
             bail!("--{option} is for the command line: the result is in memory");
         }

@@ -67,17 +67,10 @@ pub(super) fn kept(
 ) -> anyhow::Result<Outcome> {
     let options = Options { data: Target::Memory, views: Views::kept(), ..Options::checked(arguments)? };
     let finished = ran(&options, inputs, messages)?;
-    Ok(Outcome {
-        rows: finished.rows.unwrap_or_default(),
-        zone: finished.zone,
-        events: Vec::new(),
-        summary: report::document(&finished.summary),
-        verdict: "",
-        exit_code: 0,
-        cautions: Vec::new(),
-        report: finished.report.unwrap_or_else(|| report::summary(&finished.summary)),
-        provenance: inputs.provenance(),
-    })
+    let summary = report::document(&finished.summary);
+    let report = finished.report.unwrap_or_else(|| report::summary(&finished.summary));
+    let rows = finished.rows.unwrap_or_default();
+    Ok(Outcome { zone: finished.zone, ..Outcome::of(rows, summary, report, inputs.provenance()) })
 }
 
 /// Opens the log and runs the observer over it.

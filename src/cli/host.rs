@@ -8,6 +8,11 @@ use std::rc::Rc;
 /// Whether a run is to end.
 type Stop = Rc<RefCell<dyn FnMut() -> bool>>;
 
+/// The caller wanted the run to end.
+#[derive(Debug, thiserror::Error)]
+#[error("stopped")]
+pub(crate) struct Stopped;
+
 /// What a caller brings; nothing of it where a shell calls.
 #[derive(Default)]
 pub(crate) struct Host {
@@ -15,8 +20,8 @@ pub(crate) struct Host {
     pub command: String,
     /// Documents by their names.
     pub documents: Vec<(String, String)>,
-    /// The log, if it is no file.
-    pub log: RefCell<Option<MemoryLog>>,
+    /// Logs that are no files.
+    pub logs: RefCell<Vec<MemoryLog>>,
     /// Asked now and then.
     pub stop: Option<Stop>,
 }
@@ -27,9 +32,10 @@ impl Host {
         self.documents.iter().find(|(given, _)| given == name).map(|(_, text)| text.as_str())
     }
 
-    /// The log of the call, if it has this name.
+    /// The log of the call that has this name.
     pub(super) fn take_log(&self, name: &str) -> Option<MemoryLog> {
-        self.log.borrow_mut().take_if(|log| log.name == name)
+        let mut logs = self.logs.borrow_mut();
+        logs.iter().position(|log| log.name == name).map(|place| logs.swap_remove(place))
     }
 }
 
@@ -46,12 +52,35 @@ pub struct Outcome {
     pub summary: Value,
     /// Verdict at the end; empty: none is given.
     pub verdict: &'static str,
-    /// Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive.
+    /// Exit code of the command: 0 done and no loss, 1 gas was lost, 3 inconclusive, or a search that was ended early.
     pub exit_code: u8,
+    /// The calibrated vessel as TOML, of `calibrate`; empty: there is none.
+    pub vessel: String,
+    /// The fitted sensors as TOML, of `calibrate`; empty: there are none.
+    pub sensors: String,
     /// Cautions, which the command writes to stderr.
     pub cautions: Vec<String>,
     /// The summary for people with its figure.
     pub report: Report,
     /// Where all this comes from.
     pub provenance: Provenance,
+}
+
+impl Outcome {
+    /// An outcome of a command that gives no verdict.
+    pub(super) fn of(rows: Table, summary: Value, report: Report, provenance: Provenance) -> Self {
+        Self {
+            rows,
+            zone: None,
+            events: Vec::new(),
+            summary,
+            verdict: "",
+            exit_code: 0,
+            vessel: String::new(),
+            sensors: String::new(),
+            cautions: Vec::new(),
+            report,
+            provenance,
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! `cylwatch identify`: a transfer function from one column of a log to another.
+use super::beside::until_stopped;
 use super::format::Format;
+use super::host::Outcome;
 use super::input::{Inputs, shown};
 use super::message::Messages;
 use super::options::LogArguments;
@@ -7,7 +9,7 @@ use super::output::{Target, remarks};
 use super::progress::Progress;
 use super::result::{Contents, Destination};
 use super::views::Views;
-use crate::estimator::identify::{Data, Method, Settings, Structure, identify};
+use crate::estimator::identify::{Data, Method, Settings, Structure, identify_until};
 use crate::report::identify as report;
 use crate::report::identify::{Signal, Study};
 use anyhow::{Context, bail};
@@ -43,15 +45,52 @@ struct Options {
 pub(super) fn run(arguments: IdentifyArguments, messages: &Messages) -> anyhow::Result<()> {
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let record = options.read(&options.log, &inputs, messages)?;
-    let (study, request) = options.study(record, &inputs, messages)?;
-    for caution in report::cautions(&study) {
-        messages.caution(&caution);
-    }
-    options.write(&study, &request, &inputs, messages)
+    let (study, request) = options.finished(&inputs, messages)?;
+    with_contents(&study, &request, |contents| {
+        let destination = Destination { data: &options.data, format: options.format, views: &options.views };
+        destination.write(contents, &inputs, &inputs.provenance(), messages)
+    })
+}
+
+/// The same for a caller: nothing is written.
+pub(super) fn kept(
+    arguments: IdentifyArguments,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<Outcome> {
+    let options = Options::checked(arguments)?;
+    let (study, request) = options.finished(inputs, messages)?;
+    with_contents(&study, &request, |contents| {
+        contents.kept(report::table(&study), inputs, inputs.provenance())
+    })
+}
+
+/// What a study consists of, for whoever takes it.
+fn with_contents<T>(study: &Study, request: &Value, take: impl FnOnce(Contents<'_>) -> T) -> T {
+    let summary = report::summary(study);
+    let remarks = remarks(&summary.to_text());
+    take(Contents {
+        summary,
+        csv: &|provenance| report::table(study).to_csv(provenance, &remarks),
+        json: &|provenance| report::document(study, request, provenance),
+        picture: &|| report::figure(study),
+        report: &|picture, summary| {
+            summary.cautions(report::cautions(study)).picture(picture, report::CAPTION)
+        },
+    })
 }
 
 impl Options {
+    /// Reads, identifies, and says what to know. Also returns the request.
+    fn finished(&self, inputs: &Inputs, messages: &Messages) -> anyhow::Result<(Study, Value)> {
+        let record = self.read(&self.log, inputs, messages)?;
+        let (study, request) = self.study(record, inputs, messages)?;
+        for caution in report::cautions(&study) {
+            messages.caution(&caution);
+        }
+        Ok((study, request))
+    }
+
     fn checked(arguments: IdentifyArguments) -> anyhow::Result<Self> {
         let choice = Choice::checked(&arguments)?;
         let validation = arguments.validate.as_deref().map(Validation::checked).transpose()?;
@@ -118,9 +157,12 @@ impl Options {
         let signals = self.signals(&record);
         let between = format!("from {} to {}", signals.0.name, signals.1.name);
         let progress = Progress::open_ended(messages, "identifying");
-        let identified = identify(&data, &self.structure, &method, &self.settings);
+        let identified = until_stopped(inputs, |stop| {
+            let found = identify_until(&data, &self.structure, &method, &self.settings, stop);
+            found.with_context(|| format!("{name}, {between}"))
+        });
         drop(progress);
-        let identified = identified.with_context(|| format!("{name}, {between}"))?;
+        let identified = identified?;
         let request = self.request(&method);
         let words = self.choice.description(&self.structure);
         let study = Study::new(signals, words, identified, (name, data), held_out, self.settings.lags)
@@ -149,27 +191,5 @@ impl Options {
             "hold": self.choice.hold,
             "settings": self.settings,
         })
-    }
-
-    fn write(
-        &self,
-        study: &Study,
-        request: &Value,
-        inputs: &Inputs,
-        messages: &Messages,
-    ) -> anyhow::Result<()> {
-        let summary = report::summary(study);
-        let remarks = remarks(&summary.to_text());
-        let contents = Contents {
-            summary,
-            csv: &|provenance| report::table(study).to_csv(provenance, &remarks),
-            json: &|provenance| report::document(study, request, provenance),
-            picture: &|| report::figure(study),
-            report: &|picture, summary| {
-                summary.cautions(report::cautions(study)).picture(picture, report::CAPTION)
-            },
-        };
-        let destination = Destination { data: &self.data, format: self.format, views: &self.views };
-        destination.write(contents, inputs, &inputs.provenance(), messages)
     }
 }

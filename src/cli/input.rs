@@ -167,6 +167,11 @@ impl Inputs {
         Ok(LogInput { reader, name, passed: Rc::default(), length: Some(0), live: None })
     }
 
+    /// Whether the caller wants the run to end.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.host.stop.as_ref().is_some_and(|stop| stop.borrow_mut()())
+    }
+
     fn stop_with_caller(&self, reader: &mut LogReader) {
         if let Some(stop) = self.host.stop.clone() {
             reader.stops_when(move || stop.borrow_mut()());

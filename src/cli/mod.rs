@@ -5,6 +5,7 @@
 mod appended;
 mod arguments;
 mod bench_detector;
+mod beside;
 mod calibrate;
 mod call;
 mod commission;
@@ -47,8 +48,8 @@ pub(crate) use call::{called, estimate_steps, fleet_of, monitor_steps, propertie
 use clap::FromArgMatches;
 pub(crate) use estimate::Steps as EstimateSteps;
 pub use fleet::FleetOutcome;
-pub(crate) use host::Host;
 pub use host::Outcome;
+pub(crate) use host::{Host, Stopped};
 use message::Messages;
 pub(crate) use monitor::Steps as MonitorStepper;
 use std::process::ExitCode;

@@ -75,16 +75,14 @@ pub(super) fn kept(
     let finished = watch(&options, inputs, None, (messages, &Progress::new(messages)))?;
     finished.written?;
     let summary = finished.summary.context("a log that was read without an error has a row")?;
+    let document = crate::report::monitor::document(&summary);
+    let report = finished.report.unwrap_or_else(|| crate::report::monitor::summary(&summary));
     Ok(host::Outcome {
-        rows: finished.rows.unwrap_or_default(),
         zone: finished.zone,
         events: finished.events,
-        summary: crate::report::monitor::document(&summary),
         verdict: summary.last.decision.verdict.as_str(),
         exit_code: summary.outcome().exit_code(),
-        cautions: Vec::new(),
-        report: finished.report.unwrap_or_else(|| crate::report::monitor::summary(&summary)),
-        provenance: inputs.provenance(),
+        ..host::Outcome::of(finished.rows.unwrap_or_default(), document, report, inputs.provenance())
     })
 }
 

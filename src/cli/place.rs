@@ -6,7 +6,9 @@ mod stop;
 
 pub(super) use arguments::PlaceArguments;
 
+use super::beside::beside;
 use super::format::Format;
+use super::host::{Outcome, Stopped};
 use super::input::Inputs;
 use super::interrupt;
 use super::message::Messages;
@@ -24,8 +26,8 @@ use crate::thermal::scenario::Scenario;
 use crate::thermal::vessel::Vessel;
 use anyhow::bail;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::channel;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Exit code of a search that was ended early.
@@ -45,61 +47,40 @@ struct Options {
     matrices: Option<Target>,
 }
 
+/// A finished study, with what it is of.
+struct Finished {
+    vessel: Vessel,
+    candidates: Candidates,
+    placement: Placement,
+    study: Study,
+    closed_loop: Option<ClosedLoop>,
+    runs: ClosedLoopSettings,
+    provenance: Provenance,
+}
+
 /// Searches, judges, writes; exit code 3 if it was ended early.
 pub(super) fn run(arguments: PlaceArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     let begun = Instant::now();
     let options = Options::checked(arguments)?;
     let inputs = Inputs::default();
-    let vessel = inputs.vessel(&options.vessel, messages)?;
-    let candidates = options.candidates(&inputs, &vessel)?;
-    let scenarios: Vec<Scenario> =
-        options.scenarios.iter().map(|name| inputs.scenario(name)).collect::<anyhow::Result<_>>()?;
-    interrupt::listen(|| {})?;
-    let deadline = options.time_limit.and_then(|limit| begun.checked_add(limit));
-    let progress = Progress::open_ended(messages, "running the scenarios");
-    let placement = Placement::new(&vessel, &candidates, &scenarios, &options.settings)?;
-    drop(progress);
-    let expected = placement.evaluations();
-    let progress = match expected {
-        Some(_) => Progress::new(messages),
-        None => Progress::open_ended(messages, "placing sensors"),
-    };
-    let (study, closed_loop) = study(&placement, &options.runs, deadline, (&progress, expected))?;
-    drop(progress);
-    let placed = PlacementReport {
-        study: &study,
-        candidates: &candidates,
-        vessel: &vessel,
-        runs: options.runs,
-        closed_loop: closed_loop.as_ref(),
-    };
-    let seed = Some(options.settings.published.first_seed);
-    let provenance = Provenance { seed, ..inputs.provenance() };
-    options.write(&placed, &placement, (&inputs, &provenance), messages)?;
-    if placed.is_partial() {
-        messages.caution("the search was ended early: the results are partial");
-        return Ok(ExitCode::from(PARTIAL));
-    }
-    Ok(ExitCode::SUCCESS)
+    let finished = options.finished(begun, &inputs, messages, || interrupt::listen(|| {}))?;
+    finished.with_contents(|contents| options.write(contents, &finished, &inputs, messages))?;
+    Ok(ExitCode::from(finished.exit_code(messages)))
 }
 
-/// Runs the study, then its best layouts in closed loop, beside a thread that ends it when it is due.
-fn study(
-    placement: &Placement,
-    runs: &ClosedLoopSettings,
-    deadline: Option<Instant>,
-    progress: (&Progress, Option<f64>),
-) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
-    let control = SearchControl::default();
-    control.stop.store(stop::is_due(deadline), Ordering::Relaxed);
-    std::thread::scope(|scope| {
-        let (done, ended) = channel();
-        let control = &control;
-        scope.spawn(move || stop::attend(control, deadline, progress, &ended));
-        let found = judged(placement, runs, control);
-        drop(done);
-        found
-    })
+/// The same for a caller: nothing is written.
+pub(super) fn kept(
+    arguments: PlaceArguments,
+    inputs: &Inputs,
+    messages: &Messages,
+) -> anyhow::Result<Outcome> {
+    let begun = Instant::now();
+    let options = Options::checked(arguments)?;
+    let finished = options.finished(begun, inputs, messages, || Ok(()))?;
+    let rows = finished.report().table();
+    let outcome =
+        finished.with_contents(|contents| contents.kept(rows, inputs, finished.provenance.clone()))?;
+    Ok(Outcome { exit_code: finished.exit_code(messages), ..outcome })
 }
 
 fn judged(
@@ -126,26 +107,104 @@ impl Options {
         Ok(candidates)
     }
 
+    /// Reads, searches and judges; `listen` is called when all has been read.
+    fn finished(
+        &self,
+        begun: Instant,
+        inputs: &Inputs,
+        messages: &Messages,
+        listen: impl FnOnce() -> anyhow::Result<()>,
+    ) -> anyhow::Result<Finished> {
+        let vessel = inputs.vessel(&self.vessel, messages)?;
+        let candidates = self.candidates(inputs, &vessel)?;
+        let scenarios = self.scenarios.iter().map(|name| inputs.scenario(name));
+        let scenarios: Vec<Scenario> = scenarios.collect::<anyhow::Result<_>>()?;
+        listen()?;
+        let deadline = self.time_limit.and_then(|limit| begun.checked_add(limit));
+        let progress = Progress::open_ended(messages, "running the scenarios");
+        let abandoned = Arc::new(AtomicBool::new(false));
+        let placement = Placement::new(&vessel, &candidates, &scenarios, &self.settings)?;
+        let placement = placement.abandoned_by(&abandoned);
+        drop(progress);
+        let (study, closed_loop) = self.study(&placement, deadline, &abandoned, (inputs, messages))?;
+        let seed = Some(self.settings.published.first_seed);
+        let provenance = Provenance { seed, ..inputs.provenance() };
+        Ok(Finished { vessel, candidates, placement, study, closed_loop, runs: self.runs, provenance })
+    }
+
+    /// Runs the study, then its best layouts in closed loop, beside who may end it.
+    fn study(
+        &self,
+        placement: &Placement,
+        deadline: Option<Instant>,
+        abandoned: &AtomicBool,
+        (inputs, messages): (&Inputs, &Messages),
+    ) -> anyhow::Result<(Study, Option<ClosedLoop>)> {
+        let control = SearchControl::default();
+        let expected = placement.evaluations();
+        let progress = match expected {
+            Some(_) => Progress::new(messages),
+            None => Progress::open_ended(messages, "placing sensors"),
+        };
+        let is_due = || {
+            // What a caller ends is dropped; what the time ends is kept.
+            abandoned.fetch_or(inputs.is_stopped(), Ordering::Relaxed);
+            abandoned.load(Ordering::Relaxed) || stop::is_due(deadline)
+        };
+        control.stop.store(is_due(), Ordering::Relaxed);
+        let attend = || stop::attend(&control, is_due(), (&progress, expected));
+        let found = beside(|| judged(placement, &self.runs, &control), attend);
+        if abandoned.load(Ordering::Relaxed) { Err(Stopped.into()) } else { found }
+    }
+
     fn write(
         &self,
-        placed: &PlacementReport,
-        placement: &Placement,
-        (inputs, provenance): (&Inputs, &Provenance),
+        contents: Contents<'_>,
+        finished: &Finished,
+        inputs: &Inputs,
         messages: &Messages,
     ) -> anyhow::Result<()> {
-        let contents = Contents {
-            summary: placed.summary(),
-            csv: &|provenance| placed.csv(provenance),
-            json: &|provenance| placed.document(provenance),
-            picture: &|| placed.figure(),
-            report: &|picture, _| placed.answer().picture(picture, CAPTION).then(placed.tables()),
-        };
+        let provenance = &finished.provenance;
         let matrices = self.matrices.as_ref().map(|target| {
-            anyhow::Ok((target, serde_json::to_string(&matrices(placement, provenance))? + "\n"))
+            let matrices = matrices(&finished.placement, provenance);
+            anyhow::Ok((target, serde_json::to_string(&matrices)? + "\n"))
         });
         let matrices = matrices.transpose()?;
         let destination = Destination { data: &self.data, format: self.format, views: &self.views };
         destination.write(contents, inputs, provenance, messages)?;
         matrices.map_or(Ok(()), |(target, text)| target.write(text.as_bytes()))
+    }
+}
+
+impl Finished {
+    fn report(&self) -> PlacementReport<'_> {
+        PlacementReport {
+            study: &self.study,
+            candidates: &self.candidates,
+            vessel: &self.vessel,
+            runs: self.runs,
+            closed_loop: self.closed_loop.as_ref(),
+        }
+    }
+
+    /// What the study consists of, for whoever takes it.
+    fn with_contents<T>(&self, take: impl FnOnce(Contents<'_>) -> T) -> T {
+        let placed = self.report();
+        take(Contents {
+            summary: placed.summary(),
+            csv: &|provenance| placed.csv(provenance),
+            json: &|provenance| placed.document(provenance),
+            picture: &|| placed.figure(),
+            report: &|picture, _| placed.answer().picture(picture, CAPTION).then(placed.tables()),
+        })
+    }
+
+    /// The exit code; a caution where it was ended early.
+    fn exit_code(&self, messages: &Messages) -> u8 {
+        if self.report().is_partial() {
+            messages.caution("the search was ended early: the results are partial");
+            return PARTIAL;
+        }
+        0
     }
 }

@@ -1,11 +1,12 @@
 //! A result that is there as a whole: data, figure, report, and its summary for people.
 use super::format::Format;
+use super::host::Outcome;
 use super::input::Inputs;
 use super::message::Messages;
 use super::output::Target;
 use super::views::Views;
 use crate::report::figure::Picture;
-use crate::report::{Provenance, Report};
+use crate::report::{Provenance, Report, Table};
 use serde_json::Value;
 
 /// Where a result goes, and in which format; `None`: the summary goes to stdout.
@@ -23,6 +24,22 @@ pub(super) struct Contents<'a> {
     pub picture: &'a dyn Fn() -> Picture,
     /// The report around the picture and the summary.
     pub report: &'a dyn Fn(Picture, Report) -> Report,
+}
+
+impl Contents<'_> {
+    /// The result for a caller: nothing is written.
+    pub(super) fn kept(
+        self,
+        rows: Table,
+        inputs: &Inputs,
+        provenance: Provenance,
+    ) -> anyhow::Result<Outcome> {
+        let summary = (self.json)(&provenance);
+        let report = |picture| (self.report)(picture, self.summary);
+        let views = Views::kept();
+        let made = views.make(self.picture, report, inputs.sources(), &provenance)?;
+        Ok(Outcome::of(rows, summary, made.kept.unwrap_or_default(), provenance))
+    }
 }
 
 impl Destination<'_> {

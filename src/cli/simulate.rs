@@ -11,12 +11,16 @@ use super::views::Views;
 use crate::log::is_parquet;
 use crate::report::{Provenance, Readings, aligned, simulation};
 use crate::thermal::model::with_real_gas_coefficients;
-use crate::thermal::simulate::{SimulationSettings, simulate};
+use crate::thermal::simulate::{SimulationSettings, simulate_while};
 use crate::thermal::trajectory::Trajectory;
 use crate::thermal::{scenario, vessel};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How often the progress is shown, and a caller asked whether the run is to end.
+const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Arguments of `simulate`.
 #[derive(Debug, Args)]
@@ -125,17 +129,8 @@ pub(super) fn kept(
     if let Some(members) = summary.as_object_mut() {
         members.shift_remove("columns");
     }
-    Ok(Outcome {
-        rows: simulation::table(&run, &readings),
-        zone: None,
-        events: Vec::new(),
-        summary,
-        verdict: "",
-        exit_code: 0,
-        cautions: Vec::new(),
-        report: simulation::summary(&run).picture(simulation::figure(&run, &readings), simulation::CAPTION),
-        provenance,
-    })
+    let report = simulation::summary(&run).picture(simulation::figure(&run, &readings), simulation::CAPTION);
+    Ok(Outcome::of(simulation::table(&run, &readings), summary, report, provenance))
 }
 
 /// Simulates, and reads the sensors.
@@ -151,8 +146,15 @@ fn simulated(
         messages.caution(words);
     }
     let progress = Progress::new(messages);
-    let run =
-        simulate(&vessel, &scenario, &options.settings, &mut |done| progress.show(&scenario.name, done))?;
+    let mut asked = Instant::now();
+    let run = simulate_while(&vessel, &scenario, &options.settings, &mut |done| {
+        if asked.elapsed() < PATIENCE {
+            return true;
+        }
+        asked = Instant::now();
+        progress.show(&scenario.name, done);
+        !inputs.is_stopped()
+    })?;
     drop(progress);
     let readings = Readings::sampled(&run, options.seed)?;
     for sensor in &readings.left_out {

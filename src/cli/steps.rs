@@ -151,7 +151,7 @@ pub(super) fn inputs(documents: &[(String, String)], log: Option<MemoryLog>) -> 
     Inputs::of(Host {
         command: "a stepping object".to_owned(),
         documents: documents.to_vec(),
-        log: RefCell::new(log),
+        logs: RefCell::new(log.into_iter().collect()),
         stop: None,
     })
 }

@@ -1,5 +1,7 @@
 //! Why a run is refused, with the parts of its message.
+use crate::cli::Stopped;
 use crate::log::LogError;
+use crate::thermal::ThermalError;
 
 /// Why a run is refused: the message of the command, and what of it is known by itself.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -15,8 +17,11 @@ pub struct RunError {
 impl RunError {
     pub(super) fn of(error: &anyhow::Error) -> Self {
         let message = format!("{error:#}");
-        let stopped =
-            error.chain().any(|cause| matches!(cause.downcast_ref(), Some(LogError::Stopped { .. })));
+        let stopped = error.chain().any(|cause| {
+            matches!(cause.downcast_ref(), Some(LogError::Stopped { .. }))
+                || matches!(cause.downcast_ref(), Some(ThermalError::Stopped { .. }))
+                || cause.is::<Stopped>()
+        });
         let (place, words) = place(&message).unzip();
         let (file, line) = place.unzip();
         // What the system says is no remedy.

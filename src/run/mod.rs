@@ -1,4 +1,5 @@
-//! The commands for programs: what `cylwatch monitor`, `fleet`, `estimate`, `simulate` and `properties` do, without a shell.
+//! The commands for programs: what `cylwatch monitor`, `fleet`, `estimate`, `simulate`, `identify`, `calibrate`, `place` and `properties` do,
+//! without a shell.
 //!
 //! A [`Call`] names vessel, log and options as a command line does; the log may be columns in memory ([`MemoryLog`]). The run goes
 //! the way of the command, so that every number is the command's, and hands out an [`Outcome`] instead of files: rows with all
@@ -46,17 +47,21 @@ const SCENARIO: &str = "<scenario>";
 /// A call of a command.
 pub struct Call {
     host: Host,
-    vessel: OsString,
-    /// Log or scenario.
-    second: Option<OsString>,
+    /// Vessel, logs, scenario, as a command line has them before its options.
+    places: Vec<OsString>,
     options: Vec<OsString>,
 }
 
 impl Call {
     /// A call for a vessel: the name of a built-in one, or the path of a file.
     pub fn new(vessel: impl Into<OsString>) -> Self {
+        Self { places: vec![vessel.into()], ..Self::without_vessel() }
+    }
+
+    /// A call of a command that takes no vessel: [`identify`].
+    pub fn without_vessel() -> Self {
         let host = Host { command: "a call from a program".to_owned(), ..Host::default() };
-        Self { host, vessel: vessel.into(), second: None, options: Vec::new() }
+        Self { host, places: Vec::new(), options: Vec::new() }
     }
 
     /// A call for a vessel that is given as TOML.
@@ -80,25 +85,32 @@ impl Call {
         self
     }
 
-    /// With a log in memory.
+    /// With a log in memory. [`calibrate`] takes several, each with a name of its own, and files among them.
     #[must_use]
     pub fn log(mut self, log: MemoryLog) -> Self {
-        self.second = Some(OsString::from(&log.name));
-        self.host.log = RefCell::new(Some(log));
-        self
+        self.places.push(OsString::from(&log.name));
+        self.log_of_option(log)
     }
 
     /// With the log of a file.
     #[must_use]
     pub fn log_file(mut self, path: &Path) -> Self {
-        self.second = Some(path.into());
+        self.places.push(path.into());
+        self
+    }
+
+    /// With a log in memory that stands for the file of its name where an option names it, as `validate` of [`calibrate`] and
+    /// [`identify`] does.
+    #[must_use]
+    pub fn log_of_option(self, log: MemoryLog) -> Self {
+        self.host.logs.borrow_mut().push(log);
         self
     }
 
     /// With a scenario: the name of a built-in one, or the path of a file.
     #[must_use]
     pub fn scenario(mut self, scenario: impl Into<OsString>) -> Self {
-        self.second = Some(scenario.into());
+        self.places.push(scenario.into());
         self
     }
 
@@ -126,8 +138,8 @@ impl Call {
         self
     }
 
-    /// With a question that is asked every thousand rows: whether the run is to end, which is then
-    /// [an error](RunError::is_stopped).
+    /// With a question that is asked every thousand rows of a log, and every 50 ms of a simulation or a search: whether the run is to
+    /// end, which is then [an error](RunError::is_stopped).
     #[must_use]
     pub fn stopped_by(mut self, stop: impl FnMut() -> bool + 'static) -> Self {
         self.host.stop = Some(Rc::new(RefCell::new(stop)));
@@ -135,14 +147,15 @@ impl Call {
     }
 
     fn arguments(&self, command: &str) -> Vec<OsString> {
-        let places = [Some(command.into()), Some(self.vessel.clone()), self.second.clone()];
-        places.into_iter().flatten().chain(self.options.iter().cloned()).collect()
+        let command = std::iter::once(command.into());
+        command.chain(self.places.iter().cloned()).chain(self.options.iter().cloned()).collect()
     }
 
     /// A log's place is filled by what never is a file.
     fn arguments_without_log(&self, command: &str) -> Vec<OsString> {
-        let places = [command.into(), self.vessel.clone(), "<steps>".into()];
-        places.into_iter().chain(self.options.iter().cloned()).collect()
+        let mut arguments = self.arguments(command);
+        arguments.insert(1 + self.places.len(), "<steps>".into());
+        arguments
     }
 
     fn run(self, command: &str) -> Result<Outcome, RunError> {
@@ -199,6 +212,34 @@ pub fn simulate(call: Call) -> Result<Outcome, RunError> {
 pub fn fleet(call: Call) -> Result<FleetOutcome, RunError> {
     let arguments = call.arguments("fleet");
     cli::fleet_of(call.host, &arguments).map_err(|error| RunError::of(&error))
+}
+
+/// Identifies a transfer function from one column of a log to another: `cylwatch identify`. The call has [no
+/// vessel](Call::without_vessel), a log and the options `input` and `output`. The rows are data, model and errors; the summary is the
+/// command's JSON, with the coefficients in `coefficients`.
+///
+/// # Errors
+/// As of the command: log or an option is refused, the log does not determine the model, or the run was stopped.
+pub fn identify(call: Call) -> Result<Outcome, RunError> {
+    call.run("identify")
+}
+
+/// Fits physical parameters of a vessel to logs: `cylwatch calibrate`. The rows are the parameters with their intervals, the
+/// summary is the command's JSON; [`Outcome::vessel`] is the calibrated vessel for [`Call::of_text`], [`Outcome::sensors`] the sensors.
+///
+/// # Errors
+/// As of the command: vessel, a log or an option is refused, the logs do not determine the parameters, or the run was stopped.
+pub fn calibrate(call: Call) -> Result<Outcome, RunError> {
+    call.run("calibrate")
+}
+
+/// Finds where sensors should sit: `cylwatch place`. The rows are the judged layouts, the summary is the command's JSON. A search
+/// that `time-limit-min` ends has what was found, and exit code 3.
+///
+/// # Errors
+/// As of the command: vessel, a scenario, a candidate or an option is refused, no layout sees what it should, or the run was stopped.
+pub fn place(call: Call) -> Result<Outcome, RunError> {
+    call.run("place")
 }
 
 /// Properties of a gas at a state: `cylwatch properties`; a table of one row with the units in the names of its columns. The

@@ -186,3 +186,127 @@ fn a_column_of_another_type_is_refused_only_where_it_is_read() {
         Err(LogError::NoTime { .. })
     ));
 }
+
+/// A log of a simulated run, named, with the air and what its sensors read.
+fn simulated(scenario: &str, name: &str) -> MemoryLog {
+    let rows = run::simulate(Call::new(VESSEL).scenario(scenario)).unwrap().rows;
+    let wanted = ["time_s", "ambient_degc", "gas_mean_degc", "shoulder_degc", "valve_degc", "pressure_bar"];
+    let columns = wanted.map(|name| {
+        let read = format!("measured_{name}");
+        let has = |wanted: &str| rows.columns.iter().find(|column| column.name == wanted);
+        match &has(&read).or(has(name)).unwrap().values {
+            Values::Numbers(_, cells) => (name.to_owned(), Cells::Numbers(cells.clone())),
+            other => panic!("{other:?}"),
+        }
+    });
+    MemoryLog { name: name.to_owned(), columns: columns.into() }
+}
+
+fn csv_of(log: &MemoryLog) -> String {
+    let names: Vec<&str> = log.columns.iter().map(|(name, _)| name.as_str()).collect();
+    let mut text = names.join(",") + "\n";
+    for row in 0..log.columns[0].1.len() {
+        let cell = |(_, cells): &(String, Cells)| match cells {
+            Cells::Numbers(cells) => cells[row].to_string(),
+            other => panic!("{other:?}"),
+        };
+        text += &(log.columns.iter().map(cell).collect::<Vec<_>>().join(",") + "\n");
+    }
+    text
+}
+
+/// JSON without what names the run.
+fn without_call(mut document: serde_json::Value) -> serde_json::Value {
+    document.as_object_mut().unwrap().shift_remove("provenance");
+    document
+}
+
+#[test]
+fn an_identification_of_a_log_in_memory_on_another_one_is_the_command_on_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = [simulated("tunnel-winter", "run.csv"), simulated("ramp-warm", "other.csv")];
+    for log in &logs {
+        std::fs::write(folder.path().join(&log.name), csv_of(log)).unwrap();
+    }
+    let asked =
+        ["identify", "run.csv", "--input", "shoulder", "--output", "gas_mean", "--validate", "other.csv"];
+    support::run(folder.path(), &[&asked[..], &["--out", "rows.csv"]].concat());
+    support::run(folder.path(), &[&asked[..], &["--out", "model.json"]].concat());
+    let [log, other] = logs;
+    let call = Call::without_vessel().log(log).log_of_option(other).option("validate", Some("other.csv"));
+    let call = call.option("input", Some("shoulder")).option("output", Some("gas_mean"));
+    let outcome = run::identify(call).unwrap();
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(body(&outcome.to_csv()), body(&read("rows.csv")));
+    let document: serde_json::Value = serde_json::from_str(&read("model.json")).unwrap();
+    assert_eq!(without_call(outcome.summary.clone()), without_call(document));
+    let lag = &outcome.summary["coefficients"][1];
+    assert_eq!((lag["name"].as_str(), lag["unit"].as_str()), (Some("time constant"), Some("s")));
+    assert!(outcome.to_html().unwrap().contains("<svg"));
+}
+
+#[test]
+fn a_calibration_of_logs_in_memory_is_the_command_and_its_vessel_is_the_next_calls() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = simulated("shock-cold", "log.csv");
+    std::fs::write(folder.path().join("log.csv"), csv_of(&log)).unwrap();
+    let date = "2026-03-01T12:00:00Z";
+    let asked =
+        ["calibrate", VESSEL, "log.csv", "--fit", "outside-film", "--film-w-m2-k", "20", "--date", date];
+    let told = support::run(folder.path(), &[&asked[..], &["--format", "csv", "-o", "new.toml"]].concat());
+    let json = support::run(folder.path(), &[&asked[..], &["--format", "json"]].concat()).stdout;
+    let call = || Call::new(VESSEL).option("fit", Some("outside-film")).option("film-w-m2-k", Some("20"));
+    let outcome = run::calibrate(call().log(log).option("date", Some(date))).unwrap();
+    assert_eq!(body(&outcome.to_csv()), body(&told.stdout));
+    let document: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(without_call(outcome.summary.clone()), without_call(document));
+    let vessel = std::fs::read_to_string(folder.path().join("new.toml")).unwrap();
+    // A log in memory has another hash than its file.
+    let text =
+        |vessel| body(vessel).into_iter().filter(|line| !line.starts_with("sha256")).collect::<Vec<_>>();
+    assert_eq!(text(&outcome.vessel), text(&vessel));
+    let next =
+        |vessel: Call| bits(&run::monitor(vessel.log(simulated("tunnel-winter", "next"))).unwrap().rows);
+    let calibrated = next(Call::of_text(outcome.vessel));
+    assert_eq!(calibrated, next(Call::new(folder.path().join("new.toml"))));
+    assert_ne!(calibrated, next(Call::new(VESSEL)));
+}
+
+#[test]
+fn a_search_of_places_is_the_command_and_a_time_limit_makes_it_partial() {
+    let folder = tempfile::tempdir().unwrap();
+    let asked = ["place", VESSEL, "--wall-nodes", "2", "--scenario", "none", "--sensors", "2", "-o"];
+    support::run(folder.path(), &[&asked[..], &["rows.csv"]].concat());
+    let call = || {
+        let call = Call::new(VESSEL).option("wall-nodes", Some("2")).option("sensors", Some("2"));
+        call.option("scenario", Some("none"))
+    };
+    let outcome = run::place(call()).unwrap();
+    let rows = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
+    assert_eq!((body(&outcome.to_csv()), outcome.exit_code), (body(&rows), 0));
+    let ended = run::place(call().option("time-limit-s", Some("1e-6"))).unwrap();
+    assert_eq!((ended.exit_code, ended.summary["partial"].as_bool()), (3, Some(true)));
+    assert!(ended.cautions.iter().any(|words| words.contains("ended early")), "{:?}", ended.cautions);
+}
+
+#[test]
+fn a_simulation_a_calibration_and_a_search_of_places_end_when_the_caller_wants_it() {
+    let calls: [(fn(Call) -> _, Call); 3] = [
+        (
+            run::simulate,
+            Call::new(VESSEL).scenario("railway-week").option("relative-tolerance", Some("1e-11")),
+        ),
+        (run::calibrate, Call::new(VESSEL).log(simulated("shock-cold", "log"))),
+        (run::place, Call::new(VESSEL)),
+    ];
+    for (run, call) in calls {
+        // What is read before is let through.
+        let mut asked = 0;
+        let stop = move || {
+            asked += 1;
+            asked > 2
+        };
+        let stopped = run(call.stopped_by(stop)).unwrap_err();
+        assert!(stopped.is_stopped(), "{stopped}");
+    }
+}

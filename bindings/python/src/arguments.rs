@@ -1,10 +1,14 @@
 //! Python values as what a command line says: vessels and other documents, options, times.
 use crate::error::refused;
-use cylwatch::run::StepTime;
+use crate::request;
+use cylwatch::run::{MemoryLog, StepTime};
 use pyo3::prelude::*;
 use pyo3::types::{
     PyBool, PyDateTime, PyDelta, PyDeltaAccess, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple,
 };
+
+/// What messages call the log of the option `validate`.
+const VALIDATE: &str = "<validate>";
 
 /// A document: the text itself, or where it is.
 pub(crate) enum Document {
@@ -59,6 +63,56 @@ pub(crate) struct Options {
     pub options: Vec<(String, Option<String>)>,
     /// Names and texts.
     pub documents: Vec<(String, String)>,
+    /// Logs that options name.
+    pub logs: Vec<MemoryLog>,
+}
+
+impl Options {
+    /// Adds a document for an option: the name that stands for it. `place` is the name of a text.
+    fn document(&mut self, value: &Bound<'_, PyAny>, what: &str, place: String) -> PyResult<String> {
+        Ok(match document(value, what)? {
+            Document::Place(path) => path.to_string_lossy().into_owned(),
+            Document::Text(text) => {
+                self.documents.push((place.clone(), text));
+                place
+            }
+        })
+    }
+
+    /// Adds an option that names a document: one, or a list of them, each for one of the `logs`.
+    pub(crate) fn documents_of_logs(
+        &mut self,
+        key: &str,
+        value: &Bound<'_, PyAny>,
+        logs: &[String],
+    ) -> PyResult<()> {
+        let name = key.replace('_', "-");
+        let Some(list) = list(value) else {
+            let place = self.document(value, key, format!("<{key}>"))?;
+            self.options.push((name, Some(place)));
+            return Ok(());
+        };
+        if list.len() > logs.len() {
+            let message = format!(
+                "{key} has {} entries, and there are {} logs: give one for each log, the log of validate last, or None",
+                list.len(),
+                logs.len()
+            );
+            return Err(refused(value.py(), &message));
+        }
+        for (k, (value, log)) in list.iter().zip(logs).enumerate().filter(|(_, (value, _))| !value.is_none())
+        {
+            let place = self.document(value, key, format!("<{key} {}>", k + 1))?;
+            self.options.push((name.clone(), Some(format!("{log}={place}"))));
+        }
+        Ok(())
+    }
+}
+
+/// The elements of a list or tuple.
+pub(crate) fn list<'py>(value: &Bound<'py, PyAny>) -> Option<Vec<Bound<'py, PyAny>>> {
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    is_list.then(|| value.try_iter().ok()?.collect::<PyResult<_>>().ok()).flatten()
 }
 
 /// Keywords as options: `limit_bar=150` is `--limit-bar 150`, `True` a switch, a list the option again and again.
@@ -70,7 +124,11 @@ pub(crate) fn options(given: Option<&Bound<'_, PyDict>>) -> PyResult<Options> {
         match key.as_str() {
             "map" => map(&value, &mut options)?,
             "announced" => announced(&value, &mut options)?,
-            "sensors" | "commissioned" | "learned_in" => file(&key, name, &value, &mut options)?,
+            "sensors" | "candidates" | "commissioned" | "learned_in" => {
+                file(&key, name, &value, &mut options)?;
+            }
+            "scenario" => scenarios(&value, &mut options)?,
+            "validate" => validate(&value, &mut options)?,
             _ => option(&key, name, &value, &mut options)?,
         }
     }
@@ -87,11 +145,23 @@ fn option(key: &str, name: String, value: &Bound<'_, PyAny>, options: &mut Optio
         }
         return Ok(());
     }
-    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
-        return value.try_iter()?.try_for_each(|value| option(key, name.clone(), &value?, options));
+    if let Some(list) = list(value) {
+        return list.iter().try_for_each(|value| option(key, name.clone(), value, options));
+    }
+    if let Ok(dict) = value.cast::<PyDict>() {
+        for (of, value) in dict {
+            options.options.push((name.clone(), Some(format!("{of}={}", assigned(key, &value)?))));
+        }
+        return Ok(());
     }
     options.options.push((name, Some(text(key, value)?)));
     Ok(())
+}
+
+/// What is assigned to a name: a value, or several.
+fn assigned(key: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    let values = list(value).unwrap_or_else(|| vec![value.clone()]);
+    Ok(values.iter().map(|value| text(key, value)).collect::<PyResult<Vec<_>>>()?.join(","))
 }
 
 /// A value as a command line has it.
@@ -123,9 +193,27 @@ fn map(value: &Bound<'_, PyAny>, options: &mut Options) -> PyResult<()> {
     let Ok(dict) = value.cast::<PyDict>() else {
         return Err(refused(value.py(), "map is no dict: write {'shoulder_degc': 'T1'}, our name first"));
     };
-    for (ours, theirs) in dict {
-        options.options.push(("map".to_owned(), Some(format!("{ours}={theirs}"))));
+    option("map", "map".to_owned(), dict, options)
+}
+
+/// Scenarios of a command that takes several.
+fn scenarios(value: &Bound<'_, PyAny>, options: &mut Options) -> PyResult<()> {
+    for (k, value) in list(value).unwrap_or_else(|| vec![value.clone()]).iter().enumerate() {
+        let place = options.document(value, "scenario", format!("<scenario {}>", k + 1))?;
+        options.options.push(("scenario".to_owned(), Some(place)));
     }
+    Ok(())
+}
+
+/// What is held out: a part of the log, or another log.
+fn validate(value: &Bound<'_, PyAny>, options: &mut Options) -> PyResult<()> {
+    let is_log = value.is_instance_of::<PyDict>() || value.hasattr("__arrow_c_stream__")?;
+    if !is_log {
+        return option("validate", "validate".to_owned(), value, options);
+    }
+    let log = request::table(value, VALIDATE)?;
+    options.options.push(("validate".to_owned(), Some(log.name.clone())));
+    options.logs.push(log);
     Ok(())
 }
 
@@ -138,22 +226,19 @@ fn announced(value: &Bound<'_, PyAny>, options: &mut Options) -> PyResult<()> {
     Ok(())
 }
 
-/// A file that an option names: sensors in TOML, the others in JSON.
+/// A file that an option names: sensors and candidates in TOML, the others in JSON.
 fn file(key: &str, name: String, value: &Bound<'_, PyAny>, options: &mut Options) -> PyResult<()> {
-    if value.is_none() {
-        return Ok(());
+    // A number of sensors is no file of them.
+    if value.is_none() || value.is_instance_of::<PyInt>() {
+        return option(key, name, value, options);
     }
-    let document = match value.cast::<PyDict>() {
-        Ok(dict) if key != "sensors" => Document::Text(json(dict.as_any(), key)?),
-        _ => document(value, key)?,
-    };
-    let place = match document {
-        Document::Place(path) => path.to_string_lossy().into_owned(),
-        Document::Text(text) => {
-            let place = format!("<{key}>");
-            options.documents.push((place.clone(), text));
+    let place = format!("<{key}>");
+    let place = match value.cast::<PyDict>() {
+        Ok(dict) if !matches!(key, "sensors" | "candidates") => {
+            options.documents.push((place.clone(), json(dict.as_any(), key)?));
             place
         }
+        _ => options.document(value, key, place)?,
     };
     options.options.push((name, Some(place)));
     Ok(())
@@ -168,12 +253,24 @@ pub(crate) fn time(value: &Bound<'_, PyAny>) -> PyResult<StepTime> {
             refused(py, &format!("time = {value} is no time: give seconds, or a datetime with tzinfo"))
         });
     };
-    let zone = value.getattr("tzinfo")?;
-    if zone.is_none() {
-        return Err(refused(py, &format!("time = {value} has no zone: give tzinfo")));
+    match instant(date)? {
+        (tick, Some(zone)) => Ok(StepTime::Instant(tick, zone)),
+        (_, None) => Err(refused(py, &format!("time = {value} has no zone: give tzinfo"))),
     }
+}
+
+/// Time since 1970 of a datetime, ns, and the name of its zone; without one it is told as if it were of UTC.
+pub(crate) fn instant(value: &Bound<'_, PyDateTime>) -> PyResult<(i64, Option<String>)> {
+    let py = value.py();
+    let zone = value.getattr("tzinfo")?;
     let utc = py.import("datetime")?.getattr("timezone")?.getattr("utc")?;
-    let date = date.call_method1("astimezone", (&utc,))?;
+    let date = if zone.is_none() {
+        let keywords = PyDict::new(py);
+        keywords.set_item("tzinfo", &utc)?;
+        value.call_method("replace", (), Some(&keywords))?
+    } else {
+        value.call_method1("astimezone", (&utc,))?
+    };
     let epoch = PyDateTime::new(py, 1970, 1, 1, 0, 0, 0, 0, Some(utc.cast()?))?;
     let since = date.call_method1("__sub__", (epoch,))?;
     let since = since.cast::<PyDelta>()?;
@@ -184,7 +281,8 @@ pub(crate) fn time(value: &Bound<'_, PyAny>) -> PyResult<StepTime> {
     let whole = seconds.checked_mul(1_000_000_000).and_then(|whole| whole.checked_add(nanosecond));
     let whole = whole
         .ok_or_else(|| refused(py, &format!("time = {value} must lie between the years 1678 and 2262")))?;
-    Ok(StepTime::Instant(whole, zone_name(&zone, value)?))
+    let zone = if zone.is_none() { None } else { Some(zone_name(&zone, value)?) };
+    Ok((whole, zone))
 }
 
 /// Name of a zone: of the database, else the distance from UTC at that time.

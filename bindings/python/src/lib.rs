@@ -1,12 +1,14 @@
-//! cylwatch for Python: the commands `monitor`, `estimate`, `simulate` and `properties` on tables in memory, and monitor and
-//! observer step by step.
+//! cylwatch for Python: the commands `monitor`, `estimate`, `simulate`, `identify`, `calibrate`, `place` and `properties` on tables
+//! in memory, and monitor and observer step by step.
 //!
 //! Thin: arguments become a [`cylwatch::run::Call`], results Python objects; all numbers are the library's. Tables come and go
-//! through Arrow's C interface (`arrow`), which every frame library speaks, so that none of them is a dependency. A run releases the
-//! interpreter, asks every thousand rows whether Ctrl-C has come, and lets no panic pass (`border`).
+//! through Arrow's C interface (`arrow`), which every frame library speaks, so that none of them is a dependency; a dict of arrays
+//! is a log, too (`columns`). A run releases the interpreter, asks now and then whether Ctrl-C has come, and lets no panic pass
+//! (`border`).
 mod arguments;
 mod arrow;
 mod border;
+mod columns;
 mod error;
 mod fleet;
 mod outcome;
@@ -27,7 +29,7 @@ fn monitor(
     log: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Outcome> {
-    Request::of_log("monitor", vessel, log, options)?.run(vessel.py(), cylwatch::run::monitor)
+    Request::new("monitor", Some(vessel), options)?.with_log(log)?.run(vessel.py(), cylwatch::run::monitor)
 }
 
 /// Estimates gas temperature, mass and leak rate from a log, as `cylwatch estimate` does.
@@ -38,7 +40,7 @@ fn estimate(
     log: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Outcome> {
-    Request::of_log("estimate", vessel, log, options)?.run(vessel.py(), cylwatch::run::estimate)
+    Request::new("estimate", Some(vessel), options)?.with_log(log)?.run(vessel.py(), cylwatch::run::estimate)
 }
 
 /// Simulates a vessel in a scenario, as `cylwatch simulate` does.
@@ -50,8 +52,40 @@ fn simulate(
     seed: u64,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Outcome> {
-    let request = Request::of_scenario(vessel, scenario, options)?.with("seed", Some(seed.to_string()));
-    request.run(vessel.py(), cylwatch::run::simulate)
+    let request = Request::new("simulate", Some(vessel), options)?.with_scenario(scenario)?;
+    request.with("seed", Some(seed.to_string())).run(vessel.py(), cylwatch::run::simulate)
+}
+
+/// Identifies a transfer function from one column of a log to another, as `cylwatch identify` does.
+#[pyfunction]
+#[pyo3(signature = (log, input, output, **options))]
+fn identify(
+    log: &Bound<'_, PyAny>,
+    input: String,
+    output: String,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Outcome> {
+    let request = Request::new("identify", None, options)?.with_log(log)?;
+    let request = request.with("input", Some(input)).with("output", Some(output));
+    request.run(log.py(), cylwatch::run::identify)
+}
+
+/// Fits physical parameters of a vessel to logs, as `cylwatch calibrate` does.
+#[pyfunction]
+#[pyo3(signature = (vessel, logs, **options))]
+fn calibrate(
+    vessel: &Bound<'_, PyAny>,
+    logs: &Bound<'_, PyAny>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Outcome> {
+    Request::of_logs(vessel, logs, options)?.run(vessel.py(), cylwatch::run::calibrate)
+}
+
+/// Finds where sensors should sit, as `cylwatch place` does.
+#[pyfunction]
+#[pyo3(signature = (vessel, **options))]
+fn place(vessel: &Bound<'_, PyAny>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Outcome> {
+    Request::new("place", Some(vessel), options)?.run(vessel.py(), cylwatch::run::place)
 }
 
 /// Properties of a gas at a state, as `cylwatch properties` prints them.
@@ -89,6 +123,9 @@ fn _cylwatch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(monitor, module)?)?;
     module.add_function(wrap_pyfunction!(estimate, module)?)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(identify, module)?)?;
+    module.add_function(wrap_pyfunction!(calibrate, module)?)?;
+    module.add_function(wrap_pyfunction!(place, module)?)?;
     module.add_function(wrap_pyfunction!(properties, module)?)?;
     Ok(())
 }

@@ -63,7 +63,19 @@ impl Outcome {
         Some(self.outcome.verdict).filter(|verdict| !verdict.is_empty())
     }
 
-    /// Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive.
+    /// The calibrated vessel as TOML, of `calibrate`; else None.
+    #[getter]
+    fn vessel(&self) -> Option<&str> {
+        Some(self.outcome.vessel.as_str()).filter(|text| !text.is_empty())
+    }
+
+    /// The fitted sensors as TOML, of `calibrate`; else None.
+    #[getter]
+    fn sensors(&self) -> Option<&str> {
+        Some(self.outcome.sensors.as_str()).filter(|text| !text.is_empty())
+    }
+
+    /// Exit code of the command: 0 done and no loss, 1 gas was lost, 3 inconclusive, or a search that was ended early.
     #[getter]
     fn exit_code(&self) -> u8 {
         self.outcome.exit_code

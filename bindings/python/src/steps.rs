@@ -45,7 +45,7 @@ impl Monitor {
     #[new]
     #[pyo3(signature = (vessel, **options))]
     fn new(vessel: &Bound<'_, PyAny>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let request = Request::of_steps("Monitor", vessel, options)?;
+        let request = Request::new("Monitor", Some(vessel), options)?;
         let steps = border::guarded(vessel.py(), || MonitorSteps::new(request.into_call()))?;
         Ok(Self(Mutex::new(steps)))
     }
@@ -102,7 +102,7 @@ impl Observer {
     #[new]
     #[pyo3(signature = (vessel, **options))]
     fn new(vessel: &Bound<'_, PyAny>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let request = Request::of_steps("Observer", vessel, options)?;
+        let request = Request::new("Observer", Some(vessel), options)?;
         let steps = border::guarded(vessel.py(), || ObserverSteps::new(request.into_call()))?;
         Ok(Self(Mutex::new(steps)))
     }

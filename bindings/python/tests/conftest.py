@@ -28,16 +28,24 @@ def program() -> Path:
 def command(tmp_path):
     """Runs the command in a folder of its own; hands out exit code and stderr."""
 
-    def run(*arguments):
-        done = subprocess.run([program(), *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True)
-        return done.returncode, done.stderr
+    def done(*arguments):
+        return subprocess.run([program(), *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True)
 
+    def run(*arguments):
+        ended = done(*arguments)
+        return ended.returncode, ended.stderr
+
+    run.output = lambda *arguments: done(*arguments).stdout
     return run
 
 
 def log_of(scenario: str, seed: int = 7) -> pd.DataFrame:
     """What the sensors of a simulated cylinder read."""
-    rows = pd.DataFrame.from_arrow(cw.simulate(VESSEL, scenario, seed=seed).rows)
+    return readings(pd.DataFrame.from_arrow(cw.simulate(VESSEL, scenario, seed=seed).rows))
+
+
+def readings(rows: pd.DataFrame) -> pd.DataFrame:
+    """A log of what the sensors of a simulation read."""
     names = {name: name.removeprefix("measured_") for name in rows if name.startswith("measured_")}
     return rows[["time_s", *names]].rename(columns=names)
 

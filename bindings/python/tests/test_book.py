@@ -11,7 +11,7 @@ def blocks(page):
 
 
 @pytest.mark.parametrize(
-    "page, count", [("book/src/python.md", 2), ("book/src/coming-from.md", 3), ("README.md", 1), ("book/src/fleet.md", 1)]
+    "page, count", [("book/src/python.md", 3), ("book/src/coming-from.md", 3), ("README.md", 1), ("book/src/fleet.md", 1)]
 )
 def test_the_blocks_of_a_page_run(page, count, leak, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

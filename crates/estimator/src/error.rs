@@ -4,6 +4,9 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EstimatorError {
+    /// The caller has given the work up.
+    #[error("given up by the caller")]
+    Abandoned,
     /// The thermal model refused.
     #[error(transparent)]
     Thermal(#[from] cylwatch_thermal::ThermalError),

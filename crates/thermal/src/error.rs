@@ -377,6 +377,12 @@ pub enum ThermalError {
         /// What the solver said.
         reason: String,
     },
+    /// The caller wanted the run to end.
+    #[error("stopped at {time_s:.3} s of the scenario")]
+    Stopped {
+        /// Time, s.
+        time_s: f64,
+    },
     /// Something else went wrong at a time of a run.
     #[error("at {time_s:.3} s of the scenario: {cause}")]
     AtTime {

@@ -83,6 +83,8 @@ pub(crate) struct CalibrateArguments {
 pub(crate) enum CalibrationFormat {
     /// Tables for people.
     Text,
+    /// A row for each parameter, in SI units; the tables go to stderr.
+    Csv,
     /// One JSON document with everything; the tables go to stderr.
     Json,
 }

@@ -16,8 +16,8 @@ impl Options {
         inputs.extend(arguments.sensors.sensors.as_deref());
         let vessel_file = document("-o", arguments.output.as_deref(), &inputs)?;
         let sensors_file = document("--sensors-out", arguments.sensors_out.as_deref(), &inputs)?;
-        if matches!(vessel_file, Some(Target::Stdout)) && arguments.format == CalibrationFormat::Json {
-            bail!("-o - and --format json both want stdout: name a file for the vessel");
+        if matches!(vessel_file, Some(Target::Stdout)) && arguments.format != CalibrationFormat::Text {
+            bail!("-o - and --format both want stdout: name a file for the vessel");
         }
         check_distinct(&[("-o", vessel_file.as_ref()), ("--sensors-out", sensors_file.as_ref())])?;
         let others: Vec<&Target> = vessel_file.iter().chain(&sensors_file).collect();

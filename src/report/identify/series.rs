@@ -1,6 +1,7 @@
 //! An identification as columns and as JSON.
+use super::summary::{Coefficient, coefficients};
 use super::{Part, Study};
-use crate::estimator::identify::{Residuals, published};
+use crate::estimator::identify::{Interval, Residuals, published};
 use crate::report::{Digits, Provenance, Table};
 use serde_json::{Value, json};
 
@@ -64,11 +65,19 @@ pub(crate) fn document(study: &Study, options: &Value, provenance: &Provenance) 
         "input": signal(&study.input),
         "output": signal(&study.output),
         "options": options,
+        "coefficients": coefficients(study).iter().map(coefficient).collect::<Vec<_>>(),
         "identified": study.identified,
         "published": comparable.then(published::model),
         "fitted": part(&study.fitted, &study.identified.residuals),
         "held_out": study.held_out.as_ref().and_then(|held| Some(part(held, &held.identified()?.residuals))),
     })
+}
+
+/// A number of the model; one that was not free has no interval.
+fn coefficient(of: &Coefficient) -> Value {
+    let Interval { value, sd, low, high } = of.interval;
+    let free = |number: f64| Some(number).filter(|_| sd != 0.0);
+    json!({ "name": of.name, "unit": of.unit, "value": value, "sd": free(sd), "low": free(low), "high": free(high) })
 }
 
 /// Data with the models that were judged on them; `residuals` are of the identified one.

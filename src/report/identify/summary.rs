@@ -12,7 +12,7 @@ pub(crate) fn summary(study: &Study) -> Report {
     let report = Report::new(study.title()).text(format!("{}\n{}", log(&study.fitted), study.method)).rows(
         "",
         &header,
-        parameters(study),
+        coefficients(study).iter().map(row).collect(),
     );
     merits(study, report).text(errors(&study.identified.residuals))
 }
@@ -23,31 +23,44 @@ fn log(part: &Part) -> String {
     format!("{}: {} rows in {} h", part.name, times.len(), number(length_s / 3600.0, 4))
 }
 
-/// Poles and gain, then the parameters themselves.
-fn parameters(study: &Study) -> Vec<Vec<String>> {
-    let (u, y) = (study.input.difference, study.output.difference);
-    let derived = &study.identified.derived;
-    let mut rows = Vec::new();
-    for (index, pole) in derived.poles.iter().enumerate() {
-        rows.extend(of_pole(pole, index, derived.poles.len()));
-    }
-    let unit = if u == y { "1".to_owned() } else { format!("{y}/{u}") };
-    rows.push(row("steady-state gain", &derived.gain, &unit));
-    for estimate in &study.identified.parameters {
-        let (name, unit) = name_and_unit(study, estimate.parameter);
-        rows.push(row(&name, &estimate.interval, &unit));
-    }
-    rows
+/// A number of the model with its name and unit.
+pub(super) struct Coefficient {
+    pub name: String,
+    pub interval: Interval,
+    pub unit: String,
 }
 
-fn of_pole(pole: &Pole, index: usize, count: usize) -> Vec<Vec<String>> {
-    let suffix = if count > 1 { format!(" {}", index + 1) } else { String::new() };
-    let mut rows = vec![row(&format!("pole{suffix}"), &pole.real_per_s, "1/s")];
-    if pole.imaginary_per_s.value != 0.0 {
-        rows.push(row(&format!("pole{suffix}, imaginary"), &pole.imaginary_per_s, "1/s"));
+impl Coefficient {
+    fn new(name: impl Into<String>, interval: Interval, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), interval, unit: unit.into() }
     }
-    rows.push(row(&format!("time constant{suffix}"), &pole.time_constant_s, "s"));
-    rows
+}
+
+/// Poles and gain, then the parameters themselves.
+pub(super) fn coefficients(study: &Study) -> Vec<Coefficient> {
+    let (u, y) = (study.input.difference, study.output.difference);
+    let derived = &study.identified.derived;
+    let mut found = Vec::new();
+    for (index, pole) in derived.poles.iter().enumerate() {
+        found.extend(of_pole(pole, index, derived.poles.len()));
+    }
+    let unit = if u == y { "1".to_owned() } else { format!("{y}/{u}") };
+    found.push(Coefficient::new("steady-state gain", derived.gain, unit));
+    found.extend(study.identified.parameters.iter().map(|estimate| {
+        let (name, unit) = name_and_unit(study, estimate.parameter);
+        Coefficient::new(name, estimate.interval, unit)
+    }));
+    found
+}
+
+fn of_pole(pole: &Pole, index: usize, count: usize) -> Vec<Coefficient> {
+    let suffix = if count > 1 { format!(" {}", index + 1) } else { String::new() };
+    let mut found = vec![Coefficient::new(format!("pole{suffix}"), pole.real_per_s, "1/s")];
+    if pole.imaginary_per_s.value != 0.0 {
+        found.push(Coefficient::new(format!("pole{suffix}, imaginary"), pole.imaginary_per_s, "1/s"));
+    }
+    found.push(Coefficient::new(format!("time constant{suffix}"), pole.time_constant_s, "s"));
+    found
 }
 
 /// Name of a parameter in `(b1 s + b0)/(s^n + ... + a0)`, with its unit.
@@ -72,14 +85,15 @@ fn name_and_unit(study: &Study, parameter: Parameter) -> (String, String) {
     }
 }
 
-fn row(name: &str, interval: &Interval, unit: &str) -> Vec<String> {
-    let mut cells = vec![name.to_owned()];
+fn row(coefficient: &Coefficient) -> Vec<String> {
+    let Coefficient { name, interval, unit } = coefficient;
+    let mut cells = vec![name.clone()];
     cells.push(number(interval.value, DIGITS));
     match interval.sd {
         0.0 => cells.extend(["".to_owned(), "".to_owned()]),
         _ => cells.extend([interval.low, interval.high].map(|edge| number(edge, DIGITS))),
     }
-    cells.push(unit.to_owned());
+    cells.push(unit.clone());
     cells
 }
 

@@ -1,6 +1,6 @@
 """cylwatch tells a leaking gas cylinder from a cold one.
 
-Logs come as tables of pandas (2.2 or later), Polars or pyarrow, or as paths; names of columns end in their units
+Logs come as tables of pandas (2.2 or later), Polars or pyarrow, as dicts of arrays, or as paths; names of columns end in their units
 (``time_s``, ``shoulder_degc``, ``pressure_bar``). Options are those of the command line: ``limit_bar=150`` is
 ``--limit-bar 150``. All numbers are those of the command.
 
@@ -18,9 +18,12 @@ from ._cylwatch import (
     Result,
     Rows,
     __version__,
+    calibrate,
     estimate,
     fleet,
+    identify,
     monitor,
+    place,
     properties,
     simulate,
 )
@@ -33,9 +36,12 @@ __all__ = [
     "Result",
     "Rows",
     "__version__",
+    "calibrate",
     "estimate",
     "fleet",
+    "identify",
     "monitor",
+    "place",
     "properties",
     "simulate",
 ]

@@ -16,11 +16,16 @@ class ArrowTable(Protocol):
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
 
+Log = ArrowTable | Mapping[str, npt.ArrayLike] | str | PathLike[str]
+"""A log: a table, a dict of columns (arrays of numpy of shape (rows,), or lists of numbers, texts or datetimes), or the path of a
+CSV or Parquet file."""
+
 Document = str | PathLike[str] | Mapping[str, Any]
 """Name of a built-in vessel or scenario, path of a TOML file, TOML as text, or the content of such a file as a dict."""
 
 Option = bool | int | float | str | datetime | PathLike[str] | Sequence[Any] | Mapping[str, Any] | None
-"""Value of an option: ``limit_bar=150`` is ``--limit-bar 150``, ``settled=True`` is ``--settled``, a list is the option several times."""
+"""Value of an option: ``limit_bar=150`` is ``--limit-bar 150``, ``settled=True`` is ``--settled``, a list is the option several times, and
+``{"wall-capacity": (1, 0.05)}`` is ``wall-capacity=1,0.05``."""
 
 class CylwatchError(ValueError):
     """What the program refuses, in its words."""
@@ -45,7 +50,7 @@ class Rows:
 
     def __len__(self) -> int: ...
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """A column, shape (rows,): float64, datetime64[ns] in UTC for ``time``, or objects for texts."""
+        """A column, shape (rows,): float64, int64 for counts, datetime64[ns] in UTC for ``time``, or objects for texts."""
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
     def __arrow_c_schema__(self) -> object: ...
@@ -71,7 +76,15 @@ class Result:
 
     @property
     def exit_code(self) -> int:
-        """Exit code of the command: 0 no loss, 1 gas was lost, 3 inconclusive."""
+        """Exit code of the command: 0 done and no loss, 1 gas was lost, 3 inconclusive, or a search that was ended early."""
+
+    @property
+    def vessel(self) -> str | None:
+        """Of ``calibrate``: the calibrated vessel as TOML, for ``vessel=`` of any call; else None."""
+
+    @property
+    def sensors(self) -> str | None:
+        """Of ``calibrate``: the fitted sensors as TOML, for ``sensors=`` of ``monitor`` and ``estimate`` on other rows; else None."""
 
     @property
     def cautions(self) -> list[str]:
@@ -89,7 +102,7 @@ class Result:
 
     def _repr_html_(self) -> str: ...
 
-def monitor(vessel: Document, log: ArrowTable | str | PathLike[str], **options: Option) -> Result:
+def monitor(vessel: Document, log: Log, **options: Option) -> Result:
     """Decides for every row of a log whether gas is being lost: ``cylwatch monitor``.
 
     log: shape (rows, columns) with ``time_s`` (or another unit) or ``time`` (datetimes), and readings such as ``shoulder_degc``,
@@ -137,7 +150,7 @@ def fleet(logs: str | PathLike[str], output: str | PathLike[str], **options: Opt
     ``rows=False``, ``threads``, ``go_on=False``, and those of ``monitor``; ``sensors``, ``commissioned``, ``learned_in`` as paths.
     """
 
-def estimate(vessel: Document, log: ArrowTable | str | PathLike[str], **options: Option) -> Result:
+def estimate(vessel: Document, log: Log, **options: Option) -> Result:
     """Estimates gas temperature, mass and leak rate with standard deviations: ``cylwatch estimate``.
 
     log as of ``monitor``. Options: those of the fill and the log, ``filter="ekf"``, ``smooth=False``, ``sensors``, ``learned_in``.
@@ -148,6 +161,43 @@ def simulate(vessel: Document, scenario: Document, seed: int = 0, **options: Opt
 
     The rows have temperatures in degC, pressure in bar, mass in kg, and the readings of the scenario's sensors with the errors that
     ``seed`` draws (``measured_<sensor>_<unit>``); they are a log for ``monitor`` and ``estimate``. Option: ``relative_tolerance=1e-6``.
+    """
+
+def identify(log: Log, input: str, output: str, **options: Option) -> Result:
+    """Identifies a transfer function from one column of a log to another: ``cylwatch identify``.
+
+    input, output: names of columns, with or without units; temperatures are in degC, pressures in bar, time in s. The rows, shape
+    (rows, 6 or 7), are time, input, output, model, error, from temperature to temperature the published model, and whether the row was
+    held out. ``summary["coefficients"]`` has poles, time constants, gain and coefficients, each with ``name``, ``value``, ``unit``,
+    ``sd`` and its 95 % interval ``low``, ``high``; ``summary["identified"]`` the model and its figures of merit.
+
+    Options: ``order=1``, ``zeros``, ``gain="free"``, ``validate=0.3`` or another log, ``method="output-error"``, ``offset=False``,
+    ``initial="estimated"``, ``dead_time_s``, ``input_sd_k``, ``output_sd_k``, ``second``, and those of the log.
+    """
+
+def calibrate(vessel: Document, logs: Log | Sequence[Log], **options: Option) -> Result:
+    """Fits physical parameters of a vessel to its logs: ``cylwatch calibrate``.
+
+    logs: a log, or a list of them, of the same vessel, with ``ambient_degc`` (the air) and the readings of the sensors. The rows, a
+    parameter each, have value, sd, the 95 % interval ``low``, ``high``, prior and start in the SI unit of the column ``unit``; "1" is a
+    factor on what the vessel said. ``vessel`` of the result is the calibrated vessel, ``sensors`` its sensors; ``summary`` has
+    covariance and residuals.
+
+    ``scenario`` says what the surroundings did instead of ``ambient_degc``: one for all logs, or a list with one for each, the log of
+    ``validate`` last; None is the log's own air. ``vessel_of`` is such a list of the vessels of logs that are not of the main one.
+    Other options: ``fit=["outside-film", "inside-film"]``, ``hold``, ``prior={"wall-capacity": (1, 0.05)}``, ``bounds``, ``start``,
+    ``profile``, ``validate=0.3`` or another log, ``film_w_m2_k``, ``wind_m_s``, ``sensors``, ``date``, and those of the fill and the log.
+    """
+
+def place(vessel: Document, **options: Option) -> Result:
+    """Finds where sensors should sit: ``cylwatch place``.
+
+    The rows, a judged layout each, have the number of sensors, the layout by the names of its sensors joined with " + ", its cost, and
+    the standard deviations and delays that it gives, with units. ``summary["best"]`` has the best layout of each number of sensors.
+
+    Options: ``sensors=4``, ``criterion="leak-rate"``, ``scenario="tunnel-winter"`` (a document, a list of them, or "none"),
+    ``candidates`` as path, text or dict, ``budget``, ``leak_g_h=10``, ``within_d=1``, ``sample_time_min=1``, ``fill_pressure_bar=200``,
+    ``method``, ``wall_nodes``, ``confirm=0``, ``seed=1``. ``time_limit_min`` ends the search with what it has, and exit code 3.
     """
 
 def properties(gas: str, **options: Option) -> dict[str, float | None]:

@@ -14,8 +14,8 @@ use std::ffi::CStr;
 /// Name of the capsule, by the interface.
 const STREAM: &CStr = c"arrow_array_stream";
 
-/// A table as a log: its numbers are copied once.
-pub(crate) fn log(table: &Bound<'_, PyAny>) -> PyResult<MemoryLog> {
+/// A table as a log of this name: its numbers are copied once.
+pub(crate) fn log(table: &Bound<'_, PyAny>, name: &str) -> PyResult<MemoryLog> {
     let capsule = table.call_method0("__arrow_c_stream__")?;
     let capsule = capsule.cast::<PyCapsule>()?;
     let pointer = capsule.pointer_checked(Some(STREAM))?.cast::<FFI_ArrowArrayStream>();
@@ -23,9 +23,9 @@ pub(crate) fn log(table: &Bound<'_, PyAny>) -> PyResult<MemoryLog> {
     // is released, as the interface asks of a consumer.
     #[allow(unsafe_code)]
     let stream = unsafe { FFI_ArrowArrayStream::from_raw(pointer.as_ptr()) };
-    table::read(stream).map_err(|error| {
-        refused(table.py(), &format!("{}: {error}: convert the table with pyarrow", table::FRAME))
-    })
+    let columns = table::read(stream)
+        .map_err(|error| refused(table.py(), &format!("{name}: {error}: convert the table with pyarrow")))?;
+    Ok(MemoryLog { name: name.to_owned(), columns })
 }
 
 /// A batch as the capsule that a frame takes.

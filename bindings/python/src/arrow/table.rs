@@ -8,14 +8,11 @@ use arrow_array::{
 };
 use arrow_schema::{ArrowError, DataType, Field, Schema, TimeUnit};
 use cylwatch::report::{Table, Values};
-use cylwatch::run::{Cells, MemoryLog};
+use cylwatch::run::Cells;
 use std::sync::Arc;
 
-/// What messages call a table.
-pub(crate) const FRAME: &str = "<frame>";
-
-/// A stream as a log: its numbers are copied once.
-pub(crate) fn read(stream: FFI_ArrowArrayStream) -> Result<MemoryLog, ArrowError> {
+/// A stream as columns of a log: its numbers are copied once.
+pub(crate) fn read(stream: FFI_ArrowArrayStream) -> Result<Vec<(String, Cells)>, ArrowError> {
     let reader = RecordBatchStreamReader::try_new(stream)?;
     let schema = reader.schema();
     let mut columns: Vec<(String, Cells)> =
@@ -25,7 +22,7 @@ pub(crate) fn read(stream: FFI_ArrowArrayStream) -> Result<MemoryLog, ArrowError
             append(array, cells)?;
         }
     }
-    Ok(MemoryLog { name: FRAME.to_owned(), columns })
+    Ok(columns)
 }
 
 /// A column of a type, without cells.

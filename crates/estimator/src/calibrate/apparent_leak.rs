@@ -130,7 +130,8 @@ fn of_leak(
     let neighbours = Neighbours { below: leaking(0.5 * trial_kg_s), above: leaking(1.5 * trial_kg_s) };
     let (_, here) = leaking(trial_kg_s);
     let (_, courses) =
-        simulate_with_neighbours(&vessel, &here, &[neighbours], &settings(fit)).map_err(with)?;
+        simulate_with_neighbours(&vessel, &here, &[neighbours], &settings(fit), &mut |_| fit.goes_on())
+            .map_err(with)?;
     let readings = |course| fit.readings(case, &values, course);
     let [below, above] = &courses[0];
     let (below, above) = (DVector::from_vec(readings(below)?), DVector::from_vec(readings(above)?));

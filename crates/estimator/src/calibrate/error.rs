@@ -253,6 +253,9 @@ pub enum CalibrateError {
         /// What the simulation says.
         source: Box<crate::EstimatorError>,
     },
+    /// The caller wanted the calibration to end.
+    #[error("the calibration was stopped")]
+    Stopped,
     /// A part to hold out that leaves nothing to fit or to score.
     #[error("holding out {what} leaves nothing to {purpose}: hold out another part")]
     HoldOut {

@@ -1,6 +1,8 @@
 //! The readings to be fitted, and the model's readings for given parameters.
-use cylwatch_thermal::simulate::simulate;
+use cylwatch_thermal::simulate::simulate_while;
 use cylwatch_thermal::trajectory::Trajectory;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::apply::Setup;
 use super::experiment::{Column, check_excitation};
@@ -53,6 +55,8 @@ pub(super) struct Fit {
     pub specs: Vec<ParameterSpec>,
     pub settings: CalibrationSettings,
     pub cases: Vec<Case>,
+    /// Set it, and every simulation ends.
+    pub stop: Arc<AtomicBool>,
 }
 
 /// The model's readings for some parameters.
@@ -94,7 +98,26 @@ impl Fit {
         let cases: Vec<Case> = (0..calibration.experiments.len())
             .filter_map(|index| Case::new(calibration, index, selection).transpose())
             .collect::<Result<_, _>>()?;
-        Ok(Self { specs: calibration.parameters.clone(), settings: calibration.settings, cases })
+        Ok(Self {
+            specs: calibration.parameters.clone(),
+            settings: calibration.settings,
+            cases,
+            stop: Arc::default(),
+        })
+    }
+
+    /// The same, ended when `stop` is set.
+    pub(super) fn stopped_by(self, stop: &Arc<AtomicBool>) -> Self {
+        Self { stop: stop.clone(), ..self }
+    }
+
+    pub(super) fn goes_on(&self) -> bool {
+        !self.stop.load(Ordering::Relaxed)
+    }
+
+    /// What a stop made of a search is no result, and no error of the logs.
+    pub(super) fn unless_stopped<T>(&self, found: Result<T, CalibrateError>) -> Result<T, CalibrateError> {
+        if self.goes_on() { found } else { Err(CalibrateError::Stopped) }
     }
 
     /// Number of readings.
@@ -131,7 +154,9 @@ impl Fit {
     pub(super) fn course(&self, case: &Case, values: &[f64]) -> Result<Trajectory, CalibrateError> {
         let run = || -> Result<Trajectory, EstimatorError> {
             let setup = case.base.with(&self.specs, values, case.experiment)?;
-            Ok(simulate(&setup.vessel, &setup.scenario, &self.settings.simulation, &mut |_| {})?)
+            Ok(simulate_while(&setup.vessel, &setup.scenario, &self.settings.simulation, &mut |_| {
+                self.goes_on()
+            })?)
         };
         run().map_err(|source| case.cannot_simulate(source))
     }

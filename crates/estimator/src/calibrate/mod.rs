@@ -55,6 +55,8 @@ pub use solve::SearchStep;
 pub use validation::{ChannelScore, HoldOut, Validation};
 
 use cylwatch_thermal::vessel::Vessel;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// What is to be calibrated, from what.
 #[derive(Clone, Debug)]
@@ -70,13 +72,18 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// [`Calibration::run`], telling each step of the search to `watch`.
+    /// [`Calibration::run`], telling each step of the search to `watch`, until `stop` is set. What is computed of the result later
+    /// ends with `stop`, too.
     ///
     /// # Errors
-    /// Those of [`Calibration::run`].
-    pub fn run_watched(&self, watch: &mut dyn FnMut(SearchStep)) -> Result<Calibrated, CalibrateError> {
-        let fit = fit::Fit::new(self, &fit::Selection::Everything)?;
-        calibrated::calibrate(&fit, watch)
+    /// Those of [`Calibration::run`]; [`CalibrateError::Stopped`].
+    pub fn run_watched(
+        &self,
+        watch: &mut dyn FnMut(SearchStep),
+        stop: &Arc<AtomicBool>,
+    ) -> Result<Calibrated, CalibrateError> {
+        let fit = fit::Fit::new(self, &fit::Selection::Everything)?.stopped_by(stop);
+        fit.unless_stopped(calibrated::calibrate(&fit, watch))
     }
 
     /// Fits the parameters to all experiments.
@@ -84,6 +91,6 @@ impl Calibration {
     /// # Errors
     /// See [`CalibrateError`]: a log that cannot be used, a parameter that it does not determine or that runs to a bound.
     pub fn run(&self) -> Result<Calibrated, CalibrateError> {
-        self.run_watched(&mut |_| ())
+        self.run_watched(&mut |_| (), &Arc::default())
     }
 }

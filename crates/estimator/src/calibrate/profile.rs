@@ -32,7 +32,7 @@ impl Calibrated {
     /// Profile of a parameter by its place in the list; each point is a calibration of all others.
     ///
     /// # Errors
-    /// [`CalibrateError::ParameterUnknown`], or that of a search.
+    /// [`CalibrateError::ParameterUnknown`], that of a search, or [`CalibrateError::Stopped`].
     pub fn profile(&self, parameter: usize) -> Result<Profile, CalibrateError> {
         let parameters = self.fit.specs.len();
         if parameter >= parameters || self.solution.held[parameter] {
@@ -100,7 +100,7 @@ impl Calibrated {
         held[parameter] = true;
         let mut start = self.conditional_start(parameter, z);
         start[parameter] = z;
-        Ok(search(&self.fit, start, &held)?.cost - self.solution.cost)
+        Ok(self.fit.unless_stopped(search(&self.fit, start, &held))?.cost - self.solution.cost)
     }
 
     /// The others moved along with the parameter as their covariance says.

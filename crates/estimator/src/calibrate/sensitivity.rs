@@ -121,7 +121,10 @@ impl Task<'_> {
                 })
                 .collect::<Result<_, EstimatorError>>()?;
             let Setup { vessel, scenario, .. } = setup(z)?;
-            Ok(simulate_with_neighbours(&vessel, &scenario, &neighbours, &settings(fit))?.1)
+            Ok(simulate_with_neighbours(&vessel, &scenario, &neighbours, &settings(fit), &mut |_| {
+                fit.goes_on()
+            })?
+            .1)
         };
         let values = fit.values(z);
         let courses = run().map_err(failed)?;

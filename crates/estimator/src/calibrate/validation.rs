@@ -3,6 +3,8 @@ use super::calibrated::calibrate;
 use super::fit::{Fit, Selection};
 use super::residuals::channel_residuals;
 use super::{CalibrateError, Calibrated, Calibration, ParameterSpec, SearchStep};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// What is held out of the fit and scored afterwards.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,26 +64,27 @@ impl Calibration {
     /// # Errors
     /// [`CalibrateError::HoldOut`] if one of the parts is empty, and as [`Calibration::run`].
     pub fn validate(&self, hold_out: &HoldOut) -> Result<Validation, CalibrateError> {
-        self.validate_watched(hold_out, &mut |_| ())
+        self.validate_watched(hold_out, &mut |_| (), &Arc::default())
     }
 
-    /// [`Calibration::validate`], telling each step of the search to `watch`.
+    /// [`Calibration::validate`], watched and stopped as by [`Calibration::run_watched`].
     ///
     /// # Errors
-    /// Those of [`Calibration::validate`].
+    /// Those of [`Calibration::validate`]; [`CalibrateError::Stopped`].
     pub fn validate_watched(
         &self,
         hold_out: &HoldOut,
         watch: &mut dyn FnMut(SearchStep),
+        stop: &Arc<AtomicBool>,
     ) -> Result<Validation, CalibrateError> {
         let (fitted, scored) = hold_out.selections();
-        let fit = self.part(hold_out, &fitted, "fit")?;
-        let calibrated = calibrate(&fit, watch)?;
+        let fit = self.part(hold_out, &fitted, "fit")?.stopped_by(stop);
+        let calibrated = fit.unless_stopped(calibrate(&fit, watch))?;
         // Scoring needs readings, not as many as there are parameters or any excitation.
-        let rest = self.part(hold_out, &scored, "score")?;
+        let rest = self.part(hold_out, &scored, "score")?.stopped_by(stop);
         let start: Vec<f64> = rest.specs.iter().map(start_coordinate).collect();
-        let before = channel_residuals(&rest, &rest.evaluate(&start)?);
-        let after = channel_residuals(&rest, &rest.evaluate(&calibrated.solution.z)?);
+        let residuals = |z: &[f64]| Ok(channel_residuals(&rest, &rest.unless_stopped(rest.evaluate(z))?));
+        let (before, after) = (residuals(&start)?, residuals(&calibrated.solution.z)?);
         let sigmas = rest.cases.iter().flat_map(|case| &case.columns).map(|column| column.sigma);
         let scores = before
             .into_iter()

@@ -165,6 +165,9 @@ pub enum IdentifyError {
         "the stated noise variances leave nothing of the data's own variation: state smaller ones, or excite the input more"
     )]
     VarianceTooLarge,
+    /// The caller wanted the identification to end.
+    #[error("the identification was stopped")]
+    Stopped,
 }
 
 fn dead_time_remedy(dead_time_s: &f64) -> &'static str {

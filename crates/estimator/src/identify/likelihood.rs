@@ -71,6 +71,7 @@ impl Likelihood<'_> {
         let mut here = self.innovations(&theta).ok_or(IdentifyError::VarianceTooLarge)?;
         let mut size = f64::INFINITY;
         for iterations in 1..=self.search.settings.iterations {
+            self.search.check_going()?;
             let (gradient, information) = self.derivatives(&theta, &free, &here)?;
             let step = solve(&information, &(-&gradient)).ok_or_else(|| self.undetermined(&theta))?;
             let mut full = DVector::zeros(theta.len());
@@ -113,6 +114,7 @@ impl Likelihood<'_> {
     ) -> Result<(DVector<f64>, DMatrix<f64>), IdentifyError> {
         let mut slopes = Vec::with_capacity(free.len());
         for &i in free {
+            self.search.check_going()?;
             let difference = DIFFERENCE * theta[i].abs().max(0.1);
             let at = |shift: f64| {
                 let mut shifted = theta.to_vec();

@@ -48,7 +48,7 @@ pub use error::IdentifyError;
 pub use identified::{Caution, Derived, Estimate, Identified, Interval, Pole};
 pub use method::{ErrorModel, InputModel, Method, Settings, StartMethod};
 pub use model::Model;
-pub use run::identify;
+pub use run::{identify, identify_until};
 pub(crate) use statistics::fit_percent;
 pub use statistics::{Residuals, Statistics};
 pub use structure::{DeadTime, Gain, InitialState, Parameter, Structure};

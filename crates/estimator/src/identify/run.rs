@@ -1,4 +1,5 @@
 //! From data to a model: start, iterate, judge.
+use std::sync::atomic::AtomicBool;
 
 use super::checks::{check_derived, check_direction, check_parameters, check_poles};
 use super::compensation::Variances;
@@ -30,6 +31,20 @@ pub fn identify(
     method: &Method,
     settings: &Settings,
 ) -> Result<Identified, IdentifyError> {
+    identify_until(data, structure, method, settings, &AtomicBool::new(false))
+}
+
+/// [`identify`] until `stop` is set, which each iteration looks at.
+///
+/// # Errors
+/// Those of [`identify`]; [`IdentifyError::Stopped`].
+pub fn identify_until(
+    data: &Data,
+    structure: &Structure,
+    method: &Method,
+    settings: &Settings,
+    stop: &AtomicBool,
+) -> Result<Identified, IdentifyError> {
     structure.validate()?;
     settings.validate()?;
     method.validate()?;
@@ -38,7 +53,7 @@ pub fn identify(
     let mut problem = Problem::new(data, method.second(), settings.longest_gap_s, parameters)?;
     let start = first_model(&mut problem, structure)?;
     let parametrisation = Parametrisation::new(structure, &problem.units);
-    let search = Search { problem: &problem, parametrisation: &parametrisation, settings };
+    let search = Search { problem: &problem, parametrisation: &parametrisation, settings, stop };
     let found = estimate(&search, start.theta, method).and_then(|found| {
         check_poles(&problem, &parametrisation.expand(&found.solution.theta))?;
         check_parameters(
@@ -49,6 +64,7 @@ pub fn identify(
         )?;
         Ok(found)
     });
+    search.check_going()?;
     // A right direction leaves errors that do not foretell the input.
     let (sse, suspect) = match &found {
         Ok(found) => (found.solution.equations.sse, feedback(&found.residuals).is_some()),

@@ -2,6 +2,7 @@
 //!
 //! Source: Marquardt 1963; Ljung 1999 (section 10.2).
 use nalgebra::DVector;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::checks::check_poles;
 use super::equations::{Equations, Scheme};
@@ -42,11 +43,18 @@ pub(super) struct Search<'a> {
     pub problem: &'a Problem,
     pub parametrisation: &'a Parametrisation,
     pub settings: &'a Settings,
+    /// Set it to end the search.
+    pub stop: &'a AtomicBool,
 }
 
 impl Search<'_> {
     fn at(&self, theta: &[f64], scheme: Scheme) -> Equations {
         Equations::new(self.problem, self.parametrisation, theta, scheme)
+    }
+
+    /// Whether the search may go on.
+    pub(super) fn check_going(&self) -> Result<(), IdentifyError> {
+        if self.stop.load(Ordering::Relaxed) { Err(IdentifyError::Stopped) } else { Ok(()) }
     }
 
     fn stable(&self, theta: &[f64]) -> bool {
@@ -91,6 +99,7 @@ impl Search<'_> {
         let (mut theta, mut here) = (start.clone(), self.at(&start, scheme));
         let (mut damping, mut last_step) = (Damping::first(), f64::INFINITY);
         for iterations in 1..=self.settings.iterations {
+            self.check_going()?;
             let mut bounded = here.clone();
             self.hold_at_bound(&theta, &mut bounded);
             let Some(step) = damping.step(&bounded.matrix, &bounded.rhs) else {
@@ -133,6 +142,7 @@ impl Search<'_> {
         let mut theta = start;
         let mut last = f64::INFINITY;
         for iterations in 1..=self.settings.iterations {
+            self.check_going()?;
             let mut equations = self.at(&theta, scheme);
             self.hold_at_bound(&theta, &mut equations);
             let Some(step) = solve(&equations.matrix, &equations.rhs) else { break };

@@ -114,23 +114,41 @@ pub fn simulate(
     settings: &SimulationSettings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Trajectory, ThermalError> {
-    Ok(run(vessel, scenario, &[], settings, progress)?.0)
+    simulate_while(vessel, scenario, settings, &mut |done| {
+        progress(done);
+        true
+    })
+}
+
+/// [`simulate`] as long as it may go on: `going` is asked after each step of the solver, with the fraction that is done.
+///
+/// # Errors
+/// As [`simulate`]; [`ThermalError::Stopped`].
+pub fn simulate_while(
+    vessel: &Vessel,
+    scenario: &Scenario,
+    settings: &SimulationSettings,
+    going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Trajectory, ThermalError> {
+    Ok(run(vessel, scenario, &[], settings, going)?.0)
 }
 
 /// A run with its neighbours to first order, below and above, for sensitivities: half of their difference is the
 /// derivative times the half distance of the parameter. Their events, ledger and statistics are those of the run itself.
 ///
-/// Derivatives are as precise as the run's tolerance times some hundred, and as the square of the distance.
+/// Derivatives are as precise as the run's tolerance times some hundred, and as the square of the distance. `going` is asked as by
+/// [`simulate_while`].
 ///
 /// # Errors
-/// As [`simulate`]; a neighbour whose mesh or number of gas cells differs.
+/// As [`simulate_while`]; a neighbour whose mesh or number of gas cells differs.
 pub fn simulate_with_neighbours(
     vessel: &Vessel,
     scenario: &Scenario,
     neighbours: &[Neighbours],
     settings: &SimulationSettings,
+    going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Trajectory, Vec<[Trajectory; 2]>), ThermalError> {
-    run(vessel, scenario, neighbours, settings, &mut |_| {})
+    run(vessel, scenario, neighbours, settings, going)
 }
 
 fn run(
@@ -138,7 +156,7 @@ fn run(
     scenario: &Scenario,
     neighbours: &[Neighbours],
     settings: &SimulationSettings,
-    progress: &mut dyn FnMut(f64),
+    going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Trajectory, Vec<[Trajectory; 2]>), ThermalError> {
     settings.validate()?;
     settings.admit(vessel, scenario)?;
@@ -167,7 +185,7 @@ fn run(
         segments: 0,
         x: x0.clone(),
         tangents,
-        progress,
+        going,
     };
     let statistics = with_stepper(&model, &drive, x0.clone(), absolute, settings, |stepper| {
         run.all_segments(stepper, &edges)?;
@@ -242,7 +260,8 @@ struct Run<'a> {
     x: Vec<f64>,
     /// Neighbours, if there are any.
     tangents: Option<Tangents>,
-    progress: &'a mut dyn FnMut(f64),
+    /// Whether it may go on.
+    going: &'a mut dyn FnMut(f64) -> bool,
 }
 
 impl Run<'_> {
@@ -261,7 +280,6 @@ impl Run<'_> {
             }
             self.segment(stepper, to)?;
             from = to;
-            (self.progress)(to / self.scenario.duration_s);
         }
         self.sample_until(stepper, self.scenario.duration_s, true)
     }
@@ -302,6 +320,9 @@ impl Run<'_> {
             stepper.state(&mut self.x);
             let now = if step == Step::Stop { to } else { stepper.time_s() };
             self.check(now, stepper.statistics().steps)?;
+            if !(self.going)(now / self.scenario.duration_s) {
+                return Err(ThermalError::Stopped { time_s: now });
+            }
             if let Some(at) = self.locate_events(stepper, before, now)? {
                 self.advance_tangents(stepper, before, at)?;
                 self.sample_until(stepper, at, false)?;

@@ -1,7 +1,8 @@
 //! The paper's scenarios on its cylinder.
+use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::scenario;
 use cylwatch_thermal::sensor::ParameterKind;
-use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate};
+use cylwatch_thermal::simulate::{Method, SimulationSettings, simulate, simulate_while};
 use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::vessel::{self, GasResolution, Stratification};
 
@@ -139,4 +140,25 @@ fn stacked_gas_lags_like_the_single_node_and_is_warmer_at_the_top() {
     let spread = gas[17] - gas[2];
     println!("top minus bottom, 10 to 90 % of the height, at 10 min: {spread:.2} K");
     assert!((0.3..2.5).contains(&spread), "{spread}");
+}
+
+#[test]
+fn a_run_that_may_not_go_on_ends_after_the_step_that_it_is_asked_at() {
+    let vessel = vessel::presets::load("nitrogen-20l-paper").unwrap();
+    let scenario = scenario::presets::load("tunnel-winter").unwrap();
+    let settings = SimulationSettings::default();
+    let mut told = Vec::new();
+    let stopped = simulate_while(&vessel, &scenario, &settings, &mut |done| {
+        told.push(done);
+        done < 0.5
+    });
+    let last = told.last().unwrap();
+    assert!(told.len() > 10 && told.is_sorted() && (0.5..1.0).contains(last), "{told:?}");
+    match stopped.unwrap_err() {
+        ThermalError::Stopped { time_s } => assert_eq!(time_s / scenario.duration_s, *last),
+        other => panic!("{other}"),
+    }
+    let whole = simulate(&vessel, &scenario, &settings, &mut |_| {}).unwrap();
+    let going = simulate_while(&vessel, &scenario, &settings, &mut |_| true).unwrap();
+    assert_eq!(whole.pressure_pa, going.pressure_pa);
 }

@@ -86,7 +86,8 @@ fn compare(vessel: &Vessel, scenario: &Scenario, tolerance: f64, names: &[&str])
             above: changed(vessel, scenario, *change, HALF),
         })
         .collect();
-    let (_, found) = simulate_with_neighbours(vessel, scenario, &neighbours, &settings(tolerance)).unwrap();
+    let (_, found) =
+        simulate_with_neighbours(vessel, scenario, &neighbours, &settings(tolerance), &mut |_| true).unwrap();
     let mut worst = 0.0_f64;
     for ((name, change), [below, above]) in changes.into_iter().zip(&found) {
         let tangent = slopes(below, above, HALF);
@@ -120,7 +121,8 @@ fn wall_without_gas_contact_has_the_derivative_of_its_exponential() {
         below: changed(&vessel, &scenario, CHANGES[0].1, -HALF),
         above: changed(&vessel, &scenario, CHANGES[0].1, HALF),
     };
-    let (run, found) = simulate_with_neighbours(&vessel, &scenario, &[neighbours], &settings(1e-9)).unwrap();
+    let (run, found) =
+        simulate_with_neighbours(&vessel, &scenario, &[neighbours], &settings(1e-9), &mut |_| true).unwrap();
     let [below, above] = &found[0];
     for (k, (t, wall)) in run.time_s.iter().zip(&run.wall_mean_k).enumerate().skip(1) {
         // The wall's own resistance is a share s of the film's: d ln(conductance) / d ln(film) = 1 - s.
@@ -145,7 +147,8 @@ fn adiabatic_blowdown_has_the_derivative_of_the_closed_form() {
         below: changed(&vessel, &scenario, CHANGES[5].1, -HALF),
         above: changed(&vessel, &scenario, CHANGES[5].1, HALF),
     };
-    let (run, found) = simulate_with_neighbours(&vessel, &scenario, &[neighbours], &settings(1e-8)).unwrap();
+    let (run, found) =
+        simulate_with_neighbours(&vessel, &scenario, &[neighbours], &settings(1e-8), &mut |_| true).unwrap();
     let [below, above] = &found[0];
     for (k, gas) in run.gas_mean_k.iter().enumerate() {
         let base = (gas / 288.15).powf(-0.5);
@@ -200,6 +203,7 @@ fn neighbour_of_another_shape_is_refused() {
     other.geometry.cylinder_cells += 1;
     let neighbours =
         Neighbours { below: (vessel.clone(), scenario.clone()), above: (other, scenario.clone()) };
-    let error = simulate_with_neighbours(&vessel, &scenario, &[neighbours], &settings(1e-6)).unwrap_err();
+    let error = simulate_with_neighbours(&vessel, &scenario, &[neighbours], &settings(1e-6), &mut |_| true)
+        .unwrap_err();
     assert!(error.to_string().contains("neighbour 0"), "{error}");
 }

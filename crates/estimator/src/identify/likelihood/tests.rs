@@ -1,5 +1,6 @@
 //! The filter's likelihood against the joint Gaussian density of all readings, written out densely.
 use approx::assert_relative_eq;
+use std::sync::atomic::AtomicBool;
 
 use super::*;
 use crate::identify::{Data, Settings, Structure};
@@ -53,7 +54,7 @@ fn dense_cost(likelihood: &Likelihood<'_>, k: &Coefficients, intensity: f64, fir
 
 #[test]
 fn the_filters_likelihood_is_the_joint_gaussian_density() {
-    let settings = Settings::default();
+    let (settings, stop) = (Settings::default(), AtomicBool::new(false));
     for hold in [Hold::First, Hold::Zero] {
         for (input_model, dead_time_s) in [
             (InputModel::RandomWalk, 0.0),
@@ -70,7 +71,12 @@ fn the_filters_likelihood_is_the_joint_gaussian_density() {
                 .with_initial(InitialState::Zero)
                 .with_dead_time(crate::identify::DeadTime::Fixed(dead_time_s));
             let parametrisation = Parametrisation::new(&structure, &problem.units);
-            let search = Search { problem: &problem, parametrisation: &parametrisation, settings: &settings };
+            let search = Search {
+                problem: &problem,
+                parametrisation: &parametrisation,
+                settings: &settings,
+                stop: &stop,
+            };
             let variances = Variances { input: 0.05, output: 0.02 };
             let likelihood = Likelihood { search, variances, input_model };
             let cost_at = |theta: &[f64]| {

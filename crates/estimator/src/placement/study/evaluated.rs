@@ -52,11 +52,7 @@ impl Placement {
             cost: layout.iter().map(|&index| self.candidates.list[index].cost).sum(),
             steady: self.steady.accuracy(layout)?,
             delay_s: self.steady.delay_s(layout, self.settings.leak_kg_s)?,
-            scenarios: self
-                .scenarios
-                .iter()
-                .map(|scenario| scenario.accuracy(layout))
-                .collect::<Result<_, _>>()?,
+            scenarios: self.in_scenarios(layout)?,
         })
     }
 

@@ -22,7 +22,8 @@ mod position;
 mod published;
 
 use std::ops::RangeInclusive;
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +32,7 @@ use super::candidate::Candidates;
 use super::certificate::{CertificateSettings, certify};
 use super::constraints::Constraints;
 use super::criterion::Criterion;
-use super::scenario::ScenarioAnalysis;
+use super::scenario::{ScenarioAccuracy, ScenarioAnalysis};
 use super::search::{Layout, Method, SearchControl, search};
 use super::steady::{SteadyAnalysis, SteadySettings};
 use crate::EstimatorError;
@@ -132,6 +133,7 @@ pub struct Placement {
     scenarios: Vec<ScenarioAnalysis>,
     vessel: Vessel,
     settings: StudySettings,
+    abandoned: Arc<AtomicBool>,
 }
 
 impl Placement {
@@ -156,7 +158,22 @@ impl Placement {
             scenarios,
             vessel: vessel.clone(),
             settings: settings.clone(),
+            abandoned: Arc::default(),
         })
+    }
+
+    /// The same, given up when `abandoned` is set: [`SearchControl::stop`] keeps and judges what there is, this drops it.
+    #[must_use]
+    pub fn abandoned_by(self, abandoned: &Arc<AtomicBool>) -> Self {
+        Self { abandoned: abandoned.clone(), ..self }
+    }
+
+    /// Accuracy of a layout in each scenario.
+    fn in_scenarios(&self, layout: &[usize]) -> Result<Vec<ScenarioAccuracy>, EstimatorError> {
+        if self.abandoned.load(Ordering::Relaxed) {
+            return Err(EstimatorError::Abandoned);
+        }
+        self.scenarios.iter().map(|scenario| scenario.accuracy(layout)).collect()
     }
 
     /// The candidates.

@@ -1,11 +1,13 @@
 //! Several logs, filling pressures and vessels at once, held-out readings, profiles.
 use cylwatch_estimator::calibrate::{
-    Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, ParameterSpec,
+    CalibrateError, Calibration, CalibrationSettings, Experiment, HoldOut, ParameterKind, ParameterSpec,
 };
 use cylwatch_estimator::sensor::{SensorSuite, sample};
 use cylwatch_thermal::scenario::{OutsideFilm, Scenario};
 use cylwatch_thermal::vessel::Fill;
 use cylwatch_thermal::vessel::{self, Vessel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::study::{Case, known, preset, run};
 
@@ -156,8 +158,29 @@ fn a_watched_search_tells_its_steps_down_to_the_minimum() {
     calibration.experiments.truncate(1);
     calibration.parameters.truncate(2);
     let mut steps = Vec::new();
-    let calibrated = calibration.run_watched(&mut |step| steps.push(step)).unwrap();
+    let calibrated = calibration.run_watched(&mut |step| steps.push(step), &Arc::default()).unwrap();
     assert_eq!(steps.len(), calibrated.iterations);
     assert!(steps.iter().enumerate().all(|(k, step)| step.number == k + 1));
     assert!(steps[0].distance_sd > 1.0 && steps.last().unwrap().distance_sd < 0.3, "{steps:?}");
+}
+
+#[test]
+fn a_search_that_is_stopped_ends_at_once_and_so_does_what_is_computed_of_its_result() {
+    let mut calibration = two_vessels();
+    calibration.experiments.truncate(1);
+    calibration.parameters.truncate(2);
+    let stop = Arc::new(AtomicBool::new(false));
+    let mut steps = 0;
+    let mut watch = |_| {
+        steps += 1;
+        stop.store(true, Ordering::Relaxed);
+    };
+    let stopped = calibration.run_watched(&mut watch, &stop).unwrap_err();
+    assert!(matches!(stopped, CalibrateError::Stopped) && steps == 1, "{stopped}, {steps} steps");
+    let later = Arc::default();
+    let calibrated = calibration.run_watched(&mut |_| (), &later).unwrap();
+    assert!(calibrated.mesh_shift_sd().is_some());
+    later.store(true, Ordering::Relaxed);
+    assert!(matches!(calibrated.profile(0), Err(CalibrateError::Stopped)));
+    assert_eq!(calibrated.mesh_shift_sd(), None);
 }
