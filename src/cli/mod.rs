@@ -50,6 +50,7 @@ pub(crate) use host::Host;
 pub use host::Outcome;
 use message::Messages;
 pub(crate) use monitor::Steps as MonitorStepper;
+pub use monitor::{RowsWanted, Told};
 use std::process::ExitCode;
 pub use steps::StepTime;
 

@@ -28,7 +28,7 @@ mod steps;
 
 pub use crate::log::{Cells, MemoryLog};
 pub use error::RunError;
-pub use steps::{MonitorSteps, ObserverSteps, StepTime};
+pub use steps::{MonitorSteps, ObserverSteps, RowsWanted, StepTime, Told};
 
 pub use crate::cli::Outcome;
 use crate::cli::{Host, called, properties_of};
