@@ -74,12 +74,14 @@ class Watch:
 
     def table(self, frames: Iterable[Any]) -> pa.Table:
         """Frames of pandas as one table; where a time is missing pandas has made numbers with a fraction of all."""
-        types = {self.time: pa.int64()} if self.time == TIME else {}
-        frames = [frame.drop(columns=CYLINDER) for frame in frames]
-        return pa.concat_tables(
-            pa.table({name: pa.array(frame[name].to_numpy(), types.get(name), from_pandas=name in types) for name in frame})
-            for frame in frames
-        )
+
+        def array(name: str, cells: Any) -> pa.Array:
+            if name == TIME:
+                return pa.array(cells.to_numpy(), pa.int64(), from_pandas=True)
+            return pa.array(cells.to_numpy(), from_pandas=False)
+
+        of = [{name: array(name, cells) for name, cells in frame.items() if name != CYLINDER} for frame in frames]
+        return pa.concat_tables(map(pa.table, of))
 
     def structs(self, rows: Any) -> pa.Array:
         """Rows as structs, times in microseconds."""
@@ -111,7 +113,7 @@ class Watch:
         return pa.Table.from_arrays(arrays, schema=schema)
 
 
-@functools.lru_cache(maxsize=1024)
+@functools.lru_cache(maxsize=256)
 def _made(document: bytes, options: bytes) -> tuple[Monitor, bytes]:
     """A monitor to restore states into, and the state in which nothing has come. A worker keeps them from one micro-batch to the next."""
     monitor = Monitor(pickle.loads(document), **pickle.loads(options))
