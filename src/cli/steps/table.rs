@@ -13,6 +13,9 @@ pub(in crate::cli) struct TableRows<'a> {
     at: usize,
 }
 
+/// Time and readings of a row.
+type TableRow<'r, 'a> = (StepTime, &'r [(&'a str, f64)]);
+
 /// Times of a table.
 enum Times<'a> {
     Numbers(&'a [f64], &'static Unit),
@@ -83,7 +86,7 @@ impl<'a> TableRows<'a> {
     ///
     /// # Errors
     /// It has no time.
-    pub(in crate::cli) fn next(&mut self) -> anyhow::Result<Option<(StepTime, &[(&'a str, f64)])>> {
+    pub(in crate::cli) fn next(&mut self) -> anyhow::Result<Option<TableRow<'_, 'a>>> {
         let at = self.at;
         if at == self.len() {
             return Ok(None);
