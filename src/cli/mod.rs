@@ -52,6 +52,7 @@ pub use host::Outcome;
 pub(crate) use host::{Host, Stopped};
 use message::Messages;
 pub(crate) use monitor::Steps as MonitorStepper;
+pub use monitor::{RowsWanted, Told};
 use std::process::ExitCode;
 pub use steps::StepTime;
 

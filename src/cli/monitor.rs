@@ -32,8 +32,10 @@ mod steps;
 
 use announced::Announced;
 pub(super) use arguments::{CylinderArguments, MonitorArguments};
-pub(super) use course::{Course, Told};
+pub(super) use course::Course;
+pub use course::Told;
 pub(super) use options::{Options, Places};
+pub use steps::RowsWanted;
 pub(crate) use steps::Steps;
 
 use engine::Engine;

@@ -1,4 +1,6 @@
 //! What the stepping forms of `monitor` and `estimate` share: rows one by one, until the fill is known kept, and their bytes.
+mod table;
+
 use super::host::Host;
 use super::input::{Inputs, LogInput};
 use crate::log::{Cells, LogOptions, MemoryLog, Row, RowScreen, Truth, Zone};
@@ -7,6 +9,7 @@ use anyhow::{Context, bail};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
+pub(super) use table::TableRows;
 
 /// What messages call the log.
 pub(super) const NAME: &str = "<steps>";

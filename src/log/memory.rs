@@ -78,7 +78,7 @@ impl Cells {
     }
 
     /// What they are, for a message.
-    fn kind(&self) -> &str {
+    pub(crate) fn kind(&self) -> &str {
         match self {
             Self::Numbers(_) => "numbers",
             Self::Instants { .. } => "dates",

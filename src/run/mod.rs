@@ -29,7 +29,7 @@ mod steps;
 
 pub use crate::log::{Cells, MemoryLog};
 pub use error::RunError;
-pub use steps::{MonitorSteps, ObserverSteps, StepTime};
+pub use steps::{MonitorSteps, ObserverSteps, RowsWanted, StepTime, Told};
 
 use crate::cli::{self, Host, called, properties_of};
 pub use crate::cli::{FleetOutcome, Outcome};

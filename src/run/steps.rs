@@ -1,7 +1,7 @@
 //! Monitor and observer step by step, for programs that have the readings as they come.
-use super::{Call, RunError};
-pub use crate::cli::StepTime;
+use super::{Call, MemoryLog, RunError};
 use crate::cli::{self, EstimateSteps, MonitorStepper};
+pub use crate::cli::{RowsWanted, StepTime, Told};
 use crate::report::Table;
 
 /// A monitor that is fed row by row and hands out what `cylwatch monitor` writes for the same rows. It can be saved and restored at any row.
@@ -19,24 +19,29 @@ impl MonitorSteps {
         cli::monitor_steps(&arguments, call.host.documents).map(Self).map_err(|error| RunError::of(&error))
     }
 
-    /// Takes in a row of names and values; hands out the rows that have become final, in the columns of the command, and the lines
-    /// of their events and alarms in JSON. Rows that are closer together than `step` become one.
+    /// Takes in a row of names and values; hands out the rows that have become final, in the columns of the command, and their events
+    /// and alarms. Rows that are closer together than `step` become one.
     ///
     /// # Errors
     /// A name or a time is refused, or the first rows do not fit the vessel.
-    pub fn step(
-        &mut self,
-        time: StepTime,
-        readings: &[(&str, f64)],
-    ) -> Result<(Table, Vec<String>), RunError> {
+    pub fn step(&mut self, time: StepTime, readings: &[(&str, f64)]) -> Result<(Table, Vec<Told>), RunError> {
         self.0.step(time, readings).map_err(|error| RunError::of(&error))
+    }
+
+    /// Takes in the rows of a table in their order, as [`MonitorSteps::step`] takes each of them, and hands out the rows that are wanted
+    /// and what happened. Its columns are `time` with dates in a zone, or `time_s` or another unit, and readings in numbers.
+    ///
+    /// # Errors
+    /// As of a step, or a column has something else. The rows before the one that is refused have been taken in.
+    pub fn steps(&mut self, table: &MemoryLog, wanted: RowsWanted) -> Result<(Table, Vec<Told>), RunError> {
+        self.0.steps(table, wanted).map_err(|error| RunError::of(&error))
     }
 
     /// Hands out the rows that are held back, as at the end of a log.
     ///
     /// # Errors
     /// The monitor fails.
-    pub fn finish(&mut self) -> Result<(Table, Vec<String>), RunError> {
+    pub fn finish(&mut self) -> Result<(Table, Vec<Told>), RunError> {
         self.0.finish().map_err(|error| RunError::of(&error))
     }
 
@@ -51,6 +56,15 @@ impl MonitorSteps {
     /// The state cannot be put into bytes.
     pub fn save(&self) -> Result<Vec<u8>, RunError> {
         self.0.save().map_err(|error| RunError::of(&error))
+    }
+
+    /// The bytes of the state file that `cylwatch monitor --state` and `cylwatch fleet` write after the same rows; `None`: the fill is
+    /// not known yet.
+    ///
+    /// # Errors
+    /// The state cannot be put into bytes.
+    pub fn state_file(&self) -> Result<Option<Vec<u8>>, RunError> {
+        self.0.state_file().map_err(|error| RunError::of(&error))
     }
 
     /// Goes on from bytes as if there had been no stop.

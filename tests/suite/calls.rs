@@ -2,7 +2,7 @@
 use crate::support;
 use cylwatch::log::LogError;
 use cylwatch::report::{Table, Values};
-use cylwatch::run::{self, Call, Cells, MemoryLog, MonitorSteps, ObserverSteps, StepTime};
+use cylwatch::run::{self, Call, Cells, MemoryLog, MonitorSteps, ObserverSteps, RowsWanted, StepTime};
 
 const VESSEL: &str = "nitrogen-20l";
 
@@ -113,6 +113,78 @@ fn a_monitor_that_is_saved_and_restored_at_rows_is_the_whole_log_bit_by_bit() {
     }
     extend(&mut rows, &steps.finish().unwrap().0);
     assert_eq!(rows, bits(&run::monitor(Call::new(VESSEL).log(log())).unwrap().rows));
+}
+
+/// The rows of a log from one to another.
+fn part(rows: std::ops::Range<usize>) -> MemoryLog {
+    let columns =
+        columns().map(|(name, cells)| (name.to_owned(), Cells::Numbers(cells[rows.clone()].to_vec())));
+    MemoryLog { name: "frame".to_owned(), columns: columns.into() }
+}
+
+#[test]
+fn steps_by_tables_are_steps_by_rows_bit_by_bit_and_leave_the_state_file_of_the_command() {
+    let mut single = MonitorSteps::new(Call::new(VESSEL)).unwrap();
+    let mut tables = MonitorSteps::new(Call::new(VESSEL)).unwrap();
+    assert_eq!(tables.state_file().unwrap(), None);
+    let (mut from, mut rows, mut by_tables) = (0, Vec::new(), Vec::new());
+    for to in [1, 2, 60, 700, 1440] {
+        let told = tables.steps(&part(from..to), RowsWanted::Every).unwrap();
+        extend(&mut by_tables, &told.0);
+        let mut events = Vec::new();
+        for index in from..to {
+            let (time, readings) = row(index);
+            let told = single.step(time, &readings).unwrap();
+            extend(&mut rows, &told.0);
+            events.extend(told.1);
+        }
+        assert_eq!((told.1, tables.save().unwrap()), (events, single.save().unwrap()), "{to}");
+        from = to;
+    }
+    assert_eq!(by_tables, rows);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("log.csv"), csv()).unwrap();
+    // Without a table of rows, as `fleet` saves it.
+    support::run(folder.path(), &["monitor", VESSEL, "log.csv", "--state", "state", "-o", "rows.json"]);
+    let state = std::fs::read(folder.path().join("state")).unwrap();
+    assert_eq!(tables.state_file().unwrap(), Some(state));
+}
+
+#[test]
+fn the_last_row_alone_is_the_last_of_all_rows_and_events_stay() {
+    let of = |wanted| MonitorSteps::new(Call::new(VESSEL)).unwrap().steps(&log(), wanted).unwrap();
+    let (every, last) = (of(RowsWanted::Every), of(RowsWanted::Last));
+    let end: Vec<Vec<u64>> =
+        bits(&every.0).iter().map(|cells| cells.last().copied().into_iter().collect()).collect();
+    assert_eq!((bits(&last.0), last.1), (end, every.1));
+}
+
+#[test]
+fn a_table_that_steps_cannot_take_is_refused_with_its_row_or_column() {
+    let words = |change: fn(&mut MemoryLog)| {
+        let mut table = part(0..3);
+        change(&mut table);
+        let mut steps = MonitorSteps::new(Call::new(VESSEL)).unwrap();
+        steps.steps(&table, RowsWanted::Every).unwrap_err()
+    };
+    let untimed = words(|table| table.columns[0].1 = Cells::Numbers(vec![0.0, f64::NAN, 60.0]));
+    assert_eq!((untimed.line(), untimed.remedy()), (Some(2), Some("leave the row out")), "{untimed}");
+    for (change, expected) in [
+        ((|table| table.columns[0].0 = "t".to_owned()) as fn(&mut MemoryLog), "no column of time"),
+        (|table| table.columns[1].1 = Cells::Texts(vec![None; 3]), "shoulder_degc has texts"),
+        (|table| table.columns[2].1 = Cells::Numbers(vec![1.0]), "pressure_bar is not as long"),
+        (|table| table.columns[1].0 = "time_h".to_owned(), "two columns of time"),
+        (
+            |table| {
+                table.columns[0] =
+                    ("time".to_owned(), Cells::Instants { nanoseconds: vec![Some(0); 3], zone: None })
+            },
+            "no zone",
+        ),
+    ] {
+        let error = words(change);
+        assert!(error.to_string().contains(expected) && error.remedy().is_some(), "{error}");
+    }
 }
 
 #[test]

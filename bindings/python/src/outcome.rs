@@ -17,7 +17,7 @@ pub(crate) struct Outcome {
 impl Outcome {
     pub(crate) fn new(py: Python<'_>, outcome: run::Outcome) -> PyResult<Self> {
         let rows = Py::new(py, Rows::new(py, &outcome.rows, outcome.zone.as_deref())?)?;
-        let events = lines(py, &outcome.events)?.unbind();
+        let events = lines(py, outcome.events.iter().map(String::as_str))?.unbind();
         let summary = value(py, &outcome.summary.to_string())?.unbind();
         Ok(Self { rows, events, summary, outcome })
     }
@@ -29,7 +29,10 @@ fn value<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyAny>> {
 }
 
 /// Lines of JSON as a list of dicts.
-pub(crate) fn lines<'py>(py: Python<'py>, lines: &[String]) -> PyResult<Bound<'py, PyList>> {
+pub(crate) fn lines<'py, 'a>(
+    py: Python<'py>,
+    lines: impl Iterator<Item = &'a str>,
+) -> PyResult<Bound<'py, PyList>> {
     let list = PyList::empty(py);
     for line in lines {
         list.append(value(py, line)?)?;

@@ -1,10 +1,10 @@
 //! Monitor and observer step by step.
 use crate::border;
 use crate::request::Request;
-use crate::{arguments, outcome, rows};
-use cylwatch::run::{MonitorSteps, ObserverSteps, RunError, StepTime};
+use crate::{arguments, arrow, outcome, rows};
+use cylwatch::run::{Cells, MonitorSteps, ObserverSteps, RowsWanted, RunError, StepTime, Told};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyList};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Names and values of a row.
@@ -61,6 +61,27 @@ impl Monitor {
         told_dict(time.py(), &told)
     }
 
+    /// Takes in the rows of a table in their order; with `rows=False` hands out the last row alone.
+    #[pyo3(signature = (table, rows = true))]
+    fn steps<'py>(&self, table: &Bound<'py, PyAny>, rows: bool) -> PyResult<Bound<'py, PyDict>> {
+        let py = table.py();
+        let log = arrow::log(table)?;
+        let zone = log.columns.iter().find_map(|(_, cells)| match cells {
+            Cells::Instants { zone, .. } => zone.as_ref().map(ToString::to_string),
+            _ => None,
+        });
+        let wanted = if rows { RowsWanted::Every } else { RowsWanted::Last };
+        let (table, told) = locked(py, &self.0, |steps| steps.steps(&log, wanted))?;
+        let dict = PyDict::new(py);
+        dict.set_item("rows", rows::Rows::new(py, &table, zone.as_deref())?)?;
+        let list = PyList::empty(py);
+        for told in &told {
+            list.append(told_item(py, told)?)?;
+        }
+        dict.set_item("told", list)?;
+        Ok(dict)
+    }
+
     /// The rows that are held back, as at the end of a log.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         told_dict(py, &locked(py, &self.0, MonitorSteps::finish)?)
@@ -77,6 +98,12 @@ impl Monitor {
         Ok(PyBytes::new(py, &locked(py, &self.0, |steps| steps.save())?))
     }
 
+    /// The bytes of the command's state file; None: the fill is not known yet.
+    fn state_file<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let bytes = locked(py, &self.0, |steps| steps.state_file())?;
+        Ok(bytes.map(|bytes| PyBytes::new(py, &bytes)))
+    }
+
     /// Goes on from bytes as if there had been no stop.
     fn restore(&self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
         locked(py, &self.0, |steps| steps.restore(state))
@@ -85,11 +112,23 @@ impl Monitor {
 
 fn told_dict<'py>(
     py: Python<'py>,
-    (table, events): &(cylwatch::report::Table, Vec<String>),
+    (table, told): &(cylwatch::report::Table, Vec<Told>),
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("rows", rows::dicts(py, table)?)?;
-    dict.set_item("events", outcome::lines(py, events)?)?;
+    dict.set_item("events", outcome::lines(py, told.iter().map(|told| told.line.as_str()))?)?;
+    Ok(dict)
+}
+
+/// What happened, in the columns of the events of a fleet.
+fn told_item<'py>(py: Python<'py>, told: &Told) -> PyResult<Bound<'py, PyDict>> {
+    let Told { id, event, time_s, time, words, line } = told;
+    let dict = PyDict::new(py);
+    dict.set_item("time_s", time_s)?;
+    dict.set_item("time", Some(time).filter(|time| !time.is_empty()))?;
+    for (name, text) in [("event", event), ("id", id), ("words", words), ("line", line)] {
+        dict.set_item(name, text)?;
+    }
     Ok(dict)
 }
 

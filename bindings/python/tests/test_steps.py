@@ -1,10 +1,13 @@
 """Monitor and observer row by row, saved and restored anywhere."""
 
+import json
 import random
 
 import cylwatch as cw
 import numpy as np
 import pandas as pd
+import polars as pl
+import pyarrow as pa
 import pytest
 from conftest import VESSEL
 
@@ -96,3 +99,47 @@ def test_names_and_times_of_steps_are_checked(leak):
         monitor.step(pd.Timestamp("2026-01-01", tz="UTC"), {"pressure_bar": 200.0})
     with pytest.raises(cw.CylwatchError, match="no zone"):
         cw.Monitor(VESSEL).step(pd.Timestamp("2026-01-01"), {"pressure_bar": 200.0})
+
+
+@pytest.mark.parametrize("which", ["leak", "dated"])
+def test_steps_by_tables_are_steps_by_rows(which, request):
+    log = request.getfixturevalue(which)
+    single, tables = cw.Monitor(VESSEL, limit_bar=150), cw.Monitor(VESSEL, limit_bar=150)
+    events, lines, frames = [], [], []
+    for part in (log[:1], pl.from_pandas(log[1:300]), pa.Table.from_pandas(log[300:], preserve_index=False)):
+        told = tables.steps(part)
+        lines += [event["line"] for event in told["told"]]
+        frames.append(pd.DataFrame.from_arrow(told["rows"]))
+        assert list(told["told"][0]) == ["time_s", "time", "event", "id", "words", "line"] if told["told"] else True
+    rows = stepped_with(single, rows_of(log), events)
+    assert [json.loads(line) for line in lines] == events and len(events) > 2
+    assert tables.save() == single.save() and tables.state_file() == single.state_file() is not None
+    frame = pd.concat(frames)
+    for name in frame:
+        if frame[name].dtype == np.float64:
+            ours = np.array([np.nan if row[name] is None else row[name] for row in rows])
+            assert ours.tobytes() == frame[name].to_numpy().tobytes(), name
+    last = cw.Monitor(VESSEL, limit_bar=150).steps(log, rows=False)
+    assert len(last["rows"]) == 1 and last["rows"]["mass_kg"][0] == rows[-1]["mass_kg"]
+    assert [event["line"] for event in last["told"]] == lines
+
+
+def stepped_with(monitor, rows, events):
+    out = []
+    for time, readings in rows:
+        told = monitor.step(time, readings)
+        out += told["rows"]
+        events += told["events"]
+    return out
+
+
+def test_a_table_that_steps_cannot_take_is_refused(leak):
+    for table, words in [
+        (leak.drop(columns="time_s"), "no column of time"),
+        (leak.assign(site="x"), "site has texts"),
+        (leak.assign(time_s=np.nan), "row 1: there is no time"),
+        (leak.assign(time=pd.Timestamp("2026-01-01")), "no zone"),
+    ]:
+        with pytest.raises(cw.CylwatchError, match=words) as refused:
+            cw.Monitor(VESSEL).steps(table)
+        assert refused.value.remedy

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// An event or a change of an alarm, as `--events` writes it and in words.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(in crate::cli) struct Told {
+pub struct Told {
     /// Identity: the same for the same event of another run.
     pub id: String,
     /// Name of the event, or `alarm`.
@@ -33,30 +33,36 @@ pub(in crate::cli) struct Course {
 impl Course {
     /// Takes in an output.
     pub(super) fn push(&mut self, output: &Output, naming: &Naming) {
-        let clock = &naming.clock;
         self.trace.push(output.stamp_s, output.estimate.p15_pa);
-        let at = |time_s: f64| (clock.of_log_s(time_s), clock.date(time_s).unwrap_or_default());
-        for event in &output.events {
-            let (time_s, time) = at(event.time_s);
-            self.told.push(Told {
-                id: event.id.to_string(),
-                event: event.kind.name().to_owned(),
-                time_s,
-                time,
-                words: event_text(event, naming),
-                line: event_line(event, naming),
-            });
-        }
-        for alarm in &output.alarms {
-            let (time_s, time) = at(alarm.transition.time_s);
-            self.told.push(Told {
-                id: alarm.id.to_string(),
-                event: "alarm".to_owned(),
-                time_s,
-                time,
-                words: alarm_text(alarm, clock),
-                line: alarm_line(alarm, clock),
-            });
-        }
+        self.told.extend(told(output, naming));
     }
+}
+
+/// What happened with an output, in its order.
+pub(super) fn told(output: &Output, naming: &Naming) -> impl Iterator<Item = Told> {
+    let clock = &naming.clock;
+    let at = |time_s: f64| (clock.of_log_s(time_s), clock.date(time_s).unwrap_or_default());
+    let events = output.events.iter().map(move |event| {
+        let (time_s, time) = at(event.time_s);
+        Told {
+            id: event.id.to_string(),
+            event: event.kind.name().to_owned(),
+            time_s,
+            time,
+            words: event_text(event, naming),
+            line: event_line(event, naming),
+        }
+    });
+    let alarms = output.alarms.iter().map(move |alarm| {
+        let (time_s, time) = at(alarm.transition.time_s);
+        Told {
+            id: alarm.id.to_string(),
+            event: "alarm".to_owned(),
+            time_s,
+            time,
+            words: alarm_text(alarm, clock),
+            line: alarm_line(alarm, clock),
+        }
+    });
+    events.chain(alarms)
 }

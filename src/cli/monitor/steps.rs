@@ -1,16 +1,21 @@
 //! The monitor step by step: rows from a program that goes on, and bytes of a state at any of them.
+mod out;
+
+use super::course::{self, Told};
 use super::resume::RunStart;
 use super::rows::Slope;
 use super::state::{Identity, State};
 use super::*;
-use crate::cli::steps::{self, Frame, LONGEST_WAIT, StepTime};
+use crate::cli::steps::{self, Frame, LONGEST_WAIT, StepTime, TableRows};
 use crate::detector::monitor::{Monitor, Output};
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
-use crate::log::RowScreen;
-use crate::report::monitor::{MonitorRow, Naming, alarm_line, event_line, fields};
-use crate::report::{Clock, RowFormat, Rows, Table};
+use crate::log::{MemoryLog, RowScreen};
+use crate::report::monitor::{MonitorRow, Naming};
+use crate::report::{Clock, Table};
 use jiff::Timestamp;
+use out::Out;
+pub use out::RowsWanted;
 use serde::{Deserialize, Serialize};
 
 /// A monitor that is fed row by row.
@@ -34,6 +39,8 @@ struct Running {
     slope: Slope,
     origin: Option<Timestamp>,
     last_stamp_s: f64,
+    /// Time of the first row, s, as the state of the command has it.
+    log_starts_s: Vec<f64>,
     full_pa: f64,
     settled: bool,
     stated: bool,
@@ -48,8 +55,8 @@ struct Saved {
     state: Option<Vec<u8>>,
 }
 
-/// Rows that came out, with the lines of their events.
-pub(crate) type Told = (Table, Vec<String>);
+/// Rows that came out, and what happened in them.
+pub(crate) type Handed = (Table, Vec<Told>);
 
 impl Steps {
     /// A monitor of a vessel with the options of the command.
@@ -65,11 +72,35 @@ impl Steps {
     }
 
     /// Takes in a row; hands out the rows that are final.
-    pub(crate) fn step(&mut self, time: StepTime, readings: &[(&str, f64)]) -> anyhow::Result<Told> {
+    pub(crate) fn step(&mut self, time: StepTime, readings: &[(&str, f64)]) -> anyhow::Result<Handed> {
+        let mut out = Out::new(matches!(time, StepTime::Instant(..)), RowsWanted::Every);
+        self.take(time, readings, &mut out)?;
+        Ok((out.table, out.told))
+    }
+
+    /// Takes in the rows of a table in their order. After an error the rows before it have been taken in.
+    pub(crate) fn steps(&mut self, log: &MemoryLog, wanted: RowsWanted) -> anyhow::Result<Handed> {
+        let mut rows = TableRows::of(log)?;
+        let mut out = Out::new(rows.have_dates(), wanted);
+        while let Some((time, readings)) = rows.next()? {
+            // Before the monitor begins an error has the place of its row among all that wait.
+            let has_begun = self.running.is_some();
+            let taken = self.take(time, readings, &mut out);
+            if has_begun { taken.with_context(|| rows.place())? } else { taken? }
+        }
+        if let (RowsWanted::Last, Some(running)) = (wanted, &mut self.running)
+            && let Some(last) = running.last.clone()
+        {
+            running.keep(&last, &mut out)?;
+        }
+        Ok((out.table, out.told))
+    }
+
+    fn take(&mut self, time: StepTime, readings: &[(&str, f64)], out: &mut Out) -> anyhow::Result<()> {
         let cells = self.frame.cells(readings)?;
         let Some(running) = &mut self.running else {
             self.frame.push(time, &cells)?;
-            let begun = self.begin();
+            let begun = self.begin(out);
             if begun.is_err() {
                 self.frame.pop();
             }
@@ -78,14 +109,17 @@ impl Steps {
         let (row, zone) = steps::row(&time, running.origin, &running.screen, &cells)?;
         running.naming.clock.set(running.origin, zone.as_ref());
         let outputs = running.push(&row)?;
-        running.told(outputs)
+        running.tell(outputs, out)
     }
 
     /// Hands out the rows that are held back.
-    pub(crate) fn finish(&mut self) -> anyhow::Result<Told> {
-        let Some(running) = &mut self.running else { return Ok((Table::new(), Vec::new())) };
-        let outputs = running.monitor.finish()?;
-        running.told(outputs)
+    pub(crate) fn finish(&mut self) -> anyhow::Result<Handed> {
+        let mut out = Out::new(self.frame.has_dates() == Some(true), RowsWanted::Every);
+        if let Some(running) = &mut self.running {
+            let outputs = running.monitor.finish()?;
+            running.tell(outputs, &mut out)?;
+        }
+        Ok((out.table, out.told))
     }
 
     /// Exit code of the command if the log ended here.
@@ -96,14 +130,18 @@ impl Steps {
 
     /// All of it as bytes.
     pub(crate) fn save(&self) -> anyhow::Result<Vec<u8>> {
-        let state = self.running.as_ref().map(Running::state).transpose()?;
-        let state = state.map(|state| state.to_bytes()).transpose()?;
+        let state = self.state_file()?;
         let frame = match &self.running {
             // Names, and whether there are dates; the rows have been used.
             Some(_) => self.frame.head(),
             None => self.frame.clone(),
         };
         steps::encoded(&Saved { frame, state })
+    }
+
+    /// The bytes of the file that `cylwatch monitor --state` and `fleet` write; `None`: the fill is not known yet.
+    pub(crate) fn state_file(&self) -> anyhow::Result<Option<Vec<u8>>> {
+        self.running.as_ref().map(|running| running.state()?.to_bytes()).transpose()
     }
 
     /// Goes on from bytes; if they are refused, all stays as it is.
@@ -129,17 +167,23 @@ impl Steps {
         let origin = state.origin.as_deref().map(str::parse).transpose()?;
         let clock = Clock::new(origin, None).after(state.clock.clone());
         let running = self.running(engine, identity.after(&state.identity), selection, &log, clock);
-        Ok(Running { origin, last_stamp_s: state.last_stamp_s, last: state.last.clone(), ..running })
+        Ok(Running {
+            origin,
+            last_stamp_s: state.last_stamp_s,
+            log_starts_s: state.log_starts_s.clone(),
+            last: state.last.clone(),
+            ..running
+        })
     }
 
     /// Begins with the rows there are, if they tell the fill.
-    fn begin(&mut self) -> anyhow::Result<Told> {
+    fn begin(&mut self, out: &mut Out) -> anyhow::Result<()> {
         let messages = Messages::kept();
         let (inputs, mut log) = self.frame.opened(&self.documents, false, &self.log_options())?;
         let mut selection =
             Selection::new(&mut log.reader, self.sensors.clone(), &self.beginning.vessel, &[], &messages)?;
         if self.waits(&selection, &log.reader.row_screen()) {
-            return Ok((Table::new(), Vec::new()));
+            return Ok(());
         }
         let mut engine =
             Engine::cold(&self.options, &inputs, &self.beginning, &mut selection, &mut log, &messages)?;
@@ -151,13 +195,14 @@ impl Steps {
             let (from_s, until_s) = announced.seconds(running.origin)?;
             running.monitor.announce(from_s, until_s);
         }
+        running.log_starts_s.extend(first.first().map(|row| row.time_s));
         let mut outputs = Vec::new();
         for row in &first {
             outputs.extend(running.push(row)?);
         }
-        let told = running.told(outputs)?;
+        running.tell(outputs, out)?;
         self.running = Some(running);
-        Ok(told)
+        Ok(())
     }
 
     /// Whether the fill is that of the first pressure, and none has come.
@@ -192,6 +237,7 @@ impl Steps {
             slope: Slope::of(&self.beginning.vessel),
             origin: log.reader.origin_instant(),
             last_stamp_s: f64::NAN,
+            log_starts_s: Vec::new(),
             full_pa: engine.full_pa,
             settled: engine.settled,
             stated: engine.stated,
@@ -209,19 +255,24 @@ impl Running {
         Ok(outputs)
     }
 
-    /// Outputs as rows and events.
-    fn told(&mut self, outputs: Vec<Output>) -> anyhow::Result<Told> {
-        let rows = Rows::new(fields(self.origin.is_some()), RowFormat::Csv);
-        let (mut table, mut lines) = (rows.empty_table(), Vec::new());
+    /// Adds outputs to what comes out.
+    fn tell(&mut self, outputs: Vec<Output>, out: &mut Out) -> anyhow::Result<()> {
         for output in outputs {
             self.naming.clock.note(output.estimate.time_s, output.stamp_s);
-            lines.extend(output.events.iter().map(|event| event_line(event, &self.naming)));
-            lines.extend(output.alarms.iter().map(|alarm| alarm_line(alarm, &self.naming.clock)));
-            let leak_pa_s = output.estimate.leak_kg_s * self.slope.at(output.estimate.mass_kg)?;
-            rows.keep(&MonitorRow::new(&output, leak_pa_s, &self.naming.clock), &mut table);
+            out.told.extend(course::told(&output, &self.naming));
+            if out.wanted == RowsWanted::Every {
+                self.keep(&output, out)?;
+            }
             self.last = Some(output);
         }
-        Ok((table, lines))
+        Ok(())
+    }
+
+    /// Adds an output as a row.
+    fn keep(&mut self, output: &Output, out: &mut Out) -> anyhow::Result<()> {
+        let leak_pa_s = output.estimate.leak_kg_s * self.slope.at(output.estimate.mass_kg)?;
+        out.rows.keep(&MonitorRow::new(output, leak_pa_s, &self.naming.clock), &mut out.table);
+        Ok(())
     }
 
     fn state(&self) -> anyhow::Result<State> {
@@ -231,7 +282,7 @@ impl Running {
             origin: self.origin.map(|origin| origin.to_string()),
             clock: self.naming.clock.shown().clone(),
             last_stamp_s: self.last_stamp_s,
-            log_starts_s: Vec::new(),
+            log_starts_s: self.log_starts_s.clone(),
             full_pa: self.full_pa,
             settled: self.settled,
             stated: self.stated,
