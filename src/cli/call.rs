@@ -114,6 +114,7 @@ fn parsed(arguments: &[OsString]) -> anyhow::Result<Command> {
 fn words_of(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-    let lines: Vec<&str> = lines.filter(|line| !line.is_empty()).collect();
+    let lines: Vec<&str> =
+        lines.filter(|line| !line.is_empty() && !line.starts_with("tip: to pass")).collect();
     lines.join("; ").trim_start_matches("error: ").to_owned()
 }

@@ -16,7 +16,7 @@ enum Place {
 }
 
 /// What messages call a table.
-const FRAME: &str = "<frame>";
+pub(crate) const FRAME: &str = "<frame>";
 
 /// A call.
 pub(crate) struct Request {

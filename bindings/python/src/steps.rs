@@ -1,6 +1,6 @@
 //! Monitor and observer step by step.
 use crate::border;
-use crate::request::Request;
+use crate::request::{FRAME, Request};
 use crate::{arguments, arrow, outcome, rows};
 use cylwatch::run::{Cells, MonitorSteps, ObserverSteps, RowsWanted, RunError, StepTime, Told};
 use pyo3::prelude::*;
@@ -65,7 +65,7 @@ impl Monitor {
     #[pyo3(signature = (table, rows = true))]
     fn steps<'py>(&self, table: &Bound<'py, PyAny>, rows: bool) -> PyResult<Bound<'py, PyDict>> {
         let py = table.py();
-        let log = arrow::log(table)?;
+        let log = arrow::log(table, FRAME)?;
         let zone = log.columns.iter().find_map(|(_, cells)| match cells {
             Cells::Instants { zone, .. } => zone.as_ref().map(ToString::to_string),
             _ => None,

@@ -1,7 +1,7 @@
 //! Tables through Arrow's C stream interface: capsules of Python around [`table`].
 mod table;
 
-pub(crate) use table::{batch, nanosecond};
+pub(crate) use table::batch;
 
 use crate::error::refused;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;

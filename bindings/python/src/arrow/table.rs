@@ -137,7 +137,7 @@ pub(crate) fn batch(table: &Table, zone: Option<&str>) -> Result<RecordBatch, Ar
 }
 
 /// Time since 1970 of a date in RFC 3339, ns; `None`: it is none, or beyond what nanoseconds can count.
-pub(crate) fn nanosecond(date: &str) -> Option<i64> {
+fn nanosecond(date: &str) -> Option<i64> {
     let instant = date.parse::<jiff::Timestamp>().ok()?;
     i64::try_from(instant.as_nanosecond()).ok()
 }
