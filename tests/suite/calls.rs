@@ -363,7 +363,8 @@ fn a_search_of_places_is_the_command_and_a_time_limit_makes_it_partial() {
 
 #[test]
 fn a_simulation_a_calibration_and_a_search_of_places_end_when_the_caller_wants_it() {
-    let calls: [(fn(Call) -> _, Call); 3] = [
+    type Run = fn(Call) -> Result<run::Outcome, run::RunError>;
+    let calls: [(Run, Call); 3] = [
         (
             run::simulate,
             Call::new(VESSEL).scenario("railway-week").option("relative-tolerance", Some("1e-11")),

@@ -1,6 +1,7 @@
 //! No table of Arrow makes the reader panic, and the numbers that it takes are those of the table.
 //!
 //! `PROPTEST_CASES=10000000 cargo test --release -p cylwatch-python` draws as many tables as that; 1000 by default.
+#![allow(clippy::unwrap_used)]
 #[path = "../src/arrow/table.rs"]
 #[allow(dead_code)]
 mod table;
