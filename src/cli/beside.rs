@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// How often it is attended to.
-const TICK: Duration = Duration::from_millis(50);
+/// How often work is attended to.
+pub(super) const TICK: Duration = Duration::from_millis(50);
 
 /// Does the work on a thread of its own; this one calls `attend` now and then until it is done. A panic of the work goes on here.
 pub(super) fn beside<T: Send>(work: impl FnOnce() -> T + Send, mut attend: impl FnMut()) -> T {

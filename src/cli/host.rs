@@ -27,6 +27,11 @@ pub(crate) struct Host {
 }
 
 impl Host {
+    /// Whether the caller wants the run to end.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.borrow_mut()())
+    }
+
     /// A document of the call.
     pub(super) fn document(&self, name: &str) -> Option<&str> {
         self.documents.iter().find(|(given, _)| given == name).map(|(_, text)| text.as_str())

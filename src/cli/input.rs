@@ -169,7 +169,7 @@ impl Inputs {
 
     /// Whether the caller wants the run to end.
     pub(super) fn is_stopped(&self) -> bool {
-        self.host.stop.as_ref().is_some_and(|stop| stop.borrow_mut()())
+        self.host.is_stopped()
     }
 
     fn stop_with_caller(&self, reader: &mut LogReader) {

@@ -1,4 +1,5 @@
 //! `cylwatch simulate`: a vessel in a scenario.
+use super::beside::TICK;
 use super::format::Format;
 use super::host::Outcome;
 use super::input::Inputs;
@@ -17,10 +18,7 @@ use crate::thermal::{scenario, vessel};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-
-/// How often the progress is shown, and a caller asked whether the run is to end.
-const PATIENCE: Duration = Duration::from_millis(50);
+use std::time::Instant;
 
 /// Arguments of `simulate`.
 #[derive(Debug, Args)]
@@ -148,7 +146,7 @@ fn simulated(
     let progress = Progress::new(messages);
     let mut asked = Instant::now();
     let run = simulate_while(&vessel, &scenario, &options.settings, &mut |done| {
-        if asked.elapsed() < PATIENCE {
+        if asked.elapsed() < TICK {
             return true;
         }
         asked = Instant::now();

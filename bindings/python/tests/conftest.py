@@ -4,6 +4,8 @@ import json
 import os
 import signal
 import subprocess
+import threading
+import time
 from pathlib import Path
 
 import cylwatch as cw
@@ -66,6 +68,33 @@ def dated(leak) -> pd.DataFrame:
     start = pd.Timestamp("2026-11-25T00:30:00", tz="Europe/Berlin")
     time = start + pd.to_timedelta(leak["time_s"], unit="s")
     return leak.drop(columns="time_s").assign(time=time)
+
+
+def interrupted(call, after_s):
+    """Seconds that a call takes which Ctrl-C ends so long after its beginning."""
+    threading.Timer(after_s, os.kill, (os.getpid(), signal.SIGINT)).start()
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        call()
+    return time.monotonic() - began
+
+
+def turns_during(call) -> int:
+    """How often this thread has its turn while another one is in a call, which comes to its end."""
+    done = threading.Event()
+
+    def run():
+        call()
+        done.set()
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    turns = 0
+    while thread.is_alive():
+        turns += 1
+        time.sleep(0.001)
+    assert done.is_set()
+    return turns
 
 
 def body(csv: str) -> str:

@@ -1,16 +1,13 @@
 """A fleet is the command's, and what it writes is read by others."""
 
 import os
-import signal
-import threading
-import time
 
 import cylwatch as cw
 import duckdb
 import polars as pl
 import pyarrow as pa
 import pytest
-from conftest import VESSEL
+from conftest import VESSEL, interrupted, turns_during
 
 FILL = {"fill_pressure_bar": 200, "fill_temperature_degc": 15}
 
@@ -98,31 +95,15 @@ def long_logs(leak, cylinders=40):
 
 def test_ctrl_c_ends_a_run_and_the_same_call_does_the_rest(logs, leak):
     long_logs(leak)
-    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
-    began = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        cw.fleet("logs", "out", vessel=VESSEL)
-    assert time.monotonic() - began < 5 and not (logs / "out/summary.parquet").exists()
+    assert interrupted(lambda: cw.fleet("logs", "out", vessel=VESSEL), after_s=0.5) < 5
+    assert not (logs / "out/summary.parquet").exists()
     # A signal ends one run, not those after it.
     assert len(cw.fleet("logs", "out", vessel=VESSEL)) == 40
 
 
 def test_other_threads_run_meanwhile(logs, leak):
     long_logs(leak, cylinders=8)
-    done = threading.Event()
-    counted = 0
-
-    def run():
-        cw.fleet("logs", "out", vessel=VESSEL, threads=1)
-        done.set()
-
-    thread = threading.Thread(target=run)
-    thread.start()
-    while not done.is_set():
-        counted += 1
-        time.sleep(0.001)
-    thread.join()
-    assert counted > 20
+    assert turns_during(lambda: cw.fleet("logs", "out", vessel=VESSEL, threads=1)) > 20
 
 
 def test_what_is_wrong_is_refused_with_file_line_and_remedy(logs):

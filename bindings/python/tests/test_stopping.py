@@ -1,16 +1,12 @@
 """Ctrl-C ends every call, wherever it is, and other threads run meanwhile."""
 
-import os
-import signal
-import threading
-import time
 import tomllib
 
 import cylwatch as cw
 import numpy as np
 import pandas as pd
 import pytest
-from conftest import ROOT, VESSEL, readings
+from conftest import ROOT, VESSEL, interrupted, readings, turns_during
 
 
 def fine_vessel():
@@ -56,11 +52,7 @@ CALLS = {
 @pytest.mark.parametrize("name", CALLS)
 def test_ctrl_c_ends_a_call(name):
     call = CALLS[name]()
-    threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
-    began = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        call()
-    took = time.monotonic() - began
+    took = interrupted(call, after_s=1.0)
     assert 1.0 <= took < 6.0, f"{name} ended {took:.1f} s after it began"
     # The next call does not know of it.
     assert cw.simulate(VESSEL, "shock-cold").exit_code == 0
@@ -68,16 +60,4 @@ def test_ctrl_c_ends_a_call(name):
 
 def test_other_threads_run_during_a_search():
     log = readings(pd.DataFrame.from_arrow(cw.simulate(VESSEL, "tunnel-winter").rows))
-    done = threading.Event()
-
-    def run():
-        cw.calibrate(VESSEL, log, scenario="tunnel-winter")
-        done.set()
-
-    thread = threading.Thread(target=run)
-    thread.start()
-    counted = 0
-    while thread.is_alive():
-        counted += 1
-        time.sleep(0.001)
-    assert done.is_set() and counted > 50
+    assert turns_during(lambda: cw.calibrate(VESSEL, log, scenario="tunnel-winter")) > 50

@@ -1,15 +1,12 @@
 //! The fleet for a program that calls it ([`crate::run::fleet`]): the same files, and the tables in memory.
 use super::{FleetArguments, monitored};
+use crate::cli::beside::beside;
 use crate::cli::host::Host;
 use crate::cli::message::Messages;
 use crate::report::{Provenance, Table};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-
-/// How often the caller is asked whether the run is to end.
-const ASKED: Duration = Duration::from_millis(50);
 
 /// What a run over a fleet hands out.
 #[derive(Debug)]
@@ -39,17 +36,9 @@ pub(in crate::cli) fn kept(
         let flag = Arc::clone(&flag);
         Arc::new(move || flag.load(Ordering::Relaxed))
     };
-    let command = host.command.clone();
-    let done = std::thread::scope(|scope| {
-        let run = scope.spawn(|| monitored(arguments, &command, stop, messages));
-        while !run.is_finished() {
-            if host.stop.as_ref().is_some_and(|stop| stop.borrow_mut()()) {
-                flag.store(true, Ordering::Relaxed);
-            }
-            std::thread::park_timeout(ASKED);
-        }
-        run.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })?;
+    let command = host.command.as_str();
+    let run = || monitored(arguments, command, stop, messages);
+    let done = beside(run, || _ = flag.fetch_or(host.is_stopped(), Ordering::Relaxed))?;
     let [summary, events, errors] = done.results().tables(&done.folder).map(|(_, table)| table);
     let page = done.folder.file("page.html");
     let exit_code = done.exit_code()?;

@@ -1,5 +1,5 @@
 //! A fleet for a program that calls it.
-use super::{FORMAT, TIGHT, content, log, with_logs};
+use super::{FORMAT, TIGHT, alike, content, log, with_logs};
 use crate::support::run;
 use cylwatch::report::{Table, Values};
 use cylwatch::run::{self as calls, Call, RunError};
@@ -51,12 +51,7 @@ fn a_call_writes_the_folder_of_the_command_and_hands_out_its_tables() {
 
 #[test]
 fn a_call_that_is_stopped_says_so_and_the_same_call_does_the_rest() {
-    let names: Vec<String> = (0..30).map(|k| format!("S{k:02}")).collect();
-    let files: Vec<(String, String)> =
-        names.iter().map(|name| (format!("{name}.csv"), log(0..900, TIGHT))).collect();
-    let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder = with_logs(&files, &names);
+    let (folder, names) = alike("S", 30, 900);
     let asked = Arc::new(AtomicU32::new(0));
     let stop = {
         let asked = Arc::clone(&asked);
@@ -65,10 +60,7 @@ fn a_call_that_is_stopped_says_so_and_the_same_call_does_the_rest() {
     let stopped = calls::fleet(call(&folder, "out").stopped_by(stop)).unwrap_err();
     assert!(stopped.is_stopped() && stopped.to_string().contains("does the rest"), "{stopped}");
     assert!(!folder.path().join("out/summary.csv").exists());
-    assert_eq!(
-        calls::fleet(call(&folder, "out")).unwrap().summary.columns[0].values,
-        Values::Texts(names.iter().map(|name| (*name).to_owned()).collect())
-    );
+    assert_eq!(calls::fleet(call(&folder, "out")).unwrap().summary.columns[0].values, Values::Texts(names));
 }
 
 #[test]

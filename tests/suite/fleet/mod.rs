@@ -48,6 +48,29 @@ fn with_logs(files: &[(&str, String)], names: &[&str]) -> TempDir {
     folder
 }
 
+/// A folder of tight cylinders alike, the prefix of their names before a number of two digits, and these names.
+fn alike(prefix: &str, count: usize, minutes: u32) -> (TempDir, Vec<String>) {
+    let names: Vec<String> = (0..count).map(|k| format!("{prefix}{k:02}")).collect();
+    let files: Vec<String> = names.iter().map(|name| format!("{name}.csv")).collect();
+    let files: Vec<_> = files.iter().map(|file| (file.as_str(), log(0..minutes, TIGHT))).collect();
+    (with_logs(&files, &names.iter().map(String::as_str).collect::<Vec<_>>()), names)
+}
+
+/// Begins a run with rows so many times and kills it, each after so many milliseconds.
+fn kill_again_and_again(folder: &Path, after_ms: impl Iterator<Item = u64>) {
+    let arguments = [&["fleet", "logs", "--vessels", "fleet.csv", "-o", "out"], FORMAT, &["--rows"]].concat();
+    let mut kills = 0;
+    for after_ms in after_ms {
+        let mut child = program(folder, &arguments).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(after_ms));
+        // SIGKILL: nothing can be tidied up.
+        kills += u32::from(child.try_wait().unwrap().is_none());
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    assert!(kills > 0, "no run was killed on its way");
+}
+
 fn fleet(folder: &Path, options: &[&str]) -> Outcome {
     run(folder, &[&["fleet", "logs", "--vessels", "fleet.csv", "-o", "out"], FORMAT, options].concat())
 }
@@ -207,28 +230,13 @@ fn the_number_of_threads_changes_no_byte() {
 
 #[test]
 fn a_run_that_is_killed_again_and_again_ends_with_the_bytes_of_one_that_was_not() {
-    let names: Vec<String> = (0..8).map(|k| format!("K{k}")).collect();
-    let files: Vec<(String, String)> =
-        names.iter().map(|name| (format!("{name}.csv"), log(0..700, TIGHT))).collect();
-    let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder = with_logs(&files, &names);
+    let (folder, _) = alike("K", 8, 700);
     let whole = fleet(folder.path(), &["--rows"]);
     assert_eq!(whole.code, Some(3), "{}", whole.stderr);
     let out = folder.path().join("out");
     let expected = content(&out);
     std::fs::remove_dir_all(&out).unwrap();
-    let arguments = [&["fleet", "logs", "--vessels", "fleet.csv", "-o", "out"], FORMAT, &["--rows"]].concat();
-    let mut kills = 0;
-    for k in 0_u64..12 {
-        let mut child = program(folder.path(), &arguments).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(40 + 97 * (k * k % 11)));
-        // SIGKILL: nothing can be tidied up.
-        kills += u32::from(child.try_wait().unwrap().is_none());
-        child.kill().unwrap();
-        child.wait().unwrap();
-    }
-    assert!(kills > 0, "no run was killed on its way");
+    kill_again_and_again(folder.path(), (0..12).map(|k| 40 + 97 * (k * k % 11)));
     assert_eq!(fleet(folder.path(), &["--rows"]).code, Some(3));
     assert!(content(&out) == expected);
 }
@@ -387,12 +395,7 @@ fn one_vessel_for_all_and_the_exit_codes() {
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_a_run_cleanly_and_the_same_command_does_the_rest() {
-    let names: Vec<String> = (0..40).map(|k| format!("S{k:02}")).collect();
-    let files: Vec<(String, String)> =
-        names.iter().map(|name| (format!("{name}.csv"), log(0..400, TIGHT))).collect();
-    let files: Vec<(&str, String)> = files.iter().map(|(name, text)| (name.as_str(), text.clone())).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder = with_logs(&files, &names);
+    let (folder, names) = alike("S", 40, 400);
     let arguments = ["fleet", "logs", "--vessels", "fleet.csv", "-o", "out", "--format", "csv"];
     let mut command = program(folder.path(), &arguments);
     let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();

@@ -1,9 +1,9 @@
 //! A fleet night after night: logs that have grown go on from the states, and what comes out is what one run over all would give.
-use super::{COLUMNS, FORMAT, TIGHT, column, content, fleet, log, row, table, vessels, with_logs};
-use crate::support::program;
+use super::{
+    COLUMNS, TIGHT, column, content, fleet, kill_again_and_again, log, row, table, vessels, with_logs,
+};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::time::Duration;
 use tempfile::TempDir;
 
 const NAMES: [&str; 7] = ["A", "B", "C1", "C2", "D", "E", "F"];
@@ -120,16 +120,7 @@ fn a_second_night_that_is_killed_again_and_again_leaves_the_same_bytes() {
     let folder = with_logs(&logs(1), &names());
     assert_eq!(fleet(folder.path(), &["--rows"]).code, Some(1));
     lay(folder.path(), &logs(2));
-    let arguments = [&["fleet", "logs", "--vessels", "fleet.csv", "-o", "out"], FORMAT, &["--rows"]].concat();
-    let mut kills = 0;
-    for k in 0_u64..10 {
-        let mut child = program(folder.path(), &arguments).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(15 + 41 * (k * k % 11)));
-        kills += u32::from(child.try_wait().unwrap().is_none());
-        child.kill().unwrap();
-        child.wait().unwrap();
-    }
-    assert!(kills > 0, "no run was killed on its way");
+    kill_again_and_again(folder.path(), (0..10).map(|k| 15 + 41 * (k * k % 11)));
     assert_eq!(fleet(folder.path(), &["--rows"]).code, Some(1));
     let nights = found(folder.path());
     assert_same(&nights, &of_one_run(&folder));
