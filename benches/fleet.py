@@ -132,21 +132,22 @@ def main() -> None:
         rows = write_logs(program, folder, given.cylinders, given.days, given.together)
         size = sum(path.stat().st_size for path in (folder / "logs").iterdir()) / 1e6
         print(f"{given.cylinders} cylinders of {given.days:g} d, {rows} rows, {size:.0f} MB of logs", flush=True)
-        walls, first = [], None
+        walls, first = {}, None
         for threads in given.threads:
             shutil.rmtree(folder / "out", ignore_errors=True)
             begun = time.monotonic()
             wall, cpu, memory = ended(started(program, folder, threads), begun)
-            walls.append(wall)
+            walls[threads] = wall
             speeds = f"{rows / wall:.0f} rows/s; CPU {cpu:.1f} s, {rows / cpu:.0f} rows/s"
             print(f"{threads} threads: {wall:.1f} s, {speeds}; {memory:.0f} MB", flush=True)
             first = first or content(folder)
             if content(folder) != first:
                 sys.exit("the number of threads changes bytes")
         if len(walls) > 1:
-            print(f"{given.threads[-1]} threads are {walls[0] / walls[-1]:.2f} times {given.threads[0]}", flush=True)
+            few, many = min(walls), max(walls)
+            print(f"{many} threads are {walls[few] / walls[many]:.2f} times {few}", flush=True)
         if given.kills:
-            killed(program, folder, given.kills, walls[-1], random.Random(given.seed))
+            killed(program, folder, given.kills, min(walls.values()), random.Random(given.seed))
 
 
 main()

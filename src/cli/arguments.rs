@@ -2,6 +2,7 @@
 use super::bench_detector::BenchDetectorArguments;
 use super::calibrate::CalibrateArguments;
 use super::commission::CommissionArguments;
+use super::compile::CompileArguments;
 use super::completions::CompletionsArguments;
 use super::estimate::EstimateArguments;
 use super::fleet::{FleetArguments, without_single_runs};
@@ -50,6 +51,7 @@ Examples:
   cylwatch monitor nitrogen-20l run.csv -o rows.csv --plot monitor.svg
   cylwatch fleet logs/ --vessels fleet.csv -o fleet
   cylwatch commission nitrogen-20l -o thresholds.json
+  cylwatch compile nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 -o cylinder.bin
   cylwatch inspection nitrogen-20l week.csv --fill-pressure-bar 200 --fill-temperature-degc 15
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
@@ -77,6 +79,8 @@ pub(super) enum Command {
     Fleet(Box<FleetArguments>),
     /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; twenty minutes.
     Commission(Box<CommissionArguments>),
+    /// Compile a cylinder into bytes for a controller, which reads no files.
+    Compile(Box<CompileArguments>),
     /// Judge the loss of pressure adjusted for temperature since the fill, as ISO 14520 words it: pass, refill or cannot be told.
     Inspection(Box<InspectionArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.

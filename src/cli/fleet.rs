@@ -12,11 +12,13 @@ mod plan;
 mod record;
 mod results;
 mod run;
+mod tally;
 mod vessels;
 
 pub(super) use arguments::{FleetArguments, without_single_runs};
 pub use kept::FleetOutcome;
 pub(super) use kept::kept;
+pub use tally::FleetProgress;
 
 use super::input::Inputs;
 use super::interrupt;
@@ -26,7 +28,7 @@ use super::progress::Progress;
 use crate::detector::monitor::Outcome;
 use crate::log::{LogError, LogOptions};
 use crate::report::fleet::{Cylinder, Fault, report, sort_by_urgency};
-use crate::report::{Input, Provenance, number};
+use crate::report::{Input, Provenance};
 use anyhow::{Context, bail};
 use arguments::TableFormat;
 use folder::Folder;
@@ -40,8 +42,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::time::Instant;
+use tally::Tally;
 use vessels::Vessels;
 
 /// Tells whether a run is to end.
@@ -61,7 +62,8 @@ struct Fleeted {
 pub(super) fn run(arguments: FleetArguments, messages: &Messages) -> anyhow::Result<ExitCode> {
     interrupt::listen(|| {})?;
     let command = command_line_without("--threads");
-    let done = match monitored(&arguments, &command, Arc::new(interrupt::has_come), messages) {
+    let (stop, tally): (Stop, _) = (Arc::new(interrupt::has_come), Tally::default());
+    let done = match monitored(&arguments, &command, (stop, &tally), messages) {
         Err(error) if interrupt::has_come() && is_stopped(&error) => {
             messages.say(&format!("{error:#}"));
             return Ok(ExitCode::from(interrupt::CODE as u8));
@@ -82,7 +84,7 @@ fn is_stopped(error: &anyhow::Error) -> bool {
 fn monitored(
     arguments: &FleetArguments,
     command: &str,
-    stop: Stop,
+    (stop, tally): (Stop, &Tally),
     messages: &Messages,
 ) -> anyhow::Result<Fleeted> {
     let inputs = Inputs::of_command(command.to_owned());
@@ -113,7 +115,7 @@ fn monitored(
     }
     let (hashes, columns, changes) = (&hashes, &found.columns, Changes::default());
     let fleet = Fleet { arguments, folder: &folder, command, hashes, columns, changes, stop };
-    let done = pool.install(|| all(&fleet, &jobs, messages))?;
+    let done = pool.install(|| all(&fleet, &jobs, tally, messages))?;
     let finished = done.iter().flatten().count();
     if finished < jobs.len() {
         let at =
@@ -211,22 +213,26 @@ fn hashes(vessels: &Vessels, inputs: &Inputs) -> anyhow::Result<BTreeMap<String,
 }
 
 /// Does all cylinders, in their order; `None`: a signal came first.
-fn all(fleet: &Fleet<'_>, jobs: &[Job<'_>], messages: &Messages) -> anyhow::Result<Vec<Option<Done>>> {
+fn all(
+    fleet: &Fleet<'_>,
+    jobs: &[Job<'_>],
+    tally: &Tally,
+    messages: &Messages,
+) -> anyhow::Result<Vec<Option<Done>>> {
     let bytes = |job: &Job<'_>| -> u64 {
         job.logs.files.iter().filter_map(|file| file.metadata().ok()).map(|found| found.len()).sum()
     };
-    let progress = Progress::of_bytes(messages, jobs.iter().map(bytes).sum());
-    let (count, rows, began) = (AtomicUsize::new(0), AtomicU64::new(0), Instant::now());
+    let all = jobs.iter().map(bytes).sum();
+    let progress = Progress::of_bytes(messages, all);
+    tally.begin(jobs.len(), all);
     jobs.par_iter()
         .with_max_len(1)
         .map(|job| {
             let done = fleet.done(job)?;
             if let Some(done) = &done {
-                let so_far = rows.fetch_add(done.new_rows, Ordering::Relaxed) + done.new_rows;
-                let number_done = count.fetch_add(1, Ordering::Relaxed) + 1;
-                let rate = so_far as f64 / began.elapsed().as_secs_f64().max(1e-3);
-                let words = format!("{number_done} of {} cylinders, {} rows/s", jobs.len(), number(rate, 2));
-                progress.advance(bytes(job), words);
+                let bytes = bytes(job);
+                tally.add(bytes, done.new_rows);
+                progress.advance(bytes, tally.so_far().map(|so_far| so_far.to_string()).unwrap_or_default());
             }
             Ok(done)
         })

@@ -1,4 +1,5 @@
 //! A program that calls the commands instead of a shell ([`crate::run`]): what it brings in place of files, and what it takes.
+use super::fleet::FleetProgress;
 use crate::log::MemoryLog;
 use crate::report::{Provenance, Report, Table};
 use serde_json::Value;
@@ -7,6 +8,8 @@ use std::rc::Rc;
 
 /// Whether a run is to end.
 type Stop = Rc<RefCell<dyn FnMut() -> bool>>;
+/// Takes how far a run is.
+type Told = RefCell<Box<dyn FnMut(FleetProgress)>>;
 
 /// The caller wanted the run to end.
 #[derive(Debug, thiserror::Error)]
@@ -24,12 +27,21 @@ pub(crate) struct Host {
     pub logs: RefCell<Vec<MemoryLog>>,
     /// Asked now and then.
     pub stop: Option<Stop>,
+    /// Told now and then.
+    pub progress: Option<Told>,
 }
 
 impl Host {
     /// Whether the caller wants the run to end.
     pub(super) fn is_stopped(&self) -> bool {
         self.stop.as_ref().is_some_and(|stop| stop.borrow_mut()())
+    }
+
+    /// Tells the caller how far the run is.
+    pub(super) fn tell(&self, so_far: FleetProgress) {
+        if let Some(progress) = &self.progress {
+            progress.borrow_mut()(so_far);
+        }
     }
 
     /// A document of the call.

@@ -9,6 +9,7 @@ mod beside;
 mod calibrate;
 mod call;
 mod commission;
+mod compile;
 mod completions;
 mod estimate;
 mod fill;
@@ -47,7 +48,7 @@ use arguments::{Arguments, Command};
 pub(crate) use call::{called, estimate_steps, fleet_of, monitor_steps, properties_of};
 use clap::FromArgMatches;
 pub(crate) use estimate::Steps as EstimateSteps;
-pub use fleet::FleetOutcome;
+pub use fleet::{FleetOutcome, FleetProgress};
 pub use host::Outcome;
 pub(crate) use host::{Host, Stopped};
 use message::Messages;
@@ -86,6 +87,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Estimate(arguments) => estimate::run(*arguments, messages),
         Command::Inspect(arguments) => inspect::run(arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
+        Command::Compile(arguments) => compile::run(*arguments, messages),
         Command::Commission(arguments) => commission::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),

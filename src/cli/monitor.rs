@@ -34,6 +34,7 @@ use announced::Announced;
 pub(super) use arguments::{CylinderArguments, MonitorArguments};
 pub(super) use course::Course;
 pub use course::Told;
+pub(super) use engine::compiled;
 pub(super) use options::{Options, Places};
 pub use steps::RowsWanted;
 pub(crate) use steps::Steps;

@@ -155,7 +155,7 @@ pub(super) fn inputs(documents: &[(String, String)], log: Option<MemoryLog>) -> 
         command: "a stepping object".to_owned(),
         documents: documents.to_vec(),
         logs: RefCell::new(log.into_iter().collect()),
-        stop: None,
+        ..Host::default()
     })
 }
 
@@ -201,7 +201,7 @@ fn zone(time: &StepTime) -> anyhow::Result<Option<Zone>> {
 
 /// Bytes of a state, with a checksum.
 pub(super) fn encoded(state: &impl Serialize) -> anyhow::Result<Vec<u8>> {
-    let content = postcard::to_stdvec(state).context("the state cannot be put into bytes")?;
+    let content = postcard::to_allocvec(state).context("the state cannot be put into bytes")?;
     let sum = Input::of("", &content).sha256;
     Ok([MARK, sum.as_bytes(), &content].concat())
 }

@@ -32,7 +32,7 @@ pub use error::RunError;
 pub use steps::{MonitorSteps, ObserverSteps, RowsWanted, StepTime, Told};
 
 use crate::cli::{self, Host, called, properties_of};
-pub use crate::cli::{FleetOutcome, Outcome};
+pub use crate::cli::{FleetOutcome, FleetProgress, Outcome};
 use crate::report::{Page, Table};
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -143,6 +143,13 @@ impl Call {
     #[must_use]
     pub fn stopped_by(mut self, stop: impl FnMut() -> bool + 'static) -> Self {
         self.host.stop = Some(Rc::new(RefCell::new(stop)));
+        self
+    }
+
+    /// With somebody who is told how far a [`fleet`] is, each time when cylinders have been done, at most every 50 ms.
+    #[must_use]
+    pub fn progress(mut self, progress: impl FnMut(FleetProgress) + 'static) -> Self {
+        self.host.progress = Some(RefCell::new(Box::new(progress)));
         self
     }
 

@@ -9,6 +9,7 @@ mod browser;
 mod calibrate;
 mod calls;
 mod commission;
+mod compile;
 mod estimate;
 mod examples;
 mod files;

@@ -5,18 +5,24 @@ use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 
-/// A signal that came during a run, as the exception that Python made of it.
+/// A signal that came during a run, as the exception that Python made of it, or an exception of what the run called.
 #[derive(Clone, Default)]
 pub(crate) struct Signal(Arc<Mutex<Option<PyErr>>>);
 
 impl Signal {
     /// Whether one has come; asks Python for it.
     pub(crate) fn has_come(&self) -> bool {
-        let Err(error) = Python::attach(|py| py.check_signals()) else { return false };
-        if let Ok(mut kept) = self.0.lock() {
-            *kept = Some(error);
+        if let Err(error) = Python::attach(|py| py.check_signals()) {
+            self.keep(error);
         }
-        true
+        self.0.lock().is_ok_and(|kept| kept.is_some())
+    }
+
+    /// Ends the run with an exception of what it called.
+    pub(crate) fn keep(&self, error: PyErr) {
+        if let Ok(mut kept) = self.0.lock() {
+            kept.get_or_insert(error);
+        }
     }
 
     fn take(&self) -> Option<PyErr> {

@@ -2,9 +2,9 @@
 use crate::border::{self, Signal};
 use crate::rows::Rows;
 use crate::{arguments, error};
-use cylwatch::run::{self, Call};
+use cylwatch::run::{self, Call, FleetProgress};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict};
 use std::path::PathBuf;
 
 /// What a run over a fleet comes to: tables of cylinders, events and errors.
@@ -19,11 +19,12 @@ pub(crate) struct Fleet {
 
 /// Monitors many cylinders on all cores, as `cylwatch fleet` does.
 #[pyfunction]
-#[pyo3(signature = (logs, output, **options))]
+#[pyo3(signature = (logs, output, *, progress=None, **options))]
 pub(crate) fn fleet(
     py: Python<'_>,
     logs: PathBuf,
     output: PathBuf,
+    progress: Option<&Bound<'_, PyAny>>,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Fleet> {
     let given = arguments::options(options)?;
@@ -33,9 +34,15 @@ pub(crate) fn fleet(
         return Err(error::refused(py, &message));
     }
     let signal = Signal::default();
-    let asked = signal.clone();
+    let (asked, failed) = (signal.clone(), signal.clone());
+    let told = progress.map(told).transpose()?.flatten();
     let outcome = border::detached(py, &signal, move || {
-        let call = Call::of_fleet(&logs, &output).stopped_by(move || asked.has_come());
+        let mut call = Call::of_fleet(&logs, &output).stopped_by(move || asked.has_come());
+        if let Some(told) = told {
+            call = call.progress(move |so_far| {
+                Python::attach(|py| tell(told.bind(py), so_far).unwrap_or_else(|error| failed.keep(error)));
+            });
+        }
         let options = given.options.iter();
         run::fleet(options.fold(call, |call, (name, value)| call.option(name, value.as_deref())))
     })?;
@@ -47,6 +54,27 @@ pub(crate) fn fleet(
         exit_code: outcome.exit_code,
         page: outcome.page,
     })
+}
+
+/// Who is told how far the run is: a callable, or `print` to stderr; `None`: nobody.
+fn told(progress: &Bound<'_, PyAny>) -> PyResult<Option<Py<PyAny>>> {
+    let py = progress.py();
+    if let Ok(switch) = progress.cast::<PyBool>() {
+        return switch
+            .is_true()
+            .then(|| Ok(py.import("cylwatch._progress")?.getattr("show")?.unbind()))
+            .transpose();
+    }
+    if !progress.is_callable() {
+        let message = format!("progress is of type {}: give True or a callable", progress.get_type().name()?);
+        return Err(error::refused(py, &message));
+    }
+    Ok(Some(progress.clone().unbind()))
+}
+
+fn tell(told: &Bound<'_, PyAny>, so_far: FleetProgress) -> PyResult<()> {
+    let FleetProgress { done, cylinders, rows_per_s, left_s } = so_far;
+    told.call1((done, cylinders, rows_per_s, left_s)).map(|_| ())
 }
 
 #[pymethods]

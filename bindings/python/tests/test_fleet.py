@@ -101,6 +101,21 @@ def test_ctrl_c_ends_a_run_and_the_same_call_does_the_rest(logs, leak):
     assert len(cw.fleet("logs", "out", vessel=VESSEL)) == 40
 
 
+def test_progress_counts_the_cylinders_and_is_shown(logs, capfd):
+    seen = []
+    cw.fleet("logs", "out", vessels="fleet.csv", progress=lambda *so_far: seen.append(so_far))
+    done, cylinders, rows_per_s, left_s = seen[-1]
+    assert (done, cylinders, left_s) == (4, 4, 0.0) and rows_per_s > 0
+    assert [so_far[0] for so_far in seen] == sorted({so_far[0] for so_far in seen})
+    assert capfd.readouterr().err == ""
+    cw.fleet("logs", "again", vessels="fleet.csv", progress=True)
+    assert "\r4 of 4 cylinders, " in capfd.readouterr().err
+    with pytest.raises(ZeroDivisionError):
+        cw.fleet("logs", "third", vessels="fleet.csv", progress=lambda *so_far: 1 / 0)
+    with pytest.raises(cw.CylwatchError, match="give True or a callable"):
+        cw.fleet("logs", "fourth", vessels="fleet.csv", progress=3)
+
+
 def test_other_threads_run_meanwhile(logs, leak):
     long_logs(leak, cylinders=8)
     assert turns_during(lambda: cw.fleet("logs", "out", vessel=VESSEL, threads=1)) > 20

@@ -47,9 +47,9 @@ pub enum DetectorError {
         /// What stands against it.
         reason: &'static str,
     },
-    /// A state that cannot be continued from.
+    /// Bytes that cannot be used.
     #[error(transparent)]
-    State(#[from] crate::monitor::state::StateError),
+    Sealed(#[from] crate::sealed::SealError),
     /// The observer could not go on.
     #[error(transparent)]
     Observer(#[from] cylwatch_estimator::EstimatorError),

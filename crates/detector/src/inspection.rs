@@ -108,7 +108,7 @@ impl Criterion {
         let pressure = |mass: UncertainMass| self.pressure_pa(contents, mass);
         let ((now_pa, now_sd_pa), (filled_pa, filled_sd_pa)) = (pressure(now)?, pressure(filled)?);
         let loss = 1.0 - now_pa / filled_pa;
-        let loss_sd = (1.0 - loss) * (now_sd_pa / now_pa).hypot(filled_sd_pa / filled_pa);
+        let loss_sd = (1.0 - loss) * libm::hypot(now_sd_pa / now_pa, filled_sd_pa / filled_pa);
         let refill_probability = match loss_sd > 0.0 {
             true => normal_probability((loss - self.loss_limit) / loss_sd),
             false => f64::from(u8::from(loss > self.loss_limit)),
@@ -193,7 +193,7 @@ impl SingleReading {
         let mut sensors = vec![if in_air { thermometer.clone() } else { air.clone() }, gauge.clone()];
         sensors.extend((!in_air).then(|| thermometer.clone()));
         let mut observer = Observer::new(vessel, &sensors, &commissioning, &settings)?;
-        let looks = (rested_s / LOOK_S).ceil();
+        let looks = libm::ceil(rested_s / LOOK_S);
         let at_rest = [temperature_k, f64::NAN, f64::NAN];
         for look in 0..looks as u64 {
             observer.step(LOOK_S * look as f64, &at_rest[..sensors.len()])?;
@@ -212,13 +212,13 @@ impl SingleReading {
     ) -> Result<UncertainMass, DetectorError> {
         let Self { pressure_pa, temperature_k, .. } = *self;
         let away_k = if in_air { FROM_AIR_K } else { FROM_WALL_K };
-        let sd_k = away_k.hypot(thermometer.offset_sd());
+        let sd_k = libm::hypot(away_k, thermometer.offset_sd());
         let mass_kg = contents.mass_kg(pressure_pa, temperature_k)?;
         let of_temperature_kg = 0.5
             * (contents.mass_kg(pressure_pa, temperature_k - sd_k)?
                 - contents.mass_kg(pressure_pa, temperature_k + sd_k)?);
         let of_gauge_kg = contents.mass_kg(pressure_pa + gauge.offset_sd(), temperature_k)? - mass_kg;
-        Ok(UncertainMass { mass_kg, sd_kg: of_temperature_kg.hypot(of_gauge_kg) })
+        Ok(UncertainMass { mass_kg, sd_kg: libm::hypot(of_temperature_kg, of_gauge_kg) })
     }
 }
 

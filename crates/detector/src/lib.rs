@@ -24,11 +24,17 @@
 //! # Ok(())
 //! # }
 //! ```
+#![cfg_attr(not(any(feature = "presets", feature = "simd", test)), no_std)]
+#[macro_use]
+extern crate alloc;
+
+pub mod compiled;
 pub mod error;
 pub mod evidence;
 pub mod inspection;
 pub mod monitor;
 pub mod prognosis;
+pub mod sealed;
 mod units;
 
 pub use cylwatch_estimator as estimator;

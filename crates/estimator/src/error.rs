@@ -1,4 +1,5 @@
 //! Everything that can go wrong in this crate.
+use alloc::string::String;
 
 /// What went wrong, with the offending value, the bound and the remedy.
 #[derive(Debug, thiserror::Error)]

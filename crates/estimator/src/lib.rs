@@ -31,6 +31,10 @@
 //! # Ok(())
 //! # }
 //! ```
+#![cfg_attr(not(any(feature = "presets", feature = "simd", test)), no_std)]
+#[macro_use]
+extern crate alloc;
+
 #[cfg(feature = "design")]
 pub mod bound;
 #[cfg(feature = "design")]

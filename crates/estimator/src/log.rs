@@ -1,5 +1,7 @@
 //! Recorded readings: one row per time, any value may be missing.
 
+use alloc::string::String;
+use alloc::vec::Vec;
 pub use cylwatch_thermal::sensor::Quantity;
 
 /// One column of a log.

@@ -2,6 +2,7 @@
 //!
 //! A run of up to 64 numbers of one width has a byte for width and length before it. Zero takes no byte, a number of single precision four, one of which
 //! single precision has nothing but zeros in its last 16 bits ([`coarse`]) two, any other eight: little endian.
+use alloc::vec::Vec;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -100,7 +101,7 @@ mod tests {
     struct Saved(#[serde(with = "super")] Vec<f64>);
 
     fn bytes(values: &[f64]) -> Vec<u8> {
-        postcard::to_stdvec(&Saved(values.to_vec())).unwrap()
+        postcard::to_allocvec(&Saved(values.to_vec())).unwrap()
     }
 
     #[test]

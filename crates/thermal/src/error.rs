@@ -1,6 +1,9 @@
 //! Everything that can be wrong with the input of this crate, and what its numerics can refuse.
 #[cfg(feature = "files")]
 use crate::document::Problem;
+use alloc::boxed::Box;
+use alloc::string::String;
+use alloc::string::ToString;
 
 /// A number of a message without the digits that a change of units leaves: 126.192 and not 126.19200000000001.
 fn short(value: &f64) -> String {

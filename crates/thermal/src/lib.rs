@@ -30,13 +30,20 @@
 //! # Ok(())
 //! # }
 //! ```
+#![cfg_attr(not(any(feature = "files", test)), no_std)]
+#[macro_use]
+extern crate alloc;
+
+mod cache;
 #[cfg(feature = "files")]
 pub mod document;
 mod error;
 pub mod flow;
 pub mod fluid;
+mod lazy;
 #[cfg(feature = "simulate")]
 pub mod model;
+pub mod real;
 pub mod reduced;
 #[cfg(feature = "simulate")]
 pub mod scenario;

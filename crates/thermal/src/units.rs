@@ -4,6 +4,8 @@
 //! any unit of the same [`Dimension`] may stand there. The longest suffix wins, so that `film_w_m2_k` is a film
 //! coefficient and not a number of kelvins. A compound unit is numerator, then denominator (`density_kg_m3`).
 //! The conversion is `SI = factor * value + offset`; gauge pressure counts from 101325 Pa.
+use alloc::string::String;
+use alloc::vec::Vec;
 
 /// Standard atmosphere, Pa: zero of the gauge units.
 pub const ATMOSPHERE_PA: f64 = 101_325.0;

@@ -1,5 +1,6 @@
 //! The fleet for a program that calls it ([`crate::run::fleet`]): the same files, and the tables in memory.
-use super::{FleetArguments, monitored};
+use super::tally::Tally;
+use super::{FleetArguments, Stop, monitored};
 use crate::cli::beside::beside;
 use crate::cli::host::Host;
 use crate::cli::message::Messages;
@@ -25,20 +26,33 @@ pub struct FleetOutcome {
     pub provenance: Provenance,
 }
 
-/// Monitors the fleet for a caller, who is asked on his own thread whether the run is to end.
+/// Monitors the fleet for a caller, who is told on his own thread how far it is, and asked whether it is to end.
 pub(in crate::cli) fn kept(
     arguments: &FleetArguments,
     host: &Host,
     messages: &Messages,
 ) -> anyhow::Result<FleetOutcome> {
     let flag = Arc::new(AtomicBool::new(false));
-    let stop = {
+    let stop: Stop = {
         let flag = Arc::clone(&flag);
         Arc::new(move || flag.load(Ordering::Relaxed))
     };
-    let command = host.command.as_str();
-    let run = || monitored(arguments, command, stop, messages);
-    let done = beside(run, || _ = flag.fetch_or(host.is_stopped(), Ordering::Relaxed))?;
+    let (command, tally, mut told) = (host.command.as_str(), Tally::default(), None);
+    let mut tell = || {
+        let so_far = tally.so_far();
+        let count = so_far.map(|so_far| so_far.done);
+        if let Some(so_far) = so_far.filter(|_| told != count) {
+            told = count;
+            host.tell(so_far);
+        }
+    };
+    let run = || monitored(arguments, command, (stop, &tally), messages);
+    let attend = || {
+        tell();
+        flag.fetch_or(host.is_stopped(), Ordering::Relaxed);
+    };
+    let done = beside(run, attend)?;
+    tell();
     let [summary, events, errors] = done.results().tables(&done.folder).map(|(_, table)| table);
     let page = done.folder.file("page.html");
     let exit_code = done.exit_code()?;

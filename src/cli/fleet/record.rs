@@ -91,7 +91,7 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Option<T> {
 
 /// Writes a value with its hash.
 pub(super) fn write<T: Serialize>(value: &T, path: &Path) -> anyhow::Result<()> {
-    let content = postcard::to_stdvec(value).context("a record cannot be put into bytes")?;
+    let content = postcard::to_allocvec(value).context("a record cannot be put into bytes")?;
     let hash = Input::of("", &content).sha256;
     write_file(path, &[hash.as_bytes(), &content].concat())
 }

@@ -2,13 +2,15 @@
 use super::resume::refused;
 use super::state::{Refusal, State};
 use super::*;
+use crate::detector::compiled::CompiledCylinder;
 use crate::detector::monitor::alarm::AlarmSettings;
 use crate::detector::monitor::{Limits, Monitor, MonitorSettings};
 use crate::detector::prognosis::{Contents, ReactionSettings};
 use crate::estimator::log::Quantity;
+use crate::estimator::sensor::Sensor;
 use crate::report::monitor::OperatingLimits;
 use crate::thermal::units::{BAR_PA, QUOTED_K, ZERO_CELSIUS_K};
-use crate::thermal::vessel::Fill;
+use crate::thermal::vessel::{Fill, Vessel};
 
 /// A monitor and what a run must know beside it.
 pub(super) struct Engine {
@@ -59,6 +61,51 @@ fn check_limits(options: &Options, contents: &Contents, mass_kg: f64) -> anyhow:
             coldest_k - ZERO_CELSIUS_K
         )
     })
+}
+
+/// Pressure of the full cylinder at 15 °C, Pa, which limits are held against.
+fn full_pa(options: &Options, contents: &Contents, mass_kg: f64, messages: &Messages) -> anyhow::Result<f64> {
+    check_limits(options, contents, mass_kg)?;
+    let full_pa = contents.pressure_pa(mass_kg, QUOTED_K)?;
+    let limit_pa = options.limits.limit_pa;
+    if full_pa < limit_pa && !options.states_limit {
+        let [full, limit] = [full_pa, limit_pa].map(|pressure_pa| pressure_pa / BAR_PA);
+        messages.caution(&format!(
+            "the fill makes {full:.1} bar at 15 °C, below the usual limit of {limit:.0} bar: if this vessel has \
+             another one, state it with --limit-bar"
+        ));
+    }
+    Ok(full_pa)
+}
+
+/// A cylinder whose monitor begins with a fill that is stated, before there are rows. `typical` gives the sensors where no file does,
+/// from the vessel and the pressure of its fill at 15 °C, Pa.
+pub(in crate::cli) fn compiled(
+    options: &Options,
+    inputs: &Inputs,
+    fill: Fill,
+    typical: impl FnOnce(&Vessel, f64) -> anyhow::Result<Vec<Sensor>>,
+    messages: &Messages,
+) -> anyhow::Result<CompiledCylinder> {
+    let beginning = RunStart::find(options, inputs, messages)?;
+    let settings = settings(options, &beginning, options.fill.is_settled())?;
+    let vessel = beginning.vessel;
+    let learned = options.learned_in.as_deref();
+    let learned = learned.map(|path| start::learned(inputs, path, &vessel)).transpose()?;
+    let commissioning = options.fill.commissioning(fill, &vessel, QUOTED_K, 0.0)?;
+    let mass_kg = commissioning.mass_kg(&vessel, QUOTED_K)?;
+    let full_pa = full_pa(options, &Contents::of(&vessel), mass_kg, messages)?;
+    if let Some(commissioned) = &beginning.commissioned {
+        commissioned.cautions(full_pa).iter().for_each(|caution| messages.caution(caution));
+    }
+    let sensors = match options.sensors.as_deref() {
+        Some(path) => selection::read(inputs, path)?,
+        None => typical(&vessel, full_pa)?,
+    };
+    let cylinder = CompiledCylinder { vessel, sensors, commissioning, settings, learned };
+    // Whatever a controller would refuse is told here.
+    cylinder.monitor()?;
+    Ok(cylinder)
 }
 
 impl Engine {
@@ -118,21 +165,11 @@ impl Engine {
         {
             messages.caution(&format!("{}: {doubt}", begin()));
         }
-        check_limits(options, &contents, mass_kg)?;
+        let full_pa = full_pa(options, &contents, mass_kg, messages)?;
         let settings = settings(options, beginning, options.fill.is_settled())?;
-        let mut monitor = Monitor::new(vessel, &selection.sensors, &commissioning, &settings)?;
-        if let Some(learned) = learned {
-            monitor = monitor.with_learned(learned);
-        }
-        let full_pa = contents.pressure_pa(mass_kg, QUOTED_K)?;
-        let limit_pa = options.limits.limit_pa;
-        if full_pa < limit_pa && !options.states_limit {
-            let [full, limit] = [full_pa, limit_pa].map(|pressure_pa| pressure_pa / BAR_PA);
-            messages.caution(&format!(
-                "the fill makes {full:.1} bar at 15 °C, below the usual limit of {limit:.0} bar: if this vessel has \
-                 another one, state it with --limit-bar"
-            ));
-        }
+        let (vessel, sensors) = (vessel.clone(), selection.sensors.clone());
+        let cylinder = CompiledCylinder { vessel, sensors, commissioning, settings, learned };
+        let monitor = cylinder.monitor()?;
         let stated = options.source != FillSource::FirstPressure;
         Ok(Self { monitor, full_pa, settled: options.fill.is_settled(), stated, first })
     }

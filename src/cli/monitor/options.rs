@@ -13,7 +13,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Where the outputs of a run go.
+/// Where the outputs of a run go; nowhere by default.
+#[derive(Default)]
 pub(in crate::cli) struct Places {
     /// Rows; `None`: nowhere.
     pub data: Option<Target>,

@@ -110,7 +110,7 @@ pub(super) enum Refusal {
 impl State {
     /// The bytes of a file.
     pub(super) fn to_bytes(&self) -> anyhow::Result<Vec<u8>> {
-        let content = postcard::to_stdvec(self).context("the state cannot be put into bytes")?;
+        let content = postcard::to_allocvec(self).context("the state cannot be put into bytes")?;
         let head = head(VERSION, &content);
         Ok([head.as_bytes(), &content].concat())
     }

@@ -1,6 +1,6 @@
 """Types of cylwatch. Columns and options carry their units in their names; pressures are absolute unless ``_barg``."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from os import PathLike
 from pathlib import Path
@@ -139,12 +139,20 @@ class Fleet:
 
     def __len__(self) -> int: ...
 
-def fleet(logs: str | PathLike[str], output: str | PathLike[str], **options: Option) -> Fleet:
+def fleet(
+    logs: str | PathLike[str],
+    output: str | PathLike[str],
+    *,
+    progress: bool | Callable[[int, int, float, float | None], object] | None = None,
+    **options: Option,
+) -> Fleet:
     """Monitors many cylinders on all cores: ``cylwatch fleet``.
 
     logs: a folder of CSV or Parquet files, one for each cylinder, folders ``cylinder=NAME``, or files with a column ``cylinder``.
     output: the folder of the command, to the last byte. The same call resumes a run that was stopped or killed, and goes on from it
     when the logs have grown. Ctrl-C ends it within a thousand rows of a cylinder.
+    progress: True writes how far it is to stderr; a callable gets cylinders that are done, all cylinders, rows a second, seconds left
+    (None while no log is done), when cylinders have been done, at most every 50 ms. An exception of it ends the run.
 
     Options: ``vessels="fleet.csv"`` (a row for each cylinder) or ``vessel="nitrogen-20l"``, ``format="parquet"`` or ``"csv"``,
     ``rows=False``, ``threads``, ``go_on=False``, and those of ``monitor``; ``sensors``, ``commissioned``, ``learned_in`` as paths.

@@ -38,6 +38,7 @@ mod tail;
 mod thresholds;
 
 use cylwatch_estimator::observer::{LeakHypothesis, Observer, ObserverSettings, Onset};
+use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
 
 use crate::units::{DAY_S, HOUR_S};
@@ -182,17 +183,17 @@ impl Evidence {
     /// Learn by how much the rates of neighbouring onsets differ, from what no leak makes of them.
     fn compare(&mut self, observer: &Observer, time_s: f64, interval_s: f64) {
         let of_age = |wanted_s: f64| {
-            let away = |onset: &Onset| ((time_s - onset.since_s) / wanted_s).ln().abs();
+            let away = |onset: &Onset| libm::log((time_s - onset.since_s) / wanted_s).abs();
             let nearest = observer.onsets().min_by(|a, b| away(a).total_cmp(&away(b)));
-            nearest.filter(|onset| away(onset) < NEAR.ln())
+            nearest.filter(|onset| away(onset) < libm::log(NEAR))
         };
         let compared = COMPARED_S.map(of_age);
         for pair in compared.windows(2) {
             let [Some(young), Some(old)] = pair else { continue };
-            let variance = young.sd_kg_s.powi(2) - old.sd_kg_s.powi(2);
+            let variance = powi(young.sd_kg_s, 2) - powi(old.sd_kg_s, 2);
             let gained_kg_s = old.rate_kg_s - young.rate_kg_s;
             if variance > 0.0 && gained_kg_s > 0.0 {
-                self.usual.update(interval_s, gained_kg_s.powi(2) / variance);
+                self.usual.update(interval_s, powi(gained_kg_s, 2) / variance);
             }
         }
     }

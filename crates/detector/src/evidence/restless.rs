@@ -33,13 +33,13 @@ impl Restless {
     /// Take the square of a deviation that lasted so long, s.
     pub(crate) fn update(&mut self, interval_s: f64, square: f64) {
         self.seen_s = (self.seen_s + interval_s).min(MEMORY_S);
-        let gain = -(-interval_s / (self.seen_s + PRIOR_S).min(MEMORY_S)).exp_m1();
+        let gain = -libm::expm1(-interval_s / (self.seen_s + PRIOR_S).min(MEMORY_S));
         self.square += gain * (square.min(MOST * MOST * self.square) - self.square);
     }
 
     /// Standard deviation.
     pub(crate) fn sd(&self) -> f64 {
-        (self.square + self.always).sqrt()
+        libm::sqrt(self.square + self.always)
     }
 }
 

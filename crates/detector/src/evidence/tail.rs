@@ -50,8 +50,8 @@ impl Tail {
 
     /// The value that is exceeded once in a mean time, s; the level for times that are too short for the law.
     pub fn threshold(&self, mean_time_s: f64) -> f64 {
-        let log = (mean_time_s / self.interval_s).ln().max(0.0);
-        let excess = if self.shape == 0.0 { log } else { (self.shape * log).exp_m1() / self.shape };
+        let log = libm::log(mean_time_s / self.interval_s).max(0.0);
+        let excess = if self.shape == 0.0 { log } else { libm::expm1(self.shape * log) / self.shape };
         self.level + self.scale * excess
     }
 
@@ -60,11 +60,11 @@ impl Tail {
     pub(crate) fn mean_time_s(&self, value: f64) -> f64 {
         let excess = (value - self.level) / self.scale;
         if excess < 0.0 {
-            return self.interval_s * (value / self.level).max(0.0) * excess.exp();
+            return self.interval_s * (value / self.level).max(0.0) * libm::exp(excess);
         }
-        let log = if self.shape == 0.0 { excess } else { (self.shape * excess).ln_1p() / self.shape };
+        let log = if self.shape == 0.0 { excess } else { libm::log1p(self.shape * excess) / self.shape };
         // Beyond the end of a bounded tail there is no logarithm.
-        if log.is_nan() { f64::INFINITY } else { self.interval_s * log.exp() }
+        if log.is_nan() { f64::INFINITY } else { self.interval_s * libm::exp(log) }
     }
 }
 

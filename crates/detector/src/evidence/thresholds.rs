@@ -6,7 +6,7 @@
 //! and in a workshop, and its tails stand here. A third of all of them have gas in layers.
 //!
 //! `cargo run --release -p cylwatch-evaluation --example tails`, `cylwatch commission nitrogen-20l`
-use std::ops::RangeInclusive;
+use core::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
 //! What happened, once: each event has a name that stays the same however often and wherever the log is replayed.
+use alloc::string::String;
 use serde::{Deserialize, Serialize};
 
 use super::{Health, LeakFinding, Verdict};
@@ -81,7 +82,7 @@ pub enum EventKind {
 impl Event {
     /// An event with its name.
     pub fn new(time_s: f64, onset_s: f64, kind: EventKind) -> Self {
-        let id = format!("{}-{}", kind.name(), (onset_s * 1e3).round());
+        let id = format!("{}-{}", kind.name(), libm::round(onset_s * 1e3));
         Self { id, time_s, onset_s, kind }
     }
 }

@@ -1,4 +1,5 @@
 //! What is unmoved by a few outliers.
+use alloc::vec::Vec;
 
 /// Median, of an even number the upper one of the two in the middle; 0 of none.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {

@@ -34,7 +34,6 @@ mod output;
 pub mod readings;
 mod roles;
 pub mod settings;
-pub mod state;
 mod step;
 mod verdict;
 
@@ -42,6 +41,5 @@ pub use decision::{Decision, Known, KnownExchange, LIKELY, Outcome, decide};
 pub use event::{Event, EventKind};
 pub use output::{Health, Interval, LeakFinding, Outlook, Output};
 pub use settings::{Limits, MonitorSettings};
-pub use state::StateError;
 pub use step::Monitor;
 pub use verdict::{Reason, Verdict};

@@ -1,4 +1,5 @@
 //! What the monitor puts out with every sample. SI; an interval is one of 95 %.
+use alloc::vec::Vec;
 use cylwatch_estimator::observer::Estimate;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,7 @@
 //! What each sensor is for.
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::{Sensor, Site};
+use alloc::vec::Vec;
 
 /// Indices of sensors by what they tell of the cylinder.
 #[derive(Clone, Debug, PartialEq)]

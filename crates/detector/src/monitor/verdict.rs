@@ -1,5 +1,5 @@
 //! What the monitor says about the cylinder, and why.
-use std::fmt;
+use core::fmt;
 
 use serde::{Deserialize, Serialize};
 

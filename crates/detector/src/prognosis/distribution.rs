@@ -10,8 +10,10 @@
 //! probability mixes in what happens without one: the mass stays.
 //!
 //! Source: D. V. Hinkley, Biometrika 56 (1969) 635 (ratio); T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145 (root).
+use alloc::vec::Vec;
+use core::f64::consts::FRAC_1_SQRT_2;
+use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::quadrature::integrate;
 use super::{LossLaw, MassAndLeak};
@@ -116,9 +118,9 @@ impl Prognosis {
         if at_earliest >= 0.0 {
             return Passage::In(earliest_s);
         }
-        let excess = |ln_s: f64| self.probability_within(ln_s.exp()) - probability;
-        let ends = [(earliest_s.ln(), at_earliest), (horizon_s.ln(), at_horizon)];
-        Passage::In(root(excess, ends).exp())
+        let excess = |ln_s: f64| self.probability_within(libm::exp(ln_s)) - probability;
+        let ends = [(libm::log(earliest_s), at_earliest), (libm::log(horizon_s), at_horizon)];
+        Passage::In(libm::exp(root(excess, ends)))
     }
 
     /// 5, 50 and 95 % quantile.
@@ -149,7 +151,7 @@ impl Prognosis {
             return 1.0;
         }
         let tail = |rate: f64| ln_upper_tail((rate - leak_kg_s) / leak_sd_kg_s);
-        (tail(needed_kg_s) - tail(0.0)).exp()
+        libm::exp(tail(needed_kg_s) - tail(0.0))
     }
 
     /// The integral over the rate in standard deviations, `z = (r - E[r])/sd[r]`.
@@ -157,17 +159,17 @@ impl Prognosis {
         let MassAndLeak { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, correlation } = self.state;
         let no_leak = -leak_kg_s / leak_sd_kg_s;
         let mode = no_leak.max(0.0);
-        let (low, high) = (no_leak.max(-NEGLIGIBLE.sqrt()), (mode * mode + NEGLIGIBLE).sqrt());
-        let sd_kg = mass_sd_kg * ((1.0 - correlation) * (1.0 + correlation)).sqrt();
+        let (low, high) = (no_leak.max(-libm::sqrt(NEGLIGIBLE)), libm::sqrt(mode * mode + NEGLIGIBLE));
+        let sd_kg = mass_sd_kg * libm::sqrt((1.0 - correlation) * (1.0 + correlation));
         // How far the mass that is at the limit by then lies above the mass to be expected with this rate.
         let above_kg = |z: f64| {
             let rate_kg_s = (leak_kg_s + leak_sd_kg_s * z).max(0.0);
             let needed_kg = self.law.mass_that_reaches_kg(self.limit_kg, rate_kg_s, time_s);
             needed_kg - mass_kg - correlation * mass_sd_kg * z
         };
-        let integrand = |z: f64| (-0.5 * (z - mode) * (z + mode)).exp() * below(0.0, sd_kg, above_kg(z));
+        let integrand = |z: f64| libm::exp(-0.5 * (z - mode) * (z + mode)) * below(0.0, sd_kg, above_kg(z));
         // P(r >= 0) on the scale of the density above.
-        let all = (ln_upper_tail(no_leak) + 0.5 * mode * mode).exp() * std::f64::consts::TAU.sqrt();
+        let all = libm::exp(ln_upper_tail(no_leak) + 0.5 * mode * mode) * libm::sqrt(core::f64::consts::TAU);
         let ends = steps(above_kg, sd_kg, (low, high));
         let panel = |ends: &[f64]| integrate(&integrand, ends[0], ends[1], TOLERANCE * all);
         ends.windows(2).map(panel).sum::<f64>() / all
@@ -185,7 +187,7 @@ fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Vec<
         }
     }
     ends.retain(|end| (low..=high).contains(end));
-    ends.sort_by(f64::total_cmp);
+    ends.sort_unstable_by(f64::total_cmp);
     ends.dedup();
     ends
 }
@@ -226,7 +228,7 @@ fn crossing(
 
 /// Distribution function of the standard normal distribution.
 pub(crate) fn normal_probability(x: f64) -> f64 {
-    Normal::standard().cdf(x)
+    0.5 * libm::erfc(-FRAC_1_SQRT_2 * x)
 }
 
 /// `P(x <= bound)` of a normal `x`, whose standard deviation may be zero.
@@ -237,10 +239,10 @@ fn below(mean: f64, sd: f64, bound: f64) -> f64 {
 /// `ln P(x > z)` of a standard normal `x`; in the tail by the continued fraction of Mills' ratio.
 fn ln_upper_tail(z: f64) -> f64 {
     if z < 5.0 {
-        return normal_probability(-z).ln();
+        return libm::log(normal_probability(-z));
     }
     let mills = (1..80).rev().fold(z, |fraction, n| z + f64::from(n) / fraction);
-    -0.5 * (z * z + std::f64::consts::TAU.ln()) - mills.ln()
+    -0.5 * (z * z + libm::log(core::f64::consts::TAU)) - libm::log(mills)
 }
 
 /// Root of a rising function between two points with a change of sign, by Chandrupatla's method: inverse quadratic where that is safe,
@@ -252,7 +254,7 @@ pub(crate) fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 
     for _ in 0..200 {
         let x = a.0 + share * (b.0 - a.0);
         let new = (x, f(x));
-        c = if (new.1 > 0.0) == (a.1 > 0.0) { a } else { std::mem::replace(&mut b, a) };
+        c = if (new.1 > 0.0) == (a.1 > 0.0) { a } else { core::mem::replace(&mut b, a) };
         a = new;
         let best = if a.1.abs() < b.1.abs() { a } else { b };
         let smallest = 1e-10 / (b.0 - a.0).abs();
@@ -260,7 +262,7 @@ pub(crate) fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 
             return best.0;
         }
         let (xi, phi) = ((a.0 - b.0) / (c.0 - b.0), (a.1 - b.1) / (c.1 - b.1));
-        let safe = phi * phi < xi && (1.0 - phi).powi(2) < 1.0 - xi;
+        let safe = phi * phi < xi && powi(1.0 - phi, 2) < 1.0 - xi;
         share = if safe {
             let across = (c.0 - a.0) / (b.0 - a.0);
             a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1) + across * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1)

@@ -11,10 +11,10 @@ pub fn lambert_w(x: f64) -> f64 {
         return x;
     }
     // Halley's steps on w - x exp(-w), where nothing overflows, from a start that is right to the second order at 0.
-    let mut w = x.ln_1p();
-    w *= 1.0 - w.ln_1p() / (2.0 + w);
+    let mut w = libm::log1p(x);
+    w *= 1.0 - libm::log1p(w) / (2.0 + w);
     for _ in 0..20 {
-        let excess = w - x * (-w).exp();
+        let excess = w - x * libm::exp(-w);
         let step = excess / (1.0 + w - 0.5 * (w + 2.0) * excess / (1.0 + w));
         w -= step;
         if step.abs() <= 1e-15 * w.abs() {

@@ -44,7 +44,7 @@ fn halve(f: &impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64, deepe
         return kronrod;
     }
     let middle = 0.5 * (low + high);
-    let tolerance = 0.5_f64.sqrt() * tolerance;
+    let tolerance = libm::sqrt(0.5_f64) * tolerance;
     halve(f, (low, middle), tolerance, deeper - 1) + halve(f, (middle, high), tolerance, deeper - 1)
 }
 

@@ -21,7 +21,7 @@ impl LossLaw {
         match self {
             Self::Linear => limit_kg + lost_kg,
             // m ln(m/limit) = r t.
-            Self::Choked => limit_kg * lambert_w(lost_kg / limit_kg).exp(),
+            Self::Choked => limit_kg * libm::exp(lambert_w(lost_kg / limit_kg)),
         }
     }
 
@@ -35,7 +35,7 @@ impl LossLaw {
         }
         match self {
             Self::Linear => (mass_kg - limit_kg) / leak_kg_s,
-            Self::Choked => mass_kg / leak_kg_s * (mass_kg / limit_kg).ln(),
+            Self::Choked => mass_kg / leak_kg_s * libm::log(mass_kg / limit_kg),
         }
     }
 }
@@ -75,7 +75,7 @@ impl MassAndLeak {
                 return refused(setting, value, "finite and not negative");
             }
         }
-        let (mass_sd_kg, leak_sd_kg_s) = (mass.sqrt(), leak.sqrt());
+        let (mass_sd_kg, leak_sd_kg_s) = (libm::sqrt(mass), libm::sqrt(leak));
         let scale = mass_sd_kg * leak_sd_kg_s;
         if !across.is_finite() || across.abs() > (1.0 + 1e-9) * scale {
             return refused("covariance[0][1]", across, "at most the product of the standard deviations");

@@ -393,7 +393,7 @@ proptest! {
         rows[half..].iter_mut().for_each(|row| row.0 += jump_s);
         let (mut straight, mut restored) = (intake(settings), intake(settings));
         for (stamp_s, readings) in &rows {
-            restored = postcard::from_bytes(&postcard::to_stdvec(&restored).unwrap()).unwrap();
+            restored = postcard::from_bytes(&postcard::to_allocvec(&restored).unwrap()).unwrap();
             let (a, b) = (straight.take(*stamp_s, readings).unwrap(), restored.take(*stamp_s, readings).unwrap());
             prop_assert_eq!(bits(&a.rows), bits(&b.rows));
             prop_assert_eq!(a.events, b.events);

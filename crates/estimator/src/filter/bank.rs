@@ -3,6 +3,7 @@
 //!
 //! Members with the extended filter move in a [`Pack`], in four lanes and mostly by one linearisation. Those with another
 //! engine move one by one.
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 

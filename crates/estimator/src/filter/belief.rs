@@ -12,6 +12,7 @@
 //!
 //! weigh what both say: `x = w x_member + (1 - w) x_free`, `P = w P_member + (1 - w) P_free + w (1 - w) (x_member - x_free)^2`.
 //! A member that is excluded begins anew from the freest one ([`Bank::replace`](super::Bank::replace)).
+use cylwatch_thermal::real::powi;
 
 /// Prior probability that a member is right.
 const PRIOR_PROBABILITY: f64 = 0.9999;
@@ -39,12 +40,12 @@ impl Belief {
     /// By the moments of one quantity of a member and of the freest one.
     pub fn of(member: Moments, free: Moments) -> Self {
         let variance = (free.1 - member.1).max(MIN_VARIANCE_RATIO * free.1);
-        Self { square: (free.0 - member.0).powi(2) / variance }
+        Self { square: powi(free.0 - member.0, 2) / variance }
     }
 
     /// Probability that the member is right.
     pub(crate) fn weight(self) -> f64 {
-        let odds = PRIOR_PROBABILITY / (1.0 - PRIOR_PROBABILITY) * (-0.5 * self.square).exp();
+        let odds = PRIOR_PROBABILITY / (1.0 - PRIOR_PROBABILITY) * libm::exp(-0.5 * self.square);
         odds / (1.0 + odds)
     }
 

@@ -1,5 +1,14 @@
-//! Dense linear algebra on column-major slices, without allocation.
+//! Dense linear algebra on column-major slices, without allocation. Sums run in the same order on every machine: products of
+//! nalgebra's large matrices do not.
 use super::kernel::{axpy, column, dot};
+use nalgebra::DMatrix;
+
+/// `A B`.
+pub(crate) fn product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut c = DMatrix::zeros(a.nrows(), b.ncols());
+    add_product(c.as_mut_slice(), 1.0, a.as_slice(), b.as_slice(), a.nrows());
+    c
+}
 
 /// `C <- C + c A B`; `A`: (rows, inner), `B`: (inner, columns), `C`: (rows, columns).
 pub(crate) fn add_product(c: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
@@ -105,7 +114,7 @@ pub(crate) fn factor_cholesky(a: &mut [f64], n: usize) -> bool {
         if left.is_nan() || left <= 0.0 {
             return false;
         }
-        r[j] = left.sqrt();
+        r[j] = libm::sqrt(left);
     }
     true
 }

@@ -6,6 +6,8 @@
 //! many columns as the rank, whose rows are then orthogonalised.
 use super::kernel::{axpy, column, column_mut, dot};
 use crate::EstimatorError;
+use alloc::vec::Vec;
+use cylwatch_thermal::real::powi;
 
 /// Relative difference of mirrored elements up to which a matrix counts as symmetric.
 const SYMMETRY: f64 = 1e-9;
@@ -73,7 +75,7 @@ fn factor_singular(p: &mut [f64], d: &mut [f64]) -> Result<(), EstimatorError> {
         let (before, row) = root[..(j + 1) * n].split_at_mut(j * n);
         let row = &row[..rank];
         let left = dot(row, row);
-        let negligible = (n as f64 * f64::EPSILON).powi(2) * p[j * n + j];
+        let negligible = powi(n as f64 * f64::EPSILON, 2) * p[j * n + j];
         let u = &mut column_mut(p, n, j)[..j];
         if left <= negligible {
             d[j] = 0.0;
@@ -92,7 +94,7 @@ fn factor_singular(p: &mut [f64], d: &mut [f64]) -> Result<(), EstimatorError> {
 /// `W` of `P = W W^T`: its rows, of which the first `rank` elements count, as columns of length n. `work`: (n).
 fn pivoted_root(p: &[f64], work: &mut [f64]) -> Result<(Vec<f64>, usize), EstimatorError> {
     let n = work.len();
-    let sd: Vec<f64> = (0..n).map(|i| p[i * n + i].max(0.0).sqrt()).collect();
+    let sd: Vec<f64> = (0..n).map(|i| libm::sqrt(p[i * n + i].max(0.0))).collect();
     let refuse = |state: usize, left: f64| {
         let variance = p[state * n + state];
         Err(EstimatorError::CovarianceIndefinite { state, variance, left })
@@ -120,7 +122,7 @@ fn pivoted_root(p: &[f64], work: &mut [f64]) -> Result<(Vec<f64>, usize), Estima
         }
         work.copy_from_slice(column(&correlation, n, largest));
         for (j, c) in correlation.chunks_exact_mut(n).enumerate() {
-            root[j * n + rank] = sd[j] * work[j] / pivot.sqrt();
+            root[j * n + rank] = sd[j] * work[j] / libm::sqrt(pivot);
             axpy(-work[j] / pivot, work, c);
         }
     }
@@ -135,7 +137,7 @@ fn symmetrise(p: &mut [f64], n: usize) -> Result<(), EstimatorError> {
     for j in 0..n {
         for i in 0..j {
             let (upper, lower) = (p[j * n + i], p[i * n + j]);
-            let scale = (p[i * n + i] * p[j * n + j]).abs().sqrt();
+            let scale = libm::sqrt((p[i * n + i] * p[j * n + j]).abs());
             if (upper - lower).abs() > SYMMETRY * scale.max(upper.abs()) {
                 return Err(EstimatorError::CovarianceNotSymmetric { row: i, column: j, upper, lower });
             }

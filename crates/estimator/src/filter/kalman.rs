@@ -9,6 +9,7 @@ use super::kernel::{axpy, dot};
 use super::state_space::{Linearisation, StateSpace};
 use super::ud::UdFactors;
 use crate::EstimatorError;
+use alloc::vec::Vec;
 
 /// Extended Kalman filter.
 #[derive(Clone, Debug)]

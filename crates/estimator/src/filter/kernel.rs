@@ -73,8 +73,8 @@ pub(crate) fn multiply_columns(a: &[f64], b: &[f64], high: usize, n: usize, c: &
     let mut first = 0;
     for group in &mut groups {
         let mut columns = group.chunks_exact_mut(high);
-        if let [Some(c0), Some(c1), Some(c2), Some(c3)] = std::array::from_fn(|_| columns.next()) {
-            let b = std::array::from_fn(|k| &column(b, high, first + k)[..n]);
+        if let [Some(c0), Some(c1), Some(c2), Some(c3)] = core::array::from_fn(|_| columns.next()) {
+            let b = core::array::from_fn(|k| &column(b, high, first + k)[..n]);
             multiply_group::<GROUP>(a, high, b, [c0, c1, c2, c3]);
         }
         first += GROUP;

@@ -1,6 +1,6 @@
 //! Four numbers that go through the same arithmetic side by side.
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use serde::{Deserialize, Serialize};
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Number of lanes.
 pub(super) const LANES: usize = 4;

@@ -1,6 +1,8 @@
 //! A plant linearised where it stands, read at regular intervals.
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 
+use super::dense::add_product_transposed;
 use super::plant::Plant;
 use super::state_space::Linearisation;
 
@@ -31,7 +33,9 @@ impl LinearSystem {
             plant.output(output, point, Some(column.as_mut_slice()))?;
         }
         let r = (0..outputs).map(|j| plant.noise_variance_at_interval(j, point, interval_s)).collect();
-        let q = &linear.g * DMatrix::from_diagonal(&linear.q) * linear.g.transpose();
+        let (leading, g) = (plant.leading(), linear.g.as_slice());
+        let mut q = DMatrix::zeros(leading, leading);
+        add_product_transposed(q.as_mut_slice(), g, |noise| linear.q[noise], g, leading, leading);
         Ok(Self { phi: linear.phi, q, h, r })
     }
 }

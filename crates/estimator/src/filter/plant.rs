@@ -1,5 +1,6 @@
 //! What a bank of filters asks of a process beyond its [`StateSpace`].
-use std::fmt::Debug;
+use alloc::vec::Vec;
+use core::fmt::Debug;
 
 use nalgebra::DMatrix;
 
@@ -23,14 +24,14 @@ impl SlowProcess {
     /// Factor on the departure from rest, and variance gained, over an interval, s.
     pub fn over(&self, dt_s: f64) -> (f64, f64) {
         let decay = self.decay_per_s * dt_s;
-        let span_s = if decay > 0.0 { -(-2.0 * decay).exp_m1() / (2.0 * self.decay_per_s) } else { dt_s };
-        ((-decay).exp(), self.intensity * span_s)
+        let span_s = if decay > 0.0 { -libm::expm1(-2.0 * decay) / (2.0 * self.decay_per_s) } else { dt_s };
+        (libm::exp(-decay), self.intensity * span_s)
     }
 }
 
 /// Number and length, s, of the steps that an interval is divided into.
 pub(crate) fn parts(dt_s: f64, longest_step_s: f64) -> (usize, f64) {
-    let parts = (dt_s / longest_step_s).ceil().max(1.0);
+    let parts = libm::ceil(dt_s / longest_step_s).max(1.0);
     (parts as usize, dt_s / parts)
 }
 

@@ -1,4 +1,5 @@
 //! Record of a filter's last step, as a smoother and sensitivities of its error need it.
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::add_product;
@@ -103,7 +104,7 @@ impl StepRecord {
         product[..m * m].fill(0.0);
         product[m * m..].copy_from_slice(constant);
         add_product(product, 1.0, moving, self.phi.as_slice(), m);
-        std::mem::swap(&mut self.product, &mut self.phi);
+        core::mem::swap(&mut self.product, &mut self.phi);
     }
 
     /// A reading was used: gradient and gain (n), innovation and its variance.

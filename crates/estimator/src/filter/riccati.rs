@@ -9,9 +9,10 @@
 //!
 //! Source: Chu, Fan, Lin and Wang 2004 (Anderson 1978).
 use crate::filter::simd::{Arch, Simd, WithSimd};
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::{factor_cholesky, factor_lu, solve_upper, solve_upper_transposed, symmetrise};
+use super::dense::{factor_cholesky, factor_lu, product, solve_upper, solve_upper_transposed, symmetrise};
 use super::kernel::{column, column_mut, multiply_columns, padded, subtract_columns};
 use crate::EstimatorError;
 
@@ -106,8 +107,8 @@ fn finish(
     doublings: usize,
 ) -> Result<SteadyState, EstimatorError> {
     let (n, outputs) = (predicted.nrows(), r.len());
-    let cross = h * &predicted;
-    let mut innovation = &cross * h.transpose();
+    let cross = product(h, &predicted);
+    let mut innovation = product(&cross, &h.transpose());
     (0..outputs).for_each(|j| innovation[(j, j)] += r[j]);
     symmetrise(innovation.as_mut_slice(), outputs);
     let mut root = innovation.clone();
@@ -120,9 +121,10 @@ fn finish(
         solve_upper(root.as_slice(), outputs, column);
     }
     let gain = transposed.transpose();
-    let left = DMatrix::identity(n, n) - &gain * h;
+    let left = DMatrix::identity(n, n) - product(&gain, h);
     let noise = DMatrix::from_fn(n, outputs, |i, j| gain[(i, j)] * r[j]);
-    let mut updated = &left * &predicted * left.transpose() + noise * &transposed;
+    let moved = product(&product(&left, &predicted), &left.transpose());
+    let mut updated = moved + product(&noise, &transposed);
     symmetrise(updated.as_mut_slice(), n);
     Ok(SteadyState { predicted, updated, gain, innovation, doublings })
 }
@@ -280,7 +282,7 @@ impl Doubling {
         multiply_columns(&self.product, &self.a_transposed, high, n, &mut self.product_2);
         add_symmetric(&mut self.g, &self.product_2, high, n);
         multiply_columns(&self.half, &self.a, high, n, &mut self.product);
-        std::mem::swap(&mut self.a, &mut self.product);
+        core::mem::swap(&mut self.a, &mut self.product);
         for j in 0..n {
             for i in 0..n {
                 self.a_transposed[i * high + j] = self.a[j * high + i];

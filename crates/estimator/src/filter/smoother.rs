@@ -10,6 +10,7 @@
 //! exceptions. On a nonlinear process this smooths about the filter's trajectory.
 //!
 //! Source: Bierman 1973; Bryson and Ho 1969.
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::dense::{add_product, symmetrise, transposed_product};
@@ -161,9 +162,9 @@ impl Backward {
             transposed_product(moved, phi, &rows[..m], m);
             axpy(1.0, &rows[m..], &mut moved[m..]);
         }
-        std::mem::swap(&mut self.information, &mut self.product_2);
+        core::mem::swap(&mut self.information, &mut self.product_2);
         transposed_product(&mut self.vector, phi, &self.adjoint[..m], m);
         axpy(1.0, &self.adjoint[m..], &mut self.vector[m..]);
-        std::mem::swap(&mut self.adjoint, &mut self.vector);
+        core::mem::swap(&mut self.adjoint, &mut self.vector);
     }
 }

@@ -32,7 +32,7 @@ impl Linearisation {
 /// Process and outputs of an estimation problem. Implementations reuse their own memory: nothing is allocated in a step.
 pub trait StateSpace {
     /// What can go wrong, e.g. a state outside the domain of the equations.
-    type Error: std::error::Error;
+    type Error: core::error::Error;
 
     /// Number of states `n`.
     fn states(&self) -> usize;

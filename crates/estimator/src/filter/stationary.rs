@@ -17,9 +17,11 @@
 //! always moves.
 //!
 //! Source: Schmidt 1966; Anderson and Moore 1979, chapter 4.
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 
-use super::dense::add_product;
+use super::dense::{add_product, product};
 use super::kernel::{axpy, dot};
 use super::plant::Plant;
 use super::state_space::Linearisation;
@@ -134,7 +136,7 @@ impl Stationary {
         let (moving, constant) = phi.as_slice().split_at(m * m);
         self.moved.as_mut_slice().copy_from_slice(constant);
         add_product(self.moved.as_mut_slice(), 1.0, moving, self.sensitivity.as_slice(), m);
-        std::mem::swap(&mut self.sensitivity, &mut self.moved);
+        core::mem::swap(&mut self.sensitivity, &mut self.moved);
     }
 
     /// Variance of an innovation with the gradient `h` (n) and noise `r`, with all that is uncertain.
@@ -315,9 +317,9 @@ impl Stationary {
             (Some(steady), Phase::Settled | Phase::Within(_)) => steady.covariance.clone(),
             _ => p.covariance(),
         };
-        let cross = &self.sensitivity * &self.constants;
+        let cross = product(&self.sensitivity, &self.constants);
         let mut leading = covariance.view_mut((0, 0), (m, m));
-        leading += &cross * self.sensitivity.transpose();
+        leading += product(&cross, &self.sensitivity.transpose());
         covariance.view_mut((0, m), (m, count)).copy_from(&cross);
         covariance.view_mut((m, 0), (count, m)).copy_from(&cross.transpose());
         covariance.view_mut((m, m), (count, count)).copy_from(&self.constants);

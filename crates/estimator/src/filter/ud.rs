@@ -223,7 +223,7 @@ impl UdFactors {
         let explained = &mut column_mut(u, n, i)[..i];
         self.f.as_mut_slice()[..i].copy_from_slice(explained);
         explained.fill(0.0);
-        let d = std::mem::replace(&mut self.d[i], variance);
+        let d = core::mem::replace(&mut self.d[i], variance);
         self.add_leading(d, i);
     }
 }

@@ -6,7 +6,8 @@
 //! not depend on the registers that a machine has.
 //!
 //! Source: Bierman 1977 (chapters V, VI), Thornton 1976.
-use std::marker::PhantomData;
+use alloc::vec::Vec;
+use core::marker::PhantomData;
 
 use crate::filter::simd::{Arch, Simd, WithSimd};
 use nalgebra::DMatrix;
@@ -353,10 +354,10 @@ impl UdBank {
         // What state i explained in the states before it remains theirs.
         self.f.fill(Lanes::ZERO);
         for (f, above) in self.f.iter_mut().zip(&mut self.u[i * stride(self.n)..][..i]) {
-            f.0[lane] = std::mem::take(&mut above.0[lane]);
+            f.0[lane] = core::mem::take(&mut above.0[lane]);
         }
         let mut left = Lanes::ZERO;
-        left.0[lane] = std::mem::replace(&mut self.d[i].0[lane], variance);
+        left.0[lane] = core::mem::replace(&mut self.d[i].0[lane], variance);
         self.add_leading(left, i);
     }
 

@@ -12,6 +12,7 @@
 //! reading. A direction along which a point leaves the domain of the equations is linearised at the middle point.
 //!
 //! Source: Julier and Uhlmann 2004; statistical linear regression: Lefebvre, Bruyninckx and De Schutter 2002.
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 
 use super::state_space::{Linearisation, StateSpace};
@@ -108,7 +109,7 @@ impl SigmaPoints {
 
     /// Points of direction `j` about `x`; returns their distance in units of `u_j`, zero where nothing is in doubt.
     fn draw(&mut self, x: &[f64], p: &UdFactors, j: usize) -> f64 {
-        let step = (SPREAD_SQUARED * p.diagonal()[j]).sqrt();
+        let step = libm::sqrt(SPREAD_SQUARED * p.diagonal()[j]);
         self.plus.copy_from_slice(x);
         self.minus.copy_from_slice(x);
         if step > 0.0 {

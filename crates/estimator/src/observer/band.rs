@@ -17,6 +17,7 @@ use super::band_settings::BandSettings;
 use super::settings::ObserverSettings;
 use super::states::States;
 use crate::sensor::{ParameterKind, Sensor};
+use cylwatch_thermal::real::powi;
 
 /// The rule with its numbers for one cylinder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +38,10 @@ impl Band {
             .filter(|parameter| parameter.kind == ParameterKind::Offset)
             .map(|parameter| (parameter.sd * parameter.sd).recip())
             // A sum of nothing would be -0, and its inverse minus infinity.
-            .fold(0.0, std::ops::Add::add);
+            .fold(0.0, core::ops::Add::add);
         let BandSettings { overstated_k, model_k } = settings.band;
         Self {
-            film: states.inside.map(|state| (state, settings.ln_inside_film.prior_sd.powi(2))),
+            film: states.inside.map(|state| (state, powi(settings.ln_inside_film.prior_sd, 2))),
             overstated_k2: overstated_k * overstated_k,
             least_k2: certainty_per_k2.recip() + model_k * model_k,
         }

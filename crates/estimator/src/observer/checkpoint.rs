@@ -99,7 +99,7 @@ mod tests {
         let before = observer.snapshot();
         observer.begin_exchange_from(&checkpoint);
         let expected = go_on(&mut observer);
-        let bytes = postcard::to_stdvec(&checkpoint).unwrap();
+        let bytes = postcard::to_allocvec(&checkpoint).unwrap();
         assert!(bytes.len() < 1350, "{} bytes", bytes.len());
         observer.restore(&before);
         observer.begin_exchange_from(&postcard::from_bytes(&bytes).unwrap());

@@ -1,4 +1,5 @@
 //! What the observer keeps of time: samples, events and the sensors' faults.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::screen::Screen;

@@ -1,4 +1,6 @@
 //! What is known when the observer starts, and how it starts or starts again.
+use alloc::vec::Vec;
+use cylwatch_thermal::real::powi;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -110,7 +112,7 @@ impl Spread {
         };
         let each_k = match start {
             Start::Settled => SETTLED_SD_K,
-            Start::Anywhere => Commissioning::UNSETTLED_SD_K.hypot(apart_k.unwrap_or_default()),
+            Start::Anywhere => libm::hypot(Commissioning::UNSETTLED_SD_K, apart_k.unwrap_or_default()),
             Start::Again => AGAIN_SD_K,
         };
         Self { common_k, each_k }
@@ -245,7 +247,7 @@ impl Observer {
             let mut covariance = covariance.clone();
             covariance.row_mut(leak).fill(0.0);
             covariance.column_mut(leak).fill(0.0);
-            covariance[(leak, leak)] = hypothesis.rate.prior_sd.powi(2);
+            covariance[(leak, leak)] = powi(hypothesis.rate.prior_sd, 2);
             (*hypothesis, covariance)
         };
         self.cylinder.settings().bank.iter().map(prior).collect()

@@ -15,6 +15,8 @@ mod structure;
 mod transition;
 mod walks;
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 
 use super::settings::ObserverSettings;
@@ -244,7 +246,7 @@ impl Cylinder {
         for sensor in 0..self.sensors.len() {
             let Some(lagged) = self.states.lag[sensor] else { continue };
             let rate = self.sensors[sensor].lag_s().recip();
-            let mut gradient = std::mem::take(&mut self.work.gradient);
+            let mut gradient = core::mem::take(&mut self.work.gradient);
             let reading = self.static_reading(sensor, x, Some(&mut gradient));
             gradient[lagged] -= 1.0;
             let transition = &mut self.work.transition;

@@ -9,7 +9,8 @@
 //! | unscented | linearises statistically over the spread of the estimate | some twelve times as much |
 //! | stationary | constant gain; learns no constants | as much: no covariance moves, but the model's equations cost most |
 //! | moving horizon | best trajectory through a window of samples, inside constraints | some 250 times as much |
-use std::str::FromStr;
+use alloc::borrow::ToOwned;
+use core::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
 //! What the observer says after a sample.
+use cylwatch_thermal::real::powi;
 use cylwatch_thermal::units::QUOTED_K;
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +69,7 @@ impl Estimate {
     pub fn or(self, other: Self) -> Self {
         let between = |one: (f64, f64), other: (f64, f64)| {
             let (mean, variance) = mixture(0.5, (one.0, one.1 * one.1), (other.0, other.1 * other.1));
-            (mean, variance.sqrt())
+            (mean, libm::sqrt(variance))
         };
         let (mass_kg, mass_sd_kg) =
             between((self.mass_kg, self.mass_sd_kg), (other.mass_kg, other.mass_sd_kg));
@@ -124,11 +125,11 @@ impl Observer {
         let mut estimate = Estimate {
             time_s,
             gas_mean_k: gas.0,
-            gas_mean_sd_k: gas.1.sqrt(),
+            gas_mean_sd_k: libm::sqrt(gas.1),
             mass_kg: mass.0,
-            mass_sd_kg: mass.1.sqrt(),
+            mass_sd_kg: libm::sqrt(mass.1),
             leak_kg_s: leak.0,
-            leak_sd_kg_s: leak.1.sqrt(),
+            leak_sd_kg_s: libm::sqrt(leak.1),
             pressure_pa: self.pressure_sensor().map_or(f64::NAN, |sensor| readings[sensor]),
             pressure_expected_pa: f64::NAN,
             p15_pa: f64::NAN,
@@ -145,7 +146,7 @@ impl Observer {
     /// Variance of a leak rate that a slow member excludes and the readings do not, (kg/s)²: `min(r^2, 2 P_free/t^2)`, with what a leak
     /// can be, `r`, and the mass of the freest member, variance `P_free`, at both ends of the time `t` since the beginning or the last exchange of gas.
     fn unknown_leak_variance(&self, time_s: f64, free_variance_kg2: f64) -> f64 {
-        let largest = self.cylinder.settings().any_leak_sd_kg_s.powi(2);
+        let largest = powi(self.cylinder.settings().any_leak_sd_kg_s, 2);
         let elapsed_s = (time_s - self.clock.reference_due_s + REFERENCE_AFTER_S).max(0.0);
         // Not a number at the beginning without a mass, and infinite at once: then it is the largest.
         largest.min(2.0 * free_variance_kg2 / (elapsed_s * elapsed_s))

@@ -45,7 +45,7 @@ impl Observer {
         if let Some(state) = self.cylinder.state_map().offset_of(sensor, self.cylinder.sensors()) {
             self.bank.inflate(state, sd * sd);
             let loosened = &mut self.clock.loosened;
-            loosened[sensor] = loosened[sensor].hypot(sd);
+            loosened[sensor] = libm::hypot(loosened[sensor], sd);
             self.cylinder.set_loosened(loosened);
         }
     }

@@ -25,6 +25,7 @@
 //! losses (`world` of `cylwatch-evaluation`, seeds 9000 to 9009); other seeds judge.
 //!
 //! Source: Schmidt, Advances in Control Systems 3 (1966) 293; Woodbury, Junkins, AIAA 2010-7752.
+use cylwatch_thermal::real::powi;
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
@@ -75,20 +76,20 @@ impl Observer {
         let [(gas_mean_k, gas), (mass_kg, mass), (rate_kg_s, rate)] =
             [states.gas, states.mass, states.leak].map(|state| self.bank.moments(index, state));
         let part = self.cylinder.settings().flow_doubt.part;
-        let away_k = self.farthest_k(gas_mean_k).hypot(self.clock.moved_k);
-        let considered_k = self.clock.doubt * (part * away_k).hypot(self.clock.ambiguous_k);
-        let considered = (considered_k / gas_mean_k).powi(2);
+        let away_k = libm::hypot(self.farthest_k(gas_mean_k), self.clock.moved_k);
+        let considered_k = self.clock.doubt * libm::hypot(part * away_k, self.clock.ambiguous_k);
+        let considered = powi(considered_k / gas_mean_k, 2);
         let kg2 = mass_kg * mass_kg;
         let passing = (gas / (gas_mean_k * gas_mean_k)).min(mass / kg2);
         Some(Flow {
             mass_kg,
-            mass_sd_kg: (mass + kg2 * considered).sqrt(),
-            passing_sd_kg: (kg2 * (passing + considered)).sqrt(),
-            considered_sd_kg: (kg2 * considered).sqrt(),
+            mass_sd_kg: libm::sqrt(mass + kg2 * considered),
+            passing_sd_kg: libm::sqrt(kg2 * (passing + considered)),
+            considered_sd_kg: libm::sqrt(kg2 * considered),
             gas_mean_k,
-            gas_mean_sd_k: (gas + gas_mean_k * gas_mean_k * considered).sqrt(),
+            gas_mean_sd_k: libm::sqrt(gas + gas_mean_k * gas_mean_k * considered),
             rate_kg_s,
-            rate_sd_kg_s: rate.sqrt(),
+            rate_sd_kg_s: libm::sqrt(rate),
         })
     }
 
@@ -101,7 +102,7 @@ impl Observer {
         let gas = self.cylinder.state_map().gas;
         let FlowDoubt { part, memory_s } = self.cylinder.settings().flow_doubt;
         let moved_k = self.clock.moves_k.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let taken_on = -(-self.clock.interval_s / memory_s).exp_m1();
+        let taken_on = -libm::expm1(-self.clock.interval_s / memory_s);
         let doubt_k = part * (moved_k + taken_on * self.farthest_k(first.x[gas]));
         self.cylinder.static_reading(pressure, &first.x, Some(&mut self.reference_x))?;
         Ok(doubt_k * self.reference_x[gas].abs())
@@ -120,12 +121,12 @@ impl Observer {
     pub(super) fn remember(&mut self, time_s: f64, readings: &[f64]) {
         let Self { clock, cylinder, .. } = self;
         let since_s = clock.time_s.map_or(0.0, |last_s| time_s - last_s);
-        let fading = (-since_s / cylinder.settings().flow_doubt.memory_s).exp();
+        let fading = libm::exp(-since_s / cylinder.settings().flow_doubt.memory_s);
         clock.moved_k *= fading;
         clock.ambiguous_k *= fading;
         (clock.moves_k, clock.interval_s) = ([0.0, clock.moves_k[0]], since_s);
         for (sensor, &reading) in readings.iter().enumerate().filter(|(_, reading)| reading.is_finite()) {
-            let last = std::mem::replace(&mut clock.last_reading[sensor], reading);
+            let last = core::mem::replace(&mut clock.last_reading[sensor], reading);
             if cylinder.sensors()[sensor].is_on_surface() {
                 // Not a number before the first reading.
                 clock.moves_k[0] = clock.moves_k[0].max((reading - last).abs());

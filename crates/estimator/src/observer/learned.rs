@@ -1,4 +1,7 @@
 //! What an observer has learnt of a cylinder, to be saved and given to its successor.
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 

@@ -41,6 +41,8 @@ mod snapshot;
 pub mod states;
 mod surroundings;
 
+use alloc::vec::Vec;
+use cylwatch_thermal::real::powi;
 use nalgebra::DMatrix;
 
 use crate::EstimatorError;
@@ -210,7 +212,7 @@ impl Observer {
         if !time_s.is_finite() || last_s.is_some_and(|last| time_s < last) {
             return Err(EstimatorError::TimeBackwards { time_s, last_s: last_s.unwrap_or(f64::NAN) });
         }
-        let mut usable = std::mem::take(&mut self.usable);
+        let mut usable = core::mem::take(&mut self.usable);
         usable.copy_from_slice(readings);
         for (sensor, (reading, screen)) in usable.iter_mut().zip(&mut self.clock.screens).enumerate() {
             if screen.judge(*reading).is_some() {
@@ -353,7 +355,7 @@ impl Observer {
             let member = &mut self.bank.members[index];
             if !member.hypothesis.is_flowing() {
                 member.x[leak] = 0.0;
-                let rate = (leak, member.hypothesis.rate.prior_sd.powi(2));
+                let rate = (leak, powi(member.hypothesis.rate.prior_sd, 2));
                 self.bank.free(index, [rate].into_iter().chain(self.cylinder.freed_gas().iter().copied()));
             }
         }
@@ -387,9 +389,9 @@ impl Observer {
             let (mass_kg, mass_variance) = self.bank.moments(index, states.mass);
             Leak {
                 rate_kg_s,
-                sd_kg_s: rate_variance.sqrt(),
+                sd_kg_s: libm::sqrt(rate_variance),
                 mass_kg,
-                mass_sd_kg: mass_variance.sqrt(),
+                mass_sd_kg: libm::sqrt(mass_variance),
                 covariance_kg2_s: self.bank.covariance_of(index, states.mass, states.leak),
                 begun_anew: self.replaced[index],
             }
@@ -406,7 +408,7 @@ impl Observer {
             Some(flow) => Belief::blended(free, flow.mass()),
             None => free,
         };
-        Some((mass_kg, variance_kg2.sqrt()))
+        Some((mass_kg, libm::sqrt(variance_kg2)))
     }
 
     /// Mean and covariance of a member's state, in the order of [`states::States`]; `None` before the first sample or
@@ -444,7 +446,7 @@ impl Observer {
         self.bank.members.first()?;
         let states = self.cylinder.state_map();
         let covariance = self.bank.covariance(0);
-        Some(observability::given_constants(&covariance, states.mass, states.leading).sqrt())
+        Some(libm::sqrt(observability::given_constants(&covariance, states.mass, states.leading)))
     }
 }
 

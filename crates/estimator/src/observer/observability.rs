@@ -3,7 +3,9 @@
 //! The posterior covariance `P` is compared with the prior `P_0` in units of the prior: the eigenvectors of `P_0^-1/2 P P_0^-1/2` with
 //! eigenvalues near one are the combinations of states about which the data have said nothing. They are what no amount of
 //! further data of this kind will tell, e.g. a common offset of the temperature sensors against the mass.
-use std::iter;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::iter;
 
 use nalgebra::DMatrix;
 
@@ -44,7 +46,7 @@ impl Observability {
         let chosen: Vec<usize> =
             iter::once(states.mass).chain(states.constants()).filter(uncertain).collect();
         let k = chosen.len();
-        let sd0 = |i: usize| prior[(chosen[i], chosen[i])].sqrt();
+        let sd0 = |i: usize| libm::sqrt(prior[(chosen[i], chosen[i])]);
         let scaled = DMatrix::from_fn(k, k, |i, j| posterior[(chosen[i], chosen[j])] / (sd0(i) * sd0(j)));
         let name = |i: usize| states.names[chosen[i]].clone();
         let eigen = scaled.clone().symmetric_eigen();
@@ -67,13 +69,17 @@ impl Observability {
         let mut inseparable = Vec::new();
         for i in 0..k {
             for j in 0..i {
-                let correlation = scaled[(i, j)] / (scaled[(i, i)] * scaled[(j, j)]).sqrt();
+                let correlation = scaled[(i, j)] / libm::sqrt(scaled[(i, i)] * scaled[(j, j)]);
                 if correlation.abs() > NOT_SEPARATED {
                     inseparable.push((name(j), name(i), correlation));
                 }
             }
         }
-        Self { learnt: (0..k).map(|i| (name(i), scaled[(i, i)].sqrt())).collect(), undetermined, inseparable }
+        Self {
+            learnt: (0..k).map(|i| (name(i), libm::sqrt(scaled[(i, i)]))).collect(),
+            undetermined,
+            inseparable,
+        }
     }
 }
 
@@ -81,7 +87,7 @@ impl Observability {
 pub(super) fn given_constants(p: &DMatrix<f64>, state: usize, leading: usize) -> f64 {
     let constants: Vec<usize> = (leading..p.nrows()).filter(|&i| p[(i, i)] > 0.0).collect();
     let k = constants.len();
-    let scale: Vec<f64> = constants.iter().map(|&i| p[(i, i)].sqrt()).collect();
+    let scale: Vec<f64> = constants.iter().map(|&i| libm::sqrt(p[(i, i)])).collect();
     let block = DMatrix::from_fn(k, k, |i, j| p[(constants[i], constants[j])] / (scale[i] * scale[j]));
     let cross = nalgebra::DVector::from_fn(k, |i, _| p[(state, constants[i])] / scale[i]);
     let explained = block.svd(true, true).solve(&cross, 1e-12).map_or(0.0, |weights| weights.dot(&cross));

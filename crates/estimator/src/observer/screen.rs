@@ -57,7 +57,7 @@ struct Limits {
 impl Limits {
     fn of(sensor: &Sensor) -> Self {
         let (low, high) = sensor.usable_range();
-        let pull = STUCK_PULL_SD * sensor.noise_variance().sqrt();
+        let pull = STUCK_PULL_SD * libm::sqrt(sensor.noise_variance());
         Self { low, high, pull, half_step: 0.5 * sensor.resolution }
     }
 }

@@ -4,6 +4,7 @@
 //! estimate, not for the statistics of the innovations: model error is coloured, and a filter that treats it as
 //! white noise of its actual size trusts its parameters too much. So the noise of the outputs is stated too large, grows with
 //! the temperature differences that the reduced model resolves worst, and what is learnt fades.
+use alloc::vec::Vec;
 use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
 
@@ -34,12 +35,12 @@ impl Walk {
 
     /// A walk stated by the standard deviation it gains in an hour.
     pub fn per_sqrt_hour(prior_sd: f64, walk: f64) -> Self {
-        Self { prior_sd, per_sqrt_s: walk * PER_HOUR.sqrt(), memory_s: None }
+        Self { prior_sd, per_sqrt_s: walk * libm::sqrt(PER_HOUR), memory_s: None }
     }
 
     /// A quantity that is as uncertain for ever as its prior says, but stays about as it is for a memory, s.
     pub fn forgetting(prior_sd: f64, memory_s: f64) -> Self {
-        Self { prior_sd, per_sqrt_s: prior_sd * (2.0 / memory_s).sqrt(), memory_s: Some(memory_s) }
+        Self { prior_sd, per_sqrt_s: prior_sd * libm::sqrt(2.0 / memory_s), memory_s: Some(memory_s) }
     }
 
     /// Whether the quantity is known and constant, so that it needs no state.
@@ -50,7 +51,7 @@ impl Walk {
     /// Whether it never becomes more uncertain than its prior: a constant, or a walk whose memory holds it back.
     pub(super) fn stays_within_prior(&self) -> bool {
         const ROUNDING: f64 = 1e-9;
-        let lasting = |memory_s: f64| self.per_sqrt_s * (0.5 * memory_s).sqrt();
+        let lasting = |memory_s: f64| self.per_sqrt_s * libm::sqrt(0.5 * memory_s);
         self.per_sqrt_s == 0.0
             || self.memory_s.is_some_and(|m| lasting(m) <= self.prior_sd * (1.0 + ROUNDING))
     }
@@ -105,7 +106,7 @@ impl LeakHypothesis {
     /// The mass walks by so many grams in the square root of an hour; no leak rate.
     pub fn walking_mass(grams_per_sqrt_h: f64) -> Self {
         Self {
-            mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * PER_HOUR.sqrt(),
+            mass_walk_kg_per_sqrt_s: grams_per_sqrt_h * 1e-3 * libm::sqrt(PER_HOUR),
             ..Self::leaking(Walk::constant(0.0))
         }
     }
@@ -271,8 +272,8 @@ impl Default for ObserverSettings {
             wall_nodes: 2,
             film_w_m2_k: 14.0,
             longest_step_s: 60.0,
-            temperature_walk_k_per_sqrt_s: 2.0 * PER_HOUR.sqrt(),
-            gas_walk_k_per_sqrt_s: 2.0 * PER_HOUR.sqrt(),
+            temperature_walk_k_per_sqrt_s: 2.0 * libm::sqrt(PER_HOUR),
+            gas_walk_k_per_sqrt_s: 2.0 * libm::sqrt(PER_HOUR),
             air: Walk { prior_sd: 5.0, per_sqrt_s: 0.7, memory_s: None },
             air_rest_k: 283.15,
             ln_outside_film: Walk::forgetting(0.8, 2.0 * HOUR_S),
@@ -337,7 +338,7 @@ impl ObserverSettings {
         };
         // What forgets is as uncertain in the end as its prior says.
         let forgetting = |memory_s: Option<f64>| {
-            let stationary = memory_s.map_or(0.0, |memory_s| (2.0 / memory_s).sqrt());
+            let stationary = memory_s.map_or(0.0, |memory_s| libm::sqrt(2.0 / memory_s));
             walk(stationary * parameter.sd, memory_s)
         };
         match (parameter.kind, quantity) {

@@ -27,6 +27,7 @@
 //!
 //! Source: generalised likelihood ratio, A. S. Willsky, H. L. Jones, IEEE Trans. Autom. Control 21 (1976) 108; bounded weight, P. J. Huber, Ann. Math. Stat.
 //! 35 (1964) 73.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::Observer;
@@ -83,7 +84,7 @@ pub(super) struct Onsets {
 
 impl Sums {
     fn z(&self) -> f64 {
-        if self.information > 0.0 { self.score / self.information.sqrt() } else { 0.0 }
+        if self.information > 0.0 { self.score / libm::sqrt(self.information) } else { 0.0 }
     }
 
     fn rate(&self) -> f64 {
@@ -111,7 +112,7 @@ impl Onsets {
         self.sums.iter().filter(|sums| sums.weighted > 0.0).map(|sums| Onset {
             since_s: sums.since_s,
             rate_kg_s: sums.rate(),
-            sd_kg_s: sums.information.sqrt() / sums.weighted,
+            sd_kg_s: libm::sqrt(sums.information) / sums.weighted,
         })
     }
 
@@ -236,7 +237,7 @@ impl WithSimd for Follow<'_> {
         for sensor in (0..step.used.len()).filter(|&sensor| step.used[sensor]) {
             let (h, gain) = (column(step.h.as_slice(), n, sensor), column(step.gain.as_slice(), n, sensor));
             let (nu, s) = (step.innovation[sensor], step.variance[sensor]);
-            let weight = (BOUND * s.sqrt() / nu.abs()).min(1.0);
+            let weight = (BOUND * libm::sqrt(s) / nu.abs()).min(1.0);
             let expected = dot(h, &onsets.compensated);
             axpy(-expected, gain, &mut onsets.compensated);
             for (sums, response) in onsets.sums.iter_mut().zip(onsets.responses.chunks_mut(n)) {

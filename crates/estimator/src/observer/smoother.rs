@@ -11,7 +11,8 @@
 //!
 //! Where gas was exchanged, later samples say nothing about the mass before, and earlier ones nothing about that after. A
 //! restart of the estimate ends one record and begins another.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
 
 use super::engine::Engine;
 use super::{Estimate, Observer, Quality};
@@ -202,14 +203,14 @@ impl Smoother {
         let gas_variance_k2 = self.observer.band.stated_k2(gas_variance_k2, |state| learnt[(state, state)]);
         let mut estimate = Estimate {
             gas_mean_k,
-            gas_mean_sd_k: gas_variance_k2.sqrt(),
+            gas_mean_sd_k: libm::sqrt(gas_variance_k2),
             mass_kg,
-            mass_sd_kg: mass_variance_kg2.sqrt(),
+            mass_sd_kg: libm::sqrt(mass_variance_kg2),
             ..filtered
         };
         if !filtered.leak_kg_s.is_nan() {
             let (leak_kg_s, variance) = of(slow, leak);
-            (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (leak_kg_s, variance.sqrt());
+            (estimate.leak_kg_s, estimate.leak_sd_kg_s) = (leak_kg_s, libm::sqrt(variance));
         }
         self.observer.reference_x.copy_from_slice(first.x.as_slice());
         match self.observer.add_pressures(&mut estimate, reference_kg) {

@@ -6,7 +6,9 @@
 //! the change `s` of the outside film along the axis, and the departure `b_v` of the valve's part of the sun.
 //! What stands behind the double bar is constant but for slow walks ([`crate::filter::StateSpace::leading`]). A
 //! quantity that the settings declare known has no state.
-use std::ops::Range;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::sensor::{ParameterKind, Sensor};
 use crate::thermal::reduced::ReducedModel;

@@ -23,7 +23,8 @@
 //!
 //! Source: multiple-model estimation with pruning to one model, Bar-Shalom, Li, Kirubarajan, Estimation with Applications to
 //! Tracking and Navigation (2001), section 11.6.
-use std::f64::consts::FRAC_2_PI;
+use core::f64::consts::FRAC_2_PI;
+use cylwatch_thermal::real::powi;
 
 use super::Observer;
 use super::settings::AirStep;
@@ -53,7 +54,7 @@ impl Observer {
         }
         let wind: &[f64] =
             if self.cylinder.state_map().outside.is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
-        let prior = -2.0 * (-(-step.per_s * dt_s).exp_m1() / wind.len() as f64).ln();
+        let prior = -2.0 * libm::log(-libm::expm1(-step.per_s * dt_s) / wind.len() as f64);
         for (&change, explanation) in wind.iter().zip(&mut explanations[1..]) {
             self.bank.copy_from(&self.before);
             self.step_the_surroundings(step, way, change);
@@ -72,11 +73,11 @@ impl Observer {
             self.bank.copy_from(&self.likeliest);
             let (mut sum, mut square) = (0.0, 0.0);
             for (unlikeliness, gas_k) in explanations {
-                let likelihood = (0.5 * (least - unlikeliness)).exp();
+                let likelihood = libm::exp(0.5 * (least - unlikeliness));
                 sum += likelihood;
-                square += likelihood * (gas_k - self.gas_k()).powi(2);
+                square += likelihood * powi(gas_k - self.gas_k(), 2);
             }
-            self.clock.ambiguous_k = self.clock.ambiguous_k.max((square / sum).sqrt());
+            self.clock.ambiguous_k = self.clock.ambiguous_k.max(libm::sqrt(square / sum));
             return Ok(());
         }
         stays
@@ -92,7 +93,7 @@ impl Observer {
     fn step_the_surroundings(&mut self, step: AirStep, way: f64, wind: f64) {
         let states = self.cylinder.state_map();
         // Mean and variance of one half of a normal distribution.
-        self.bank.shift(states.air, way * FRAC_2_PI.sqrt() * step.air_k);
+        self.bank.shift(states.air, way * libm::sqrt(FRAC_2_PI) * step.air_k);
         self.bank.inflate(states.air, (1.0 - FRAC_2_PI) * step.air_k * step.air_k);
         if let Some(film) = states.outside {
             self.bank.shift(film, wind * step.ln_outside_film);
@@ -104,7 +105,7 @@ impl Observer {
     fn unlikeliness(&self, readings: &[f64]) -> f64 {
         let of =
             self.bank.members[0].innovations.iter().zip(readings).filter(|(_, reading)| reading.is_finite());
-        of.map(|(innovation, _)| innovation.nu * innovation.nu / innovation.s + innovation.s.ln()).sum()
+        of.map(|(innovation, _)| innovation.nu * innovation.nu / innovation.s + libm::log(innovation.s)).sum()
     }
 
     /// Side, 1 or -1, to which all thermometers on the surface deviate from what the first member expects: one by at least `by_sd` standard
@@ -115,7 +116,7 @@ impl Observer {
             if self.cylinder.sensors()[sensor].is_on_surface() {
                 let (nu, s) =
                     self.bank.innovation_of_first(&mut self.cylinder, &mut self.work, (sensor, reading))?;
-                let in_sd = nu / s.sqrt();
+                let in_sd = nu / libm::sqrt(s);
                 (least, most) = (least.min(in_sd), most.max(in_sd));
             }
         }

@@ -2,18 +2,21 @@
 #[cfg(feature = "design")]
 use crate::EstimatorError;
 use crate::log::Quantity;
+use alloc::string::String;
+use alloc::vec::Vec;
 #[cfg(feature = "design")]
 use cylwatch_thermal::sensor::SensorSpec;
 use cylwatch_thermal::sensor::{
     CorrelatedNoise, Exposure, MAX_PARAMETERS, MountedSensor, Parameter, ParameterKind, Prediction,
     SensorKind, Site,
 };
+use serde::{Deserialize, Serialize};
 
 /// Distance from an end of the range that counts as the end, relative to the range: what a logger rounds.
 const END_OF_RANGE: f64 = 1e-6;
 
 /// A sensor. Readings are in K or in Pa absolute, and so is everything here that has the unit of a reading.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensor {
     /// Name, that of its channel in a log.
     pub name: String,

@@ -5,8 +5,9 @@ use std::sync::OnceLock;
 use cylwatch_detector::DetectorError;
 use cylwatch_detector::evidence::{Tail, Tails};
 use cylwatch_detector::monitor::{
-    Event, EventKind, Health, Monitor, MonitorSettings, Output, Reason, StateError, Verdict,
+    Event, EventKind, Health, Monitor, MonitorSettings, Output, Reason, Verdict,
 };
+use cylwatch_detector::sealed::{Kind, SealError};
 use cylwatch_estimator::observer::Commissioning;
 use cylwatch_estimator::sensor::Sensor;
 use cylwatch_estimator::thermal::vessel::{Vessel, presets};
@@ -450,13 +451,13 @@ fn a_state_of_another_cylinder_is_refused_with_the_reason() {
     assert!(restore(&vessel(), &bytes).is_ok());
     if let Ok(other) = other {
         let refused = restore(&other, &bytes).unwrap_err();
-        assert!(matches!(refused, DetectorError::State(StateError::Foreign)), "{refused}");
+        assert!(matches!(refused, DetectorError::Sealed(SealError::Foreign(Kind::State))), "{refused}");
     }
     let mut renamed = vessel();
     renamed.volume.volume_m3 *= 1.001;
-    assert!(matches!(restore(&renamed, &bytes), Err(DetectorError::State(StateError::Foreign))));
+    assert!(matches!(restore(&renamed, &bytes), Err(DetectorError::Sealed(SealError::Foreign(Kind::State)))));
     let cut = restore(&vessel(), &bytes[..bytes.len() - 1]);
-    assert!(matches!(cut, Err(DetectorError::State(StateError::Cut { .. }))));
+    assert!(matches!(cut, Err(DetectorError::Sealed(SealError::Cut { .. }))));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::ThermalError;
 use crate::fluid::{Fluid, Real, State};
 #[cfg(feature = "simulate")]
 use crate::scenario::Series;
+use alloc::string::String;
 
 /// A flow with the times and conditions at which it runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,7 +182,7 @@ impl Opening {
         match *self {
             Self::Orifice { diameter_m, discharge_coefficient } => {
                 let flux = orifice::mass_flux_into(fluid, upstream, downstream_pa)?;
-                let area_m2 = 0.25 * std::f64::consts::PI * diameter_m * diameter_m;
+                let area_m2 = 0.25 * core::f64::consts::PI * diameter_m * diameter_m;
                 Ok(OpeningFlow {
                     mass_flow_kg_s: flux.mass_flux_kg_m2_s * (discharge_coefficient * area_m2),
                     choking_pressure_pa: flux.critical_pressure_pa,

@@ -9,8 +9,10 @@
 //! from tables where the exponent allows it (multiples of 1/8 from three square roots); Gaussian terms that are
 //! negligible are skipped. At a given temperature the power terms collapse into polynomials in `delta` ([`Isotherm`]).
 //! Arrays have a fixed size: nothing is allocated.
-use std::ops::Range;
-use std::sync::{LazyLock, OnceLock};
+use crate::lazy::Lazy;
+use alloc::vec::Vec;
+use core::ops::Range;
+use once_cell::race::OnceBox;
 
 use super::data::{ALL, FluidData, GaussianTerm, PowerTerm};
 use super::special::{departure, nonanalytic, power};
@@ -121,12 +123,12 @@ pub(super) struct Multiparameter {
     /// Neither terms about the critical point nor a departure function nor an overflow.
     plain: bool,
     /// Saturation at a few temperatures from the lowest to the highest that is resolved, found when one is asked for.
-    pub saturation: [OnceLock<Option<Saturation>>; SATURATIONS],
+    pub saturation: [OnceBox<Option<Saturation>>; SATURATIONS],
 }
 
 /// Prepared equations, in the order of the data.
-pub(crate) static PREPARED: LazyLock<Vec<Multiparameter>> =
-    LazyLock::new(|| ALL.iter().map(|data| Multiparameter::new(data)).collect());
+pub(crate) static PREPARED: Lazy<Vec<Multiparameter>> =
+    Lazy::new(|| ALL.iter().map(|data| Multiparameter::new(data)).collect());
 
 impl Multiparameter {
     pub(super) fn new(data: &'static FluidData) -> Self {
@@ -167,7 +169,7 @@ impl Multiparameter {
                 }
             }
         }
-        let in_table = |t: f64| (8.0 * t).fract() == 0.0 && (0.0..=32.0).contains(&t);
+        let in_table = |t: f64| libm::trunc(8.0 * t) == 8.0 * t && (0.0..=32.0).contains(&t);
         let product = |&t: &f64| if in_table(t) { (t as usize, (8.0 * t) as usize % 8) } else { (0, 0) };
         let tau: Vec<(usize, usize)> = exponents.iter().map(product).collect();
         let tau_others = exponents.iter().copied().enumerate().filter(|&(_, t)| !in_table(t)).collect();
@@ -180,7 +182,7 @@ impl Multiparameter {
                 .max()
                 .map_or(0, usize::from),
             reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
-            saturation: [const { OnceLock::new() }; SATURATIONS],
+            saturation: [const { OnceBox::new() }; SATURATIONS],
             plain: data.nonanalytic.is_empty() && data.departure.is_empty() && overflow.is_empty(),
             overflow,
             groups,
@@ -268,7 +270,7 @@ impl Multiparameter {
         let (g, power) = &self.gaussian[index];
         let v = tau - g.gamma;
         let exponent = -g.beta * v * v;
-        if exponent > NEGLIGIBLE { g.n * tau_powers[*power] * exponent.exp() } else { 0.0 }
+        if exponent > NEGLIGIBLE { g.n * tau_powers[*power] * libm::exp(exponent) } else { 0.0 }
     }
 
     /// `delta d(alphar)/d(delta)` and `delta^2 d2(alphar)/d(delta)^2`, given the slots' coefficients and the factors of the
@@ -301,7 +303,7 @@ impl Multiparameter {
                 continue;
             }
             let power = powers[group.l];
-            let decay = (-power).exp();
+            let decay = libm::exp(-power);
             let l = group.l as f64;
             let shift = l * power;
             first += decay * (s1 - shift * s0);
@@ -314,7 +316,7 @@ impl Multiparameter {
             }
             let u = delta - g.epsilon;
             let d = f64::from(g.d);
-            let c = factor * powers[usize::from(g.d)] * (-g.eta * u * u).exp();
+            let c = factor * powers[usize::from(g.d)] * libm::exp(-g.eta * u * u);
             let x = d - 2.0 * g.eta * delta * u;
             first += c * x;
             second += c * (x * x - 2.0 * g.eta * delta * delta - d);
@@ -455,7 +457,7 @@ pub(super) fn ideal<D: Real>(data: &FluidData, density_kg_m3: D, temperature_k: 
         tt: D::from(-data.ideal_ln_tau),
     };
     for &(n, t) in data.ideal_power {
-        let term = if t.fract() == 0.0 { tau.powi(t as i32) } else { (ln_tau * t).exp() } * n;
+        let term = if libm::trunc(t) == t { tau.powi(t as i32) } else { (ln_tau * t).exp() } * n;
         sum.a += term;
         sum.t += term * t;
         sum.tt += term * (t * (t - 1.0));

@@ -22,22 +22,23 @@ mod state;
 mod tests;
 mod transport;
 
+use alloc::borrow::ToOwned;
+use alloc::string::String;
+use alloc::vec::Vec;
 pub use saturation::Saturation;
+use serde::{Deserialize, Serialize};
 pub use state::State;
 
 use crate::ThermalError;
+pub use crate::real::Real;
 use data::FluidData;
 use helmholtz::{HelmholtzEnergy, Multiparameter, PREPARED, Reduced, ideal};
 use ideal_gas::IdealGas;
 use peng_robinson::PengRobinson;
 use transport::TransportState;
 
-/// `f64` or a dual number of num-dual.
-pub trait Real: num_dual::DualNum<Primitive = f64> + Copy {}
-impl<T: num_dual::DualNum<Primitive = f64> + Copy> Real for T {}
-
 /// Which equation describes the fluid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Equation {
     /// The fluid's multiparameter reference equation.
     #[default]
@@ -57,11 +58,33 @@ enum Description {
 }
 
 /// A gas with its equation of state. Cheap to clone.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "Named", try_from = "Named")]
 pub struct Fluid {
     data: &'static FluidData,
     prepared: &'static Multiparameter,
     description: Description,
+}
+
+/// What names a fluid.
+#[derive(Serialize, Deserialize)]
+struct Named {
+    name: String,
+    equation: Equation,
+}
+
+impl From<Fluid> for Named {
+    fn from(fluid: Fluid) -> Self {
+        Self { name: fluid.name().to_owned(), equation: fluid.equation() }
+    }
+}
+
+impl TryFrom<Named> for Fluid {
+    type Error = ThermalError;
+
+    fn try_from(named: Named) -> Result<Self, ThermalError> {
+        Ok(Self::named(&named.name)?.with_equation(named.equation))
+    }
 }
 
 /// Where a fluid's equation may be used.

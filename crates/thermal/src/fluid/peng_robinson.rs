@@ -3,7 +3,7 @@
 //! `p = R T / (v - b) - a(T) / (v^2 + 2 b v - b^2)` integrates to `alphar = -ln(1 - b rho) - A F(b rho)` with `A = a(T) / (b R T)`,
 //! `F(B) = ln[(1 + (1+sqrt 2) B) / (1 + (1-sqrt 2) B)] / (2 sqrt 2)`; `a(T) = a_c [1 + kappa (1 - sqrt(T/T_c))]^2`.
 //! Its ideal part is the reference equation's. Source: Peng and Robinson, Ind. Eng. Chem. Fundam. 15 (1976) 59.
-use std::f64::consts::SQRT_2;
+use core::f64::consts::SQRT_2;
 
 use super::Real;
 use super::data::FluidData;
@@ -48,18 +48,18 @@ pub(super) fn equivalent(components: &[(&FluidData, f64)], gas_constant_j_mol_k:
     let (mut covolume, mut constant, mut slope) = (0.0, 0.0, 0.0);
     for (data, x) in components {
         let (t, p) = (data.critical_temperature_k, data.critical_pressure_pa);
-        let (root, kappa) = (STRENGTH.sqrt() * r * t / p.sqrt(), kappa(data.acentric_factor));
+        let (root, kappa) = (libm::sqrt(STRENGTH) * r * t / libm::sqrt(p), kappa(data.acentric_factor));
         covolume += x * COVOLUME * r * t / p;
         constant += x * root * (1.0 + kappa);
-        slope += x * root * kappa / t.sqrt();
+        slope += x * root * kappa / libm::sqrt(t);
     }
     // At the critical temperature a_c = STRENGTH / COVOLUME b R T_c.
-    let root_t = constant / (slope + (STRENGTH / COVOLUME * covolume * r).sqrt());
+    let root_t = constant / (slope + libm::sqrt(STRENGTH / COVOLUME * covolume * r));
     let kappa = slope * root_t / (constant - slope * root_t);
     Equivalent {
         temperature_k: root_t * root_t,
         pressure_pa: COVOLUME * r * root_t * root_t / covolume,
-        acentric_factor: (-K[1] + (K[1] * K[1] - 4.0 * K[2] * (K[0] - kappa)).sqrt()) / (2.0 * K[2]),
+        acentric_factor: (-K[1] + libm::sqrt(K[1] * K[1] - 4.0 * K[2] * (K[0] - kappa))) / (2.0 * K[2]),
     }
 }
 

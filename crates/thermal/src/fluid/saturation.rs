@@ -12,6 +12,8 @@ use super::helmholtz::SATURATIONS;
 use super::root::bracketed_newton;
 use super::{Description, Fluid};
 use crate::ThermalError;
+use crate::real::powi;
+use alloc::boxed::Box;
 
 /// Vapour and liquid in equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,9 +51,9 @@ const AIR_BUBBLE: BoundaryLine = BoundaryLine(&[
 
 impl BoundaryLine {
     fn pressure_pa(&self, temperature_k: f64) -> f64 {
-        let root = (1.0 - temperature_k / AIR_J.0).sqrt();
-        let sum: f64 = self.0.iter().map(|&(n, k)| n * root.powi(k)).sum();
-        AIR_J.1 * (AIR_J.0 / temperature_k * sum).exp()
+        let root = libm::sqrt(1.0 - temperature_k / AIR_J.0);
+        let sum: f64 = self.0.iter().map(|&(n, k)| n * powi(root, k)).sum();
+        AIR_J.1 * libm::exp(AIR_J.0 / temperature_k * sum)
     }
 }
 
@@ -134,7 +136,8 @@ impl Fluid {
         }
         let index = (position as usize).min(last);
         let at_k = low + (high - low) * index as f64 / last as f64;
-        let found = equation.saturation[index].get_or_init(|| self.saturation(at_k.min(high)).ok().flatten());
+        let found = equation.saturation[index]
+            .get_or_init(|| Box::new(self.saturation(at_k.min(high)).ok().flatten()));
         found.filter(|_| at_k <= temperature_k)
     }
 
@@ -195,7 +198,7 @@ impl Fluid {
 
 /// First point on the way from `from` to `to` where `f` is no longer positive, on a geometric scan refined by bisection.
 fn first_sign_change(f: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
-    let ratio = (to / from).powf(1.0 / SCAN as f64);
+    let ratio = libm::pow(to / from, 1.0 / SCAN as f64);
     let mut before = from;
     for _ in 0..SCAN {
         let after = before * ratio;

@@ -77,24 +77,24 @@ pub(super) fn departure<D: Real>(term: &DepartureTerm, delta: D, ln_tau: D) -> R
 
 #[cfg(test)]
 mod tests {
-    use num_dual::{Dual64, DualNum};
+    use crate::real::Dual;
 
     use super::*;
     use crate::fluid::Fluid;
 
     /// Each scaled derivative against the exact derivative of the one before it.
-    fn derivatives_hold(what: &str, term: impl Fn(Dual64, Dual64) -> Reduced<Dual64>) {
+    fn derivatives_hold(what: &str, term: impl Fn(Dual<1>, Dual<1>) -> Reduced<Dual<1>>) {
         for (delta, tau) in [(0.2, 0.7), (0.9, 0.98), (1.0, 1.02), (1.1, 1.0), (1.8, 1.3), (2.6, 0.8)] {
-            let fixed = |value: f64| Dual64::from(value);
-            let by_d = term(fixed(delta).derivative(), fixed(tau));
-            let by_t = term(fixed(delta), fixed(tau).derivative());
+            let fixed = |value: f64| Dual::<1>::from(value);
+            let by_d = term(Dual::variable(delta, 0), fixed(tau));
+            let by_t = term(fixed(delta), Dual::variable(tau, 0));
             let pairs = [
-                (by_d.d.re, delta * by_d.a.eps),
-                (by_t.t.re, tau * by_t.a.eps),
-                (by_d.dd.re + by_d.d.re, delta * by_d.d.eps),
-                (by_t.dt.re, tau * by_t.d.eps),
-                (by_d.dt.re, delta * by_d.t.eps),
-                (by_t.tt.re + by_t.t.re, tau * by_t.t.eps),
+                (by_d.d.re, delta * by_d.a.eps[0]),
+                (by_t.t.re, tau * by_t.a.eps[0]),
+                (by_d.dd.re + by_d.d.re, delta * by_d.d.eps[0]),
+                (by_t.dt.re, tau * by_t.d.eps[0]),
+                (by_d.dt.re, delta * by_d.t.eps[0]),
+                (by_t.tt.re + by_t.t.re, tau * by_t.t.eps[0]),
             ];
             for (k, (value, exact)) in pairs.into_iter().enumerate() {
                 let size = exact.abs().max(by_d.a.re.abs());

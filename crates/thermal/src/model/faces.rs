@@ -82,18 +82,18 @@ impl Model {
                 (film * difference, film)
             }
             FilmInput::Convection { wind_m_s, multiplier } => {
-                let surface = num_dual::Dual64::from(surface_k).derivative();
+                let surface = crate::real::Dual::<1>::variable(surface_k, 0);
                 let flux = convection_w_m2_k(body, surface, place.air_k, wind_m_s)
                     * (surface - place.air_k)
                     * (place.film_factor * multiplier);
-                (flux.re, flux.eps)
+                (flux.re, flux.eps[0])
             }
         };
         if let Some(enclosure_k) = inputs.radiation_k {
-            let surface = num_dual::Dual64::from(surface_k).derivative();
+            let surface = crate::real::Dual::<1>::variable(surface_k, 0);
             let flux = radiation_w_m2(self.surface.emissivity, surface, enclosure_k);
             heat += flux.re;
-            slope += flux.eps;
+            slope += flux.eps[0];
         }
         (heat, slope)
     }

@@ -4,8 +4,8 @@
 //! chained with the derivatives of those inputs. The sequence of `(row, column)` pairs depends on mesh and
 //! layout alone, never on the state, so that a sparsity pattern taken once holds for the whole run; a pair may
 //! occur more than once, and its values add.
-use nalgebra::{Const, DMatrix, U1};
-use num_dual::{Dual64, DualSVec64};
+use crate::real::Dual;
+use nalgebra::DMatrix;
 
 use super::boundary::Boundary;
 use super::gas::{Gas, GasNodes, GasPoint};
@@ -80,11 +80,11 @@ impl GasBlock {
     }
 }
 
-type Dual5 = DualSVec64<5>;
-type Dual3 = DualSVec64<3>;
+type Dual5 = Dual<5>;
+type Dual3 = Dual<3>;
 
-fn gradient<const N: usize>(value: DualSVec64<N>) -> [f64; N] {
-    value.eps.unwrap_generic(Const::<N>, U1).into()
+fn gradient<const N: usize>(value: Dual<N>) -> [f64; N] {
+    value.eps
 }
 
 /// Local columns of the gas's chain rule: gas states first, then inner cells, outer cells, valve, stirring.
@@ -108,7 +108,7 @@ impl Model {
         let layout = &self.layout;
         let ((mass, energy), mean) = (layout.gas_of(x), self.mean_wall_k(x));
         let outlet = self.grid.outlet;
-        let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
+        let seed = |value: f64, index: usize| Dual3::variable(value, index);
         let jet_and_sources = |gas: &WellMixed| -> Result<_, ThermalError> {
             if layout.states == layout.drawn {
                 return Ok(([0.0; 3], None, Vec::new()));
@@ -127,7 +127,7 @@ impl Model {
                 stirring = Some(StirringGradients {
                     rate: gradient(rate),
                     own: -2.0 * reynolds.abs() * per_s,
-                    film: self.jet_film(&fixed.map(Dual64::from), Dual64::from(reynolds).derivative()).eps,
+                    film: self.jet_film(&fixed.map(Dual::<1>::from), Dual::<1>::variable(reynolds, 0)).eps[0],
                 });
             }
             let sources = self.source_gradients(boundary, fixed, &node, reynolds)?;
@@ -135,7 +135,7 @@ impl Model {
         };
         match &self.gas {
             Gas::WellMixed(gas) => {
-                let seed = |value: f64, index: usize| Dual5::from(value).derivative(index);
+                let seed = |value: f64, index: usize| Dual5::variable(value, index);
                 let node = gas.differentiated(seed(mass[0], 0), seed(energy[0], 1), seed(mean, 2))?;
                 let rates = gas.rates(&node, boundary, seed(wall.side_w[0], 4), seed(wall_rate, 3))?;
                 let mut matrix = DMatrix::zeros(5, 7);
@@ -169,7 +169,7 @@ impl Model {
         differentiated: &Node<Dual3>,
         reynolds: Option<f64>,
     ) -> Result<Vec<SourceGradients>, ThermalError> {
-        let fixed = outlet.map(Dual64::from);
+        let fixed = outlet.map(Dual::<1>::from);
         let mut all = Vec::new();
         for (index, vessel) in self.source_vessels() {
             if !boundary.open[index] {
@@ -179,14 +179,16 @@ impl Model {
             let drawn = boundary.drawn_kg[vessel.place];
             let rate =
                 boundary.of_flow(index, &self.fluid, &differentiated.state, Dual3::from(drawn))?.mass_kg_s;
-            let seeded = Dual64::from(drawn).derivative();
+            let seeded = Dual::<1>::variable(drawn, 0);
             let by = boundary.of_flow(index, &self.fluid, &fixed.state, seeded)?;
             // The node's rates are linear in what flows in.
-            let rates = outlet.balance(by.mass_kg_s.eps, by.enthalpy_w.eps, 0.0, 0.0);
+            let rates = outlet.balance(by.mass_kg_s.eps[0], by.enthalpy_w.eps[0], 0.0, 0.0);
             let stirring = reynolds.map_or(Ok(0.0), |reynolds| {
                 let drawn = Some((index, seeded));
                 let diameter_m = self.inner_diameter_m;
-                boundary.stirring_per_s(&self.fluid, &fixed, diameter_m, reynolds, drawn).map(|rate| rate.eps)
+                boundary
+                    .stirring_per_s(&self.fluid, &fixed, diameter_m, reynolds, drawn)
+                    .map(|rate| rate.eps[0])
             })?;
             let by_drawn = [rates.mass_kg_s, rates.energy_w, rates.enthalpy_w, rates.work_w];
             all.push(SourceGradients { rate: gradient(rate), by_drawn, stirring });

@@ -21,8 +21,8 @@
 //!
 //! # References
 //! Eckert and Jackson, NACA TN 2207 (1950); end plates: McAdams (1954) as in Incropera et al.
-use nalgebra::{Const, DMatrix, U1};
-use num_dual::DualSVec64;
+use crate::real::Dual;
+use nalgebra::DMatrix;
 
 use super::boundary::{Boundary, Exchange};
 use super::grid::{GasCell, GasGrid};
@@ -112,21 +112,19 @@ pub(super) struct Stratified {
 /// Derivatives of temperature and pressure of one cell with its (mass, energy, mean wall).
 type CellGradients = ([f64; 3], [f64; 3]);
 
-type Dual3 = DualSVec64<3>;
+type Dual3 = Dual<3>;
 /// Columns differentiated in one pass.
 const LANES: usize = 8;
-type Dual8 = DualSVec64<LANES>;
+type Dual8 = Dual<LANES>;
 
 fn gradient3(value: Dual3) -> [f64; 3] {
-    let g = value.eps.unwrap_generic(Const::<3>, U1);
+    let g = value.eps;
     [g[0], g[1], g[2]]
 }
 
 /// A number with the given derivatives.
 fn dual8(value: f64, lanes: &[f64; LANES]) -> Dual8 {
-    let mut out = Dual8::from(value);
-    out.eps = num_dual::Derivative::some(nalgebra::SVector::<f64, LANES>::from_row_slice(lanes));
-    out
+    Dual { re: value, eps: *lanes }
 }
 
 impl Stratified {
@@ -335,7 +333,7 @@ impl Stratified {
         wall_rate_k_s: f64,
     ) -> Result<(DMatrix<f64>, Vec<CellGradients>), ThermalError> {
         let n = self.nodes.len();
-        let seed = |value: f64, index: usize| Dual3::from(value).derivative(index);
+        let seed = |value: f64, index: usize| Dual3::variable(value, index);
         let nodes: Vec<Node<Dual3>> = (0..n)
             .map(|i| self.nodes[i].differentiated(seed(mass_kg[i], 0), seed(energy_j[i], 1), seed(wall_k, 2)))
             .collect::<Result<_, _>>()?;
@@ -381,7 +379,7 @@ impl Stratified {
                 (lift(exchange.mass_kg_s, self.outlet), lift(exchange.enthalpy_w, self.outlet));
             let mut work = Dual8::from(0.0);
             let mut write = |row: usize, value: Dual8| {
-                let g = value.eps.unwrap_generic(Const::<LANES>, U1);
+                let g = value.eps;
                 for lane in 0..LANES.min(columns - first) {
                     matrix[(row, first + lane)] = g[lane];
                 }

@@ -2,6 +2,7 @@
 //!
 //! Until [`ReducedModel::divide_by_capacities`] the rows of rate and Jacobian hold heat flows into the nodes, W, and the gas
 //! row the heat flow into the gas; then they hold rates, K/s.
+use crate::real::powi;
 use nalgebra::DMatrix;
 
 use super::gas::{GasState, Slope};
@@ -38,7 +39,7 @@ impl ReducedModel {
     ) {
         let (gas_row, mass) = (self.gas_index(), self.mass_index());
         let (gas_k, pressure_pa) = (x[gas_row], gas.pressure_pa.value);
-        let multiplier = unknowns.ln_inside_film.exp();
+        let multiplier = libm::exp(unknowns.ln_inside_film);
         let inside_column = self.states() + Unknowns::INSIDE;
         for node in 0..self.wall_nodes() {
             let column = &self.mesh.columns[node];
@@ -139,7 +140,7 @@ impl ReducedModel {
     ) {
         let (nodes, n) = (self.wall_nodes(), self.states());
         let width = n + Unknowns::COUNT;
-        let stretch = unknowns.ln_capacity.exp();
+        let stretch = libm::exp(unknowns.ln_capacity);
         let mean_state = self.mean_energy_state_k(x);
         let material = &self.mesh.materials[0];
         let mean_slope = material.temperature_slope(mean_state);
@@ -152,7 +153,7 @@ impl ReducedModel {
             }
             self.mean_rate_by[n + Unknowns::CAPACITY] = -self.mean_rate_k_s;
             // The slope itself falls as the wall warms: d slope = -a slope^3 dx.
-            let curvature = -material.heat_capacity_slope_per_k * mean_slope.powi(3) * mean_energy_rate;
+            let curvature = -material.heat_capacity_slope_per_k * powi(mean_slope, 3) * mean_energy_rate;
             for (node, &temperature_k) in x.iter().enumerate().take(nodes) {
                 self.mean_rate_by[node] +=
                     curvature * self.weight(node) * capacity_ratio(material, temperature_k);

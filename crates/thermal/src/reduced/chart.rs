@@ -8,11 +8,13 @@
 //! point) and states outside the fluid's domain are left to the equation itself.
 //!
 //! Source: interpolation at Chebyshev nodes, Trefethen 2013, chapters 2 and 15.
-use std::f64::consts::PI;
+use crate::real::powi;
+use core::f64::consts::PI;
 
+use crate::real::Dual;
 use nalgebra::SMatrix;
-use num_dual::DualSVec64;
 
+use crate::cache::GridCache;
 use crate::fluid::Fluid;
 
 /// Coefficients in each direction.
@@ -23,8 +25,8 @@ const WIDTH_K: f64 = 4.0;
 const CELLS_PER_DENSEST: f64 = 128.0;
 /// Relative error between the nodes up to which polynomials are used.
 const LARGEST_ERROR: f64 = 1e-9;
-/// Cells kept at a time, along each direction: a power of two.
-const CACHED_CELLS: i32 = 8;
+/// Cells kept at a time, along temperature and density.
+const CACHED_CELLS: (i32, i32) = (16, 2);
 
 type Coefficients = SMatrix<f64, ORDER, ORDER>;
 /// Value and derivatives `[f, f_T, f_rho, f_TT, f_Trho, f_rhorho]`.
@@ -60,13 +62,6 @@ struct Polynomials {
     cv: Coefficients,
 }
 
-/// A cell; without polynomials where they are not good enough.
-#[derive(Clone, Debug)]
-struct Cell {
-    index: (i32, i32),
-    polynomials: Option<Polynomials>,
-}
-
 /// The cells of one fluid that were needed lately.
 #[derive(Clone, Debug)]
 pub(super) struct Chart {
@@ -76,7 +71,8 @@ pub(super) struct Chart {
     /// Nodes of the interpolation on [-1, 1], and the matrix from values there to coefficients.
     nodes: [f64; ORDER],
     to_coefficients: Coefficients,
-    cells: Vec<Option<Cell>>,
+    /// Without polynomials where they are not good enough.
+    cells: GridCache<Option<Polynomials>>,
 }
 
 /// Pressure along an isotherm within a cell.
@@ -108,16 +104,21 @@ impl Isotherm {
     }
 }
 
+/// `A B`, summed up in the same order on every machine.
+fn product(a: &Coefficients, b: &Coefficients) -> Coefficients {
+    Coefficients::from_fn(|i, j| (0..ORDER).map(|k| a[(i, k)] * b[(k, j)]).sum())
+}
+
 impl Chart {
     pub(super) fn new(fluid: Fluid) -> Self {
-        let nodes: [f64; ORDER] = std::array::from_fn(|k| (PI * (k as f64 + 0.5) / ORDER as f64).cos());
-        let powers = Coefficients::from_fn(|node, power| nodes[node].powi(power as i32));
+        let nodes: [f64; ORDER] = core::array::from_fn(|k| libm::cos(PI * (k as f64 + 0.5) / ORDER as f64));
+        let powers = Coefficients::from_fn(|node, power| powi(nodes[node], power as i32));
         Self {
             gas_constant_j_kg_k: fluid.specific_gas_constant_j_kg_k(),
             height_kg_m3: fluid.domain().highest_density_kg_m3 / CELLS_PER_DENSEST,
             nodes,
             to_coefficients: powers.try_inverse().expect("the nodes differ"),
-            cells: vec![None; (CACHED_CELLS * CACHED_CELLS) as usize],
+            cells: GridCache::new(CACHED_CELLS),
             fluid,
         }
     }
@@ -181,8 +182,7 @@ impl Chart {
     fn polynomials(&mut self, rho: f64, t: f64) -> Option<&Polynomials> {
         // Both are positive inside the domain; what is outside of it is not looked up.
         let index = ((t / WIDTH_K) as i32, (rho / self.height_kg_m3) as i32);
-        let slot = ((index.0 & (CACHED_CELLS - 1)) * CACHED_CELLS + (index.1 & (CACHED_CELLS - 1))) as usize;
-        if self.cells[slot].as_ref().is_none_or(|cell| cell.index != index) {
+        if self.cells.get(index).is_none() {
             let domain = self.fluid.domain();
             let known = t >= domain.lowest_temperature_k
                 && t <= domain.highest_temperature_k
@@ -193,9 +193,10 @@ impl Chart {
             }
             let middle =
                 ((f64::from(index.0) + 0.5) * WIDTH_K, (f64::from(index.1) + 0.5) * self.height_kg_m3);
-            self.cells[slot] = Some(Cell { index, polynomials: self.interpolate(middle) });
+            let polynomials = self.interpolate(middle);
+            self.cells.put(index, polynomials);
         }
-        self.cells[slot].as_ref()?.polynomials.as_ref()
+        self.cells.get(index)?.as_ref()
     }
 
     /// Polynomials of a cell; `None` where they are not good enough.
@@ -209,7 +210,7 @@ impl Chart {
         // Stored by density along a column, so that a loop over it is one over neighbours.
         let coefficients = |of: fn((f64, f64)) -> f64| {
             let values = Coefficients::from_fn(|b, a| of(values[a][b]));
-            self.to_coefficients * values * self.to_coefficients.transpose()
+            product(&product(&self.to_coefficients, &values), &self.to_coefficients.transpose())
         };
         let (z, cv) = (coefficients(|(z, _)| z), coefficients(|(_, cv)| cv));
         let between = [(0.0, 0.0), (0.5, -0.9), (-0.9, 0.5), (0.95, 0.95), (-0.45, -1.0)];
@@ -223,10 +224,10 @@ impl Chart {
 
     /// By the equation of state itself.
     fn exact(&self, rho: f64, t: f64) -> Properties {
-        let seed = |value: f64, index: usize| DualSVec64::<2>::from(value).derivative(index);
+        let seed = |value: f64, index: usize| Dual::<2>::variable(value, index);
         let state = self.fluid.state(seed(rho, 1), seed(t, 0));
-        let property = |dual: DualSVec64<2>| {
-            let [by_t, by_rho]: [f64; 2] = dual.eps.unwrap_generic(nalgebra::Const::<2>, nalgebra::U1).into();
+        let property = |dual: Dual<2>| {
+            let [by_t, by_rho]: [f64; 2] = dual.eps;
             Property { value: dual.re, by_t, by_rho }
         };
         Properties {

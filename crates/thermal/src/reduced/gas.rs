@@ -7,8 +7,6 @@
 //! `(m c_v + T p_T beta) dT/dt = Q - T p_T [alpha dT_w/dt + r (1/rho - gamma)]`, `dm/dt = -r`.
 //!
 //! Properties with their derivatives come from the [`Chart`].
-use num_dual::DualSVec64;
-
 use super::Pressure;
 use super::chart::{Chart, Properties, Property};
 use crate::ThermalError;
@@ -16,7 +14,7 @@ use crate::fluid::{Fluid, Real};
 use crate::vessel::InnerVolume;
 
 /// A value with its derivatives by gas temperature, gas mass and mean wall temperature.
-pub(super) type Dual = DualSVec64<3>;
+pub(super) type Dual = crate::real::Dual<3>;
 
 /// Relative change of the volume below which it counts as found.
 const VOLUME_TOLERANCE: f64 = 1e-13;
@@ -37,7 +35,7 @@ impl From<f64> for Slope {
 
 impl From<Dual> for Slope {
     fn from(dual: Dual) -> Self {
-        Self { value: dual.re, by: dual.eps.unwrap_generic(nalgebra::Const::<3>, nalgebra::U1).into() }
+        Self { value: dual.re, by: dual.eps }
     }
 }
 
@@ -166,7 +164,7 @@ impl GasNode {
         }
         let volume_by = self.volume_by(rho, v, p_t.value, p_rho.value);
         let rho_by = [-rho * volume_by[0] / v, (1.0 - rho * volume_by[1]) / v, -rho * volume_by[2] / v];
-        let dual = |value: f64, by: [f64; 3]| Dual::new(value, num_dual::Derivative::some(by.into()));
+        let dual = |value: f64, by: [f64; 3]| Dual { re: value, eps: by };
         let lift = |Property { value, by_t, by_rho }: Property| {
             dual(value, [by_t + by_rho * rho_by[0], by_rho * rho_by[1], by_rho * rho_by[2]])
         };
@@ -189,9 +187,9 @@ impl GasNode {
     /// # Errors
     /// As [`GasNode::volume_m3`].
     pub(super) fn settled_pressure_pa(&mut self, t: f64, m: f64) -> Result<f64, ThermalError> {
-        let guess_m3 = std::mem::replace(&mut self.guess_m3, self.settled_guess_m3);
+        let guess_m3 = core::mem::replace(&mut self.guess_m3, self.settled_guess_m3);
         let pressure_pa = self.pressure_pa(t, m, t);
-        self.settled_guess_m3 = std::mem::replace(&mut self.guess_m3, guess_m3);
+        self.settled_guess_m3 = core::mem::replace(&mut self.guess_m3, guess_m3);
         pressure_pa
     }
 

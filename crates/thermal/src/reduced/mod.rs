@@ -17,6 +17,7 @@ mod chart;
 mod gas;
 mod spread;
 
+use alloc::vec::Vec;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -342,7 +343,7 @@ impl ReducedModel {
         rate.fill(0.0);
         self.add_conduction(x, rate, jacobian.as_deref_mut());
         self.add_inner_faces(x, unknowns, &gas, rate, jacobian.as_deref_mut());
-        let film_w_m2_k = self.film_w_m2_k * unknowns.ln_outside_film.exp();
+        let film_w_m2_k = self.film_w_m2_k * libm::exp(unknowns.ln_outside_film);
         self.add_outer_faces(x, unknowns, film_w_m2_k, rate, jacobian.as_deref_mut());
         self.add_valve(x, unknowns, film_w_m2_k, rate, jacobian.as_deref_mut());
         self.divide_by_capacities(x, unknowns, rate, jacobian.as_deref_mut());

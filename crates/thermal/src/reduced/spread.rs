@@ -15,6 +15,7 @@
 //!
 //! Valid while heat flows change slowly against the settling of the fin, `rho c t / (h_out + h_in)`, about six minutes;
 //! what is faster stays model error.
+use alloc::vec::Vec;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::wall::mesh::Mesh;

@@ -13,6 +13,8 @@ mod reading;
 #[cfg(feature = "files")]
 mod spec;
 
+use alloc::string::String;
+use alloc::vec::Vec;
 #[cfg(feature = "files")]
 pub use build::mounted;
 #[cfg(feature = "files")]
@@ -23,11 +25,12 @@ pub use place::{GasPlace, PLACES, SurfacePlace};
 #[cfg(feature = "files")]
 pub use pt100::Pt100Class;
 pub use reading::{Exposure, Prediction, Quantity, Site};
+use serde::{Deserialize, Serialize};
 #[cfg(feature = "files")]
 pub use spec::SensorSpec;
 
 /// Noise whose autocorrelation falls as `exp(-|dt| / time)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CorrelatedNoise {
     /// Standard deviation, in the unit that the sensor reads.
     pub sd: f64,

@@ -1,10 +1,11 @@
 //! The numbers of a sensor that may be uncertain.
+use serde::{Deserialize, Serialize};
 
 /// Most parameters of a sensor.
 pub const MAX_PARAMETERS: usize = 3;
 
 /// What a parameter is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ParameterKind {
     /// Constant error `b`, in the unit of the reading.
     Offset,
@@ -17,7 +18,7 @@ pub enum ParameterKind {
 }
 
 /// Distribution of an uncertain number.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Law {
     /// Normal.
     #[default]
@@ -27,7 +28,7 @@ pub enum Law {
 }
 
 /// A parameter with its prior. Units are those of its kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// What it is.
     pub kind: ParameterKind,
@@ -49,7 +50,7 @@ impl Parameter {
 
     /// A constant, anywhere within `limit` of the mean, as a tolerance or an accuracy class says; `sd = limit / sqrt(3)`.
     pub fn within(kind: ParameterKind, mean: f64, limit: f64) -> Self {
-        Self { law: Law::Uniform, ..Self::normal(kind, mean, limit / 3.0_f64.sqrt()) }
+        Self { law: Law::Uniform, ..Self::normal(kind, mean, limit / libm::sqrt(3.0_f64)) }
     }
 
     /// Lowest and highest value that means something.

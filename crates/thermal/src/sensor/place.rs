@@ -1,12 +1,13 @@
 //! Places of sensors, and the cells of a model that stand for them.
 use crate::wall::geometry::Geometry;
 use crate::wall::mesh::{Facing, Mesh, TOP};
+use serde::{Deserialize, Serialize};
 
 /// Names of places that a surface sensor can sit at.
 pub const PLACES: [&str; 5] = ["bottom", "middle", "shoulder", "neck", "valve"];
 
 /// Where a surface sensor sits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SurfacePlace {
     /// Centre of the closed end.
     Bottom,
@@ -26,7 +27,7 @@ pub enum SurfacePlace {
 }
 
 /// Where a sensor hangs in the gas.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum GasPlace {
     /// A gas cell of the model, 1 at the bottom, as in the columns `gas_1_degc`, `gas_2_degc`, ...
     Cell {

@@ -13,11 +13,11 @@
 //! for enclosed vessels; Woodfield et al., J. Thermal Sci. Tech. 2 (2007) 180, jet term 0.56 Re_in^0.67 / H;
 //! Sreenivasan, Phys. Fluids 10 (1998) 528; Skrbek and Stalp, Phys. Fluids 12 (2000) 1997; Touil, Bertoglio and Shao,
 //! J. Turbulence 3 (2002) 049.
-use std::array::from_fn;
-use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
+use core::array::from_fn;
+use core::cell::{Cell, RefCell};
 
 use crate::ThermalError;
+use crate::cache::{GridCache, GridIndex};
 use crate::fluid::Fluid;
 #[cfg(feature = "simulate")]
 use crate::fluid::Real;
@@ -35,11 +35,14 @@ const LINEAR_BELOW_RE: f64 = 10.0;
 const PLATE_STIRRED: (f64, f64) = (0.15, 1.0 / 3.0);
 const PLATE_RESTING: (f64, f64) = (0.27, 0.25);
 /// Plates count with a quarter of the length.
-const LN_QUARTER: f64 = -2.0 * std::f64::consts::LN_2;
+const LN_QUARTER: f64 = -2.0 * core::f64::consts::LN_2;
 /// Spacing of the grid in temperature, K.
 const STEP_K: f64 = 4.0;
 /// Spacing of the grid in the logarithm of the pressure.
 const STEP_LN_P: f64 = 0.05;
+/// Nodes and patches that are kept, along temperature and pressure: nodes of 128 K and a third of the pressure.
+const CACHED_NODES: (i32, i32) = (32, 8);
+const CACHED_PATCHES: (i32, i32) = (8, 2);
 
 /// `ln k` and `ln R` with their derivatives along temperature and logarithm of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +67,7 @@ pub fn film_groups_exact(
     let k = fluid.conductivity_w_m_k(rho, temperature_k);
     let mu = fluid.viscosity_pa_s(rho, temperature_k);
     let r = GRAVITY_M_S2 * state.expansion_per_k * rho * rho * state.cp_j_kg_k / (mu * k);
-    Ok((k.ln(), r.ln()))
+    Ok((libm::log(k), libm::log(r)))
 }
 
 /// Weights of the four-point Catmull-Rom interpolation and of its derivative at `u` in [0, 1].
@@ -88,17 +91,15 @@ fn cell_of(x: f64) -> (i32, f64) {
     (index, x - f64::from(index))
 }
 
-type GridIndex = (i32, i32);
 /// `[group][temperature][pressure]`
 type Patch = [[[f64; 4]; 4]; 2];
 
-/// The lazily filled grid of film property groups of one fluid.
+/// The grid of film property groups of one fluid, filled where it is asked.
 #[derive(Clone, Debug)]
 pub(crate) struct FilmGrid {
     fluid: Fluid,
-    nodes: RefCell<HashMap<GridIndex, [f64; 2]>>,
-    patches: RefCell<HashMap<GridIndex, Patch>>,
-    last: RefCell<Option<(GridIndex, Patch)>>,
+    nodes: RefCell<GridCache<[f64; 2]>>,
+    patches: RefCell<GridCache<Patch>>,
     /// Last pressure, Pa, and its logarithm.
     last_pressure: Cell<(f64, f64)>,
 }
@@ -108,9 +109,8 @@ impl FilmGrid {
     pub(crate) fn new(fluid: Fluid) -> Self {
         Self {
             fluid,
-            nodes: RefCell::default(),
-            patches: RefCell::default(),
-            last: RefCell::new(None),
+            nodes: RefCell::new(GridCache::new(CACHED_NODES)),
+            patches: RefCell::new(GridCache::new(CACHED_PATCHES)),
             last_pressure: Cell::new((1.0, 0.0)),
         }
     }
@@ -120,12 +120,11 @@ impl FilmGrid {
         let (i, u) = cell_of(temperature_k / STEP_K);
         let (j, v) = cell_of(self.ln_pressure(pressure_pa) / STEP_LN_P);
         let ((wt, dt), (wp, dp), index) = (catmull_rom(u), catmull_rom(v), (i, j));
-        if self.last.borrow().as_ref().is_none_or(|(known, _)| *known != index) {
-            let patch = *self.patches.borrow_mut().entry(index).or_insert_with(|| self.patch(index));
-            *self.last.borrow_mut() = Some((index, patch));
+        let mut patches = self.patches.borrow_mut();
+        if patches.get(index).is_none() {
+            patches.put(index, self.patch(index));
         }
-        let last = self.last.borrow();
-        let Some((_, patch)) = last.as_ref() else { unreachable!("the last patch was just set") };
+        let Some(patch) = patches.get(index) else { unreachable!("the patch was just put in") };
         // First along the temperature, four pressures side by side.
         let interpolate = |values: &[[f64; 4]; 4]| {
             let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
@@ -147,7 +146,7 @@ impl FilmGrid {
         if pressure_pa == known_pa {
             return ln;
         }
-        let ln = pressure_pa.ln();
+        let ln = libm::log(pressure_pa);
         self.last_pressure.set((pressure_pa, ln));
         ln
     }
@@ -159,16 +158,18 @@ impl FilmGrid {
     }
 
     fn node(&self, index: GridIndex) -> [f64; 2] {
-        *self.nodes.borrow_mut().entry(index).or_insert_with(|| {
-            let pressure = (f64::from(index.1) * STEP_LN_P).exp();
-            // Beside the saturation line a stencil reaches into the liquid: take the nearest warmer gas.
-            (0..10)
-                .find_map(|up| {
-                    let temperature = f64::from(index.0 + up) * STEP_K;
-                    film_groups_exact(&self.fluid, temperature, pressure).ok()
-                })
-                .map_or([f64::NAN; 2], |(ln_k, ln_r)| [ln_k, ln_r])
-        })
+        if let Some(known) = self.nodes.borrow().get(index) {
+            return *known;
+        }
+        let pressure = libm::exp(f64::from(index.1) * STEP_LN_P);
+        // Beside the saturation line a stencil reaches into the liquid: take the nearest warmer gas.
+        let node = (0..10)
+            .find_map(|up| {
+                let temperature = f64::from(index.0 + up) * STEP_K;
+                film_groups_exact(&self.fluid, temperature, pressure).ok()
+            })
+            .map_or([f64::NAN; 2], |(ln_k, ln_r)| [ln_k, ln_r]);
+        *self.nodes.borrow_mut().put(index, node)
     }
 }
 
@@ -196,7 +197,7 @@ pub(crate) struct InsideConvection {
 impl InsideConvection {
     /// Film law `law` of a vessel of characteristic length `length_m` (its inner diameter; irrelevant for n = 1/3).
     pub(crate) fn new(law: InsideFilm, length_m: f64, fluid: Fluid) -> Self {
-        Self { law, ln_length: length_m.ln(), grid: FilmGrid::new(fluid) }
+        Self { law, ln_length: libm::log(length_m), grid: FilmGrid::new(fluid) }
     }
 
     /// Heat flux from a surface at `surface_k` to gas at `gas_k` and `pressure_pa`, with `jet_w_m2_k` added for
@@ -248,8 +249,8 @@ impl InsideConvection {
         let groups = self.grid.groups(surface_k - 0.5 * theta, pressure_pa);
         let square = theta * theta + FLAT_BELOW_K * FLAT_BELOW_K;
         let ln_film =
-            groups.ln_k[0] + n * groups.ln_r[0] + (3.0 * n - 1.0) * ln_length + 0.5 * n * square.ln();
-        let film = factor * ln_film.exp();
+            groups.ln_k[0] + n * groups.ln_r[0] + (3.0 * n - 1.0) * ln_length + 0.5 * n * libm::log(square);
+        let film = factor * libm::exp(ln_film);
         let flux_w_m2 = film * theta;
         let per_theta = film * (1.0 + n * theta * theta / square);
         let per_film_k = flux_w_m2 * (groups.ln_k[1] + n * groups.ln_r[1]);
@@ -285,7 +286,8 @@ pub(crate) fn jet_film_w_m2_k<D: Real>(conductivity_w_m_k: D, reynolds: D, gas_h
 /// `epsilon` with the factor 1/2: Sreenivasan 1998; `t^-2` in a vessel: Skrbek and Stalp 2000 (measured), Touil et al. 2002 (simulated).
 #[cfg(feature = "simulate")]
 pub(crate) fn stirring_rate_per_s<D: Real>(viscosity_pa_s: D, density_kg_m3: D, vessel_diameter_m: f64) -> D {
-    let per_viscosity = 0.5 * std::f64::consts::PI.sqrt() / (3.0 * vessel_diameter_m * vessel_diameter_m);
+    let per_viscosity =
+        0.5 * libm::sqrt(core::f64::consts::PI) / (3.0 * vessel_diameter_m * vessel_diameter_m);
     viscosity_pa_s / density_kg_m3 * per_viscosity
 }
 

@@ -49,7 +49,7 @@ pub fn convection_w_m2_k<D: Real>(body: &Body, surface_k: D, air_k: f64, wind_m_
         Orientation::Vertical => body.height_m,
         Orientation::Horizontal => body.diameter_m,
     };
-    let rayleigh = theta * pr / (film_k * nu * nu) * (GRAVITY_M_S2 * length.powi(3));
+    let rayleigh = theta * pr / (film_k * nu * nu) * (GRAVITY_M_S2 * crate::real::powi(length, 3));
     let sixth = rayleigh.powf(1.0 / 6.0);
     let root = match body.orientation {
         Orientation::Vertical => {
@@ -75,7 +75,7 @@ pub fn convection_w_m2_k<D: Real>(body: &Body, surface_k: D, air_k: f64, wind_m_
 /// Net radiation leaving a grey surface in a large enclosure, W/m².
 #[cfg(feature = "simulate")]
 pub(crate) fn radiation_w_m2<D: Real>(emissivity: f64, surface_k: D, enclosure_k: f64) -> D {
-    (surface_k.powi(4) - enclosure_k.powi(4)) * (emissivity * STEFAN_BOLTZMANN_W_M2_K4)
+    (surface_k.powi(4) - crate::real::powi(enclosure_k, 4)) * (emissivity * STEFAN_BOLTZMANN_W_M2_K4)
 }
 
 #[cfg(test)]

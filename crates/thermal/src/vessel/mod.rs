@@ -14,6 +14,8 @@ mod read;
 #[cfg(feature = "files")]
 pub mod spec;
 
+use alloc::string::String;
+use alloc::vec::Vec;
 #[cfg(feature = "files")]
 pub use read::{read_specification, read_vessel, schema};
 #[cfg(feature = "files")]
@@ -26,7 +28,7 @@ use crate::wall::geometry::Geometry;
 use crate::wall::material::Material;
 
 /// A validated vessel. All values SI.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Vessel {
     /// Name for people.
     pub name: String,
@@ -61,7 +63,7 @@ impl Vessel {
                 "{}: volume_l = {} is {:.0} % {} the contour's {:.2} l, and the mass of gas goes with it: look at volume, diameters \
                  and lengths",
                 self.name,
-                (1e7 * self.volume.volume_m3).round() / 1e4,
+                libm::round(1e7 * self.volume.volume_m3) / 1e4,
                 100.0 * ratio.abs(),
                 if ratio > 0.0 { "above" } else { "below" },
                 1e3 * contour_m3
@@ -73,7 +75,7 @@ impl Vessel {
 
 /// Inner volume `V = V_0 [1 + a (T_wall - T_0) + b (p - p_0)]` with the heat-capacity-weighted mean wall
 /// temperature; `a = b = 0` is a rigid vessel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InnerVolume {
     /// Volume `V_0` at the reference state, m³; the contour's own volume is scaled to it for the gas, not for the wall.
     pub volume_m3: f64,
@@ -88,7 +90,7 @@ pub struct InnerVolume {
 }
 
 /// Valve body: one heat capacity on the neck (or on the topmost wall cell where there is no neck).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Valve {
     /// What it is made of.
     pub material: Material,
@@ -105,7 +107,7 @@ pub struct Valve {
 }
 
 /// The outer surface (cylinder and valve).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
     /// Long-wave emissivity, 0 to 1.
     pub emissivity: f64,
@@ -116,7 +118,7 @@ pub struct Surface {
 }
 
 /// Film law between the inner surface and the gas, `Nu_L = c Ra_L^n`, times a multiplier; or a fixed coefficient.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum InsideFilm {
     /// Power law with properties at film temperature.
     Rayleigh {
@@ -135,7 +137,7 @@ pub enum InsideFilm {
 }
 
 /// How the gas is resolved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum GasResolution {
     /// One well-mixed node: what mean temperature and pressure need.
     WellMixed,
@@ -144,7 +146,7 @@ pub enum GasResolution {
 }
 
 /// Constants of the stratified gas.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stratification {
     /// Number of gas cells, at least 2.
     pub cells: usize,

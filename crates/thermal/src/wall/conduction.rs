@@ -3,6 +3,7 @@
 //! Between two nodes heat flows through two half cells in series, each with the conductivity of its own
 //! material at its own node's temperature: `q = (T_a - T_b) / (1/(k_a g_a) + 1/(k_b g_b))`. Order of accuracy 2.
 use super::mesh::{Link, Mesh};
+use crate::real::powi;
 
 /// Heat flow over a link and its derivatives with the two node temperatures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +30,7 @@ pub(crate) fn link_flow(mesh: &Mesh, link: &Link, temperature_k: &[f64]) -> Link
     let difference = ta - tb;
     LinkFlow {
         heat_w: g * difference,
-        per_a_k: g + difference * (gb / (ga + gb)).powi(2) * slope_a,
-        per_b_k: -g + difference * (ga / (ga + gb)).powi(2) * slope_b,
+        per_a_k: g + difference * powi(gb / (ga + gb), 2) * slope_a,
+        per_b_k: -g + difference * powi(ga / (ga + gb), 2) * slope_b,
     }
 }

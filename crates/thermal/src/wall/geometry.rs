@@ -5,9 +5,12 @@
 //! the outer contour is the spheroid (radius + t, depth + t). A flat end is a disc that reaches to the
 //! outer radius. The neck is a short tube on the shoulder's opening.
 use super::material::Material;
+use crate::real::powi;
+use alloc::vec::Vec;
+use serde::{Deserialize, Serialize};
 
 /// How the gas axis lies in the field of gravity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Orientation {
     /// Valve at the top.
     Vertical,
@@ -16,7 +19,7 @@ pub enum Orientation {
 }
 
 /// Shape of a closing end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum EndShape {
     /// A flat disc.
     Flat,
@@ -28,7 +31,7 @@ pub enum EndShape {
 }
 
 /// The bottom or the shoulder.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// Shape of the inner contour.
     pub shape: EndShape,
@@ -39,7 +42,7 @@ pub struct End {
 }
 
 /// The tube above the shoulder that carries the valve.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Neck {
     /// Inner diameter, m.
     pub inner_diameter_m: f64,
@@ -52,7 +55,7 @@ pub struct Neck {
 }
 
 /// One layer of the cylindrical wall, counted from the inside.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// What it is made of.
     pub material: Material,
@@ -63,7 +66,7 @@ pub struct Layer {
 }
 
 /// Validated contour and wall of a vessel; build it with [`crate::vessel::VesselSpec::build`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Geometry {
     /// How the axis lies.
     pub orientation: Orientation,
@@ -136,7 +139,7 @@ impl Geometry {
     /// Volume inside the contour, m³.
     pub fn contour_volume_m3(&self) -> f64 {
         let radius = 0.5 * self.inner_diameter_m;
-        let area = std::f64::consts::PI * radius * radius;
+        let area = core::f64::consts::PI * radius * radius;
         let bottom = match self.bottom.shape {
             EndShape::Flat => 0.0,
             EndShape::Dome { depth_m } => 2.0 / 3.0 * area * depth_m,
@@ -146,12 +149,12 @@ impl Geometry {
             EndShape::Dome { depth_m } => {
                 // Zone of the spheroid up to the opening: pi a² (z - z³/(3 b²)).
                 let z = self.shoulder_height_m(radius);
-                area * (z - z.powi(3) / (3.0 * depth_m * depth_m))
+                area * (z - powi(z, 3) / (3.0 * depth_m * depth_m))
             }
         };
-        let neck = self
-            .neck
-            .map_or(0.0, |neck| 0.25 * std::f64::consts::PI * neck.inner_diameter_m.powi(2) * neck.length_m);
+        let neck = self.neck.map_or(0.0, |neck| {
+            0.25 * core::f64::consts::PI * powi(neck.inner_diameter_m, 2) * neck.length_m
+        });
         bottom + area * self.cylinder_length_m + shoulder + neck
     }
 
@@ -160,7 +163,7 @@ impl Geometry {
             EndShape::Flat => 0.0,
             EndShape::Dome { depth_m } => {
                 let opening = self.neck.map_or(0.0, |neck| 0.5 * neck.inner_diameter_m) / radius;
-                depth_m * (1.0 - opening * opening).sqrt()
+                depth_m * libm::sqrt(1.0 - opening * opening)
             }
         }
     }
@@ -170,7 +173,8 @@ impl Geometry {
     /// Inner radius at a height above the inner bottom of the standing vessel, m.
     pub fn inner_radius_at_m(&self, height_m: f64) -> f64 {
         let radius = 0.5 * self.inner_diameter_m;
-        let dome = |depth: f64, distance: f64| radius * (1.0 - (distance / depth).powi(2)).max(0.0).sqrt();
+        let dome =
+            |depth: f64, distance: f64| radius * libm::sqrt((1.0 - powi(distance / depth, 2)).max(0.0));
         let bottom = match self.bottom.shape {
             EndShape::Flat => 0.0,
             EndShape::Dome { depth_m } => depth_m,

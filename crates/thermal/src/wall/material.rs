@@ -4,12 +4,15 @@
 //! of a cylinder's life: `c(T) = c_20 [1 + a_c (T - 293.15 K)]`, `k(T) = k_20 [1 + a_k (T - 293.15 K)]`.
 //! A linear heat capacity keeps the wall's energy a quadratic that inverts in closed form, so that the
 //! wall can carry energy as its state and conserve it exactly (see [`crate::model`]).
+use alloc::string::String;
+use alloc::vec::Vec;
+use serde::{Deserialize, Serialize};
 
 /// Temperature at which a material's data hold without correction, K.
 pub(crate) const REFERENCE_TEMPERATURE_K: f64 = 293.15;
 
 /// A solid.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name, as files spell it.
     pub name: String,
@@ -32,14 +35,14 @@ impl Material {
     /// heat capacity would give, K.
     pub(crate) fn temperature_k(&self, energy_state_k: f64) -> f64 {
         let y = energy_state_k - REFERENCE_TEMPERATURE_K;
-        let root = (1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(0.0).sqrt();
+        let root = libm::sqrt((1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(0.0));
         REFERENCE_TEMPERATURE_K + 2.0 * y / (1.0 + root)
     }
 
     /// Derivative of [`Material::temperature_k`]: `c_20 / c(T)`.
     pub(crate) fn temperature_slope(&self, energy_state_k: f64) -> f64 {
         let y = energy_state_k - REFERENCE_TEMPERATURE_K;
-        1.0 / (1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(f64::MIN_POSITIVE).sqrt()
+        1.0 / libm::sqrt((1.0 + 2.0 * self.heat_capacity_slope_per_k * y).max(f64::MIN_POSITIVE))
     }
 
     /// Energy state of a cell at a temperature, K; inverse of [`Material::temperature_k`].

@@ -11,7 +11,9 @@
 //! with semi-axes `a, b`, thickness `t`, depth in the wall `s` in `[0, 1]`, by Gauss-Legendre quadrature; hemispheres are exact.
 mod coarse;
 
-use std::f64::consts::PI;
+use crate::real::powi;
+use alloc::vec::Vec;
+use core::f64::consts::PI;
 
 use super::geometry::{End, EndShape, Geometry};
 use super::material::Material;
@@ -132,11 +134,14 @@ impl Stretch {
             StretchShape::Zone { radius_m, depth_m, phi } => {
                 let (a, b) = (radius_m + t, depth_m + t);
                 integrate(phi.0, phi.1, |phi| {
-                    2.0 * PI * a * phi.cos() * ((a * phi.sin()).powi(2) + (b * phi.cos()).powi(2)).sqrt()
+                    2.0 * PI
+                        * a
+                        * libm::cos(phi)
+                        * libm::sqrt(powi(a * libm::sin(phi), 2) + powi(b * libm::cos(phi), 2))
                 })
             }
             StretchShape::Ring { radii_m: (r0, r1), rim } => {
-                PI * ((r1 + if rim { t } else { 0.0 }).powi(2) - r0 * r0)
+                PI * (powi(r1 + if rim { t } else { 0.0 }, 2) - r0 * r0)
             }
         }
     }
@@ -156,12 +161,16 @@ impl Stretch {
         let t = self.thickness_m;
         match self.shape {
             StretchShape::Shell { radius_m, length_m } => {
-                PI * ((radius_m + s1 * t).powi(2) - (radius_m + s0 * t).powi(2)) * length_m
+                PI * (powi(radius_m + s1 * t, 2) - powi(radius_m + s0 * t, 2)) * length_m
             }
             StretchShape::Zone { radius_m, depth_m, phi } => integrate(s0, s1, |s| {
                 integrate(phi.0, phi.1, |phi| {
                     let (a, b) = (radius_m + s * t, depth_m + s * t);
-                    2.0 * PI * a * phi.cos() * t * (b * phi.cos().powi(2) + a * phi.sin().powi(2))
+                    2.0 * PI
+                        * a
+                        * libm::cos(phi)
+                        * t
+                        * (b * powi(libm::cos(phi), 2) + a * powi(libm::sin(phi), 2))
                 })
             }),
             // A flat end is a disc of the full outer radius at every depth.
@@ -176,7 +185,9 @@ impl Stretch {
             StretchShape::Shell { length_m, .. } => length_m,
             StretchShape::Zone { radius_m, depth_m, phi } => {
                 integrate(phi.0.min(phi.1), phi.0.max(phi.1), |phi| {
-                    (((radius_m + t) * phi.sin()).powi(2) + ((depth_m + t) * phi.cos()).powi(2)).sqrt()
+                    libm::sqrt(
+                        powi((radius_m + t) * libm::sin(phi), 2) + powi((depth_m + t) * libm::cos(phi), 2),
+                    )
                 })
             }
             StretchShape::Ring { radii_m: (r0, r1), .. } => r1 - r0,
@@ -190,9 +201,9 @@ impl Stretch {
         match self.shape {
             StretchShape::Shell { length_m, radius_m } => {
                 let (r0, r1) = (radius_m + s0 * self.thickness_m, radius_m + s1 * self.thickness_m);
-                2.0 * PI * length_m / (r1 / r0).ln().abs()
+                2.0 * PI * length_m / libm::log(r1 / r0).abs()
             }
-            _ => (a0 * a1).sqrt() / distance,
+            _ => libm::sqrt(a0 * a1) / distance,
         }
     }
 
@@ -283,7 +294,7 @@ impl Mesh {
                 } else {
                     f64::from(u8::from(from <= low && low <= to))
                 };
-                lit * column.outer_area_m2 / std::f64::consts::PI
+                lit * column.outer_area_m2 / core::f64::consts::PI
             })
             .collect()
     }
@@ -420,8 +431,8 @@ fn push_end(
             }
         }
         EndShape::Dome { depth_m } => {
-            let phi_end = (opening / radius).acos();
-            let z = |phi: f64| depth_m * phi.sin();
+            let phi_end = libm::acos(opening / radius);
+            let z = |phi: f64| depth_m * libm::sin(phi);
             for cell in 0..end.cells {
                 let from_equator = ordered(cell) as f64;
                 let phi = (phi_end * from_equator / n, phi_end * (from_equator + 1.0) / n);

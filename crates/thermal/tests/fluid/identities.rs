@@ -6,7 +6,7 @@
 //! Tolerance: 1e-9 of the terms' size for dual numbers (rounding only; near-cancelling sums lose a few digits), 1e-6 for
 //! central differences with a relative step of 1e-5 (truncation about the step's square, rounding 1e-16 over the step).
 use cylwatch_thermal::fluid::{Equation, Fluid, State};
-use num_dual::Dual64;
+use cylwatch_thermal::real::Dual;
 
 use crate::support::all;
 
@@ -55,23 +55,23 @@ fn holds(tolerance: f64, sides: impl Fn(&Fluid, &State) -> (f64, f64, f64)) {
 }
 
 /// The state's derivatives along a direction (d rho, d T).
-fn along(fluid: &Fluid, s: &State, d_rho: f64, d_t: f64) -> State<Dual64> {
-    fluid.state(Dual64::new(s.density_kg_m3, d_rho), Dual64::new(s.temperature_k, d_t))
+fn along(fluid: &Fluid, s: &State, d_rho: f64, d_t: f64) -> State<Dual<1>> {
+    fluid.state(Dual { re: s.density_kg_m3, eps: [d_rho] }, Dual { re: s.temperature_k, eps: [d_t] })
 }
 
 /// Direction of constant pressure per kelvin.
-fn along_isobar(fluid: &Fluid, s: &State) -> State<Dual64> {
+fn along_isobar(fluid: &Fluid, s: &State) -> State<Dual<1>> {
     along(fluid, s, -s.dp_dt_pa_k / s.dp_drho_pa_m3_kg, 1.0)
 }
 
 /// Direction of constant entropy per unit of density, by the entropy's own derivatives.
-fn along_isentrope(fluid: &Fluid, s: &State) -> State<Dual64> {
-    let in_density = along(fluid, s, 1.0, 0.0).entropy_j_kg_k.eps;
-    let in_temperature = along(fluid, s, 0.0, 1.0).entropy_j_kg_k.eps;
+fn along_isentrope(fluid: &Fluid, s: &State) -> State<Dual<1>> {
+    let in_density = along(fluid, s, 1.0, 0.0).entropy_j_kg_k.eps[0];
+    let in_temperature = along(fluid, s, 0.0, 1.0).entropy_j_kg_k.eps[0];
     along(fluid, s, 1.0, -in_density / in_temperature)
 }
 
-fn gibbs(s: &State<Dual64>) -> Dual64 {
+fn gibbs(s: &State<Dual<1>>) -> Dual<1> {
     s.enthalpy_j_kg - s.temperature_k * s.entropy_j_kg_k
 }
 
@@ -119,7 +119,7 @@ fn enthalpy_is_energy_plus_flow_work() {
 #[test]
 fn gibbs_energy_falls_with_temperature_by_the_entropy() {
     holds(EXACT, |fluid, s| {
-        let slope = gibbs(&along_isobar(fluid, s)).eps;
+        let slope = gibbs(&along_isobar(fluid, s)).eps[0];
         (slope, -s.entropy_j_kg_k, s.entropy_j_kg_k.abs() + s.cp_j_kg_k)
     });
 }
@@ -127,19 +127,21 @@ fn gibbs_energy_falls_with_temperature_by_the_entropy() {
 #[test]
 fn gibbs_energy_rises_with_pressure_by_the_volume() {
     holds(EXACT, |fluid, s| {
-        let slope = gibbs(&along(fluid, s, 1.0 / s.dp_drho_pa_m3_kg, 0.0)).eps;
+        let slope = gibbs(&along(fluid, s, 1.0 / s.dp_drho_pa_m3_kg, 0.0)).eps[0];
         (slope, 1.0 / s.density_kg_m3, 1.0 / s.density_kg_m3)
     });
 }
 
 #[test]
 fn isochoric_heat_capacity_is_the_slope_of_the_energy() {
-    holds(EXACT, |fluid, s| (along(fluid, s, 0.0, 1.0).internal_energy_j_kg.eps, s.cv_j_kg_k, s.cv_j_kg_k));
+    holds(EXACT, |fluid, s| {
+        (along(fluid, s, 0.0, 1.0).internal_energy_j_kg.eps[0], s.cv_j_kg_k, s.cv_j_kg_k)
+    });
 }
 
 #[test]
 fn isobaric_heat_capacity_is_the_slope_of_the_enthalpy() {
-    holds(EXACT, |fluid, s| (along_isobar(fluid, s).enthalpy_j_kg.eps, s.cp_j_kg_k, s.cp_j_kg_k));
+    holds(EXACT, |fluid, s| (along_isobar(fluid, s).enthalpy_j_kg.eps[0], s.cp_j_kg_k, s.cp_j_kg_k));
 }
 
 /// Mayer's relation with expansion and compressibility coefficients, both from differences of the density at (p, T).
@@ -161,7 +163,7 @@ fn heat_capacities_differ_by_expansion_and_compressibility() {
 fn sound_speed_squared_is_the_isentropic_slope_of_the_pressure() {
     holds(EXACT, |fluid, s| {
         let square = s.sound_speed_m_s * s.sound_speed_m_s;
-        (along_isentrope(fluid, s).pressure_pa.eps, square, square)
+        (along_isentrope(fluid, s).pressure_pa.eps[0], square, square)
     });
 }
 
@@ -190,7 +192,7 @@ fn slope_of_the_pressure_in_density_is_its_difference() {
 fn energy_at_constant_volume_changes_by_heat() {
     holds(EXACT, |fluid, s| {
         let d = along(fluid, s, 0.0, 1.0);
-        (d.internal_energy_j_kg.eps, s.temperature_k * d.entropy_j_kg_k.eps, s.cv_j_kg_k)
+        (d.internal_energy_j_kg.eps[0], s.temperature_k * d.entropy_j_kg_k.eps[0], s.cv_j_kg_k)
     });
 }
 
@@ -199,15 +201,15 @@ fn energy_at_constant_volume_changes_by_heat() {
 fn energy_at_constant_temperature_changes_by_heat_and_work() {
     holds(EXACT, |fluid, s| {
         let d = along(fluid, s, s.density_kg_m3, 0.0);
-        let right = s.temperature_k * d.entropy_j_kg_k.eps + s.pressure_pa / s.density_kg_m3;
-        (d.internal_energy_j_kg.eps, right, rt(fluid, s))
+        let right = s.temperature_k * d.entropy_j_kg_k.eps[0] + s.pressure_pa / s.density_kg_m3;
+        (d.internal_energy_j_kg.eps[0], right, rt(fluid, s))
     });
 }
 
 #[test]
 fn entropy_at_constant_volume_rises_with_the_heat_capacity() {
     holds(EXACT, |fluid, s| {
-        let slope = along(fluid, s, 0.0, 1.0).entropy_j_kg_k.eps;
+        let slope = along(fluid, s, 0.0, 1.0).entropy_j_kg_k.eps[0];
         (s.temperature_k * slope, s.cv_j_kg_k, s.cv_j_kg_k)
     });
 }
@@ -216,7 +218,7 @@ fn entropy_at_constant_volume_rises_with_the_heat_capacity() {
 fn maxwell_relation_of_entropy_and_pressure() {
     holds(EXACT, |fluid, s| {
         let rho = s.density_kg_m3;
-        let ds_dv = -rho * rho * along(fluid, s, 1.0, 0.0).entropy_j_kg_k.eps;
+        let ds_dv = -rho * rho * along(fluid, s, 1.0, 0.0).entropy_j_kg_k.eps[0];
         (ds_dv, s.dp_dt_pa_k, s.dp_dt_pa_k)
     });
 }
@@ -225,7 +227,7 @@ fn maxwell_relation_of_entropy_and_pressure() {
 #[test]
 fn maxwell_relation_of_entropy_and_volume() {
     holds(EXACT, |fluid, s| {
-        let ds_dp = along(fluid, s, 1.0 / s.dp_drho_pa_m3_kg, 0.0).entropy_j_kg_k.eps;
+        let ds_dp = along(fluid, s, 1.0 / s.dp_drho_pa_m3_kg, 0.0).entropy_j_kg_k.eps[0];
         let dv_dt = along_isobar(fluid, s).density_kg_m3.recip_eps();
         (ds_dp, -dv_dt, dv_dt)
     });
@@ -236,9 +238,9 @@ trait RecipEps {
     fn recip_eps(self) -> f64;
 }
 
-impl RecipEps for Dual64 {
+impl RecipEps for Dual<1> {
     fn recip_eps(self) -> f64 {
-        -self.eps / (self.re * self.re)
+        -self.eps[0] / (self.re * self.re)
     }
 }
 
@@ -289,9 +291,9 @@ fn joule_thomson_coefficient_is_the_slope_of_the_isenthalp() {
     holds(EXACT, |fluid, s| {
         let in_density = along(fluid, s, 1.0, 0.0);
         let in_temperature = along(fluid, s, 0.0, 1.0);
-        let slope = -in_density.enthalpy_j_kg.eps / in_temperature.enthalpy_j_kg.eps;
+        let slope = -in_density.enthalpy_j_kg.eps[0] / in_temperature.enthalpy_j_kg.eps[0];
         let d = along(fluid, s, 1.0, slope);
-        (slope / d.pressure_pa.eps, joule_thomson(s), 1.0 / (s.density_kg_m3 * s.cp_j_kg_k))
+        (slope / d.pressure_pa.eps[0], joule_thomson(s), 1.0 / (s.density_kg_m3 * s.cp_j_kg_k))
     });
 }
 

@@ -6,7 +6,7 @@
 //! problem's condition; bars are 1e-9 of what the condition leaves.
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::fluid::{Fluid, State};
-use num_dual::Dual64;
+use cylwatch_thermal::real::Dual;
 use proptest::prelude::*;
 
 use crate::support::{EQUATIONS, all, condenses, liquefies};
@@ -134,24 +134,30 @@ fn derivatives_of_the_state_from_density_and_energy_are_its_differences() {
         let h = 1e-5 * here.cv_j_kg_k * t;
         let plain = |rho: f64, u: f64| fluid.state_from_density_energy(rho, u, Some(t)).unwrap();
         let lifted = |d_rho: f64, d_u: f64| {
-            fluid.state_from_density_energy(Dual64::new(rho, d_rho), Dual64::new(u, d_u), Some(t)).unwrap()
+            fluid
+                .state_from_density_energy(
+                    Dual { re: rho, eps: [d_rho] },
+                    Dual { re: u, eps: [d_u] },
+                    Some(t),
+                )
+                .unwrap()
         };
         let (in_density, in_energy) = (lifted(1.0, 0.0), lifted(0.0, 1.0));
         let (warm, cold) = (plain(rho, u + h), plain(rho, u - h));
         for (exact, numeric, size) in [
             (
-                in_energy.temperature_k.eps,
+                in_energy.temperature_k.eps[0],
                 (warm.temperature_k - cold.temperature_k) / (2.0 * h),
                 1.0 / here.cv_j_kg_k,
             ),
             (
-                in_energy.pressure_pa.eps,
+                in_energy.pressure_pa.eps[0],
                 (warm.pressure_pa - cold.pressure_pa) / (2.0 * h),
                 here.dp_dt_pa_k / here.cv_j_kg_k,
             ),
-            (in_density.temperature_k.eps, difference(|rho| plain(rho, u).temperature_k, rho), t / rho),
+            (in_density.temperature_k.eps[0], difference(|rho| plain(rho, u).temperature_k, rho), t / rho),
             (
-                in_density.pressure_pa.eps,
+                in_density.pressure_pa.eps[0],
                 difference(|rho| plain(rho, u).pressure_pa, rho),
                 here.dp_drho_pa_m3_kg,
             ),

@@ -1,4 +1,6 @@
 //! State of one alarm, and what a sample does to it.
+use alloc::string::String;
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{Alarm, Delayed, Trigger};

@@ -1,6 +1,7 @@
 //! What people do to a condition. A refusal says which state stands against it; the condition stays as it was.
 use super::{Change, Condition, Transition};
 use crate::DetectorError;
+use alloc::borrow::ToOwned;
 
 impl Condition {
     /// Somebody has seen it. Where the alarm is `confirming`, it waits for [`Condition::confirm`] then. An empty comment

@@ -1,4 +1,6 @@
 //! The six alarms of a cylinder.
+use alloc::string::String;
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{Alarm, AlarmSettings, Change, Condition, Transition, Trigger};
@@ -104,7 +106,7 @@ impl AlarmInputs {
 
 impl AlarmEvent {
     fn new(alarm: AlarmName, transition: Transition) -> Self {
-        let ms = (transition.time_s * 1e3).round();
+        let ms = libm::round(transition.time_s * 1e3);
         let id = format!("alarm-{}-{}-{ms}", alarm.as_str(), transition.change.as_str());
         Self { id, alarm, transition }
     }
@@ -120,7 +122,7 @@ impl AlarmPanel {
     pub fn retained(&self) -> Vec<(AlarmName, &Condition)> {
         let all = AlarmName::ALL.into_iter().zip(&self.conditions);
         let mut retained: Vec<_> = all.filter(|(_, condition)| condition.retain()).collect();
-        retained.sort_by_key(|(_, condition)| std::cmp::Reverse(condition.severity));
+        retained.sort_by_key(|(_, condition)| core::cmp::Reverse(condition.severity));
         retained
     }
 
@@ -177,7 +179,7 @@ impl AlarmPanel {
         (time_s, signal): (f64, T::Signal),
         events: &mut Vec<AlarmEvent>,
     ) {
-        let condition = std::mem::take(&mut self.conditions[name as usize]);
+        let condition = core::mem::take(&mut self.conditions[name as usize]);
         let (condition, transitions) = alarm.step(condition, time_s, signal);
         self.conditions[name as usize] = condition;
         events.extend(transitions.into_iter().map(|transition| AlarmEvent::new(name, transition)));

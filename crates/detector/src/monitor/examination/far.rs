@@ -14,7 +14,7 @@ pub(crate) const FORGOTTEN_S: f64 = 5.0 * DAY_S;
 
 /// Part of what a transmitter did so long ago, s, that is not forgotten.
 pub(crate) fn kept(since_s: f64) -> f64 {
-    (-since_s / FORGOTTEN_S).exp()
+    libm::exp(-since_s / FORGOTTEN_S)
 }
 
 /// Readings that were good, that were the first ones far off, and that were so after one that was.

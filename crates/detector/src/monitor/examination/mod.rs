@@ -43,7 +43,9 @@
 //! Source: the bank of Kalman filters is Magill's, IEEE Trans. Autom. Control 10 (1965) 434; Willsky, Jones, IEEE Trans. Autom. Control 21 (1976) 108 has jumps.
 mod far;
 
-use std::f64::consts::TAU;
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+use cylwatch_estimator::thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
 
@@ -202,7 +204,7 @@ impl Member {
         };
         let variance = [fresh * fresh, unknown * unknown];
         Self {
-            ln_odds: prior.ln(),
+            ln_odds: libm::log(prior),
             mean: [before, 0.0],
             variance,
             covariance: 0.0,
@@ -226,14 +228,14 @@ impl Member {
         let by = match course {
             Course::Nothing => 0.0,
             Course::Offset { .. } | Course::Flow { .. } => 1.0,
-            Course::Gas { rebound, time_s, .. } => 1.0 + rebound * (-since_s / time_s).exp(),
+            Course::Gas { rebound, time_s, .. } => 1.0 + rebound * libm::exp(-since_s / time_s),
         };
         let gain = [self.variance[0] + by * self.covariance, self.covariance + by * self.variance[1]];
         let variance = gain[0] + by * gain[1] + noise;
         let innovation = error - self.mean[0] - by * self.mean[1];
-        let ln_density = -0.5 * (innovation * innovation / variance + (TAU * variance).ln());
+        let ln_density = -0.5 * (innovation * innovation / variance + libm::log(TAU * variance));
         let chance = far_off.chance(self.far);
-        let (near, far) = ((1.0 - chance).ln() + ln_density, (chance / 2.0).ln());
+        let (near, far) = (libm::log(1.0 - chance) + ln_density, libm::log(chance / 2.0));
         self.ln_odds += near.max(far);
         self.far = near < far;
         if self.far {
@@ -284,9 +286,10 @@ impl Examination {
         far_off: FarOff,
     ) -> Self {
         let Before { missing, fresh, unseen } = before;
-        let model = unseen.hypot(subject.floor());
-        let members =
-            subject.courses().map(|(course, prior)| Member::new(course, prior, missing, fresh.hypot(model)));
+        let model = libm::hypot(unseen, subject.floor());
+        let members = subject
+            .courses()
+            .map(|(course, prior)| Member::new(course, prior, missing, libm::hypot(fresh, model)));
         Self {
             subject,
             onset_s,
@@ -321,11 +324,11 @@ impl Examination {
         if !now.missing.is_finite() {
             return if since_s > LONGEST_S { Cause::Unclear } else { Cause::Open };
         }
-        let interval_s = now.time_s - std::mem::replace(&mut self.last_s, now.time_s);
-        let unseen = self.unseen * (-since_s / self.memory_s).exp();
-        let model = now.considered.hypot(unseen).hypot(self.subject.floor());
-        let kept = (-interval_s / self.memory_s).exp() * (model / self.model).min(1.0);
-        let fresh = model * model - (kept * self.model).powi(2);
+        let interval_s = now.time_s - core::mem::replace(&mut self.last_s, now.time_s);
+        let unseen = self.unseen * libm::exp(-since_s / self.memory_s);
+        let model = libm::hypot(libm::hypot(now.considered, unseen), self.subject.floor());
+        let kept = libm::exp(-interval_s / self.memory_s) * (model / self.model).min(1.0);
+        let fresh = model * model - powi(kept * self.model, 2);
         self.model = model;
         self.error = now.missing;
         let noise = now.noise * now.noise;
@@ -379,10 +382,10 @@ impl Examination {
         if some.far && !over {
             return Cause::Open;
         }
-        let (left, sd) = (some.mean[1], some.variance[1].max(0.0).sqrt());
+        let (left, sd) = (some.mean[1], libm::sqrt(some.variance[1].max(0.0)));
         let half = left.abs() / 2.0;
         let floor = self.subject.floor();
-        let unknown = left.abs() < DEVIATIONS * sd.hypot(floor);
+        let unknown = left.abs() < DEVIATIONS * libm::hypot(sd, floor);
         let hidden = unknown && left.abs() > DEVIATIONS * floor && self.subject == Subject::Thermometer;
         // What the surroundings may still do is told to be the transmitter's when they do it no more.
         if (gas <= LIKELY && self.model > half || unknown && !goes_back || hidden) && !over {
@@ -402,7 +405,7 @@ impl Examination {
     /// Probability of the causes of a kind.
     fn probability(&self) -> impl Fn(fn(&Course) -> bool) -> f64 {
         let most = self.members.iter().map(|of| of.ln_odds).fold(f64::NEG_INFINITY, f64::max);
-        let weights = move |of: &Member| (of.ln_odds - most).exp();
+        let weights = move |of: &Member| libm::exp(of.ln_odds - most);
         let all: f64 = self.members.iter().map(weights).sum();
         move |is: fn(&Course) -> bool| {
             let of_kind = self.subject.courses().zip(&self.members).filter(|((course, _), _)| is(course));

@@ -25,7 +25,8 @@
 //! all pressures alike.
 //!
 //! Assumes that no part of the wall is farther than `d` of its temperature from all thermometers for longer than the gas takes to follow it.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
+use cylwatch_estimator::thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +94,7 @@ struct Bound {
 impl Bound {
     /// How far the mass may be beyond it by what has been learnt since, kg.
     fn learnt_kg(&self, now_sd_kg: f64) -> f64 {
-        FLOW_DEVIATIONS * (self.sd_kg.powi(2) - now_sd_kg.powi(2)).max(0.0).sqrt()
+        FLOW_DEVIATIONS * libm::sqrt((powi(self.sd_kg, 2) - powi(now_sd_kg, 2)).max(0.0))
     }
 
     /// Of which a part has been kept since, where it would be so much now.
@@ -192,7 +193,7 @@ impl Excursions {
             self.now = if certain { 0 } else { self.now + 1 };
             return;
         }
-        let came_back = std::mem::take(&mut self.now);
+        let came_back = core::mem::take(&mut self.now);
         if came_back > 0 && came_back >= self.lately(time_s) {
             (self.most, self.most_s) = (came_back, time_s);
         }
@@ -227,7 +228,7 @@ impl GasBounds {
             Contact::Gas => UNSEEN_GAS,
         };
         let drift_pa = seen.coefficient_pa_k * self.extremes_k.spread();
-        let error_pa = DEVIATIONS * drift_pa.hypot(seen.noise_pa);
+        let error_pa = DEVIATIONS * libm::hypot(drift_pa, seen.noise_pa);
         let least_kg = mass_kg(seen.pressure_pa - error_pa, (1.0 + unseen) * self.extremes_k.high);
         let most_kg = mass_kg(seen.pressure_pa + error_pa, (1.0 - unseen) * self.extremes_k.low);
         if !(least_kg.is_finite() && most_kg.is_finite()) {
@@ -249,9 +250,9 @@ impl GasBounds {
         shaken: f64,
     ) -> Option<Certain> {
         let since_s = self.flow_s.replace(time_s).map_or(0.0, |last_s| time_s - last_s);
-        let kept = (-since_s / FLOW_FADING_S).exp();
+        let kept = libm::exp(-since_s / FLOW_FADING_S);
         let by_kg = self.comes_and_goes_kg(flow, full_kg) + FLOW_PART * full_kg;
-        let lasting_sd_kg = (flow.mass_sd_kg.powi(2) - flow.passing_sd_kg.powi(2)).max(0.0).sqrt();
+        let lasting_sd_kg = libm::sqrt((powi(flow.mass_sd_kg, 2) - powi(flow.passing_sd_kg, 2)).max(0.0));
         self.wander.push(since_s, flow.mass_kg / full_kg);
         // A tunnel of minutes between two rows shows in neither.
         let rows = if shaken > FLOW_PART { 2 } else { 1 };
@@ -262,7 +263,7 @@ impl GasBounds {
 
     /// What of a mass that the observer says comes and goes without gas, kg.
     pub(crate) fn comes_and_goes_kg(&self, flow: &Flow, full_kg: f64) -> f64 {
-        FLOW_DEVIATIONS * flow.passing_sd_kg.hypot(self.wander.sd() * full_kg)
+        FLOW_DEVIATIONS * libm::hypot(flow.passing_sd_kg, self.wander.sd() * full_kg)
     }
 
     /// Part of the gas that is certainly gone or has certainly come by the thermometers, against the bound that it is beyond; 0 if none.
@@ -298,7 +299,7 @@ impl GasBounds {
             self.extremes_k = Extremes { low: (1.0 - before) * coldest_k, high: (1.0 + before) * warmest_k };
             return;
         };
-        self.extremes_k.follow(seen.extremes_k, (-(seen.time_s - last_s) / FADING_S).exp());
+        self.extremes_k.follow(seen.extremes_k, libm::exp(-(seen.time_s - last_s) / FADING_S));
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Nothing but a filling makes a cylinder heavier. Errors of the mass stay below 4 % whatever stands beside it, so a gain of 8 % within six hours is one, told
 //! once it is over: when the mass has not risen by a twentieth of it for twenty minutes.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 

@@ -115,7 +115,7 @@ impl LeakState {
             self.found = finding.or(self.found).or_else(|| Some(self.unseen(look)));
         }
         if let Some(posterior) = posterior {
-            self.odds = Some((PRIOR_ODDS * posterior.log_bayes_factor.exp()).min(CERTAIN));
+            self.odds = Some((PRIOR_ODDS * libm::exp(posterior.log_bayes_factor)).min(CERTAIN));
             self.largest_per_s = posterior.largest_rate_kg_s() / look.filled_kg;
         }
     }

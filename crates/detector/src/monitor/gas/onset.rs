@@ -17,7 +17,9 @@
 //! Source: Bayesian mixture over change points, D. A. Stephens, Appl. Stat. 43 (1994) 159; D. V. Hinkley, Biometrika 56 (1969) 495.
 //!
 //! [`Observer::onsets`]: crate::estimator::observer::Observer::onsets
-use std::f64::consts::TAU;
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+use cylwatch_estimator::thermal::real::powi;
 
 use crate::estimator::observer::{Observer, Onset};
 use crate::evidence::Evidence;
@@ -68,7 +70,7 @@ pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) 
     let error_sd = evidence.error_sd();
     let onset = |of: Onset| {
         let considered_kg_s = evidence.considered_kg_s(time_s - of.since_s);
-        (of.since_s, of.rate_kg_s, (error_sd * of.sd_kg_s).hypot(considered_kg_s))
+        (of.since_s, of.rate_kg_s, libm::hypot(error_sd * of.sd_kg_s, considered_kg_s))
     };
     Posterior::of(&observer.onsets().map(onset).collect::<Vec<_>>(), time_s, DRIFT_PER_S * mass_kg)
 }
@@ -85,14 +87,14 @@ impl Posterior {
                 Candidate { onset_s, from_s, to_s, rate, sd, weight: 0.0 }
             })
             .collect();
-        let ratio = |one: &Candidate| 0.5 * (one.rate.max(0.0) / one.sd).powi(2);
+        let ratio = |one: &Candidate| 0.5 * powi(one.rate.max(0.0) / one.sd, 2);
         let largest = candidates.iter().map(ratio).fold(0.0, f64::max);
         let (mut total, mut factor, mut span_s) = (0.0, 0.0, 0.0);
         for one in &mut candidates {
             let width = 0.5 * (one.to_s - one.from_s);
-            let likelihood = (ratio(one) - largest).exp();
+            let likelihood = libm::exp(ratio(one) - largest);
             // Mean of the likelihood over rates that are uniform in their logarithm.
-            let mean = likelihood * TAU.sqrt() * one.sd / (one.rate.max(one.sd) * LN_RATES);
+            let mean = likelihood * libm::sqrt(TAU) * one.sd / (one.rate.max(one.sd) * LN_RATES);
             factor += width * mean;
             // What lies above zero of a normal distribution of the rate.
             one.weight = width * mean * normal_probability(one.rate / one.sd);
@@ -100,7 +102,7 @@ impl Posterior {
             span_s += width;
         }
         candidates.iter_mut().for_each(|one| one.weight /= total);
-        let log_bayes_factor = largest + (factor / span_s).ln();
+        let log_bayes_factor = largest + libm::log(factor / span_s);
         if !(total > 0.0 && log_bayes_factor.is_finite()) {
             return None;
         }
@@ -108,7 +110,7 @@ impl Posterior {
     }
 
     fn rates(&self) -> Mixture {
-        Mixture::new(&self.candidates, |one| (one.rate, one.rate_sd().hypot(self.drift_kg_s)))
+        Mixture::new(&self.candidates, |one| (one.rate, libm::hypot(one.rate_sd(), self.drift_kg_s)))
     }
 
     /// Leak rate, kg/s.
@@ -204,7 +206,7 @@ fn onset_quantile(candidates: &[Candidate], p: f64, time_s: f64) -> f64 {
 impl Candidate {
     /// Standard deviation of the rate with what a kilogram is worth, kg/s.
     fn rate_sd(&self) -> f64 {
-        self.sd.hypot(MODEL * self.rate)
+        libm::hypot(self.sd, MODEL * self.rate)
     }
 
     /// Probability of an onset before `value_s`.
@@ -215,9 +217,9 @@ impl Candidate {
         } else if value_s >= self.to_s {
             1.0
         } else if value_s < self.onset_s {
-            (value_s - self.from_s).powi(2) / (rise_s * (rise_s + fall_s))
+            powi(value_s - self.from_s, 2) / (rise_s * (rise_s + fall_s))
         } else {
-            1.0 - (self.to_s - value_s).powi(2) / (fall_s * (rise_s + fall_s))
+            1.0 - powi(self.to_s - value_s, 2) / (fall_s * (rise_s + fall_s))
         };
         self.weight * of_weight
     }

@@ -2,6 +2,7 @@
 //!
 //! Free to follow the pressure, that member cannot learn what the transmitter does with its temperature: by night it may see a hundredth of the gas less than by day, which is
 //! no gas. What it does in this cylinder is learnt as the evidence for a leak learns how restless a cylinder is ([`Restless`]), from the difference to its low-pass over a day.
+use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
 
 use crate::evidence::Restless;
@@ -28,8 +29,8 @@ impl Wander {
     /// Take in the mass, so long after the last one, s.
     pub(super) fn push(&mut self, since_s: f64, part: f64) {
         let level = self.level.get_or_insert(part);
-        *level += -(-since_s / LEVEL_S).exp_m1() * (part - *level);
-        self.usual.update(since_s, (part - *level).powi(2));
+        *level += -libm::expm1(-since_s / LEVEL_S) * (part - *level);
+        self.usual.update(since_s, powi(part - *level, 2));
     }
 
     /// Standard deviation.

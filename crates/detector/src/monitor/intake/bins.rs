@@ -3,6 +3,7 @@
 //! Bins lie on a fixed grid of the internal time, `floor(t/step)`, so that rows at the step or slower pass as they are, and where the
 //! log begins changes nothing. A bin is handed out when a row of another one comes; a row at once while the rows before came at the step
 //! or slower.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::row::Row;
@@ -29,7 +30,7 @@ impl Bins {
 
     /// Take a row: what is complete now is added to `done`.
     pub(super) fn take(&mut self, row: Row, done: &mut Vec<Row>) {
-        let bin = |time_s: f64| (time_s / self.step_s).floor();
+        let bin = |time_s: f64| libm::floor(time_s / self.step_s);
         let another = self.filling.last().is_some_and(|last| bin(last.time_s) != bin(row.time_s));
         let alone_s = match &self.filling[..] {
             [] => self.passed_s,
@@ -52,7 +53,7 @@ impl Bins {
 
     /// The bin as it is, if there is anything in it.
     pub(super) fn close(&mut self) -> Option<Row> {
-        let mut rows = std::mem::take(&mut self.filling);
+        let mut rows = core::mem::take(&mut self.filling);
         let mut one = rows.pop()?;
         if rows.is_empty() {
             return Some(one);
@@ -78,7 +79,7 @@ fn middle(values: &mut Vec<f64>) -> f64 {
     if values.iter().any(|value| value.is_finite()) {
         values.retain(|value| value.is_finite());
     }
-    values.sort_by(f64::total_cmp);
+    values.sort_unstable_by(f64::total_cmp);
     let n = values.len();
     match n {
         0 => f64::NAN,

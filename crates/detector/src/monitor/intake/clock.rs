@@ -3,6 +3,7 @@
 //! Rows off the axis wait in a run, in order among themselves. A run that grows long enough is believed; one that a row on the axis
 //! cuts short is not. When the clock has jumped, `offset += jump` with
 //! `jump = (first stamp of the run - offset) - (latest time + usual interval)`.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::row::{Row, United};
@@ -88,7 +89,7 @@ impl Guard {
         let at = self.run.partition_point(|other| other.stamp_s < stray.stamp_s);
         match self.run.get_mut(at) {
             Some(same) if same.stamp_s == stray.stamp_s => {
-                let readings = std::mem::take(&mut same.readings);
+                let readings = core::mem::take(&mut same.readings);
                 let mut row = Row { time_s: same.stamp_s, stamp_s: same.stamp_s, readings };
                 let united = row.unite(&stray.readings);
                 same.readings = row.readings;
@@ -108,7 +109,7 @@ impl Guard {
 
     /// The run; there is none afterwards.
     pub(super) fn take_run(&mut self) -> Vec<Stray> {
-        std::mem::take(&mut self.run)
+        core::mem::take(&mut self.run)
     }
 
     /// Rows in the run.

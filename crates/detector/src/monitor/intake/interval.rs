@@ -1,4 +1,5 @@
 //! The usual interval between rows: median of the last few.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Intervals that are remembered: seven gaps among them change nothing.

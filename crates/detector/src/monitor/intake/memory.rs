@@ -4,7 +4,7 @@
 //! `2400 / 2^16`, is taken for one of them at most. A generation is sorted, so that it is saved by the gaps between its fingerprints: 8.3 bits of a row.
 //!
 //! Source: set of fingerprints, L. Carter et al., STOC 1978, 59; code of the gaps, R. F. Rice, JPL Publication 79-22 (1979).
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +80,7 @@ fn fingerprint(hash: u64) -> u16 {
 
 /// FNV-1a over the bytes of stamp and readings, mixed once more; one NaN is as good as another.
 pub(super) fn hash(row: &Stray) -> u64 {
-    let hash = std::iter::once(&row.stamp_s)
+    let hash = core::iter::once(&row.stamp_s)
         .chain(&row.readings)
         .map(|value| if value.is_nan() { f64::NAN } else { *value })
         .flat_map(|value| value.to_bits().to_le_bytes())

@@ -1,5 +1,5 @@
 //! Rows that wait for later ones to overtake them, sorted by time, rows of one time united.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
 //! What comes out of the intake.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::super::Event;

@@ -15,7 +15,6 @@
 //!
 //! What a transmitter's jump is, [`crate::monitor::gas::jump`] tells.
 use serde::{Deserialize, Serialize};
-use statrs::function::erf::erf;
 
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
@@ -81,7 +80,7 @@ impl SensorWatch {
             missing: 0,
             step: f64::INFINITY,
             at_rest: if sensor.resolution > 0.0 {
-                erf(sensor.resolution / (8.0_f64.sqrt() * sensor.noise_sd))
+                libm::erf(sensor.resolution / (libm::sqrt(8.0_f64) * sensor.noise_sd))
             } else {
                 0.0
             },
@@ -153,7 +152,7 @@ impl SensorWatch {
     fn unlikeliness(&self, in_a_row: u32) -> f64 {
         let learnt = (self.repeated + 5.0) / (self.seen + 10.0);
         let share = learnt.max(self.at_rest).clamp(0.05, 1.0 - 1e-6);
-        f64::from(in_a_row) * -share.ln()
+        f64::from(in_a_row) * -libm::log(share)
     }
 
     /// Whether it may be standing still: readings have been identical for longer than is usual, and not for so long that it is no chance.

@@ -17,7 +17,8 @@
 //! # What it assumes
 //! Two thermometers on the surface without a lag of their own that is stated (the observer has those), delays that stay, below four steps. The
 //! grid is that of the rows, but not below a minute.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
 
 use crate::units::MINUTE_S;
 use serde::{Deserialize, Serialize};
@@ -80,7 +81,7 @@ impl Correlation {
 
     /// Part of the largest that there can be.
     fn part(&self, at: usize) -> f64 {
-        self.products[at] / (self.squares[0] * self.squares[1]).sqrt()
+        self.products[at] / libm::sqrt(self.squares[0] * self.squares[1])
     }
 
     /// Steps by which the first channel is later, by the peak.
@@ -124,7 +125,7 @@ impl Grid {
             if time_s - begun_s < COUNTED_S {
                 return;
             }
-            let minutes = ((time_s - begun_s) / f64::from(self.rows - 1) / MINUTE_S - 0.1).ceil();
+            let minutes = libm::ceil((time_s - begun_s) / f64::from(self.rows - 1) / MINUTE_S - 0.1);
             self.step_s = (MINUTE_S * minutes.max(1.0)).min(LONGEST_STEP_S);
             self.next_s = time_s + self.step_s;
         }
@@ -138,7 +139,7 @@ impl Grid {
         }
         while self.next_s <= time_s {
             let weight = (self.next_s - last_s) / (time_s - last_s);
-            point(std::array::from_fn(|i| last[i] + weight * (readings[i] - last[i])));
+            point(core::array::from_fn(|i| last[i] + weight * (readings[i] - last[i])));
             self.next_s += self.step_s;
         }
     }
@@ -162,7 +163,7 @@ impl LagMeter {
         grid.push(time_s, readings, |point| {
             push_front(points, point, 3);
             let [newest, middle, oldest] = [0, 1, 2].map(|i| points.get(i).copied().unwrap_or(NONE));
-            let second = std::array::from_fn(|i| newest[i] - 2.0 * middle[i] + oldest[i]);
+            let second = core::array::from_fn(|i| newest[i] - 2.0 * middle[i] + oldest[i]);
             push_front(differences, second, LONGEST + 1);
             thermometers.add(differences, (0, 1));
             with_pressure[0].add(differences, (0, 2));

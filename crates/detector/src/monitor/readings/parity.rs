@@ -19,7 +19,8 @@
 //! `|d| > 5 e`, its own `|a| > 0.4 |d|` and the other `|a| < 0.4 |d|` in three windows running. One end that is warmed by itself may look the same for hours.
 //! What stays within `2.5 e` of itself for sixteen hours of the same one is an offset of that thermometer. A difference that nobody
 //! could be named for is the usual one after a day: either may have shifted.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
+use cylwatch_estimator::thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
 
@@ -167,7 +168,7 @@ impl Parity {
         self.last_s = time_s;
         let window = self.window.get_or_insert(Window::new(time_s));
         let completed = if time_s - window.begun_s >= WINDOW_S {
-            std::mem::replace(window, Window::new(time_s)).close(OFF * self.error_k, gas_k)
+            core::mem::replace(window, Window::new(time_s)).close(OFF * self.error_k, gas_k)
         } else {
             None
         };
@@ -180,9 +181,9 @@ impl Parity {
         if self.calm.back().is_some_and(|calm| time_s - calm.begun_s() > STALE_S) {
             (self.off_k, self.named) = (None, None);
         }
-        let now_k = PART * (self.unusual_k().powi(2) - self.harmless_k().powi(2)).max(0.0).sqrt();
+        let now_k = PART * libm::sqrt((powi(self.unusual_k(), 2) - powi(self.harmless_k(), 2)).max(0.0));
         let memory_s = if self.off_k.is_some() { BACK_S } else { DAY_S };
-        self.doubt_k = now_k.max(self.doubt_k * (-elapsed_s / memory_s).exp());
+        self.doubt_k = now_k.max(self.doubt_k * libm::exp(-elapsed_s / memory_s));
         self.tell(elapsed_s)
     }
 
@@ -203,7 +204,7 @@ impl Parity {
         if self.unusual_k() >= self.harmless_k() {
             return None;
         }
-        let forgotten = std::mem::take(&mut self.disturbed_s) > STALE_S;
+        let forgotten = core::mem::take(&mut self.disturbed_s) > STALE_S;
         self.told = false;
         forgotten.then(|| Disturbance::Over(self.latest_k(|calm| calm.apart_k()) - self.usual_k))
     }

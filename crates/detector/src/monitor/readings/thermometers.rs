@@ -20,7 +20,7 @@
 //! restless while the other one is not and more so than usually, reads the air.
 //!
 //! How often a jump is believed that is none, and one missed, the plans `tight.toml` and `fault.toml` (row T2) of `cylwatch-evaluation` measure; see `book/src/measured.md`.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
@@ -213,7 +213,7 @@ impl Pair {
 
     /// How far the one that went farther did lately, K; one that is suspected, since its jump. Extremes fade to the present readings.
     fn went_k(&mut self, interval_s: f64, readings: [f64; 2], memory_s: f64) -> f64 {
-        let kept = (-interval_s / memory_s).exp();
+        let kept = libm::exp(-interval_s / memory_s);
         for (extremes_k, reading_k) in self.extremes_k.iter_mut().zip(readings) {
             if reading_k.is_finite() {
                 extremes_k.follow((reading_k, reading_k), kept);
@@ -267,7 +267,7 @@ impl Pair {
             time_s,
             missing: -off_k / span_k,
             considered: doubt_k / span_k,
-            noise: self.error_k.hypot(self.steps_k) / span_k,
+            noise: libm::hypot(self.error_k, self.steps_k) / span_k,
         });
         match cause {
             Cause::Open => {
@@ -308,7 +308,7 @@ impl Restlessness {
         let restless_k = RESTLESS * error_k;
         let size_k = second_k.map(|second| second.abs().min(10.0 * restless_k));
         for (means, memory_s) in [(&mut self.lately_k, LATELY_S), (&mut self.usually_k, USUALLY_S)] {
-            let share = -(-interval_s / memory_s).exp_m1();
+            let share = -libm::expm1(-interval_s / memory_s);
             for (mean, size) in means.iter_mut().zip(size_k) {
                 *mean += share * (size - *mean);
             }

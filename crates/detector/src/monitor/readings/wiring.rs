@@ -68,7 +68,7 @@ impl WiringCheck {
     /// Take in what the observer and its twin made of the same row, of sensors with such a noise, variances in K² and Pa².
     pub(crate) fn compare(&mut self, observer: [Innovation; 3], twin: [Innovation; 3], noise: [f64; 3]) {
         for i in 0..3 {
-            let [own, other] = [observer[i], twin[i]].map(|of| (of.nu * of.nu + noise[i]).ln());
+            let [own, other] = [observer[i], twin[i]].map(|of| libm::log(of.nu * of.nu + noise[i]));
             if own.is_finite() && other.is_finite() {
                 self.differences[i] += other - own;
                 self.rows[i] += 1.0;

@@ -37,7 +37,7 @@ impl Monitor {
     /// The observer has taken a row: what follows after a disturbance, and what is kept for the next one.
     pub(super) fn keep_undisturbed(&mut self, time_s: f64) {
         let undisturbed = &mut self.state.undisturbed;
-        if std::mem::take(&mut undisturbed.returning) {
+        if core::mem::take(&mut undisturbed.returning) {
             self.observer.end_exchange();
             self.state.look = (time_s + LOOK_S, Reason::Settling);
             undisturbed.due_s = time_s + BETWEEN_S;

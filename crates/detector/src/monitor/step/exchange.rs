@@ -4,6 +4,7 @@
 //! expects shows what the jump was. Until that is told, what is said of the gas is between both, and no more certain than they are apart.
 //!
 //! Beside the jumps, bounds of the mass tell gas that flows steadily ([`crate::monitor::gas::bounds`]), by the walls and by that member.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::disturbance::Undisturbed;
@@ -92,7 +93,7 @@ impl Monitor {
         let doubted = FLOW_DEVIATIONS * self.settings.observer.flow_doubt.part;
         let jump = self.state.jumps.notice(now, step, doubted);
         // What the surroundings did in a silence no reading shows: they may have made all of it.
-        let unexpected = innovation.abs() > MATTERS + FLOW_DEVIATIONS * of_full * s.sqrt();
+        let unexpected = innovation.abs() > MATTERS + FLOW_DEVIATIONS * of_full * libm::sqrt(s);
         let silent = silent_since_s.filter(|_| unexpected);
         let silent = silent.map(|_| Before { unseen: innovation.abs(), ..Before::default() });
         let fresh = self.state.jumps.excess() * fresh;
@@ -225,7 +226,7 @@ impl Monitor {
             contact: if any_in_gas { Contact::Gas } else { Contact::Wall },
             pressure_pa,
             coefficient_pa_k: coefficients.next().map_or(0.0, |of| of.sd),
-            noise_pa: transmitter.noise_variance().sqrt(),
+            noise_pa: libm::sqrt(transmitter.noise_variance()),
         })
     }
 
@@ -297,7 +298,7 @@ impl Monitor {
     fn examine(&mut self, estimate: Estimate, events: &mut Vec<Event>) -> Result<Estimate, DetectorError> {
         let time_s = estimate.time_s;
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
-        let reading_pa = std::mem::replace(&mut self.usable[pressure], f64::NAN);
+        let reading_pa = core::mem::replace(&mut self.usable[pressure], f64::NAN);
         let blind = self.shadow.step(time_s, &self.usable)?;
         self.usable[pressure] = reading_pa;
         let expected_pa = self.shadow.expected_reading(pressure)?;
@@ -309,7 +310,10 @@ impl Monitor {
             time_s,
             missing: of_full * (expected_pa - reading_pa),
             considered: now.map_or(0.0, |flow| of_full * expected_pa * considered_part(&flow)),
-            noise: (step / 12_f64.sqrt()).hypot(of_full * self.sensors[pressure].noise_variance().sqrt()),
+            noise: libm::hypot(
+                step / libm::sqrt(12_f64),
+                of_full * libm::sqrt(self.sensors[pressure].noise_variance()),
+            ),
         };
         let Some(examined) = &mut self.state.examined else { return Ok(estimate) };
         examined.samples += 1;

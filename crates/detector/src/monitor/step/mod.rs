@@ -7,6 +7,8 @@ mod sensors;
 mod wiring;
 
 use crate::units::QUOTED_K;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use self::disturbance::Undisturbed;
@@ -28,7 +30,6 @@ use super::readings::thermometers::Pair;
 use super::readings::wiring::WiringCheck;
 use super::roles::Roles;
 use super::settings::MonitorSettings;
-use super::state::{self, Fingerprint, StateError};
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Estimate, Learned, Observer, Quality, Snapshot};
@@ -36,6 +37,7 @@ use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
 use crate::prognosis::Contents;
+use crate::sealed::{self, Fingerprint, Kind, SealError};
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;
@@ -65,12 +67,13 @@ pub struct Monitor {
     sensors: Vec<Sensor>,
     fingerprint: Fingerprint,
     commissioning: Commissioning,
-    observer: Observer,
+    // In boxes, so that a monitor that is handed on leaves no copies on the stack.
+    observer: Box<Observer>,
     /// Has the thermometers in each other's place, until that is judged.
-    twin: Option<Observer>,
+    twin: Option<Box<Observer>>,
     /// Goes on without the pressure while a jump is examined.
-    shadow: Observer,
-    state: State,
+    shadow: Box<Observer>,
+    state: Box<State>,
     /// Of the present row.
     usable: Vec<f64>,
     /// The observer before the present row.
@@ -139,7 +142,7 @@ impl State {
 struct Saved {
     commissioning: Commissioning,
     held_against: Fingerprint,
-    state: State,
+    state: Box<State>,
     observer: Snapshot,
     twin: Option<Snapshot>,
     shadow: Option<Snapshot>,
@@ -158,12 +161,12 @@ fn fingerprint(vessel: &Vessel, sensors: &[Sensor], settings: &MonitorSettings) 
         alarms: any.alarms,
         ..settings.clone()
     };
-    state::fingerprint(&(vessel, sensors, settings))
+    sealed::fingerprint(&(vessel, sensors, settings))
 }
 
 /// What an outlook rests on beside the state.
 fn held_against(settings: &MonitorSettings) -> Fingerprint {
-    state::fingerprint(&(settings.limits, settings.loss, settings.reaction))
+    sealed::fingerprint(&(settings.limits, settings.loss, settings.reaction))
 }
 
 impl Monitor {
@@ -178,7 +181,7 @@ impl Monitor {
         settings: &MonitorSettings,
     ) -> Result<Self, DetectorError> {
         settings.validate()?;
-        let observer = || Observer::new(vessel, sensors, commissioning, &settings.observer);
+        let observer = || Observer::new(vessel, sensors, commissioning, &settings.observer).map(Box::new);
         let contents = Contents::of(vessel);
         let roles = Roles::of(sensors);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
@@ -186,7 +189,7 @@ impl Monitor {
         let tails = settings.tails.unwrap_or_else(|| Tails::of(vessel, full_pa));
         let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
         let (pair, parity) = wiring::compared_by(sensors, &roles, settings);
-        let state = State {
+        let state = Box::new(State {
             intake: Intake::new(settings.intake, sensors.len())?,
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
@@ -219,7 +222,7 @@ impl Monitor {
             p15: Tangent::at(QUOTED_K),
             cold: Tangent::at(settings.limits.coldest_k),
             cold_s: f64::NEG_INFINITY,
-        };
+        });
         let compared = wiring::compared(&roles, sensors);
         let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));
         Ok(Self {
@@ -247,7 +250,7 @@ impl Monitor {
 
     /// Start with what an observer of the same cylinder has learnt; before the first row.
     pub fn with_learned(mut self, learned: Learned) -> Self {
-        self.observer = self.observer.with_learned(learned);
+        self.observer = Box::new(self.observer.with_learned(learned));
         self
     }
 
@@ -263,7 +266,7 @@ impl Monitor {
         settings: &MonitorSettings,
         bytes: &[u8],
     ) -> Result<Self, DetectorError> {
-        let saved: Saved = state::decode(bytes, &fingerprint(vessel, sensors, settings))?;
+        let saved: Saved = sealed::decode(Kind::State, bytes, &fingerprint(vessel, sensors, settings))?;
         let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
         monitor.observer.try_restore(&saved.observer)?;
         match (&mut monitor.twin, &saved.twin) {
@@ -285,18 +288,18 @@ impl Monitor {
     /// Everything that a restart needs.
     ///
     /// # Errors
-    /// [`StateError::Engine`].
-    pub fn save(&self) -> Result<Vec<u8>, StateError> {
+    /// [`SealError::Engine`].
+    pub fn save(&self) -> Result<Vec<u8>, SealError> {
         let examined = self.state.examined.is_some();
         let saved = Saved {
             commissioning: self.commissioning,
             held_against: held_against(&self.settings),
             state: self.state.clone(),
             observer: self.observer.snapshot(),
-            twin: self.twin.as_ref().map(Observer::snapshot),
+            twin: self.twin.as_deref().map(Observer::snapshot),
             shadow: examined.then(|| self.shadow.snapshot()),
         };
-        state::encode(&saved, &self.fingerprint)
+        sealed::encode(Kind::State, &saved, &self.fingerprint)
     }
 
     /// Take in a row with its stamp, s, and one reading per sensor, SI, NaN where missing: an output for each row that is ready now.
@@ -330,7 +333,7 @@ impl Monitor {
     pub fn acknowledge(&mut self, comment: &str) -> Vec<AlarmEvent> {
         self.state.filling.settle();
         self.state.watches.iter_mut().for_each(SensorWatch::repaired);
-        let panel = std::mem::take(&mut self.state.panel);
+        let panel = core::mem::take(&mut self.state.panel);
         let (panel, events) = panel.acknowledge_all(&self.settings.alarms, self.state.last_s, comment);
         self.state.panel = panel;
         events
@@ -358,10 +361,10 @@ impl Monitor {
 
     fn process_all(&mut self, taken: Taken) -> Result<Vec<Output>, DetectorError> {
         let mut outputs = Vec::with_capacity(taken.rows.len());
-        let mut events = std::mem::take(&mut self.state.waiting);
+        let mut events = core::mem::take(&mut self.state.waiting);
         events.extend(taken.events);
         for row in &taken.rows {
-            outputs.push(self.process(row, std::mem::take(&mut events))?);
+            outputs.push(self.process(row, core::mem::take(&mut events))?);
         }
         // What happened without a row that could tell it comes with the next one.
         self.state.waiting = events;

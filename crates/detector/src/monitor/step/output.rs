@@ -12,6 +12,7 @@ use crate::monitor::intake::Row;
 use crate::monitor::{Event, EventKind, Interval, Known, LeakFinding, Output, decide};
 use crate::prognosis::Reaction;
 use crate::units::DAY_S;
+use alloc::vec::Vec;
 
 impl Monitor {
     pub(super) fn output(
@@ -38,15 +39,15 @@ impl Monitor {
             }
         }
         let off_k = self.state.parity.doubt_k();
-        estimate.gas_mean_sd_k = estimate.gas_mean_sd_k.hypot(off_k);
+        estimate.gas_mean_sd_k = libm::hypot(estimate.gas_mean_sd_k, off_k);
         let off_kg = self.off_by_one_end(estimate.gas_mean_k) * estimate.mass_kg;
-        estimate.mass_sd_kg = estimate.mass_sd_kg.hypot(off_kg);
+        estimate.mass_sd_kg = libm::hypot(estimate.mass_sd_kg, off_kg);
         estimate.p15_pa = self.state.p15.pressure_pa(&self.contents, estimate.mass_kg)?;
         let cold_pressure_pa = self.state.cold.pressure_pa(&self.contents, estimate.mass_kg)?;
         self.warn_of_the_cold(time_s, cold_pressure_pa, &mut events);
         let known = self.known(time_s, estimate.p15_pa);
         let verdict = decide(&known).verdict;
-        let was = std::mem::replace(&mut self.state.verdict, verdict);
+        let was = core::mem::replace(&mut self.state.verdict, verdict);
         if was != verdict {
             events.push(Event::new(time_s, time_s, EventKind::Verdict { from: was, to: verdict }));
         }
@@ -77,7 +78,7 @@ impl Monitor {
             alarms: Vec::new(),
         };
         let inputs = AlarmInputs::of(&output, self.full_pa);
-        let panel = std::mem::take(&mut self.state.panel);
+        let panel = core::mem::take(&mut self.state.panel);
         let (panel, alarms) = panel.step(&self.settings.alarms, time_s, &inputs);
         (self.state.panel, output.alarms) = (panel, alarms);
         Ok(output)
@@ -118,7 +119,7 @@ impl Monitor {
         if self.state.examined.is_some() || cold_pressure_pa >= self.settings.limits.operational_pa {
             return;
         }
-        if time_s - std::mem::replace(&mut self.state.cold_s, time_s) > DAY_S {
+        if time_s - core::mem::replace(&mut self.state.cold_s, time_s) > DAY_S {
             events.push(Event::new(time_s, time_s, EventKind::ColdNight(cold_pressure_pa)));
         }
     }

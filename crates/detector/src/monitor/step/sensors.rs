@@ -9,6 +9,7 @@ use crate::monitor::intake::Row;
 use crate::monitor::readings::parity::Disturbance;
 use crate::monitor::readings::thermometers::{Lonely, Surroundings};
 use crate::monitor::{Event, EventKind, Health};
+use alloc::vec::Vec;
 
 /// Standard deviation of a thermometer's offset after it jumped, beside the jump, in errors of a surface temperature.
 const JUMPED: f64 = 4.0;
@@ -119,7 +120,7 @@ impl Monitor {
         self.state.watches[sensor].may_have_shifted(by_k);
         self.state.parity.forget();
         self.usable[sensor] = f64::NAN;
-        self.observer.loosen(self.place_of(sensor), by_k.hypot(self.jumped_k()));
+        self.observer.loosen(self.place_of(sensor), libm::hypot(by_k, self.jumped_k()));
     }
 
     /// Whether the first rows fit the filling that was stated.
@@ -165,7 +166,7 @@ impl Monitor {
     pub(super) fn tell_health(&mut self, time_s: f64, events: &mut Vec<Event>) {
         for (sensor, watch) in self.state.watches.iter().enumerate() {
             let health = watch.health();
-            if std::mem::discriminant(&health) != std::mem::discriminant(&self.state.health[sensor]) {
+            if core::mem::discriminant(&health) != core::mem::discriminant(&self.state.health[sensor]) {
                 events.push(Event::new(time_s, time_s, EventKind::Sensor { sensor, health }));
             }
             self.state.health[sensor] = health;

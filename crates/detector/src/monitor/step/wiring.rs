@@ -18,6 +18,8 @@ use crate::monitor::readings::thermometers::Pair;
 use crate::monitor::readings::wiring::Finding;
 use crate::monitor::roles::Roles;
 use crate::monitor::{Event, EventKind, Health};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 /// The channels that are compared: two thermometers on the surface, without a lag of their own, and the pressure.
 pub(super) fn compared(roles: &Roles, sensors: &[Sensor]) -> Option<[usize; 3]> {
@@ -32,10 +34,10 @@ pub(super) fn twin(
     sensors: &[Sensor],
     commissioning: &Commissioning,
     settings: &ObserverSettings,
-) -> Result<Observer, DetectorError> {
+) -> Result<Box<Observer>, DetectorError> {
     let bank = settings.bank.iter().take(1).cloned().collect();
     let settings = ObserverSettings { bank, ..settings.clone() };
-    Ok(Observer::new(vessel, sensors, commissioning, &settings)?)
+    Ok(Box::new(Observer::new(vessel, sensors, commissioning, &settings)?))
 }
 
 impl Monitor {
@@ -131,7 +133,7 @@ impl Monitor {
     /// What was learnt was learnt of wrong rows: learn again.
     fn begin_again(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
         let now = self.now();
-        self.observer =
+        *self.observer =
             Observer::new(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
         self.know_the_filling(now);
         if self.twin.is_some() {
@@ -150,7 +152,7 @@ impl Monitor {
         Ok(())
     }
 
-    fn new_twin(&self) -> Result<Observer, DetectorError> {
+    fn new_twin(&self) -> Result<Box<Observer>, DetectorError> {
         let mut twin = twin(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
         twin.begin_with(&self.state.begun_with);
         Ok(twin)

@@ -1,4 +1,6 @@
 //! One member of a bank: an estimate with its own hypothesis, and what it made of the readings.
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 

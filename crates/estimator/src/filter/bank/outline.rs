@@ -1,4 +1,5 @@
 //! A bank in outline: enough to go on from where the estimate is opened anyway, in few bytes.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::pack::Pack;

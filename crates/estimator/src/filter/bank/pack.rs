@@ -4,7 +4,9 @@
 //! derivatives, `x_k' = f(x) + Phi (x_k - x)` and likewise for a reading; where they are not so close that the curvature of the
 //! equations would not show ([`LINEAR_DISTANCE`]), by their own rates and readings. A member that is far away, after something that its
 //! hypothesis does not allow, is linearised by itself. Covariances move in lanes ([`UdBank`]).
-use std::marker::PhantomData;
+use alloc::vec::Vec;
+use core::marker::PhantomData;
+use cylwatch_thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
 
@@ -232,7 +234,7 @@ impl Pack {
         for &state in plant.considered() {
             let (gain, variance) = (&mut gain[state], self.bank.variances(state));
             for (lane, _) in members.iter().enumerate().filter(|(_, of)| plant.considers(&of.hypothesis)) {
-                if gain.0[lane].powi(2) * s.0[lane] < MIN_EXPLAINED_PART * variance.0[lane] {
+                if powi(gain.0[lane], 2) * s.0[lane] < MIN_EXPLAINED_PART * variance.0[lane] {
                     gain.0[lane] = 0.0;
                 }
             }

@@ -1,4 +1,5 @@
 //! A member that moves by itself: engines that carry more than mean and covariance, or linearise in their own way.
+use alloc::boxed::Box;
 use nalgebra::DMatrix;
 
 use super::engine::BankEngine;

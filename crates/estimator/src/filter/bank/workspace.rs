@@ -3,6 +3,7 @@ use super::pack::PackMemory;
 use crate::filter::plant::Plant;
 use crate::filter::state_space::Linearisation;
 use crate::filter::unscented::SigmaPoints;
+use alloc::vec::Vec;
 
 /// Memory that all members share. Nothing in it outlives a step.
 #[derive(Debug)]

@@ -1,4 +1,5 @@
 //! The steady state given the constants.
+use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use crate::filter::linear::LinearSystem;
@@ -68,7 +69,7 @@ impl Steady {
         p.covariance_into(now);
         (0..m).all(|j| {
             (0..j).all(|i| {
-                let scale = (steady[(i, i)] * steady[(j, j)]).sqrt();
+                let scale = libm::sqrt(steady[(i, i)] * steady[(j, j)]);
                 (now[(i, j)] - steady[(i, j)]).abs() <= tolerance * scale
             })
         })

@@ -5,6 +5,7 @@
 //! product `Phi U` takes dense rows four at a time and the others by their elements.
 use crate::filter::kernel::{Group, axpy, dot_groups, multiply_rows};
 use crate::filter::state_space::Linearisation;
+use alloc::vec::Vec;
 
 /// Rows of the transition that are multiplied together.
 const GROUP: usize = 4;

@@ -1,4 +1,6 @@
 //! The factors of a bank as plain data, to be saved; its working memory is made anew.
+use alloc::string::String;
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{UdBank, stride};
@@ -43,7 +45,7 @@ impl TryFrom<Factors> for UdBank {
         }
         let mut bank = Self { filters, ..Self::new(states, leading) };
         // A lane without a filter does as the first one.
-        let lanes = |of: &[f64]| Lanes(std::array::from_fn(|lane| of.get(lane).copied().unwrap_or(of[0])));
+        let lanes = |of: &[f64]| Lanes(core::array::from_fn(|lane| of.get(lane).copied().unwrap_or(of[0])));
         let mut left = u.chunks_exact(filters).map(lanes);
         for (j, column) in bank.u.chunks_exact_mut(stride(states)).enumerate() {
             column[..j].iter_mut().zip(&mut left).for_each(|(to, from)| *to = from);

@@ -1,5 +1,6 @@
 //! Where a transition may differ from zero.
-use std::ops::Range;
+use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Rows that are multiplied together.
 pub(super) const BLOCK_ROWS: usize = 4;

@@ -1,5 +1,6 @@
 //! Transitions of four filters and the noise that they add.
 use crate::filter::simd::{Arch, Simd, WithSimd};
+use alloc::vec::Vec;
 
 use super::pattern::{BLOCK_ROWS, Block, Pattern};
 use crate::filter::lanes::{LANES, Lanes};

@@ -1,5 +1,6 @@
 //! Columns of few rows in groups of four: products of small matrices without loops that end in between.
 use crate::filter::kernel::{Group, axpy};
+use alloc::vec::Vec;
 
 /// `to <- to + c x`.
 #[inline(always)]
@@ -120,13 +121,13 @@ impl Columns {
 /// `a x + b y`.
 #[inline(always)]
 fn combined(a: f64, x: Group, b: f64, y: &Group) -> Group {
-    std::array::from_fn(|lane| a * x[lane] + b * y[lane])
+    core::array::from_fn(|lane| a * x[lane] + b * y[lane])
 }
 
 /// A block times four rows.
 #[inline(always)]
 fn product([c0, c1, c2, c3]: &[Group; 4], [v0, v1, v2, v3]: &Group) -> Group {
-    std::array::from_fn(|lane| (c0[lane] * v0 + c1[lane] * v1) + (c2[lane] * v2 + c3[lane] * v3))
+    core::array::from_fn(|lane| (c0[lane] * v0 + c1[lane] * v1) + (c2[lane] * v2 + c3[lane] * v3))
 }
 
 /// A square matrix of 4 x 4 blocks, row of blocks by row of blocks; each block by columns.

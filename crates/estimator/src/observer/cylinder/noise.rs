@@ -36,7 +36,7 @@ impl Parts {
         self.moved.fill(0.0);
         self.moved.as_mut_slice()[m * m..].copy_from_slice(constant);
         add_product(moving, self.phi.as_slice(), self.moved.as_mut_slice(), m);
-        std::mem::swap(&mut self.phi, &mut self.moved);
+        core::mem::swap(&mut self.phi, &mut self.moved);
         // Phi (N Phi^T), then the upper triangle alone.
         for j in 0..m {
             (0..j).for_each(|i| self.noise[(j, i)] = self.noise[(i, j)]);

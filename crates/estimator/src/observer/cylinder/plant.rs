@@ -1,5 +1,7 @@
 //! The cylinder as a [`Plant`]: members of the bank differ in how they let gas leave.
 use crate::filter::simd::{Arch, Simd, WithSimd};
+use alloc::vec::Vec;
+use cylwatch_thermal::real::powi;
 
 use super::structure::Structure;
 use super::walks::slow_process;
@@ -87,7 +89,7 @@ impl Plant for Cylinder {
     }
 
     fn noise_variance_at_interval(&mut self, sensor: usize, x: &[f64], interval_s: f64) -> f64 {
-        let present_s = std::mem::replace(&mut self.interval_s[sensor], interval_s);
+        let present_s = core::mem::replace(&mut self.interval_s[sensor], interval_s);
         let variance = self.noise_variance(sensor, x);
         self.interval_s[sensor] = present_s;
         variance
@@ -149,7 +151,7 @@ impl Plant for Cylinder {
     }
 
     fn intensities(&self, leak: &LeakHypothesis, intensities: &mut [f64]) {
-        intensities.copy_from_slice(&[leak.mass_walk_kg_per_sqrt_s.powi(2), leak.rate.per_sqrt_s.powi(2)]);
+        intensities.copy_from_slice(&[powi(leak.mass_walk_kg_per_sqrt_s, 2), powi(leak.rate.per_sqrt_s, 2)]);
     }
 
     fn is_reference(&self, leak: &LeakHypothesis) -> bool {

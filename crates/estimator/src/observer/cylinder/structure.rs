@@ -1,5 +1,6 @@
 //! Which states the equations of a step couple.
 use super::super::states::{StateKind, States};
+use alloc::vec::Vec;
 
 /// Which states the equations have.
 #[derive(Clone, Debug)]

@@ -11,6 +11,8 @@
 //! middle (the transition before the last doubling) and end.
 //!
 //! Source: scaling and squaring, Higham 2008, chapter 10; Simpson's rule for the noise integral of Van Loan 1978.
+use alloc::vec::Vec;
+use cylwatch_thermal::real::powi;
 use nalgebra::DMatrix;
 
 use super::lanes::{Columns, Square, add_scaled};
@@ -138,8 +140,8 @@ impl Transition {
         let rates = self.outer.iter().map(|outer| walking[outer.state].decay_per_s);
         let norm = h * rates.fold(self.norm(), f64::max);
         // At least one, for the middle of the step.
-        let doublings = (norm / LARGEST_NORM).log2().ceil().clamp(1.0, 60.0) as i32;
-        let share = 0.5_f64.powi(doublings);
+        let doublings = libm::ceil(libm::log2(norm / LARGEST_NORM)).clamp(1.0, 60.0) as i32;
+        let share = powi(0.5_f64, doublings);
         for outer in &mut self.outer {
             let Walking { decay_per_s, rest, .. } = walking[outer.state];
             outer.away = x[outer.state] - rest;
@@ -190,7 +192,7 @@ impl Transition {
                 outer.term *= outer.exponent * inverse;
                 outer.change += outer.term;
             }
-            std::mem::swap(&mut self.term, &mut self.next);
+            core::mem::swap(&mut self.term, &mut self.next);
             self.sum.add(&self.term);
         }
     }
@@ -231,7 +233,7 @@ impl Transition {
         for outer in &mut self.outer {
             outer.change *= 2.0 + outer.change;
         }
-        std::mem::swap(&mut self.sum, &mut self.next);
+        core::mem::swap(&mut self.sum, &mut self.next);
     }
 
     /// Move a state over the step.

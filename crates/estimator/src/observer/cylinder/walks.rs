@@ -56,9 +56,10 @@ impl Cylinder {
     fn bounds_of(&self, state: usize) -> Option<(f64, f64)> {
         let film_w_m2_k = self.settings.film_w_m2_k;
         match &self.states.kinds[state] {
-            StateKind::OutsideFilm => {
-                Some(((LEAST_FILM_W_M2_K / film_w_m2_k).ln(), (LARGEST_FILM_W_M2_K / film_w_m2_k).ln()))
-            }
+            StateKind::OutsideFilm => Some((
+                libm::log(LEAST_FILM_W_M2_K / film_w_m2_k),
+                libm::log(LARGEST_FILM_W_M2_K / film_w_m2_k),
+            )),
             StateKind::InsideFilm => Some((-LN_INSIDE_BOUND, LN_INSIDE_BOUND)),
             StateKind::Capacity => within_prior(&self.settings.ln_capacity),
             StateKind::FilmSlope => within_prior(&self.settings.film_slope),
@@ -69,7 +70,7 @@ impl Cylinder {
                 let changed =
                     if parameter.kind == ParameterKind::Offset { self.loosened[*sensor] } else { 0.0 };
                 let (least, most) = match parameter.walk_per_sqrt_s {
-                    0.0 => within(parameter.mean, BOUND_SD * parameter.sd.hypot(changed)),
+                    0.0 => within(parameter.mean, BOUND_SD * libm::hypot(parameter.sd, changed)),
                     _ => (f64::NEG_INFINITY, f64::INFINITY),
                 };
                 Some((low.max(least), high.min(most)))

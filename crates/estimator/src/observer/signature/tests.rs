@@ -268,7 +268,7 @@ fn a_snapshot_takes_the_onsets_with_it_bit_for_bit() {
     let mut cylinder = Cylinder::with_a_leak(30.0, 2.0 * HOUR_S);
     let mut observer = cylinder.seen_until(5.0 * HOUR_S);
     for _ in 0..20 {
-        let bytes = postcard::to_stdvec(&observer.snapshot()).unwrap();
+        let bytes = postcard::to_allocvec(&observer.snapshot()).unwrap();
         let mut reborn = with_a_held_member();
         reborn.try_restore(&postcard::from_bytes::<Snapshot>(&bytes).unwrap()).unwrap();
         let (time_s, readings) = cylinder.next();

@@ -13,7 +13,7 @@ fn bits(estimate: &Estimate) -> Vec<u64> {
 
 /// A new process: another observer, and nothing but the bytes.
 fn reborn(observer: &Observer) -> Observer {
-    let bytes = postcard::to_stdvec(&observer.snapshot()).unwrap();
+    let bytes = postcard::to_allocvec(&observer.snapshot()).unwrap();
     let mut other = observer_with(&SENSORS, &ObserverSettings::default());
     other.try_restore(&postcard::from_bytes::<Snapshot>(&bytes).unwrap()).unwrap();
     other

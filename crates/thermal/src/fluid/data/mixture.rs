@@ -19,6 +19,8 @@
 use crate::fluid::data::{DepartureTerm as D, FluidData, GaussianTerm, Melting, NonanalyticTerm, PowerTerm};
 use crate::fluid::peng_robinson;
 use crate::fluid::transport::{MixtureComponent, MixtureTransport, Transport};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 /// Gas constant, J/(mol K) (CODATA 2018, exact).
 const GAS_CONSTANT_J_MOL_K: f64 = 8.314_462_618_153_24;
@@ -134,14 +136,14 @@ impl Mixture {
         let reducing_temperature_k = reducing(
             components,
             |b| b.temperature,
-            |one, other| (one.reducing_temperature_k * other.reducing_temperature_k).sqrt(),
+            |one, other| libm::sqrt(one.reducing_temperature_k * other.reducing_temperature_k),
         );
         let volume = reducing(
             components,
             |b| b.volume,
             |one, other| {
-                let lengths =
-                    one.reducing_density_mol_m3.cbrt().recip() + other.reducing_density_mol_m3.cbrt().recip();
+                let lengths = libm::cbrt(one.reducing_density_mol_m3).recip()
+                    + libm::cbrt(other.reducing_density_mol_m3).recip();
                 lengths * lengths * lengths / 8.0
             },
         );
@@ -156,7 +158,7 @@ impl Mixture {
         };
         let dilution: f64 = components
             .iter()
-            .map(|(data, x)| x * (x * reducing_density_mol_m3 / data.reducing_density_mol_m3).ln())
+            .map(|(data, x)| x * libm::log(x * reducing_density_mol_m3 / data.reducing_density_mol_m3))
             .sum();
         let cubic = peng_robinson::equivalent(components, GAS_CONSTANT_J_MOL_K);
         FluidData {
@@ -191,13 +193,13 @@ impl Mixture {
             ideal_constant: dilution
                 + shares()
                     .map(|(data, share, scale)| {
-                        share * (data.ideal_constant + data.ideal_ln_tau * scale.ln())
+                        share * (data.ideal_constant + data.ideal_ln_tau * libm::log(scale))
                     })
                     .sum::<f64>(),
             ideal_tau: shares().map(|(data, share, scale)| share * scale * data.ideal_tau).sum(),
             ideal_ln_tau: shares().map(|(data, share, _)| share * data.ideal_ln_tau).sum(),
             ideal_power: kept(shares().flat_map(|(data, share, scale)| {
-                data.ideal_power.iter().map(move |&(n, t)| (share * n * scale.powf(t), t))
+                data.ideal_power.iter().map(move |&(n, t)| (share * n * libm::pow(scale, t), t))
             })),
             ideal_einstein: kept(shares().flat_map(|(data, share, scale)| {
                 data.ideal_einstein.iter().map(move |&(n, t)| (share * n, scale * t))

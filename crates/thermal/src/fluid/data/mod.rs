@@ -9,7 +9,9 @@ mod mixture;
 mod nitrogen;
 mod oxygen;
 
-use std::sync::LazyLock;
+use crate::lazy::Lazy;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 use super::transport::Transport;
 pub(super) use mixture::Mixture;
@@ -29,7 +31,7 @@ static PURE: &[&FluidData] = &[
 static MIXTURES: &[&Mixture] = &[&inert::ARGON_NITROGEN, &inert::IG_541];
 
 /// All fluids.
-pub(super) static ALL: LazyLock<Vec<&'static FluidData>> = LazyLock::new(|| {
+pub(super) static ALL: Lazy<Vec<&'static FluidData>> = Lazy::new(|| {
     let mixtures = MIXTURES.iter().map(|mixture| &*Box::leak(Box::new(mixture.data())));
     PURE.iter().copied().chain(mixtures).collect()
 });
@@ -123,7 +125,7 @@ impl Melting {
     /// Melting pressure at a temperature, Pa.
     pub(crate) fn pressure_pa(&self, temperature_k: f64) -> f64 {
         let ratio = temperature_k / self.temperature_k;
-        self.pressure_pa + self.terms.iter().map(|&(a, t)| a * (ratio.powf(t) - 1.0)).sum::<f64>()
+        self.pressure_pa + self.terms.iter().map(|&(a, t)| a * (libm::pow(ratio, t) - 1.0)).sum::<f64>()
     }
 }
 

@@ -115,8 +115,8 @@ fn dense_viscosity<D: Real>(rho: D, t: D) -> D {
     let square = reduced * reduced;
     // In the dilute gas the logarithm of the power has no derivative.
     let high = if reduced.re() > 0.0 { reduced.powf(GAMMA) } else { D::from(0.0) };
-    let scale = TRIPLE_LIQUID_KG_M3.powf(2.0 / 3.0) * (GAS_CONSTANT_J_MOL_K * TRIPLE_K).sqrt()
-        / (MOLAR_MASS_KG_MOL.powf(1.0 / 6.0) * ROOT_AVOGADRO);
+    let scale = libm::pow(TRIPLE_LIQUID_KG_M3, 2.0 / 3.0) * libm::sqrt(GAS_CONSTANT_J_MOL_K * TRIPLE_K)
+        / (libm::pow(MOLAR_MASS_KG_MOL, 1.0 / 6.0) * ROOT_AVOGADRO);
     (tr * square * reduced * C[0] + (square + high) / (tr - C[1])) * scale
 }
 

@@ -16,7 +16,7 @@
 //!
 //! Source: Olchowy and Sengers, Int. J. Thermophys. 10 (1989) 417, doi 10.1007/BF01133538, as simplified by
 //! Lemmon and Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi 10.1023/B:IJOT.0000022327.04529.f3.
-use std::f64::consts::PI;
+use core::f64::consts::PI;
 
 use super::TransportState;
 use crate::fluid::Real;

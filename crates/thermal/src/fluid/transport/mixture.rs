@@ -85,8 +85,8 @@ impl MixtureTransport {
             let mut weight = D::from(0.0);
             for (j, other) in self.components.iter().enumerate() {
                 let ratio = other.molar_mass_kg_mol / one.molar_mass_kg_mol;
-                let root = (viscosity[i] / viscosity[j]).sqrt() * ratio.sqrt().sqrt() + 1.0;
-                weight += root * root * (other.fraction / (8.0 * (1.0 + ratio.recip())).sqrt());
+                let root = (viscosity[i] / viscosity[j]).sqrt() * libm::sqrt(libm::sqrt(ratio)) + 1.0;
+                weight += root * root * (other.fraction / libm::sqrt(8.0 * (1.0 + ratio.recip())));
             }
             let residual = dense(&one.transport, delta * one.reducing_density_kg_m3) - dilute[i];
             sum += (dilute[i] / weight + residual) * one.fraction;

@@ -83,7 +83,7 @@ impl Stem {
         let [outside, inside] = self.diameters_m;
         let m2 = 4.0 * self.film_w_m2_k * outside
             / (self.conductivity_w_m_k * (outside * outside - inside * inside));
-        (m2.sqrt() * self.length_m).cosh().recip()
+        libm::cosh(libm::sqrt(m2) * self.length_m).recip()
     }
 }
 
@@ -111,9 +111,9 @@ mod tests {
         const N: usize = 2000;
         let Stem { length_m, diameters_m: [outside, inside], conductivity_w_m_k, film_w_m2_k } = TYPICAL;
         let slice_m = length_m / N as f64;
-        let area_m2 = std::f64::consts::FRAC_PI_4 * (outside * outside - inside * inside);
+        let area_m2 = core::f64::consts::FRAC_PI_4 * (outside * outside - inside * inside);
         let conductance_w_k = conductivity_w_m_k * area_m2 / slice_m;
-        let to_gas_w_k = film_w_m2_k * std::f64::consts::PI * outside * slice_m;
+        let to_gas_w_k = film_w_m2_k * core::f64::consts::PI * outside * slice_m;
         // From the tip, where 1 K is above the gas, each slice's heat flow gives the temperature of the one before it.
         let (mut above_k, mut flow_w) = (1.0, 0.0);
         for _ in 0..N - 1 {

@@ -9,16 +9,16 @@ mod surface;
 use super::place::{GasPlace, SurfacePlace};
 use super::reading::{Exposure, Prediction, Quantity, Site};
 pub use pressure::{ELECTRONICS_REFERENCE_K, PressureReference};
+use serde::{Deserialize, Serialize};
 #[cfg(feature = "files")]
 use {
     super::{Parameter, SensorSpec, build::Table},
     crate::ThermalError,
     schemars::JsonSchema,
-    serde::{Deserialize, Serialize},
 };
 
 /// What a sensor reads, and where.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SensorKind {
     /// Temperature of the outer surface, or of the valve body.
     Surface {

@@ -8,6 +8,7 @@
 //! 10 mbar.
 use super::{Kind, Prediction, Quantity, SensorKind};
 use crate::units::ATMOSPHERE_PA;
+use serde::{Deserialize, Serialize};
 #[cfg(feature = "files")]
 use {
     super::{Parameter, StatedKind, Table},
@@ -28,7 +29,7 @@ const SIGNAL_RANGE: (f64, f64) = (-0.0125, 1.03125);
 const FULL_SCALE_PA: f64 = 250e5;
 
 /// What a pressure transmitter counts from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PressureReference {
     /// Vacuum.
     Absolute,
@@ -149,7 +150,7 @@ fn parameters(table: &Table<'_>) -> Result<Vec<Parameter>, ThermalError> {
 fn atmosphere_pa(altitude_m: f64) -> f64 {
     let (lapse_k_m, zero_k, gravity_m_s2, gas_constant_j_kg_k) = (0.0065, 288.15, 9.806_65, 287.052_87);
     ATMOSPHERE_PA
-        * (1.0 - lapse_k_m * altitude_m / zero_k).powf(gravity_m_s2 / (gas_constant_j_kg_k * lapse_k_m))
+        * libm::pow(1.0 - lapse_k_m * altitude_m / zero_k, gravity_m_s2 / (gas_constant_j_kg_k * lapse_k_m))
 }
 
 #[cfg(all(test, feature = "files"))]

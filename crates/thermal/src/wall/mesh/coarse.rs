@@ -2,6 +2,7 @@
 use super::{Column, Facing, Link, Mesh, Section};
 use crate::wall::geometry::{Geometry, Layer};
 use crate::wall::material::Material;
+use alloc::vec::Vec;
 
 impl Link {
     /// Shape factor of both halves in series in one material, m.
@@ -56,7 +57,7 @@ impl Mesh {
                 let (below, above) = (range(node - 1), range(node));
                 // Link j of the one-layer mesh joins the columns j and j + 1.
                 let border = &fine.links[above.start - 1];
-                let half = |links: std::ops::Range<usize>, at_border_m: f64| {
+                let half = |links: core::ops::Range<usize>, at_border_m: f64| {
                     let inside: f64 = fine.links[links].iter().map(|link| link.series_m().recip()).sum();
                     (inside + at_border_m.recip()).recip()
                 };
@@ -80,7 +81,7 @@ impl Mesh {
     }
 }
 
-fn middle_of(range: &std::ops::Range<usize>) -> usize {
+fn middle_of(range: &core::ops::Range<usize>) -> usize {
     (range.start + range.end - 1) / 2
 }
 

@@ -85,9 +85,9 @@ impl JumpWatch {
         let change = now.innovation - last.innovation;
         let by_reading = now.reading - last.reading;
         // The errors walk: they change by more in a longer interval.
-        let grown = (interval_s / MINUTE_S).max(1.0).sqrt();
+        let grown = libm::sqrt((interval_s / MINUTE_S).max(1.0));
         // What goes back to where it was has taken in a jump that was not noticed: the other way it would be believed.
-        let before = std::mem::replace(&mut self.before, last.innovation);
+        let before = core::mem::replace(&mut self.before, last.innovation);
         let returns = (now.innovation - before).abs() < HALF * change.abs();
         let surroundings = now.doubt + part * (by_reading - change).abs();
         let limit = JUMP + JUMP_PER_USUAL * self.usual * grown + JUMP_PER_STEP * step + surroundings;

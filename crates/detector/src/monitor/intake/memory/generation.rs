@@ -1,4 +1,5 @@
 //! A sorted set of fingerprints, saved in Rice's code: of each gap between two of them the quotient by 128 as so many ones and a zero, and seven bits of the rest.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Bits of the rest: 600 fingerprints of 16 bits are 109 apart.

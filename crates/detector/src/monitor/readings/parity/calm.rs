@@ -1,7 +1,8 @@
 //! Calm windows, of which there are hundreds, in whole numbers: when each began, ms, and sums over its rows in units of half a millikelvin.
 //!
 //! Thermometers read in hundredths, thousandths or sixteenths of a kelvin: the difference of two of them is exact so. What the pressure stands for is rounded.
-use std::collections::VecDeque;
+use alloc::collections::VecDeque;
+use alloc::vec::Vec;
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serializer};
@@ -28,9 +29,9 @@ impl Calm {
     /// A window that began then, s, of so many rows, with the sums of two thermometers and the temperature that the pressure stands for, K, NaN without a
     /// pressure.
     pub(super) fn new(begun_s: f64, rows: u32, sums_k: [f64; 2], gas_k: f64) -> Self {
-        let units = |of_k: f64| (of_k / UNIT_K).round() as i32;
+        let units = |of_k: f64| libm::round(of_k / UNIT_K) as i32;
         let above = if gas_k.is_nan() { NONE } else { units(sums_k[0] / f64::from(rows) - gas_k) };
-        Self { begun_ms: (1e3 * begun_s).round() as i64, rows, apart: units(sums_k[0] - sums_k[1]), above }
+        Self { begun_ms: libm::round(1e3 * begun_s) as i64, rows, apart: units(sums_k[0] - sums_k[1]), above }
     }
 
     /// When it began, s.
@@ -102,10 +103,10 @@ mod tests {
             Calm::new(1.7e9 + 600.1 * f64::from(n), rows, [1400.0 + 0.01 * f64::from(n), 1400.3], gas_k)
         };
         let saved = Saved((0..400).map(window).collect());
-        let bytes = postcard::to_stdvec(&saved).unwrap();
+        let bytes = postcard::to_allocvec(&saved).unwrap();
         assert!(bytes.len() < 3200, "{} bytes", bytes.len());
         assert_eq!(postcard::from_bytes::<Saved>(&bytes).unwrap(), saved);
-        let cut = postcard::to_stdvec(&vec![3_i64, 5, 0]).unwrap();
+        let cut = postcard::to_allocvec(&vec![3_i64, 5, 0]).unwrap();
         assert!(postcard::from_bytes::<Saved>(&cut).is_err(), "a window without a rise");
     }
 

@@ -1,6 +1,6 @@
 //! No moving horizon without the feature `design`: an engine that cannot be made.
-use std::convert::Infallible;
-use std::marker::PhantomData;
+use core::convert::Infallible;
+use core::marker::PhantomData;
 
 use crate::filter::ud::UdFactors;
 

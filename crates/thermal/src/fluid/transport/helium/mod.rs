@@ -63,7 +63,7 @@ const RHO_LOG_KG_M3: f64 = 68.0;
 /// Viscosity, Pa s.
 pub(super) fn viscosity_pa_s<R: Real>(rho: R, t: R) -> R {
     let ln_t = t.ln();
-    let x = if t.re() < HELD_K { ln_t } else { R::from(HELD_K.ln()) };
+    let x = if t.re() < HELD_K { ln_t } else { R::from(libm::log(HELD_K)) };
     let inverse = x.recip();
     let series = |p: &[f64; 5]| inverse * p[0] + ((x * p[4] + p[3]) * x + p[2]) * x + p[1];
     let dense = rho * 1e-3;

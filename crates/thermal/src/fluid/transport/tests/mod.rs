@@ -1,7 +1,7 @@
 //! Correlations against CoolProp, their limits, and their derivatives.
 mod coolprop;
 
-use num_dual::Dual64;
+use crate::real::Dual;
 use proptest::prelude::*;
 
 use super::*;
@@ -142,19 +142,23 @@ mod analytic {
     #[test]
     fn derivatives_exist_at_zero_density() {
         for name in Fluid::names() {
-            let rho = Dual64::from(0.0).derivative();
-            let viscosity = named(name).viscosity_pa_s(rho, Dual64::from(300.0));
-            let conductivity = named(name).background_conductivity_w_m_k(rho, Dual64::from(300.0));
+            let rho = Dual::<1>::variable(0.0, 0);
+            let viscosity = named(name).viscosity_pa_s(rho, Dual::<1>::from(300.0));
+            let conductivity = named(name).background_conductivity_w_m_k(rho, Dual::<1>::from(300.0));
             let step = 1e-3;
             let ahead = named(name).viscosity_pa_s(step, 300.0);
             let slope = (ahead - viscosity.re) / step;
-            assert!((viscosity.eps / slope - 1.0).abs() < 0.02, "{name}: {} not {slope}", viscosity.eps);
+            assert!(
+                (viscosity.eps[0] / slope - 1.0).abs() < 0.02,
+                "{name}: {} not {slope}",
+                viscosity.eps[0]
+            );
             let ahead = named(name).background_conductivity_w_m_k(step, 300.0);
             let slope = (ahead - conductivity.re) / step;
             assert!(
-                (conductivity.eps / slope - 1.0).abs() < 0.02,
+                (conductivity.eps[0] / slope - 1.0).abs() < 0.02,
                 "{name}: {} not {slope}",
-                conductivity.eps
+                conductivity.eps[0]
             );
         }
     }
@@ -219,22 +223,22 @@ mod property {
             let fluid = ALL[index].transport;
             let rho = part * largest_density(ALL[index]);
             let (h_rho, h_t) = (1e-5 * rho, 1e-5 * t);
-            let along_rho = Dual64::from(rho).derivative();
-            let along_t = Dual64::from(t).derivative();
+            let along_rho = Dual::<1>::variable(rho, 0);
+            let along_t = Dual::<1>::variable(t, 0);
 
             let eta = |rho: f64, t: f64| fluid.viscosity_pa_s(rho, t);
-            let exact = fluid.viscosity_pa_s(along_rho, Dual64::from(t)).eps;
+            let exact = fluid.viscosity_pa_s(along_rho, Dual::<1>::from(t)).eps[0];
             let central = (eta(rho + h_rho, t) - eta(rho - h_rho, t)) / (2.0 * h_rho);
             prop_assert!(close(exact, central, eta(rho, t), rho), "viscosity, rho: {exact} {central}");
-            let exact = fluid.viscosity_pa_s(Dual64::from(rho), along_t).eps;
+            let exact = fluid.viscosity_pa_s(Dual::<1>::from(rho), along_t).eps[0];
             let central = (eta(rho, t + h_t) - eta(rho, t - h_t)) / (2.0 * h_t);
             prop_assert!(close(exact, central, eta(rho, t), t), "viscosity, T: {exact} {central}");
 
             let lambda = |rho: f64, t: f64| fluid.background_conductivity_w_m_k(rho, t);
-            let exact = fluid.background_conductivity_w_m_k(along_rho, Dual64::from(t)).eps;
+            let exact = fluid.background_conductivity_w_m_k(along_rho, Dual::<1>::from(t)).eps[0];
             let central = (lambda(rho + h_rho, t) - lambda(rho - h_rho, t)) / (2.0 * h_rho);
             prop_assert!(close(exact, central, lambda(rho, t), rho), "conductivity, rho: {exact} {central}");
-            let exact = fluid.background_conductivity_w_m_k(Dual64::from(rho), along_t).eps;
+            let exact = fluid.background_conductivity_w_m_k(Dual::<1>::from(rho), along_t).eps[0];
             let central = (lambda(rho, t + h_t) - lambda(rho, t - h_t)) / (2.0 * h_t);
             prop_assert!(close(exact, central, lambda(rho, t), t), "conductivity, T: {exact} {central}");
         }
@@ -271,7 +275,7 @@ mod property {
                 if value < 1e-2 * row[7] {
                     continue;
                 }
-                let exact = enhancement_along(named(name), row, Dual64::from(0.0).derivative()).eps;
+                let exact = enhancement_along(named(name), row, Dual::<1>::variable(0.0, 0)).eps[0];
                 let step = 1e-6;
                 let ahead = enhancement_along(named(name), row, step);
                 let behind = enhancement_along(named(name), row, -step);

@@ -1,0 +1,108 @@
+//! A log goes through the monitor of a compiled cylinder, and every bit of what it says comes out: the same code on a
+//! microcontroller and on the host, so that files can be compared.
+//!
+//! The log is CSV in SI: `time_s`, then a column for each sensor of the cylinder, in its order; an empty cell is a reading that is missing. In the
+//! middle the monitor is saved and goes on from its state. What comes out, little endian: for each row of the monitor, and for
+//! the last state, its length as u32 and its bytes, which are postcard's.
+#![no_std]
+extern crate alloc;
+
+use alloc::vec::Vec;
+use core::fmt;
+use cylwatch_detector::DetectorError;
+use cylwatch_detector::compiled::CompiledCylinder;
+use cylwatch_detector::monitor::Output;
+
+/// Most sensors of a cylinder.
+pub const MOST_SENSORS: usize = 8;
+
+/// Why a replay ended.
+#[derive(Debug)]
+pub enum ReplayError {
+    /// The monitor refused something, in this line of the log; 0: before the first.
+    Monitor(usize, DetectorError),
+    /// A line has a cell that is no number, or another number of cells.
+    Line(usize),
+    /// An output cannot be put into bytes.
+    Bytes,
+}
+
+impl fmt::Display for ReplayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Monitor(line, error) => write!(f, "line {line}: {error}"),
+            Self::Line(line) => write!(f, "line {line}: give time_s and a number or nothing for each sensor"),
+            Self::Bytes => write!(f, "an output cannot be put into bytes"),
+        }
+    }
+}
+
+/// What is told while a log goes through.
+pub trait Observed {
+    /// Bytes of the result.
+    fn write(&mut self, bytes: &[u8]);
+    /// The monitor is there, and no row has been read.
+    fn begun(&mut self) {}
+    /// A row goes into the monitor.
+    fn row(&mut self) {}
+    /// The monitor is done with the row.
+    fn done(&mut self) {}
+}
+
+/// Replays a log.
+///
+/// # Errors
+/// As [`ReplayError`] says.
+pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Result<usize, ReplayError> {
+    let of = |line: usize| move |error| ReplayError::Monitor(line, error);
+    let cylinder = CompiledCylinder::from_bytes(cylinder).map_err(of(0))?;
+    let mut monitor = cylinder.monitor().map_err(of(0))?;
+    let lines = || log.lines().enumerate().skip(1).filter(|(_, line)| !line.is_empty());
+    let middle = lines().count() / 2;
+    observed.begun();
+    let mut rows = 0;
+    for (count, (at, line)) in lines().enumerate() {
+        let number = at + 1;
+        if count == middle {
+            let state = monitor.save().map_err(|error| ReplayError::Monitor(number, error.into()))?;
+            // An arena need not hold two.
+            drop(monitor);
+            monitor = cylinder.restored(&state).map_err(of(number))?;
+        }
+        let mut cells = [f64::NAN; 1 + MOST_SENSORS];
+        let mut length = 0;
+        for text in line.split(',') {
+            let cell = cells.get_mut(length).ok_or(ReplayError::Line(number))?;
+            *cell = if text.is_empty() {
+                f64::NAN
+            } else {
+                text.parse().map_err(|_| ReplayError::Line(number))?
+            };
+            length += 1;
+        }
+        observed.row();
+        let outputs = monitor.step(cells[0], &cells[1..length]).map_err(of(number))?;
+        observed.done();
+        rows += outputs.len();
+        put(&outputs, observed)?;
+    }
+    let outputs = monitor.finish().map_err(of(0))?;
+    rows += outputs.len();
+    put(&outputs, observed)?;
+    let state = monitor.save().map_err(|error| ReplayError::Monitor(0, error.into()))?;
+    framed(&state, observed);
+    Ok(rows)
+}
+
+fn put(outputs: &[Output], observed: &mut impl Observed) -> Result<(), ReplayError> {
+    for output in outputs {
+        let bytes: Vec<u8> = postcard::to_allocvec(output).map_err(|_| ReplayError::Bytes)?;
+        framed(&bytes, observed);
+    }
+    Ok(())
+}
+
+fn framed(bytes: &[u8], observed: &mut impl Observed) {
+    observed.write(&(bytes.len() as u32).to_le_bytes());
+    observed.write(bytes);
+}

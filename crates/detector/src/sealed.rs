@@ -1,0 +1,192 @@
+//! Bytes that are kept or sent: a monitor's state, a cylinder for a controller. Whatever is damaged or foreign is refused.
+//!
+//! ```text
+//! magic 8 | version u32 | fingerprint 16 | length u64 | payload | check sum of all before 16        little endian
+//! ```
+//!
+//! Check sum and fingerprint are SipHash-1-3 with 128 bits: they find accidents, not forgery. The fingerprint is that of what the bytes
+//! belong to; of a state it is vessel, sensors and what the settings say of the rows: it goes on only with the same. The payload is in
+//! postcard's format, which keeps every bit of every number. What is kept rounded is rounded when it is kept, not when it is saved.
+use alloc::vec::Vec;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use siphasher::sip128::SipHasher13;
+
+const HEAD: usize = 8 + 4 + SUM + 8;
+const SUM: usize = 16;
+
+/// What bytes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// State of a monitor.
+    State,
+    /// A cylinder that has been compiled for a controller.
+    Cylinder,
+}
+
+impl Kind {
+    /// Version of the payload: one more with every change of what it holds.
+    pub const fn version(self) -> u32 {
+        match self {
+            Self::State => 26,
+            Self::Cylinder => 1,
+        }
+    }
+
+    const fn magic(self) -> &'static [u8; 8] {
+        match self {
+            Self::State => b"cylwatch",
+            Self::Cylinder => b"cylinder",
+        }
+    }
+}
+
+impl core::fmt::Display for Kind {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::State => "state of a monitor",
+            Self::Cylinder => "compiled cylinder",
+        })
+    }
+}
+
+/// Why bytes cannot be used. In place of a state a cold start can always be declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SealError {
+    /// It is something else.
+    #[error("this is no {0}")]
+    Other(Kind),
+    /// Written by another version.
+    #[error("the {kind} has version {found}, this program reads version {}", kind.version())]
+    Version {
+        /// What it is.
+        kind: Kind,
+        /// Version as found.
+        found: u32,
+    },
+    /// Of another vessel, other sensors or other settings.
+    #[error("the {0} is that of another vessel, other sensors or other settings")]
+    Foreign(Kind),
+    /// It ends too early.
+    #[error("the {kind} is cut short: {found} bytes of {expected}")]
+    Cut {
+        /// What it is.
+        kind: Kind,
+        /// Bytes as found.
+        found: usize,
+        /// Bytes as stated in it.
+        expected: usize,
+    },
+    /// Its check sum is wrong.
+    #[error("the {0} is corrupted: its check sum is wrong")]
+    Corrupted(Kind),
+    /// It cannot be saved with this engine.
+    #[error("only the state of a monitor with the extended Kalman filter can be saved")]
+    Engine,
+}
+
+/// Hash of all that bytes belong to.
+pub type Fingerprint = [u8; SUM];
+
+/// Fingerprint of things by their bytes.
+pub fn fingerprint(of: &impl Serialize) -> Fingerprint {
+    // Nothing that has one fails to be put into bytes; if it did, it would fit nothing but itself.
+    postcard::to_allocvec(of).map_or([0; SUM], |bytes| sum(&bytes))
+}
+
+fn sum(bytes: &[u8]) -> [u8; SUM] {
+    SipHasher13::new().hash(bytes).as_bytes()
+}
+
+/// The bytes of a value.
+///
+/// # Errors
+/// [`SealError::Engine`].
+pub fn encode<T: Serialize>(kind: Kind, value: &T, fingerprint: &Fingerprint) -> Result<Vec<u8>, SealError> {
+    let payload = postcard::to_allocvec(value).map_err(|_| SealError::Engine)?;
+    let mut bytes = Vec::with_capacity(HEAD + payload.len() + SUM);
+    bytes.extend_from_slice(kind.magic());
+    bytes.extend_from_slice(&kind.version().to_le_bytes());
+    bytes.extend_from_slice(fingerprint);
+    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(&payload);
+    let check = sum(&bytes);
+    bytes.extend_from_slice(&check);
+    Ok(bytes)
+}
+
+/// A value from its bytes.
+///
+/// # Errors
+/// As [`SealError`] says.
+pub fn decode<T: DeserializeOwned>(
+    kind: Kind,
+    bytes: &[u8],
+    fingerprint: &Fingerprint,
+) -> Result<T, SealError> {
+    let part = |from: usize, length: usize| bytes.get(from..from + length);
+    let known = kind.magic().len().min(bytes.len());
+    if bytes.is_empty() || part(0, known) != kind.magic().get(..known) {
+        return Err(SealError::Other(kind));
+    }
+    let cut = |expected| SealError::Cut { kind, found: bytes.len(), expected };
+    let corrupted = SealError::Corrupted(kind);
+    let version = part(8, 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    let version = version.ok_or(cut(HEAD + SUM))?;
+    if version != kind.version() {
+        return Err(SealError::Version { kind, found: version });
+    }
+    let length = part(HEAD - 8, 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes);
+    let length = usize::try_from(length.ok_or(cut(HEAD + SUM))?).map_err(|_| corrupted)?;
+    let expected = length.checked_add(HEAD + SUM).ok_or(corrupted)?;
+    if bytes.len() < expected {
+        return Err(cut(expected));
+    }
+    let (body, check) = bytes.split_at(HEAD + length);
+    if check != sum(body) {
+        return Err(corrupted);
+    }
+    if part(12, SUM) != Some(fingerprint.as_slice()) {
+        return Err(SealError::Foreign(kind));
+    }
+    postcard::from_bytes(&body[HEAD..]).map_err(|_| corrupted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes() -> Vec<u8> {
+        encode(Kind::State, &vec![f64::NAN, f64::INFINITY, -0.0, 1e-300], &fingerprint(&"vessel")).unwrap()
+    }
+
+    fn read(bytes: &[u8]) -> Result<Vec<f64>, SealError> {
+        decode(Kind::State, bytes, &fingerprint(&"vessel"))
+    }
+
+    #[test]
+    fn every_bit_comes_back() {
+        let numbers = read(&bytes()).unwrap();
+        let bits: Vec<u64> = numbers.iter().map(|number| number.to_bits()).collect();
+        assert_eq!(bits, [f64::NAN, f64::INFINITY, -0.0, 1e-300].map(f64::to_bits));
+    }
+
+    #[test]
+    fn whatever_is_cut_or_changed_is_refused() {
+        let whole = bytes();
+        for length in 0..whole.len() {
+            let refused = read(&whole[..length]).unwrap_err();
+            let told = matches!(refused, SealError::Cut { .. })
+                || (length == 0 && refused == SealError::Other(Kind::State));
+            assert!(told, "{length} bytes: {refused}");
+        }
+        for at in 0..whole.len() {
+            let mut changed = whole.clone();
+            changed[at] ^= 0x40;
+            assert!(read(&changed).is_err(), "byte {at}");
+        }
+        assert_eq!(read(b"time_s,pressure_bar\n"), Err(SealError::Other(Kind::State)));
+        let other: Result<Vec<f64>, _> = decode(Kind::State, &whole, &fingerprint(&"another"));
+        assert_eq!(other, Err(SealError::Foreign(Kind::State)));
+    }
+}

@@ -1,0 +1,150 @@
+//! `cylwatch compile`: a cylinder as bytes for a controller, which reads no files.
+use super::fill::FillSource;
+use super::input::Inputs;
+use super::message::Messages;
+use super::monitor::{CylinderArguments, MonitorArguments, Options, Places, compiled};
+use super::options::{
+    DataArguments, FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog, ViewArguments,
+};
+use super::output::Target;
+use crate::estimator::log::Quantity;
+use crate::estimator::sensor::Sensor;
+use crate::report::Provenance;
+use crate::thermal::vessel::{Fill, Vessel};
+use anyhow::{Context, bail};
+use clap::{Args, ValueEnum};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// What the bytes are written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CompiledFormat {
+    /// The bytes.
+    Bin,
+    /// An array in C.
+    C,
+}
+
+/// Arguments of `compile`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP_FOOTER, after_long_help = HELP)]
+pub(crate) struct CompileArguments {
+    /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
+    pub vessel: String,
+    /// File for the bytes; - is stdout.
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
+    pub output: PathBuf,
+    /// What they are written as [default: c for a file that ends in .c or .h, else bin].
+    #[arg(long, value_enum, help_heading = OUTPUT)]
+    pub format: Option<CompiledFormat>,
+    /// Names of the readings of a row, in their order; their sensors are typical.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', conflicts_with = "sensors", help_heading = INPUT,
+        default_value = "shoulder,valve,pressure")]
+    pub readings: Vec<String>,
+    #[command(flatten)]
+    pub false_alarms: FalseAlarmArguments,
+    #[command(flatten)]
+    pub cylinder: CylinderArguments,
+}
+
+const HELP: &str = "\
+A controller gets one row after the other: seconds, and the readings in the order of --readings or of the
+file of sensors, in K and in Pa absolute, NaN where one is missing. Its monitor then says what
+`cylwatch monitor` with the same options says of the same rows, bit for bit.
+
+Examples:
+  cylwatch compile nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 -o cylinder.bin
+  cylwatch compile my-cylinder.toml --sensors sensors.toml --fill-mass-kg 4.5 -o cylinder.c";
+
+/// Checks, compiles, writes.
+pub(super) fn run(arguments: CompileArguments, messages: &Messages) -> anyhow::Result<()> {
+    let mut paths = vec![Path::new(&arguments.vessel)];
+    paths.extend(arguments.cylinder.files().map(PathBuf::as_path));
+    let target = Target::checked(Some(&arguments.output), &paths)?;
+    let format = arguments.format.unwrap_or_else(|| match arguments.output.extension() {
+        Some(ending) if ending == "c" || ending == "h" => CompiledFormat::C,
+        _ => CompiledFormat::Bin,
+    });
+    if !arguments.cylinder.announced.is_empty() {
+        bail!("--announced is a time of a log: leave it out");
+    }
+    let readings = arguments.readings.clone();
+    let options = Options::of(arguments.of_monitor(), Places::default())?;
+    let inputs = Inputs::default();
+    let fill = match options.source {
+        FillSource::Given(fill @ (Fill::Settled { .. } | Fill::Mass { .. })) => fill,
+        _ => bail!(
+            "a controller is told its fill: give --fill-pressure-bar and --fill-temperature-degc, or --fill-mass-kg"
+        ),
+    };
+    let typical = |vessel: &Vessel, full_pa: f64| typical(&readings, vessel, full_pa);
+    let cylinder = compiled(&options, &inputs, fill, typical, messages)?;
+    let bytes = cylinder.to_bytes()?;
+    messages.say(&format!(
+        "{} bytes: {}, readings {}",
+        bytes.len(),
+        cylinder.vessel.name,
+        cylinder.sensors.iter().map(unit_of).collect::<Vec<_>>().join(", ")
+    ));
+    match format {
+        CompiledFormat::Bin => target.write(&bytes),
+        CompiledFormat::C => target.write(in_c(&bytes, &inputs.provenance()).as_bytes()),
+    }
+}
+
+impl CompileArguments {
+    fn of_monitor(self) -> MonitorArguments {
+        MonitorArguments {
+            inputs: VesselAndLog { vessel: self.vessel, log: String::new() },
+            cylinder: self.cylinder,
+            false_alarms: self.false_alarms,
+            state: None,
+            data: DataArguments { output: None, format: None },
+            events: None,
+            views: ViewArguments::default(),
+            reading: LogArguments::default(),
+            cold_start: false,
+            acknowledge: None,
+        }
+    }
+}
+
+/// Typical sensors of readings.
+fn typical(readings: &[String], vessel: &Vessel, full_pa: f64) -> anyhow::Result<Vec<Sensor>> {
+    let of = |name: &String| -> anyhow::Result<Sensor> {
+        let sensor = Sensor::typical(name)
+            .with_context(|| format!("--readings: the place of {name} is unknown, --sensors says it"))?;
+        if let Some(needs) = sensor.misfit(vessel) {
+            bail!("--readings: {name} needs {needs}, which the vessel does not have: leave it out");
+        }
+        match sensor.quantity() {
+            Quantity::Pressure => Ok(Sensor::typical_transmitter(name, full_pa)?),
+            Quantity::Temperature => Ok(sensor),
+        }
+    };
+    readings.iter().map(of).collect()
+}
+
+fn unit_of(sensor: &Sensor) -> String {
+    let unit = match sensor.quantity() {
+        Quantity::Pressure => "Pa",
+        Quantity::Temperature => "K",
+    };
+    format!("{} in {unit}", sensor.name)
+}
+
+/// The bytes as an array in C, for C99 and C++.
+fn in_c(bytes: &[u8], provenance: &Provenance) -> String {
+    let mut text = String::new();
+    for head in provenance.lines().lines() {
+        // A remark ends at `*/`.
+        let _ = writeln!(text, "/* {} */", head.replace("*/", "* /"));
+    }
+    text.push_str("#include <stddef.h>\n\nconst unsigned char cw_cylinder[] = {\n");
+    for line in bytes.chunks(20) {
+        let numbers: Vec<String> = line.iter().map(u8::to_string).collect();
+        let _ = writeln!(text, "    {},", numbers.join(", "));
+    }
+    let _ = writeln!(text, "}};\n\nconst size_t cw_cylinder_size = {};", bytes.len());
+    text
+}
