@@ -366,3 +366,103 @@ impl<const N: usize> Real for Dual<N> {
         self.chain(libm::atan(self.re), 1.0 / (1.0 + self.re * self.re))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Derivative of a function of one variable, by dual numbers and by differences.
+    fn slopes(of: fn(Dual<2>) -> Dual<2>, x: f64) -> (f64, f64) {
+        let value = |x: f64| of(Dual::from(x)).re;
+        let dual = of(Dual::variable(x, 1));
+        assert_eq!((dual.re, dual.eps[0]), (value(x), 0.0));
+        let h = 1e-5 * x.abs().max(1e-3);
+        (
+            dual.eps[1],
+            (8.0 * (value(x + h) - value(x - h)) - (value(x + 2.0 * h) - value(x - 2.0 * h))) / (12.0 * h),
+        )
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        let functions: [fn(Dual<2>) -> Dual<2>; 14] = [
+            |x| x.abs(),
+            |x| x.recip(),
+            |x| x.sqrt(),
+            |x| x.cbrt(),
+            |x| x.powi(-3) + x.powi(5),
+            |x| x.powf(0.37),
+            |x| x.powf(-1.6),
+            |x| (x * 0.3).exp(),
+            |x| (x * 0.3).exp_m1(),
+            |x| x.ln(),
+            |x| x.cos(),
+            |x| x.atan(),
+            |x| -x * x / (x + 2.0) - x / 3.0,
+            |mut x| {
+                x += x * x;
+                x -= Dual::from(1.5);
+                x *= x.sqrt() + 2.0;
+                x /= 7.0;
+                x
+            },
+        ];
+        for (k, of) in functions.into_iter().enumerate() {
+            for x in [1.1, 2.3, 17.0] {
+                let (dual, difference) = slopes(of, x);
+                assert!(
+                    (dual / difference - 1.0).abs() < 1e-9,
+                    "function {k} at {x}: {dual} and {difference}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_along_two_directions_are_the_gradient() {
+        let (x, y): (Dual<2>, Dual<2>) = (Dual::variable(3.0, 0), Dual::variable(5.0, 1));
+        let product: Dual<2> = [x * y, x / y].into_iter().sum();
+        assert_eq!((product.re, product.eps), (15.6, [5.2, 3.0 - 0.12]));
+    }
+
+    #[test]
+    fn powers_are_right_to_a_few_roundings() {
+        for x in [1e-300, 1e-9, 0.3, 0.999, 1.0, 7.0, 1e12] {
+            for n in [-1.6, -0.165, 1.0 / 6.0, 0.8, 2.5] {
+                let (ours, exact) = (powf(x, n), libm::pow(x, n));
+                let roundings = 2.0 + 2.0 * (n * libm::log(x)).abs();
+                let same = ours == exact || (ours / exact - 1.0).abs() <= roundings * f64::EPSILON;
+                assert!(same, "{x}^{n}: {ours} and {exact}");
+            }
+            for n in -7..=7 {
+                let (ours, exact) = (powi(x, n), libm::pow(x, f64::from(n)));
+                // Beside the largest and the smallest numbers a square on the way may leave the range.
+                let same = ours == exact || (ours / exact - 1.0).abs() < 8.0 * f64::EPSILON;
+                assert!(same || !(1e-250..1e250).contains(&exact), "{x}^{n}: {ours} and {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_power_of_zero_has_its_limit_and_its_slope() {
+        let zero: Dual<1> = Dual::variable(0.0, 0);
+        assert_eq!(zero.powf(1.5), Dual { re: 0.0, eps: [0.0] });
+        assert_eq!(zero.powf(0.0), Dual { re: 1.0, eps: [0.0] });
+        assert_eq!((zero.powi(0), zero.powi(1)), (Dual::from(1.0), zero));
+    }
+
+    /// The bits of every machine.
+    #[test]
+    fn elementary_functions_have_these_bits() {
+        let bits = [libm::exp(0.7), libm::log(0.7), libm::pow(0.7, 0.3), libm::cos(0.7), libm::cbrt(0.7)];
+        let found = bits.map(f64::to_bits);
+        let these = [
+            0x4000_1c2a_6126_8987,
+            0xbfd6_d3c3_24e1_3f50,
+            0x3fec_c0b4_3ba5_c3da,
+            0x3fe8_7996_529f_9d93,
+            0x3fec_69b5_a72f_1a99,
+        ];
+        assert_eq!(found, these, "{found:#x?}");
+    }
+}
