@@ -2,7 +2,8 @@
 """Measure `cylwatch.spark` on two cores against `cylwatch fleet --threads 2`, both from Parquet into Parquet, and a stream.
 
 Run it with the Python of an environment that has the package, PySpark and pyarrow, as `bindings/python/test` leaves one behind where there
-is Java 17, after `cargo build --release --features parquet`. Seconds of processors are those of the workers and of the JVM. Needs Linux.
+is Java 17, after `cargo build --release --features parquet`. Seconds of processors are those of the workers and of the JVM.
+Spark's own words go to stderr. Needs Linux.
 """
 
 import argparse
