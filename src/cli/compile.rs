@@ -3,9 +3,7 @@ use super::fill::FillSource;
 use super::input::Inputs;
 use super::message::Messages;
 use super::monitor::{CylinderArguments, MonitorArguments, Options, Places, compiled};
-use super::options::{
-    DataArguments, FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog, ViewArguments,
-};
+use super::options::{FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog};
 use super::output::Target;
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
@@ -68,8 +66,11 @@ pub(super) fn run(arguments: CompileArguments, messages: &Messages) -> anyhow::R
     if !arguments.cylinder.announced.is_empty() {
         bail!("--announced is a time of a log: leave it out");
     }
-    let readings = arguments.readings.clone();
-    let options = Options::of(arguments.of_monitor(), Places::default())?;
+    let readings = arguments.readings;
+    let CompileArguments { vessel, cylinder, false_alarms, .. } = arguments;
+    let log = VesselAndLog { vessel, log: String::new() };
+    let options = MonitorArguments::of_another(log, cylinder, false_alarms, LogArguments::default());
+    let options = Options::of(options, Places::default())?;
     let inputs = Inputs::default();
     let fill = match options.source {
         FillSource::Given(fill @ (Fill::Settled { .. } | Fill::Mass { .. })) => fill,
@@ -89,23 +90,6 @@ pub(super) fn run(arguments: CompileArguments, messages: &Messages) -> anyhow::R
     match format {
         CompiledFormat::Bin => target.write(&bytes),
         CompiledFormat::C => target.write(in_c(&bytes, &inputs.provenance()).as_bytes()),
-    }
-}
-
-impl CompileArguments {
-    fn of_monitor(self) -> MonitorArguments {
-        MonitorArguments {
-            inputs: VesselAndLog { vessel: self.vessel, log: String::new() },
-            cylinder: self.cylinder,
-            false_alarms: self.false_alarms,
-            state: None,
-            data: DataArguments { output: None, format: None },
-            events: None,
-            views: ViewArguments::default(),
-            reading: LogArguments::default(),
-            cold_start: false,
-            acknowledge: None,
-        }
     }
 }
 

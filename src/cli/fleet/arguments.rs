@@ -1,9 +1,7 @@
 //! The raw arguments of `fleet`.
 use crate::cli::monitor::{CylinderArguments, MonitorArguments};
 use crate::cli::number::within;
-use crate::cli::options::{
-    DataArguments, FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog, ViewArguments,
-};
+use crate::cli::options::{FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog};
 use crate::report::fleet;
 use clap::{Args, Command, ValueEnum};
 use std::path::PathBuf;
@@ -80,18 +78,8 @@ impl FleetArguments {
         log: &str,
         cylinder: CylinderArguments,
     ) -> MonitorArguments {
-        MonitorArguments {
-            inputs: VesselAndLog { vessel: vessel.to_owned(), log: log.to_owned() },
-            cylinder,
-            false_alarms: self.false_alarms.clone(),
-            state: None,
-            data: DataArguments { output: None, format: None },
-            events: None,
-            views: ViewArguments::default(),
-            reading: self.reading.clone(),
-            cold_start: false,
-            acknowledge: None,
-        }
+        let inputs = VesselAndLog { vessel: vessel.to_owned(), log: log.to_owned() };
+        MonitorArguments::of_another(inputs, cylinder, self.false_alarms.clone(), self.reading.clone())
     }
 }
 

@@ -107,6 +107,29 @@ pub(crate) struct MonitorArguments {
     pub acknowledge: Option<String>,
 }
 
+impl MonitorArguments {
+    /// Those of a run of another command over a log: nothing of it is written but what that command writes.
+    pub(in crate::cli) fn of_another(
+        inputs: VesselAndLog,
+        cylinder: CylinderArguments,
+        false_alarms: FalseAlarmArguments,
+        reading: LogArguments,
+    ) -> Self {
+        Self {
+            inputs,
+            cylinder,
+            false_alarms,
+            state: None,
+            data: DataArguments { output: None, format: None },
+            events: None,
+            views: ViewArguments::default(),
+            reading,
+            cold_start: false,
+            acknowledge: None,
+        }
+    }
+}
+
 fn help() -> String {
     format!(
         "\
