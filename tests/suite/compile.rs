@@ -1,6 +1,7 @@
 //! `cylwatch compile`: a controller with its bytes says what `cylwatch monitor` says.
 use crate::support::{refused, run};
 use cylwatch::detector::compiled::CompiledCylinder;
+use cylwatch::detector::evidence::Tails;
 use cylwatch::log::{Cells, MemoryLog};
 use cylwatch::report::Values;
 use cylwatch::run::{self, Call};
@@ -31,7 +32,11 @@ fn a_controller_says_what_the_command_says_bit_for_bit() {
     assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
     assert!(outcome.stderr.contains("shoulder in K, valve in K, pressure in Pa"), "{}", outcome.stderr);
     let bytes = std::fs::read(folder.path().join("cylinder.bin")).unwrap();
-    let mut monitor = CompiledCylinder::from_bytes(&bytes).unwrap().monitor().unwrap();
+    let cylinder = CompiledCylinder::from_bytes(&bytes).unwrap();
+    // Without built-in vessels nothing else says that these thresholds are its own.
+    assert_eq!(cylinder.settings.tails, Some(Tails::of(&cylinder.vessel, 200e5)));
+    assert_ne!(cylinder.settings.tails, Some(Tails::usual(&cylinder.vessel, 200e5)));
+    let mut monitor = cylinder.monitor().unwrap();
     let columns = rows();
     let mut outputs = Vec::new();
     for (row, &time_s) in columns[0].iter().enumerate() {

@@ -3,6 +3,7 @@ use super::resume::refused;
 use super::state::{Refusal, State};
 use super::*;
 use crate::detector::compiled::CompiledCylinder;
+use crate::detector::evidence::Tails;
 use crate::detector::monitor::alarm::AlarmSettings;
 use crate::detector::monitor::{Limits, Monitor, MonitorSettings};
 use crate::detector::prognosis::{Contents, ReactionSettings};
@@ -88,13 +89,15 @@ pub(in crate::cli) fn compiled(
     messages: &Messages,
 ) -> anyhow::Result<CompiledCylinder> {
     let beginning = RunStart::find(options, inputs, messages)?;
-    let settings = settings(options, &beginning, options.fill.is_settled())?;
+    let mut settings = settings(options, &beginning, options.fill.is_settled())?;
     let vessel = beginning.vessel;
     let learned = options.learned_in.as_deref();
     let learned = learned.map(|path| start::learned(inputs, path, &vessel)).transpose()?;
     let commissioning = options.fill.commissioning(fill, &vessel, QUOTED_K, 0.0)?;
     let mass_kg = commissioning.mass_kg(&vessel, QUOTED_K)?;
     let full_pa = full_pa(options, &Contents::of(&vessel), mass_kg, messages)?;
+    // A controller knows no built-in vessel, and so not what thresholds this one has.
+    settings.tails.get_or_insert_with(|| Tails::of(&vessel, full_pa));
     if let Some(commissioned) = &beginning.commissioned {
         commissioned.cautions(full_pa).iter().for_each(|caution| messages.caution(caution));
     }
