@@ -250,7 +250,7 @@ impl Observer {
             covariance[(leak, leak)] = powi(hypothesis.rate.prior_sd, 2);
             (*hypothesis, covariance)
         };
-        self.cylinder.settings().bank.iter().map(prior).collect()
+        self.cylinder.settings().bank.iter().take(self.roles.members).map(prior).collect()
     }
 }
 

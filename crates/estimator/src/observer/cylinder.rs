@@ -168,6 +168,11 @@ impl Cylinder {
         self.model.warm_start()
     }
 
+    /// The same, in the memory of another one.
+    pub(super) fn write_warm_start(&self, start: &mut WarmStart) {
+        self.model.write_warm_start(start);
+    }
+
     /// Whether a sensor reads the gas pressure.
     pub(crate) fn reads_pressure(&self, sensor: usize) -> bool {
         self.reads_pressure[sensor]

@@ -105,13 +105,13 @@ impl Observer {
         restarted: bool,
     ) -> Result<Estimate, EstimatorError> {
         let (bank, states) = (&self.bank, self.cylinder.state_map());
-        let (thermometer, freest) = (self.thermometer, self.freest);
+        let (thermometer, freest) = (self.roles.thermometer, self.roles.freest);
         let [first_mass, slow_mass, free_mass] = [0, thermometer, freest].map(|index| self.masses[index]);
         let mut mass = Belief::blended(first_mass, free_mass);
         let mut gas = Belief::of(slow_mass, free_mass)
             .blend(bank.moments(thermometer, states.gas), bank.moments(freest, states.gas));
         gas.1 = self.band.stated_k2(gas.1, |state| bank.moments(thermometer, state).1);
-        let mut leak = self.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
+        let mut leak = self.roles.slow.map_or((f64::NAN, f64::NAN), |slow| bank.moments(slow, states.leak));
         leak.1 += self.unknown_leak_variance(time_s, free_mass.1);
         if let Some(flow) = self.flow() {
             let belief = Belief::of(slow_mass, flow.mass());

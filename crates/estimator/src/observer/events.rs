@@ -21,7 +21,9 @@ impl Observer {
 
     /// Gas has flowed for certain: every member begins anew with what the [flowing](Self::flow) one says.
     pub fn follow_the_flow(&mut self) {
-        let Some(flowing) = self.flowing.filter(|&index| index < self.bank.members.len()) else { return };
+        let Some(flowing) = self.roles.flowing.filter(|&index| index < self.bank.members.len()) else {
+            return;
+        };
         for index in (0..flowing).rev() {
             self.begin_anew(index, flowing);
             self.replaced[index] = true;

@@ -71,7 +71,7 @@ impl Flow {
 impl Observer {
     /// What the member says whose gas may flow; `None` without one and before the first sample.
     pub fn flow(&self) -> Option<Flow> {
-        let index = self.flowing.filter(|&index| index < self.bank.members.len())?;
+        let index = self.roles.flowing.filter(|&index| index < self.bank.members.len())?;
         let states = self.cylinder.state_map();
         let [(gas_mean_k, gas), (mass_kg, mass), (rate_kg_s, rate)] =
             [states.gas, states.mass, states.leak].map(|state| self.bank.moments(index, state));

@@ -24,6 +24,7 @@ mod band_settings;
 mod checkpoint;
 mod clock;
 mod commissioning;
+mod companion;
 pub mod cylinder;
 mod engine;
 mod estimate;
@@ -49,12 +50,14 @@ use crate::EstimatorError;
 use crate::filter::{Bank, Belief, Moments, StateSpace, Workspace};
 pub use crate::filter::{Innovation, Outcome};
 use crate::sensor::Sensor;
+use crate::thermal::reduced::WarmStart;
 use crate::thermal::vessel::Vessel;
 use band::Band;
 pub use band_settings::BandSettings;
 pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
 pub use commissioning::Commissioning;
+pub use companion::Companion;
 use cylinder::Cylinder;
 pub use engine::Engine;
 #[cfg(feature = "design")]
@@ -63,8 +66,9 @@ pub use estimate::{Estimate, Leak, Quality};
 pub use flow::Flow;
 pub use learned::Learned;
 pub use observability::{Combination, Observability};
+use roles::Roles;
+#[cfg(feature = "design")]
 pub(crate) use roles::middle_slow;
-use roles::{flowing, freest, held, thermometer};
 pub(crate) use scale::Scale;
 pub use screen::FaultCount;
 pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSettings, Walk};
@@ -102,20 +106,13 @@ pub struct Observer {
     to_compensate: Vec<f64>,
     clock: Clock,
     gate: f64,
-    /// The middle one of the members that have a leak rate, in the order of the bank; without any, the one that holds the mass.
-    slow: Option<usize>,
-    /// The member that holds the mass.
-    held: Option<usize>,
-    /// The member that gives the gas temperature: the same, if it trusts the pressure, or the first.
-    thermometer: usize,
-    /// The member whose mass walks most freely: it judges the others.
-    freest: usize,
-    /// The member whose gas may flow.
-    flowing: Option<usize>,
+    roles: Roles,
     /// The bank before the present sample.
     before: Bank<Cylinder>,
     /// The likeliest bank after a step of the surroundings.
     likeliest: Bank<Cylinder>,
+    /// Where the model's iterations start first.
+    fresh_start: WarmStart,
     reference_x: Vec<f64>,
     /// Mass of each member at the present sample.
     masses: Vec<Moments>,
@@ -145,7 +142,6 @@ impl Observer {
         }
         let settings = &settings;
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
-        let held = held(&settings.bank);
         let gate = settings.gate_sd * settings.gate_sd;
         Ok(Self {
             vessel: vessel.clone(),
@@ -160,13 +156,10 @@ impl Observer {
             clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
             gate,
-            slow: middle_slow(&settings.bank).or(held),
-            held,
-            thermometer: thermometer(&settings.bank),
-            freest: freest(&settings.bank),
-            flowing: flowing(&settings.bank),
+            roles: Roles::of(&settings.bank),
             before: Bank::default(),
             likeliest: Bank::default(),
+            fresh_start: cylinder.warm_start(),
             reference_x: vec![0.0; cylinder.states()],
             masses: Vec::with_capacity(settings.bank.len()),
             replaced: vec![false; settings.bank.len()],
@@ -176,7 +169,7 @@ impl Observer {
 
     /// Without the member whose gas may flow, and without onsets of leaks; before the first sample.
     fn without_flow(mut self) -> Self {
-        (self.flowing, self.held) = (None, None);
+        (self.roles.flowing, self.roles.held) = (None, None);
         self.cylinder.suppose_no_flow();
         self
     }
@@ -268,7 +261,7 @@ impl Observer {
     /// Members that are excluded begin anew from the freest one.
     fn replace_excluded(&mut self) {
         let mass = self.cylinder.state_map().mass;
-        let (freest, flowing) = (self.freest, self.flowing);
+        let (freest, flowing) = (self.roles.freest, self.roles.flowing);
         self.bank.write_moments(mass, &mut self.masses);
         self.replaced.fill(false);
         for index in (0..self.masses.len()).filter(|&index| index != freest && Some(index) != flowing) {
@@ -299,7 +292,7 @@ impl Observer {
         if dt_s <= 0.0 {
             return Ok(());
         }
-        if let Some(flowing) = self.flowing.filter(|_| self.clock.exchange == Exchange::Open) {
+        if let Some(flowing) = self.roles.flowing.filter(|_| self.clock.exchange == Exchange::Open) {
             // Much of the gas may go out within the interval, or as much come in, and cools or warms what is there.
             let much_kg = MAX_EXCHANGE_PART * self.cylinder.settings().free_mass_sd_kg;
             let rate_sd_kg_s = much_kg / dt_s;
@@ -325,12 +318,14 @@ impl Observer {
 
     /// Whether every member but the flowing one is possible; that begins anew from the freest one where it is not.
     fn is_possible(&mut self) -> bool {
-        let mut held = (0..self.bank.members.len()).filter(|&index| Some(index) != self.flowing);
+        let mut held = (0..self.bank.members.len()).filter(|&index| Some(index) != self.roles.flowing);
         if !held.all(|index| self.bank.is_possible(index, &self.cylinder)) {
             return false;
         }
-        if let Some(flowing) = self.flowing.filter(|&index| !self.bank.is_possible(index, &self.cylinder)) {
-            self.begin_anew(flowing, self.freest);
+        if let Some(flowing) =
+            self.roles.flowing.filter(|&index| !self.bank.is_possible(index, &self.cylinder))
+        {
+            self.begin_anew(flowing, self.roles.freest);
             let prior_sd_kg_s = self.bank.members[flowing].hypothesis.rate.prior_sd;
             self.bank.set_variance(flowing, self.cylinder.state_map().leak, prior_sd_kg_s * prior_sd_kg_s);
         }
@@ -364,7 +359,7 @@ impl Observer {
     /// What the freest member says of another one.
     fn belief(&self, index: usize) -> Belief {
         let mass = self.cylinder.state_map().mass;
-        Belief::of(self.bank.moments(index, mass), self.bank.moments(self.freest, mass))
+        Belief::of(self.bank.moments(index, mass), self.bank.moments(self.roles.freest, mass))
     }
 
     /// Innovation of each sensor at the last sample, by the first member.
@@ -396,14 +391,14 @@ impl Observer {
                 begun_anew: self.replaced[index],
             }
         };
-        (0..self.flowing.unwrap_or(self.bank.members.len()).min(self.bank.members.len())).map(of)
+        (0..self.roles.flowing.unwrap_or(self.bank.members.len()).min(self.bank.members.len())).map(of)
     }
 
     /// Mass and its standard deviation, kg, by the freest member or, where gas flows faster than that allows, by the
     /// [flowing](Observer::flow) one; `None` before the first sample.
     pub fn freest_mass_kg(&self) -> Option<(f64, f64)> {
         self.bank.members.first()?;
-        let free = self.bank.moments(self.freest, self.cylinder.state_map().mass);
+        let free = self.bank.moments(self.roles.freest, self.cylinder.state_map().mass);
         let (mass_kg, variance_kg2) = match self.flow() {
             Some(flow) => Belief::blended(free, flow.mass()),
             None => free,

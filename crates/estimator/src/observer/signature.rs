@@ -279,14 +279,14 @@ impl Observer {
     /// Nothing that has been seen so far speaks for or against a leak any more.
     pub fn forget_onsets(&mut self) {
         self.onsets.clear();
-        if let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) {
+        if let Some(member) = self.roles.held.and_then(|held| self.bank.members.get_mut(held)) {
             member.x[self.cylinder.state_map().leak] = 0.0;
         }
     }
 
     /// The member that holds the mass keeps what it does at the next sample.
     pub(super) fn record_the_step(&mut self) {
-        if let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) {
+        if let Some(member) = self.roles.held.and_then(|held| self.bank.members.get_mut(held)) {
             member.recorded(self.cylinder.leading()).begin(0.0);
         }
     }
@@ -297,7 +297,7 @@ impl Observer {
             self.onsets.clear();
         }
         let leak = self.cylinder.state_map().leak;
-        let Some(member) = self.held.and_then(|held| self.bank.members.get_mut(held)) else { return };
+        let Some(member) = self.roles.held.and_then(|held| self.bank.members.get_mut(held)) else { return };
         self.onsets.compensated.resize(member.x.len(), 0.0);
         if let Some(step) = &member.record {
             self.onsets.follow(step, leak, &mut self.to_compensate);

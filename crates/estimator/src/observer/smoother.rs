@@ -76,7 +76,7 @@ impl Smoother {
         let observer = observer.without_flow();
         let n = observer.cylinder.states();
         let mut members = vec![0];
-        for index in observer.slow.into_iter().chain([observer.freest]) {
+        for index in observer.roles.slow.into_iter().chain([observer.roles.freest]) {
             if !members.contains(&index) {
                 members.push(index);
             }
@@ -158,9 +158,9 @@ impl Smoother {
         let observer = &self.observer;
         Roles {
             first: 0,
-            thermometer: place(observer.thermometer),
-            slow: observer.slow.map_or(0, place),
-            freest: place(observer.freest),
+            thermometer: place(observer.roles.thermometer),
+            slow: observer.roles.slow.map_or(0, place),
+            freest: place(observer.roles.freest),
         }
     }
 

@@ -14,10 +14,10 @@ use crate::thermal::reduced::WarmStart;
 /// word for: take a binary format.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot {
-    bank: Bank<Cylinder>,
-    onsets: Onsets,
+    pub(super) bank: Bank<Cylinder>,
+    pub(super) onsets: Onsets,
     pub(super) clock: Clock,
-    warm_start: WarmStart,
+    pub(super) warm_start: WarmStart,
 }
 
 impl Observer {
@@ -43,7 +43,7 @@ impl Observer {
         snapshot.bank.copy_from(&self.bank);
         snapshot.onsets.copy_from(&self.onsets);
         snapshot.clock.clone_from(&self.clock);
-        snapshot.warm_start = self.cylinder.warm_start();
+        self.cylinder.write_warm_start(&mut snapshot.warm_start);
     }
 
     /// Back to a snapshot of this observer.
@@ -70,10 +70,11 @@ impl Observer {
     pub fn try_restore(&mut self, snapshot: &Snapshot) -> Result<(), EstimatorError> {
         let (states, sensors) = (self.cylinder.states(), self.cylinder.outputs());
         let clock = &snapshot.clock;
-        let fits = snapshot.bank.is_like(&self.cylinder.settings().bank, states, sensors)
-            && snapshot.onsets.is_like(states)
-            && [clock.last_reading_s.len(), clock.loosened.len(), clock.screens.len()] == [sensors; 3]
-            && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
+        let fits =
+            snapshot.bank.is_like(&self.cylinder.settings().bank[..self.roles.members], states, sensors)
+                && snapshot.onsets.is_like(states)
+                && [clock.last_reading_s.len(), clock.loosened.len(), clock.screens.len()] == [sensors; 3]
+                && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
         if !fits {
             return Err(EstimatorError::SnapshotForeign);
         }

@@ -85,7 +85,7 @@ impl Observer {
 
     /// Mean gas temperature where gas may flow, K: there the pressure does not tell it.
     fn gas_k(&self) -> f64 {
-        let member = self.flowing.filter(|&index| index < self.bank.members.len()).unwrap_or_default();
+        let member = self.roles.flowing.filter(|&index| index < self.bank.members.len()).unwrap_or_default();
         self.bank.members[member].x[self.cylinder.state_map().gas]
     }
 

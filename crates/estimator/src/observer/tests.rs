@@ -141,7 +141,7 @@ fn what_is_stated_of_the_gas_is_narrower_than_the_filters_variance_only_as_long_
     for k in 0..120 {
         stated_k2 = observer.step(60.0 * f64::from(k), &REST).unwrap().gas_mean_sd_k.powi(2);
     }
-    let slow = observer.slow.unwrap();
+    let slow = observer.roles.slow.unwrap();
     let filter_k2 = |state: usize| observer.bank.variance(slow, state);
     let (film, gas) = (observer.cylinder.state_map().inside.unwrap(), observer.cylinder.state_map().gas);
     assert!(filter_k2(film) > 0.9 * 0.0625, "a cylinder at rest tells nothing of its film");
@@ -422,7 +422,7 @@ fn a_cautious_member_is_no_thermometer_and_doubts_the_pressure_where_wall_and_ga
     let cautious: Vec<LeakHypothesis> = usual.iter().map(|member| member.cautious(2e5)).collect();
     let bank = vec![usual[0], cautious[1], cautious[2], cautious[3]];
     assert_eq!(
-        (observer(Engine::Extended).thermometer, observer_of(Engine::Extended, bank).thermometer),
+        (observer(Engine::Extended).roles.thermometer, observer_of(Engine::Extended, bank).roles.thermometer),
         (2, 0)
     );
     for engine in [Engine::Extended, Engine::Unscented] {

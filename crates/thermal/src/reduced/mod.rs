@@ -213,6 +213,12 @@ impl ReducedModel {
         WarmStart { volumes_m3: self.gas.guesses_m3(), skin_k: self.skin_k.clone() }
     }
 
+    /// The same, in the memory of another one.
+    pub fn write_warm_start(&self, start: &mut WarmStart) {
+        start.volumes_m3 = self.gas.guesses_m3();
+        start.skin_k.clone_from(&self.skin_k);
+    }
+
     /// Start the next evaluation as another one did.
     pub fn set_warm_start(&mut self, start: &WarmStart) {
         self.gas.set_guesses_m3(start.volumes_m3);

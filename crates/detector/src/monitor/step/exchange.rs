@@ -290,7 +290,7 @@ impl Monitor {
     fn go_back(&mut self) {
         if let Some(before) = &self.before {
             self.observer.restore(before);
-            self.shadow.restore(before);
+            self.observer.with(&mut self.shadow, |shadow| shadow.restore(before));
         }
     }
 
@@ -299,9 +299,12 @@ impl Monitor {
         let time_s = estimate.time_s;
         let Some(pressure) = self.roles.pressure else { return Ok(estimate) };
         let reading_pa = core::mem::replace(&mut self.usable[pressure], f64::NAN);
-        let blind = self.shadow.step(time_s, &self.usable)?;
+        let usable = &self.usable;
+        let (blind, expected_pa) = self.observer.with(&mut self.shadow, |shadow| {
+            let blind = shadow.step(time_s, usable)?;
+            shadow.expected_reading(pressure).map(|expected_pa| (blind, expected_pa))
+        })?;
         self.usable[pressure] = reading_pa;
-        let expected_pa = self.shadow.expected_reading(pressure)?;
         let now = self.observer.flow();
         let of_full = self.full_pa.recip();
         // A step is not known before there were some.
@@ -323,7 +326,7 @@ impl Monitor {
             Cause::Open => return Ok(blind.or(estimate)),
             Cause::Flowing => return Ok(estimate),
             Cause::Spike | Cause::Passed | Cause::Offset(_) => {
-                self.observer.restore(&self.shadow.snapshot());
+                self.observer.restore(self.shadow.snapshot());
                 self.state.jumps.were_far_off(examined.examination.seen_far_off());
                 let shift = if let Cause::Offset(by) = cause { by } else { 0.0 };
                 if shift != 0.0 {

@@ -32,7 +32,7 @@ use super::roles::Roles;
 use super::settings::MonitorSettings;
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
-use crate::estimator::observer::{Commissioning, Estimate, Learned, Observer, Quality, Snapshot};
+use crate::estimator::observer::{Commissioning, Companion, Estimate, Learned, Observer, Quality, Snapshot};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
@@ -70,9 +70,9 @@ pub struct Monitor {
     // In boxes, so that a monitor that is handed on leaves no copies on the stack.
     observer: Box<Observer>,
     /// Has the thermometers in each other's place, until that is judged.
-    twin: Option<Box<Observer>>,
+    twin: Option<Box<Companion>>,
     /// Goes on without the pressure while a jump is examined.
-    shadow: Box<Observer>,
+    shadow: Box<Companion>,
     state: Box<State>,
     /// Of the present row.
     usable: Vec<f64>,
@@ -138,7 +138,7 @@ impl State {
 }
 
 /// What is saved.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct Saved {
     commissioning: Commissioning,
     held_against: Fingerprint,
@@ -146,6 +146,17 @@ struct Saved {
     observer: Snapshot,
     twin: Option<Snapshot>,
     shadow: Option<Snapshot>,
+}
+
+/// The same, to be written: without copies.
+#[derive(Serialize)]
+struct Saving<'a> {
+    commissioning: Commissioning,
+    held_against: Fingerprint,
+    state: &'a State,
+    observer: Snapshot,
+    twin: Option<&'a Snapshot>,
+    shadow: Option<&'a Snapshot>,
 }
 
 /// What a state belongs to: vessel, sensors, and settings that decide what is kept of the rows. What the gas is held against does not belong
@@ -181,7 +192,7 @@ impl Monitor {
         settings: &MonitorSettings,
     ) -> Result<Self, DetectorError> {
         settings.validate()?;
-        let observer = || Observer::new(vessel, sensors, commissioning, &settings.observer).map(Box::new);
+        let observer = Observer::new(vessel, sensors, commissioning, &settings.observer)?;
         let contents = Contents::of(vessel);
         let roles = Roles::of(sensors);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
@@ -224,7 +235,6 @@ impl Monitor {
             cold_s: f64::NEG_INFINITY,
         });
         let compared = wiring::compared(&roles, sensors);
-        let twin = compared.map(|_| wiring::twin(vessel, sensors, commissioning, &settings.observer));
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: tails.thresholds(settings.false_alarm_interval_s)?,
@@ -234,10 +244,10 @@ impl Monitor {
             roles,
             compared,
             sensors: sensors.to_vec(),
-            twin: twin.transpose()?,
+            twin: compared.map(|_| Box::new(wiring::twin(&observer))),
             fingerprint: fingerprint(vessel, sensors, settings),
-            observer: observer()?,
-            shadow: observer()?,
+            shadow: Box::new(observer.companion(usize::MAX)),
+            observer: Box::new(observer),
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
             before: None,
@@ -270,11 +280,13 @@ impl Monitor {
         let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
         monitor.observer.try_restore(&saved.observer)?;
         match (&mut monitor.twin, &saved.twin) {
-            (Some(twin), Some(saved)) => twin.try_restore(saved)?,
+            (Some(twin), Some(saved)) => {
+                monitor.observer.with(twin, |observer| observer.try_restore(saved))?
+            }
             _ => monitor.twin = None,
         }
-        if let Some(shadow) = &saved.shadow {
-            monitor.shadow.try_restore(shadow)?;
+        if let Some(saved) = &saved.shadow {
+            monitor.observer.with(&mut monitor.shadow, |observer| observer.try_restore(saved))?;
         }
         monitor.know_the_filling(saved.state.begun_with);
         monitor.state = saved.state;
@@ -291,12 +303,12 @@ impl Monitor {
     /// [`SealError::Engine`].
     pub fn save(&self) -> Result<Vec<u8>, SealError> {
         let examined = self.state.examined.is_some();
-        let saved = Saved {
+        let saved = Saving {
             commissioning: self.commissioning,
             held_against: held_against(&self.settings),
-            state: self.state.clone(),
+            state: &self.state,
             observer: self.observer.snapshot(),
-            twin: self.twin.as_deref().map(Observer::snapshot),
+            twin: self.twin.as_deref().map(Companion::snapshot),
             shadow: examined.then(|| self.shadow.snapshot()),
         };
         sealed::encode(Kind::State, &saved, &self.fingerprint)
@@ -388,7 +400,7 @@ impl Monitor {
         let estimate = self.watch_bounds(estimate, &mut events)?;
         self.observer.round();
         if self.state.examined.is_some() {
-            self.shadow.round();
+            self.observer.with(&mut self.shadow, Observer::round);
         }
         self.mark_outcomes(time_s);
         self.keep_undisturbed(time_s);

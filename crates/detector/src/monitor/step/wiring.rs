@@ -2,10 +2,10 @@
 use super::Monitor;
 use super::disturbance::Undisturbed;
 use crate::DetectorError;
-use crate::estimator::observer::{Commissioning, Innovation, Observer, ObserverSettings};
+use crate::estimator::EstimatorError;
+use crate::estimator::observer::{Commissioning, Companion, Innovation, Observer};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Fill;
-use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::Evidence;
 use crate::monitor::MonitorSettings;
 use crate::monitor::gas::jump::JumpWatch;
@@ -29,15 +29,8 @@ pub(super) fn compared(roles: &Roles, sensors: &[Sensor]) -> Option<[usize; 3]> 
 }
 
 /// The observer's twin: its first member alone.
-pub(super) fn twin(
-    vessel: &Vessel,
-    sensors: &[Sensor],
-    commissioning: &Commissioning,
-    settings: &ObserverSettings,
-) -> Result<Box<Observer>, DetectorError> {
-    let bank = settings.bank.iter().take(1).cloned().collect();
-    let settings = ObserverSettings { bank, ..settings.clone() };
-    Ok(Box::new(Observer::new(vessel, sensors, commissioning, &settings)?))
+pub(super) fn twin(observer: &Observer) -> Companion {
+    observer.companion(1)
 }
 
 impl Monitor {
@@ -74,24 +67,28 @@ impl Monitor {
 
     /// Let the twin take the row that the observer took.
     pub(super) fn step_twin(&mut self, time_s: f64) -> Result<(), DetectorError> {
-        let (Some(compared @ [first, second, _]), Some(twin)) = (self.compared, &mut self.twin) else {
+        let (Some(compared @ [first, second, _]), Some(own)) = (self.compared, &mut self.twin) else {
             return Ok(());
         };
         if self.state.exchanged.is_some_and(|of| of.at_s == time_s) {
             self.know_the_filling(self.now());
-            self.twin = Some(self.new_twin()?);
+            self.twin = Some(Box::new(twin(&self.observer)));
             self.state.wiring.forget_twin();
             return Ok(());
         }
         self.usable.swap(first, second);
-        let stepped = twin.step(time_s, &self.usable);
+        let of = |observer: &Observer| compared.map(|sensor| innovation(observer, sensor));
+        let usable = &self.usable;
+        let stepped = self.observer.with(own, |observer| {
+            observer.step(time_s, usable)?;
+            observer.round();
+            Ok::<_, EstimatorError>(of(observer))
+        });
         self.usable.swap(first, second);
-        stepped?;
-        twin.round();
+        let of_twin = stepped?;
         if !self.state.is_exchanging(time_s) {
-            let of = |observer: &Observer| compared.map(|sensor| innovation(observer, sensor));
             let noise = compared.map(|sensor| self.sensors[sensor].noise_variance());
-            self.state.wiring.compare(of(&self.observer), of(twin), noise);
+            self.state.wiring.compare(of(&self.observer), of_twin, noise);
         }
         Ok(())
     }
@@ -137,7 +134,7 @@ impl Monitor {
             Observer::new(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
         self.know_the_filling(now);
         if self.twin.is_some() {
-            self.twin = Some(self.new_twin()?);
+            self.twin = Some(Box::new(twin(&self.observer)));
         }
         let state = &mut self.state;
         state.watches = self.sensors.iter().map(SensorWatch::new).collect();
@@ -152,17 +149,10 @@ impl Monitor {
         Ok(())
     }
 
-    fn new_twin(&self) -> Result<Box<Observer>, DetectorError> {
-        let mut twin = twin(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
-        twin.begin_with(&self.state.begun_with);
-        Ok(twin)
-    }
-
     /// Wherever an estimate begins again, it begins with this.
     pub(super) fn know_the_filling(&mut self, begun_with: Commissioning) {
         self.state.begun_with = begun_with;
-        let observers = [&mut self.observer, &mut self.shadow].into_iter().chain(&mut self.twin);
-        observers.for_each(|observer| observer.begin_with(&begun_with));
+        self.observer.begin_with(&begun_with);
     }
 
     /// What is known of the filling now: after an exchange of gas, the mass that the observer sees.
