@@ -31,21 +31,28 @@ pub(crate) trait Unrolled {
     const SIZES: (usize, usize);
 }
 
-/// Factors of the covariances of four filters with `n` states, with the memory that their updates work in.
+/// Factors of the covariances of four filters with `n` states.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(into = "Factors", try_from = "Factors")]
 pub(crate) struct UdBank {
     n: usize,
+    /// States that move.
+    leading: usize,
     /// Filters that are kept when it is saved, from the first lane on.
     filters: usize,
     /// Vector registers of this machine.
     arch: Arch,
-    /// Columns of `U`, each in whole groups of four numbers; what is below `U` is zero.
+    /// Columns of `U`, each down to its diagonal in whole groups of four numbers; what is below the diagonal is zero.
     u: Vec<Lanes>,
     /// (n).
     d: Vec<Lanes>,
     /// `U^T h` in an update, `v` in a rank-one update: (n).
     f: Vec<Lanes>,
+}
+
+/// Memory of an update, for any bank of as many states.
+#[derive(Debug)]
+pub(crate) struct UdMemory {
     /// Factors on gain and covariance by which each column changes the other in an update: (n).
     factors: Vec<(Lanes, Lanes)>,
     /// Columns of moving states of `Phi U` and the noise behind them, row by row in pairs: (m, 2 m).
@@ -57,25 +64,33 @@ pub(crate) struct UdBank {
     moved: Vec<[Lanes; 2]>,
 }
 
-impl UdBank {
-    /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
+impl UdMemory {
+    /// For `n` states, of which `leading` move.
     pub(crate) fn new(n: usize, leading: usize) -> Self {
-        let stride = stride(n);
-        let mut u = vec![Lanes::ZERO; stride * n];
-        u.iter_mut().step_by(stride + 1).for_each(|one| *one = Lanes::splat(1.0));
         Self {
-            n,
-            filters: LANES,
-            arch: Arch::new(),
-            u,
-            d: vec![Lanes::ZERO; n],
-            f: vec![Lanes::ZERO; n],
             factors: vec![(Lanes::ZERO, Lanes::ZERO); n],
             rows: vec![[Lanes::ZERO; 2]; leading * leading],
             spans: vec![(0, 0); leading],
             weights: vec![[Lanes::ZERO; 2]; leading],
             weighted: vec![[Lanes::ZERO; 2]; leading],
             moved: vec![[Lanes::ZERO; 2]; leading],
+        }
+    }
+}
+
+impl UdBank {
+    /// Four times the covariance of `n` states that are known exactly; `leading` of them move.
+    pub(crate) fn new(n: usize, leading: usize) -> Self {
+        let mut u = vec![Lanes::ZERO; start(n)];
+        (0..n).for_each(|j| u[start(j) + j] = Lanes::splat(1.0));
+        Self {
+            n,
+            leading,
+            filters: LANES,
+            arch: Arch::new(),
+            u,
+            d: vec![Lanes::ZERO; n],
+            f: vec![Lanes::ZERO; n],
         }
     }
 
@@ -91,7 +106,8 @@ impl UdBank {
 
     /// Let a lane have the covariance of `factors`, of as many states.
     pub(crate) fn set(&mut self, lane: usize, factors: &UdFactors) {
-        for (to, from) in self.u.chunks_exact_mut(stride(self.n)).zip(factors.unit_upper().column_iter()) {
+        for (j, from) in factors.unit_upper().column_iter().enumerate() {
+            let to = &mut self.u[start(j)..start(j + 1)];
             to.iter_mut().zip(&from).for_each(|(to, &from)| to.0[lane] = from);
         }
         self.d.iter_mut().zip(factors.diagonal()).for_each(|(to, &from)| to.0[lane] = from);
@@ -135,7 +151,8 @@ impl UdBank {
     /// Write the covariance of a lane: (n, n).
     pub(crate) fn covariance_into(&self, lane: usize, p: &mut DMatrix<f64>) {
         p.fill(0.0);
-        for (l, (u, d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate() {
+        for (l, d) in self.d.iter().enumerate() {
+            let u = &self.u[start(l)..start(l + 1)];
             for j in 0..=l {
                 let factor = d.0[lane] * u[j].0[lane];
                 for i in 0..=j {
@@ -154,7 +171,8 @@ impl UdBank {
     /// Covariance of states `i` and `j` of a lane.
     pub(crate) fn covariance_of(&self, lane: usize, i: usize, j: usize) -> f64 {
         let mut sum = 0.0;
-        for (u, d) in self.u.chunks_exact(stride(self.n)).zip(&self.d).skip(j.max(i)) {
+        for (l, d) in self.d.iter().enumerate().skip(j.max(i)) {
+            let u = &self.u[start(l)..start(l + 1)];
             sum += d.0[lane] * u[i].0[lane] * u[j].0[lane];
         }
         sum
@@ -163,8 +181,9 @@ impl UdBank {
     /// Variance of state `i` of every lane.
     pub(crate) fn variances(&self, i: usize) -> Lanes {
         let mut sum = [Lanes::ZERO; 2];
-        for (j, (u, &d)) in self.u.chunks_exact(stride(self.n)).zip(&self.d).enumerate().skip(i) {
-            sum[j % 2] += d * u[i] * u[i];
+        for (j, &d) in self.d.iter().enumerate().skip(i) {
+            let u = self.u[start(j) + i];
+            sum[j % 2] += d * u * u;
         }
         sum[0] + sum[1]
     }
@@ -175,46 +194,51 @@ impl UdBank {
     }
 
     /// Time update of every lane.
-    pub(crate) fn predict<S: Unrolled>(&mut self, transition: &mut BankTransition) {
-        self.arch.dispatch(Predict { bank: self, transition, sizes: PhantomData::<S> });
+    pub(crate) fn predict<S: Unrolled>(&mut self, transition: &mut BankTransition, memory: &mut UdMemory) {
+        self.arch.dispatch(Predict { bank: self, transition, memory, sizes: PhantomData::<S> });
     }
 
     #[inline(always)]
-    fn predict_in_lanes<S: Unrolled>(&mut self, transition: &mut BankTransition) {
+    fn predict_in_lanes<S: Unrolled>(&mut self, transition: &mut BankTransition, memory: &mut UdMemory) {
         match (self.n, transition.leading()) {
-            sizes if sizes == S::SIZES => self.predict_sized(transition, S::SIZES),
+            sizes if sizes == S::SIZES => self.predict_sized(transition, memory, S::SIZES),
             (_, 0) => {}
-            sizes => self.predict_sized(transition, sizes),
+            sizes => self.predict_sized(transition, memory, sizes),
         }
     }
 
     /// Of known size its loops are unrolled.
     #[inline(always)]
-    fn predict_sized(&mut self, transition: &mut BankTransition, (n, m): (usize, usize)) {
-        self.transform(transition, (n, m));
-        let weights = self.weights.as_flattened_mut();
+    fn predict_sized(
+        &mut self,
+        transition: &mut BankTransition,
+        memory: &mut UdMemory,
+        (n, m): (usize, usize),
+    ) {
+        self.transform(transition, memory, (n, m));
+        let weights = memory.weights.as_flattened_mut();
         weights[..m].copy_from_slice(&self.d[..m]);
-        transition.factor_noise(m, self.rows.as_flattened_mut(), &mut self.spans, &mut weights[m..]);
-        self.orthogonalise((n, m));
+        transition.factor_noise(m, memory.rows.as_flattened_mut(), &mut memory.spans, &mut weights[m..]);
+        self.orthogonalise(memory, m);
     }
 
     /// `Phi U`: its columns of moving states become rows to orthogonalise, those of constants are final.
     #[inline(always)]
-    fn transform(&mut self, transition: &BankTransition, (n, m): (usize, usize)) {
-        let stride = stride(n);
-        let Self { u, rows, moved, spans, .. } = self;
+    fn transform(&mut self, transition: &BankTransition, memory: &mut UdMemory, (n, m): (usize, usize)) {
+        let UdMemory { rows, moved, spans, .. } = memory;
+        let u = &mut self.u[..start(n)];
         // An odd last column goes alone.
-        for (pair, u) in u.chunks_mut(2 * stride).enumerate() {
-            let (left, right) = u.split_at_mut(stride);
-            let last = (2 * pair + 1).min(n - 1);
+        for (pair, first) in (0..n).step_by(2).enumerate() {
+            let (left, right) = u[start(first)..start((first + 2).min(n))].split_at_mut(length(first));
+            let last = (first + 1).min(n - 1);
             let both = [&*left, if right.is_empty() { &*left } else { &*right }];
             transition.multiply(both, last, moved);
             // Where a row's moving states end within the pair, noise takes the place of what is too much.
-            if 2 * pair < m {
+            if first < m {
                 rows.chunks_exact_mut(m).zip(&*moved).for_each(|(row, moved)| row[pair] = *moved);
             }
             for (j, to) in
-                [left, right].into_iter().enumerate().filter(|(j, u)| 2 * pair + j >= m && !u.is_empty())
+                [left, right].into_iter().enumerate().filter(|(j, u)| first + j >= m && !u.is_empty())
             {
                 to.iter_mut().zip(&*moved).for_each(|(to, moved)| *to = moved[j]);
             }
@@ -226,9 +250,9 @@ impl UdBank {
 
     /// Modified weighted Gram-Schmidt, last row first: `[Phi_xx U_x, G] = U_x' V`, `V diag(weights) V^T = diag(d')`.
     #[inline(always)]
-    fn orthogonalise(&mut self, (n, m): (usize, usize)) {
-        let stride = stride(n);
-        let Self { u, d, rows, weights, weighted, spans, .. } = self;
+    fn orthogonalise(&mut self, memory: &mut UdMemory, m: usize) {
+        let Self { u, d, .. } = self;
+        let UdMemory { rows, weights, weighted, spans, .. } = memory;
         for j in (0..m).rev() {
             let (before, row) = rows[..(j + 1) * m].split_at_mut(j * m);
             let span = spans[j];
@@ -240,7 +264,7 @@ impl UdBank {
             }
             d[j] = dot_pairs(weighted, row);
             let inverse = d[j].inverse();
-            let u = &mut u[j * stride..j * stride + j];
+            let u = &mut u[start(j)..start(j) + j];
             for ((other, u), other_span) in before.chunks_exact_mut(m).zip(u).zip(spans.iter_mut()) {
                 let other = &mut other[pairs.clone()];
                 let share = dot_pairs(weighted, other) * inverse;
@@ -266,11 +290,11 @@ impl UdBank {
 
     #[inline(always)]
     fn project_sized(&mut self, h: &[Lanes], n: usize) -> Lanes {
-        let stride = stride(n);
         let Self { u, d, f, .. } = self;
+        let u = &u[..start(n)];
         let mut sum = Lanes::ZERO;
-        for (j, ((u, &d), f)) in u.chunks_exact(stride).zip(&d[..n]).zip(f).enumerate() {
-            *f = dot(&h[..=j], &u[..=j]);
+        for (j, (&d, f)) in d[..n].iter().zip(f).enumerate() {
+            *f = dot(&h[..=j], &u[start(j)..start(j) + j + 1]);
             sum += *f * *f * d;
         }
         sum
@@ -278,25 +302,29 @@ impl UdBank {
 
     /// Update by scalar measurements with the `h` of the last [`project`](Self::project) and noise of variances `r`, in
     /// the lanes that are `used`. Writes the gains (n), zero in the other lanes, and returns the innovations' variances.
-    pub(crate) fn update<S: Unrolled>(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
-        self.arch.dispatch(Update { bank: self, r, used, gain, sizes: PhantomData::<S> })
+    pub(crate) fn update<S: Unrolled>(
+        &mut self,
+        r: Lanes,
+        used: [bool; 4],
+        gain: &mut [Lanes],
+        memory: &mut UdMemory,
+    ) -> Lanes {
+        let factors = &mut memory.factors;
+        self.arch.dispatch(Update { bank: self, r, used, gain, factors, sizes: PhantomData::<S> })
     }
 
     #[inline(always)]
-    fn update_in_lanes<S: Unrolled>(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes]) -> Lanes {
-        match self.n {
-            n if n == S::SIZES.0 => self.update_sized(r, used, gain, S::SIZES.0),
-            n => self.update_sized(r, used, gain, n),
-        }
-    }
-
-    #[inline(always)]
-    fn update_sized(&mut self, r: Lanes, used: [bool; 4], gain: &mut [Lanes], n: usize) -> Lanes {
-        let stride = stride(n);
+    fn update_sized(
+        &mut self,
+        r: Lanes,
+        used: [bool; 4],
+        (gain, factors): (&mut [Lanes], &mut [(Lanes, Lanes)]),
+        n: usize,
+    ) -> Lanes {
         let gain = &mut gain[..n];
         let mask = Lanes(used.map(|used| if used { 1.0 } else { 0.0 }));
-        let Self { u, d, f, factors, .. } = self;
-        let (u, d, f, factors) = (&mut u[..stride * n], &mut d[..n], &f[..n], &mut factors[..n]);
+        let Self { u, d, f, .. } = self;
+        let (u, d, f, factors) = (&mut u[..start(n)], &mut d[..n], &f[..n], &mut factors[..n]);
         let mut s = r;
         // Where no noise and no variance came before, it is zero, and so is the gain collected so far.
         let mut inverse = r.inverse();
@@ -313,13 +341,12 @@ impl UdBank {
         // Four rows at a time: their gain stays in registers. Below the diagonal of U all is zero, and the gain there too.
         for (block, gain) in gain.chunks_mut(4).enumerate() {
             let mut sum = [Lanes::ZERO; 4];
-            for (u, &(p, v)) in u.chunks_exact_mut(stride).zip(&*factors).skip(4 * block) {
-                if let Some(u) = u.as_chunks_mut::<4>().0.get_mut(block) {
-                    for (u, sum) in u.iter_mut().zip(&mut sum) {
-                        let old = *u;
-                        *u += *sum * p;
-                        *sum += old * v;
-                    }
+            for (j, &(p, v)) in factors.iter().enumerate().skip(4 * block) {
+                let first = start(j) + 4 * block;
+                for (u, sum) in u[first..first + 4].iter_mut().zip(&mut sum) {
+                    let old = *u;
+                    *u += *sum * p;
+                    *sum += old * v;
                 }
             }
             gain.iter_mut().zip(sum).for_each(|(to, sum)| *to = sum * inverse);
@@ -336,7 +363,8 @@ impl UdBank {
 
     /// Multiply state `i` by a positive factor in every lane: its variances by the square, its covariances by the factor.
     pub(crate) fn scale(&mut self, i: usize, factor: f64) {
-        for (j, u) in self.u.chunks_exact_mut(stride(self.n)).enumerate().skip(i) {
+        for j in i..self.n {
+            let u = &mut self.u[start(j)..start(j + 1)];
             if j == i {
                 u[..i].iter_mut().for_each(|above| *above = *above * factor.recip());
             } else {
@@ -348,12 +376,12 @@ impl UdBank {
 
     /// Make state `i` of a lane independent of all others, with the given variance: an event has reset it.
     pub(crate) fn decorrelate_and_set(&mut self, lane: usize, i: usize, variance: f64) {
-        for u in self.u.chunks_exact_mut(stride(self.n)).skip(i + 1) {
-            u[i].0[lane] = 0.0;
+        for j in i + 1..self.n {
+            self.u[start(j) + i].0[lane] = 0.0;
         }
         // What state i explained in the states before it remains theirs.
         self.f.fill(Lanes::ZERO);
-        for (f, above) in self.f.iter_mut().zip(&mut self.u[i * stride(self.n)..][..i]) {
+        for (f, above) in self.f.iter_mut().zip(&mut self.u[start(i)..][..i]) {
             f.0[lane] = core::mem::take(&mut above.0[lane]);
         }
         let mut left = Lanes::ZERO;
@@ -369,7 +397,7 @@ impl UdBank {
             let new = old + c * s * s;
             let inverse = new.inverse();
             let b = c * s * inverse;
-            for (u, v) in self.u[j * stride(self.n)..][..j].iter_mut().zip(v) {
+            for (u, v) in self.u[start(j)..][..j].iter_mut().zip(v) {
                 *v -= s * *u;
                 *u += b * *v;
             }
@@ -385,6 +413,7 @@ struct Predict<'a, S> {
     sizes: PhantomData<S>,
     bank: &'a mut UdBank,
     transition: &'a mut BankTransition,
+    memory: &'a mut UdMemory,
 }
 
 struct Project<'a, S> {
@@ -399,6 +428,7 @@ struct Update<'a, S> {
     r: Lanes,
     used: [bool; 4],
     gain: &'a mut [Lanes],
+    factors: &'a mut [(Lanes, Lanes)],
 }
 
 impl<U: Unrolled> WithSimd for Predict<'_, U> {
@@ -406,7 +436,7 @@ impl<U: Unrolled> WithSimd for Predict<'_, U> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.bank.predict_in_lanes::<U>(self.transition);
+        self.bank.predict_in_lanes::<U>(self.transition, self.memory);
     }
 }
 
@@ -424,14 +454,25 @@ impl<U: Unrolled> WithSimd for Update<'_, U> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Lanes {
-        self.bank.update_in_lanes::<U>(self.r, self.used, self.gain)
+        let Self { bank, r, used, gain, factors, .. } = self;
+        match bank.n {
+            n if n == U::SIZES.0 => bank.update_sized(r, used, (gain, factors), U::SIZES.0),
+            n => bank.update_sized(r, used, (gain, factors), n),
+        }
     }
 }
 
-/// Length of a column in memory.
+/// Length of column `j` in memory.
 #[inline(always)]
-const fn stride(n: usize) -> usize {
-    n.next_multiple_of(4)
+const fn length(j: usize) -> usize {
+    4 * (j / 4 + 1)
+}
+
+/// Where column `j` begins: the length of all before it.
+#[inline(always)]
+const fn start(j: usize) -> usize {
+    let (groups, rest) = (j / 4, j % 4);
+    4 * (groups + 1) * (2 * groups + rest)
 }
 
 /// `sum a_i b_i`, in four sums that do not wait for each other.

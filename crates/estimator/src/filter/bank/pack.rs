@@ -16,7 +16,7 @@ use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::plant::{Plant, StepTransition, parts};
 use crate::filter::ud::UdFactors;
-use crate::filter::ud_bank::{BankTransition, UdBank, Unrolled};
+use crate::filter::ud_bank::{BankTransition, UdBank, UdMemory, Unrolled};
 use crate::numbers;
 
 /// Distance up to which two states differ linearly: curvature is left out.
@@ -37,6 +37,7 @@ pub(super) struct Pack {
 pub(super) struct PackMemory {
     step: StepTransition,
     transition: BankTransition,
+    factors: UdMemory,
     /// Departure of each member from its reference, and where the transition takes it: (n), (leading).
     away: Vec<Lanes>,
     moved: Vec<[Lanes; 1]>,
@@ -62,6 +63,7 @@ impl PackMemory {
         Self {
             step: StepTransition::new(plant),
             transition: BankTransition::new(plant.pattern()),
+            factors: UdMemory::new(n, m),
             away: vec![Lanes::ZERO; n],
             moved: vec![[Lanes::ZERO]; m],
             before: vec![0.0; n],
@@ -164,7 +166,7 @@ impl Pack {
                 *x += by.0[lane];
             }
         }
-        self.bank.predict::<UsualSizes<P>>(&mut memory.transition);
+        self.bank.predict::<UsualSizes<P>>(&mut memory.transition, &mut memory.factors);
         Ok(())
     }
 
@@ -211,7 +213,7 @@ impl Pack {
         }
         let s = self.bank.project::<UsualSizes<P>>(&memory.h) + r;
         let used = self.judge(plant, memory, members, output, (nu, s, &mut r));
-        let used_s = self.bank.update::<UsualSizes<P>>(r, used, &mut memory.gain);
+        let used_s = self.bank.update::<UsualSizes<P>>(r, used, &mut memory.gain, &mut memory.factors);
         if members.iter().any(|member| plant.considers(&member.hypothesis)) {
             self.consider(plant, members, used_s, &mut memory.gain);
         }

@@ -3,7 +3,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
-use super::{UdBank, stride};
+use super::{UdBank, start};
 use crate::filter::lanes::{LANES, Lanes};
 use crate::numbers;
 
@@ -23,10 +23,10 @@ pub(super) struct Factors {
 impl From<UdBank> for Factors {
     fn from(bank: UdBank) -> Self {
         let of_filters = |lanes: &Lanes| lanes.0.into_iter().take(bank.filters);
-        let columns = bank.u.chunks_exact(stride(bank.n)).enumerate();
-        let u = columns.flat_map(|(j, column)| &column[..j]).flat_map(of_filters).collect();
+        let columns = (0..bank.n).flat_map(|j| &bank.u[start(j)..][..j]);
+        let u = columns.flat_map(of_filters).collect();
         let d = bank.d.iter().flat_map(of_filters).collect();
-        Self { states: bank.n, leading: bank.spans.len(), filters: bank.filters, u, d }
+        Self { states: bank.n, leading: bank.leading, filters: bank.filters, u, d }
     }
 }
 
@@ -47,8 +47,8 @@ impl TryFrom<Factors> for UdBank {
         // A lane without a filter does as the first one.
         let lanes = |of: &[f64]| Lanes(core::array::from_fn(|lane| of.get(lane).copied().unwrap_or(of[0])));
         let mut left = u.chunks_exact(filters).map(lanes);
-        for (j, column) in bank.u.chunks_exact_mut(stride(states)).enumerate() {
-            column[..j].iter_mut().zip(&mut left).for_each(|(to, from)| *to = from);
+        for j in 0..states {
+            bank.u[start(j)..][..j].iter_mut().zip(&mut left).for_each(|(to, from)| *to = from);
         }
         bank.d = d.chunks_exact(filters).map(lanes).collect();
         Ok(bank)

@@ -77,7 +77,7 @@ impl Case {
                 .set_noise(std::array::from_fn(|other| other == lane), |place| Lanes::splat(noise[place]));
             single.predict(&Linearisation { phi, g: root, q: DVector::from_element(rank, 1.0) });
         }
-        self.bank.predict::<FirstSizes>(&mut transition);
+        self.bank.predict::<FirstSizes>(&mut transition, &mut UdMemory::new(n, m));
     }
 
     fn update(&mut self, r: f64, used: [bool; 4]) {
@@ -88,7 +88,8 @@ impl Case {
         let lanes: Vec<Lanes> = (0..n).map(|i| Lanes(std::array::from_fn(|lane| h[lane][i]))).collect();
         let projected = self.bank.project::<FirstSizes>(&lanes);
         let mut gains = vec![Lanes::ZERO; n];
-        let s = self.bank.update::<FirstSizes>(Lanes::splat(r), used, &mut gains);
+        let s =
+            self.bank.update::<FirstSizes>(Lanes::splat(r), used, &mut gains, &mut UdMemory::new(n, self.m));
         for lane in 0..4 {
             if !used[lane] {
                 assert!(gains.iter().all(|gain| gain.0[lane] == 0.0));
@@ -146,24 +147,25 @@ fn an_event_in_one_lane_leaves_the_others() {
 
 #[test]
 fn a_state_known_exactly_stays_so_until_noise_comes() {
-    let mut bank = UdBank::new(3, 2);
+    let (mut bank, mut memory) = (UdBank::new(3, 2), UdMemory::new(3, 2));
     let mut gain = [Lanes::ZERO; 3];
     let h = [Lanes::splat(1.0); 3];
     assert_eq!(bank.project::<FirstSizes>(&h), Lanes::ZERO);
-    assert_eq!(bank.update::<FirstSizes>(Lanes::ZERO, [true; 4], &mut gain), Lanes::ZERO);
+    assert_eq!(bank.update::<FirstSizes>(Lanes::ZERO, [true; 4], &mut gain, &mut memory), Lanes::ZERO);
     assert!(gain.iter().all(|gain| gain.is_zero()));
     let mut transition = BankTransition::new(Pattern::new(&[vec![0, 1], vec![1]]));
-    bank.predict::<FirstSizes>(&mut transition);
+    bank.predict::<FirstSizes>(&mut transition, &mut memory);
     assert_eq!(bank.covariance(1), DMatrix::zeros(3, 3));
     let only = |(i, j)| if (i, j) == (1, 1) { 4.0 } else { 0.0 };
     transition.set_noise([false, true, false, false], |place| Lanes::splat(only(place)));
-    bank.predict::<FirstSizes>(&mut transition);
+    bank.predict::<FirstSizes>(&mut transition, &mut memory);
     assert_eq!([0, 1, 2, 3].map(|lane| bank.variance(lane, 1)), [0.0, 4.0, 0.0, 0.0]);
 }
 
 #[test]
 fn constants_alone_do_not_move() {
     let mut case = Case::new(40, (3, 0, 0));
-    case.bank.predict::<FirstSizes>(&mut BankTransition::new(Pattern::new(&[])));
+    case.bank
+        .predict::<FirstSizes>(&mut BankTransition::new(Pattern::new(&[])), &mut UdMemory::new(case.n, 0));
     case.assert_equal();
 }

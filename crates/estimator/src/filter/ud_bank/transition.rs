@@ -77,7 +77,10 @@ impl BankTransition {
             for run in runs {
                 let (own, others) = from.split_at(run.len());
                 from = others;
-                let end = run.end.min(last + 1).max(run.start);
+                let end = run.end.min(last + 1);
+                if end <= run.start {
+                    continue;
+                }
                 let u = u.map(|u| &u[run.start..end]);
                 for (k, own) in own[..end - run.start].iter().enumerate() {
                     let values = u.map(|u| u[k]);
