@@ -5,16 +5,16 @@
 //! middle the monitor is saved and goes on from its state. What comes out, little endian: for each row of the monitor, and for
 //! the last state, its length as u32 and its bytes, which are postcard's.
 #![no_std]
-extern crate alloc;
-
-use alloc::vec::Vec;
 use core::fmt;
 use cylwatch_detector::DetectorError;
 use cylwatch_detector::compiled::CompiledCylinder;
-use cylwatch_detector::monitor::Output;
+use cylwatch_detector::monitor::Monitor;
 
 /// Most sensors of a cylinder.
 pub const MOST_SENSORS: usize = 8;
+
+/// Bytes of an output at most.
+const LARGEST_OUTPUT: usize = 4096;
 
 /// Why a replay ended.
 #[derive(Debug)]
@@ -81,25 +81,27 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
             length += 1;
         }
         observed.row();
-        let outputs = monitor.step(cells[0], &cells[1..length]).map_err(of(number))?;
+        monitor.take(cells[0], &cells[1..length]).map_err(of(number))?;
+        rows += put(&mut monitor, number, observed)?;
         observed.done();
-        rows += outputs.len();
-        put(&outputs, observed)?;
     }
-    let outputs = monitor.finish().map_err(of(0))?;
-    rows += outputs.len();
-    put(&outputs, observed)?;
+    monitor.flush();
+    rows += put(&mut monitor, 0, observed)?;
     let state = monitor.save().map_err(|error| ReplayError::Monitor(0, error.into()))?;
     framed(&state, observed);
     Ok(rows)
 }
 
-fn put(outputs: &[Output], observed: &mut impl Observed) -> Result<(), ReplayError> {
-    for output in outputs {
-        let bytes: Vec<u8> = postcard::to_allocvec(output).map_err(|_| ReplayError::Bytes)?;
-        framed(&bytes, observed);
+/// Write what the monitor says of the rows that are ready, and count them.
+fn put(monitor: &mut Monitor, line: usize, observed: &mut impl Observed) -> Result<usize, ReplayError> {
+    let mut rows = 0;
+    while let Some(output) = monitor.next_output().map_err(|error| ReplayError::Monitor(line, error))? {
+        let mut bytes = [0; LARGEST_OUTPUT];
+        let bytes = postcard::to_slice(output, &mut bytes).map_err(|_| ReplayError::Bytes)?;
+        framed(bytes, observed);
+        rows += 1;
     }
-    Ok(())
+    Ok(rows)
 }
 
 fn framed(bytes: &[u8], observed: &mut impl Observed) {

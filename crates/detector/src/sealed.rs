@@ -28,7 +28,7 @@ impl Kind {
     /// Version of the payload: one more with every change of what it holds.
     pub const fn version(self) -> u32 {
         match self {
-            Self::State => 26,
+            Self::State => 27,
             Self::Cylinder => 1,
         }
     }

@@ -34,7 +34,7 @@ pub(crate) fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
     let transition = &event.transition;
     let condition = &transition.condition;
     json!({
-        "id": event.id,
+        "id": event.id(),
         "event": "alarm",
         "time_s": clock.of_log_s(transition.time_s),
         "time": clock.date(transition.time_s),
@@ -93,19 +93,17 @@ mod tests {
     #[test]
     fn an_alarm_from_its_rise_to_its_reset_in_words_and_lines() {
         let (settings, clock) = (AlarmSettings::default(), Clock::default());
-        let (panel, first) = AlarmPanel::default().step(&settings, 60.0, &leak(true));
-        let (name, condition) = panel.retained()[0];
-        assert_eq!(standing(name, condition, &clock), "leak: active since t = 60 s, not acknowledged");
-        let (panel, _) = panel.acknowledge_all(&settings, 70.0, "seen by A");
+        let (mut panel, mut first, mut end) = (AlarmPanel::default(), Vec::new(), Vec::new());
+        panel.step(&settings, 60.0, &leak(true), &mut first);
+        let name = panel.retained()[0].0;
+        assert_eq!(standing(name, panel.condition(name), &clock), "leak: active since t = 60 s, not acknowledged");
+        panel.acknowledge_all(&settings, 70.0, "seen by A");
         assert!(standing(name, panel.condition(name), &clock).ends_with(", acknowledged"));
-        let course = (0..=60).map(|minute| 120.0 + 60.0 * f64::from(minute));
-        let (panel, end) = course.fold((panel, Vec::new()), |(panel, mut all), time_s| {
-            let (panel, events) = panel.step(&settings, time_s, &leak(false));
-            all.extend(events);
-            (panel, all)
-        });
+        for minute in 0..=60 {
+            panel.step(&settings, 120.0 + 60.0 * f64::from(minute), &leak(false), &mut end);
+        }
         assert!(standing(name, panel.condition(name), &clock).ends_with(", to be reset"));
-        let (_, reset) = panel.acknowledge_all(&settings, 4000.0, "");
+        let reset = panel.acknowledge_all(&settings, 4000.0, "");
         let said: Vec<String> =
             first.iter().chain(&end).chain(&reset).map(|event| alarm_text(event, &clock)).collect();
         assert_eq!(

@@ -5,10 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::{Health, LeakFinding, Verdict};
 
 /// Something that happened.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// The same for the same happening: `<kind>-<onset, ms>`.
-    pub id: String,
     /// Time of the sample at which it was noticed, s.
     pub time_s: f64,
     /// When it began, s.
@@ -18,7 +16,7 @@ pub struct Event {
 }
 
 /// Kinds of events.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EventKind {
     /// The verdict changed.
@@ -80,10 +78,14 @@ pub enum EventKind {
 }
 
 impl Event {
-    /// An event with its name.
+    /// An event of this sample that began then, s.
     pub fn new(time_s: f64, onset_s: f64, kind: EventKind) -> Self {
-        let id = format!("{}-{}", kind.name(), libm::round(onset_s * 1e3));
-        Self { id, time_s, onset_s, kind }
+        Self { time_s, onset_s, kind }
+    }
+
+    /// The same for the same happening: `<kind>-<onset, ms>`.
+    pub fn id(&self) -> String {
+        format!("{}-{}", self.kind.name(), libm::round(self.onset_s * 1e3))
     }
 }
 

@@ -10,10 +10,10 @@
 //! probability mixes in what happens without one: the mass stays.
 //!
 //! Source: D. V. Hinkley, Biometrika 56 (1969) 635 (ratio); T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145 (root).
-use alloc::vec::Vec;
 use core::f64::consts::FRAC_1_SQRT_2;
 use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::quadrature::integrate;
 use super::{LossLaw, MassAndLeak};
@@ -176,17 +176,20 @@ impl Prognosis {
     }
 }
 
+/// Bounds, peak, zero, and both sides of each step.
+type Ends = SmallVec<[f64; 4 + 2 * STEP.len()]>;
+
 /// Where the integrand steps, between `low` and `high`, both included: where a concave function passes multiples of a standard deviation.
 /// A step narrow against the panels of a quadrature would be overlooked.
-fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Vec<f64> {
+fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Ends {
     let peak = maximum(&concave, (low, high));
-    let mut ends = vec![low, 0.0, peak, high];
+    let mut ends = Ends::from_slice(&[low, 0.0, peak, high]);
     for level in STEP {
         for side in [low, high] {
             ends.extend(crossing(&concave, level * sd, 0.1 * sd, (side, peak)));
         }
     }
-    ends.retain(|end| (low..=high).contains(end));
+    ends.retain(|end| (low..=high).contains(&*end));
     ends.sort_unstable_by(f64::total_cmp);
     ends.dedup();
     ends

@@ -1,7 +1,7 @@
 //! The intake: order, duplicates, gaps, clocks that jump, bins, and the state in between.
 use cylwatch_detector::DetectorError;
 use cylwatch_detector::estimator::thermal::units::{DAY_S, HOUR_S, MINUTE_S};
-use cylwatch_detector::monitor::intake::{Intake, IntakeSettings, Row, Taken};
+use cylwatch_detector::monitor::intake::{Intake, IntakeSettings, Readings, Row, Taken};
 use cylwatch_detector::monitor::{Event, EventKind};
 use proptest::prelude::*;
 
@@ -33,9 +33,9 @@ fn all(intake: &mut Intake, rows: &[Arrival]) -> Taken {
 }
 
 /// Bits of all that comes out: NaN is equal to NaN.
-fn bits(rows: &[Row]) -> Vec<Vec<u64>> {
+fn bits<'a>(rows: impl IntoIterator<Item = &'a Row>) -> Vec<Vec<u64>> {
     let row = |row: &Row| [&[row.time_s, row.stamp_s], &row.readings[..]].concat();
-    rows.iter().map(|r| row(r).into_iter().map(f64::to_bits).collect()).collect()
+    rows.into_iter().map(|r| row(r).into_iter().map(f64::to_bits).collect()).collect()
 }
 
 fn minutes(from: usize, to: usize) -> Vec<Arrival> {
@@ -63,7 +63,7 @@ fn rows_in_order_come_out_at_once_as_they_are() {
     let mut intake = intake(each());
     for (stamp_s, readings) in minutes(0, 100) {
         let taken = intake.take(stamp_s, &readings).unwrap();
-        assert_eq!(taken, Taken { rows: vec![Row { time_s: stamp_s, stamp_s, readings }], events: vec![] });
+        assert_eq!(taken, Taken { rows: [row(stamp_s, &readings)].into(), events: vec![] });
     }
     assert_eq!(intake.flush(), Taken::default());
     assert_eq!(intake.usual_interval_s(), Some(MINUTE_S));
@@ -87,7 +87,7 @@ fn a_row_later_than_the_lateness_is_reported_and_not_used() {
     assert_eq!(out.rows.len(), 19);
     assert_eq!(intake.counts().too_late, 1);
     let [event] = &out.events[..] else { panic!("{:?}", out.events) };
-    assert_eq!((event.kind.clone(), event.onset_s), (EventKind::TooLate, 180.0));
+    assert_eq!((event.kind, event.onset_s), (EventKind::TooLate, 180.0));
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn readings_of_one_time_are_one_row_or_follow_each_other() {
     // Held back they are one row.
     let mut waiting = intake(late(60.0));
     let out = all(&mut waiting, &rows);
-    assert_eq!(out.rows, [Row { time_s: 0.0, stamp_s: 0.0, readings: vec![1.0, 2.0] }]);
+    assert_eq!(out.rows, [row(0.0, &[1.0, 2.0])]);
     assert_eq!((waiting.counts().merged, waiting.counts().duplicates), (1, 1));
     // At once, the second one has what the first had not, and the third says nothing new.
     let out = all(&mut intake(each()), &rows);
@@ -104,14 +104,14 @@ fn readings_of_one_time_are_one_row_or_follow_each_other() {
 }
 
 fn row(t: f64, readings: &[f64]) -> Row {
-    Row { time_s: t, stamp_s: t, readings: readings.to_vec() }
+    Row { time_s: t, stamp_s: t, readings: Readings::from_slice(readings) }
 }
 
 #[test]
 fn of_two_values_the_later_stands_until_it_is_handed_out() {
     let rows = [(0.0, vec![1.0, 5.0]), (0.0, vec![2.0, f64::INFINITY]), (60.0, vec![3.0, 6.0])];
     let (mut waiting, mut at_once) = (intake(late(30.0)), intake(each()));
-    assert_eq!(all(&mut waiting, &rows).rows[0].readings, [2.0, 5.0]);
+    assert_eq!(all(&mut waiting, &rows).rows[0].readings[..], [2.0, 5.0]);
     assert_eq!(all(&mut at_once, &rows).rows.len(), 2);
     assert_eq!((waiting.counts().contradictions, at_once.counts().contradictions), (1, 1));
 }

@@ -61,6 +61,20 @@ impl Clock {
         }
     }
 
+    /// Become as another clock of the same sensors, without allocating.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let keep = |to: &mut Vec<f64>, from: &Vec<f64>| {
+            to.clone_from(from);
+            core::mem::take(to)
+        };
+        let last_reading_s = keep(&mut self.last_reading_s, &other.last_reading_s);
+        let loosened = keep(&mut self.loosened, &other.loosened);
+        let last_reading = keep(&mut self.last_reading, &other.last_reading);
+        let mut screens = core::mem::take(&mut self.screens);
+        screens.clone_from(&other.screens);
+        *self = Self { last_reading_s, loosened, last_reading, screens, ..*other };
+    }
+
     /// The mass of a later time, s, is the reference, and until then there is none.
     pub(super) fn await_reference(&mut self, due_s: f64) {
         self.reference_mass_kg = None;

@@ -42,7 +42,7 @@ impl Observer {
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         snapshot.bank.copy_from(&self.bank);
         snapshot.onsets.copy_from(&self.onsets);
-        snapshot.clock.clone_from(&self.clock);
+        snapshot.clock.copy_from(&self.clock);
         self.cylinder.write_warm_start(&mut snapshot.warm_start);
     }
 
@@ -55,7 +55,7 @@ impl Observer {
 
     /// The clock and the model as they were.
     pub(super) fn turn_back(&mut self, clock: &Clock, warm_start: &WarmStart) {
-        self.clock.clone_from(clock);
+        self.clock.copy_from(clock);
         for (screen, sensor) in self.clock.screens.iter_mut().zip(self.cylinder.sensors()) {
             *screen = screen.of(sensor);
         }

@@ -1,7 +1,7 @@
 //! State of one alarm, and what a sample does to it.
 use alloc::string::String;
-use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::{Alarm, Delayed, Trigger};
 
@@ -55,6 +55,9 @@ pub struct Transition {
     /// The state then.
     pub condition: Condition,
 }
+
+/// Changes of a condition at one sample.
+pub(crate) type Transitions = SmallVec<[Transition; 2]>;
 
 /// What can change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -147,15 +150,15 @@ impl Condition {
 
 impl<T: Trigger> Alarm<T> {
     /// The state after a sample, and what changed with it. A time that is no number is no sample.
-    pub fn step(&self, condition: Condition, time_s: f64, signal: T::Signal) -> (Condition, Vec<Transition>) {
+    pub fn step(&self, condition: Condition, time_s: f64, signal: T::Signal) -> (Condition, Transitions) {
         let mut next = condition;
         if !time_s.is_finite() {
-            return (next, Vec::new());
+            return (next, Transitions::new());
         }
         let step_s = next.last_s.map_or(0.0, |last_s| time_s - last_s);
         next.last_s = Some(time_s);
         if !next.enabled {
-            return (next, Vec::new());
+            return (next, Transitions::new());
         }
         let on = next.levels.map(|level| level.on);
         let violated = self.trigger.violated(signal, on);
@@ -163,14 +166,14 @@ impl<T: Trigger> Alarm<T> {
             let signal = violated.map(|violated| violated[number]);
             *level = level.step(step_s, signal, &self.timing);
         }
-        let mut changes = Vec::new();
+        let mut changes = Transitions::new();
         self.follow_levels(&mut next, time_s, &mut changes);
         self.raise_again(&mut next, time_s, &mut changes);
         (next, changes)
     }
 
     /// ActiveState and LimitState after the levels.
-    fn follow_levels(&self, next: &mut Condition, time_s: f64, changes: &mut Vec<Transition>) {
+    fn follow_levels(&self, next: &mut Condition, time_s: f64, changes: &mut Transitions) {
         let [low, low_low] = next.levels.map(|level| level.on);
         let active = low || low_low;
         let limit = match (self.trigger.has_limits() && active, low_low) {
@@ -203,7 +206,7 @@ impl<T: Trigger> Alarm<T> {
     }
 
     /// ReAlarmTime; a gap over several of them raises once.
-    fn raise_again(&self, next: &mut Condition, time_s: f64, changes: &mut Vec<Transition>) {
+    fn raise_again(&self, next: &mut Condition, time_s: f64, changes: &mut Transitions) {
         let (true, Some(after_s), Some(alarmed_s)) =
             (next.active, self.timing.re_alarm_time_s, next.alarmed_s)
         else {

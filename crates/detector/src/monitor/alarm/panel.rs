@@ -51,8 +51,6 @@ pub struct AlarmInputs {
 /// A change of an alarm, with a name that stays the same wherever the log is replayed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlarmEvent {
-    /// `alarm-<name>-<change>-<time, ms>`.
-    pub id: String,
     /// Which alarm.
     pub alarm: AlarmName,
     /// What changed, when, and the state after it.
@@ -105,10 +103,10 @@ impl AlarmInputs {
 }
 
 impl AlarmEvent {
-    fn new(alarm: AlarmName, transition: Transition) -> Self {
-        let ms = libm::round(transition.time_s * 1e3);
-        let id = format!("alarm-{}-{}-{ms}", alarm.as_str(), transition.change.as_str());
-        Self { id, alarm, transition }
+    /// The same for the same change: `alarm-<name>-<change>-<time, ms>`.
+    pub fn id(&self) -> String {
+        let ms = libm::round(self.transition.time_s * 1e3);
+        format!("alarm-{}-{}-{ms}", self.alarm.as_str(), self.transition.change.as_str())
     }
 }
 
@@ -126,33 +124,32 @@ impl AlarmPanel {
         retained
     }
 
-    /// The panel after a sample, and what changed.
+    /// Take in a sample; what changes is added to the events.
     pub fn step(
-        mut self,
+        &mut self,
         settings: &AlarmSettings,
         time_s: f64,
         inputs: &AlarmInputs,
-    ) -> (Self, Vec<AlarmEvent>) {
-        let mut events = Vec::new();
+        events: &mut Vec<AlarmEvent>,
+    ) {
         let AlarmInputs { leak, p15_pa, filling, sensor_fault, unknown, cold_pressure_pa } = *inputs;
-        self.advance(AlarmName::Leak, &settings.leak, (time_s, leak), &mut events);
+        self.advance(AlarmName::Leak, &settings.leak, (time_s, leak), events);
         let operational = (time_s, p15_pa);
-        self.advance(AlarmName::OperationalLimit, &settings.operational_limit, operational, &mut events);
+        self.advance(AlarmName::OperationalLimit, &settings.operational_limit, operational, events);
         let maintenance = (time_s, filling);
-        self.advance(AlarmName::MaintenanceLimit, &settings.maintenance_limit, maintenance, &mut events);
-        self.advance(AlarmName::SensorFault, &settings.sensor_fault, (time_s, sensor_fault), &mut events);
-        self.advance(AlarmName::Unknown, &settings.unknown, (time_s, unknown), &mut events);
-        self.advance(AlarmName::ColdNight, &settings.cold_night, (time_s, cold_pressure_pa), &mut events);
-        (self, events)
+        self.advance(AlarmName::MaintenanceLimit, &settings.maintenance_limit, maintenance, events);
+        self.advance(AlarmName::SensorFault, &settings.sensor_fault, (time_s, sensor_fault), events);
+        self.advance(AlarmName::Unknown, &settings.unknown, (time_s, unknown), events);
+        self.advance(AlarmName::ColdNight, &settings.cold_night, (time_s, cold_pressure_pa), events);
     }
 
     /// Somebody has seen and dealt with all there is: acknowledges, confirms, and resets what has returned to normal.
     pub fn acknowledge_all(
-        mut self,
+        &mut self,
         settings: &AlarmSettings,
         time_s: f64,
         comment: &str,
-    ) -> (Self, Vec<AlarmEvent>) {
+    ) -> Vec<AlarmEvent> {
         let mut events = Vec::new();
         for name in AlarmName::ALL {
             let confirming = settings.is_confirming(name);
@@ -166,10 +163,10 @@ impl AlarmPanel {
                 // What cannot be done now needs not be done, or waits for the return to normal.
                 let Ok((condition, transition)) = outcome else { continue };
                 self.conditions[name as usize] = condition;
-                events.push(AlarmEvent::new(name, transition));
+                events.push(AlarmEvent { alarm: name, transition });
             }
         }
-        (self, events)
+        events
     }
 
     fn advance<T: Trigger>(
@@ -182,7 +179,7 @@ impl AlarmPanel {
         let condition = core::mem::take(&mut self.conditions[name as usize]);
         let (condition, transitions) = alarm.step(condition, time_s, signal);
         self.conditions[name as usize] = condition;
-        events.extend(transitions.into_iter().map(|transition| AlarmEvent::new(name, transition)));
+        events.extend(transitions.into_iter().map(|transition| AlarmEvent { alarm: name, transition }));
     }
 }
 

@@ -279,14 +279,12 @@ fn each_input_of_the_panel_raises_its_own_alarm_and_no_other() {
         let mut panel = AlarmPanel::default();
         let mut raised = Vec::new();
         for minute in 0..=120 {
-            let (next, events) = panel.step(&settings, f64::from(minute) * MINUTE_S, &inputs);
-            raised.extend(events);
-            panel = next;
+            panel.step(&settings, f64::from(minute) * MINUTE_S, &inputs, &mut raised);
         }
         assert_eq!(raised.len(), 1, "{name:?}: {raised:?}");
         assert_eq!((raised[0].alarm, raised[0].transition.change), (name, Change::Active));
         let ms = raised[0].transition.time_s * 1e3;
-        assert_eq!(raised[0].id, format!("alarm-{}-active-{ms}", name.as_str()));
+        assert_eq!(raised[0].id(), format!("alarm-{}-active-{ms}", name.as_str()));
         assert_eq!(panel.retained().iter().map(|(name, _)| *name).collect::<Vec<_>>(), [name]);
     }
 }
@@ -297,20 +295,19 @@ fn the_most_severe_alarm_is_shown_first_and_all_are_dealt_with_in_one_go() {
     let mut panel = AlarmPanel::default();
     let bad = AlarmInputs { leak: Some(true), p15_pa: 150e5, filling: 0.75, ..normal() };
     for minute in 0..=120 {
-        panel = panel.step(&settings, f64::from(minute) * MINUTE_S, &bad).0;
+        panel.step(&settings, f64::from(minute) * MINUTE_S, &bad, &mut Vec::new());
     }
     let names: Vec<AlarmName> = panel.retained().into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, [AlarmName::OperationalLimit, AlarmName::Leak, AlarmName::MaintenanceLimit]);
-    let (panel, events) = panel.acknowledge_all(&settings, 7300.0, "fitter is coming");
+    let events = panel.acknowledge_all(&settings, 7300.0, "fitter is coming");
     assert!(events.iter().all(|event| event.transition.change != Change::Reset));
     assert!(panel.retained().iter().all(|(_, condition)| condition.acked && condition.confirmed));
     // Refilled: the latch of the leak is what is left.
-    let mut panel = panel;
     for minute in 130..=300 {
-        panel = panel.step(&settings, f64::from(minute) * MINUTE_S, &normal()).0;
+        panel.step(&settings, f64::from(minute) * MINUTE_S, &normal(), &mut Vec::new());
     }
     assert_eq!(panel.retained().iter().map(|(name, _)| *name).collect::<Vec<_>>(), [AlarmName::Leak]);
-    let (panel, events) = panel.acknowledge_all(&settings, 20_000.0, "valve replaced");
+    let events = panel.acknowledge_all(&settings, 20_000.0, "valve replaced");
     assert_eq!(events.iter().map(|event| event.transition.change).collect::<Vec<_>>(), [Change::Reset]);
     assert!(panel.retained().is_empty());
     assert_eq!(panel.condition(AlarmName::Leak).comment, "valve replaced");

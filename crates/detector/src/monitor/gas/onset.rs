@@ -17,9 +17,9 @@
 //! Source: Bayesian mixture over change points, D. A. Stephens, Appl. Stat. 43 (1994) 159; D. V. Hinkley, Biometrika 56 (1969) 495.
 //!
 //! [`Observer::onsets`]: crate::estimator::observer::Observer::onsets
-use alloc::vec::Vec;
 use core::f64::consts::TAU;
 use cylwatch_estimator::thermal::real::powi;
+use smallvec::SmallVec;
 
 use crate::estimator::observer::{Observer, Onset};
 use crate::evidence::Evidence;
@@ -39,10 +39,13 @@ const DRIFT_PER_S: f64 = 1e-5 / 4.477 / 3600.0;
 /// By how much an onset may be off beside what is known of it, s.
 const ONSET_S: f64 = 600.0;
 
+/// Onsets that the observer keeps, nearly.
+const ONSETS: usize = 32;
+
 /// What is known of a leak, if there is one: a mixture over its onsets. Quantiles are found when they are asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posterior {
-    candidates: Vec<Candidate>,
+    candidates: SmallVec<[Candidate; ONSETS]>,
     /// Time at which it is known, s.
     time_s: f64,
     /// Error of the rate that lasts, kg/s.
@@ -72,13 +75,14 @@ pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) 
         let considered_kg_s = evidence.considered_kg_s(time_s - of.since_s);
         (of.since_s, of.rate_kg_s, libm::hypot(error_sd * of.sd_kg_s, considered_kg_s))
     };
-    Posterior::of(&observer.onsets().map(onset).collect::<Vec<_>>(), time_s, DRIFT_PER_S * mass_kg)
+    let onsets: SmallVec<[_; ONSETS]> = observer.onsets().map(onset).collect();
+    Posterior::of(&onsets, time_s, DRIFT_PER_S * mass_kg)
 }
 
 impl Posterior {
     /// Of onsets, s, with their rates and standard deviations, kg/s, oldest first, and an error of the rate that lasts, kg/s.
     pub(super) fn of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Self> {
-        let mut candidates: Vec<Candidate> = onsets
+        let mut candidates: SmallVec<[Candidate; ONSETS]> = onsets
             .iter()
             .enumerate()
             .map(|(index, &(onset_s, rate, sd))| {
@@ -178,7 +182,7 @@ impl Part {
 
 /// Mixture of normal distributions above zero.
 struct Mixture {
-    parts: Vec<Part>,
+    parts: SmallVec<[Part; ONSETS]>,
 }
 
 impl Mixture {

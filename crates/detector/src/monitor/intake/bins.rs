@@ -3,10 +3,11 @@
 //! Bins lie on a fixed grid of the internal time, `floor(t/step)`, so that rows at the step or slower pass as they are, and where the
 //! log begins changes nothing. A bin is handed out when a row of another one comes; a row at once while the rows before came at the step
 //! or slower.
+use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
-use super::row::Row;
+use super::row::{Readings, Row};
 
 /// Rows in a bin at most; a fuller one is handed out early.
 const ROWS_AT_MOST: usize = 256;
@@ -17,65 +18,70 @@ const SLOW: f64 = 0.9;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bins {
     step_s: f64,
-    filling: Vec<Row>,
+    /// Time and stamp of the last row in it, s; none: it is empty.
+    last_s: Option<(f64, f64)>,
+    rows: usize,
+    /// Readings of its rows, sensor by sensor.
+    readings: Vec<Vec<f64>>,
     /// Time of the last row where it was handed out at once, s.
     passed_s: Option<f64>,
 }
 
 impl Bins {
     /// Bins of a width, s; 0: none.
-    pub(super) fn new(step_s: f64) -> Self {
-        Self { step_s, filling: Vec::new(), passed_s: None }
+    pub(super) fn new(step_s: f64, sensors: usize) -> Self {
+        let room = if step_s > 0.0 { ROWS_AT_MOST } else { 0 };
+        let readings = (0..sensors).map(|_| Vec::with_capacity(room)).collect();
+        Self { step_s, last_s: None, rows: 0, readings, passed_s: None }
     }
 
     /// Take a row: what is complete now is added to `done`.
-    pub(super) fn take(&mut self, row: Row, done: &mut Vec<Row>) {
+    pub(super) fn take(&mut self, row: Row, done: &mut VecDeque<Row>) {
         let bin = |time_s: f64| libm::floor(time_s / self.step_s);
-        let another = self.filling.last().is_some_and(|last| bin(last.time_s) != bin(row.time_s));
-        let alone_s = match &self.filling[..] {
-            [] => self.passed_s,
-            [one] => Some(one.time_s),
+        let another = self.last_s.is_some_and(|(last_s, _)| bin(last_s) != bin(row.time_s));
+        let alone_s = match (self.rows, self.last_s) {
+            (0, _) => self.passed_s,
+            (1, Some((last_s, _))) => Some(last_s),
             _ => None,
         };
-        if another || self.filling.len() == ROWS_AT_MOST {
+        if another || self.rows == ROWS_AT_MOST {
             done.extend(self.close());
         }
         let slow = alone_s.is_some_and(|alone_s| row.time_s - alone_s >= SLOW * self.step_s);
         if slow || self.step_s == 0.0 {
             done.extend(self.close());
             self.passed_s = Some(row.time_s);
-            done.push(row);
+            done.push_back(row);
         } else {
             self.passed_s = None;
-            self.filling.push(row);
+            self.last_s = Some((row.time_s, row.stamp_s));
+            self.rows += 1;
+            self.readings.iter_mut().zip(row.readings).for_each(|(to, reading)| to.push(reading));
         }
     }
 
     /// The bin as it is, if there is anything in it.
     pub(super) fn close(&mut self) -> Option<Row> {
-        let mut rows = core::mem::take(&mut self.filling);
-        let mut one = rows.pop()?;
-        if rows.is_empty() {
-            return Some(one);
-        }
-        let mut values = Vec::with_capacity(rows.len() + 1);
-        for (sensor, reading) in one.readings.iter_mut().enumerate() {
+        let (time_s, stamp_s) = self.last_s.take()?;
+        let alone = core::mem::take(&mut self.rows) == 1;
+        let of_sensor = |values: &mut Vec<f64>| {
+            let reading = if alone { values[0] } else { middle(values) };
             values.clear();
-            let others = rows.iter().map(|row| row.readings[sensor]);
-            values.extend(others.chain([*reading]).filter(|value| !value.is_nan()));
-            *reading = middle(&mut values);
-        }
-        Some(one)
+            reading
+        };
+        let readings: Readings = self.readings.iter_mut().map(of_sensor).collect();
+        Some(Row { time_s, stamp_s, readings })
     }
 
     /// Rows in the bin.
     pub(super) fn held(&self) -> usize {
-        self.filling.len()
+        self.rows
     }
 }
 
-/// Median, the mean of the two in the middle of an even number; infinite ones count only where there are no others. NaN of none.
+/// Median, the mean of the two in the middle of an even number; NaN counts for nothing, and infinite ones only where there are no others. NaN of none.
 fn middle(values: &mut Vec<f64>) -> f64 {
+    values.retain(|value| !value.is_nan());
     if values.iter().any(|value| value.is_finite()) {
         values.retain(|value| value.is_finite());
     }

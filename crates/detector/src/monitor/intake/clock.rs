@@ -3,17 +3,20 @@
 //! Rows off the axis wait in a run, in order among themselves. A run that grows long enough is believed; one that a row on the axis
 //! cuts short is not. When the clock has jumped, `offset += jump` with
 //! `jump = (first stamp of the run - offset) - (latest time + usual interval)`.
-use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
-use super::row::{Row, United};
+use super::row::{Readings, Row, United};
 
 /// A row whose time is not believed yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stray {
     pub stamp_s: f64,
-    pub readings: Vec<f64>,
+    pub readings: Readings,
 }
+
+/// Rows that may confirm each other: three are enough.
+pub(super) type Run = SmallVec<[Stray; 3]>;
 
 /// Where a stamp lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,12 +37,12 @@ pub(super) struct Guard {
     /// Latest internal time that was believed, s; minus infinity before the first row.
     pub latest_s: f64,
     /// Sorted, of distinct stamps.
-    run: Vec<Stray>,
+    run: Run,
 }
 
 impl Default for Guard {
     fn default() -> Self {
-        Self { offset_s: 0.0, latest_s: f64::NEG_INFINITY, run: Vec::new() }
+        Self { offset_s: 0.0, latest_s: f64::NEG_INFINITY, run: Run::new() }
     }
 }
 
@@ -108,7 +111,7 @@ impl Guard {
     }
 
     /// The run; there is none afterwards.
-    pub(super) fn take_run(&mut self) -> Vec<Stray> {
+    pub(super) fn take_run(&mut self) -> Run {
         core::mem::take(&mut self.run)
     }
 

@@ -23,7 +23,7 @@ const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
 const PRIME: u64 = 0x0000_0100_0000_01b3;
 
 /// Rows that were taken, and times without any.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Memory {
     /// The youngest one last.
     generations: VecDeque<Generation>,
@@ -39,14 +39,28 @@ struct Gap {
     to_s: f64,
 }
 
+impl Default for Memory {
+    fn default() -> Self {
+        Self {
+            generations: VecDeque::with_capacity(GENERATIONS),
+            rows: 0,
+            gaps: VecDeque::with_capacity(GAPS),
+        }
+    }
+}
+
 impl Memory {
     /// Remember a row.
     pub(super) fn keep(&mut self, hash: u64) {
         if self.generations.is_empty() || self.rows == ROWS {
-            if self.generations.len() == GENERATIONS {
-                self.generations.pop_front();
+            let mut youngest = Generation::default();
+            if self.generations.len() == GENERATIONS
+                && let Some(oldest) = self.generations.pop_front()
+            {
+                youngest = oldest;
+                youngest.clear();
             }
-            self.generations.push_back(Generation::default());
+            self.generations.push_back(youngest);
             self.rows = 0;
         }
         self.rows += 1;

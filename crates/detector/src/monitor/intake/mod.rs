@@ -29,7 +29,7 @@ use self::interval::UsualInterval;
 use self::memory::Memory;
 use self::order::{Inserted, Order};
 use self::row::United;
-pub use self::row::{Counts, Row, Taken};
+pub use self::row::{Counts, Readings, Row, Taken};
 pub use self::settings::IntakeSettings;
 use super::{Event, EventKind};
 use crate::DetectorError;
@@ -71,7 +71,7 @@ impl Intake {
             order: Order::default(),
             usual: UsualInterval::default(),
             memory: Memory::default(),
-            bins: Bins::new(settings.step_s),
+            bins: Bins::new(settings.step_s, sensors),
             counts: Counts::default(),
             astray: 0,
         })
@@ -82,7 +82,9 @@ impl Intake {
     /// # Errors
     /// The row has another number of readings; all is then as it was.
     pub fn take(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Taken, DetectorError> {
-        self.take_as(stamp_s, readings, false)
+        let mut taken = Taken::default();
+        self.take_into(stamp_s, readings, false, &mut taken)?;
+        Ok(taken)
     }
 
     /// The same of a row that is known to be replayed from a store: it never moves the clock, and is used within the lateness.
@@ -90,54 +92,67 @@ impl Intake {
     /// # Errors
     /// As [`Intake::take`].
     pub fn take_historical(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Taken, DetectorError> {
-        self.take_as(stamp_s, readings, true)
+        let mut taken = Taken::default();
+        self.take_into(stamp_s, readings, true, &mut taken)?;
+        Ok(taken)
     }
 
-    fn take_as(&mut self, stamp_s: f64, readings: &[f64], historical: bool) -> Result<Taken, DetectorError> {
+    /// The same of a row that may be replayed, added to what was taken before.
+    pub(super) fn take_into(
+        &mut self,
+        stamp_s: f64,
+        readings: &[f64],
+        historical: bool,
+        taken: &mut Taken,
+    ) -> Result<(), DetectorError> {
         if readings.len() != self.sensors {
             return Err(DetectorError::RowLength { expected: self.sensors, found: readings.len() });
         }
-        let mut taken = Taken::default();
         self.counts.rows += 1;
         if stamp_s.is_nan() || stamp_s.abs() > STAMP_LARGEST_S {
             self.counts.wild += 1;
             self.astray = self.astray.saturating_add(1);
-            return Ok(taken);
+            return Ok(());
         }
-        let stray = Stray { stamp_s, readings: readings.to_vec() };
+        let stray = Stray { stamp_s, readings: Readings::from_slice(readings) };
         let place = self.guard.place(stamp_s, self.settings.lateness_s, self.reach_s());
         match place {
             Place::On => {
-                self.accept(stray, &mut taken);
-                self.look_again(&mut taken);
+                self.accept(stray, taken);
+                self.look_again(taken);
             }
             // Bit for bit what was handed out already.
             Place::Behind if self.memory.knows(memory::hash(&stray)) => self.counts.duplicates += 1,
             // It says that it comes from a store, or it belongs where rows were missing.
             Place::Behind if historical || self.memory.is_in_gap(stamp_s - self.guard.offset_s) => {
                 self.astray = self.astray.saturating_add(1);
-                self.too_late(stamp_s, &mut taken);
+                self.too_late(stamp_s, taken);
             }
-            Place::Behind | Place::Ahead => self.stray(stray, place, &mut taken),
+            Place::Behind | Place::Ahead => self.stray(stray, place, taken),
         }
-        Ok(taken)
+        Ok(())
     }
 
     /// Hand out what is held back: the rows have come to their end.
     pub fn flush(&mut self) -> Taken {
         let mut taken = Taken::default();
+        self.flush_into(&mut taken);
+        taken
+    }
+
+    /// The same, added to what was taken before.
+    pub(super) fn flush_into(&mut self, taken: &mut Taken) {
         let run = self.guard.take_run();
         let gap = run.first().is_some_and(|first| self.is_gap(first.stamp_s));
         for stray in run {
             if gap {
-                self.accept(stray, &mut taken);
+                self.accept(stray, taken);
             } else {
-                self.give_up(&stray, &mut taken);
+                self.give_up(&stray, taken);
             }
         }
-        self.release(f64::INFINITY, &mut taken);
+        self.release(f64::INFINITY, taken);
         taken.rows.extend(self.bins.close());
-        taken
     }
 
     /// What has become of the rows so far.

@@ -1,8 +1,13 @@
 //! What comes out of the intake.
+use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::super::Event;
+
+/// Readings of a row, one per sensor, SI, NaN where missing; up to eight of them lie in the row itself.
+pub type Readings = SmallVec<[f64; 8]>;
 
 /// A row in its place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -12,7 +17,7 @@ pub struct Row {
     /// Time as it was stamped, s.
     pub stamp_s: f64,
     /// Readings, SI, NaN where missing. A second row of one time has only what the first had not.
-    pub readings: Vec<f64>,
+    pub readings: Readings,
 }
 
 impl Row {
@@ -42,10 +47,10 @@ pub(super) enum United {
 }
 
 /// What a step of the intake hands out.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Taken {
     /// Rows in order of time.
-    pub rows: Vec<Row>,
+    pub rows: VecDeque<Row>,
     /// Gaps, jumps of the clock, rows that were too late.
     pub events: Vec<Event>,
 }

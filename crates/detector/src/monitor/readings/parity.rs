@@ -260,12 +260,12 @@ impl Parity {
     }
 
     /// Median over the last windows less that over so many before them.
-    fn change_k(&self, against: usize, of: impl Fn(&Calm) -> f64) -> f64 {
-        self.latest_k(&of) - median(self.calm.iter().rev().skip(LATEST).take(against).map(of))
+    fn change_k(&self, against: usize, of: impl Fn(&Calm) -> f64 + Copy) -> f64 {
+        self.latest_k(of) - median(self.calm.iter().rev().skip(LATEST).take(against).map(of))
     }
 
     /// Median over the last windows.
-    fn latest_k(&self, of: impl Fn(&Calm) -> f64) -> f64 {
+    fn latest_k(&self, of: impl Fn(&Calm) -> f64 + Copy) -> f64 {
         median(self.calm.iter().rev().take(LATEST).map(of))
     }
 

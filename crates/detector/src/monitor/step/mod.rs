@@ -76,8 +76,39 @@ pub struct Monitor {
     state: Box<State>,
     /// Of the present row.
     usable: Vec<f64>,
+    /// What the last row said, and memory for what the next one says.
+    said: Box<Said>,
     /// The observer before the present row.
     before: Option<Snapshot>,
+}
+
+/// Output of a row, in memory that the next one uses again.
+#[derive(Debug, Default)]
+struct Said {
+    output: Option<Output>,
+    health: Vec<Health>,
+    events: Vec<Event>,
+    alarms: Vec<AlarmEvent>,
+}
+
+/// Events and alarms of a row for which there is room from the first row on.
+const EVENTS: usize = 16;
+const ALARMS: usize = 12;
+
+impl Said {
+    fn with_room() -> Self {
+        let (events, alarms) = (Vec::with_capacity(EVENTS), Vec::with_capacity(ALARMS));
+        Self { events, alarms, ..Self::default() }
+    }
+
+    /// The row before is over: its memory is free.
+    fn begin(&mut self) {
+        if let Some(last) = self.output.take() {
+            (self.health, self.events, self.alarms) = (last.health, last.events, last.alarms);
+        }
+        self.events.clear();
+        self.alarms.clear();
+    }
 }
 
 /// All that a row changes, but for the observers.
@@ -104,8 +135,8 @@ struct State {
     evidence: Evidence,
     /// Until the next look.
     lost_across: Option<LostUnheard>,
-    /// Events that wait for a row.
-    waiting: Vec<Event>,
+    /// Rows that wait to be told of, and events that wait for a row.
+    ready: Taken,
     panel: AlarmPanel,
     verdict: Verdict,
     start_s: Option<f64>,
@@ -219,7 +250,7 @@ impl Monitor {
             leak: LeakState::default(),
             evidence: Evidence::new(&settings.observer),
             lost_across: None,
-            waiting: Vec::new(),
+            ready: Taken::default(),
             panel: AlarmPanel::default(),
             verdict: Verdict::Unknown(Reason::Learning),
             start_s: None,
@@ -250,6 +281,7 @@ impl Monitor {
             observer: Box::new(observer),
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
+            said: Box::new(Said::with_room()),
             before: None,
             settings: settings.clone(),
             vessel: vessel.clone(),
@@ -314,41 +346,81 @@ impl Monitor {
         sealed::encode(Kind::State, &saved, &self.fingerprint)
     }
 
-    /// Take in a row with its stamp, s, and one reading per sensor, SI, NaN where missing: an output for each row that is ready now.
+    /// Take in a row with its stamp, s, and one reading per sensor, SI, NaN where missing. What it makes ready [`next_output`](Self::next_output) gives.
     ///
     /// # Errors
-    /// The row has another length; all is then as it was. Or the filling fits no state of the fluid.
-    pub fn step(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Vec<Output>, DetectorError> {
-        let taken = self.state.intake.take(stamp_s, readings)?;
-        self.process_all(taken)
+    /// The row has another length; all is then as it was.
+    pub fn take(&mut self, stamp_s: f64, readings: &[f64]) -> Result<(), DetectorError> {
+        let State { intake, ready, .. } = &mut *self.state;
+        intake.take_into(stamp_s, readings, false, ready)
     }
 
     /// The same of a row that says that it is replayed from a store: it never moves the clock.
     ///
     /// # Errors
-    /// As [`Monitor::step`].
-    pub fn step_historical(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Vec<Output>, DetectorError> {
-        let taken = self.state.intake.take_historical(stamp_s, readings)?;
-        self.process_all(taken)
+    /// As [`Monitor::take`].
+    pub fn take_historical(&mut self, stamp_s: f64, readings: &[f64]) -> Result<(), DetectorError> {
+        let State { intake, ready, .. } = &mut *self.state;
+        intake.take_into(stamp_s, readings, true, ready)
     }
 
-    /// The rows have come to their end: what was held back.
+    /// The rows have come to their end: what was held back is ready.
+    pub fn flush(&mut self) {
+        let State { intake, ready, .. } = &mut *self.state;
+        intake.flush_into(ready);
+    }
+
+    /// What is said of the next row that is ready; `None`: no other one is. Several rows may be ready at once, or none. It needs no memory that it has not
+    /// had since the monitor was made.
     ///
     /// # Errors
-    /// As [`Monitor::step`].
+    /// The filling fits no state of the fluid.
+    pub fn next_output(&mut self) -> Result<Option<&Output>, DetectorError> {
+        let Some(row) = self.state.ready.rows.pop_front() else { return Ok(None) };
+        self.said.begin();
+        let mut events = core::mem::take(&mut self.said.events);
+        // What happened without a row that could tell it comes with this one.
+        events.append(&mut self.state.ready.events);
+        let estimate = self.process(&row, &mut events)?;
+        self.say(&row, estimate, events)?;
+        Ok(self.said.output.as_ref())
+    }
+
+    /// [Take](Self::take) a row: the outputs of all that are ready.
+    ///
+    /// # Errors
+    /// As [`Monitor::take`] and [`Monitor::next_output`].
+    pub fn step(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Vec<Output>, DetectorError> {
+        self.take(stamp_s, readings)?;
+        self.outputs()
+    }
+
+    /// [Flush](Self::flush): the outputs of all that are ready.
+    ///
+    /// # Errors
+    /// As [`Monitor::next_output`].
     pub fn finish(&mut self) -> Result<Vec<Output>, DetectorError> {
-        let taken = self.state.intake.flush();
-        self.process_all(taken)
+        self.flush();
+        self.outputs()
+    }
+
+    /// The outputs of all rows that are ready.
+    ///
+    /// # Errors
+    /// As [`Monitor::next_output`].
+    pub fn outputs(&mut self) -> Result<Vec<Output>, DetectorError> {
+        let mut outputs = Vec::with_capacity(self.state.ready.rows.len());
+        while let Some(output) = self.next_output()? {
+            outputs.push(output.clone());
+        }
+        Ok(outputs)
     }
 
     /// Somebody has seen the alarms, looked after the sensors and knows the filling.
     pub fn acknowledge(&mut self, comment: &str) -> Vec<AlarmEvent> {
         self.state.filling.settle();
         self.state.watches.iter_mut().for_each(SensorWatch::repaired);
-        let panel = core::mem::take(&mut self.state.panel);
-        let (panel, events) = panel.acknowledge_all(&self.settings.alarms, self.state.last_s, comment);
-        self.state.panel = panel;
-        events
+        self.state.panel.acknowledge_all(&self.settings.alarms, self.state.last_s, comment)
     }
 
     /// The alarms.
@@ -371,40 +443,29 @@ impl Monitor {
         &self.state.intake
     }
 
-    fn process_all(&mut self, taken: Taken) -> Result<Vec<Output>, DetectorError> {
-        let mut outputs = Vec::with_capacity(taken.rows.len());
-        let mut events = core::mem::take(&mut self.state.waiting);
-        events.extend(taken.events);
-        for row in &taken.rows {
-            outputs.push(self.process(row, core::mem::take(&mut events))?);
-        }
-        // What happened without a row that could tell it comes with the next one.
-        self.state.waiting = events;
-        Ok(outputs)
-    }
-
-    fn process(&mut self, row: &Row, mut events: Vec<Event>) -> Result<Output, DetectorError> {
+    /// The estimate of a row with the leak rate of the member that holds the mass, kg/s.
+    fn process(&mut self, row: &Row, events: &mut Vec<Event>) -> Result<(Estimate, f64), DetectorError> {
         let time_s = row.time_s;
         let silent_s = time_s - self.state.last_s;
-        self.judge_wiring(time_s, &mut events)?;
+        self.judge_wiring(time_s, events)?;
         self.screen(row);
         self.read_wiring(row);
-        self.watch_thermometers(time_s, &mut events);
+        self.watch_thermometers(time_s, events);
         self.place();
         self.observer.doubt_surroundings(self.state.jumps.excess());
         if silent_s.is_finite() && silent_s > self.settings.gap_s {
             self.state.look = (time_s + LOOK_S, Reason::Gap);
         }
-        self.check_filling(time_s, &mut events)?;
-        let estimate = self.observe(time_s, silent_s, &mut events)?;
-        let estimate = self.watch_bounds(estimate, &mut events)?;
+        self.check_filling(time_s, events)?;
+        let estimate = self.observe(time_s, silent_s, events)?;
+        let estimate = self.watch_bounds(estimate, events)?;
         self.observer.round();
         if self.state.examined.is_some() {
             self.observer.with(&mut self.shadow, Observer::round);
         }
         self.mark_outcomes(time_s);
         self.keep_undisturbed(time_s);
-        self.notice_gain(time_s, &mut events);
+        self.notice_gain(time_s, events);
         self.step_twin(time_s)?;
         if estimate.quality == Quality::Restarted {
             events.push(Event::new(time_s, time_s, EventKind::Restarted));
@@ -416,9 +477,9 @@ impl Monitor {
         self.state.last_s = time_s;
         // The member that holds the mass; the first one where there is no other.
         let held_kg_s = self.observer.leaks().take(2).last().map_or(0.0, |leak| leak.rate_kg_s);
-        self.judge_leak(&estimate, &mut events)?;
-        self.tell_health(time_s, &mut events);
-        self.output(row, estimate, held_kg_s, events)
+        self.judge_leak(&estimate, events)?;
+        self.tell_health(time_s, events);
+        Ok((estimate, held_kg_s))
     }
 
     fn judge_leak(&mut self, estimate: &Estimate, events: &mut Vec<Event>) -> Result<(), DetectorError> {

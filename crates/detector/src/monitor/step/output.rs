@@ -15,13 +15,13 @@ use crate::units::DAY_S;
 use alloc::vec::Vec;
 
 impl Monitor {
-    pub(super) fn output(
+    /// Say what there is to say of a row, with the leak rate of the member that holds the mass, kg/s.
+    pub(super) fn say(
         &mut self,
         row: &Row,
-        mut estimate: Estimate,
-        held_kg_s: f64,
+        (mut estimate, held_kg_s): (Estimate, f64),
         mut events: Vec<Event>,
-    ) -> Result<Output, DetectorError> {
+    ) -> Result<(), DetectorError> {
         let time_s = row.time_s;
         let leak = self.state.leak.found().copied();
         let largest_kg_s = self.state.leak.largest_per_s() * self.filled_kg.0;
@@ -65,23 +65,25 @@ impl Monitor {
             self.state.outlook = Some(self.limits.outlook(&self.settings, &basis)?);
         }
         let decision = decide(&Known { reaction: self.due_reaction(), ..known });
-        let mut output = Output {
+        let leak_rate_kg_s = self.leak_rate(time_s, leak.as_ref(), held_kg_s, flow.as_ref());
+        let (mut health, alarms) =
+            (core::mem::take(&mut self.said.health), core::mem::take(&mut self.said.alarms));
+        health.clone_from(&self.state.health);
+        let output = self.said.output.insert(Output {
             stamp_s: row.stamp_s,
             estimate,
             decision,
             leak,
-            leak_rate_kg_s: self.leak_rate(time_s, leak.as_ref(), held_kg_s, flow.as_ref()),
+            leak_rate_kg_s,
             cold_pressure_pa,
-            health: self.state.health.clone(),
+            health,
             outlook: self.state.outlook,
             events,
-            alarms: Vec::new(),
-        };
-        let inputs = AlarmInputs::of(&output, self.full_pa);
-        let panel = core::mem::take(&mut self.state.panel);
-        let (panel, alarms) = panel.step(&self.settings.alarms, time_s, &inputs);
-        (self.state.panel, output.alarms) = (panel, alarms);
-        Ok(output)
+            alarms,
+        });
+        let inputs = AlarmInputs::of(output, self.full_pa);
+        self.state.panel.step(&self.settings.alarms, time_s, &inputs, &mut output.alarms);
+        Ok(())
     }
 
     /// Leak rate, kg/s: what the onsets say, and where they say nothing yet, gas was just exchanged or the flow is certainly

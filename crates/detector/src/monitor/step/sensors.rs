@@ -134,8 +134,8 @@ impl Monitor {
             return Ok(());
         };
         let usable = self.roles.thermometers.iter().map(|sensor| self.usable[*sensor]);
-        let usable: Vec<f64> = usable.filter(|reading| reading.is_finite()).collect();
-        let mean_k = usable.iter().sum::<f64>() / usable.len() as f64;
+        let usable = usable.filter(|reading| reading.is_finite());
+        let mean_k = usable.clone().sum::<f64>() / usable.count() as f64;
         // No number where a reading is none or stands for no state of the gas.
         let stands_for = Commissioning::filled(self.usable[pressure], mean_k);
         let mass_kg = stands_for.mass_kg(&self.vessel, mean_k).unwrap_or(f64::NAN);

@@ -92,7 +92,8 @@ struct Monitored {
 impl CandidateRun for Monitored {
     fn step(&mut self, row: &Row<'_>, statements: &mut Vec<Statement>) -> Result<(), JudgeError> {
         let outputs = if row.historical {
-            self.monitor.step_historical(row.stamp_s, row.readings)?
+            self.monitor.take_historical(row.stamp_s, row.readings)?;
+            self.monitor.outputs()?
         } else {
             self.monitor.step(row.stamp_s, row.readings)?
         };

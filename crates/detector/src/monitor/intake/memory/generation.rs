@@ -17,6 +17,11 @@ impl Generation {
         }
     }
 
+    /// Nothing any more; the memory stays.
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
     pub(super) fn contains(&self, fingerprint: u16) -> bool {
         self.0.binary_search(&fingerprint).is_ok()
     }
