@@ -90,7 +90,7 @@ impl Plant for Tank {
 pub(crate) fn bank(tank: &mut Tank, engine: &BankEngine) -> Bank<Tank> {
     let prior = DMatrix::from_fn(5, 5, |i, j| if i == j { SD[i] * SD[i] } else { 0.0 });
     let members = vec![(0.0, prior.clone()), (1.0, prior)];
-    let mut bank = Bank::new(tank, engine, &MEAN, members).expect("a covariance");
+    let mut bank = Bank::new(tank, engine, &MEAN, &members).expect("a covariance");
     bank.set(0, 3, 0.0, 0.0);
     bank
 }

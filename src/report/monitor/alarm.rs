@@ -96,7 +96,10 @@ mod tests {
         let (mut panel, mut first, mut end) = (AlarmPanel::default(), Vec::new(), Vec::new());
         panel.step(&settings, 60.0, &leak(true), &mut first);
         let name = panel.retained()[0].0;
-        assert_eq!(standing(name, panel.condition(name), &clock), "leak: active since t = 60 s, not acknowledged");
+        assert_eq!(
+            standing(name, panel.condition(name), &clock),
+            "leak: active since t = 60 s, not acknowledged"
+        );
         panel.acknowledge_all(&settings, 70.0, "seen by A");
         assert!(standing(name, panel.condition(name), &clock).ends_with(", acknowledged"));
         for minute in 0..=60 {

@@ -16,7 +16,7 @@ use super::ud::UdFactors;
 use crate::EstimatorError;
 use crate::numbers;
 pub use engine::BankEngine;
-use member::Member;
+use member::Members;
 pub(crate) use outline::Outline;
 use pack::Pack;
 use single::Single;
@@ -41,7 +41,7 @@ const SLOW_WALK_S: f64 = 3600.0;
     deserialize = "P::Hypothesis: serde::de::DeserializeOwned"
 ))]
 pub struct Bank<P: Plant> {
-    pub(crate) members: Vec<Member<P::Hypothesis>>,
+    pub(crate) members: Members<P::Hypothesis>,
     covariances: Covariances<P>,
     /// Time since slow walks were added, s.
     slow_s: f64,
@@ -58,7 +58,7 @@ enum Covariances<P: Plant> {
 
 impl<P: Plant> Default for Bank<P> {
     fn default() -> Self {
-        Self { members: Vec::new(), covariances: Covariances::Packs(Vec::new()), slow_s: 0.0 }
+        Self { members: Members::default(), covariances: Covariances::Packs(Vec::new()), slow_s: 0.0 }
     }
 }
 
@@ -77,7 +77,7 @@ impl<P: Plant> Covariances<P> {
 }
 
 impl<P: Plant> Bank<P> {
-    /// Members that start at one mean (n), each with its hypothesis and covariance (n, n).
+    /// Members that begin at one mean (n), each with its hypothesis and covariance (n, n).
     ///
     /// # Errors
     /// A covariance is none.
@@ -85,33 +85,79 @@ impl<P: Plant> Bank<P> {
         plant: &mut P,
         engine: &BankEngine,
         mean: &[f64],
-        members: Vec<(P::Hypothesis, DMatrix<f64>)>,
+        members: &[(P::Hypothesis, DMatrix<f64>)],
     ) -> Result<Self, EstimatorError> {
-        let factors: Vec<_> = members
-            .iter()
-            .map(|(_, covariance)| UdFactors::from_covariance(covariance))
-            .collect::<Result<_, _>>()?;
+        let mut bank =
+            Self::with_room(plant, engine, members.iter().map(|(hypothesis, _)| hypothesis.clone()));
+        let write = |index: usize, _: &P::Hypothesis, p: &mut DMatrix<f64>| p.copy_from(&members[index].1);
+        bank.begin(plant, engine, mean, &mut UdFactors::zeros(mean.len()), write)?;
+        Ok(bank)
+    }
+
+    /// Memory for members with these hypotheses, which have not begun.
+    pub(crate) fn with_room(
+        plant: &P,
+        engine: &BankEngine,
+        hypotheses: impl Iterator<Item = P::Hypothesis>,
+    ) -> Self {
+        let members = Members::new(hypotheses, plant.states(), plant.outputs());
         let covariances = if *engine == BankEngine::Extended {
-            Covariances::Packs(factors.chunks(Pack::SIZE).map(|some| Pack::new(plant, some)).collect())
+            let left = |pack: usize| (members.room() - pack * Pack::SIZE).min(Pack::SIZE);
+            let packs = 0..members.room().div_ceil(Pack::SIZE);
+            Covariances::Packs(packs.map(|pack| Pack::new(plant, left(pack))).collect())
         } else {
-            let one = |((hypothesis, _), p): (&(P::Hypothesis, _), UdFactors)| {
-                plant.suppose(hypothesis);
-                Single::new(engine, plant, p)
-            };
-            Covariances::Singles(members.iter().zip(factors).map(one).collect::<Result<_, _>>()?)
+            Covariances::Singles(Vec::new())
         };
-        let outputs = plant.outputs();
-        let members =
-            members.into_iter().map(|(hypothesis, _)| Member::new(hypothesis, mean, outputs)).collect();
-        Ok(Self { members, covariances, slow_s: 0.0 })
+        Self { members, covariances, slow_s: 0.0 }
+    }
+
+    /// Let all members begin, or begin again, at one mean (n), each with the covariance (n, n) that `write` makes for its hypothesis. Members in packs do so without allocating, with
+    /// `factors` as memory.
+    ///
+    /// # Errors
+    /// A covariance is none.
+    pub(crate) fn begin(
+        &mut self,
+        plant: &mut P,
+        engine: &BankEngine,
+        mean: &[f64],
+        factors: &mut UdFactors,
+        write: impl Fn(usize, &P::Hypothesis, &mut DMatrix<f64>),
+    ) -> Result<(), EstimatorError> {
+        if let Covariances::Singles(all) = &mut self.covariances {
+            all.clear();
+        }
+        for (index, member) in self.members.begin().iter_mut().enumerate() {
+            factors.factorise(|p| write(index, &member.hypothesis, p))?;
+            member.begin(mean);
+            match &mut self.covariances {
+                Covariances::Packs(packs) => {
+                    let (pack, lane) = place(index);
+                    packs[pack].begin(lane, factors);
+                }
+                Covariances::Singles(all) => {
+                    plant.suppose(&member.hypothesis);
+                    all.push(Single::new(engine, plant, factors.clone())?);
+                }
+            }
+        }
+        self.slow_s = 0.0;
+        Ok(())
+    }
+
+    /// There are no members until it begins again.
+    pub(crate) fn forget(&mut self) {
+        self.members.forget();
+        self.slow_s = 0.0;
     }
 
     /// Become as another bank is, without allocating where that has the same members.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        let alike = self.members.len() == other.members.len();
+        // Before the first sample one that was saved has no members, and what it has of covariances says nothing.
+        let alike = self.members.room() == other.members.room() || other.members.is_empty();
         match (&mut self.covariances, &other.covariances) {
             (Covariances::Packs(packs), Covariances::Packs(others)) if alike => {
-                self.members.iter_mut().zip(&other.members).for_each(|(to, from)| to.copy_from(from));
+                self.members.copy_from(&other.members);
                 packs.iter_mut().zip(others).for_each(|(to, from)| to.copy_from(from));
                 self.slow_s = other.slow_s;
             }
@@ -141,7 +187,7 @@ impl<P: Plant> Bank<P> {
                 }
             }
             Covariances::Singles(all) => {
-                for (single, member) in all.iter_mut().zip(&mut self.members) {
+                for (single, member) in all.iter_mut().zip(self.members.iter_mut()) {
                     single.predict(plant, work, member, dt_s)?;
                 }
             }
@@ -160,7 +206,7 @@ impl<P: Plant> Bank<P> {
             let process = plant.slow_process(state);
             let (factor, variance) = process.over(self.slow_s);
             if factor < 1.0 {
-                for member in &mut self.members {
+                for member in self.members.iter_mut() {
                     member.x[state] = process.rest + factor * (member.x[state] - process.rest);
                     if let Some(record) = &mut member.record {
                         record.relax(state, factor);
@@ -196,7 +242,7 @@ impl<P: Plant> Bank<P> {
             }
         }
         if let Covariances::Singles(all) = &mut self.covariances {
-            all.iter_mut().zip(&mut self.members).for_each(|(one, member)| one.finish(plant, member));
+            all.iter_mut().zip(self.members.iter_mut()).for_each(|(one, member)| one.finish(plant, member));
         }
         for (index, member) in self.members.iter_mut().enumerate() {
             let write =
@@ -238,7 +284,7 @@ impl<P: Plant> Bank<P> {
             }
             Covariances::Singles(all) => all
                 .iter_mut()
-                .zip(&mut self.members)
+                .zip(self.members.iter_mut())
                 .try_for_each(|(one, member)| one.update(plant, work, member, reading)),
         }
     }
@@ -304,6 +350,13 @@ impl<P: Plant> Bank<P> {
         }
     }
 
+    /// Make room for the last step of a member, which is recorded from then on.
+    pub(crate) fn record_steps(&mut self, index: usize, plant: &P) {
+        if let Some(member) = self.members.room_mut(index) {
+            member.recorded(plant.leading());
+        }
+    }
+
     /// Shift a state of every member.
     pub(crate) fn shift(&mut self, state: usize, by: f64) {
         self.members.iter_mut().for_each(|member| member.x[state] += by);
@@ -358,6 +411,10 @@ impl<P: Plant> Bank<P> {
 
     /// Whether it has members with these hypotheses, and so many states and outputs.
     pub(crate) fn is_like(&self, hypotheses: &[P::Hypothesis], states: usize, outputs: usize) -> bool {
+        if self.members.is_empty() {
+            // Before the first sample there are none.
+            return true;
+        }
         let members = self.members.iter().zip(hypotheses).all(|(member, hypothesis)| {
             member.hypothesis == *hypothesis && member.x.len() == states && member.has_outputs(outputs)
         });
@@ -368,8 +425,7 @@ impl<P: Plant> Bank<P> {
             }
             Covariances::Singles(_) => false,
         };
-        // Before the first sample there are none.
-        self.members.is_empty() || (members && packs && self.members.len() == hypotheses.len())
+        members && packs && self.members.len() == hypotheses.len()
     }
 
     /// Mean and variance of a state, member by member.
@@ -419,8 +475,8 @@ impl<P: Plant> Bank<P> {
         let mut copy = record.clone();
         // A sample at the same time has no interval of its own.
         record.begin(0.0);
-        copy.x.as_mut_slice().copy_from_slice(&member.x);
-        self.covariance_into(index, &mut copy.p);
+        copy.x = member.mean();
+        copy.p = self.covariance(index);
         copy
     }
 

@@ -21,9 +21,9 @@ pub struct StepRecord {
     pub variance: DVector<f64>,
     /// Which outputs were used.
     pub used: Vec<bool>,
-    /// State after the update: (n).
+    /// State after the update: (n); none while the step is being taken.
     pub x: DVector<f64>,
-    /// Covariance after the update: (n, n).
+    /// Covariance after the update: (n, n); none while the step is being taken.
     pub p: DMatrix<f64>,
     /// States that were freed of everything known about them, before all readings.
     pub(crate) freed: Vec<usize>,
@@ -52,8 +52,8 @@ impl StepRecord {
             innovation: DVector::zeros(outputs),
             variance: DVector::zeros(outputs),
             used: vec![false; outputs],
-            x: DVector::zeros(n),
-            p: DMatrix::zeros(n, n),
+            x: DVector::zeros(0),
+            p: DMatrix::zeros(0, 0),
             freed: Vec::with_capacity(n),
             freed_by: Vec::with_capacity(n * outputs),
             replaced: false,
@@ -73,8 +73,8 @@ impl StepRecord {
         self.innovation.copy_from(&other.innovation);
         self.variance.copy_from(&other.variance);
         self.used.clone_from(&other.used);
-        self.x.copy_from(&other.x);
-        self.p.copy_from(&other.p);
+        self.x.clone_from(&other.x);
+        self.p.clone_from(&other.p);
         self.freed.clone_from(&other.freed);
         self.freed_by.clone_from(&other.freed_by);
         self.replaced = other.replaced;

@@ -41,11 +41,24 @@ impl UdFactors {
     /// # Errors
     /// `p` is not finite, not symmetric, or not positive semi-definite.
     pub fn from_covariance(p: &DMatrix<f64>) -> Result<Self, EstimatorError> {
-        let mut u = p.clone();
-        let mut d = DVector::zeros(p.nrows());
-        factor_udu(u.as_mut_slice(), d.as_mut_slice())?;
-        let f = d.clone();
-        Ok(Self { u, d, f, work: TimeUpdate::default() })
+        let mut factors = Self::zeros(p.nrows());
+        factors.factorise(|u| u.copy_from(p))?;
+        Ok(factors)
+    }
+
+    /// Memory for factors of `n` states.
+    pub(crate) fn zeros(n: usize) -> Self {
+        let d = DVector::zeros(n);
+        Self { u: DMatrix::zeros(n, n), f: d.clone(), d, work: TimeUpdate::default() }
+    }
+
+    /// Become the factors of the covariance that `write` makes; of a regular one without allocating.
+    ///
+    /// # Errors
+    /// As [`from_covariance`](Self::from_covariance).
+    pub(crate) fn factorise(&mut self, write: impl FnOnce(&mut DMatrix<f64>)) -> Result<(), EstimatorError> {
+        write(&mut self.u);
+        factor_udu(self.u.as_mut_slice(), self.d.as_mut_slice())
     }
 
     /// Make room for a process with `leading` moving states and `noises` noise sources, so that not even the first

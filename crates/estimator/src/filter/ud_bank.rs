@@ -11,7 +11,7 @@ use core::marker::PhantomData;
 
 use crate::filter::simd::{Arch, Simd, WithSimd};
 use nalgebra::DMatrix;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::lanes::{LANES, Lanes};
 use super::ud::UdFactors;
@@ -22,7 +22,7 @@ mod pattern;
 mod tests;
 mod transition;
 
-use factors::Factors;
+pub(crate) use factors::Factors;
 pub use pattern::Pattern;
 pub(crate) use transition::BankTransition;
 
@@ -32,8 +32,8 @@ pub(crate) trait Unrolled {
 }
 
 /// Factors of the covariances of four filters with `n` states.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(into = "Factors", try_from = "Factors")]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "Factors")]
 pub(crate) struct UdBank {
     n: usize,
     /// States that move.

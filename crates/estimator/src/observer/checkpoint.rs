@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Observer;
 use super::clock::Clock;
 use super::cylinder::Cylinder;
-use crate::filter::Outline;
+use crate::filter::{Outline, StateSpace};
 use crate::thermal::reduced::WarmStart;
 
 /// The members of an observer as they were after a sample, rounded, without onsets of leaks.
@@ -22,11 +22,25 @@ pub struct Checkpoint {
 impl Observer {
     /// What to [begin an exchange from](Self::begin_exchange_from) later.
     pub fn checkpoint(&self) -> Checkpoint {
+        let mut checkpoint = self.room_for_checkpoint();
+        self.write_checkpoint(&mut checkpoint);
+        checkpoint
+    }
+
+    /// Memory for [one](Self::write_checkpoint).
+    pub fn room_for_checkpoint(&self) -> Checkpoint {
         Checkpoint {
-            bank: self.bank.outline(self.cylinder.state_map().leak),
+            bank: self.bank.outline(self.cylinder.states()),
             clock: self.clock.clone(),
             warm_start: self.cylinder.warm_start(),
         }
+    }
+
+    /// Write a checkpoint over another one of this observer.
+    pub fn write_checkpoint(&self, checkpoint: &mut Checkpoint) {
+        self.bank.write_outline(self.cylinder.state_map().leak, &mut checkpoint.bank);
+        checkpoint.clock.copy_from(&self.clock);
+        self.cylinder.write_warm_start(&mut checkpoint.warm_start);
     }
 
     /// Back to a checkpoint of this observer, where gas begins to be exchanged: as [`begin_exchange`](Self::begin_exchange).

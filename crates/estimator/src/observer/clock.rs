@@ -75,6 +75,17 @@ impl Clock {
         *self = Self { last_reading_s, loosened, last_reading, screens, ..*other };
     }
 
+    /// Back to before the first sample, without allocating.
+    pub(super) fn forget(&mut self, sensors: &[Sensor]) {
+        let mut now = core::mem::replace(self, Self::new(&[]));
+        now.last_reading_s.fill(f64::NEG_INFINITY);
+        now.loosened.fill(0.0);
+        now.last_reading.fill(f64::NAN);
+        now.screens.iter_mut().zip(sensors).for_each(|(screen, sensor)| *screen = Screen::new(sensor));
+        let Self { last_reading_s, loosened, last_reading, screens, .. } = now;
+        *self = Self { last_reading_s, loosened, last_reading, screens, ..Self::new(&[]) };
+    }
+
     /// The mass of a later time, s, is the reference, and until then there is none.
     pub(super) fn await_reference(&mut self, due_s: f64) {
         self.reference_mass_kg = None;

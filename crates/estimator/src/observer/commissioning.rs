@@ -1,12 +1,12 @@
 //! What is known when the observer starts, and how it starts or starts again.
 use alloc::vec::Vec;
 use cylwatch_thermal::real::powi;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::settings::{LeakHypothesis, ObserverSettings};
 use super::states::{StateKind, States};
-use super::{Bank, Observer, REFERENCE_AFTER_S, SETTLE_S};
+use super::{Observer, REFERENCE_AFTER_S, SETTLE_S};
 use crate::EstimatorError;
 use crate::log::Quantity;
 use crate::sensor::{Sensor, Site};
@@ -75,15 +75,6 @@ impl Commissioning {
     }
 }
 
-/// Mean and covariance of the state before the first sample.
-#[derive(Clone, Debug)]
-struct Prior {
-    /// Mean: (n).
-    pub mean: Vec<f64>,
-    /// Covariance: (n, n); only the temperatures of a settled cylinder are correlated.
-    pub covariance: DMatrix<f64>,
-}
-
 /// How an estimate begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Start {
@@ -93,6 +84,21 @@ enum Start {
     Anywhere,
     /// Once more.
     Again,
+}
+
+/// What the present estimate began from.
+#[derive(Clone, Debug)]
+pub(super) struct BegunFrom {
+    commissioning: Commissioning,
+    start: Start,
+    readings: Vec<f64>,
+}
+
+impl BegunFrom {
+    /// Nothing yet.
+    pub(super) fn new(commissioning: &Commissioning, sensors: usize) -> Self {
+        Self { commissioning: *commissioning, start: Start::Anywhere, readings: vec![f64::NAN; sensors] }
+    }
 }
 
 /// Standard deviations of the temperatures at the start: common to all, and of each by itself, K.
@@ -129,15 +135,15 @@ impl Spread {
     }
 }
 
-/// The prior of the member that supposes nothing of its own, from the first readings (NaN: missing).
-fn prior(
-    states: &States,
-    sensors: &[Sensor],
-    settings: &ObserverSettings,
-    (commissioning, start): (&Commissioning, Start),
+/// Write mean (n) and covariance (n, n) of the member that supposes nothing of its own, before the first readings (NaN: missing) are taken. Only the
+/// temperatures of a settled cylinder are correlated.
+fn write_prior(
+    (states, sensors, settings): (&States, &[Sensor], &ObserverSettings),
+    BegunFrom { commissioning, start, readings }: &BegunFrom,
     vessel: &Vessel,
-    readings: &[f64],
-) -> Result<Prior, EstimatorError> {
+    mean: &mut [f64],
+    covariance: &mut DMatrix<f64>,
+) -> Result<(), EstimatorError> {
     let first = |is_it: fn(&Sensor) -> bool| -> Option<(f64, f64)> {
         let readings = sensors.iter().zip(readings).filter(|(sensor, _)| is_it(sensor));
         mean_and_range(readings.map(|(_, value)| *value).filter(|value| value.is_finite()))
@@ -148,11 +154,10 @@ fn prior(
     let measured = surface.or(gas).or(air);
     let [gas, air] = [gas, air].map(|of| of.map(|(mean_k, _)| mean_k));
     let body_k = measured.map_or(ASSUMED_K, |(mean_k, _)| mean_k);
-    let spread = Spread::of(start, measured.map(|(_, apart_k)| apart_k));
+    let spread = Spread::of(*start, measured.map(|(_, apart_k)| apart_k));
     let mass_kg = commissioning.mass_kg(vessel, gas.unwrap_or(body_k))?;
-    let mut mean = Vec::new();
-    let mut sd = Vec::new();
-    for kind in &states.kinds {
+    covariance.fill(0.0);
+    for (state, kind) in states.kinds.iter().enumerate() {
         let (of_mean, of_sd) = match *kind {
             StateKind::Wall(_) | StateKind::Valve => (body_k, spread.each_k),
             StateKind::Gas => (gas.unwrap_or(body_k), spread.each_k),
@@ -173,19 +178,17 @@ fn prior(
                 (parameter.mean, parameter.sd)
             }
         };
-        mean.push(of_mean);
-        sd.push(of_sd);
+        mean[state] = of_mean;
+        covariance[(state, state)] = of_sd * of_sd;
     }
-    let mut covariance = DMatrix::from_diagonal(&DVector::from_vec(sd).map(|sd| sd * sd));
-    spread.couple(states, &mut covariance);
-    Ok(Prior { mean, covariance })
+    spread.couple(states, covariance);
+    Ok(())
 }
 
 /// Mean and range of values, if there are any.
-fn mean_and_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let values: Vec<f64> = values.collect();
-    let [low, high] = [values.iter().copied().reduce(f64::min)?, values.iter().copied().reduce(f64::max)?];
-    Some((values.iter().sum::<f64>() / values.len() as f64, high - low))
+fn mean_and_range(values: impl Iterator<Item = f64> + Clone) -> Option<(f64, f64)> {
+    let [low, high] = [values.clone().reduce(f64::min)?, values.clone().reduce(f64::max)?];
+    Some((values.clone().sum::<f64>() / values.count() as f64, high - low))
 }
 
 /// What a lagging sensor shows at the start: its own reading, if it has one.
@@ -204,34 +207,38 @@ impl Observer {
             return Ok(());
         }
         self.reset(time_s, readings)?;
-        let without = vec![f64::NAN; readings.len()];
-        self.update(&without)
+        // Those of further sensors count as missing all the same.
+        self.update(&[f64::NAN; 8][..readings.len().min(8)])
     }
 
     /// Every member as the prior has it.
     fn reset(&mut self, time_s: f64, readings: &[f64]) -> Result<(), EstimatorError> {
         // Where the estimate has to begin again, nothing says that the cylinder is settled then.
-        let start = match self.clock.time_s {
+        self.begun_from.start = match self.clock.time_s {
             None if self.commissioning.settled => Start::Settled,
             None => Start::Anywhere,
             Some(_) => Start::Again,
         };
-        let prior = prior(
-            self.cylinder.state_map(),
-            self.cylinder.sensors(),
-            self.cylinder.settings(),
-            (&self.commissioning, start),
-            &self.vessel,
-            readings,
-        )?;
-        let (mut mean, mut covariance) = (prior.mean, prior.covariance);
-        self.prior.clone_from(&covariance);
-        if let Some(learned) = &self.learned {
-            learned.put_into(&self.cylinder.state_map().names, &mut mean, &mut covariance);
+        self.begun_from.commissioning = self.commissioning;
+        self.begun_from.readings.copy_from_slice(readings);
+        let Self { cylinder, vessel, begun_from, mean, prior, learned_prior, .. } = self;
+        let of = (cylinder.state_map(), cylinder.sensors(), cylinder.settings());
+        write_prior(of, begun_from, vessel, mean, prior)?;
+        if let (Some(learned), Some(to)) = (&self.learned, &mut *learned_prior) {
+            to.copy_from(prior);
+            learned.put_into(&cylinder.state_map().names, mean, to);
         }
-        let engine = self.cylinder.bank_engine();
-        let members = self.priors(&covariance);
-        self.bank = Bank::new(&mut self.cylinder, &engine, &mean, members)?;
+        let covariance = learned_prior.as_ref().unwrap_or(prior);
+        let leak = cylinder.state_map().leak;
+        // One covariance, but for the leak rate, of which each member has its own.
+        let of_member = |_: usize, hypothesis: &LeakHypothesis, p: &mut DMatrix<f64>| {
+            p.copy_from(covariance);
+            p.row_mut(leak).fill(0.0);
+            p.column_mut(leak).fill(0.0);
+            p[(leak, leak)] = powi(hypothesis.rate.prior_sd, 2);
+        };
+        let engine = cylinder.bank_engine();
+        self.bank.begin(cylinder, &engine, mean, &mut self.factors, of_member)?;
         self.clock.await_reference(time_s + REFERENCE_AFTER_S);
         self.clock.pulled_until_s = time_s + SETTLE_S;
         for sensor in 0..readings.len() {
@@ -240,17 +247,13 @@ impl Observer {
         Ok(())
     }
 
-    /// Hypothesis and prior of each member: one covariance, but for the leak rate, of which each has its own.
-    fn priors(&self, covariance: &DMatrix<f64>) -> Vec<(LeakHypothesis, DMatrix<f64>)> {
-        let leak = self.cylinder.state_map().leak;
-        let prior = |hypothesis: &LeakHypothesis| {
-            let mut covariance = covariance.clone();
-            covariance.row_mut(leak).fill(0.0);
-            covariance.column_mut(leak).fill(0.0);
-            covariance[(leak, leak)] = powi(hypothesis.rate.prior_sd, 2);
-            (*hypothesis, covariance)
-        };
-        self.cylinder.settings().bank.iter().take(self.roles.members).map(prior).collect()
+    /// The prior covariance that the present estimate began with: (n, n).
+    pub(super) fn prior_of_the_beginning(&self) -> Result<DMatrix<f64>, EstimatorError> {
+        let n = self.cylinder.state_map().count();
+        let (mut mean, mut prior) = (vec![0.0; n], DMatrix::zeros(n, n));
+        let of = (self.cylinder.state_map(), self.cylinder.sensors(), self.cylinder.settings());
+        write_prior(of, &self.begun_from, &self.vessel, &mut mean, &mut prior)?;
+        Ok(prior)
     }
 }
 
@@ -261,7 +264,7 @@ mod tests {
     use crate::thermal::vessel::presets;
     use approx::assert_relative_eq;
 
-    fn prior_of(settled: bool, readings: &[f64]) -> (Prior, States) {
+    fn prior_of(settled: bool, readings: &[f64]) -> ((Vec<f64>, DMatrix<f64>), States) {
         let vessel = presets::load("nitrogen-20l").unwrap();
         let sensors: Vec<Sensor> =
             ["shoulder", "valve", "pressure"].iter().map(|name| Sensor::typical(name).unwrap()).collect();
@@ -269,14 +272,16 @@ mod tests {
         let cylinder = Cylinder::new(&vessel, &sensors, &settings).unwrap();
         let filled = Commissioning::filled(2e7, 288.15);
         let start = if settled { Start::Settled } else { Start::Anywhere };
+        let begun_from = BegunFrom { commissioning: filled, start, readings: readings.to_vec() };
         let states = cylinder.state_map().clone();
-        let prior = prior(&states, &sensors, &settings, (&filled, start), &vessel, readings).unwrap();
-        (prior, states)
+        let (mut mean, mut p) = (vec![0.0; states.count()], DMatrix::zeros(states.count(), states.count()));
+        write_prior((&states, &sensors, &settings), &begun_from, &vessel, &mut mean, &mut p).unwrap();
+        ((mean, p), states)
     }
 
     #[test]
     fn a_settled_cylinder_has_one_temperature_that_is_known_less_well_than_its_differences() {
-        let (Prior { mean, covariance: p }, states) = prior_of(true, &[280.0, 281.0, 2e7]);
+        let ((mean, p), states) = prior_of(true, &[280.0, 281.0, 2e7]);
         let (gas, valve) = (states.gas, states.valve.unwrap());
         assert_eq!((mean[gas], mean[valve], mean[0]), (280.5, 280.5, 280.5));
         // One kelvin together, and 0.2 K each.
@@ -290,13 +295,13 @@ mod tests {
 
     #[test]
     fn a_cylinder_that_is_not_settled_may_have_any_temperatures() {
-        let (Prior { covariance: p, .. }, states) = prior_of(false, &[280.0, 281.0, 2e7]);
+        let ((_, p), states) = prior_of(false, &[280.0, 281.0, 2e7]);
         // Ten kelvins, and one that the thermometers are apart.
         let [wall, gas] = [0, states.gas].map(|state| p[(state, state)]);
         assert_relative_eq!(wall, 101.0, max_relative = 1e-12);
         assert_eq!((gas, p[(0, states.gas)]), (wall, 0.0));
         // Without a thermometer not even the level is known.
-        let (Prior { covariance: p, .. }, _) = prior_of(false, &[f64::NAN, f64::NAN, 2e7]);
+        let ((_, p), _) = prior_of(false, &[f64::NAN, f64::NAN, 2e7]);
         assert_eq!((p[(0, 0)], p[(0, states.gas)]), (500.0, 400.0));
     }
 }

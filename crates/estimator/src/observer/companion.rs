@@ -2,14 +2,14 @@
 //! each other's place. It takes the observer's place for a step, so that three estimates need one model.
 use alloc::vec::Vec;
 use core::mem::swap;
-use nalgebra::DMatrix;
 
 use super::clock::Clock;
+use super::commissioning::BegunFrom;
 use super::cylinder::Cylinder;
 use super::roles::Roles;
 use super::signature::Onsets;
 use super::{Observer, Snapshot};
-use crate::filter::Bank;
+use crate::filter::{Bank, StateSpace};
 use crate::thermal::reduced::WarmStart;
 
 /// An estimate beside that of an [`Observer`], which alone can go on with it.
@@ -18,7 +18,7 @@ pub struct Companion {
     now: Snapshot,
     roles: Roles,
     replaced: Vec<bool>,
-    prior: DMatrix<f64>,
+    begun_from: BegunFrom,
     /// Memory for banks of as many members, where they are not as many as the observer's.
     aside: Option<[Bank<Cylinder>; 2]>,
     memory: WarmStart,
@@ -38,14 +38,17 @@ impl Observer {
         let roles = Roles::of(&bank[..members.min(bank.len())]);
         Companion {
             now: Snapshot {
-                bank: Bank::default(),
-                onsets: Onsets::default(),
+                bank: self.room_for(&roles),
+                onsets: roles
+                    .held
+                    .map_or_else(Onsets::default, |_| Onsets::with_room(self.cylinder.states())),
                 clock: Clock::new(self.cylinder.sensors()),
                 warm_start: self.fresh_start.clone(),
             },
             replaced: vec![false; roles.members],
-            prior: DMatrix::zeros(0, 0),
-            aside: (roles.members != self.roles.members).then(Default::default),
+            begun_from: BegunFrom::new(&self.commissioning, self.cylinder.outputs()),
+            aside: (roles.members != self.roles.members)
+                .then(|| [self.room_between_steps(&roles), self.room_for(&roles)]),
             memory: self.fresh_start.clone(),
             roles,
         }
@@ -60,13 +63,13 @@ impl Observer {
     }
 
     fn change_places(&mut self, companion: &mut Companion) {
-        let Companion { now, roles, replaced, prior, aside, memory } = companion;
+        let Companion { now, roles, replaced, begun_from, aside, memory } = companion;
         swap(&mut self.bank, &mut now.bank);
         swap(&mut self.onsets, &mut now.onsets);
         swap(&mut self.clock, &mut now.clock);
         swap(&mut self.roles, roles);
         swap(&mut self.replaced, replaced);
-        swap(&mut self.prior, prior);
+        swap(&mut self.begun_from, begun_from);
         if let Some([before, likeliest]) = aside {
             swap(&mut self.before, before);
             swap(&mut self.likeliest, likeliest);

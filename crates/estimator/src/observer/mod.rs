@@ -47,7 +47,7 @@ use cylwatch_thermal::real::powi;
 use nalgebra::DMatrix;
 
 use crate::EstimatorError;
-use crate::filter::{Bank, Belief, Moments, StateSpace, Workspace};
+use crate::filter::{Bank, Belief, Moments, StateSpace, UdFactors, Workspace};
 pub use crate::filter::{Innovation, Outcome};
 use crate::sensor::Sensor;
 use crate::thermal::reduced::WarmStart;
@@ -56,6 +56,7 @@ use band::Band;
 pub use band_settings::BandSettings;
 pub use checkpoint::Checkpoint;
 use clock::{Clock, Exchange};
+use commissioning::BegunFrom;
 pub use commissioning::Commissioning;
 pub use companion::Companion;
 use cylinder::Cylinder;
@@ -75,7 +76,7 @@ pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSetti
 pub use signature::Onset;
 use signature::Onsets;
 pub use smoother::Smoother;
-pub use snapshot::Snapshot;
+pub use snapshot::{Snapshot, SnapshotRef};
 
 /// Time after commissioning or an exchange of gas after which the mass counts as the reference, s.
 const REFERENCE_AFTER_S: f64 = 86_400.0;
@@ -100,7 +101,12 @@ pub struct Observer {
     bank: Bank<Cylinder>,
     work: Workspace,
     learned: Option<Learned>,
+    /// What the estimate began with: mean (n), covariance (n, n), and with what has been learnt.
+    mean: Vec<f64>,
     prior: DMatrix<f64>,
+    learned_prior: Option<DMatrix<f64>>,
+    factors: UdFactors,
+    begun_from: BegunFrom,
     /// Leaks by their signature in the innovations of the member that holds the mass, and what is to be compensated.
     onsets: Onsets,
     to_compensate: Vec<f64>,
@@ -143,15 +149,20 @@ impl Observer {
         let settings = &settings;
         let cylinder = Cylinder::new(vessel, sensors, settings)?;
         let gate = settings.gate_sd * settings.gate_sd;
-        Ok(Self {
+        let n = cylinder.states();
+        let mut observer = Self {
             vessel: vessel.clone(),
             commissioning: *commissioning,
             work: Workspace::new(&cylinder),
             band: Band::new(cylinder.state_map(), cylinder.sensors(), settings),
             bank: Bank::default(),
             learned: None,
-            prior: DMatrix::zeros(0, 0),
-            onsets: Onsets::default(),
+            mean: vec![0.0; n],
+            prior: DMatrix::zeros(n, n),
+            learned_prior: None,
+            factors: UdFactors::zeros(n),
+            begun_from: BegunFrom::new(commissioning, sensors.len()),
+            onsets: Onsets::with_room(n),
             to_compensate: Vec::with_capacity(cylinder.states()),
             clock: Clock::new(sensors),
             usable: vec![f64::NAN; sensors.len()],
@@ -160,17 +171,40 @@ impl Observer {
             before: Bank::default(),
             likeliest: Bank::default(),
             fresh_start: cylinder.warm_start(),
-            reference_x: vec![0.0; cylinder.states()],
+            reference_x: vec![0.0; n],
             masses: Vec::with_capacity(settings.bank.len()),
             replaced: vec![false; settings.bank.len()],
             cylinder,
-        })
+        };
+        observer.make_room();
+        Ok(observer)
+    }
+
+    /// Memory for the members of the bank.
+    fn make_room(&mut self) {
+        (self.bank, self.likeliest) = (self.room_for(&self.roles), self.room_for(&self.roles));
+        self.before = self.room_between_steps(&self.roles);
+    }
+
+    /// Memory for a bank that takes no step.
+    fn room_between_steps(&self, roles: &Roles) -> Bank<Cylinder> {
+        let hypotheses = self.cylinder.settings().bank.iter().take(roles.members).copied();
+        Bank::with_room(&self.cylinder, &self.cylinder.bank_engine(), hypotheses)
+    }
+
+    fn room_for(&self, roles: &Roles) -> Bank<Cylinder> {
+        let mut bank = self.room_between_steps(roles);
+        if let Some(held) = roles.held {
+            bank.record_steps(held, &self.cylinder);
+        }
+        bank
     }
 
     /// Without the member whose gas may flow, and without onsets of leaks; before the first sample.
     fn without_flow(mut self) -> Self {
-        (self.roles.flowing, self.roles.held) = (None, None);
         self.cylinder.suppose_no_flow();
+        self.roles = Roles { flowing: None, held: None, ..Roles::of(&self.cylinder.settings().bank) };
+        self.make_room();
         self
     }
 
@@ -183,7 +217,19 @@ impl Observer {
     /// Start with what an observer of the same cylinder has learnt; before the first sample.
     pub fn with_learned(mut self, learned: Learned) -> Self {
         self.learned = Some(learned);
+        self.learned_prior = Some(self.prior.clone());
         self
+    }
+
+    /// Begin anew with the next sample, with nothing learnt.
+    pub fn forget(&mut self) {
+        self.learned = None;
+        self.bank.forget();
+        self.onsets.clear();
+        self.clock.forget(self.cylinder.sensors());
+        self.replaced.fill(false);
+        self.cylinder.set_loosened(&self.clock.loosened);
+        self.cylinder.model().set_warm_start(&self.fresh_start);
     }
 
     /// The observer's state space, e.g. for another filter.
@@ -243,7 +289,7 @@ impl Observer {
 
     /// What the screens have sorted out counts as rejected.
     fn mark_faulty(&mut self, time_s: f64, readings: &[f64], usable: &[f64]) {
-        for member in &mut self.bank.members {
+        for member in self.bank.members.iter_mut() {
             for (sensor, innovation) in member.innovations.iter_mut().enumerate() {
                 if readings[sensor].is_finite() && !usable[sensor].is_finite() {
                     innovation.outcome = Outcome::Rejected;
@@ -432,7 +478,8 @@ impl Observer {
     /// Which combinations of states the data have not separated. `None` before the first sample.
     pub fn observability(&self) -> Option<Observability> {
         self.bank.members.first()?;
-        Some(Observability::of(self.cylinder.state_map(), &self.prior, &self.bank.covariance(0)))
+        let prior = self.prior_of_the_beginning().ok()?;
+        Some(Observability::of(self.cylinder.state_map(), &prior, &self.bank.covariance(0)))
     }
 
     /// Standard deviation of the mass relative to commissioning, kg: of the mass where every constant error of a sensor is

@@ -42,6 +42,8 @@ const ONSET_INTERVAL_S: f64 = 600.0;
 const LONGEST_S: f64 = 60.0 * 86_400.0;
 /// Largest ratio of the ages of two onsets between which one is thinned out.
 const ONSET_AGE_RATIO: f64 = 1.7;
+/// Onsets for which there is room: two in each step of the ladder, a new one, and the likeliest with its neighbours.
+const ONSETS_AT_MOST: usize = 40;
 /// Standard deviations up to which an innovation counts in full.
 const BOUND: f64 = 2.0;
 /// Standard deviations from which the member is compensated for a leak.
@@ -93,6 +95,16 @@ impl Sums {
 }
 
 impl Onsets {
+    /// None, with memory for responses of `n` states.
+    pub(super) fn with_room(n: usize) -> Self {
+        Self {
+            sums: Vec::with_capacity(ONSETS_AT_MOST),
+            responses: Vec::with_capacity(n * ONSETS_AT_MOST),
+            compensated: Vec::with_capacity(n),
+            due_s: None,
+        }
+    }
+
     /// Become as others are, without allocating where there is room.
     pub(super) fn copy_from(&mut self, other: &Self) {
         self.sums.clone_from(&other.sums);

@@ -20,7 +20,26 @@ pub struct Snapshot {
     pub(super) warm_start: WarmStart,
 }
 
+/// The same where it is, to be serialised without a copy.
+#[derive(Clone, Debug, Serialize)]
+pub struct SnapshotRef<'a> {
+    bank: &'a Bank<Cylinder>,
+    onsets: &'a Onsets,
+    clock: &'a Clock,
+    warm_start: WarmStart,
+}
+
 impl Observer {
+    /// What [`snapshot`](Self::snapshot) would be.
+    pub fn snapshot_ref(&self) -> SnapshotRef<'_> {
+        SnapshotRef {
+            bank: &self.bank,
+            onsets: &self.onsets,
+            clock: &self.clock,
+            warm_start: self.cylinder.warm_start(),
+        }
+    }
+
     /// The observer as it is now.
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {
@@ -28,6 +47,16 @@ impl Observer {
             onsets: self.onsets.clone(),
             clock: self.clock.clone(),
             warm_start: self.cylinder.warm_start(),
+        }
+    }
+
+    /// Memory for [one](Self::snapshot_into).
+    pub fn room_for_snapshot(&self) -> Snapshot {
+        Snapshot {
+            bank: self.room_between_steps(&self.roles),
+            onsets: Onsets::with_room(self.cylinder.states()),
+            clock: self.clock.clone(),
+            warm_start: self.fresh_start.clone(),
         }
     }
 

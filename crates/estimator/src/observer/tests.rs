@@ -391,7 +391,7 @@ fn members_that_share_a_linearisation_are_what_each_would_be_alone() {
                 x[states.inside.unwrap()] += 0.3;
             }
         }
-        if let [_, first, _, freest] = together.bank.members.as_slice() {
+        if let [_, first, _, freest] = &together.bank.members[..] {
             let (first, freest) =
                 ((&first.hypothesis, first.x.as_slice()), (&freest.hypothesis, freest.x.as_slice()));
             farthest = farthest.max(together.cylinder.distance(first, freest));
@@ -429,7 +429,7 @@ fn a_cautious_member_is_no_thermometer_and_doubts_the_pressure_where_wall_and_ga
         let mut pair = observer_of(engine, vec![usual[0], usual[0].cautious(2e5)]);
         pair.step(0.0, &REST).unwrap();
         let states = pair.cylinder.state_map().clone();
-        for member in &mut pair.bank.members {
+        for member in pair.bank.members.iter_mut() {
             member.x[..states.wall].fill(FILL_K + 3.0);
         }
         pair.step(60.0, &[f64::NAN, f64::NAN, REST[2]]).unwrap();

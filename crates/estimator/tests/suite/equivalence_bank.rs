@@ -17,7 +17,7 @@ fn every_engine_that_estimates_all_states_is_the_textbook_filter() {
             let mut work = Workspace::new(&model);
             // Five members: more than one pack.
             let members = vec![((), p0.clone()); 5];
-            let mut bank = Bank::new(&mut model, &engine, x0.as_slice(), members).unwrap();
+            let mut bank = Bank::new(&mut model, &engine, x0.as_slice(), &members).unwrap();
             let mut textbook = DenseFilter::new(x0, p0);
             for (dt_s, z) in dt_s.iter().zip(&z) {
                 bank.predict(&mut model, &mut work, *dt_s).unwrap();

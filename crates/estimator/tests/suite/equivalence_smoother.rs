@@ -10,7 +10,7 @@ impl Case {
         let mut model = self.model.clone();
         let mut work = Workspace::new(&model);
         let members = vec![((), self.p0.clone())];
-        let mut bank = Bank::new(&mut model, &BankEngine::Extended, self.x0.as_slice(), members).unwrap();
+        let mut bank = Bank::new(&mut model, &BankEngine::Extended, self.x0.as_slice(), &members).unwrap();
         let mut records = vec![bank.record(0, &model)];
         for (dt_s, z) in self.dt_s.iter().zip(&self.z) {
             bank.predict(&mut model, &mut work, *dt_s).unwrap();

@@ -43,11 +43,11 @@
 //! Source: the bank of Kalman filters is Magill's, IEEE Trans. Autom. Control 10 (1965) 434; Willsky, Jones, IEEE Trans. Autom. Control 21 (1976) 108 has jumps.
 mod far;
 
-use alloc::vec::Vec;
 use core::f64::consts::TAU;
 use cylwatch_estimator::thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 pub(super) use far::{FORGOTTEN_S, FarOff, kept};
 
@@ -68,6 +68,8 @@ const REBOUNDS: [f64; 3] = [0.1, 0.2, 0.4];
 const REBOUND_S: [f64; 3] = [60.0, 180.0, 540.0];
 /// Standard deviations of the change by gas that flows, in a minute.
 const FLOWS: [f64; 3] = [1e-3, 1e-2, ANY];
+/// Courses of a pressure at most: none, two offsets, two sizes of gas at each rebound and at once, flows.
+const COURSES: usize = 3 + 2 * (REBOUNDS.len() * REBOUND_S.len() + 1) + FLOWS.len();
 /// Chance that a jump is none, before it is looked at.
 const NOTHING: f64 = 0.7;
 /// The same of an offset, and of gas.
@@ -270,7 +272,7 @@ pub(super) struct Examination {
     /// Error that it has stayed near, and since when, s.
     rest: f64,
     rest_s: f64,
-    members: Vec<Member>,
+    members: SmallVec<[Member; COURSES]>,
     /// How often readings are far off, and how often they were, if it is nothing.
     far_off: FarOff,
     seen: FarOff,

@@ -25,10 +25,10 @@
 //! all pressures alike.
 //!
 //! Assumes that no part of the wall is farther than `d` of its temperature from all thermometers for longer than the gas takes to follow it.
-use alloc::collections::VecDeque;
 use cylwatch_estimator::thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::wander::Wander;
 use crate::estimator::observer::Flow;
@@ -108,7 +108,7 @@ impl Bound {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Ratchet {
     /// Lower and upper bound, the latest ones first, kg.
-    recent_kg: VecDeque<(f64, f64)>,
+    recent_kg: SmallVec<[(f64, f64); 2 * ROWS]>,
     /// What does not come and go of what is uncertain of the mass, standard deviation, kg.
     sd_kg: f64,
     /// Highest lower and lowest upper bound.
@@ -120,8 +120,8 @@ impl Ratchet {
     /// Take in the bounds of a row, of a mass with this standard deviation that stays, kg; those that so many rows in a row agree on may become the tightest ones, of which a part has been
     /// kept since the last row.
     fn push(&mut self, bounds_kg: (f64, f64), sd_kg: f64, agreeing: usize, kept: f64) -> Option<Certain> {
-        self.recent_kg.push_front(bounds_kg);
-        self.recent_kg.truncate(agreeing);
+        self.recent_kg.truncate(agreeing - 1);
+        self.recent_kg.insert(0, bounds_kg);
         self.sd_kg = sd_kg;
         let certain = self.certain(agreeing);
         if let (None, Some((least_kg, most_kg))) = (certain, self.agreed(agreeing)) {
@@ -162,7 +162,7 @@ impl Ratchet {
 
     /// Part of the gas that is certainly gone or has certainly come, against the bound that it is beyond; 0 if none.
     fn beyond(&self) -> f64 {
-        let (Some(now), Some((floor_kg, ceiling_kg))) = (self.recent_kg.front(), self.tightest_kg()) else {
+        let (Some(now), Some((floor_kg, ceiling_kg))) = (self.recent_kg.first(), self.tightest_kg()) else {
             return 0.0;
         };
         ((floor_kg - now.1) / floor_kg).max((now.0 - ceiling_kg) / ceiling_kg).max(0.0)
@@ -275,7 +275,7 @@ impl GasBounds {
     pub(crate) fn allow(&self, mass_kg: f64) -> bool {
         self.walls
             .recent_kg
-            .front()
+            .first()
             .is_none_or(|&(least_kg, most_kg)| (least_kg..=most_kg).contains(&mass_kg))
     }
 

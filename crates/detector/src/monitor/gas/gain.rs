@@ -2,13 +2,15 @@
 //!
 //! Nothing but a filling makes a cylinder heavier. Errors of the mass stay below 4 % whatever stands beside it, so a gain of 8 % within six hours is one, told
 //! once it is over: when the mass has not risen by a twentieth of it for twenty minutes.
-use alloc::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 /// Interval of the masses that are kept, s, and how long they are kept, s.
 const INTERVAL_S: f64 = 600.0;
 const KEPT_S: f64 = 6.0 * 3600.0;
+/// Masses that are kept at most: those of that time, and one more.
+const KEPT: usize = (KEPT_S / INTERVAL_S) as usize + 2;
 /// Gain that is a filling, as a part of the stated one, and part of the gain in the last while, s, at which it is over.
 const FILLED: f64 = 0.08;
 const RISING: f64 = 0.05;
@@ -18,18 +20,18 @@ const OVER_S: f64 = 1200.0;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::monitor) struct GainWatch {
     /// Times, s, and masses, kg.
-    recent: VecDeque<(f64, f64)>,
+    recent: SmallVec<[(f64, f64); KEPT]>,
 }
 
 impl GainWatch {
     /// Take in a mass, kg, of a cylinder that was filled with so much, kg; when a filling began that is over now, s, and its gain, kg.
     pub(crate) fn push(&mut self, time_s: f64, mass_kg: f64, filled_kg: f64) -> Option<(f64, f64)> {
-        if self.recent.back().is_some_and(|(last_s, _)| time_s - last_s < INTERVAL_S) {
+        if self.recent.last().is_some_and(|(last_s, _)| time_s - last_s < INTERVAL_S) {
             return None;
         }
-        self.recent.push_back((time_s, mass_kg));
-        while self.recent.front().is_some_and(|(first_s, _)| time_s - first_s > KEPT_S) {
-            self.recent.pop_front();
+        self.recent.push((time_s, mass_kg));
+        while self.recent.first().is_some_and(|(first_s, _)| time_s - first_s > KEPT_S) {
+            self.recent.remove(0);
         }
         let least_kg = self.recent.iter().map(|(_, mass_kg)| *mass_kg).fold(f64::INFINITY, f64::min);
         let gain_kg = mass_kg - least_kg;

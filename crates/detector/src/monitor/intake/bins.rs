@@ -30,9 +30,13 @@ pub(super) struct Bins {
 impl Bins {
     /// Bins of a width, s; 0: none.
     pub(super) fn new(step_s: f64, sensors: usize) -> Self {
-        let room = if step_s > 0.0 { ROWS_AT_MOST } else { 0 };
-        let readings = (0..sensors).map(|_| Vec::with_capacity(room)).collect();
-        Self { step_s, last_s: None, rows: 0, readings, passed_s: None }
+        Self { step_s, last_s: None, rows: 0, readings: vec![Vec::new(); sensors], passed_s: None }
+    }
+
+    /// Memory for a full bin.
+    pub(super) fn make_room(&mut self) {
+        let room = if self.step_s > 0.0 { ROWS_AT_MOST } else { 0 };
+        self.readings.iter_mut().for_each(|readings| readings.reserve(room.saturating_sub(readings.len())));
     }
 
     /// Take a row: what is complete now is added to `done`.

@@ -1,6 +1,6 @@
 //! The usual interval between rows: median of the last few.
-use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 /// Intervals that are remembered: seven gaps among them change nothing.
 const REMEMBERED: usize = 15;
@@ -8,7 +8,7 @@ const REMEMBERED: usize = 15;
 /// Running median of the intervals.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct UsualInterval {
-    recent_s: Vec<f64>,
+    recent_s: SmallVec<[f64; REMEMBERED]>,
     next: usize,
     median_s: f64,
 }

@@ -4,9 +4,8 @@
 //! `2400 / 2^16`, is taken for one of them at most. A generation is sorted, so that it is saved by the gaps between its fingerprints: 8.3 bits of a row.
 //!
 //! Source: set of fingerprints, L. Carter et al., STOC 1978, 59; code of the gaps, R. F. Rice, JPL Publication 79-22 (1979).
-use alloc::collections::VecDeque;
-
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::clock::Stray;
 use generation::Generation;
@@ -25,11 +24,11 @@ const PRIME: u64 = 0x0000_0100_0000_01b3;
 /// Rows that were taken, and times without any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Memory {
-    /// The youngest one last.
-    generations: VecDeque<Generation>,
-    /// Rows in it.
+    generations: [Generation; GENERATIONS],
+    /// The one that grows, and rows in it.
+    youngest: u8,
     rows: u32,
-    gaps: VecDeque<Gap>,
+    gaps: SmallVec<[Gap; GAPS]>,
 }
 
 /// A time without rows on the internal axis.
@@ -41,32 +40,25 @@ struct Gap {
 
 impl Default for Memory {
     fn default() -> Self {
-        Self {
-            generations: VecDeque::with_capacity(GENERATIONS),
-            rows: 0,
-            gaps: VecDeque::with_capacity(GAPS),
-        }
+        let generations = core::array::from_fn(|_| Generation::with_room());
+        Self { generations, youngest: 0, rows: 0, gaps: SmallVec::new() }
     }
 }
 
 impl Memory {
     /// Remember a row.
     pub(super) fn keep(&mut self, hash: u64) {
-        if self.generations.is_empty() || self.rows == ROWS {
-            let mut youngest = Generation::default();
-            if self.generations.len() == GENERATIONS
-                && let Some(oldest) = self.generations.pop_front()
-            {
-                youngest = oldest;
-                youngest.clear();
-            }
-            self.generations.push_back(youngest);
+        if self.rows == ROWS {
+            // The oldest one is forgotten.
+            self.youngest = (self.youngest + 1) % GENERATIONS as u8;
             self.rows = 0;
         }
-        self.rows += 1;
-        if let Some(youngest) = self.generations.back_mut() {
-            youngest.insert(fingerprint(hash));
+        let Some(youngest) = self.generations.get_mut(usize::from(self.youngest)) else { return };
+        if self.rows == 0 {
+            youngest.clear();
         }
+        self.rows += 1;
+        youngest.insert(fingerprint(hash));
     }
 
     /// Whether a row is one of those.
@@ -77,9 +69,9 @@ impl Memory {
     /// Remember a time without rows, s.
     pub(super) fn keep_gap(&mut self, from_s: f64, to_s: f64) {
         if self.gaps.len() == GAPS {
-            self.gaps.pop_front();
+            self.gaps.remove(0);
         }
-        self.gaps.push_back(Gap { from_s, to_s });
+        self.gaps.push(Gap { from_s, to_s });
     }
 
     /// Whether a time, s, lies within one of those: a row of that time comes from a store.

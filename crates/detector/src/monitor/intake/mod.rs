@@ -77,6 +77,12 @@ impl Intake {
         })
     }
 
+    /// Memory for rows as they usually come.
+    pub(super) fn make_room(&mut self) {
+        self.order.make_room();
+        self.bins.make_room();
+    }
+
     /// Take in a row with its stamp, s, and its readings, SI, NaN where missing.
     ///
     /// # Errors

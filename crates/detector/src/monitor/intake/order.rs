@@ -31,6 +31,11 @@ pub(super) struct Order {
 }
 
 impl Order {
+    /// Memory for the rows that wait where none are late.
+    pub(super) fn make_room(&mut self) {
+        self.waiting.reserve(4);
+    }
+
     /// Put a row in its place.
     pub(super) fn insert(&mut self, mut row: Row) -> Inserted {
         match &self.handed_out {

@@ -55,6 +55,14 @@ pub struct Taken {
     pub events: Vec<Event>,
 }
 
+impl Taken {
+    /// Memory for what a row usually makes ready.
+    pub(in crate::monitor) fn make_room(&mut self) {
+        self.rows.reserve(4);
+        self.events.reserve(8);
+    }
+}
+
 /// What has become of rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {

@@ -20,8 +20,10 @@
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 
+use crate::monitor::intake::Readings;
 use crate::units::MINUTE_S;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 /// Shortest step of the grid, s, and the longest.
 const LONGEST_STEP_S: f64 = 300.0;
@@ -31,6 +33,8 @@ const COUNTED_S: f64 = 3600.0;
 const BRIDGED: f64 = 1.25;
 /// Longest difference that is looked for, steps.
 const LONGEST: usize = 4;
+/// Points that a second difference needs.
+const POINTS: usize = 3;
 const LAGS: usize = 2 * LONGEST + 1;
 /// Least sum of products at the peak, in squared errors of a surface temperature, and its least part of the largest that there can be; the same of the pressure.
 const LEAST: f64 = 700.0;
@@ -55,8 +59,8 @@ struct Correlation {
 
 impl Correlation {
     /// The pairs that the newest of the differences, `recent[0]`, makes with itself and those before it.
-    fn add(&mut self, recent: &VecDeque<Three>, (a, b): (usize, usize)) {
-        let Some(newest) = recent.front() else { return };
+    fn add(&mut self, recent: &[Three], (a, b): (usize, usize)) {
+        let Some(newest) = recent.first() else { return };
         for (lag, older) in recent.iter().enumerate() {
             self.count(LONGEST + lag, newest[a] * older[b]);
             if lag > 0 {
@@ -150,8 +154,8 @@ impl Grid {
 pub(in crate::monitor) struct LagMeter {
     grid: Grid,
     /// The last three points, newest first, and the last differences.
-    points: VecDeque<Three>,
-    differences: VecDeque<Three>,
+    points: SmallVec<[Three; POINTS]>,
+    differences: SmallVec<[Three; LONGEST + 1]>,
     thermometers: Correlation,
     with_pressure: [Correlation; 2],
 }
@@ -161,7 +165,7 @@ impl LagMeter {
     pub(crate) fn push(&mut self, time_s: f64, readings: Three) {
         let Self { grid, points, differences, thermometers, with_pressure } = self;
         grid.push(time_s, readings, |point| {
-            push_front(points, point, 3);
+            push_front(points, point, POINTS);
             let [newest, middle, oldest] = [0, 1, 2].map(|i| points.get(i).copied().unwrap_or(NONE));
             let second = core::array::from_fn(|i| newest[i] - 2.0 * middle[i] + oldest[i]);
             push_front(differences, second, LONGEST + 1);
@@ -193,9 +197,9 @@ impl LagMeter {
     }
 }
 
-fn push_front(queue: &mut VecDeque<Three>, newest: Three, longest: usize) {
-    queue.push_front(newest);
-    queue.truncate(longest);
+fn push_front<A: smallvec::Array<Item = Three>>(queue: &mut SmallVec<A>, newest: Three, longest: usize) {
+    queue.truncate(longest - 1);
+    queue.insert(0, newest);
 }
 
 /// Holds early channels back, by whole rows.
@@ -203,7 +207,7 @@ fn push_front(queue: &mut VecDeque<Three>, newest: Three, longest: usize) {
 pub(in crate::monitor) struct DelayLine {
     /// By how much each sensor is held back, s; empty: none is.
     delays_s: Vec<f64>,
-    rows: VecDeque<(f64, Vec<f64>)>,
+    rows: VecDeque<(f64, Readings)>,
 }
 
 impl DelayLine {
@@ -218,13 +222,13 @@ impl DelayLine {
         if longest_s == 0.0 {
             return;
         }
-        self.rows.push_back((time_s, readings.to_vec()));
+        self.rows.push_back((time_s, Readings::from_slice(readings)));
         // One row before the longest delay, which may be nearer to it than that after it.
         while self.rows.get(1).is_some_and(|(second_s, _)| *second_s <= time_s - longest_s) {
             self.rows.pop_front();
         }
         for (sensor, delay_s) in self.delays_s.iter().enumerate().filter(|(_, delay_s)| **delay_s > 0.0) {
-            let off_s = |row: &&(f64, Vec<f64>)| (row.0 - (time_s - delay_s)).abs();
+            let off_s = |row: &&(f64, Readings)| (row.0 - (time_s - delay_s)).abs();
             if let Some((_, row)) = self.rows.iter().min_by(|a, b| off_s(a).total_cmp(&off_s(b))) {
                 readings[sensor] = row[sensor];
             }

@@ -41,6 +41,8 @@ const OFF: f64 = 2.0 * HARMLESS;
 const PART: f64 = 2.0;
 /// Time over which the usual difference is taken, s, and fewest windows.
 const USUAL_S: f64 = 2.0 * DAY_S;
+/// Windows that are kept at most, and one more.
+const WINDOWS: usize = ((USUAL_S + DAY_S) / WINDOW_S) as usize + 2;
 const FEWEST_USUAL: usize = 36;
 /// Windows whose median is the present difference, and that agree on what is off; time without one after which nothing is known of it, and for which it is off until what was seen
 /// counts for nothing, s.
@@ -149,6 +151,11 @@ impl Parity {
     /// Of thermometers where the model misses so much of a temperature on the surface, K.
     pub(crate) fn new(error_k: f64) -> Self {
         Self { error_k, ..Self::default() }
+    }
+
+    /// Memory for all windows that are kept.
+    pub(crate) fn make_room(&mut self) {
+        self.calm.reserve(WINDOWS.saturating_sub(self.calm.len()));
     }
 
     fn harmless_k(&self) -> f64 {
@@ -296,8 +303,16 @@ impl Parity {
 
     /// Another offset of a thermometer is taken off from now on: the difference is learnt anew.
     pub(crate) fn forget(&mut self) {
-        let (doubt_k, last_s) = (self.doubt_k, self.last_s);
-        *self = Self { doubt_k, last_s, ..Self::new(self.error_k) };
+        let Self { doubt_k, last_s, .. } = *self;
+        self.begin_anew();
+        (self.doubt_k, self.last_s) = (doubt_k, last_s);
+    }
+
+    /// Nothing has been seen yet.
+    pub(crate) fn begin_anew(&mut self) {
+        let mut calm = core::mem::take(&mut self.calm);
+        calm.clear();
+        *self = Self { error_k: self.error_k, calm, ..Self::default() };
     }
 }
 

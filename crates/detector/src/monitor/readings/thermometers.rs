@@ -20,9 +20,9 @@
 //! restless while the other one is not and more so than usually, reads the air.
 //!
 //! How often a jump is believed that is none, and one missed, the plans `tight.toml` and `fault.toml` (row T2) of `cylwatch-evaluation` measure; see `book/src/measured.md`.
-use alloc::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::of_its_own;
 use crate::monitor::examination::{Before, Cause, Compared, Examination, FarOff, SPAN, Subject};
@@ -73,7 +73,7 @@ pub struct Pair {
     /// Of the readings lately, K.
     extremes_k: [Extremes; 2],
     /// The last samples: time, s, and readings, K.
-    recent: VecDeque<(f64, [f64; 2])>,
+    recent: SmallVec<[(f64, [f64; 2]); SAMPLES]>,
     usual: Usual,
     suspect: Option<Suspect>,
     /// Which one jumped last, and until when it is not used, s.
@@ -151,7 +151,7 @@ impl Pair {
         surroundings: Surroundings,
         judged: bool,
     ) -> Option<Lonely> {
-        let interval_s = self.recent.back().map_or(0.0, |(last_s, _)| time_s - last_s);
+        let interval_s = self.recent.last().map_or(0.0, |(last_s, _)| time_s - last_s);
         if interval_s > LONGEST_INTERVAL_S {
             self.forget();
         }
@@ -174,10 +174,10 @@ impl Pair {
         };
         let restless = second_k
             .and_then(|second_k| self.restless.push(interval_s, second_k, (self.error_k, self.steps_k)));
-        self.recent.push_back((time_s, readings));
-        if self.recent.len() > SAMPLES {
-            self.recent.pop_front();
+        if self.recent.len() == SAMPLES {
+            self.recent.remove(0);
         }
+        self.recent.push((time_s, readings));
         if let Some(Lonely::Shifted(which, _)) = shown {
             self.probation = Some((which, time_s + HOUR_S));
         }
@@ -196,10 +196,10 @@ impl Pair {
 
     /// What this sample adds to the slopes before, K, NaN where there is none; also notes how far both moved.
     fn second_differences(&mut self, time_s: f64, readings: [f64; 2]) -> Option<[f64; 2]> {
-        let &(last_s, last) = self.recent.back()?;
+        let &(last_s, last) = self.recent.last()?;
         let first = [0, 1].map(|i| readings[i] - last[i]);
         self.moved_k = self.smaller_k(first);
-        let &(before_s, before) = self.recent.front().filter(|_| self.recent.len() == SAMPLES)?;
+        let &(before_s, before) = self.recent.first().filter(|_| self.recent.len() == SAMPLES)?;
         // After a short interval a slope is mostly noise.
         let along = ((time_s - last_s) / (last_s - before_s).max(f64::MIN_POSITIVE)).min(0.5);
         Some([0, 1].map(|i| first[i] - along * (last[i] - before[i])))
@@ -235,7 +235,7 @@ impl Pair {
     }
 
     fn look_for_a_jump(&mut self, time_s: f64, second_k: [f64; 2], doubt_k: f64, memory_s: f64) {
-        let Some(&(last_s, last)) = self.recent.back() else { return };
+        let Some(&(last_s, last)) = self.recent.last() else { return };
         let which = usize::from(second_k[1].abs() > second_k[0].abs());
         let (own_k, other_k) = (second_k[which], second_k[1 - which]);
         let minutes = ((time_s - last_s) / MINUTE_S).max(1.0);

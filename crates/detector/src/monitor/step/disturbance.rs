@@ -1,22 +1,50 @@
 //! What is learnt while one end of the cylinder is warmed by itself is wrong, and stays wrong for days: once it is over, the
 //! observer goes on with what it knew before, and with the mass free.
+use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{LOOK_S, Monitor};
-use crate::estimator::observer::Checkpoint;
+use crate::estimator::observer::{Checkpoint, Observer};
 use crate::monitor::Reason;
 
 /// Time between two checkpoints of an undisturbed observer, s. The one before the last is gone back to: a disturbance is noticed an hour or two late.
 const BETWEEN_S: f64 = 6.0 * 3600.0;
 
 /// The observer as it was before a disturbance.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Undisturbed {
     due_s: f64,
     latest: Option<Checkpoint>,
     before: Option<Checkpoint>,
     /// The present row is the first one after a disturbance.
     returning: bool,
+    /// Memory for those that are not there.
+    #[serde(skip)]
+    room: Vec<Checkpoint>,
+}
+
+impl Undisturbed {
+    /// Make room for checkpoints of this observer.
+    pub(super) fn make_room(&mut self, observer: &Observer) {
+        let there = usize::from(self.latest.is_some()) + usize::from(self.before.is_some());
+        self.room = (there..2).map(|_| observer.room_for_checkpoint()).collect();
+        self.room.reserve(there);
+    }
+
+    /// There is nothing to go back to any more.
+    pub(super) fn forget(&mut self) {
+        self.room.extend(self.latest.take().into_iter().chain(self.before.take()));
+        (self.due_s, self.returning) = (0.0, false);
+    }
+
+    /// Keep the observer as it is now, and the checkpoint before this one.
+    fn keep(&mut self, observer: &Observer) {
+        let mut newest = self.before.take().or_else(|| self.room.pop());
+        if let Some(checkpoint) = &mut newest {
+            observer.write_checkpoint(checkpoint);
+        }
+        self.before = core::mem::replace(&mut self.latest, newest);
+    }
 }
 
 impl Monitor {
@@ -43,7 +71,7 @@ impl Monitor {
             undisturbed.due_s = time_s + BETWEEN_S;
         } else if time_s >= undisturbed.due_s && self.state.parity.is_usual() {
             undisturbed.due_s = time_s + BETWEEN_S;
-            undisturbed.before = undisturbed.latest.replace(self.observer.checkpoint());
+            undisturbed.keep(&self.observer);
         }
     }
 }

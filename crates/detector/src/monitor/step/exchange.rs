@@ -7,7 +7,6 @@
 use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
-use super::disturbance::Undisturbed;
 use super::{Monitor, SETTLED_S};
 use crate::DetectorError;
 use crate::estimator::observer::{Estimate, Flow, Innovation, Quality};
@@ -280,18 +279,14 @@ impl Monitor {
 
     /// The observer as it is now is the one to go back to: before each row, and after an examination.
     fn keep_for_the_way_back(&mut self) {
-        match &mut self.before {
-            Some(before) => self.observer.snapshot_into(before),
-            before => *before = Some(self.observer.snapshot()),
-        }
+        self.observer.snapshot_into(&mut self.before);
     }
 
     /// Both observers as they were before the present row.
     fn go_back(&mut self) {
-        if let Some(before) = &self.before {
-            self.observer.restore(before);
-            self.observer.with(&mut self.shadow, |shadow| shadow.restore(before));
-        }
+        let before = &self.before;
+        self.observer.restore(before);
+        self.observer.with(&mut self.shadow, |shadow| shadow.restore(before));
     }
 
     /// A sample of a jump: what it shows, and what follows.
@@ -404,7 +399,7 @@ impl Monitor {
         if part >= NO_OFFSET {
             self.state.filling.settle();
         }
-        self.state.undisturbed = Undisturbed::default();
+        self.state.undisturbed.forget();
         if self.state.leak.begin_anew() == Change::Ended {
             events.push(Event::new(time_s, onset_s, EventKind::LeakEnded));
         }

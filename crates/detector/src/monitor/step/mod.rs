@@ -32,7 +32,9 @@ use super::roles::Roles;
 use super::settings::MonitorSettings;
 use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
 use crate::DetectorError;
-use crate::estimator::observer::{Commissioning, Companion, Estimate, Learned, Observer, Quality, Snapshot};
+use crate::estimator::observer::{
+    Commissioning, Companion, Estimate, Learned, Observer, Quality, Snapshot, SnapshotRef,
+};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
@@ -79,11 +81,11 @@ pub struct Monitor {
     /// What the last row said, and memory for what the next one says.
     said: Box<Said>,
     /// The observer before the present row.
-    before: Option<Snapshot>,
+    before: Box<Snapshot>,
 }
 
 /// Output of a row, in memory that the next one uses again.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Said {
     output: Option<Output>,
     health: Vec<Health>,
@@ -96,9 +98,9 @@ const EVENTS: usize = 16;
 const ALARMS: usize = 12;
 
 impl Said {
-    fn with_room() -> Self {
+    fn with_room(sensors: usize) -> Self {
         let (events, alarms) = (Vec::with_capacity(EVENTS), Vec::with_capacity(ALARMS));
-        Self { events, alarms, ..Self::default() }
+        Self { output: None, health: Vec::with_capacity(sensors), events, alarms }
     }
 
     /// The row before is over: its memory is free.
@@ -112,7 +114,7 @@ impl Said {
 }
 
 /// All that a row changes, but for the observers.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct State {
     intake: Intake,
     watches: Vec<SensorWatch>,
@@ -157,6 +159,14 @@ struct State {
 }
 
 impl State {
+    /// Memory for all that comes, so that no row needs any.
+    fn make_room(&mut self, observer: &Observer) {
+        self.intake.make_room();
+        self.ready.make_room();
+        self.parity.make_room();
+        self.undisturbed.make_room(observer);
+    }
+
     /// Whether gas flows, or did a while ago.
     fn is_flowing(&self, time_s: f64) -> bool {
         time_s - self.flowed_s < EXCHANGED_S
@@ -185,7 +195,7 @@ struct Saving<'a> {
     commissioning: Commissioning,
     held_against: Fingerprint,
     state: &'a State,
-    observer: Snapshot,
+    observer: SnapshotRef<'a>,
     twin: Option<&'a Snapshot>,
     shadow: Option<&'a Snapshot>,
 }
@@ -230,8 +240,9 @@ impl Monitor {
         let full_pa = contents.pressure_pa(full_kg, QUOTED_K)?;
         let tails = settings.tails.unwrap_or_else(|| Tails::of(vessel, full_pa));
         let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
-        let (pair, parity) = wiring::compared_by(sensors, &roles, settings);
-        let state = Box::new(State {
+        let pair = wiring::pair(sensors, &roles, settings);
+        let parity = Parity::new(pair.error_k());
+        let mut state = Box::new(State {
             intake: Intake::new(settings.intake, sensors.len())?,
             health: watches.iter().map(SensorWatch::health).collect(),
             watches,
@@ -266,6 +277,8 @@ impl Monitor {
             cold_s: f64::NEG_INFINITY,
         });
         let compared = wiring::compared(&roles, sensors);
+        state.make_room(&observer);
+        let before = Box::new(observer.room_for_snapshot());
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: tails.thresholds(settings.false_alarm_interval_s)?,
@@ -281,8 +294,8 @@ impl Monitor {
             observer: Box::new(observer),
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
-            said: Box::new(Said::with_room()),
-            before: None,
+            said: Box::new(Said::with_room(sensors.len())),
+            before,
             settings: settings.clone(),
             vessel: vessel.clone(),
             contents,
@@ -322,6 +335,7 @@ impl Monitor {
         }
         monitor.know_the_filling(saved.state.begun_with);
         monitor.state = saved.state;
+        monitor.state.make_room(&monitor.observer);
         monitor.state.cold.move_to(settings.limits.coldest_k);
         if saved.held_against != held_against(settings) {
             monitor.state.outlook_due_s = f64::NEG_INFINITY;
@@ -339,7 +353,7 @@ impl Monitor {
             commissioning: self.commissioning,
             held_against: held_against(&self.settings),
             state: &self.state,
-            observer: self.observer.snapshot(),
+            observer: self.observer.snapshot_ref(),
             twin: self.twin.as_deref().map(Companion::snapshot),
             shadow: examined.then(|| self.shadow.snapshot()),
         };

@@ -1,6 +1,5 @@
 //! The readings of a row: which can be used, what the sensors show of themselves, and whether they fit the filling.
 use super::Monitor;
-use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Outcome};
 use crate::estimator::thermal::vessel::Fill;
@@ -61,7 +60,7 @@ impl Monitor {
             Some(Lonely::Suspected(which)) => self.usable[pair[which]] = f64::NAN,
             Some(Lonely::Shifted(which, by_k)) => {
                 self.let_shift(pair[which], by_k);
-                self.state.undisturbed = Undisturbed::default();
+                self.state.undisturbed.forget();
             }
             Some(Lonely::Detached(which)) => {
                 watches[pair[which]].detach();

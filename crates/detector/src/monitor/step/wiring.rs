@@ -1,6 +1,5 @@
 //! Channels that are late or in each other's place: found, put right, and begun again with.
 use super::Monitor;
-use super::disturbance::Undisturbed;
 use crate::DetectorError;
 use crate::estimator::EstimatorError;
 use crate::estimator::observer::{Commissioning, Companion, Innovation, Observer};
@@ -13,12 +12,10 @@ use crate::monitor::gas::leak::Change;
 use crate::monitor::intake::Row;
 use crate::monitor::readings::health::SensorWatch;
 use crate::monitor::readings::lateness::DelayLine;
-use crate::monitor::readings::parity::Parity;
 use crate::monitor::readings::thermometers::Pair;
 use crate::monitor::readings::wiring::Finding;
 use crate::monitor::roles::Roles;
 use crate::monitor::{Event, EventKind, Health};
-use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 /// The channels that are compared: two thermometers on the surface, without a lag of their own, and the pressure.
@@ -67,12 +64,15 @@ impl Monitor {
 
     /// Let the twin take the row that the observer took.
     pub(super) fn step_twin(&mut self, time_s: f64) -> Result<(), DetectorError> {
+        let just_exchanged = self.state.exchanged.is_some_and(|of| of.at_s == time_s);
+        if just_exchanged && self.compared.is_some() && self.twin.is_some() {
+            self.know_the_filling(self.now());
+        }
         let (Some(compared @ [first, second, _]), Some(own)) = (self.compared, &mut self.twin) else {
             return Ok(());
         };
-        if self.state.exchanged.is_some_and(|of| of.at_s == time_s) {
-            self.know_the_filling(self.now());
-            self.twin = Some(Box::new(twin(&self.observer)));
+        if just_exchanged {
+            self.observer.with(own, Observer::forget);
             self.state.wiring.forget_twin();
             return Ok(());
         }
@@ -124,29 +124,32 @@ impl Monitor {
                 events.push(Event::new(time_s, time_s, EventKind::Swapped([first, second])));
             }
         }
-        self.begin_again(time_s, events)
+        self.begin_again(time_s, events);
+        Ok(())
     }
 
     /// What was learnt was learnt of wrong rows: learn again.
-    fn begin_again(&mut self, time_s: f64, events: &mut Vec<Event>) -> Result<(), DetectorError> {
+    fn begin_again(&mut self, time_s: f64, events: &mut Vec<Event>) {
         let now = self.now();
-        *self.observer =
-            Observer::new(&self.vessel, &self.sensors, &self.commissioning, &self.settings.observer)?;
+        self.observer.forget();
         self.know_the_filling(now);
-        if self.twin.is_some() {
-            self.twin = Some(Box::new(twin(&self.observer)));
+        if let Some(twin) = &mut self.twin {
+            self.observer.with(twin, Observer::forget);
         }
         let state = &mut self.state;
-        state.watches = self.sensors.iter().map(SensorWatch::new).collect();
-        (state.pair, state.parity) = compared_by(&self.sensors, &self.roles, &self.settings);
-        (state.jumps, state.undisturbed) = (JumpWatch::default(), Undisturbed::default());
+        for (watch, sensor) in state.watches.iter_mut().zip(&self.sensors) {
+            *watch = SensorWatch::new(sensor);
+        }
+        state.pair = pair(&self.sensors, &self.roles, &self.settings);
+        state.parity.begin_anew();
+        state.jumps = JumpWatch::default();
+        state.undisturbed.forget();
         state.evidence = Evidence::new(&self.settings.observer);
         state.start_s = Some(time_s);
         state.bounds.forget_flow();
         if state.leak.begin_anew() == Change::Ended {
             events.push(Event::new(time_s, time_s, EventKind::LeakEnded));
         }
-        Ok(())
     }
 
     /// Wherever an estimate begins again, it begins with this.
@@ -165,12 +168,12 @@ impl Monitor {
 }
 
 /// What compares two thermometers, with the coarser one's steps and the noise of the one that has more.
-pub(super) fn compared_by(sensors: &[Sensor], roles: &Roles, settings: &MonitorSettings) -> (Pair, Parity) {
+pub(super) fn pair(sensors: &[Sensor], roles: &Roles, settings: &MonitorSettings) -> Pair {
     let largest = |of: fn(&Sensor) -> f64, least: f64| {
         roles.pair.into_iter().flatten().map(|sensor| of(&sensors[sensor])).fold(least, f64::max)
     };
     let error_k = largest(|sensor| sensor.noise_sd, settings.observer.model_error.surface_k);
-    (Pair::new(largest(|sensor| sensor.resolution, 0.0), error_k), Parity::new(error_k))
+    Pair::new(largest(|sensor| sensor.resolution, 0.0), error_k)
 }
 
 fn innovation(observer: &Observer, sensor: usize) -> Innovation {

@@ -1,14 +1,92 @@
 //! One member of a bank: an estimate with its own hypothesis, and what it made of the readings.
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut};
 use nalgebra::DVector;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::filter::gate::{Innovation, Outcome};
 use crate::filter::kernel::axpy;
 use crate::filter::plant::Plant;
 use crate::filter::record::StepRecord;
 use crate::numbers;
+
+/// The members of a bank. Before it begins there are none, though the memory for them may be there.
+#[derive(Clone, Debug)]
+pub(crate) struct Members<H> {
+    all: Vec<Member<H>>,
+    begun: bool,
+}
+
+impl<H: Clone> Members<H> {
+    /// Memory for members with these hypotheses.
+    pub(crate) fn new(hypotheses: impl Iterator<Item = H>, states: usize, outputs: usize) -> Self {
+        let all = hypotheses.map(|hypothesis| Member::new(hypothesis, states, outputs)).collect();
+        Self { all, begun: false }
+    }
+
+    /// How many there will be.
+    pub(crate) fn room(&self) -> usize {
+        self.all.len()
+    }
+
+    /// There they are.
+    pub(crate) fn begin(&mut self) -> &mut [Member<H>] {
+        self.begun = true;
+        &mut self.all
+    }
+
+    /// There are none any more.
+    pub(crate) fn forget(&mut self) {
+        self.begun = false;
+    }
+
+    /// The memory of a member, which may not be there yet.
+    pub(crate) fn room_mut(&mut self, index: usize) -> Option<&mut Member<H>> {
+        self.all.get_mut(index)
+    }
+
+    /// Become as others are, in the memory for as many.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.begun = other.begun;
+        if other.begun {
+            self.all.iter_mut().zip(&other.all).for_each(|(to, from)| to.copy_from(from));
+        }
+    }
+}
+
+impl<H> Default for Members<H> {
+    fn default() -> Self {
+        Self { all: Vec::new(), begun: false }
+    }
+}
+
+impl<H> Deref for Members<H> {
+    type Target = [Member<H>];
+
+    fn deref(&self) -> &[Member<H>] {
+        if self.begun { &self.all } else { &[] }
+    }
+}
+
+impl<H> DerefMut for Members<H> {
+    fn deref_mut(&mut self) -> &mut [Member<H>] {
+        if self.begun { &mut self.all } else { &mut [] }
+    }
+}
+
+impl<H: Serialize> Serialize for Members<H> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (**self).serialize(serializer)
+    }
+}
+
+impl<'de, H: Deserialize<'de>> Deserialize<'de> for Members<H> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let all = Vec::deserialize(deserializer)?;
+        Ok(Self { begun: !all.is_empty(), all })
+    }
+}
 
 /// Mean and counters of a member; its covariance is in the bank's.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -30,10 +108,10 @@ pub(crate) struct Member<H> {
 }
 
 impl<H: Clone> Member<H> {
-    pub(crate) fn new(hypothesis: H, mean: &[f64], outputs: usize) -> Self {
+    fn new(hypothesis: H, states: usize, outputs: usize) -> Self {
         Self {
             hypothesis,
-            x: mean.to_vec(),
+            x: vec![0.0; states],
             rejected: vec![0; outputs],
             innovations: vec![Innovation::MISSING; outputs],
             pulled: vec![0.0; outputs],
@@ -56,10 +134,18 @@ impl<H: Clone> Member<H> {
         self.innovations.clone_from(&other.innovations);
         self.pulled.clone_from(&other.pulled);
         self.at_bound = other.at_bound;
-        match (&mut self.record, &other.record) {
-            (Some(to), Some(from)) => to.copy_from(from),
-            (to, from) => to.clone_from(from),
+        // Where there is no memory for the last step nobody asks for it.
+        if let (Some(to), Some(from)) = (&mut self.record, &other.record) {
+            to.copy_from(from);
         }
+    }
+
+    /// Begin, or begin again, with a mean (n).
+    pub(crate) fn begin(&mut self, mean: &[f64]) {
+        self.place_at(mean.iter().copied());
+        self.innovations.fill(Innovation::MISSING);
+        self.pulled.fill(0.0);
+        self.at_bound = false;
     }
 
     /// Have another mean (n), and no reading refused.

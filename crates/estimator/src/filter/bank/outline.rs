@@ -3,8 +3,10 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::pack::Pack;
-use super::{Bank, Covariances, Member};
+use super::single::Single;
+use super::{Bank, Covariances};
 use crate::filter::plant::Plant;
+use crate::filter::ud_bank::Factors;
 use crate::numbers;
 
 /// Means of the members and the covariance of the first, rounded; the others differ from it in the variance of one state.
@@ -18,24 +20,59 @@ pub(crate) struct Outline<P: Plant> {
     apart: Vec<f64>,
     #[serde(with = "numbers")]
     own_variances: Vec<f64>,
-    covariances: Covariances<P>,
+    covariances: Kept<P>,
     slow_s: f64,
 }
 
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(serialize = "", deserialize = ""))]
+enum Kept<P: Plant> {
+    /// Of each pack the first member.
+    Packs(Vec<Factors>),
+    #[serde(skip)]
+    Singles(Vec<Single<P>>),
+}
+
 impl<P: Plant> Bank<P> {
-    /// Means and covariances, rounded; each member has a variance of its own of the state `own`.
-    pub(crate) fn outline(&self, own: usize) -> Outline<P> {
+    /// Memory for an outline.
+    pub(crate) fn outline(&self, states: usize) -> Outline<P> {
+        let members = self.members.room();
         let covariances = match &self.covariances {
-            Covariances::Packs(packs) => Covariances::Packs(packs.iter().map(Pack::outline).collect()),
-            singles => singles.clone(),
+            Covariances::Packs(packs) => {
+                Kept::Packs(packs.iter().map(|_| Factors::with_room(states)).collect())
+            }
+            Covariances::Singles(_) => Kept::Singles(Vec::new()),
         };
-        let mean: Vec<f64> = self.members[0].x.iter().copied().map(numbers::single).collect();
-        let of_member =
-            |member: &Member<P::Hypothesis>| member.x.iter().zip(&mean).map(|(x, mean)| x - mean).collect();
-        let others = self.members.iter().skip(1);
-        let apart = others.flat_map::<Vec<f64>, _>(of_member).map(numbers::coarse).collect();
-        let own_variances = (0..self.members.len()).map(|index| numbers::single(self.variance(index, own)));
-        Outline { own_variances: own_variances.collect(), mean, apart, covariances, slow_s: self.slow_s }
+        Outline {
+            mean: Vec::with_capacity(states),
+            apart: Vec::with_capacity(states * members.saturating_sub(1)),
+            own_variances: Vec::with_capacity(members),
+            covariances,
+            slow_s: 0.0,
+        }
+    }
+
+    /// Write means and covariances, rounded, over another outline; each member has a variance of its own of the state `own`.
+    pub(crate) fn write_outline(&self, own: usize, outline: &mut Outline<P>) {
+        let Outline { mean, apart, own_variances, covariances, slow_s } = outline;
+        match (&self.covariances, covariances) {
+            (Covariances::Packs(packs), Kept::Packs(kept)) => {
+                for (pack, kept) in packs.iter().zip(kept) {
+                    pack.bank.write_outline(kept, numbers::coarse);
+                }
+            }
+            (Covariances::Singles(all), kept) => *kept = Kept::Singles(all.clone()),
+            (Covariances::Packs(_), Kept::Singles(_)) => {}
+        }
+        mean.clear();
+        mean.extend(self.members[0].x.iter().copied().map(numbers::single));
+        apart.clear();
+        for member in self.members.iter().skip(1) {
+            apart.extend(member.x.iter().zip(&*mean).map(|(x, mean)| numbers::coarse(x - mean)));
+        }
+        own_variances.clear();
+        own_variances.extend((0..self.members.len()).map(|index| numbers::single(self.variance(index, own))));
+        *slow_s = self.slow_s;
     }
 
     /// Become as the outline of this bank is; no reading has been refused lately.
@@ -46,13 +83,14 @@ impl<P: Plant> Bank<P> {
             member.place_at(mean.iter().zip(apart).map(|(mean, apart)| mean + apart));
         }
         match (&mut self.covariances, &outline.covariances) {
-            (Covariances::Packs(packs), Covariances::Packs(outlines)) => {
+            (Covariances::Packs(packs), Kept::Packs(outlines)) => {
                 let variances = outline.own_variances.chunks(Pack::SIZE);
                 for ((pack, outline), variances) in packs.iter_mut().zip(outlines).zip(variances) {
                     pack.return_to(outline, own, variances);
                 }
             }
-            (covariances, singles) => covariances.clone_from(singles),
+            (covariances, Kept::Singles(all)) => *covariances = Covariances::Singles(all.clone()),
+            (Covariances::Singles(_), Kept::Packs(_)) => {}
         }
         self.slow_s = outline.slow_s;
     }

@@ -9,6 +9,7 @@ use core::marker::PhantomData;
 use cylwatch_thermal::real::powi;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::member::Member;
 use crate::filter::gate::Outcome;
@@ -16,8 +17,7 @@ use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::plant::{Plant, StepTransition, parts};
 use crate::filter::ud::UdFactors;
-use crate::filter::ud_bank::{BankTransition, UdBank, UdMemory, Unrolled};
-use crate::numbers;
+use crate::filter::ud_bank::{BankTransition, Factors, UdBank, UdMemory, Unrolled};
 
 /// Distance up to which two states differ linearly: curvature is left out.
 const LINEAR_DISTANCE: f64 = 0.5;
@@ -29,7 +29,7 @@ const MIN_EXPLAINED_PART: f64 = 0.01;
 pub(super) struct Pack {
     pub bank: UdBank,
     /// Which members share derivatives, found at each time update; readings hardly change it.
-    groups: Vec<Group>,
+    groups: SmallVec<[Group; LANES]>,
 }
 
 /// Memory that all packs share. Nothing in it outlives a step.
@@ -93,14 +93,20 @@ impl Pack {
     /// Members per pack.
     pub(super) const SIZE: usize = LANES;
 
-    /// Members with these covariances.
-    pub(super) fn new<P: Plant>(plant: &P, factors: &[UdFactors]) -> Self {
-        let mut bank = UdBank::new(plant.states(), plant.leading()).with_filters(factors.len());
-        // A lane without a member does as the first one.
-        for lane in 0..LANES {
-            bank.set(lane, factors.get(lane).unwrap_or(&factors[0]));
+    /// Memory for so many members.
+    pub(super) fn new<P: Plant>(plant: &P, members: usize) -> Self {
+        let bank = UdBank::new(plant.states(), plant.leading()).with_filters(members);
+        Self { bank, groups: SmallVec::new() }
+    }
+
+    /// A member, the first of which comes first, begins with this covariance.
+    pub(super) fn begin(&mut self, lane: usize, factors: &UdFactors) {
+        self.bank.set(lane, factors);
+        if lane == 0 {
+            // A lane without a member does as the first one.
+            (1..LANES).for_each(|lane| self.bank.copy_lane(0, lane));
+            self.groups.clear();
         }
-        Self { bank, groups: Vec::with_capacity(LANES) }
     }
 
     /// Become as others of the same members are, without allocating.
@@ -109,17 +115,10 @@ impl Pack {
         self.groups.clone_from(&other.groups);
     }
 
-    /// The covariance of the first member, with factors that are [coarse](numbers::coarse).
-    pub(super) fn outline(&self) -> Self {
-        let mut bank = self.bank.clone().with_filters(1);
-        (1..LANES).for_each(|lane| bank.copy_lane(0, lane));
-        bank.round(numbers::coarse);
-        Self { bank, groups: Vec::new() }
-    }
-
-    /// Become as the outline is, each member with this variance of the state `own`.
-    pub(super) fn return_to(&mut self, outline: &Self, own: usize, variances: &[f64]) {
-        self.copy_from(outline);
+    /// Become as an outline is, each member with this variance of the state `own`.
+    pub(super) fn return_to(&mut self, outline: &Factors, own: usize, variances: &[f64]) {
+        self.bank.return_to(outline);
+        self.groups.clear();
         for (lane, &variance) in variances.iter().enumerate().skip(1) {
             self.bank.decorrelate_and_set(lane, own, variance);
         }

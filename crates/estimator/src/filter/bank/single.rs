@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::engine::BankEngine;
 use super::member::Member;
 use super::windowed::Windowed;
-use super::workspace::Workspace;
+use super::workspace::{SingleMemory, Workspace};
 use crate::EstimatorError;
 use crate::filter::gate::Outcome;
 use crate::filter::plant::{Plant, parts};
@@ -73,17 +73,18 @@ impl<P: Plant> Single<P> {
         if let Engine::Stationary(stationary) = engine {
             stationary.begin(p, dt_s);
         }
+        let memory = work.single.get_or_insert_with(|| Box::new(SingleMemory::new(plant)));
         for _ in 0..parts {
             let linear = if let Engine::Unscented = engine {
-                work.points.predict(plant, &mut member.x, p, part_s)?;
-                &work.points.linear
+                memory.points.predict(plant, &mut member.x, p, part_s)?;
+                &memory.points.linear
             } else {
-                plant.propagate(&mut member.x, part_s, Some(&mut work.linear))?;
+                plant.propagate(&mut member.x, part_s, Some(&mut memory.linear))?;
                 match engine {
-                    Engine::Stationary(stationary) => stationary.predict(&work.linear, p),
-                    _ => p.predict(&work.linear),
+                    Engine::Stationary(stationary) => stationary.predict(&memory.linear, p),
+                    _ => p.predict(&memory.linear),
                 }
-                &work.linear
+                &memory.linear
             };
             if let Some(record) = &mut member.record {
                 record.append(&linear.phi);
@@ -157,7 +158,8 @@ impl<P: Plant> Single<P> {
         output: usize,
     ) -> Result<(f64, f64), P::Error> {
         if let Engine::Unscented = self.engine {
-            return work.points.output(plant, output, x, &self.p, &mut work.h);
+            let memory = work.single.get_or_insert_with(|| Box::new(SingleMemory::new(plant)));
+            return memory.points.output(plant, output, x, &self.p, &mut work.h);
         }
         let value = plant.output(output, x, Some(&mut work.h))?;
         Ok((value, plant.noise_variance(output, x)))

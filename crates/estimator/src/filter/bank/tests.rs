@@ -71,8 +71,8 @@ impl Plant for Level {
 fn bank(engine: &BankEngine) -> (Level, Workspace, Bank<Level>) {
     let mut level = Level { intensity: 0.0 };
     let prior = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 0.04]));
-    let members = [0.0, 0.1, 1.0].map(|intensity| (intensity, prior.clone())).into();
-    let bank = Bank::new(&mut level, engine, &[0.0, 0.0], members).unwrap();
+    let members = [0.0, 0.1, 1.0].map(|intensity| (intensity, prior.clone()));
+    let bank = Bank::new(&mut level, engine, &[0.0, 0.0], &members).unwrap();
     (level.clone(), Workspace::new(&level), bank)
 }
 

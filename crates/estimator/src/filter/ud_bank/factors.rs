@@ -1,7 +1,7 @@
 //! The factors of a bank as plain data, to be saved; its working memory is made anew.
 use alloc::string::String;
 use alloc::vec::Vec;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::{UdBank, start};
 use crate::filter::lanes::{LANES, Lanes};
@@ -9,7 +9,7 @@ use crate::numbers;
 
 /// Factors of the filters that there are, without working memory, and of `U` what is above its diagonal, column by column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Factors {
+pub(crate) struct Factors {
     states: usize,
     leading: usize,
     filters: usize,
@@ -20,8 +20,44 @@ pub(super) struct Factors {
     d: Vec<f64>,
 }
 
-impl From<UdBank> for Factors {
-    fn from(bank: UdBank) -> Self {
+impl UdBank {
+    /// Write the covariance of the first filter, its factors rounded.
+    pub(crate) fn write_outline(&self, outline: &mut Factors, rounded: impl Fn(f64) -> f64 + Copy) {
+        let of_first = |lanes: &Lanes| rounded(lanes.0[0]);
+        (outline.states, outline.leading, outline.filters) = (self.n, self.leading, 1);
+        outline.u.clear();
+        outline.u.extend((0..self.n).flat_map(|j| &self.u[start(j)..][..j]).map(of_first));
+        outline.d.clear();
+        outline.d.extend(self.d.iter().map(of_first));
+    }
+
+    /// Let every filter have the covariance of an outline of as many states.
+    pub(crate) fn return_to(&mut self, outline: &Factors) {
+        let mut left = outline.u.iter();
+        for j in 0..self.n {
+            let column = &mut self.u[start(j)..][..j];
+            column.iter_mut().zip(&mut left).for_each(|(to, from)| *to = Lanes::splat(*from));
+        }
+        self.d.iter_mut().zip(&outline.d).for_each(|(to, from)| *to = Lanes::splat(*from));
+    }
+}
+
+impl Factors {
+    /// Memory for the outline of a filter of `n` states.
+    pub(crate) fn with_room(n: usize) -> Self {
+        let (u, d) = (Vec::with_capacity(n * n.saturating_sub(1) / 2), Vec::with_capacity(n));
+        Self { states: 0, leading: 0, filters: 1, u, d }
+    }
+}
+
+impl Serialize for UdBank {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Factors::from(self).serialize(serializer)
+    }
+}
+
+impl From<&UdBank> for Factors {
+    fn from(bank: &UdBank) -> Self {
         let of_filters = |lanes: &Lanes| lanes.0.into_iter().take(bank.filters);
         let columns = (0..bank.n).flat_map(|j| &bank.u[start(j)..][..j]);
         let u = columns.flat_map(of_filters).collect();

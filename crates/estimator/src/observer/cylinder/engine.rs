@@ -13,7 +13,7 @@ const MIN_MASS_SHARE: f64 = 1e-6;
 
 impl Cylinder {
     /// The engine of the settings.
-    pub(in crate::observer) fn bank_engine(&mut self) -> BankEngine {
+    pub(in crate::observer) fn bank_engine(&self) -> BankEngine {
         match self.settings.engine {
             Engine::Extended => BankEngine::Extended,
             Engine::Unscented => BankEngine::Unscented,

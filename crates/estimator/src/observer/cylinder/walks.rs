@@ -41,8 +41,11 @@ pub(super) fn slow_process(cylinder: &Cylinder, state: usize) -> SlowProcess {
 
 impl Cylinder {
     pub(super) fn set_bounds(&mut self) {
+        let mut bounds = core::mem::take(&mut self.bounds);
+        bounds.clear();
         let of = |state| self.bounds_of(state).map(|(low, high)| (state, low, high));
-        self.bounds = (0..self.states.count()).filter_map(of).collect();
+        bounds.extend((0..self.states.count()).filter_map(of));
+        self.bounds = bounds;
     }
 
     /// What each sensor's offset may have changed by since it was new, standard deviation: it is held within as much more.

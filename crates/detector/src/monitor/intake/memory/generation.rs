@@ -11,6 +11,11 @@ const REST_BITS: u32 = 7;
 pub(super) struct Generation(Vec<u16>);
 
 impl Generation {
+    /// None, with memory for as many as one has.
+    pub(super) fn with_room() -> Self {
+        Self(Vec::with_capacity(super::ROWS as usize))
+    }
+
     pub(super) fn insert(&mut self, fingerprint: u16) {
         if let Err(at) = self.0.binary_search(&fingerprint) {
             self.0.insert(at, fingerprint);
@@ -47,7 +52,8 @@ impl TryFrom<(u16, Vec<u8>)> for Generation {
     fn try_from((length, bytes): (u16, Vec<u8>)) -> Result<Self, Self::Error> {
         const BAD: &str = "the code of a generation is none";
         let mut bits = bytes.iter().flat_map(|byte| (0..8).map(move |bit| byte >> bit & 1 == 1));
-        let (mut sorted, mut next) = (Vec::with_capacity(usize::from(length)), 0_u32);
+        let mut next = 0_u32;
+        let Self(mut sorted) = Self::with_room();
         for _ in 0..length {
             while bits.next().ok_or(BAD)? {
                 next += 1 << REST_BITS;
