@@ -151,10 +151,10 @@ impl<P: Plant> Bank<P> {
         self.slow_s = 0.0;
     }
 
-    /// Become as another bank is, without allocating where that has the same members.
+    /// Become as another bank of the same plant is, without allocating where there is memory for its members; where that has memory for more, as its first ones are.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         // Before the first sample one that was saved has no members, and what it has of covariances says nothing.
-        let alike = self.members.room() == other.members.room() || other.members.is_empty();
+        let alike = self.members.room() > 0 || other.members.is_empty();
         match (&mut self.covariances, &other.covariances) {
             (Covariances::Packs(packs), Covariances::Packs(others)) if alike => {
                 self.members.copy_from(&other.members);

@@ -5,11 +5,10 @@ use core::mem::swap;
 
 use super::clock::Clock;
 use super::commissioning::BegunFrom;
-use super::cylinder::Cylinder;
 use super::roles::Roles;
 use super::signature::Onsets;
 use super::{Observer, Snapshot};
-use crate::filter::{Bank, StateSpace};
+use crate::filter::StateSpace;
 use crate::thermal::reduced::WarmStart;
 
 /// An estimate beside that of an [`Observer`], which alone can go on with it.
@@ -19,8 +18,6 @@ pub struct Companion {
     roles: Roles,
     replaced: Vec<bool>,
     begun_from: BegunFrom,
-    /// Memory for banks of as many members, where they are not as many as the observer's.
-    aside: Option<[Bank<Cylinder>; 2]>,
     memory: WarmStart,
 }
 
@@ -47,11 +44,14 @@ impl Observer {
             },
             replaced: vec![false; roles.members],
             begun_from: BegunFrom::new(&self.commissioning, self.cylinder.outputs()),
-            aside: (roles.members != self.roles.members)
-                .then(|| [self.room_between_steps(&roles), self.room_for(&roles)]),
             memory: self.fresh_start.clone(),
             roles,
         }
+    }
+
+    /// A companion of all members becomes as the observer is now.
+    pub fn let_follow(&self, companion: &mut Companion) {
+        self.snapshot_into(&mut companion.now);
     }
 
     /// Do something as a companion.
@@ -63,17 +63,13 @@ impl Observer {
     }
 
     fn change_places(&mut self, companion: &mut Companion) {
-        let Companion { now, roles, replaced, begun_from, aside, memory } = companion;
+        let Companion { now, roles, replaced, begun_from, memory } = companion;
         swap(&mut self.bank, &mut now.bank);
         swap(&mut self.onsets, &mut now.onsets);
         swap(&mut self.clock, &mut now.clock);
         swap(&mut self.roles, roles);
         swap(&mut self.replaced, replaced);
         swap(&mut self.begun_from, begun_from);
-        if let Some([before, likeliest]) = aside {
-            swap(&mut self.before, before);
-            swap(&mut self.likeliest, likeliest);
-        }
         self.cylinder.set_loosened(&self.clock.loosened);
         self.cylinder.write_warm_start(memory);
         self.cylinder.model().set_warm_start(&now.warm_start);

@@ -115,8 +115,7 @@ pub struct Observer {
     roles: Roles,
     /// The bank before the present sample.
     before: Bank<Cylinder>,
-    /// The likeliest bank after a step of the surroundings.
-    likeliest: Bank<Cylinder>,
+    start_before: WarmStart,
     /// Where the model's iterations start first.
     fresh_start: WarmStart,
     reference_x: Vec<f64>,
@@ -169,7 +168,7 @@ impl Observer {
             gate,
             roles: Roles::of(&settings.bank),
             before: Bank::default(),
-            likeliest: Bank::default(),
+            start_before: cylinder.warm_start(),
             fresh_start: cylinder.warm_start(),
             reference_x: vec![0.0; n],
             masses: Vec::with_capacity(settings.bank.len()),
@@ -182,7 +181,7 @@ impl Observer {
 
     /// Memory for the members of the bank.
     fn make_room(&mut self) {
-        (self.bank, self.likeliest) = (self.room_for(&self.roles), self.room_for(&self.roles));
+        self.bank = self.room_for(&self.roles);
         self.before = self.room_between_steps(&self.roles);
     }
 

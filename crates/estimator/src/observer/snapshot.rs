@@ -50,16 +50,6 @@ impl Observer {
         }
     }
 
-    /// Memory for [one](Self::snapshot_into).
-    pub fn room_for_snapshot(&self) -> Snapshot {
-        Snapshot {
-            bank: self.room_between_steps(&self.roles),
-            onsets: Onsets::with_room(self.cylinder.states()),
-            clock: self.clock.clone(),
-            warm_start: self.fresh_start.clone(),
-        }
-    }
-
     /// Round covariances, and what onsets of leaks have made, to single precision: snapshots saved take little more than half of the bytes. An estimate changes by some
     /// 1e-7 of its standard deviation.
     pub fn round(&mut self) {

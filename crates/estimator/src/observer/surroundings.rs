@@ -30,6 +30,9 @@ use super::Observer;
 use super::settings::AirStep;
 use crate::EstimatorError;
 
+/// Nothing stepped; the air did, and the wind rose by so much, in what it changes by.
+const EXPLANATIONS: [Option<f64>; 4] = [None, Some(0.0), Some(1.0), Some(-1.0)];
+
 impl Observer {
     /// Move on and take readings as the likeliest explanation has it.
     pub(super) fn explain(
@@ -40,47 +43,63 @@ impl Observer {
         readings: &[f64],
     ) -> Result<(), EstimatorError> {
         self.before.copy_from(&self.bank);
+        self.cylinder.write_warm_start(&mut self.start_before);
         self.move_on(dt_s)?;
         let Some(way) = self.surprise(step.surprise_sd, readings)? else {
             return self.take_in(time_s, readings);
         };
-        let mut least = f64::INFINITY;
-        let mut explanations = [(f64::INFINITY, 0.0); 4];
-        let stays = self.take_in(time_s, readings);
-        if stays.is_ok() && self.is_possible() {
-            least = self.unlikeliness(readings) + 2.0 * step.per_s * dt_s;
-            explanations[0] = (least, self.gas_k());
-            self.likeliest.copy_from(&self.bank);
-        }
-        let wind: &[f64] =
-            if self.cylinder.state_map().outside.is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
-        let prior = -2.0 * libm::log(-libm::expm1(-step.per_s * dt_s) / wind.len() as f64);
-        for (&change, explanation) in wind.iter().zip(&mut explanations[1..]) {
-            self.bank.copy_from(&self.before);
-            self.step_the_surroundings(step, way, change);
-            let stepped = self.move_on(dt_s).and_then(|()| self.take_in(time_s, readings));
-            if stepped.is_err() || !self.is_possible() {
-                continue;
+        let with_wind = self.cylinder.state_map().outside.is_some();
+        let tried = if with_wind { &EXPLANATIONS[..] } else { &EXPLANATIONS[..2] };
+        let changed = -2.0 * libm::log(-libm::expm1(-step.per_s * dt_s) / (tried.len() - 1) as f64);
+        let mut found = [(f64::INFINITY, 0.0); EXPLANATIONS.len()];
+        let (mut stays, mut likeliest) = (Ok(()), None);
+        for (index, explanation) in tried.iter().enumerate() {
+            let stepped = match explanation {
+                None => self.take_in(time_s, readings),
+                _ => self.step_as(*explanation, (step, way), dt_s, time_s, readings),
+            };
+            if stepped.is_ok() && self.is_possible() {
+                let prior = explanation.map_or(2.0 * step.per_s * dt_s, |_| changed);
+                found[index] = (self.unlikeliness(readings) + prior, self.gas_k());
+                likeliest = likeliest.filter(|&best: &usize| found[best].0 <= found[index].0).or(Some(index));
             }
-            let unlikeliness = self.unlikeliness(readings) + prior;
-            *explanation = (unlikeliness, self.gas_k());
-            if unlikeliness < least {
-                least = unlikeliness;
-                self.likeliest.copy_from(&self.bank);
+            if index == 0 {
+                stays = stepped;
             }
         }
-        if least < f64::INFINITY {
-            self.bank.copy_from(&self.likeliest);
-            let (mut sum, mut square) = (0.0, 0.0);
-            for (unlikeliness, gas_k) in explanations {
-                let likelihood = libm::exp(0.5 * (least - unlikeliness));
-                sum += likelihood;
-                square += likelihood * powi(gas_k - self.gas_k(), 2);
-            }
-            self.clock.ambiguous_k = self.clock.ambiguous_k.max(libm::sqrt(square / sum));
-            return Ok(());
+        let Some(likeliest) = likeliest else { return stays };
+        if likeliest + 1 < tried.len() {
+            // Once more: to keep what it was would take as much memory as the bank.
+            self.step_as(tried[likeliest], (step, way), dt_s, time_s, readings)?;
+            self.is_possible();
         }
-        stays
+        let (least, likeliest_k) = found[likeliest];
+        let (mut sum, mut square) = (0.0, 0.0);
+        for (unlikeliness, gas_k) in found {
+            let likelihood = libm::exp(0.5 * (least - unlikeliness));
+            sum += likelihood;
+            square += likelihood * powi(gas_k - likeliest_k, 2);
+        }
+        self.clock.ambiguous_k = self.clock.ambiguous_k.max(libm::sqrt(square / sum));
+        Ok(())
+    }
+
+    /// Move on from before the row and take readings as one explanation has it.
+    fn step_as(
+        &mut self,
+        explanation: Option<f64>,
+        (step, way): (AirStep, f64),
+        dt_s: f64,
+        time_s: f64,
+        readings: &[f64],
+    ) -> Result<(), EstimatorError> {
+        self.bank.copy_from(&self.before);
+        self.cylinder.model().set_warm_start(&self.start_before);
+        if let Some(wind) = explanation {
+            self.step_the_surroundings(step, way, wind);
+        }
+        self.move_on(dt_s)?;
+        self.take_in(time_s, readings)
     }
 
     /// Mean gas temperature where gas may flow, K: there the pressure does not tell it.

@@ -279,14 +279,12 @@ impl Monitor {
 
     /// The observer as it is now is the one to go back to: before each row, and after an examination.
     fn keep_for_the_way_back(&mut self) {
-        self.observer.snapshot_into(&mut self.before);
+        self.observer.let_follow(&mut self.shadow);
     }
 
-    /// Both observers as they were before the present row.
+    /// The observer as it was before the present row.
     fn go_back(&mut self) {
-        let before = &self.before;
-        self.observer.restore(before);
-        self.observer.with(&mut self.shadow, |shadow| shadow.restore(before));
+        self.observer.restore(self.shadow.snapshot());
     }
 
     /// A sample of a jump: what it shows, and what follows.

@@ -73,15 +73,13 @@ pub struct Monitor {
     observer: Box<Observer>,
     /// Has the thermometers in each other's place, until that is judged.
     twin: Option<Box<Companion>>,
-    /// Goes on without the pressure while a jump is examined.
+    /// The observer before the present row; while a jump is examined, one that goes on without the pressure.
     shadow: Box<Companion>,
     state: Box<State>,
     /// Of the present row.
     usable: Vec<f64>,
     /// What the last row said, and memory for what the next one says.
     said: Box<Said>,
-    /// The observer before the present row.
-    before: Box<Snapshot>,
 }
 
 /// Output of a row, in memory that the next one uses again.
@@ -278,7 +276,6 @@ impl Monitor {
         });
         let compared = wiring::compared(&roles, sensors);
         state.make_room(&observer);
-        let before = Box::new(observer.room_for_snapshot());
         Ok(Self {
             limits: LimitMasses::new(&contents, settings, full_kg)?,
             thresholds: tails.thresholds(settings.false_alarm_interval_s)?,
@@ -295,7 +292,6 @@ impl Monitor {
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
             said: Box::new(Said::with_room(sensors.len())),
-            before,
             settings: settings.clone(),
             vessel: vessel.clone(),
             contents,
