@@ -1,16 +1,16 @@
 //! Distribution of the time until a limit.
 //!
-//! Mass `m` and leak rate `r` are jointly normal, `r >= 0`. The limit has been reached by the time `t` if the mass now is at most the
-//! mass `m*(r, t)` that is at the limit then: `limit + r t` if the rate stays, `limit exp(W(r t/limit))` if the leak is choked. So
+//! Mass `m` and leak rate `r` are jointly normal, `r >= 0`. The limit has been reached by the time `t` if the leak rate is at least the one that takes a mass
+//! `m` to the limit by then: `r*(m, t) = (m - limit)/t` if the rate stays, `m ln(m/limit)/t` if the leak is choked, and none from the limit downwards. So
 //!
-//! `F(t) = int_0^inf f(r) Phi((m*(r, t) - E[m | r])/sd[m | r]) dr / P(r >= 0)`,
+//! `F(t) = int f(m) Phi((E[r | m] - r*(m, t))/sd[r | m]) dm / P(r >= 0)`,
 //!
-//! one smooth integral, to 1e-9. With a known mass or a known rate it is a normal distribution function; with a straight
+//! one smooth integral, to 1e-9. Quantiles are found to 1e-6 of themselves, by one to 1e-7. With a known mass or a known rate it is a normal distribution function; with a straight
 //! loss and a rate that is surely positive it is that of a ratio of normal variables. A leak that is there only with a
 //! probability mixes in what happens without one: the mass stays.
 //!
 //! Source: D. V. Hinkley, Biometrika 56 (1969) 635 (ratio); T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145 (root).
-use core::f64::consts::FRAC_1_SQRT_2;
+use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -19,12 +19,21 @@ use super::quadrature::integrate;
 use super::{LossLaw, MassAndLeak};
 use crate::{DetectorError, error::positive};
 
-/// Absolute accuracy of a probability.
+/// Absolute accuracy of a probability, and of one by which a quantile is found.
 const TOLERANCE: f64 = 1e-10;
-/// Densities below `exp(-40)` of the largest are left out.
-const NEGLIGIBLE: f64 = 80.0;
+const TOLERANCE_OF_QUANTILES: f64 = 1e-8;
+/// What is left of the logarithm of a time, or of a probability, where a quantile is found.
+const FOUND: (f64, f64) = (1e-10, 1e-7);
+/// Standard deviations from which a tail is computed by its logarithm.
+const FAR: f64 = 5.0;
+/// Standard deviations beyond which masses are left out.
+const WIDEST: f64 = 9.0;
 /// Multiples of the standard deviation between which a normal distribution function rises.
 const STEP: [f64; 5] = [-7.0, -2.0, 0.0, 2.0, 7.0];
+/// How far a quantile is looked for about the time that means give first, as a factor.
+const NEAR: f64 = 1.5;
+/// `sqrt(2 pi)`.
+const SQRT_TAU: f64 = 2.506_628_274_631_000_7;
 /// Longest horizon, s: thirty million years.
 const LONGEST_S: f64 = 1e15;
 /// Earliest time that is told from now, as a part of the horizon.
@@ -88,10 +97,14 @@ impl Prognosis {
 
     /// Probability that the limit is reached within a time, s.
     pub fn probability_within(&self, time_s: f64) -> f64 {
+        self.probability_to(TOLERANCE, time_s)
+    }
+
+    fn probability_to(&self, tolerance: f64, time_s: f64) -> f64 {
         let time_s = time_s.max(0.0);
         let mut probability = 0.0;
         if self.leak_probability > 0.0 {
-            probability += self.leak_probability * self.with_leak(time_s);
+            probability += self.leak_probability * self.with_leak(time_s, tolerance);
         }
         if self.leak_probability < 1.0 {
             let MassAndLeak { mass_kg, mass_sd_kg, .. } = self.state;
@@ -102,35 +115,18 @@ impl Prognosis {
 
     /// Time by which the limit is reached with a probability. A horizon above 1e15 s counts as that.
     pub fn quantile(&self, probability: f64, horizon_s: f64) -> Passage {
-        if self.probability_within(0.0) >= probability {
-            return Passage::Reached;
-        }
-        if horizon_s.is_nan() || horizon_s <= 0.0 {
-            return Passage::BeyondHorizon;
-        }
-        let horizon_s = horizon_s.min(LONGEST_S);
-        let at_horizon = self.probability_within(horizon_s) - probability;
-        if at_horizon < 0.0 {
-            return Passage::BeyondHorizon;
-        }
-        let earliest_s = EARLIEST * horizon_s;
-        let at_earliest = self.probability_within(earliest_s) - probability;
-        if at_earliest >= 0.0 {
-            return Passage::In(earliest_s);
-        }
-        let excess = |ln_s: f64| self.probability_within(libm::exp(ln_s)) - probability;
-        let ends = [(libm::log(earliest_s), at_earliest), (libm::log(horizon_s), at_horizon)];
-        Passage::In(libm::exp(root(excess, ends)))
+        Search::new(self, horizon_s).passage(probability)
     }
 
     /// 5, 50 and 95 % quantile.
     pub fn quantiles(&self, horizon_s: f64) -> Quantiles {
-        let [p5, p50, p95] = [0.05, 0.5, 0.95].map(|probability| self.quantile(probability, horizon_s));
-        Quantiles { p5, p50, p95, horizon_s }
+        let mut search = Search::new(self, horizon_s);
+        let p50 = search.passage(0.5);
+        Quantiles { p5: search.passage(0.05), p50, p95: search.passage(0.95), horizon_s }
     }
 
     /// `F(t)`, given that there is a leak.
-    fn with_leak(&self, time_s: f64) -> f64 {
+    fn with_leak(&self, time_s: f64, tolerance: f64) -> f64 {
         let MassAndLeak { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, .. } = self.state;
         if leak_sd_kg_s == 0.0 {
             let needed_kg = self.law.mass_that_reaches_kg(self.limit_kg, leak_kg_s.max(0.0), time_s);
@@ -139,7 +135,7 @@ impl Prognosis {
         if mass_sd_kg == 0.0 {
             return self.with_known_mass(time_s);
         }
-        self.over_leak_rates(time_s)
+        self.over_masses(time_s, tolerance)
     }
 
     /// `P(r >= r*)/P(r >= 0)`, where the known mass needs the rate `r*`.
@@ -154,36 +150,106 @@ impl Prognosis {
         libm::exp(tail(needed_kg_s) - tail(0.0))
     }
 
-    /// The integral over the rate in standard deviations, `z = (r - E[r])/sd[r]`.
-    fn over_leak_rates(&self, time_s: f64) -> f64 {
+    /// The integral over the mass in standard deviations, `u = (m - E[m])/sd[m]`.
+    fn over_masses(&self, time_s: f64, tolerance: f64) -> f64 {
         let MassAndLeak { mass_kg, leak_kg_s, mass_sd_kg, leak_sd_kg_s, correlation } = self.state;
-        let no_leak = -leak_kg_s / leak_sd_kg_s;
-        let mode = no_leak.max(0.0);
-        let (low, high) = (no_leak.max(-libm::sqrt(NEGLIGIBLE)), libm::sqrt(mode * mode + NEGLIGIBLE));
-        let sd_kg = mass_sd_kg * libm::sqrt((1.0 - correlation) * (1.0 + correlation));
-        // How far the mass that is at the limit by then lies above the mass to be expected with this rate.
-        let above_kg = |z: f64| {
-            let rate_kg_s = (leak_kg_s + leak_sd_kg_s * z).max(0.0);
-            let needed_kg = self.law.mass_that_reaches_kg(self.limit_kg, rate_kg_s, time_s);
-            needed_kg - mass_kg - correlation * mass_sd_kg * z
+        let sd_kg_s = leak_sd_kg_s * libm::sqrt((1.0 - correlation) * (1.0 + correlation));
+        // How far the rate to be expected with a mass lies above the one that is needed: concave.
+        let above_kg_s = |u: f64| {
+            let lost_kg = self.law.time_s(mass_kg + mass_sd_kg * u, 1.0, self.limit_kg);
+            let needed_kg_s = if lost_kg > 0.0 { lost_kg / time_s } else { 0.0 };
+            leak_kg_s + correlation * leak_sd_kg_s * u - needed_kg_s
         };
-        let integrand = |z: f64| libm::exp(-0.5 * (z - mode) * (z + mode)) * below(0.0, sd_kg, above_kg(z));
-        // P(r >= 0) on the scale of the density above.
-        let all = libm::exp(ln_upper_tail(no_leak) + 0.5 * mode * mode) * libm::sqrt(core::f64::consts::TAU);
-        let ends = steps(above_kg, sd_kg, (low, high));
-        let panel = |ends: &[f64]| integrate(&integrand, ends[0], ends[1], TOLERANCE * all);
-        ends.windows(2).map(panel).sum::<f64>() / all
+        let no_leak = -leak_kg_s / leak_sd_kg_s;
+        let ln_all = ln_upper_tail(no_leak);
+        // Where there is hardly a leak its probability is a ratio of tails.
+        let in_tail = no_leak > FAR;
+        let integrand = |u: f64| {
+            let above_kg_s = above_kg_s(u);
+            if !in_tail || sd_kg_s == 0.0 {
+                libm::exp(-0.5 * u * u - ln_all) * below(0.0, sd_kg_s, above_kg_s)
+            } else {
+                libm::exp(-0.5 * u * u - ln_all + ln_upper_tail(-above_kg_s / sd_kg_s))
+            }
+        };
+        // A leak that is unlikely, but there, goes with other masses.
+        let shift = correlation * no_leak.max(0.0);
+        let bounds = (shift.min(0.0) - WIDEST, shift.max(0.0) + WIDEST);
+        let ends = steps(above_kg_s, sd_kg_s, bounds, (self.limit_kg - mass_kg) / mass_sd_kg);
+        let certain = STEP[STEP.len() - 1] * sd_kg_s;
+        let panel = |ends: &[f64]| {
+            let [from, to] = [ends[0], ends[1]].map(above_kg_s);
+            if from < -certain && to < -certain && !in_tail {
+                0.0
+            } else if from > certain && to > certain {
+                SQRT_TAU * between(ends[0], ends[1]) * libm::exp(-ln_all)
+            } else {
+                integrate(&integrand, ends[0], ends[1], tolerance * SQRT_TAU)
+            }
+        };
+        ends.windows(2).map(panel).sum::<f64>() / SQRT_TAU
     }
 }
 
-/// Bounds, peak, zero, and both sides of each step.
+/// Looks for quantiles, each beginning where those before have come to.
+struct Search<'a> {
+    prognosis: &'a Prognosis,
+    /// Probability now.
+    now: f64,
+    /// Logarithms of times, s, and probabilities; none where there is no horizon.
+    known: SmallVec<[(f64, f64); 48]>,
+}
+
+impl<'a> Search<'a> {
+    fn new(prognosis: &'a Prognosis, horizon_s: f64) -> Self {
+        let probability = |time_s: f64| prognosis.probability_to(TOLERANCE_OF_QUANTILES, time_s);
+        let mut search = Self { prognosis, now: probability(0.0), known: SmallVec::new() };
+        if horizon_s.is_nan() || horizon_s <= 0.0 {
+            return search;
+        }
+        let horizon_s = horizon_s.min(LONGEST_S);
+        let earliest_s = EARLIEST * horizon_s;
+        let Prognosis { state, law, limit_kg, .. } = prognosis;
+        let rate_kg_s = if state.leak_kg_s > 0.0 { state.leak_kg_s } else { state.leak_sd_kg_s };
+        let about_s = law.time_s(state.mass_kg, rate_kg_s, *limit_kg);
+        for time_s in [earliest_s, about_s / NEAR, about_s * NEAR, horizon_s] {
+            if (earliest_s..=horizon_s).contains(&time_s) {
+                search.known.push((libm::log(time_s), probability(time_s)));
+            }
+        }
+        search
+    }
+
+    fn passage(&mut self, probability: f64) -> Passage {
+        if self.now >= probability {
+            return Passage::Reached;
+        }
+        let reached = |of: &(f64, f64)| of.1 >= probability;
+        let later = self.known.iter().copied().filter(reached).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some(later) = later else { return Passage::BeyondHorizon };
+        let earlier = self.known.iter().copied().filter(|of| !reached(of) && of.0 < later.0);
+        let Some(earlier) = earlier.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return Passage::In(libm::exp(later.0));
+        };
+        let ends = [earlier, later].map(|(ln_s, known)| (ln_s, known - probability));
+        let Self { prognosis, known, .. } = self;
+        let excess = |ln_s: f64| {
+            let found = prognosis.probability_to(TOLERANCE_OF_QUANTILES, libm::exp(ln_s));
+            known.push((ln_s, found));
+            found - probability
+        };
+        Passage::In(libm::exp(root(excess, ends, FOUND)))
+    }
+}
+
+/// Bounds, peak, kink, and both sides of each step.
 type Ends = SmallVec<[f64; 4 + 2 * STEP.len()]>;
 
-/// Where the integrand steps, between `low` and `high`, both included: where a concave function passes multiples of a standard deviation.
+/// Where the integrand steps, between `low` and `high`, both included: where a concave function with a kink passes multiples of a standard deviation.
 /// A step narrow against the panels of a quadrature would be overlooked.
-fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Ends {
+fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64), kink: f64) -> Ends {
     let peak = maximum(&concave, (low, high));
-    let mut ends = Ends::from_slice(&[low, 0.0, peak, high]);
+    let mut ends = Ends::from_slice(&[low, kink, peak, high]);
     for level in STEP {
         for side in [low, high] {
             ends.extend(crossing(&concave, level * sd, 0.1 * sd, (side, peak)));
@@ -197,8 +263,12 @@ fn steps(concave: impl Fn(f64) -> f64, sd: f64, (low, high): (f64, f64)) -> Ends
 
 /// Where a concave function is largest, by thirds.
 fn maximum(concave: &impl Fn(f64) -> f64, (mut low, mut high): (f64, f64)) -> f64 {
-    if concave(high) >= concave(high - 1e-6 * (high - low)) {
+    let near = 1e-6 * (high - low);
+    if concave(high) >= concave(high - near) {
         return high;
+    }
+    if concave(low) >= concave(low + near) {
+        return low;
     }
     for _ in 0..60 {
         let (left, right) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
@@ -229,6 +299,16 @@ fn crossing(
     Some(0.5 * (from + to))
 }
 
+/// Probability between two values of a standard normal variable.
+fn between(low: f64, high: f64) -> f64 {
+    // On the side where it does not cancel.
+    if low > 0.0 {
+        normal_probability(-low) - normal_probability(-high)
+    } else {
+        normal_probability(high) - normal_probability(low)
+    }
+}
+
 /// Distribution function of the standard normal distribution.
 pub(crate) fn normal_probability(x: f64) -> f64 {
     0.5 * libm::erfc(-FRAC_1_SQRT_2 * x)
@@ -241,16 +321,16 @@ fn below(mean: f64, sd: f64, bound: f64) -> f64 {
 
 /// `ln P(x > z)` of a standard normal `x`; in the tail by the continued fraction of Mills' ratio.
 fn ln_upper_tail(z: f64) -> f64 {
-    if z < 5.0 {
+    if z < FAR {
         return libm::log(normal_probability(-z));
     }
     let mills = (1..80).rev().fold(z, |fraction, n| z + f64::from(n) / fraction);
-    -0.5 * (z * z + libm::log(core::f64::consts::TAU)) - libm::log(mills)
+    -0.5 * (z * z + libm::log(TAU)) - libm::log(mills)
 }
 
-/// Root of a rising function between two points with a change of sign, by Chandrupatla's method: inverse quadratic where that is safe,
-/// halving where not.
-pub(crate) fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 {
+/// Root of a rising function between two points with a change of sign, to a tolerance of one or the other, by Chandrupatla's method: inverse quadratic where that is
+/// safe, halving where not.
+pub(crate) fn root(mut f: impl FnMut(f64) -> f64, [low, high]: [(f64, f64); 2], found: (f64, f64)) -> f64 {
     let (mut b, mut a) = (low, high);
     let mut c = a;
     let mut share = 0.5;
@@ -260,8 +340,8 @@ pub(crate) fn root(f: impl Fn(f64) -> f64, [low, high]: [(f64, f64); 2]) -> f64 
         c = if (new.1 > 0.0) == (a.1 > 0.0) { a } else { core::mem::replace(&mut b, a) };
         a = new;
         let best = if a.1.abs() < b.1.abs() { a } else { b };
-        let smallest = 1e-10 / (b.0 - a.0).abs();
-        if smallest > 0.5 || best.1.abs() < TOLERANCE {
+        let smallest = found.0 / (b.0 - a.0).abs();
+        if smallest > 0.5 || best.1.abs() < found.1 {
             return best.0;
         }
         let (xi, phi) = ((a.0 - b.0) / (c.0 - b.0), (a.1 - b.1) / (c.1 - b.1));

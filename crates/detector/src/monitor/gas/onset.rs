@@ -28,6 +28,8 @@ use crate::prognosis::{normal_probability, root};
 
 /// Probability on either side of an interval.
 const TAIL: f64 = 0.025;
+/// What is left of a quantile, as a part of its range, or of a probability where one is found.
+const FOUND: (f64, f64) = (1e-10, 1e-10);
 /// Weight of an onset that adds nothing.
 const NEGLIGIBLE: f64 = 1e-6;
 /// Decades over which a leak rate may be anything, as a natural logarithm: 0.001 to 10 bar/h.
@@ -233,7 +235,7 @@ impl Candidate {
 fn quantile(p: f64, (low, high): (f64, f64), below: impl Fn(f64) -> f64) -> f64 {
     let value = |part: f64| low + part * (high - low);
     let excess = |part: f64| below(value(part)) - p;
-    value(root(excess, [0.0, 1.0].map(|end| (end, excess(end)))))
+    value(root(excess, [0.0, 1.0].map(|end| (end, excess(end))), FOUND))
 }
 
 #[cfg(test)]
