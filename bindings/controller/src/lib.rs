@@ -43,10 +43,12 @@ pub trait Observed {
     fn write(&mut self, bytes: &[u8]);
     /// The monitor is there, and no row has been read.
     fn begun(&mut self) {}
-    /// A row goes into the monitor.
-    fn row(&mut self) {}
-    /// The monitor is done with the row.
-    fn done(&mut self) {}
+    /// The monitor begins to work.
+    fn work(&mut self) {}
+    /// It rests.
+    fn rest(&mut self) {}
+    /// It is done with the row of this line, which came so long after the one before, s.
+    fn done(&mut self, _line: usize, _interval_s: f64) {}
 }
 
 /// Replays a log.
@@ -60,7 +62,7 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
     let lines = || log.lines().enumerate().skip(1).filter(|(_, line)| !line.is_empty());
     let middle = lines().count() / 2;
     observed.begun();
-    let mut rows = 0;
+    let (mut rows, mut last_s) = (0, f64::NAN);
     for (count, (at, line)) in lines().enumerate() {
         let number = at + 1;
         if count == middle {
@@ -80,10 +82,13 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
             };
             length += 1;
         }
-        observed.row();
-        monitor.take(cells[0], &cells[1..length]).map_err(of(number))?;
+        observed.work();
+        let taken = monitor.take(cells[0], &cells[1..length]);
+        observed.rest();
+        taken.map_err(of(number))?;
         rows += put(&mut monitor, number, observed)?;
-        observed.done();
+        observed.done(number, cells[0] - last_s);
+        last_s = cells[0];
     }
     monitor.flush();
     rows += put(&mut monitor, 0, observed)?;
@@ -95,13 +100,18 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
 /// Write what the monitor says of the rows that are ready, and count them.
 fn put(monitor: &mut Monitor, line: usize, observed: &mut impl Observed) -> Result<usize, ReplayError> {
     let mut rows = 0;
-    while let Some(output) = monitor.next_output().map_err(|error| ReplayError::Monitor(line, error))? {
+    loop {
+        observed.work();
+        let output = monitor.next_output();
+        observed.rest();
+        let Some(output) = output.map_err(|error| ReplayError::Monitor(line, error))? else {
+            return Ok(rows);
+        };
         let mut bytes = [0; LARGEST_OUTPUT];
         let bytes = postcard::to_slice(output, &mut bytes).map_err(|_| ReplayError::Bytes)?;
         framed(bytes, observed);
         rows += 1;
     }
-    Ok(rows)
 }
 
 fn framed(bytes: &[u8], observed: &mut impl Observed) {

@@ -20,6 +20,8 @@ const LOG: usize = 2 << 20;
 const TICKS: u32 = 0xff_ffff;
 /// Instructions to a tick, where an instruction takes 1 ns (`-icount shift=0`) and the clock has 25 MHz.
 const PER_TICK: u64 = 40;
+/// Time without rows that is a gap, s.
+const GAP_S: f64 = 900.0;
 /// What unused stack is filled with.
 const PAINT: u32 = 0xc5c5_c5c5;
 
@@ -87,8 +89,14 @@ impl File {
 
 struct Told {
     out: File,
-    /// Ticks of the last step, of all of them, and of the longest; rows.
-    ticks: (u32, u64, u32, u64),
+    /// Clock when the present work began, and its allocations then.
+    begun: (u32, usize),
+    /// Ticks of the present row, and of all; rows.
+    ticks: (u64, u64, u64),
+    /// Ticks of the longest row, and its line: of those that came after a gap, and of all others.
+    longest: [(u64, usize); 2],
+    /// Allocations while rows were taken.
+    allocations: usize,
     /// Allocations, bytes of the arena, and bytes of stack until the first row came.
     at_start: (usize, usize, usize),
     /// Most bytes of the arena between rows.
@@ -105,16 +113,23 @@ impl Observed for Told {
         paint();
     }
 
-    fn row(&mut self) {
+    fn work(&mut self) {
         self.held = self.held.max(USED.load(Relaxed));
-        self.ticks.0 = SYST::get_current();
+        self.begun = (SYST::get_current(), COUNT.load(Relaxed));
     }
 
-    fn done(&mut self) {
-        let (begun, all, most, rows) = self.ticks;
+    fn rest(&mut self) {
+        let (begun, count) = self.begun;
         // It counts down.
-        let ticks = begun.wrapping_sub(SYST::get_current()) & TICKS;
-        self.ticks = (begun, all + u64::from(ticks), most.max(ticks), rows + 1);
+        self.ticks.0 += u64::from(begun.wrapping_sub(SYST::get_current()) & TICKS);
+        self.allocations += COUNT.load(Relaxed) - count;
+    }
+
+    fn done(&mut self, line: usize, interval_s: f64) {
+        let (ticks, all, rows) = self.ticks;
+        self.ticks = (0, all + ticks, rows + 1);
+        let longest = &mut self.longest[usize::from(interval_s.is_nan() || interval_s <= GAP_S)];
+        *longest = (*longest).max((ticks, line));
     }
 }
 
@@ -162,7 +177,15 @@ fn main() -> ! {
     clock.set_reload(TICKS);
     clock.clear_current();
     clock.enable_counter();
-    let mut told = Told { out: File::open(c"out.bin", 5), ticks: (0, 0, 0, 0), at_start: (0, 0, 0), held: 0 };
+    let mut told = Told {
+        out: File::open(c"out.bin", 5),
+        begun: (0, 0),
+        ticks: (0, 0, 0),
+        longest: [(0, 0); 2],
+        allocations: 0,
+        at_start: (0, 0, 0),
+        held: 0,
+    };
     paint();
     match core::str::from_utf8(&TEXT[..length]) {
         Err(_) => say(format_args!("log.csv is no text")),
@@ -177,12 +200,18 @@ fn main() -> ! {
                     PEAK.load(Relaxed)
                 ));
                 say(format_args!(
-                    "allocations {count} before the first row, {} after",
-                    COUNT.load(Relaxed) - count
+                    "allocations {count} before the first row, {} in rows, {} for saving and restoring",
+                    told.allocations,
+                    COUNT.load(Relaxed) - count - told.allocations
                 ));
-                let (_, all, most, rows) = told.ticks;
-                let (mean, most) = (all * PER_TICK / rows.max(1), u64::from(most) * PER_TICK);
-                say(format_args!("instructions of a step {mean} on average, {most} at most"));
+                let (_, all, rows) = told.ticks;
+                let [(after, gap), (most, line)] = told.longest;
+                say(format_args!(
+                    "instructions of a row {} on average, {} at most, in line {line}, {} after a gap, in line {gap}",
+                    all * PER_TICK / rows.max(1),
+                    most * PER_TICK,
+                    after * PER_TICK
+                ));
                 say(format_args!("stack {stack} bytes until the first row, {} after", stack_used()));
                 debug::exit(debug::EXIT_SUCCESS);
             }
