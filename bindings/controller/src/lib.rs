@@ -47,8 +47,10 @@ pub trait Observed {
     fn work(&mut self) {}
     /// It rests.
     fn rest(&mut self) {}
-    /// It is done with the row of this line, which came so long after the one before, s.
-    fn done(&mut self, _line: usize, _interval_s: f64) {}
+    /// It has said something of a row of this time, s.
+    fn said(&mut self, _time_s: f64) {}
+    /// It is done with the row of this line.
+    fn done(&mut self, _line: usize) {}
 }
 
 /// Replays a log.
@@ -62,7 +64,7 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
     let lines = || log.lines().enumerate().skip(1).filter(|(_, line)| !line.is_empty());
     let middle = lines().count() / 2;
     observed.begun();
-    let (mut rows, mut last_s) = (0, f64::NAN);
+    let mut rows = 0;
     for (count, (at, line)) in lines().enumerate() {
         let number = at + 1;
         if count == middle {
@@ -87,8 +89,7 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
         observed.rest();
         taken.map_err(of(number))?;
         rows += put(&mut monitor, number, observed)?;
-        observed.done(number, cells[0] - last_s);
-        last_s = cells[0];
+        observed.done(number);
     }
     monitor.flush();
     rows += put(&mut monitor, 0, observed)?;
@@ -107,6 +108,7 @@ fn put(monitor: &mut Monitor, line: usize, observed: &mut impl Observed) -> Resu
         let Some(output) = output.map_err(|error| ReplayError::Monitor(line, error))? else {
             return Ok(rows);
         };
+        observed.said(output.estimate.time_s);
         let mut bytes = [0; LARGEST_OUTPUT];
         let bytes = postcard::to_slice(output, &mut bytes).map_err(|_| ReplayError::Bytes)?;
         framed(bytes, observed);

@@ -95,6 +95,9 @@ struct Told {
     ticks: (u64, u64, u64),
     /// Ticks of the longest row, and its line: of those that came after a gap, and of all others.
     longest: [(u64, usize); 2],
+    /// Time of the last output, s, and whether the present row has one after a gap.
+    last_s: f64,
+    after_gap: bool,
     /// Allocations while rows were taken.
     allocations: usize,
     /// Allocations, bytes of the arena, and bytes of stack until the first row came.
@@ -125,10 +128,15 @@ impl Observed for Told {
         self.allocations += COUNT.load(Relaxed) - count;
     }
 
-    fn done(&mut self, line: usize, interval_s: f64) {
+    fn said(&mut self, time_s: f64) {
+        self.after_gap |= time_s - self.last_s > GAP_S;
+        self.last_s = time_s;
+    }
+
+    fn done(&mut self, line: usize) {
         let (ticks, all, rows) = self.ticks;
         self.ticks = (0, all + ticks, rows + 1);
-        let longest = &mut self.longest[usize::from(interval_s.is_nan() || interval_s <= GAP_S)];
+        let longest = &mut self.longest[usize::from(!core::mem::take(&mut self.after_gap))];
         *longest = (*longest).max((ticks, line));
     }
 }
@@ -182,6 +190,8 @@ fn main() -> ! {
         begun: (0, 0),
         ticks: (0, 0, 0),
         longest: [(0, 0); 2],
+        last_s: f64::INFINITY,
+        after_gap: false,
         allocations: 0,
         at_start: (0, 0, 0),
         held: 0,

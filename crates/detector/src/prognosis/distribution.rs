@@ -22,7 +22,7 @@ use crate::{DetectorError, error::positive};
 /// Absolute accuracy of a probability, and of one by which a quantile is found.
 const TOLERANCE: f64 = 1e-10;
 const TOLERANCE_OF_QUANTILES: f64 = 1e-8;
-/// What is left of the logarithm of a time, or of a probability, where a quantile is found.
+/// What is left of the logarithm of a time, or of the logit of a probability, where a quantile is found.
 const FOUND: (f64, f64) = (1e-10, 1e-7);
 /// Standard deviations from which a tail is computed by its logarithm.
 const FAR: f64 = 5.0;
@@ -30,8 +30,8 @@ const FAR: f64 = 5.0;
 const WIDEST: f64 = 9.0;
 /// Multiples of the standard deviation between which a normal distribution function rises.
 const STEP: [f64; 5] = [-7.0, -2.0, 0.0, 2.0, 7.0];
-/// How far a quantile is looked for about the time that means give first, as a factor.
-const NEAR: f64 = 1.5;
+/// How far from the time that means give a quantile is looked for first, in its logarithm.
+const NEAR: f64 = 0.4;
 /// `sqrt(2 pi)`.
 const SQRT_TAU: f64 = 2.506_628_274_631_000_7;
 /// Longest horizon, s: thirty million years.
@@ -196,28 +196,42 @@ struct Search<'a> {
     prognosis: &'a Prognosis,
     /// Probability now.
     now: f64,
-    /// Logarithms of times, s, and probabilities; none where there is no horizon.
-    known: SmallVec<[(f64, f64); 48]>,
+    /// Logarithm of the earliest time that is told from now, s.
+    earliest: f64,
+    /// Logarithms of times, s, and probabilities, the horizon first; none where there is no horizon.
+    known: SmallVec<[(f64, f64); 40]>,
 }
 
 impl<'a> Search<'a> {
     fn new(prognosis: &'a Prognosis, horizon_s: f64) -> Self {
-        let probability = |time_s: f64| prognosis.probability_to(TOLERANCE_OF_QUANTILES, time_s);
-        let mut search = Self { prognosis, now: probability(0.0), known: SmallVec::new() };
+        let Prognosis { state, law, limit_kg, .. } = prognosis;
+        let now = if state.correlation == 0.0 {
+            below(state.mass_kg, state.mass_sd_kg, *limit_kg)
+        } else {
+            prognosis.probability_to(TOLERANCE_OF_QUANTILES, 0.0)
+        };
+        let mut search = Self { prognosis, now, earliest: 0.0, known: SmallVec::new() };
         if horizon_s.is_nan() || horizon_s <= 0.0 {
             return search;
         }
         let horizon_s = horizon_s.min(LONGEST_S);
-        let earliest_s = EARLIEST * horizon_s;
-        let Prognosis { state, law, limit_kg, .. } = prognosis;
+        search.earliest = libm::log(EARLIEST * horizon_s);
+        search.excess(libm::log(horizon_s), 0.0);
         let rate_kg_s = if state.leak_kg_s > 0.0 { state.leak_kg_s } else { state.leak_sd_kg_s };
-        let about_s = law.time_s(state.mass_kg, rate_kg_s, *limit_kg);
-        for time_s in [earliest_s, about_s / NEAR, about_s * NEAR, horizon_s] {
-            if (earliest_s..=horizon_s).contains(&time_s) {
-                search.known.push((libm::log(time_s), probability(time_s)));
+        let about = libm::log(law.time_s(state.mass_kg, rate_kg_s, *limit_kg));
+        for ln_s in [about - NEAR, about + NEAR] {
+            if ln_s > search.earliest && ln_s < libm::log(horizon_s) {
+                search.excess(ln_s, 0.0);
             }
         }
         search
+    }
+
+    /// What the probability within a time, by its logarithm, s, is above another one, both as logits: nearly straight there.
+    fn excess(&mut self, ln_s: f64, above: f64) -> f64 {
+        let probability = self.prognosis.probability_to(TOLERANCE_OF_QUANTILES, libm::exp(ln_s));
+        self.known.push((ln_s, probability));
+        logit(probability) - above
     }
 
     fn passage(&mut self, probability: f64) -> Passage {
@@ -226,20 +240,25 @@ impl<'a> Search<'a> {
         }
         let reached = |of: &(f64, f64)| of.1 >= probability;
         let later = self.known.iter().copied().filter(reached).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some(later) = later else { return Passage::BeyondHorizon };
-        let earlier = self.known.iter().copied().filter(|of| !reached(of) && of.0 < later.0);
-        let Some(earlier) = earlier.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            return Passage::In(libm::exp(later.0));
+        let Some((later, then)) = later else { return Passage::BeyondHorizon };
+        let earlier = self.known.iter().copied().filter(|of| !reached(of) && of.0 < later);
+        let wanted = logit(probability);
+        let (earlier, lacking) = match earlier.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((earlier, then)) => (earlier, logit(then) - wanted),
+            None => (self.earliest, self.excess(self.earliest, wanted)),
         };
-        let ends = [earlier, later].map(|(ln_s, known)| (ln_s, known - probability));
-        let Self { prognosis, known, .. } = self;
-        let excess = |ln_s: f64| {
-            let found = prognosis.probability_to(TOLERANCE_OF_QUANTILES, libm::exp(ln_s));
-            known.push((ln_s, found));
-            found - probability
-        };
-        Passage::In(libm::exp(root(excess, ends, FOUND)))
+        if lacking >= 0.0 {
+            return Passage::In(libm::exp(earlier));
+        }
+        let ends = [(earlier, lacking), (later, logit(then) - wanted)];
+        Passage::In(libm::exp(root(|ln_s| self.excess(ln_s, wanted), ends, FOUND)))
     }
+}
+
+/// `ln(p/(1 - p))`, finite for every probability.
+fn logit(probability: f64) -> f64 {
+    let within = probability.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON);
+    libm::log(within) - libm::log1p(-within)
 }
 
 /// Bounds, peak, kink, and both sides of each step.
