@@ -43,6 +43,8 @@ pub trait Observed {
     fn write(&mut self, bytes: &[u8]);
     /// The monitor is there, and no row has been read.
     fn begun(&mut self) {}
+    /// The monitor is to be saved and restored.
+    fn saving(&mut self) {}
     /// The monitor begins to work.
     fn work(&mut self) {}
     /// It rests.
@@ -68,6 +70,7 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
     for (count, (at, line)) in lines().enumerate() {
         let number = at + 1;
         if count == middle {
+            observed.saving();
             let state = monitor.save().map_err(|error| ReplayError::Monitor(number, error.into()))?;
             // An arena need not hold two.
             drop(monitor);

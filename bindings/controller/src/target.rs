@@ -104,6 +104,9 @@ struct Told {
     at_start: (usize, usize, usize),
     /// Most bytes of the arena between rows.
     held: usize,
+    /// Bytes of stack that the caller of a row has, and that rows before the monitor was saved had below it.
+    caller: usize,
+    stack: usize,
 }
 
 impl Observed for Told {
@@ -116,8 +119,14 @@ impl Observed for Told {
         paint();
     }
 
+    fn saving(&mut self) {
+        // What a row needs below its caller.
+        self.stack = stack_used().saturating_sub(self.caller);
+    }
+
     fn work(&mut self) {
         self.held = self.held.max(USED.load(Relaxed));
+        self.caller = addr_of_mut!(_stack_start) as usize - cortex_m::register::msp::read() as usize;
         self.begun = (SYST::get_current(), COUNT.load(Relaxed));
     }
 
@@ -195,6 +204,8 @@ fn main() -> ! {
         allocations: 0,
         at_start: (0, 0, 0),
         held: 0,
+        caller: 0,
+        stack: 0,
     };
     paint();
     match core::str::from_utf8(&TEXT[..length]) {
@@ -222,7 +233,12 @@ fn main() -> ! {
                     most * PER_TICK,
                     after * PER_TICK
                 ));
-                say(format_args!("stack {stack} bytes until the first row, {} after", stack_used()));
+                say(format_args!(
+                    "stack {stack} bytes until the first row, {} for rows, {} for saving and restoring, both below a caller with {}",
+                    told.stack,
+                    stack_used() - told.caller,
+                    told.caller
+                ));
                 debug::exit(debug::EXIT_SUCCESS);
             }
         },
