@@ -434,9 +434,9 @@ typedef struct {
   cw_quality quality;
   // Sensors of the cylinder.
   uint32_t sensor_count;
-  // Events at this row: cw_event gives them.
+  // Events at this row: cw_event_at gives them.
   uint32_t event_count;
-  // Changes of alarms at this row: cw_alarm gives them.
+  // Changes of alarms at this row: cw_alarm_at gives them.
   uint32_t alarm_count;
   // Probability that gas is being lost.
   double leak_probability;

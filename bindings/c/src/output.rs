@@ -179,9 +179,9 @@ pub struct cw_output {
     pub quality: cw_quality,
     /// Sensors of the cylinder.
     pub sensor_count: u32,
-    /// Events at this row: cw_event gives them.
+    /// Events at this row: cw_event_at gives them.
     pub event_count: u32,
-    /// Changes of alarms at this row: cw_alarm gives them.
+    /// Changes of alarms at this row: cw_alarm_at gives them.
     pub alarm_count: u32,
     /// Probability that gas is being lost.
     pub leak_probability: f64,

@@ -36,6 +36,18 @@ static void write_all(uintptr_t file, const void *from, size_t size) {
     host(WRITE, arguments);
 }
 
+static void say(const char *what, unsigned long number) {
+    char digits[12];
+    char *at = digits + sizeof digits;
+    *--at = '\0';
+    *--at = '\n';
+    do
+        *--at = (char)('0' + number % 10);
+    while ((number /= 10) != 0);
+    host(WRITE0, what);
+    host(WRITE0, at);
+}
+
 void cw_panicked(void) {
     host(WRITE0, "panicked\n");
     leave(3);
@@ -67,10 +79,13 @@ static void replay(void) {
     size_t state_size;
     cw_handle *handle = NULL;
     cw_output output;
+    cw_memory memory;
     check(cw_init(arenas[0], sizeof arenas[0], blob, blob_size, &handle), handle);
     for (size_t row = 0; row < rows; row++) {
         if (row == rows / 2) {
             check(cw_save(handle, state, sizeof state, &state_size), handle);
+            check(cw_memory_of(handle, &memory), handle);
+            say("bytes of the arena that were reached ", memory.reached_bytes);
             check(cw_restore(arenas[1], sizeof arenas[1], blob, blob_size, state, state_size, &handle), handle);
         }
         write_rows(cw_step(handle, cells[row][0], cells[row] + 1, CELLS - 1, &output), handle, &output, out);
