@@ -40,7 +40,6 @@ pub mod document;
 mod error;
 pub mod flow;
 pub mod fluid;
-mod lazy;
 #[cfg(feature = "simulate")]
 pub mod model;
 pub mod real;

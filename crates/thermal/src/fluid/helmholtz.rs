@@ -9,12 +9,11 @@
 //! from tables where the exponent allows it (multiples of 1/8 from three square roots); Gaussian terms that are
 //! negligible are skipped. At a given temperature the power terms collapse into polynomials in `delta` ([`Isotherm`]).
 //! Arrays have a fixed size: nothing is allocated.
-use crate::lazy::Lazy;
 use alloc::vec::Vec;
 use core::ops::Range;
 use once_cell::race::OnceBox;
 
-use super::data::{ALL, FluidData, GaussianTerm, PowerTerm};
+use super::data::{FluidData, GaussianTerm, PowerTerm};
 use super::special::{departure, nonanalytic, power};
 use super::{Real, Saturation};
 
@@ -103,7 +102,7 @@ struct Group {
 /// A multiparameter equation of state, prepared for evaluation.
 #[derive(Debug)]
 pub(super) struct Multiparameter {
-    data: &'static FluidData,
+    pub data: FluidData,
     groups: Vec<Group>,
     /// Sorted by `l`, then `d`, as the groups and slots refer to them.
     terms: Vec<Term>,
@@ -126,12 +125,8 @@ pub(super) struct Multiparameter {
     pub saturation: [OnceBox<Option<Saturation>>; SATURATIONS],
 }
 
-/// Prepared equations, in the order of the data.
-pub(crate) static PREPARED: Lazy<Vec<Multiparameter>> =
-    Lazy::new(|| ALL.iter().map(|data| Multiparameter::new(data)).collect());
-
 impl Multiparameter {
-    pub(super) fn new(data: &'static FluidData) -> Self {
+    pub(super) fn new(data: FluidData) -> Self {
         let mut exponents: Vec<f64> = Vec::new();
         let mut tau_index = |t: f64| {
             let known = exponents.iter().position(|&known| known == t);
@@ -223,12 +218,12 @@ impl Multiparameter {
     #[inline(never)]
     fn special<D: Real>(&self, delta: D, tau: D) -> Reduced<D> {
         let mut sum = Reduced::zero();
-        for term in self.data.nonanalytic {
+        for term in self.data.nonanalytic.iter() {
             sum.add(&nonanalytic(term, delta, tau));
         }
         if !(self.data.departure.is_empty() && self.overflow.is_empty()) {
             let ln_tau = tau.ln();
-            for term in self.data.departure {
+            for term in self.data.departure.iter() {
                 sum.add(&departure(term, delta, ln_tau));
             }
             for term in &self.overflow {
@@ -456,13 +451,13 @@ pub(super) fn ideal<D: Real>(data: &FluidData, density_kg_m3: D, temperature_k: 
         dt: D::from(0.0),
         tt: D::from(-data.ideal_ln_tau),
     };
-    for &(n, t) in data.ideal_power {
+    for &(n, t) in data.ideal_power.iter() {
         let term = if libm::trunc(t) == t { tau.powi(t as i32) } else { (ln_tau * t).exp() } * n;
         sum.a += term;
         sum.t += term * t;
         sum.tt += term * (t * (t - 1.0));
     }
-    for &(n, t) in data.ideal_einstein {
+    for &(n, t) in data.ideal_einstein.iter() {
         let x = tau * t;
         let decay = (-x).exp();
         let rest = -decay + 1.0;
@@ -470,7 +465,7 @@ pub(super) fn ideal<D: Real>(data: &FluidData, density_kg_m3: D, temperature_k: 
         sum.t += x * decay / rest * n;
         sum.tt -= x * x * decay / (rest * rest) * n;
     }
-    for &(n, t, c, d) in data.ideal_general {
+    for &(n, t, c, d) in data.ideal_general.iter() {
         let x = tau * t;
         let grown = x.exp() * d;
         let total = grown + c;

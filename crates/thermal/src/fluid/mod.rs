@@ -24,6 +24,7 @@ mod transport;
 
 use alloc::borrow::ToOwned;
 use alloc::string::String;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 pub use saturation::Saturation;
 use serde::{Deserialize, Serialize};
@@ -32,7 +33,7 @@ pub use state::State;
 use crate::ThermalError;
 pub use crate::real::Real;
 use data::FluidData;
-use helmholtz::{HelmholtzEnergy, Multiparameter, PREPARED, Reduced, ideal};
+use helmholtz::{HelmholtzEnergy, Multiparameter, Reduced, ideal};
 use ideal_gas::IdealGas;
 use peng_robinson::PengRobinson;
 use transport::TransportState;
@@ -52,7 +53,7 @@ pub enum Equation {
 /// The equation with what it needs.
 #[derive(Clone, Copy, Debug)]
 enum Description {
-    Reference(&'static Multiparameter),
+    Reference,
     IdealGas(IdealGas),
     PengRobinson(PengRobinson),
 }
@@ -61,8 +62,7 @@ enum Description {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(into = "Named", try_from = "Named")]
 pub struct Fluid {
-    data: &'static FluidData,
-    prepared: &'static Multiparameter,
+    reference: Arc<Multiparameter>,
     description: Description,
 }
 
@@ -128,49 +128,55 @@ impl Fluid {
     /// The name is not known; the message lists those that are.
     pub fn named(name: &str) -> Result<Self, ThermalError> {
         let wanted = name.to_ascii_lowercase();
-        let index = data::ALL.iter().position(|data| data.name == wanted);
-        let Some(index) = index else {
-            let meant = data::ALL.iter().find(|data| data.also.contains(&wanted.as_str()));
+        let Some(fluid) = data::ALL.iter().find(|fluid| fluid.name() == wanted) else {
+            let meant = data::ALL.iter().find(|fluid| fluid.also().contains(&wanted.as_str()));
             #[cfg(feature = "files")]
             let nearest = crate::document::suggestion(&wanted, Self::names());
             #[cfg(not(feature = "files"))]
             let nearest = String::new();
-            let nearest = meant.map_or(nearest, |data| format!(", did you mean {}?", data.name));
+            let nearest = meant.map_or(nearest, |fluid| format!(", did you mean {}?", fluid.name()));
             return Err(ThermalError::UnknownFluid {
                 name: name.to_owned(),
                 nearest,
                 known: Self::names().collect::<Vec<_>>().join(", "),
             });
         };
-        let prepared = &PREPARED[index];
-        Ok(Self { data: data::ALL[index], prepared, description: Description::Reference(prepared) })
+        Ok(Self::of(fluid.data()))
+    }
+
+    fn of(data: FluidData) -> Self {
+        Self { reference: Arc::new(Multiparameter::new(data)), description: Description::Reference }
+    }
+
+    fn data(&self) -> &FluidData {
+        &self.reference.data
     }
 
     /// Names that [`Fluid::named`] knows.
     pub fn names() -> impl ExactSizeIterator<Item = &'static str> {
-        data::ALL.iter().map(|data| data.name)
+        data::ALL.iter().map(data::Entry::name)
     }
 
     /// The same gas with another equation.
     #[must_use]
     pub fn with_equation(self, equation: Equation) -> Self {
         let description = match equation {
-            Equation::Reference => Description::Reference(self.prepared),
+            Equation::Reference => Description::Reference,
             Equation::IdealGas => Description::IdealGas(IdealGas),
-            Equation::PengRobinson => Description::PengRobinson(PengRobinson::new(self.data)),
+            Equation::PengRobinson => Description::PengRobinson(PengRobinson::new(self.data())),
         };
         Self { description, ..self }
     }
 
     /// Its name.
     pub fn name(&self) -> &'static str {
-        self.data.name
+        self.data().name
     }
 
     /// The equation in use.
     pub fn equation(&self) -> Equation {
         match self.description {
-            Description::Reference(_) => Equation::Reference,
+            Description::Reference => Equation::Reference,
             Description::IdealGas(_) => Equation::IdealGas,
             Description::PengRobinson(_) => Equation::PengRobinson,
         }
@@ -178,34 +184,34 @@ impl Fluid {
 
     /// Source of the reference equation.
     pub fn reference(&self) -> &'static str {
-        self.data.reference
+        self.data().reference
     }
 
     /// Specific gas constant of the equation, J/(kg K).
     pub fn specific_gas_constant_j_kg_k(&self) -> f64 {
-        self.data.gas_constant_j_mol_k / self.data.molar_mass_kg_mol
+        self.data().gas_constant_j_mol_k / self.data().molar_mass_kg_mol
     }
 
     /// Where the equation may be used.
     pub fn domain(&self) -> Domain {
-        let liquid = self.data.triple_liquid_density_mol_m3 * self.data.molar_mass_kg_mol * DENSEST;
+        let liquid = self.data().triple_liquid_density_mol_m3 * self.data().molar_mass_kg_mol * DENSEST;
         let highest_density_kg_m3 = match self.description {
             // Its liquids differ from the measured ones: that of helium is denser.
             Description::PengRobinson(cubic) => DENSEST_CUBIC * cubic.densest_kg_m3(),
             _ => liquid,
         };
         Domain {
-            lowest_temperature_k: self.data.lowest_temperature_k,
-            highest_temperature_k: self.data.highest_temperature_k,
-            highest_pressure_pa: self.data.highest_pressure_pa,
+            lowest_temperature_k: self.data().lowest_temperature_k,
+            highest_temperature_k: self.data().highest_temperature_k,
+            highest_pressure_pa: self.data().highest_pressure_pa,
             highest_density_kg_m3,
-            critical_temperature_k: self.data.critical_temperature_k,
+            critical_temperature_k: self.data().critical_temperature_k,
         }
     }
 
     fn residual<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> Reduced<D> {
         match &self.description {
-            Description::Reference(equation) => equation.residual(density_kg_m3, temperature_k),
+            Description::Reference => self.reference.residual(density_kg_m3, temperature_k),
             Description::IdealGas(equation) => equation.residual(density_kg_m3, temperature_k),
             Description::PengRobinson(equation) => equation.residual(density_kg_m3, temperature_k),
         }
@@ -213,7 +219,7 @@ impl Fluid {
 
     /// All properties at a density, kg/m³, and temperature, K. No check: smooth, metastable states included.
     pub fn state<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> State<D> {
-        let ideal = ideal(self.data, density_kg_m3, temperature_k);
+        let ideal = ideal(self.data(), density_kg_m3, temperature_k);
         let residual = self.residual(density_kg_m3, temperature_k);
         let r = self.specific_gas_constant_j_kg_k();
         State::from_reduced(r, density_kg_m3, temperature_k, &ideal, &residual)
@@ -237,9 +243,7 @@ impl Fluid {
     #[inline(always)]
     fn density_slopes(&self, density_kg_m3: f64, temperature_k: f64) -> (f64, f64) {
         match &self.description {
-            Description::Reference(equation) => {
-                equation.residual_density_slopes(density_kg_m3, temperature_k)
-            }
+            Description::Reference => self.reference.residual_density_slopes(density_kg_m3, temperature_k),
             Description::IdealGas(_) => (0.0, 0.0),
             Description::PengRobinson(equation) => {
                 equation.residual_density_slopes(density_kg_m3, temperature_k)
@@ -297,7 +301,7 @@ impl Fluid {
         if !(pressure_pa > UNDERFLOW_LIMIT && pressure_pa <= highest_pa) {
             return Err(ThermalError::PressureOutside { fluid: self.name(), pressure_pa, highest_pa });
         }
-        let melting_pa = self.data.melting.pressure_pa(temperature_k);
+        let melting_pa = self.data().melting.pressure_pa(temperature_k);
         if pressure_pa > melting_pa && !matches!(self.description, Description::IdealGas(_)) {
             return Err(ThermalError::Solid { fluid: self.name(), pressure_pa, temperature_k, melting_pa });
         }
@@ -306,13 +310,13 @@ impl Fluid {
 
     /// Viscosity, Pa s.
     pub fn viscosity_pa_s<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
-        self.data.transport.viscosity_pa_s(density_kg_m3, temperature_k)
+        self.data().transport.viscosity_pa_s(density_kg_m3, temperature_k)
     }
 
     /// Thermal conductivity, W/(m K), with its enhancement near the critical point.
     pub fn conductivity_w_m_k<D: Real>(&self, density_kg_m3: D, temperature_k: D) -> D {
-        let background = self.data.transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
-        let reference_k = self.data.transport.reference_temperature_k();
+        let background = self.data().transport.background_conductivity_w_m_k(density_kg_m3, temperature_k);
+        let reference_k = self.data().transport.reference_temperature_k();
         if reference_k.is_some_and(|reference_k| temperature_k.re() >= reference_k) {
             return background;
         }
@@ -329,6 +333,6 @@ impl Fluid {
             cv_j_kg_k: state.cv_j_kg_k,
         };
         let viscosity = self.viscosity_pa_s(density_kg_m3, temperature_k);
-        background + self.data.transport.critical_enhancement_w_m_k(&at, viscosity, dp_drho_reference)
+        background + self.data().transport.critical_enhancement_w_m_k(&at, viscosity, dp_drho_reference)
     }
 }

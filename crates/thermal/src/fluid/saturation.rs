@@ -60,7 +60,7 @@ impl BoundaryLine {
 impl Fluid {
     /// Refuse what lies between the dew and the bubble line of a mixture.
     pub(super) fn check_mixture(&self, pressure_pa: f64, temperature_k: f64) -> Result<(), ThermalError> {
-        let is_mixture = self.name() == "air" && matches!(self.description, Description::Reference(_));
+        let is_mixture = self.name() == "air" && matches!(self.description, Description::Reference);
         if !is_mixture || temperature_k >= AIR_J.0 {
             return Ok(());
         }
@@ -78,7 +78,7 @@ impl Fluid {
     /// # Errors
     /// Below the domain, within 0.5 % below the critical temperature, or where the equation has no coexisting branches.
     pub fn saturation(&self, temperature_k: f64) -> Result<Option<Saturation>, ThermalError> {
-        let critical_k = self.data.critical_temperature_k;
+        let critical_k = self.data().critical_temperature_k;
         if temperature_k >= critical_k || matches!(self.description, Description::IdealGas(_)) {
             return Ok(None);
         }
@@ -127,8 +127,8 @@ impl Fluid {
     /// of the vapour rise along the saturation line: what is below these is gas. A saturation of its own would cost
     /// thousands of evaluations.
     pub(super) fn saturation_not_above(&self, temperature_k: f64) -> Option<Saturation> {
-        let Description::Reference(equation) = &self.description else { return None };
-        let (low, high) = (self.data.lowest_temperature_k, self.edge_k());
+        let Description::Reference = self.description else { return None };
+        let (low, high) = (self.data().lowest_temperature_k, self.edge_k());
         let last = SATURATIONS - 1;
         let position = (temperature_k - low) / (high - low) * last as f64;
         if position.is_nan() || position < 0.0 {
@@ -136,14 +136,14 @@ impl Fluid {
         }
         let index = (position as usize).min(last);
         let at_k = low + (high - low) * index as f64 / last as f64;
-        let found = equation.saturation[index]
+        let found = self.reference.saturation[index]
             .get_or_init(|| Box::new(self.saturation(at_k.min(high)).ok().flatten()));
         found.filter(|_| at_k <= temperature_k)
     }
 
     /// Highest temperature below the critical one at which phases are told apart, K.
     pub(super) fn edge_k(&self) -> f64 {
-        self.data.critical_temperature_k * (1.0 - CRITICAL_MARGIN)
+        self.data().critical_temperature_k * (1.0 - CRITICAL_MARGIN)
     }
 
     /// Whether it condenses under pressure at 15 °C: a liquid of it is a mistake in the fill, not a cryogenic state.
@@ -162,12 +162,12 @@ impl Fluid {
 
     /// Refuse a two-phase state, and a liquid one of a gas that condenses at 15 °C.
     pub(super) fn check_phase(&self, density_kg_m3: f64, temperature_k: f64) -> Result<(), ThermalError> {
-        let critical_k = self.data.critical_temperature_k;
+        let critical_k = self.data().critical_temperature_k;
         if temperature_k >= critical_k {
             return Ok(());
         }
         // Thin gas is far from condensing whatever the temperature above 0.95 of the critical one.
-        let critical_density = self.data.reducing_density_mol_m3 * self.data.molar_mass_kg_mol;
+        let critical_density = self.data().reducing_density_mol_m3 * self.data().molar_mass_kg_mol;
         if temperature_k > 0.95 * critical_k && density_kg_m3 < 0.1 * critical_density {
             return Ok(());
         }

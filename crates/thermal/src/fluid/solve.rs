@@ -32,9 +32,9 @@ impl Fluid {
         }
         let densest = self.domain().highest_density_kg_m3;
         let (mut low, mut high) = (0.0, densest);
-        let critical_k = self.data.critical_temperature_k;
+        let critical_k = self.data().critical_temperature_k;
         if temperature_k < critical_k
-            && pressure_pa > DILUTE_REDUCED_PRESSURE * self.data.critical_pressure_pa
+            && pressure_pa > DILUTE_REDUCED_PRESSURE * self.data().critical_pressure_pa
             || temperature_k < 0.8 * critical_k
         {
             // Near and above saturation the branch must be known.
@@ -44,7 +44,7 @@ impl Fluid {
             }
         } else if temperature_k < critical_k {
             // Thin gas below the critical temperature: stay on the vapour branch.
-            high = 0.5 * self.data.reducing_density_mol_m3 * self.data.molar_mass_kg_mol;
+            high = 0.5 * self.data().reducing_density_mol_m3 * self.data().molar_mass_kg_mol;
         }
         let start = if low > 0.0 { low } else { ideal.min(0.5 * densest) };
         let isotherm = self.pressure_along_isotherm(temperature_k);
@@ -63,7 +63,7 @@ impl Fluid {
         let near_critical = || ThermalError::NearCritical {
             fluid: self.name(),
             temperature_k,
-            critical_k: self.data.critical_temperature_k,
+            critical_k: self.data().critical_temperature_k,
         };
         let saturation = self.saturation_or_edge(temperature_k)?.ok_or_else(near_critical)?;
         let distance = pressure_pa / saturation.pressure_pa - 1.0;
@@ -92,7 +92,7 @@ impl Fluid {
     pub(super) fn pressure_along_isotherm(&self, temperature_k: f64) -> impl Fn(f64) -> (f64, f64) {
         let rt = self.specific_gas_constant_j_kg_k() * temperature_k;
         let prepared = match &self.description {
-            Description::Reference(equation) => Some(equation.isotherm(temperature_k)),
+            Description::Reference => Some(self.reference.isotherm(temperature_k)),
             _ => None,
         };
         move |rho| {
@@ -139,7 +139,7 @@ impl Fluid {
         let inside = |t: &f64| *t > low * 1.000_001 && *t < high * 0.999_999;
         match bracketed_newton(low, high, start, energy).filter(inside) {
             Some(t)
-                if t >= self.data.critical_temperature_k || self.check_phase(density_kg_m3, t).is_ok() =>
+                if t >= self.data().critical_temperature_k || self.check_phase(density_kg_m3, t).is_ok() =>
             {
                 Ok(t)
             }
@@ -152,9 +152,9 @@ impl Fluid {
     /// one above it that is single-phase: the warmest one, if there is any.
     fn warmest_root(&self, above_k: f64, energy: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         const STEPS: i32 = 80;
-        let top_k = self.data.critical_temperature_k * 1.01;
+        let top_k = self.data().critical_temperature_k * 1.01;
         if energy(top_k).0 <= 0.0 {
-            return bracketed_newton(top_k, 2.0 * self.data.highest_temperature_k, 1.5 * top_k, energy);
+            return bracketed_newton(top_k, 2.0 * self.data().highest_temperature_k, 1.5 * top_k, energy);
         }
         let at = |k: i32| above_k + (top_k - above_k) * f64::from(k) / f64::from(STEPS);
         let below = (0..STEPS).rev().find(|&k| energy(at(k)).0 <= 0.0)?;
@@ -211,7 +211,7 @@ impl Fluid {
         property: &'static str,
         value: impl Fn(&State) -> (f64, f64),
     ) -> Result<State, ThermalError> {
-        self.check_pressure(pressure_pa, self.data.highest_temperature_k)?;
+        self.check_pressure(pressure_pa, self.data().highest_temperature_k)?;
         let none = || ThermalError::NoState { fluid: self.name(), pressure_pa, property, target };
         if !target.is_finite() {
             return Err(none());
@@ -271,7 +271,7 @@ impl Fluid {
         lowest_k: f64,
         value: &impl Fn(&State) -> (f64, f64),
     ) -> Result<(f64, f64), ThermalError> {
-        let critical_k = self.data.critical_temperature_k;
+        let critical_k = self.data().critical_temperature_k;
         // The equation of air, a mixture taken as one substance, has its own critical point a little lower.
         let mut highest_k = critical_k * (1.0 - CRITICAL_MARGIN) * (1.0 - 1e-12);
         while self.saturation(highest_k).is_err() && highest_k > 0.95 * critical_k {
@@ -291,7 +291,7 @@ impl Fluid {
             }
             // Up to where the phase is told apart; thin gas is never in doubt.
             return match self.density_from_pressure_temperature(pressure_pa, highest_k) {
-                _ if pressure_pa <= DILUTE_REDUCED_PRESSURE * self.data.critical_pressure_pa => {
+                _ if pressure_pa <= DILUTE_REDUCED_PRESSURE * self.data().critical_pressure_pa => {
                     Ok((lowest_k, critical_k))
                 }
                 Ok(density) if value(&self.state(density, highest_k)).0 < target => Err(near_critical()),

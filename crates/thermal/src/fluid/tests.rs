@@ -1,27 +1,20 @@
 //! Nitrogen with CoolProp's reducing density, so that its table must be met to rounding; and mixtures that are not in files.
-use super::data::{self, FluidData, Mixture};
-use super::{Description, Equation, Fluid, Multiparameter};
+use super::data::{FluidData, Mixture};
+use super::{Equation, Fluid};
 
 /// CoolProp 8.0.0 reduces nitrogen with this density, mol/m³; Span et al. (2000) print 11183.9.
 const COOLPROP_REDUCING_DENSITY_MOL_M3: f64 = 11_183.901_464_580_624;
 
 fn nitrogen_as_coolprop() -> Fluid {
-    let original = data::ALL[0];
-    let copy = FluidData { reducing_density_mol_m3: COOLPROP_REDUCING_DENSITY_MOL_M3, ..*original };
-    fluid(copy)
-}
-
-fn fluid(data: FluidData) -> Fluid {
-    let data: &'static FluidData = Box::leak(Box::new(data));
-    let prepared: &'static Multiparameter = Box::leak(Box::new(Multiparameter::new(data)));
-    Fluid { data, prepared, description: Description::Reference(prepared) }
+    let original = Fluid::named("nitrogen").unwrap().data().clone();
+    Fluid::of(FluidData { reducing_density_mol_m3: COOLPROP_REDUCING_DENSITY_MOL_M3, ..original })
 }
 
 fn mixture(components: &[(&str, f64)]) -> Fluid {
-    let named = |name: &str| *data::ALL.iter().find(|data| data.name == name).unwrap();
+    let named = |name: &str| &*Box::leak(Box::new(Fluid::named(name).unwrap().data().clone()));
     let components: Vec<_> = components.iter().map(|&(name, x)| (named(name), x)).collect();
     let components = Box::leak(components.into_boxed_slice());
-    fluid(Mixture { name: "", also: &[], reference: "", components, lowest_temperature_k: 160.0 }.data())
+    Fluid::of(Mixture { name: "", also: &[], reference: "", components, lowest_temperature_k: 160.0 }.data())
 }
 
 fn table(text: &str) -> Vec<Vec<f64>> {
@@ -128,7 +121,7 @@ fn air_made_of_its_components_is_air() {
             let other = mixed.density_from_pressure_temperature(p, t).unwrap();
             let (one, two) = (air.state(rho, t), mixed.state(other, t));
             let background =
-                |fluid: &Fluid, rho: f64| fluid.data.transport.background_conductivity_w_m_k(rho, t);
+                |fluid: &Fluid, rho: f64| fluid.data().transport.background_conductivity_w_m_k(rho, t);
             let pairs = [
                 (other, rho),
                 (two.cp_j_kg_k, one.cp_j_kg_k),

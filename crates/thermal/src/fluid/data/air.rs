@@ -7,6 +7,7 @@
 //! µPa s, mW/(m K), nm, g/mol.
 use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
+use alloc::borrow::Cow::Borrowed;
 
 /// Dry air.
 pub(super) static AIR: FluidData = FluidData {
@@ -26,7 +27,7 @@ pub(super) static AIR: FluidData = FluidData {
     triple_liquid_density_mol_m3: 33066.642,
     // Lemmon et al. (2000).
     melting: Melting { temperature_k: 59.75, pressure_pa: 5264.181, terms: &[(186_844_210.8, 1.78963)] },
-    power: &[
+    power: Borrowed(&[
         P { n: 0.118160747229, d: 1, t: 0.0, l: 0 },
         P { n: 0.713116392079, d: 1, t: 0.33, l: 0 },
         P { n: -1.61824192067, d: 1, t: 1.01, l: 0 },
@@ -46,23 +47,23 @@ pub(super) static AIR: FluidData = FluidData {
         P { n: 0.000233594806142, d: 11, t: 3.25, l: 2 },
         P { n: 0.0148287891978, d: 1, t: 3.5, l: 3 },
         P { n: -0.00938782884667, d: 3, t: 15.0, l: 3 },
-    ],
-    gaussian: &[],
-    nonanalytic: &[],
-    departure: &[],
+    ]),
+    gaussian: Borrowed(&[]),
+    nonanalytic: Borrowed(&[]),
+    departure: Borrowed(&[]),
     ideal_constant: 10.3753039487406,
     ideal_tau: 3.31112445645577,
     ideal_ln_tau: 2.490888032,
-    ideal_power: &[
+    ideal_power: Borrowed(&[
         (6.057194e-08, -3.0),
         (-2.10274769e-05, -2.0),
         (-0.000158860716, -1.0),
         (-13.841928076, 0.0),
         (17.275266575, 1.0),
         (-0.00019536342, 1.5),
-    ],
-    ideal_einstein: &[(0.791309509, 25.36365), (0.212236768, 16.90741)],
-    ideal_general: &[(-0.197938904, 87.31279, 0.6666666666666666, 1.0)],
+    ]),
+    ideal_einstein: Borrowed(&[(0.791309509, 25.36365), (0.212236768, 16.90741)]),
+    ideal_general: Borrowed(&[(-0.197938904, 87.31279, 0.6666666666666666, 1.0)]),
     transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
         molar_mass_g_mol: 28.9586,
         epsilon_over_k_k: 103.3,

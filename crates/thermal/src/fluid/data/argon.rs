@@ -7,6 +7,7 @@
 //! µPa s, mW/(m K), nm, g/mol.
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
+use alloc::borrow::Cow::Borrowed;
 
 /// Argon.
 pub(super) static ARGON: FluidData = FluidData {
@@ -30,7 +31,7 @@ pub(super) static ARGON: FluidData = FluidData {
         pressure_pa: 68891.0,
         terms: &[(-515_047_475.45, 1.05), (686_089_692.02, 1.275)],
     },
-    power: &[
+    power: Borrowed(&[
         P { n: 0.088722304990011, d: 1, t: 0.0, l: 0 },
         P { n: 0.70514805167298, d: 1, t: 0.25, l: 0 },
         P { n: -1.682011565409, d: 1, t: 1.0, l: 0 },
@@ -68,21 +69,21 @@ pub(super) static ARGON: FluidData = FluidData {
         P { n: 0.0028948696775778, d: 9, t: 7.0, l: 3 },
         P { n: -0.0022647134304796, d: 5, t: 24.0, l: 4 },
         P { n: 0.0017616456196368, d: 6, t: 22.0, l: 4 },
-    ],
-    gaussian: &[
+    ]),
+    gaussian: Borrowed(&[
         G { n: 0.0058552454482774, d: 2, t: 3.0, eta: 20.0, beta: 250.0, gamma: 1.11, epsilon: 1.0 },
         G { n: -0.69251908270028, d: 1, t: 1.0, eta: 20.0, beta: 375.0, gamma: 1.14, epsilon: 1.0 },
         G { n: 1.5315490030516, d: 2, t: 0.0, eta: 20.0, beta: 300.0, gamma: 1.17, epsilon: 1.0 },
         G { n: -0.0027380447449783, d: 3, t: 0.0, eta: 20.0, beta: 225.0, gamma: 1.11, epsilon: 1.0 },
-    ],
-    nonanalytic: &[],
-    departure: &[],
+    ]),
+    nonanalytic: Borrowed(&[]),
+    departure: Borrowed(&[]),
     ideal_constant: -10.2938148008484,
     ideal_tau: -0.0003415235715795717,
     ideal_ln_tau: 1.5,
-    ideal_power: &[],
-    ideal_einstein: &[],
-    ideal_general: &[],
+    ideal_power: Borrowed(&[]),
+    ideal_einstein: Borrowed(&[]),
+    ideal_general: Borrowed(&[]),
     transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
         molar_mass_g_mol: 39.948,
         epsilon_over_k_k: 143.2,

@@ -6,6 +6,7 @@
 //! Transport: see [`crate::fluid::transport`].
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, NonanalyticTerm as N, PowerTerm as P};
 use crate::fluid::transport::Transport;
+use alloc::borrow::Cow::Borrowed;
 
 /// Pressure at the triple point, Pa.
 const TRIPLE_PA: f64 = 517_950.0;
@@ -32,7 +33,7 @@ pub(super) static CARBON_DIOXIDE: FluidData = FluidData {
         pressure_pa: TRIPLE_PA,
         terms: &[(TRIPLE_PA * (1955.5390 - 2.0 * 2055.4593), 1.0), (TRIPLE_PA * 2055.4593, 2.0)],
     },
-    power: &[
+    power: Borrowed(&[
         P { n: 0.38856823203161, d: 1, t: 0.0, l: 0 },
         P { n: 2.938547594274, d: 1, t: 0.75, l: 0 },
         P { n: -5.5867188534934, d: 1, t: 1.0, l: 0 },
@@ -67,15 +68,15 @@ pub(super) static CARBON_DIOXIDE: FluidData = FluidData {
         P { n: -0.00033958519026368, d: 10, t: 2.0, l: 4 },
         P { n: 0.0055993651771592, d: 4, t: 28.0, l: 5 },
         P { n: -0.00030335118055646, d: 8, t: 14.0, l: 6 },
-    ],
-    gaussian: &[
+    ]),
+    gaussian: Borrowed(&[
         G { n: -213.6548868832, d: 2, t: 1.0, eta: 25.0, beta: 325.0, gamma: 1.16, epsilon: 1.0 },
         G { n: 26641.569149272, d: 2, t: 0.0, eta: 25.0, beta: 300.0, gamma: 1.19, epsilon: 1.0 },
         G { n: -24027.212204557, d: 2, t: 1.0, eta: 25.0, beta: 300.0, gamma: 1.19, epsilon: 1.0 },
         G { n: -283.41603423999, d: 3, t: 3.0, eta: 15.0, beta: 275.0, gamma: 1.25, epsilon: 1.0 },
         G { n: 212.47284400179, d: 3, t: 3.0, eta: 20.0, beta: 275.0, gamma: 1.22, epsilon: 1.0 },
-    ],
-    nonanalytic: &[
+    ]),
+    nonanalytic: Borrowed(&[
         N {
             n: -0.66642276540751,
             b: 0.875,
@@ -106,19 +107,19 @@ pub(super) static CARBON_DIOXIDE: FluidData = FluidData {
             eta: 12.5,
             decay: 275.0,
         },
-    ],
-    departure: &[],
+    ]),
+    departure: Borrowed(&[]),
     ideal_constant: 8.37304456,
     ideal_tau: -3.70454304,
     ideal_ln_tau: 2.5,
-    ideal_power: &[],
-    ideal_einstein: &[
+    ideal_power: Borrowed(&[]),
+    ideal_einstein: Borrowed(&[
         (1.99427042, 3.15163),
         (0.62105248, 6.1119),
         (0.41195293, 6.77708),
         (1.04028922, 11.32384),
         (0.08327678, 27.08792),
-    ],
-    ideal_general: &[],
+    ]),
+    ideal_general: Borrowed(&[]),
     transport: Transport::CarbonDioxide,
 };

@@ -6,6 +6,7 @@
 //! Transport: see [`crate::fluid::transport`].
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::Transport;
+use alloc::borrow::Cow::Borrowed;
 
 /// Helium.
 pub(super) static HELIUM: FluidData = FluidData {
@@ -25,7 +26,7 @@ pub(super) static HELIUM: FluidData = FluidData {
     triple_liquid_density_mol_m3: 36480.345,
     // Datchi, Loubeyre, LeToullec, Phys. Rev. B 61 (2000) 6535.
     melting: Melting { temperature_k: 1.0, pressure_pa: -1_606_700.0, terms: &[(1_606_700.0, 1.565)] },
-    power: &[
+    power: Borrowed(&[
         P { n: 0.015559018, d: 4, t: 1.0, l: 0 },
         P { n: 3.0638932, d: 1, t: 0.425, l: 0 },
         P { n: -4.2420844, d: 1, t: 0.63, l: 0 },
@@ -38,8 +39,8 @@ pub(super) static HELIUM: FluidData = FluidData {
         P { n: 0.99444915, d: 2, t: 1.51, l: 1 },
         P { n: -0.30078896, d: 2, t: 2.9, l: 2 },
         P { n: -1.6432563, d: 1, t: 0.8, l: 1 },
-    ],
-    gaussian: &[
+    ]),
+    gaussian: Borrowed(&[
         G { n: 0.8029102, d: 2, t: 1.26, eta: 1.5497, beta: 0.2471, gamma: 3.15, epsilon: 0.596 },
         G { n: 0.026838669, d: 1, t: 3.51, eta: 9.245, beta: 0.0983, gamma: 2.54505, epsilon: 0.3423 },
         G { n: 0.04687678, d: 2, t: 2.785, eta: 4.76323, beta: 0.1556, gamma: 1.2513, epsilon: 0.761 },
@@ -51,14 +52,14 @@ pub(super) static HELIUM: FluidData = FluidData {
         G { n: -0.22989793, d: 3, t: 0.73, eta: 0.05, beta: 0.3069, gamma: 1.61958, epsilon: 4.5245 },
         G { n: 0.79224829, d: 2, t: 1.634, eta: 0.1668, beta: 0.1758, gamma: 0.6407, epsilon: 5.039 },
         G { n: -0.049386338, d: 2, t: 6.13, eta: 42.2358, beta: 1357.6577, gamma: 1.076, epsilon: 0.959 },
-    ],
-    nonanalytic: &[],
-    departure: &[],
+    ]),
+    nonanalytic: Borrowed(&[]),
+    departure: Borrowed(&[]),
     ideal_constant: 0.17324879328357912,
     ideal_tau: 0.4674522201551032,
     ideal_ln_tau: 1.5,
-    ideal_power: &[],
-    ideal_einstein: &[],
-    ideal_general: &[],
+    ideal_power: Borrowed(&[]),
+    ideal_einstein: Borrowed(&[]),
+    ideal_general: Borrowed(&[]),
     transport: Transport::Helium,
 };

@@ -19,7 +19,8 @@
 use crate::fluid::data::{DepartureTerm as D, FluidData, GaussianTerm, Melting, NonanalyticTerm, PowerTerm};
 use crate::fluid::peng_robinson;
 use crate::fluid::transport::{MixtureComponent, MixtureTransport, Transport};
-use alloc::boxed::Box;
+use alloc::borrow::Cow;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// Gas constant, J/(mol K) (CODATA 2018, exact).
@@ -122,9 +123,8 @@ fn reducing(
     sum
 }
 
-/// Kept as long as the program runs, as the data of pure fluids are.
-fn kept<T>(values: impl IntoIterator<Item = T>) -> &'static [T] {
-    Box::leak(values.into_iter().collect::<Vec<_>>().into_boxed_slice())
+fn owned<T: Clone>(values: impl Iterator<Item = T>) -> Cow<'static, [T]> {
+    Cow::Owned(values.collect())
 }
 
 impl Mixture {
@@ -177,16 +177,16 @@ impl Mixture {
             highest_pressure_pa: HIGHEST_PRESSURE_PA,
             triple_liquid_density_mol_m3: mean(|data| data.triple_liquid_density_mol_m3.recip()).recip(),
             melting: Melting { temperature_k: 1.0, pressure_pa: f64::INFINITY, terms: &[] },
-            power: kept(components.iter().flat_map(|&(data, x)| {
+            power: owned(components.iter().flat_map(|&(data, x)| {
                 data.power.iter().map(move |&term| PowerTerm { n: x * term.n, ..term })
             })),
-            gaussian: kept(components.iter().flat_map(|&(data, x)| {
+            gaussian: owned(components.iter().flat_map(|&(data, x)| {
                 data.gaussian.iter().map(move |&term| GaussianTerm { n: x * term.n, ..term })
             })),
-            nonanalytic: kept(components.iter().flat_map(|&(data, x)| {
+            nonanalytic: owned(components.iter().flat_map(|&(data, x)| {
                 data.nonanalytic.iter().map(move |&term| NonanalyticTerm { n: x * term.n, ..term })
             })),
-            departure: kept(pairs(components).into_iter().flat_map(|(i, j, binary)| {
+            departure: owned(pairs(components).into_iter().flat_map(|(i, j, binary)| {
                 let x = components[i].1 * components[j].1;
                 binary.departure.iter().map(move |&term| D { n: x * term.n, ..term })
             })),
@@ -198,24 +198,27 @@ impl Mixture {
                     .sum::<f64>(),
             ideal_tau: shares().map(|(data, share, scale)| share * scale * data.ideal_tau).sum(),
             ideal_ln_tau: shares().map(|(data, share, _)| share * data.ideal_ln_tau).sum(),
-            ideal_power: kept(shares().flat_map(|(data, share, scale)| {
+            ideal_power: owned(shares().flat_map(|(data, share, scale)| {
                 data.ideal_power.iter().map(move |&(n, t)| (share * n * libm::pow(scale, t), t))
             })),
-            ideal_einstein: kept(shares().flat_map(|(data, share, scale)| {
+            ideal_einstein: owned(shares().flat_map(|(data, share, scale)| {
                 data.ideal_einstein.iter().map(move |&(n, t)| (share * n, scale * t))
             })),
-            ideal_general: kept(shares().flat_map(|(data, share, scale)| {
+            ideal_general: owned(shares().flat_map(|(data, share, scale)| {
                 data.ideal_general.iter().map(move |&(n, t, c, d)| (share * n, scale * t, c, d))
             })),
-            transport: Transport::Mixture(Box::leak(Box::new(MixtureTransport {
+            transport: Transport::Mixture(Arc::new(MixtureTransport {
                 reducing_density_kg_m3: reducing_density_mol_m3 * molar_mass_kg_mol,
-                components: kept(components.iter().map(|&(data, fraction)| MixtureComponent {
-                    fraction,
-                    molar_mass_kg_mol: data.molar_mass_kg_mol,
-                    reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
-                    transport: data.transport,
-                })),
-            }))),
+                components: components
+                    .iter()
+                    .map(|&(data, fraction)| MixtureComponent {
+                        fraction,
+                        molar_mass_kg_mol: data.molar_mass_kg_mol,
+                        reducing_density_kg_m3: data.reducing_density_mol_m3 * data.molar_mass_kg_mol,
+                        transport: data.transport.clone(),
+                    })
+                    .collect(),
+            })),
         }
     }
 }

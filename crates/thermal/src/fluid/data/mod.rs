@@ -1,4 +1,4 @@
-//! Coefficients of the fluids, one file each. A further fluid is a further file and a line in [`PURE`], a further mixture one in [`MIXTURES`].
+//! Coefficients of the fluids, one file each. A further fluid or mixture is a further file and a line in [`ALL`].
 mod air;
 mod argon;
 mod carbon_dioxide;
@@ -9,32 +9,55 @@ mod mixture;
 mod nitrogen;
 mod oxygen;
 
-use crate::lazy::Lazy;
-use alloc::boxed::Box;
-use alloc::vec::Vec;
+use alloc::borrow::Cow;
 
 use super::transport::Transport;
 pub(super) use mixture::Mixture;
 
-/// Fluids with an equation of their own.
-static PURE: &[&FluidData] = &[
-    &nitrogen::NITROGEN,
-    &argon::ARGON,
-    &air::AIR,
-    &hydrogen::HYDROGEN,
-    &helium::HELIUM,
-    &oxygen::OXYGEN,
-    &carbon_dioxide::CARBON_DIOXIDE,
-];
-
-/// Mixtures of them.
-static MIXTURES: &[&Mixture] = &[&inert::ARGON_NITROGEN, &inert::IG_541];
+/// A fluid with an equation of its own, or a mixture of such.
+pub(super) enum Entry {
+    Pure(&'static FluidData),
+    Mixture(&'static Mixture),
+}
 
 /// All fluids.
-pub(super) static ALL: Lazy<Vec<&'static FluidData>> = Lazy::new(|| {
-    let mixtures = MIXTURES.iter().map(|mixture| &*Box::leak(Box::new(mixture.data())));
-    PURE.iter().copied().chain(mixtures).collect()
-});
+pub(super) static ALL: &[Entry] = &[
+    Entry::Pure(&nitrogen::NITROGEN),
+    Entry::Pure(&argon::ARGON),
+    Entry::Pure(&air::AIR),
+    Entry::Pure(&hydrogen::HYDROGEN),
+    Entry::Pure(&helium::HELIUM),
+    Entry::Pure(&oxygen::OXYGEN),
+    Entry::Pure(&carbon_dioxide::CARBON_DIOXIDE),
+    Entry::Mixture(&inert::ARGON_NITROGEN),
+    Entry::Mixture(&inert::IG_541),
+];
+
+impl Entry {
+    /// Name as files spell it.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Pure(data) => data.name,
+            Self::Mixture(mixture) => mixture.name,
+        }
+    }
+
+    /// Other names that people type.
+    pub(super) fn also(&self) -> &'static [&'static str] {
+        match self {
+            Self::Pure(data) => data.also,
+            Self::Mixture(mixture) => mixture.also,
+        }
+    }
+
+    /// Its data; those of a mixture are made here.
+    pub(super) fn data(&self) -> FluidData {
+        match self {
+            Self::Pure(data) => (*data).clone(),
+            Self::Mixture(mixture) => mixture.data(),
+        }
+    }
+}
 
 /// Term `n delta^d tau^t exp(-delta^l)`; no exponential for `l = 0`.
 #[derive(Clone, Copy, Debug)]
@@ -130,7 +153,7 @@ impl Melting {
 }
 
 /// A fundamental equation `a / (R T) = alpha0 + alphar` and its range of validity.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FluidData {
     /// Name as files spell it.
     pub name: &'static str,
@@ -163,13 +186,13 @@ pub(super) struct FluidData {
     /// Melting line.
     pub melting: Melting,
     /// Polynomial and exponential terms of the residual part.
-    pub power: &'static [PowerTerm],
+    pub power: Cow<'static, [PowerTerm]>,
     /// Gaussian terms of the residual part.
-    pub gaussian: &'static [GaussianTerm],
+    pub gaussian: Cow<'static, [GaussianTerm]>,
     /// Terms about the critical point.
-    pub nonanalytic: &'static [NonanalyticTerm],
+    pub nonanalytic: Cow<'static, [NonanalyticTerm]>,
     /// Departure functions of a mixture.
-    pub departure: &'static [DepartureTerm],
+    pub departure: Cow<'static, [DepartureTerm]>,
     /// Constant of the ideal part.
     pub ideal_constant: f64,
     /// Coefficient of `tau` in the ideal part.
@@ -177,11 +200,11 @@ pub(super) struct FluidData {
     /// Coefficient of `ln tau` in the ideal part.
     pub ideal_ln_tau: f64,
     /// Terms `n tau^t` of the ideal part as (n, t).
-    pub ideal_power: &'static [(f64, f64)],
+    pub ideal_power: Cow<'static, [(f64, f64)]>,
     /// Terms `n ln(1 - exp(-t tau))` of the ideal part as (n, t).
-    pub ideal_einstein: &'static [(f64, f64)],
+    pub ideal_einstein: Cow<'static, [(f64, f64)]>,
     /// Terms `n ln(c + d exp(t tau))` of the ideal part as (n, t, c, d).
-    pub ideal_general: &'static [(f64, f64, f64, f64)],
+    pub ideal_general: Cow<'static, [(f64, f64, f64, f64)]>,
     /// Viscosity and thermal conductivity.
     pub transport: Transport,
 }

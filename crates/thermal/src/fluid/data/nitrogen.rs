@@ -7,6 +7,7 @@
 //! µPa s, mW/(m K), nm, g/mol.
 use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
+use alloc::borrow::Cow::Borrowed;
 
 /// Nitrogen.
 pub(super) static NITROGEN: FluidData = FluidData {
@@ -26,7 +27,7 @@ pub(super) static NITROGEN: FluidData = FluidData {
     triple_liquid_density_mol_m3: 30957.31,
     // Span et al. (2000).
     melting: Melting { temperature_k: 63.151, pressure_pa: 12523.0, terms: &[(160_276_993.03, 1.78963)] },
-    power: &[
+    power: Borrowed(&[
         P { n: 0.924803575275, d: 1, t: 0.25, l: 0 },
         P { n: -0.492448489428, d: 1, t: 0.875, l: 0 },
         P { n: 0.661883336938, d: 2, t: 0.5, l: 0 },
@@ -59,21 +60,21 @@ pub(super) static NITROGEN: FluidData = FluidData {
         P { n: -0.0044151337035, d: 5, t: 7.0, l: 4 },
         P { n: 0.00133722924858, d: 6, t: 4.0, l: 4 },
         P { n: 0.000264832491957, d: 9, t: 16.0, l: 4 },
-    ],
-    gaussian: &[
+    ]),
+    gaussian: Borrowed(&[
         G { n: 19.6688194015, d: 1, t: 0.0, eta: 20.0, beta: 325.0, gamma: 1.16, epsilon: 1.0 },
         G { n: -20.911560073, d: 1, t: 1.0, eta: 20.0, beta: 325.0, gamma: 1.16, epsilon: 1.0 },
         G { n: 0.0167788306989, d: 3, t: 2.0, eta: 15.0, beta: 300.0, gamma: 1.13, epsilon: 1.0 },
         G { n: 2627.67566274, d: 2, t: 3.0, eta: 25.0, beta: 275.0, gamma: 1.25, epsilon: 1.0 },
-    ],
-    nonanalytic: &[],
-    departure: &[],
+    ]),
+    nonanalytic: Borrowed(&[]),
+    departure: Borrowed(&[]),
     ideal_constant: -12.76952708,
     ideal_tau: -0.00784163,
     ideal_ln_tau: 2.5,
-    ideal_power: &[(-0.0001934819, -1.0), (-1.247742e-05, -2.0), (6.678326e-08, -3.0)],
-    ideal_einstein: &[(1.012941, 26.657878470901483)],
-    ideal_general: &[],
+    ideal_power: Borrowed(&[(-0.0001934819, -1.0), (-1.247742e-05, -2.0), (6.678326e-08, -3.0)]),
+    ideal_einstein: Borrowed(&[(1.012941, 26.657878470901483)]),
+    ideal_general: Borrowed(&[]),
     transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
         molar_mass_g_mol: 28.01348,
         epsilon_over_k_k: 98.94,

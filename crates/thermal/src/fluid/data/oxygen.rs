@@ -6,6 +6,7 @@
 //! Transport: E. W. Lemmon, R. T Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi:10.1023/B:IJOT.0000022327.04529.f3; µPa s, mW/(m K), nm, g/mol. Digits as CoolProp 8.0.0 distributes them.
 use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
+use alloc::borrow::Cow::Borrowed;
 
 /// Oxygen.
 // 6.283 is a coefficient of the source, not two pi.
@@ -27,7 +28,7 @@ pub(super) static OXYGEN: FluidData = FluidData {
     triple_liquid_density_mol_m3: 40816.43,
     // Younglove, J. Phys. Chem. Ref. Data 11 Suppl. 1 (1982).
     melting: Melting { temperature_k: 1.0, pressure_pa: -266_999_247.652, terms: &[(227_606.348, 1.769)] },
-    power: &[
+    power: Borrowed(&[
         P { n: 0.3983768749, d: 1, t: 0.0, l: 0 },
         P { n: -1.846157454, d: 1, t: 1.5, l: 0 },
         P { n: 0.4183473197, d: 1, t: 2.5, l: 0 },
@@ -60,22 +61,22 @@ pub(super) static OXYGEN: FluidData = FluidData {
         P { n: -0.1259630848, d: 5, t: 17.0, l: 4 },
         P { n: 0.1478355637, d: 5, t: 18.0, l: 4 },
         P { n: -0.01011251078, d: 5, t: 23.0, l: 4 },
-    ],
-    gaussian: &[],
-    nonanalytic: &[],
-    departure: &[],
+    ]),
+    gaussian: Borrowed(&[]),
+    nonanalytic: Borrowed(&[]),
+    departure: Borrowed(&[]),
     ideal_constant: -14.716836666461498,
     ideal_tau: -0.011083985429237124,
     ideal_ln_tau: 2.51808732,
-    ideal_power: &[],
-    ideal_einstein: &[
+    ideal_power: Borrowed(&[]),
+    ideal_einstein: Borrowed(&[
         (1.02323928, 14.5316979447668),
         (0.784357918, 72.8419165356674),
         (0.00337183363, 7.7710849975094),
         (-0.0170864084, 0.446425786480874),
         (0.0463751562, 34.4677188658373),
-    ],
-    ideal_general: &[],
+    ]),
+    ideal_general: Borrowed(&[]),
     transport: Transport::LemmonJacobsen(&LemmonJacobsenData {
         molar_mass_g_mol: 31.9988,
         epsilon_over_k_k: 118.5,

@@ -15,9 +15,10 @@
 //! Wilke, J. Chem. Phys. 18 (1950) 517, doi 10.1063/1.1747673. Mason, Saxena, Phys. Fluids 1 (1958) 361, doi 10.1063/1.1724352.
 use super::Transport;
 use crate::fluid::Real;
+use alloc::vec::Vec;
 
 /// A component of a mixture.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MixtureComponent {
     /// Mole fraction.
     pub fraction: f64,
@@ -30,12 +31,12 @@ pub(crate) struct MixtureComponent {
 }
 
 /// Components and reducing density of a mixture.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct MixtureTransport {
     /// Reducing density, kg/m³.
     pub reducing_density_kg_m3: f64,
     /// Components, at most [`MOST`].
-    pub components: &'static [MixtureComponent],
+    pub components: Vec<MixtureComponent>,
 }
 
 /// Most components.
@@ -55,7 +56,7 @@ impl MixtureTransport {
     #[inline(never)]
     pub(super) fn conductivity_w_m_k<D: Real>(&self, rho: D, t: D) -> D {
         let mut dilute = [D::from(0.0); MOST];
-        for (value, component) in dilute.iter_mut().zip(self.components) {
+        for (value, component) in dilute.iter_mut().zip(&self.components) {
             *value = component.transport.background_conductivity_w_m_k(D::from(0.0), t);
         }
         self.mixed(rho, &self.dilute_viscosity(t), &dilute, |component, rho| {
@@ -65,7 +66,7 @@ impl MixtureTransport {
 
     fn dilute_viscosity<D: Real>(&self, t: D) -> [D; MOST] {
         let mut dilute = [D::from(0.0); MOST];
-        for (value, component) in dilute.iter_mut().zip(self.components) {
+        for (value, component) in dilute.iter_mut().zip(&self.components) {
             *value = component.transport.viscosity_pa_s(D::from(0.0), t);
         }
         dilute

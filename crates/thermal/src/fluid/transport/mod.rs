@@ -28,6 +28,7 @@ pub(crate) use lemmon_jacobsen::{LemmonJacobsenData, Term};
 pub(crate) use mixture::{MixtureComponent, MixtureTransport};
 
 use crate::fluid::Real;
+use alloc::sync::Arc;
 
 /// What the critical enhancement needs of the equation of state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +46,7 @@ pub(super) struct TransportState<D> {
 }
 
 /// Transport correlations of one fluid.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Transport {
     /// The form of Lemmon and Jacobsen 2004.
     LemmonJacobsen(&'static LemmonJacobsenData),
@@ -56,7 +57,7 @@ pub(super) enum Transport {
     /// Helium-4: Arp et al. 1998, Hands and Arp 1981.
     Helium,
     /// From the components: Wilke 1950, Mason and Saxena 1958.
-    Mixture(&'static MixtureTransport),
+    Mixture(Arc<MixtureTransport>),
 }
 
 impl Transport {

@@ -6,11 +6,11 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::fluid::Fluid;
-use crate::fluid::data::{ALL, FluidData};
+use crate::fluid::data::ALL;
 use coolprop::Row;
 
 fn named(name: &str) -> Transport {
-    ALL.iter().find(|data| data.name == name).unwrap().transport
+    Fluid::named(name).unwrap().data().transport.clone()
 }
 
 fn state(row: &Row) -> TransportState<f64> {
@@ -194,10 +194,11 @@ mod property {
     use super::*;
 
     /// Density of 500 bar at 200 K, kg/m³, or at the lowest temperature above at which that is one phase.
-    fn largest_density(data: &FluidData) -> f64 {
+    fn largest_density(fluid: &Fluid) -> f64 {
+        let data = fluid.data();
         let coldest_k = 200.0_f64.max(data.lowest_temperature_k);
         let t = if data.name == "carbon-dioxide" { data.critical_temperature_k } else { coldest_k };
-        Fluid::named(data.name).unwrap().density_from_pressure_temperature(5e7, t).unwrap()
+        fluid.density_from_pressure_temperature(5e7, t).unwrap()
     }
 
     /// Equality to 1e-6 of the value per relative change of the argument.
@@ -208,8 +209,9 @@ mod property {
     proptest! {
         #[test]
         fn values_are_positive(index in 0..ALL.len(), part in 0.0..1.0_f64, t in 200.0..400.0_f64) {
-            let fluid = ALL[index].transport;
-            let rho = part * largest_density(ALL[index]);
+            let gas = Fluid::named(ALL[index].name()).unwrap();
+            let fluid = &gas.data().transport;
+            let rho = part * largest_density(&gas);
             prop_assert!(fluid.viscosity_pa_s(rho, t) > 1e-6);
             prop_assert!(fluid.background_conductivity_w_m_k(rho, t) > 1e-3);
         }
@@ -220,8 +222,9 @@ mod property {
         ) {
             // helium's correlation has a corner in temperature at 300 K
             prop_assume!((t - 300.0).abs() > 0.1);
-            let fluid = ALL[index].transport;
-            let rho = part * largest_density(ALL[index]);
+            let gas = Fluid::named(ALL[index].name()).unwrap();
+            let fluid = &gas.data().transport;
+            let rho = part * largest_density(&gas);
             let (h_rho, h_t) = (1e-5 * rho, 1e-5 * t);
             let along_rho = Dual::<1>::variable(rho, 0);
             let along_t = Dual::<1>::variable(t, 0);
