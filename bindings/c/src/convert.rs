@@ -3,6 +3,7 @@ use crate::code::Text;
 use crate::event::*;
 use crate::output::*;
 use core::ffi::c_char;
+use core::fmt;
 use cylwatch_detector::estimator::observer::Quality;
 use cylwatch_detector::monitor::alarm::{AlarmEvent, AlarmName, Change, LimitState};
 use cylwatch_detector::monitor::{
@@ -89,7 +90,7 @@ impl From<&Event> for cw_event {
             pressure_pa: f64::NAN,
             duration_s: f64::NAN,
             difference_k: f64::NAN,
-            id: id(&event.id),
+            id: id(event.id()),
         };
         use cw_event_kind as Kind;
         match event.kind {
@@ -167,14 +168,14 @@ impl From<&AlarmEvent> for cw_alarm {
             latched: condition.latched,
             time_s: event.transition.time_s,
             active_since_s: condition.active_since_s.unwrap_or(f64::NAN),
-            id: id(&event.id),
+            id: id(event.id()),
         }
     }
 }
 
-fn id(text: &str) -> [c_char; CW_ID_SIZE] {
+fn id(shown: impl fmt::Display) -> [c_char; CW_ID_SIZE] {
     let mut id = [0; CW_ID_SIZE];
-    let text = Text::<{ CW_ID_SIZE - 1 }>::of(&text);
+    let text = Text::<{ CW_ID_SIZE - 1 }>::of(&shown);
     for (place, &byte) in id.iter_mut().zip(text.as_bytes()) {
         *place = byte as c_char;
     }

@@ -2,16 +2,15 @@
 use crate::code::{Failure, Text};
 use crate::event::{CW_TEXT_SIZE, cw_alarm, cw_event};
 use crate::output::{CW_MOST_SENSORS, cw_output};
-use alloc::vec::{self, Vec};
+use alloc::vec::Vec;
 use core::str;
 use cylwatch_detector::compiled::CompiledCylinder;
 use cylwatch_detector::monitor::alarm::AlarmEvent;
-use cylwatch_detector::monitor::{Event, Monitor, Output};
+use cylwatch_detector::monitor::{Monitor, Output};
 
 /// The monitor, and how rows come out of it: the one place that knows.
 pub(crate) struct Rows {
     monitor: Monitor,
-    ready: vec::IntoIter<Output>,
 }
 
 impl Rows {
@@ -25,23 +24,22 @@ impl Rows {
             None => cylinder.monitor()?,
             Some(state) => cylinder.restored(state)?,
         };
-        Ok(Self { monitor, ready: Vec::new().into_iter() })
+        Ok(Self { monitor })
     }
 
     pub(crate) fn take_in(&mut self, time_s: f64, readings: &[f64]) -> Result<(), Failure> {
         self.check_taken()?;
-        self.ready = self.monitor.step(time_s, readings)?.into_iter();
-        Ok(())
+        Ok(self.monitor.take(time_s, readings)?)
     }
 
     pub(crate) fn finish(&mut self) -> Result<(), Failure> {
         self.check_taken()?;
-        self.ready = self.monitor.finish()?.into_iter();
+        self.monitor.flush();
         Ok(())
     }
 
-    pub(crate) fn next(&mut self) -> Result<Option<Output>, Failure> {
-        Ok(self.ready.next())
+    pub(crate) fn next(&mut self) -> Result<Option<&Output>, Failure> {
+        Ok(self.monitor.next_output()?)
     }
 
     pub(crate) fn save(&self) -> Result<Vec<u8>, Failure> {
@@ -51,7 +49,7 @@ impl Rows {
 
     /// A row that nobody has taken would be lost.
     fn check_taken(&self) -> Result<(), Failure> {
-        match self.ready.len() {
+        match self.monitor.ready() {
             0 => Ok(()),
             waiting => Err(Failure::RowsWaiting(waiting)),
         }
@@ -61,15 +59,13 @@ impl Rows {
 /// What lies behind a handle.
 pub(crate) struct Session {
     rows: Option<Rows>,
-    /// Of the last output, or of the last acknowledgement.
-    events: Vec<Event>,
-    alarms: Vec<AlarmEvent>,
+    /// Of an acknowledgement after the last output.
+    acknowledged: Option<Vec<AlarmEvent>>,
     detail: Text<CW_TEXT_SIZE>,
 }
 
 impl Session {
-    pub(crate) const EMPTY: Self =
-        Self { rows: None, events: Vec::new(), alarms: Vec::new(), detail: Text::EMPTY };
+    pub(crate) const EMPTY: Self = Self { rows: None, acknowledged: None, detail: Text::EMPTY };
 
     pub(crate) fn begin(&mut self, rows: Rows) {
         self.rows = Some(rows);
@@ -77,8 +73,7 @@ impl Session {
 
     /// Drops everything that lies in the arena.
     pub(crate) fn end(&mut self) {
-        self.rows = None;
-        (self.events, self.alarms) = (Vec::new(), Vec::new());
+        (self.rows, self.acknowledged) = (None, None);
     }
 
     pub(crate) fn rows(&mut self) -> Result<&mut Rows, Failure> {
@@ -88,17 +83,18 @@ impl Session {
     /// The next row that is ready.
     pub(crate) fn next(&mut self) -> Result<Option<cw_output>, Failure> {
         let Some(output) = self.rows()?.next()? else { return Ok(None) };
-        let plain = cw_output::from(&output);
-        (self.events, self.alarms) = (output.events, output.alarms);
+        let plain = cw_output::from(output);
+        self.acknowledged = None;
         Ok(Some(plain))
     }
 
     /// How many alarms have changed.
     pub(crate) fn acknowledge(&mut self, comment: &[u8]) -> Result<u32, Failure> {
         let comment = str::from_utf8(comment).ok().filter(|comment| comment.len() < CW_TEXT_SIZE);
-        self.alarms = self.rows()?.monitor.acknowledge(comment.ok_or(Failure::Text)?);
-        self.events = Vec::new();
-        Ok(self.alarms.len() as u32)
+        let changed = self.rows()?.monitor.acknowledge(comment.ok_or(Failure::Text)?);
+        let count = changed.len() as u32;
+        self.acknowledged = Some(changed);
+        Ok(count)
     }
 
     pub(crate) fn announce(&mut self, from_s: f64, until_s: f64) -> Result<(), Failure> {
@@ -107,11 +103,17 @@ impl Session {
     }
 
     pub(crate) fn event(&self, index: u32) -> Result<cw_event, Failure> {
-        one(&self.events, index)
+        let none = self.acknowledged.is_some();
+        one(self.last().filter(|_| !none).map_or(&[], |last| &last.events), index)
     }
 
     pub(crate) fn alarm(&self, index: u32) -> Result<cw_alarm, Failure> {
-        one(&self.alarms, index)
+        let of_row = || self.last().map_or(&[][..], |last| &last.alarms);
+        one(self.acknowledged.as_deref().unwrap_or_else(of_row), index)
+    }
+
+    fn last(&self) -> Option<&Output> {
+        self.rows.as_ref().and_then(|rows| rows.monitor.last_output())
     }
 
     pub(crate) fn explain(&mut self, failure: &Failure) {

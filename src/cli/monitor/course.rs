@@ -45,7 +45,7 @@ pub(super) fn told(output: &Output, naming: &Naming) -> impl Iterator<Item = Tol
     let events = output.events.iter().map(move |event| {
         let (time_s, time) = at(event.time_s);
         Told {
-            id: event.id(),
+            id: event.id().to_string(),
             event: event.kind.name().to_owned(),
             time_s,
             time,
@@ -56,7 +56,7 @@ pub(super) fn told(output: &Output, naming: &Naming) -> impl Iterator<Item = Tol
     let alarms = output.alarms.iter().map(move |alarm| {
         let (time_s, time) = at(alarm.transition.time_s);
         Told {
-            id: alarm.id(),
+            id: alarm.id().to_string(),
             event: "alarm".to_owned(),
             time_s,
             time,

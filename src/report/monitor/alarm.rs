@@ -34,7 +34,7 @@ pub(crate) fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
     let transition = &event.transition;
     let condition = &transition.condition;
     json!({
-        "id": event.id(),
+        "id": event.id().to_string(),
         "event": "alarm",
         "time_s": clock.of_log_s(transition.time_s),
         "time": clock.date(transition.time_s),

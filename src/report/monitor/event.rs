@@ -121,7 +121,7 @@ pub(super) fn range(interval: Interval) -> String {
 /// An event as one line of JSON, without its end.
 pub(crate) fn event_line(event: &Event, naming: &Naming) -> String {
     let mut line = json!({
-        "id": event.id(),
+        "id": event.id().to_string(),
         "event": event.kind.name(),
         "time_s": naming.clock.of_log_s(event.time_s),
         "time": naming.clock.date(event.time_s),
@@ -270,7 +270,7 @@ mod tests {
             let object: Value = serde_json::from_str(&line).unwrap();
             assert_eq!(
                 (object["id"].as_str(), object["time_s"].as_f64()),
-                (Some(event.id().as_str()), Some(7200.0))
+                (Some(event.id().to_string().as_str()), Some(7200.0))
             );
             assert_eq!(object["onset"], "2026-01-01T01:00:00Z");
             assert_eq!(object["event"], event.kind.name());

@@ -1,5 +1,5 @@
 //! What happened, once: each event has a name that stays the same however often and wherever the log is replayed.
-use alloc::string::String;
+use core::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::{Health, LeakFinding, Verdict};
@@ -84,8 +84,21 @@ impl Event {
     }
 
     /// The same for the same happening: `<kind>-<onset, ms>`.
-    pub fn id(&self) -> String {
-        format!("{}-{}", self.kind.name(), libm::round(self.onset_s * 1e3))
+    pub fn id(&self) -> impl fmt::Display + use<> {
+        Id { words: [self.kind.name()], ms: libm::round(self.onset_s * 1e3) }
+    }
+}
+
+/// Words and a time, ms, with strokes between them.
+pub(super) struct Id<const WORDS: usize> {
+    pub words: [&'static str; WORDS],
+    pub ms: f64,
+}
+
+impl<const WORDS: usize> fmt::Display for Id<WORDS> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.words.iter().try_for_each(|word| write!(f, "{word}-"))?;
+        write!(f, "{}", self.ms)
     }
 }
 

@@ -1,9 +1,10 @@
 //! The six alarms of a cylinder.
-use alloc::string::String;
 use alloc::vec::Vec;
+use core::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::{Alarm, AlarmSettings, Change, Condition, Transition, Trigger};
+use crate::monitor::event::Id;
 use crate::monitor::{Health, Output, Reason, Verdict};
 
 /// Names of the alarms.
@@ -104,9 +105,9 @@ impl AlarmInputs {
 
 impl AlarmEvent {
     /// The same for the same change: `alarm-<name>-<change>-<time, ms>`.
-    pub fn id(&self) -> String {
-        let ms = libm::round(self.transition.time_s * 1e3);
-        format!("alarm-{}-{}-{ms}", self.alarm.as_str(), self.transition.change.as_str())
+    pub fn id(&self) -> impl fmt::Display + use<> {
+        let words = ["alarm", self.alarm.as_str(), self.transition.change.as_str()];
+        Id { words, ms: libm::round(self.transition.time_s * 1e3) }
     }
 }
 

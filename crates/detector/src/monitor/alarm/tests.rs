@@ -284,7 +284,7 @@ fn each_input_of_the_panel_raises_its_own_alarm_and_no_other() {
         assert_eq!(raised.len(), 1, "{name:?}: {raised:?}");
         assert_eq!((raised[0].alarm, raised[0].transition.change), (name, Change::Active));
         let ms = raised[0].transition.time_s * 1e3;
-        assert_eq!(raised[0].id(), format!("alarm-{}-active-{ms}", name.as_str()));
+        assert_eq!(raised[0].id().to_string(), format!("alarm-{}-active-{ms}", name.as_str()));
         assert_eq!(panel.retained().iter().map(|(name, _)| *name).collect::<Vec<_>>(), [name]);
     }
 }

@@ -396,6 +396,16 @@ impl Monitor {
         Ok(self.said.output.as_ref())
     }
 
+    /// Rows that are ready and have not been asked for; a saved state has them, too.
+    pub fn ready(&self) -> usize {
+        self.state.ready.rows.len()
+    }
+
+    /// What was said last; `None` before the first row, and after a restart.
+    pub fn last_output(&self) -> Option<&Output> {
+        self.said.output.as_ref()
+    }
+
     /// [Take](Self::take) a row: the outputs of all that are ready.
     ///
     /// # Errors
