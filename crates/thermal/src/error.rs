@@ -366,7 +366,9 @@ pub enum ThermalError {
         index: usize,
     },
     /// A state vector of something else.
-    #[error("the state of a step has {found} numbers and not {expected}: it is that of another vessel or other flows")]
+    #[error(
+        "the state of a step has {found} numbers and not {expected}: it is that of another vessel or other flows"
+    )]
     StateLength {
         /// As many as it has.
         expected: usize,
