@@ -12,7 +12,9 @@ use cylwatch_thermal::vessel::{Fill, presets};
 const FILL: Fill = Fill::Settled { pressure_pa: 200e5, temperature_k: 288.15 };
 
 fn sensors() -> Vec<Sensor> {
-    ["shoulder", "pressure"].map(|name| Sensor::typical(name).unwrap()).to_vec()
+    let mut sensors = ["shoulder", "pressure"].map(|name| Sensor::typical(name).unwrap());
+    sensors[0].lag_s = 90.0;
+    sensors.to_vec()
 }
 
 fn plant_of(fill: Fill, film: FilmInputs) -> Resource {
@@ -175,10 +177,13 @@ fn parameters_count_until_the_first_step_and_inputs_at_once() {
     plant.exit_initialization().unwrap();
     let refused = set(&mut plant, "fill_pressure_pa", 100e5).unwrap_err();
     assert!(refused.to_string().contains("before the first step"), "{refused}");
-    // Half of a surface is what the air around it is.
-    let shoulder_k = get(&mut plant, "measured_shoulder_k");
+    // A surface feels the air at once, a reading behind its lag later.
+    let before_k = ["shoulder_k", "measured_shoulder_k"].map(|name| get(&mut plant, name));
     set(&mut plant, "air_k", 320.0).unwrap();
-    assert!(get(&mut plant, "measured_shoulder_k") > shoulder_k + 0.1);
+    assert!(get(&mut plant, "shoulder_k") > before_k[0] + 1e-3);
+    assert_eq!(get(&mut plant, "measured_shoulder_k"), before_k[1]);
+    plant.step(0.0, 60.0).unwrap();
+    assert!(get(&mut plant, "measured_shoulder_k") > before_k[1] + 0.1);
 }
 
 #[test]

@@ -12,6 +12,7 @@ pub(super) fn write(xml: &mut Xml, unit: &Instance, about: &About<'_>) {
         ("guid", token.as_str()),
         ("description", about.description),
         ("version", env!("CARGO_PKG_VERSION")),
+        ("license", env!("CARGO_PKG_LICENSE")),
         ("generationTool", tool.as_str()),
         ("variableNamingConvention", "flat"),
         ("numberOfEventIndicators", "0"),
