@@ -48,8 +48,6 @@ pub(crate) enum Film {
 #[derive(Debug, Args)]
 #[command(after_help = HELP_FOOTER, after_long_help = HELP)]
 pub(crate) struct FmuArguments {
-    #[command(flatten)]
-    pub compiled: CompiledArguments,
     /// What the unit is.
     #[arg(long, value_enum)]
     pub kind: UnitKind,
@@ -59,6 +57,8 @@ pub(crate) struct FmuArguments {
     /// Input of a plant that fixes its film outside [default: wind].
     #[arg(long, value_enum)]
     pub film: Option<Film>,
+    #[command(flatten)]
+    pub compiled: CompiledArguments,
     /// File for the archive; - is stdout.
     #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
     pub output: PathBuf,
@@ -122,7 +122,7 @@ pub(super) fn run(arguments: FmuArguments, messages: &Messages) -> anyhow::Resul
         ("modelDescription.xml", description.as_bytes()),
         (&format!("binaries/{}/{MODEL_IDENTIFIER}{DLL_SUFFIX}", platform(version)?), &library_bytes),
         (&format!("resources/{}", Resource::FILE), &bytes),
-        ("resources/provenance.txt", inputs.provenance().lines().as_bytes()),
+        ("resources/provenance.txt", (inputs.provenance().lines() + "\n").as_bytes()),
     ])?;
     let count = |causality| unit.variables().iter().filter(|of| of.causality == causality).count();
     messages.say(&format!(
