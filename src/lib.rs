@@ -1,6 +1,6 @@
 //! cylwatch tells a leaking gas cylinder from a cold one.
 //!
-//! This crate puts the workspace under one roof ([`thermal`], [`estimator`], [`detector`], [`evaluation`]) and adds what the program needs:
+//! This crate puts the workspace under one roof ([`thermal`], [`estimator`], [`detector`], [`evaluation`], [`cosimulation`]) and adds what the program needs:
 //! logs as files ([`log`]), results as text and figures ([`report`]), gas properties (`properties`), the reproduction of
 //! the paper that it follows ([`reproduce`]).
 //!
@@ -56,6 +56,7 @@
 //! ```
 //!
 //! The programs in the folder `examples` answer one question each in the same way; the `book` says what the numbers mean.
+pub use cylwatch_cosimulation as cosimulation;
 pub use cylwatch_detector as detector;
 pub use cylwatch_estimator as estimator;
 pub use cylwatch_evaluation as evaluation;

@@ -6,6 +6,7 @@ use super::compile::CompileArguments;
 use super::completions::CompletionsArguments;
 use super::estimate::EstimateArguments;
 use super::fleet::{FleetArguments, without_single_runs};
+use super::fmu::FmuArguments;
 use super::identify::IdentifyArguments;
 use super::init::InitArguments;
 use super::inspect::InspectArguments;
@@ -52,6 +53,7 @@ Examples:
   cylwatch fleet logs/ --vessels fleet.csv -o fleet
   cylwatch commission nitrogen-20l -o thresholds.json
   cylwatch compile nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 -o cylinder.bin
+  cylwatch fmu nitrogen-20l --kind plant --fill-pressure-bar 200 --fill-temperature-degc 15 -o plant.fmu
   cylwatch inspection nitrogen-20l week.csv --fill-pressure-bar 200 --fill-temperature-degc 15
   cylwatch identify run.csv --input shoulder --output gas_mean --plot model.svg
   cylwatch calibrate my-cylinder.toml log.csv -o calibrated.toml --plot fit.svg
@@ -81,6 +83,8 @@ pub(super) enum Command {
     Commission(Box<CommissionArguments>),
     /// Compile a cylinder into bytes for a controller, which reads no files.
     Compile(Box<CompileArguments>),
+    /// Write a simulated cylinder or its monitor as a Functional Mock-up Unit, for the co-simulation with other programs.
+    Fmu(Box<FmuArguments>),
     /// Judge the loss of pressure adjusted for temperature since the fill, as ISO 14520 words it: pass, refill or cannot be told.
     Inspection(Box<InspectionArguments>),
     /// Identify a transfer function from one column of a log to another, with intervals, beside the paper's.

@@ -5,6 +5,7 @@ use super::message::Messages;
 use super::monitor::{CylinderArguments, MonitorArguments, Options, Places, compiled};
 use super::options::{FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog};
 use super::output::Target;
+use crate::detector::compiled::CompiledCylinder;
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
 use crate::report::Provenance;
@@ -23,18 +24,11 @@ pub(crate) enum CompiledFormat {
     C,
 }
 
-/// Arguments of `compile`.
+/// A cylinder whose monitor begins without a log.
 #[derive(Debug, Args)]
-#[command(after_help = HELP_FOOTER, after_long_help = HELP)]
-pub(crate) struct CompileArguments {
+pub(crate) struct CompiledArguments {
     /// Vessel: a TOML file, the name of a built-in one, or - for stdin.
     pub vessel: String,
-    /// File for the bytes; - is stdout.
-    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
-    pub output: PathBuf,
-    /// What they are written as [default: c for a file that ends in .c or .h, else bin].
-    #[arg(long, value_enum, help_heading = OUTPUT)]
-    pub format: Option<CompiledFormat>,
     /// Names of the readings of a row, in their order; their sensors are typical.
     #[arg(long, value_name = "LIST", value_delimiter = ',', conflicts_with = "sensors", help_heading = INPUT,
         default_value = "shoulder,valve,pressure")]
@@ -43,6 +37,48 @@ pub(crate) struct CompileArguments {
     pub false_alarms: FalseAlarmArguments,
     #[command(flatten)]
     pub cylinder: CylinderArguments,
+}
+
+impl CompiledArguments {
+    /// The files that are read.
+    pub(super) fn paths(&self) -> Vec<&Path> {
+        let mut paths = vec![Path::new(&self.vessel)];
+        paths.extend(self.cylinder.files().map(PathBuf::as_path));
+        paths
+    }
+
+    /// The cylinder, checked.
+    pub(super) fn compiled(self, inputs: &Inputs, messages: &Messages) -> anyhow::Result<CompiledCylinder> {
+        if !self.cylinder.announced.is_empty() {
+            bail!("--announced is a time of a log: leave it out");
+        }
+        let Self { vessel, readings, false_alarms, cylinder } = self;
+        let log = VesselAndLog { vessel, log: String::new() };
+        let options = MonitorArguments::of_another(log, cylinder, false_alarms, LogArguments::default());
+        let options = Options::of(options, Places::default())?;
+        let fill = match options.source {
+            FillSource::Given(fill @ (Fill::Settled { .. } | Fill::Mass { .. })) => fill,
+            _ => bail!(
+                "without a log the fill is stated: give --fill-pressure-bar and --fill-temperature-degc, or --fill-mass-kg"
+            ),
+        };
+        let typical = |vessel: &Vessel, full_pa: f64| typical(&readings, vessel, full_pa);
+        compiled(&options, inputs, fill, typical, messages)
+    }
+}
+
+/// Arguments of `compile`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP_FOOTER, after_long_help = HELP)]
+pub(crate) struct CompileArguments {
+    #[command(flatten)]
+    pub compiled: CompiledArguments,
+    /// File for the bytes; - is stdout.
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
+    pub output: PathBuf,
+    /// What they are written as [default: c for a file that ends in .c or .h, else bin].
+    #[arg(long, value_enum, help_heading = OUTPUT)]
+    pub format: Option<CompiledFormat>,
 }
 
 const HELP: &str = "\
@@ -56,30 +92,14 @@ Examples:
 
 /// Checks, compiles, writes.
 pub(super) fn run(arguments: CompileArguments, messages: &Messages) -> anyhow::Result<()> {
-    let mut paths = vec![Path::new(&arguments.vessel)];
-    paths.extend(arguments.cylinder.files().map(PathBuf::as_path));
-    let target = Target::checked(Some(&arguments.output), &paths)?;
-    let format = arguments.format.unwrap_or_else(|| match arguments.output.extension() {
+    let CompileArguments { compiled, output, format } = arguments;
+    let target = Target::checked(Some(&output), &compiled.paths())?;
+    let format = format.unwrap_or_else(|| match output.extension() {
         Some(ending) if ending == "c" || ending == "h" => CompiledFormat::C,
         _ => CompiledFormat::Bin,
     });
-    if !arguments.cylinder.announced.is_empty() {
-        bail!("--announced is a time of a log: leave it out");
-    }
-    let readings = arguments.readings;
-    let CompileArguments { vessel, cylinder, false_alarms, .. } = arguments;
-    let log = VesselAndLog { vessel, log: String::new() };
-    let options = MonitorArguments::of_another(log, cylinder, false_alarms, LogArguments::default());
-    let options = Options::of(options, Places::default())?;
     let inputs = Inputs::default();
-    let fill = match options.source {
-        FillSource::Given(fill @ (Fill::Settled { .. } | Fill::Mass { .. })) => fill,
-        _ => bail!(
-            "a controller is told its fill: give --fill-pressure-bar and --fill-temperature-degc, or --fill-mass-kg"
-        ),
-    };
-    let typical = |vessel: &Vessel, full_pa: f64| typical(&readings, vessel, full_pa);
-    let cylinder = compiled(&options, &inputs, fill, typical, messages)?;
+    let cylinder = compiled.compiled(&inputs, messages)?;
     let bytes = cylinder.to_bytes()?;
     messages.say(&format!(
         "{} bytes: {}, readings {}",

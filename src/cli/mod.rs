@@ -14,6 +14,7 @@ mod completions;
 mod estimate;
 mod fill;
 mod fleet;
+mod fmu;
 mod format;
 mod host;
 mod identify;
@@ -88,6 +89,7 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Inspect(arguments) => inspect::run(arguments, messages),
         Command::Identify(arguments) => identify::run(*arguments, messages),
         Command::Compile(arguments) => compile::run(*arguments, messages),
+        Command::Fmu(arguments) => fmu::run(*arguments, messages),
         Command::Commission(arguments) => commission::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),

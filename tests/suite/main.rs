@@ -14,6 +14,7 @@ mod estimate;
 mod examples;
 mod files;
 mod fleet;
+mod fmu;
 mod foreign_log;
 mod foreign_units;
 mod identify;

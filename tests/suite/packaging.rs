@@ -53,7 +53,7 @@ fn what_runs_beside_a_sensor_needs_no_solver_no_parser_no_threads_and_thirty_cra
 
 #[test]
 fn every_package_has_a_readme_and_its_licences() {
-    for package in ["thermal", "estimator", "detector", "evaluation"] {
+    for package in ["thermal", "estimator", "detector", "evaluation", "cosimulation"] {
         let folder = root().join("crates").join(package);
         for file in ["README.md", "LICENSE-MIT", "LICENSE-APACHE"] {
             assert!(folder.join(file).exists(), "{} has no {file}", folder.display());

@@ -22,6 +22,10 @@ pub enum Kind {
     State,
     /// A cylinder that has been compiled for a controller.
     Cylinder,
+    /// A cylinder that has been compiled to be simulated.
+    Plant,
+    /// State of an instance of a co-simulation.
+    Instance,
 }
 
 impl Kind {
@@ -29,7 +33,7 @@ impl Kind {
     pub const fn version(self) -> u32 {
         match self {
             Self::State => 27,
-            Self::Cylinder => 1,
+            Self::Cylinder | Self::Plant | Self::Instance => 1,
         }
     }
 
@@ -37,6 +41,8 @@ impl Kind {
         match self {
             Self::State => b"cylwatch",
             Self::Cylinder => b"cylinder",
+            Self::Plant => b"cylplant",
+            Self::Instance => b"cyl-inst",
         }
     }
 }
@@ -46,6 +52,8 @@ impl core::fmt::Display for Kind {
         f.write_str(match self {
             Self::State => "state of a monitor",
             Self::Cylinder => "compiled cylinder",
+            Self::Plant => "compiled plant",
+            Self::Instance => "state of an instance",
         })
     }
 }

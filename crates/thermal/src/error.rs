@@ -365,6 +365,16 @@ pub enum ThermalError {
         /// Its place in the list, from 0.
         index: usize,
     },
+    /// A state vector of something else.
+    #[error(
+        "the state of a step has {found} numbers and not {expected}: it is that of another vessel or other flows"
+    )]
+    StateLength {
+        /// As many as it has.
+        expected: usize,
+        /// Found.
+        found: usize,
+    },
     /// The solver cannot go on.
     #[error(
         "the integration stops at {time_s:.3} s (gas {gas_k:.2} K, {pressure_pa:.0} Pa): {reason}; \

@@ -198,12 +198,12 @@ fn compare(handle: &Handle, in_c: (cw_code, MaybeUninit<cw_output>), outputs: &[
             let event = event(handle, index);
             assert_eq!(
                 (text(&event.id), event.time_s, event.onset_s),
-                (of.id.as_str(), of.time_s, of.onset_s)
+                (of.id().to_string().as_str(), of.time_s, of.onset_s)
             );
         }
         for (index, of) in output.alarms.iter().enumerate() {
             let (alarm, condition) = (alarm(handle, index), &of.transition.condition);
-            assert_eq!((text(&alarm.id), alarm.time_s), (of.id.as_str(), of.transition.time_s));
+            assert_eq!((text(&alarm.id), alarm.time_s), (of.id().to_string().as_str(), of.transition.time_s));
             let states = (alarm.active, alarm.acked, alarm.confirmed, alarm.latched);
             assert_eq!(states, (condition.active, condition.acked, condition.confirmed, condition.latched));
         }
@@ -261,7 +261,7 @@ fn an_acknowledgement_and_an_announcement_reach_the_monitor() {
         unsafe { cw_acknowledge(handle.handle, comment.as_ptr().cast(), comment.len(), &raw mut count) };
     assert_eq!((code, count as usize), (cw_code::CW_OK, wanted.len()));
     for (index, of) in wanted.iter().enumerate() {
-        assert_eq!(text(&alarm(&handle, index).id), of.id);
+        assert_eq!(text(&alarm(&handle, index).id), of.id().to_string());
     }
     assert_eq!(handle.save(), monitor.save().unwrap());
 }

@@ -42,7 +42,7 @@ impl FirstOrderLag {
     }
 
     /// Lagged reading after `dt_s` in which the static one went linearly from `start` to `end`.
-    pub(crate) fn advance(&self, lagged: f64, start: f64, end: f64, dt_s: f64) -> f64 {
+    pub fn advance(&self, lagged: f64, start: f64, end: f64, dt_s: f64) -> f64 {
         let LagWeights { before, start: w0, end: w1 } = self.weights(dt_s);
         before * lagged + w0 * start + w1 * end
     }

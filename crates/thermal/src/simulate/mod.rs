@@ -7,6 +7,7 @@ mod bordered;
 mod events;
 mod samples;
 mod solver;
+mod stepped;
 mod tangent;
 
 use std::cell::{Cell, RefCell};
@@ -20,6 +21,7 @@ use crate::vessel::{GasResolution, Vessel};
 use events::{FlowStates, Monitors};
 use samples::Samples;
 use solver::{Drive, Step, Stepper, with_stepper};
+pub use stepped::Stepped;
 pub use tangent::Neighbours;
 use tangent::Tangents;
 
@@ -157,43 +159,75 @@ fn run(
     neighbours: &[Neighbours],
     settings: &SimulationSettings,
     going: &mut dyn FnMut(f64) -> bool,
-) -> Result<(Trajectory, Vec<[Trajectory; 2]>), ThermalError> {
+) -> Result<WithNeighbours, ThermalError> {
     settings.validate()?;
     settings.admit(vessel, scenario)?;
     let model = Model::new(vessel, scenario)?;
-    let x0 = model.initial_state(vessel, &scenario.initial)?;
-    let edges = edges_s(scenario);
-    let tangents = match neighbours {
-        [] => None,
-        _ => Some(Tangents::new(neighbours, &model, edges[0])?),
-    };
-    let drive = Drive {
-        pieces: Cell::new(InputPieces::new(scenario, 0.0, edges[0])),
-        open: RefCell::new(vec![false; scenario.flows.len()]),
-        failure: RefCell::new(None),
-    };
-    let absolute = absolute_tolerances(&model, vessel, &x0, settings);
-    let mut run = Run {
-        model: &model,
-        scenario,
-        drive: &drive,
-        settings,
-        flows: FlowStates::new(&scenario.flows),
-        monitors: Monitors::new(scenario),
-        samples: Samples::new(scenario),
-        events: Vec::new(),
-        segments: 0,
-        x: x0.clone(),
-        tangents,
-        going,
-    };
-    let statistics = with_stepper(&model, &drive, x0.clone(), absolute, settings, |stepper| {
-        run.all_segments(stepper, &edges)?;
-        Ok(SolverStatistics { segments: run.segments, ..stepper.statistics() })
-    })?;
-    let end = run.x.clone();
-    let ledger = ledger(&model, &x0, &end);
-    Ok(run.into_trajectories(vessel, ledger, statistics))
+    let x = model.initial_state(vessel, &scenario.initial)?;
+    let absolute = absolute_tolerances(&model, vessel, &x, settings);
+    let course = Course { vessel, scenario, model: &model, settings };
+    Ok(course.run(Start { x, absolute }, neighbours, going)?.0)
+}
+
+/// State that a run begins with, and the tolerances of its states.
+struct Start {
+    x: Vec<f64>,
+    absolute: Vec<f64>,
+}
+
+/// What a run goes through.
+struct Course<'a> {
+    vessel: &'a Vessel,
+    scenario: &'a Scenario,
+    model: &'a Model,
+    settings: &'a SimulationSettings,
+}
+
+/// A run with its neighbours.
+type WithNeighbours = (Trajectory, Vec<[Trajectory; 2]>);
+
+impl Course<'_> {
+    /// The run, and the state at its end.
+    fn run(
+        &self,
+        start: Start,
+        neighbours: &[Neighbours],
+        going: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<(WithNeighbours, Vec<f64>), ThermalError> {
+        let Self { vessel, scenario, model, settings } = *self;
+        let Start { x: x0, absolute } = start;
+        let edges = edges_s(scenario);
+        let tangents = match neighbours {
+            [] => None,
+            _ => Some(Tangents::new(neighbours, model, edges[0])?),
+        };
+        let drive = Drive {
+            pieces: Cell::new(InputPieces::new(scenario, 0.0, edges[0])),
+            open: RefCell::new(vec![false; scenario.flows.len()]),
+            failure: RefCell::new(None),
+        };
+        let mut run = Run {
+            model,
+            scenario,
+            drive: &drive,
+            settings,
+            flows: FlowStates::new(&scenario.flows),
+            monitors: Monitors::new(scenario),
+            samples: Samples::new(scenario),
+            events: Vec::new(),
+            segments: 0,
+            x: x0.clone(),
+            tangents,
+            going,
+        };
+        let statistics = with_stepper(model, &drive, x0.clone(), absolute, settings, |stepper| {
+            run.all_segments(stepper, &edges)?;
+            Ok(SolverStatistics { segments: run.segments, ..stepper.statistics() })
+        })?;
+        let end = run.x.clone();
+        let ledger = ledger(model, &x0, &end);
+        Ok((run.into_trajectories(vessel, ledger, statistics), end))
+    }
 }
 
 /// Tolerances in the states' own units: kelvin for the wall, the same error in kelvin for the gas energy.
@@ -480,7 +514,7 @@ impl Run<'_> {
         vessel: &Vessel,
         ledger: Ledger,
         statistics: SolverStatistics,
-    ) -> (Trajectory, Vec<[Trajectory; 2]>) {
+    ) -> WithNeighbours {
         let run = Trajectory {
             ledger,
             statistics,

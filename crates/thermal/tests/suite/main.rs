@@ -8,6 +8,7 @@ mod filling;
 mod jacobian;
 mod measured;
 mod preset_runs;
+mod stepped;
 mod stratified;
 mod support;
 mod surroundings;
