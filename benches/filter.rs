@@ -79,7 +79,8 @@ fn cylinder(c: &mut Criterion) {
         for (name, engine) in engines(leak) {
             let mut cylinder = Cylinder::new(&vessel, &sensors, &settings).expect("sound settings");
             (0..sensors.len()).for_each(|sensor| cylinder.set_interval_s(sensor, INTERVAL_S));
-            let members: Vec<_> = hypotheses.iter().map(|hypothesis| (*hypothesis, covariance.clone())).collect();
+            let members: Vec<_> =
+                hypotheses.iter().map(|hypothesis| (*hypothesis, covariance.clone())).collect();
             let bank = Bank::new(&mut cylinder, &engine, mean.as_slice(), &members).expect("a covariance");
             bench(c, &format!("cylinder, {count}, {name}"), &cylinder, bank, &readings);
         }

@@ -3,6 +3,8 @@ mod disturbance;
 mod exchange;
 mod judgement;
 mod output;
+mod rows;
+mod saved;
 mod sensors;
 mod wiring;
 
@@ -13,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use self::disturbance::Undisturbed;
 use self::exchange::{Examined, Exchanged};
+use self::rows::Said;
 use super::alarm::{AlarmEvent, AlarmPanel};
 use super::gas::bounds::GasBounds;
 use super::gas::contents::Tangent;
@@ -30,16 +33,14 @@ use super::readings::thermometers::Pair;
 use super::readings::wiring::WiringCheck;
 use super::roles::Roles;
 use super::settings::MonitorSettings;
-use super::{Event, EventKind, Health, Outlook, Output, Reason, Verdict};
+use super::{Event, EventKind, Health, Outlook, Reason, Verdict};
 use crate::DetectorError;
-use crate::estimator::observer::{
-    Commissioning, Companion, Estimate, Learned, Observer, Quality, Snapshot, SnapshotRef,
-};
+use crate::estimator::observer::{Commissioning, Companion, Estimate, Learned, Observer, Quality};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
 use crate::prognosis::Contents;
-use crate::sealed::{self, Fingerprint, Kind, SealError};
+use crate::sealed::Fingerprint;
 
 /// Time after a gap, a blindness or a restart until something can be told again, s.
 const LOOK_S: f64 = 3600.0;
@@ -80,35 +81,6 @@ pub struct Monitor {
     usable: Vec<f64>,
     /// What the last row said, and memory for what the next one says.
     said: Box<Said>,
-}
-
-/// Output of a row, in memory that the next one uses again.
-#[derive(Debug)]
-struct Said {
-    output: Option<Output>,
-    health: Vec<Health>,
-    events: Vec<Event>,
-    alarms: Vec<AlarmEvent>,
-}
-
-/// Events and alarms of a row for which there is room from the first row on.
-const EVENTS: usize = 16;
-const ALARMS: usize = 12;
-
-impl Said {
-    fn with_room(sensors: usize) -> Self {
-        let (events, alarms) = (Vec::with_capacity(EVENTS), Vec::with_capacity(ALARMS));
-        Self { output: None, health: Vec::with_capacity(sensors), events, alarms }
-    }
-
-    /// The row before is over: its memory is free.
-    fn begin(&mut self) {
-        if let Some(last) = self.output.take() {
-            (self.health, self.events, self.alarms) = (last.health, last.events, last.alarms);
-        }
-        self.events.clear();
-        self.alarms.clear();
-    }
 }
 
 /// All that a row changes, but for the observers.
@@ -174,49 +146,6 @@ impl State {
     fn is_exchanging(&self, time_s: f64) -> bool {
         self.examined.is_some() || self.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S)
     }
-}
-
-/// What is saved.
-#[derive(Deserialize)]
-struct Saved {
-    commissioning: Commissioning,
-    held_against: Fingerprint,
-    state: Box<State>,
-    observer: Snapshot,
-    twin: Option<Snapshot>,
-    shadow: Option<Snapshot>,
-}
-
-/// The same, to be written: without copies.
-#[derive(Serialize)]
-struct Saving<'a> {
-    commissioning: Commissioning,
-    held_against: Fingerprint,
-    state: &'a State,
-    observer: SnapshotRef<'a>,
-    twin: Option<&'a Snapshot>,
-    shadow: Option<&'a Snapshot>,
-}
-
-/// What a state belongs to: vessel, sensors, and settings that decide what is kept of the rows. What the gas is held against does not belong
-/// to it: limits, alarms, how rare a false one is to be and the tails that say so, when a reaction is due.
-fn fingerprint(vessel: &Vessel, sensors: &[Sensor], settings: &MonitorSettings) -> Fingerprint {
-    let any = MonitorSettings::default();
-    let settings = MonitorSettings {
-        false_alarm_interval_s: any.false_alarm_interval_s,
-        tails: any.tails,
-        limits: any.limits,
-        loss: any.loss,
-        reaction: any.reaction,
-        alarms: any.alarms,
-        ..settings.clone()
-    };
-    sealed::fingerprint(&(vessel, sensors, settings))
-}
-
-/// What an outlook rests on beside the state.
-fn held_against(settings: &MonitorSettings) -> Fingerprint {
-    sealed::fingerprint(&(settings.limits, settings.loss, settings.reaction))
 }
 
 impl Monitor {
@@ -286,7 +215,7 @@ impl Monitor {
             compared,
             sensors: sensors.to_vec(),
             twin: compared.map(|_| Box::new(wiring::twin(&observer))),
-            fingerprint: fingerprint(vessel, sensors, settings),
+            fingerprint: saved::fingerprint(vessel, sensors, settings),
             shadow: Box::new(observer.companion(usize::MAX)),
             observer: Box::new(observer),
             commissioning: *commissioning,
@@ -303,137 +232,6 @@ impl Monitor {
     pub fn with_learned(mut self, learned: Learned) -> Self {
         self.observer = Box::new(self.observer.with_learned(learned));
         self
-    }
-
-    /// A monitor that goes on from saved bytes, with the commissioning of then. Other limits, alarms, reactions, tails and another
-    /// rarity of false alarms are taken over from this row on.
-    ///
-    /// # Errors
-    /// The bytes are no state of this vessel, these sensors and settings, of this version, whole and unchanged; or as
-    /// [`Monitor::new`].
-    pub fn restore(
-        vessel: &Vessel,
-        sensors: &[Sensor],
-        settings: &MonitorSettings,
-        bytes: &[u8],
-    ) -> Result<Self, DetectorError> {
-        let saved: Saved = sealed::decode(Kind::State, bytes, &fingerprint(vessel, sensors, settings))?;
-        let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
-        monitor.observer.try_restore(&saved.observer)?;
-        match (&mut monitor.twin, &saved.twin) {
-            (Some(twin), Some(saved)) => {
-                monitor.observer.with(twin, |observer| observer.try_restore(saved))?
-            }
-            _ => monitor.twin = None,
-        }
-        if let Some(saved) = &saved.shadow {
-            monitor.observer.with(&mut monitor.shadow, |observer| observer.try_restore(saved))?;
-        }
-        monitor.know_the_filling(saved.state.begun_with);
-        monitor.state = saved.state;
-        monitor.state.make_room(&monitor.observer);
-        monitor.state.cold.move_to(settings.limits.coldest_k);
-        if saved.held_against != held_against(settings) {
-            monitor.state.outlook_due_s = f64::NEG_INFINITY;
-        }
-        Ok(monitor)
-    }
-
-    /// Everything that a restart needs.
-    ///
-    /// # Errors
-    /// [`SealError::Engine`].
-    pub fn save(&self) -> Result<Vec<u8>, SealError> {
-        let examined = self.state.examined.is_some();
-        let saved = Saving {
-            commissioning: self.commissioning,
-            held_against: held_against(&self.settings),
-            state: &self.state,
-            observer: self.observer.snapshot_ref(),
-            twin: self.twin.as_deref().map(Companion::snapshot),
-            shadow: examined.then(|| self.shadow.snapshot()),
-        };
-        sealed::encode(Kind::State, &saved, &self.fingerprint)
-    }
-
-    /// Take in a row with its stamp, s, and one reading per sensor, SI, NaN where missing. What it makes ready [`next_output`](Self::next_output) gives.
-    ///
-    /// # Errors
-    /// The row has another length; all is then as it was.
-    pub fn take(&mut self, stamp_s: f64, readings: &[f64]) -> Result<(), DetectorError> {
-        let State { intake, ready, .. } = &mut *self.state;
-        intake.take_into(stamp_s, readings, false, ready)
-    }
-
-    /// The same of a row that says that it is replayed from a store: it never moves the clock.
-    ///
-    /// # Errors
-    /// As [`Monitor::take`].
-    pub fn take_historical(&mut self, stamp_s: f64, readings: &[f64]) -> Result<(), DetectorError> {
-        let State { intake, ready, .. } = &mut *self.state;
-        intake.take_into(stamp_s, readings, true, ready)
-    }
-
-    /// The rows have come to their end: what was held back is ready.
-    pub fn flush(&mut self) {
-        let State { intake, ready, .. } = &mut *self.state;
-        intake.flush_into(ready);
-    }
-
-    /// What is said of the next row that is ready; `None`: no other one is. Several rows may be ready at once, or none. It needs no memory that it has not
-    /// had since the monitor was made.
-    ///
-    /// # Errors
-    /// The filling fits no state of the fluid.
-    pub fn next_output(&mut self) -> Result<Option<&Output>, DetectorError> {
-        let Some(row) = self.state.ready.rows.pop_front() else { return Ok(None) };
-        self.said.begin();
-        let mut events = core::mem::take(&mut self.said.events);
-        // What happened without a row that could tell it comes with this one.
-        events.append(&mut self.state.ready.events);
-        let estimate = self.process(&row, &mut events)?;
-        self.say(&row, estimate, events)?;
-        Ok(self.said.output.as_ref())
-    }
-
-    /// Rows that are ready and have not been asked for; a saved state has them, too.
-    pub fn ready(&self) -> usize {
-        self.state.ready.rows.len()
-    }
-
-    /// What was said last; `None` before the first row, and after a restart.
-    pub fn last_output(&self) -> Option<&Output> {
-        self.said.output.as_ref()
-    }
-
-    /// [Take](Self::take) a row: the outputs of all that are ready.
-    ///
-    /// # Errors
-    /// As [`Monitor::take`] and [`Monitor::next_output`].
-    pub fn step(&mut self, stamp_s: f64, readings: &[f64]) -> Result<Vec<Output>, DetectorError> {
-        self.take(stamp_s, readings)?;
-        self.outputs()
-    }
-
-    /// [Flush](Self::flush): the outputs of all that are ready.
-    ///
-    /// # Errors
-    /// As [`Monitor::next_output`].
-    pub fn finish(&mut self) -> Result<Vec<Output>, DetectorError> {
-        self.flush();
-        self.outputs()
-    }
-
-    /// The outputs of all rows that are ready.
-    ///
-    /// # Errors
-    /// As [`Monitor::next_output`].
-    pub fn outputs(&mut self) -> Result<Vec<Output>, DetectorError> {
-        let mut outputs = Vec::with_capacity(self.state.ready.rows.len());
-        while let Some(output) = self.next_output()? {
-            outputs.push(output.clone());
-        }
-        Ok(outputs)
     }
 
     /// Somebody has seen the alarms, looked after the sensors and knows the filling.
