@@ -30,7 +30,7 @@ fn row(contents: &Contents, rng: &mut ChaCha8Rng, time_s: f64, happens: &str) ->
     ];
     let minute = (time_s / 60.0) as usize;
     match happens {
-        "spikes" if minute % 97 == 0 => readings[2] *= 0.7,
+        "spikes" if minute.is_multiple_of(97) => readings[2] *= 0.7,
         "transmitter" if since_h > 0.0 => readings[2] -= 3e5,
         "thermometer" if since_h > 0.0 => readings[1] += 4.0,
         "missing" if minute % 7 < 2 => readings[minute % 3] = f64::NAN,
