@@ -1,6 +1,6 @@
 //! The cylinder's observer: mean gas temperature, gas mass and leak rate from sensors outside.
 //!
-//! A bank of Kalman filters ([`Engine`]; [`UdFactors`](crate::filter::UdFactors)) on one [`cylinder::Cylinder`]: a few wall
+//! A bank of Kalman filters ([`Engine`]; [`UdFactors`]) on one [`cylinder::Cylinder`]: a few wall
 //! nodes, valve, gas and mass, augmented by what is unknown in a vehicle ([`states`]). The members differ in how they let gas
 //! leave ([`settings::LeakHypothesis`]): in the first the mass itself walks a little; it gives the mass. Slow ones hold the mass
 //! but for a leak rate that walks, each with its own bandwidth; the middle one gives leak rate and gas temperature. The freest,
