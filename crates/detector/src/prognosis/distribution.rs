@@ -5,7 +5,7 @@
 //!
 //! `F(t) = int f(m) Phi((E[r | m] - r*(m, t))/sd[r | m]) dm / P(r >= 0)`,
 //!
-//! one smooth integral, to 1e-9. Quantiles are found to 1e-6 of themselves, by one to 1e-7. With a known mass or a known rate it is a normal distribution function; with a straight
+//! one smooth integral, to 1e-9. Quantiles are found to 1e-6 of themselves. With a known mass or a known rate it is a normal distribution function; with a straight
 //! loss and a rate that is surely positive it is that of a ratio of normal variables. A leak that is there only with a
 //! probability mixes in what happens without one: the mass stays.
 //!

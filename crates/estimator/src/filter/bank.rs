@@ -127,7 +127,7 @@ impl<P: Plant> Bank<P> {
         if let Covariances::Singles(all) = &mut self.covariances {
             all.clear();
         }
-        for (index, member) in self.members.begin().iter_mut().enumerate() {
+        for (index, member) in self.members.all_mut().iter_mut().enumerate() {
             factors.factorise(|p| write(index, &member.hypothesis, p))?;
             member.begin(mean);
             match &mut self.covariances {
@@ -141,6 +141,7 @@ impl<P: Plant> Bank<P> {
                 }
             }
         }
+        self.members.begin();
         self.slow_s = 0.0;
         Ok(())
     }
@@ -352,7 +353,7 @@ impl<P: Plant> Bank<P> {
 
     /// Make room for the last step of a member, which is recorded from then on.
     pub(crate) fn record_steps(&mut self, index: usize, plant: &P) {
-        if let Some(member) = self.members.room_mut(index) {
+        if let Some(member) = self.members.all_mut().get_mut(index) {
             member.recorded(plant.leading());
         }
     }

@@ -73,8 +73,8 @@ pub(crate) use roles::middle_slow;
 pub(crate) use scale::Scale;
 pub use screen::FaultCount;
 pub use settings::{AirStep, FlowDoubt, LeakHypothesis, ModelError, ObserverSettings, Walk};
-pub use signature::Onset;
 use signature::Onsets;
+pub use signature::{ONSETS_AT_MOST, Onset};
 pub use smoother::Smoother;
 pub use snapshot::{Snapshot, SnapshotRef};
 

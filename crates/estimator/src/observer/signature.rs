@@ -43,7 +43,7 @@ const LONGEST_S: f64 = 60.0 * 86_400.0;
 /// Largest ratio of the ages of two onsets between which one is thinned out.
 const ONSET_AGE_RATIO: f64 = 1.7;
 /// Onsets for which there is room: two in each step of the ladder, a new one, and the likeliest with its neighbours.
-const ONSETS_AT_MOST: usize = 40;
+pub const ONSETS_AT_MOST: usize = 40;
 /// Standard deviations up to which an innovation counts in full.
 const BOUND: f64 = 2.0;
 /// Standard deviations from which the member is compensated for a leak.

@@ -21,7 +21,7 @@ use core::f64::consts::TAU;
 use cylwatch_estimator::thermal::real::powi;
 use smallvec::SmallVec;
 
-use crate::estimator::observer::{Observer, Onset};
+use crate::estimator::observer::{ONSETS_AT_MOST, Observer, Onset};
 use crate::evidence::Evidence;
 use crate::monitor::{Interval, LeakFinding};
 use crate::prognosis::{normal_probability, root};
@@ -41,13 +41,10 @@ const DRIFT_PER_S: f64 = 1e-5 / 4.477 / 3600.0;
 /// By how much an onset may be off beside what is known of it, s.
 const ONSET_S: f64 = 600.0;
 
-/// Onsets that the observer keeps, nearly.
-const ONSETS: usize = 32;
-
 /// What is known of a leak, if there is one: a mixture over its onsets. Quantiles are found when they are asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Posterior {
-    candidates: SmallVec<[Candidate; ONSETS]>,
+    candidates: SmallVec<[Candidate; ONSETS_AT_MOST]>,
     /// Time at which it is known, s.
     time_s: f64,
     /// Error of the rate that lasts, kg/s.
@@ -77,14 +74,14 @@ pub fn fit(observer: &Observer, evidence: &Evidence, time_s: f64, mass_kg: f64) 
         let considered_kg_s = evidence.considered_kg_s(time_s - of.since_s);
         (of.since_s, of.rate_kg_s, libm::hypot(error_sd * of.sd_kg_s, considered_kg_s))
     };
-    let onsets: SmallVec<[_; ONSETS]> = observer.onsets().map(onset).collect();
+    let onsets: SmallVec<[_; ONSETS_AT_MOST]> = observer.onsets().map(onset).collect();
     Posterior::of(&onsets, time_s, DRIFT_PER_S * mass_kg)
 }
 
 impl Posterior {
     /// Of onsets, s, with their rates and standard deviations, kg/s, oldest first, and an error of the rate that lasts, kg/s.
     pub(super) fn of(onsets: &[(f64, f64, f64)], time_s: f64, drift_kg_s: f64) -> Option<Self> {
-        let mut candidates: SmallVec<[Candidate; ONSETS]> = onsets
+        let mut candidates: SmallVec<[Candidate; ONSETS_AT_MOST]> = onsets
             .iter()
             .enumerate()
             .map(|(index, &(onset_s, rate, sd))| {
@@ -184,7 +181,7 @@ impl Part {
 
 /// Mixture of normal distributions above zero.
 struct Mixture {
-    parts: SmallVec<[Part; ONSETS]>,
+    parts: SmallVec<[Part; ONSETS_AT_MOST]>,
 }
 
 impl Mixture {

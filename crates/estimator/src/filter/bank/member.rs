@@ -30,20 +30,19 @@ impl<H: Clone> Members<H> {
         self.all.len()
     }
 
-    /// There they are.
-    pub(crate) fn begin(&mut self) -> &mut [Member<H>] {
-        self.begun = true;
+    /// The memory of all of them.
+    pub(crate) fn all_mut(&mut self) -> &mut [Member<H>] {
         &mut self.all
+    }
+
+    /// There they are.
+    pub(crate) fn begin(&mut self) {
+        self.begun = true;
     }
 
     /// There are none any more.
     pub(crate) fn forget(&mut self) {
         self.begun = false;
-    }
-
-    /// The memory of a member, which may not be there yet.
-    pub(crate) fn room_mut(&mut self, index: usize) -> Option<&mut Member<H>> {
-        self.all.get_mut(index)
     }
 
     /// Become as others are, in the memory for as many.
