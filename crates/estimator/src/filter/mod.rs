@@ -21,6 +21,7 @@ pub(crate) mod simd;
 mod smoother;
 mod state_space;
 mod stationary;
+mod step;
 mod ud;
 pub(crate) mod ud_bank;
 mod unscented;
@@ -34,13 +35,14 @@ pub use gate::{Gate, Innovation, Outcome};
 pub use kalman::ExtendedKalman;
 #[cfg(feature = "design")]
 pub(crate) use linear::LinearSystem;
-pub(crate) use plant::parts;
-pub use plant::{Plant, SlowProcess, StepTransition};
+pub use plant::{Plant, SlowProcess};
 pub use record::StepRecord;
 pub use riccati::{SteadyState, steady_prediction, steady_state};
 pub(crate) use smoother::Backward;
 pub use smoother::{Smoothed, smooth};
 pub use state_space::{Linearisation, StateSpace};
+pub use step::StepTransition;
+pub(crate) use step::parts;
 pub use ud::UdFactors;
 pub use ud_bank::Pattern;
 #[cfg(test)]

@@ -1,12 +1,10 @@
 //! What a bank of filters asks of a process beyond its [`StateSpace`].
-use alloc::vec::Vec;
 use core::fmt::Debug;
-
-use nalgebra::DMatrix;
 
 use super::dense::add_product_transposed;
 use super::gate::Gate;
-use super::state_space::{Linearisation, StateSpace};
+use super::state_space::StateSpace;
+use super::step::StepTransition;
 use super::ud_bank::Pattern;
 
 /// Slow motion of a constant: `d(x - rest) = -decay (x - rest) dt + w`.
@@ -26,37 +24,6 @@ impl SlowProcess {
         let decay = self.decay_per_s * dt_s;
         let span_s = if decay > 0.0 { -libm::expm1(-2.0 * decay) / (2.0 * self.decay_per_s) } else { dt_s };
         (libm::exp(-decay), self.intensity * span_s)
-    }
-}
-
-/// Number and length, s, of the steps that an interval is divided into.
-pub(crate) fn parts(dt_s: f64, longest_step_s: f64) -> (usize, f64) {
-    let parts = libm::ceil(dt_s / longest_step_s).max(1.0);
-    (parts as usize, dt_s / parts)
-}
-
-/// Transition of a step, with the noise that it adds in parts: members of a bank differ in the intensity of some sources.
-#[derive(Clone, Debug)]
-pub struct StepTransition {
-    /// Leading rows of the transition: (leading, n).
-    pub phi: DMatrix<f64>,
-    /// Noise covariance that all members share: (leading, leading), upper triangle.
-    pub noise: DMatrix<f64>,
-    /// Noise covariance by each source of [`Plant::intensities`], per unit of its intensity.
-    pub(crate) by_source: Vec<DMatrix<f64>>,
-    linear: Linearisation,
-}
-
-impl StepTransition {
-    pub(crate) fn new<P: Plant>(plant: &P) -> Self {
-        let (n, leading) = (plant.states(), plant.leading());
-        let square = DMatrix::zeros(leading, leading);
-        Self {
-            phi: DMatrix::zeros(leading, n),
-            by_source: vec![square.clone(); P::SOURCES],
-            noise: square,
-            linear: Linearisation::zeros(n, leading, plant.noises()),
-        }
     }
 }
 
@@ -97,7 +64,7 @@ pub trait Plant: StateSpace + Clone + Debug {
         self.noise_variance(j, x)
     }
 
-    /// Longest step of a transition, s: intervals are divided into equal steps.
+    /// Longest part of an interval over which the coefficients stay, s; at rest they [stay longer](super::step::Steps).
     fn longest_step_s(&self) -> f64 {
         f64::INFINITY
     }

@@ -12,6 +12,7 @@ mod equivalence_factors;
 mod equivalence_filters;
 mod equivalence_smoother;
 mod equivalence_steady;
+mod gap;
 mod horizon;
 mod identify;
 mod ill_conditioned;

@@ -15,12 +15,15 @@ use super::member::Member;
 use crate::filter::gate::Outcome;
 use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
-use crate::filter::plant::{Plant, StepTransition, parts};
+use crate::filter::plant::Plant;
+use crate::filter::step::{DoublingMemory, StepTransition, Steps, parts};
 use crate::filter::ud::UdFactors;
 use crate::filter::ud_bank::{BankTransition, Factors, UdBank, UdMemory, Unrolled};
 
 /// Distance up to which two states differ linearly: curvature is left out.
 const LINEAR_DISTANCE: f64 = 0.5;
+/// The same where it is taken into account.
+const BENT_DISTANCE: f64 = 1.0;
 /// Part of the variance of a considered state that a reading explains at least that moves it.
 const MIN_EXPLAINED_PART: f64 = 0.01;
 
@@ -36,6 +39,7 @@ pub(super) struct Pack {
 #[derive(Debug)]
 pub(super) struct PackMemory {
     step: StepTransition,
+    doubling: DoublingMemory,
     transition: BankTransition,
     factors: UdMemory,
     /// Departure of each member from its reference, and where the transition takes it: (n), (leading).
@@ -61,7 +65,8 @@ impl PackMemory {
     pub(super) fn new<P: Plant>(plant: &P) -> Self {
         let (n, m) = (plant.states(), plant.leading());
         Self {
-            step: StepTransition::new(plant),
+            step: StepTransition::zeros(n, m, plant.noises(), P::SOURCES),
+            doubling: DoublingMemory::new(n, m),
             transition: BankTransition::new(plant.pattern()),
             factors: UdMemory::new(n, m),
             away: vec![Lanes::ZERO; n],
@@ -124,7 +129,7 @@ impl Pack {
         }
     }
 
-    /// Time update over an interval, in steps no longer than the plant allows.
+    /// Time update over an interval, in parts no longer than the plant allows, of which a long one takes [several at once](Steps).
     pub(super) fn predict<P: Plant>(
         &mut self,
         plant: &mut P,
@@ -133,16 +138,14 @@ impl Pack {
         dt_s: f64,
     ) -> Result<(), P::Error> {
         let (parts, part_s) = parts(dt_s, plant.longest_step_s());
-        for _ in 0..parts {
-            self.step(plant, memory, members, part_s)?;
-        }
-        Ok(())
+        Steps::of(parts).try_for_each(|doublings| self.step(plant, memory, members, (part_s, doublings)))
     }
 
-    fn group<P: Plant>(&mut self, plant: &P, members: &[Member<P::Hypothesis>]) {
+    /// Group members that are no farther from their reference than this.
+    fn group<P: Plant>(&mut self, plant: &P, members: &[Member<P::Hypothesis>], within: f64) {
         self.groups.clear();
         let mut left = [true; LANES];
-        while let Some(group) = Group::next(plant, members, &mut left) {
+        while let Some(group) = Group::next(plant, members, &mut left, within) {
             self.groups.push(group);
         }
     }
@@ -152,12 +155,13 @@ impl Pack {
         plant: &mut P,
         memory: &mut PackMemory,
         members: &mut [Member<P::Hypothesis>],
-        dt_s: f64,
+        step: (f64, u32),
     ) -> Result<(), P::Error> {
         memory.away.fill(Lanes::ZERO);
-        self.group(plant, members);
+        // What curvature adds is known over one part.
+        self.group(plant, members, if step.1 == 0 { BENT_DISTANCE } else { LINEAR_DISTANCE });
         for group in &self.groups {
-            memory.move_group(plant, members, group, dt_s)?;
+            memory.move_group(plant, members, group, step)?;
         }
         memory.transition.carry(&memory.away, &mut memory.moved);
         for (lane, member) in members.iter_mut().enumerate() {
@@ -194,7 +198,7 @@ impl Pack {
     ) -> Result<(), P::Error> {
         let (mut nu, mut r) = (Lanes::ZERO, Lanes::splat(1.0));
         if self.groups.is_empty() {
-            self.group(plant, members);
+            self.group(plant, members, BENT_DISTANCE);
         }
         for group in &self.groups {
             let x = &members[group.reference].x;
@@ -288,12 +292,14 @@ impl PackMemory {
         plant: &mut P,
         members: &mut [Member<P::Hypothesis>],
         group: &Group,
-        dt_s: f64,
+        (part_s, doublings): (f64, u32),
     ) -> Result<(), P::Error> {
         let (m, reference) = (self.moved.len(), group.reference);
         self.before.copy_from_slice(&members[reference].x);
         plant.suppose(&members[reference].hypothesis);
-        plant.transition(&mut members[reference].x, dt_s, &mut self.step)?;
+        let x = &mut members[reference].x;
+        plant.transition(x, part_s, &mut self.step)?;
+        (0..doublings).for_each(|_| self.step.double(&self.before, x, &mut self.doubling));
         self.transition.set(group.lanes, self.step.phi.as_slice());
         self.set_noise(plant, group.lanes, members);
         self.after.copy_from_slice(&members[reference].x[..m]);
@@ -309,7 +315,7 @@ impl PackMemory {
             }
             self.bent.copy_from_slice(&self.after);
             if group.distance[lane] > LINEAR_DISTANCE {
-                plant.add_curvature(&self.before, &member.x, dt_s, &self.step, &mut self.bent)?;
+                plant.add_curvature(&self.before, &member.x, part_s, &self.step, &mut self.bent)?;
             }
             member.x[..m].copy_from_slice(&self.bent);
         }
@@ -345,7 +351,12 @@ struct Group {
 
 impl Group {
     /// The next reference with all that are close to it, among the lanes that are left; lanes without a member join the first group.
-    fn next<P: Plant>(plant: &P, members: &[Member<P::Hypothesis>], left: &mut Some4) -> Option<Self> {
+    fn next<P: Plant>(
+        plant: &P,
+        members: &[Member<P::Hypothesis>],
+        left: &mut Some4,
+        within: f64,
+    ) -> Option<Self> {
         let candidates = || (0..members.len()).filter(|&lane| left[lane]);
         let first = candidates().find(|&lane| plant.is_reference(&members[lane].hypothesis));
         let reference = first.or_else(|| candidates().next())?;
@@ -354,7 +365,7 @@ impl Group {
         for lane in candidates().filter(|&lane| lane != reference) {
             let member = &members[lane];
             group.distance[lane] = plant.distance((&of.hypothesis, &of.x), (&member.hypothesis, &member.x));
-            group.lanes[lane] = group.distance[lane] <= 1.0;
+            group.lanes[lane] = group.distance[lane] <= within;
         }
         left.iter_mut().zip(group.lanes).for_each(|(left, taken)| *left &= !taken);
         Some(group)

@@ -8,8 +8,9 @@ use super::windowed::Windowed;
 use super::workspace::{SingleMemory, Workspace};
 use crate::EstimatorError;
 use crate::filter::gate::Outcome;
-use crate::filter::plant::{Plant, parts};
+use crate::filter::plant::Plant;
 use crate::filter::stationary::Stationary;
+use crate::filter::step::parts;
 use crate::filter::ud::UdFactors;
 use crate::filter::unscented::SigmaPoints;
 
