@@ -29,7 +29,7 @@ use crate::ThermalError;
 use crate::flow::Flow;
 use crate::fluid::Fluid;
 use crate::scenario::{Scenario, Sun};
-use crate::transfer::inside::InsideConvection;
+use crate::transfer::inside::{InsideConvection, Kept};
 use crate::transfer::outside::Body;
 use crate::vessel::{GasResolution, Surface, Valve, Vessel};
 use crate::wall::conduction::link_flow;
@@ -155,6 +155,7 @@ impl Model {
                 vessel.inside_film,
                 geometry.inner_diameter_m,
                 vessel.fluid.clone(),
+                Kept::OF_MANY_SURFACES,
             ),
             gas: match vessel.gas {
                 GasResolution::Stratified(constants) if grid.cells.len() > 1 => {

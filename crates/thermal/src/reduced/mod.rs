@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::ThermalError;
 use crate::fluid::Fluid;
 use crate::sensor::SurfacePlace;
-use crate::transfer::inside::InsideConvection;
+use crate::transfer::inside::{InsideConvection, Kept};
 use crate::vessel::{Valve, Vessel};
 use crate::wall::geometry::Geometry;
 use crate::wall::material::{Material, REFERENCE_TEMPERATURE_K};
@@ -182,6 +182,7 @@ impl ReducedModel {
                 vessel.inside_film,
                 vessel.geometry.inner_diameter_m,
                 vessel.fluid.clone(),
+                Kept::OF_ONE_SURFACE,
             ),
             gas: GasNode::new(vessel.fluid.clone(), vessel.volume),
             skin_k: vec![0.0; nodes],

@@ -40,9 +40,21 @@ const LN_QUARTER: f64 = -2.0 * core::f64::consts::LN_2;
 const STEP_K: f64 = 4.0;
 /// Spacing of the grid in the logarithm of the pressure.
 const STEP_LN_P: f64 = 0.05;
-/// Nodes and patches that are kept, along temperature and pressure: nodes of 128 K and a third of the pressure.
-const CACHED_NODES: (i32, i32) = (32, 8);
-const CACHED_PATCHES: (i32, i32) = (8, 2);
+
+/// Nodes and patches that are kept, along temperature and pressure.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kept {
+    nodes: GridIndex,
+    patches: GridIndex,
+}
+
+impl Kept {
+    /// For surfaces of many temperatures: nodes of 128 K and a third of the pressure.
+    #[cfg(feature = "simulate")]
+    pub(crate) const OF_MANY_SURFACES: Self = Self { nodes: (32, 8), patches: (8, 2) };
+    /// For one surface, whose film is at one temperature at a time.
+    pub(crate) const OF_ONE_SURFACE: Self = Self { nodes: (8, 8), patches: (4, 2) };
+}
 
 /// `ln k` and `ln R` with their derivatives along temperature and logarithm of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,11 +118,11 @@ pub(crate) struct FilmGrid {
 
 impl FilmGrid {
     /// An empty grid.
-    pub(crate) fn new(fluid: Fluid) -> Self {
+    pub(crate) fn new(fluid: Fluid, kept: Kept) -> Self {
         Self {
             fluid,
-            nodes: RefCell::new(GridCache::new(CACHED_NODES)),
-            patches: RefCell::new(GridCache::new(CACHED_PATCHES)),
+            nodes: RefCell::new(GridCache::new(kept.nodes)),
+            patches: RefCell::new(GridCache::new(kept.patches)),
             last_pressure: Cell::new((1.0, 0.0)),
         }
     }
@@ -196,8 +208,8 @@ pub(crate) struct InsideConvection {
 
 impl InsideConvection {
     /// Film law `law` of a vessel of characteristic length `length_m` (its inner diameter; irrelevant for n = 1/3).
-    pub(crate) fn new(law: InsideFilm, length_m: f64, fluid: Fluid) -> Self {
-        Self { law, ln_length: libm::log(length_m), grid: FilmGrid::new(fluid) }
+    pub(crate) fn new(law: InsideFilm, length_m: f64, fluid: Fluid, kept: Kept) -> Self {
+        Self { law, ln_length: libm::log(length_m), grid: FilmGrid::new(fluid, kept) }
     }
 
     /// Heat flux from a surface at `surface_k` to gas at `gas_k` and `pressure_pa`, with `jet_w_m2_k` added for
@@ -298,7 +310,7 @@ mod tests {
     const MCADAMS: InsideFilm = InsideFilm::Rayleigh { factor: 0.13, exponent: 1.0 / 3.0, multiplier: 1.0 };
 
     fn film(fluid: &str) -> InsideConvection {
-        InsideConvection::new(MCADAMS, 0.19, Fluid::named(fluid).expect("known"))
+        InsideConvection::new(MCADAMS, 0.19, Fluid::named(fluid).expect("known"), Kept::OF_ONE_SURFACE)
     }
 
     /// Coefficients computed with CoolProp for nitrogen (project reference "peers", section 6), printed without decimals.
@@ -323,7 +335,7 @@ mod tests {
     fn interpolated_groups_agree_with_exact_ones() {
         for name in Fluid::names() {
             let fluid = Fluid::named(name).expect("known");
-            let grid = FilmGrid::new(fluid.clone());
+            let grid = FilmGrid::new(fluid.clone(), Kept::OF_ONE_SURFACE);
             let mut worst = [0.0_f64; 2];
             // Nearer to the critical point the groups bend more than the grid follows.
             let domain = fluid.domain();
