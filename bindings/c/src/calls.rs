@@ -245,12 +245,12 @@ pub unsafe extern "C" fn cw_save(
         with(handle, |session| {
             let written = place("written", written)?;
             let buffer = places("buffer", buffer, capacity)?;
-            let state = session.rows()?.save()?;
-            written.write(state.len());
-            if state.len() > capacity {
-                return Err(Failure::BufferTooSmall { needed: state.len(), capacity });
+            let room = slice::from_raw_parts_mut(buffer.cast::<u8>().as_ptr(), capacity);
+            let needed = session.rows()?.save_into(room)?;
+            written.write(needed);
+            if needed > capacity {
+                return Err(Failure::BufferTooSmall { needed, capacity });
             }
-            buffer.cast::<u8>().as_ptr().copy_from_nonoverlapping(state.as_ptr(), state.len());
             Ok(cw_code::CW_OK)
         })
     }

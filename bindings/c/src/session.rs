@@ -42,9 +42,10 @@ impl Rows {
         Ok(self.monitor.next_output()?)
     }
 
-    pub(crate) fn save(&self) -> Result<Vec<u8>, Failure> {
+    /// Into room for it, and how many bytes it is.
+    pub(crate) fn save_into(&self, room: &mut [u8]) -> Result<usize, Failure> {
         self.check_taken()?;
-        Ok(self.monitor.save().map_err(cylwatch_detector::DetectorError::from)?)
+        Ok(self.monitor.save_into(room).map_err(cylwatch_detector::DetectorError::from)?)
     }
 
     /// A row that nobody has taken would be lost.

@@ -13,6 +13,9 @@ use cylwatch_detector::monitor::Monitor;
 /// Most sensors of a cylinder.
 pub const MOST_SENSORS: usize = 8;
 
+/// Bytes of a state at most.
+pub const LARGEST_STATE: usize = 24 << 10;
+
 /// Bytes of an output at most.
 const LARGEST_OUTPUT: usize = 4096;
 
@@ -23,7 +26,7 @@ pub enum ReplayError {
     Monitor(usize, DetectorError),
     /// A line has a cell that is no number, or another number of cells.
     Line(usize),
-    /// An output cannot be put into bytes.
+    /// An output or a state is longer than there is room for.
     Bytes,
 }
 
@@ -32,7 +35,7 @@ impl fmt::Display for ReplayError {
         match self {
             Self::Monitor(line, error) => write!(f, "line {line}: {error}"),
             Self::Line(line) => write!(f, "line {line}: give time_s and a number or nothing for each sensor"),
-            Self::Bytes => write!(f, "an output cannot be put into bytes"),
+            Self::Bytes => write!(f, "there is too little room for an output or a state"),
         }
     }
 }
@@ -45,6 +48,10 @@ pub trait Observed {
     fn begun(&mut self) {}
     /// The monitor is to be saved and restored.
     fn saving(&mut self) {}
+    /// It has been saved.
+    fn saved(&mut self) {}
+    /// It has been restored.
+    fn restored(&mut self) {}
     /// The monitor begins to work.
     fn work(&mut self) {}
     /// It rests.
@@ -55,11 +62,16 @@ pub trait Observed {
     fn done(&mut self, _line: usize) {}
 }
 
-/// Replays a log.
+/// Replays a log, with room for a state.
 ///
 /// # Errors
 /// As [`ReplayError`] says.
-pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Result<usize, ReplayError> {
+pub fn replay(
+    cylinder: &[u8],
+    log: &str,
+    room: &mut [u8; LARGEST_STATE],
+    observed: &mut impl Observed,
+) -> Result<usize, ReplayError> {
     let of = |line: usize| move |error| ReplayError::Monitor(line, error);
     let cylinder = CompiledCylinder::from_bytes(cylinder).map_err(of(0))?;
     let mut monitor = cylinder.monitor().map_err(of(0))?;
@@ -71,10 +83,12 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
         let number = at + 1;
         if count == middle {
             observed.saving();
-            let state = monitor.save().map_err(|error| ReplayError::Monitor(number, error.into()))?;
+            let state = save(&monitor, number, room)?;
+            observed.saved();
             // An arena need not hold two.
             drop(monitor);
-            monitor = cylinder.restored(&state).map_err(of(number))?;
+            monitor = cylinder.restored(state).map_err(of(number))?;
+            observed.restored();
         }
         let mut cells = [f64::NAN; 1 + MOST_SENSORS];
         let mut length = 0;
@@ -96,9 +110,13 @@ pub fn replay(cylinder: &[u8], log: &str, observed: &mut impl Observed) -> Resul
     }
     monitor.flush();
     rows += put(&mut monitor, 0, observed)?;
-    let state = monitor.save().map_err(|error| ReplayError::Monitor(0, error.into()))?;
-    framed(&state, observed);
+    framed(save(&monitor, 0, room)?, observed);
     Ok(rows)
+}
+
+fn save<'a>(monitor: &Monitor, line: usize, room: &'a mut [u8]) -> Result<&'a [u8], ReplayError> {
+    let length = monitor.save_into(room).map_err(|error| ReplayError::Monitor(line, error.into()))?;
+    room.get(..length).ok_or(ReplayError::Bytes)
 }
 
 /// Write what the monitor says of the rows that are ready, and count them.

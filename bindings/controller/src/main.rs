@@ -21,7 +21,7 @@ fn main() -> std::process::ExitCode {
 
 #[cfg(not(target_os = "none"))]
 mod host {
-    use cylwatch_controller::{Observed, replay};
+    use cylwatch_controller::{LARGEST_STATE, Observed, replay};
 
     struct Bytes(Vec<u8>);
 
@@ -35,7 +35,8 @@ mod host {
         let read = |name: &str| std::fs::read(name).map_err(|error| format!("{name}: {error}"));
         let log = String::from_utf8(read("log.csv")?).map_err(|error| format!("log.csv: {error}"))?;
         let mut bytes = Bytes(Vec::new());
-        let rows = replay(&read("cylinder.bin")?, &log, &mut bytes).map_err(|error| error.to_string())?;
+        let (cylinder, mut room) = (read("cylinder.bin")?, [0; LARGEST_STATE]);
+        let rows = replay(&cylinder, &log, &mut room, &mut bytes).map_err(|error| error.to_string())?;
         std::fs::write("out.bin", bytes.0).map_err(|error| format!("out.bin: {error}"))?;
         Ok(rows)
     }

@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hio, syscall};
-use cylwatch_controller::{Observed, replay};
+use cylwatch_controller::{LARGEST_STATE, Observed, replay};
 use embedded_alloc::TlsfHeap;
 
 /// What the monitor may allocate, bytes.
@@ -107,6 +107,10 @@ struct Told {
     /// Bytes of stack that the caller of a row has, and that rows before the monitor was saved had below it.
     caller: usize,
     stack: usize,
+    /// Bytes of stack that the caller of save and restore has, and allocations and bytes of stack below it that they needed.
+    saver: usize,
+    saving: (usize, usize),
+    restoring: (usize, usize),
 }
 
 impl Observed for Told {
@@ -122,11 +126,24 @@ impl Observed for Told {
     fn saving(&mut self) {
         // What a row needs below its caller.
         self.stack = stack_used().saturating_sub(self.caller);
+        self.saver = here();
+        self.saving.0 = COUNT.load(Relaxed);
+        paint();
+    }
+
+    fn saved(&mut self) {
+        self.saving = (COUNT.load(Relaxed) - self.saving.0, stack_used().saturating_sub(self.saver));
+        self.restoring.0 = COUNT.load(Relaxed);
+        paint();
+    }
+
+    fn restored(&mut self) {
+        self.restoring = (COUNT.load(Relaxed) - self.restoring.0, stack_used().saturating_sub(self.saver));
     }
 
     fn work(&mut self) {
         self.held = self.held.max(USED.load(Relaxed));
-        self.caller = addr_of_mut!(_stack_start) as usize - cortex_m::register::msp::read() as usize;
+        self.caller = here();
         self.begun = (SYST::get_current(), COUNT.load(Relaxed));
     }
 
@@ -153,6 +170,12 @@ impl Observed for Told {
 unsafe extern "C" {
     static mut __sheap: u32;
     static mut _stack_start: u32;
+}
+
+/// Bytes of stack that are used here.
+#[inline(always)]
+fn here() -> usize {
+    addr_of_mut!(_stack_start) as usize - cortex_m::register::msp::read() as usize
 }
 
 /// Fills the stack below with paint.
@@ -184,6 +207,7 @@ fn main() -> ! {
     static mut MEMORY: [u8; ARENA] = [0; ARENA];
     static mut COMPILED: [u8; CYLINDER] = [0; CYLINDER];
     static mut TEXT: [u8; LOG] = [0; LOG];
+    static mut STATE: [u8; LARGEST_STATE] = [0; LARGEST_STATE];
     // SAFETY: once, before anything is allocated.
     unsafe { HEAP.init(MEMORY.as_mut_ptr() as usize, ARENA) };
     let length = File::open(c"cylinder.bin", 1).read(COMPILED);
@@ -206,11 +230,14 @@ fn main() -> ! {
         held: 0,
         caller: 0,
         stack: 0,
+        saver: 0,
+        saving: (0, 0),
+        restoring: (0, 0),
     };
     paint();
     match core::str::from_utf8(&TEXT[..length]) {
         Err(_) => say(format_args!("log.csv is no text")),
-        Ok(log) => match replay(compiled, log, &mut told) {
+        Ok(log) => match replay(compiled, log, STATE, &mut told) {
             Err(error) => say(format_args!("{error}")),
             Ok(rows) => {
                 let (count, bytes, stack) = told.at_start;
@@ -221,9 +248,8 @@ fn main() -> ! {
                     PEAK.load(Relaxed)
                 ));
                 say(format_args!(
-                    "allocations {count} before the first row, {} in rows, {} for saving and restoring",
-                    told.allocations,
-                    COUNT.load(Relaxed) - count - told.allocations
+                    "allocations {count} before the first row, {} in rows, {} to save, {} to restore",
+                    told.allocations, told.saving.0, told.restoring.0
                 ));
                 let (_, all, rows) = told.ticks;
                 let [(after, gap), (most, line)] = told.longest;
@@ -234,10 +260,8 @@ fn main() -> ! {
                     after * PER_TICK
                 ));
                 say(format_args!(
-                    "stack {stack} bytes until the first row, {} for rows, {} for saving and restoring, both below a caller with {}",
-                    told.stack,
-                    stack_used() - told.caller,
-                    told.caller
+                    "stack {stack} bytes until the first row, {} for rows, {} to save, {} to restore, below a caller with {}",
+                    told.stack, told.saving.1, told.restoring.1, told.caller
                 ));
                 debug::exit(debug::EXIT_SUCCESS);
             }

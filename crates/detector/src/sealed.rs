@@ -8,9 +8,11 @@
 //! belong to; of a state it is vessel, sensors and what the settings say of the rows: it goes on only with the same. The payload is in
 //! postcard's format, which keeps every bit of every number. What is kept rounded is rounded when it is kept, not when it is saved.
 use alloc::vec::Vec;
+use core::hash::Hasher;
+use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use siphasher::sip128::SipHasher13;
+use siphasher::sip128::{Hasher128, SipHasher13};
 
 const HEAD: usize = 8 + 4 + SUM + 8;
 const SUM: usize = 16;
@@ -99,11 +101,58 @@ pub type Fingerprint = [u8; SUM];
 /// Fingerprint of things by their bytes.
 pub fn fingerprint(of: &impl Serialize) -> Fingerprint {
     // Nothing that has one fails to be put into bytes; if it did, it would fit nothing but itself.
-    postcard::to_allocvec(of).map_or([0; SUM], |bytes| sum(&bytes))
+    postcard::serialize_with_flavor(of, Hashed(SipHasher13::new())).unwrap_or([0; SUM])
 }
 
 fn sum(bytes: &[u8]) -> [u8; SUM] {
     SipHasher13::new().hash(bytes).as_bytes()
+}
+
+/// Bytes of which the hash is wanted alone.
+struct Hashed(SipHasher13);
+
+impl Flavor for Hashed {
+    type Output = [u8; SUM];
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.try_extend(&[byte])
+    }
+
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        self.0.write(bytes);
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<[u8; SUM]> {
+        Ok(self.0.finish128().as_bytes())
+    }
+}
+
+/// Bytes that are written as far as there is room, and counted.
+struct Fitted<'a> {
+    room: &'a mut [u8],
+    length: usize,
+}
+
+impl Flavor for Fitted<'_> {
+    type Output = usize;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.try_extend(&[byte])
+    }
+
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        let end = self.length + bytes.len();
+        if let Some(to) = self.room.get_mut(self.length..end) {
+            to.copy_from_slice(bytes);
+        }
+        self.length = end;
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<usize> {
+        Ok(self.length)
+    }
 }
 
 /// The bytes of a value.
@@ -111,16 +160,40 @@ fn sum(bytes: &[u8]) -> [u8; SUM] {
 /// # Errors
 /// [`SealError::Engine`].
 pub fn encode<T: Serialize>(kind: Kind, value: &T, fingerprint: &Fingerprint) -> Result<Vec<u8>, SealError> {
-    let payload = postcard::to_allocvec(value).map_err(|_| SealError::Engine)?;
-    let mut bytes = Vec::with_capacity(HEAD + payload.len() + SUM);
-    bytes.extend_from_slice(kind.magic());
-    bytes.extend_from_slice(&kind.version().to_le_bytes());
-    bytes.extend_from_slice(fingerprint);
-    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(&payload);
-    let check = sum(&bytes);
-    bytes.extend_from_slice(&check);
+    let mut bytes = postcard::to_extend(value, vec![0; HEAD]).map_err(|_| SealError::Engine)?;
+    bytes.resize(bytes.len() + SUM, 0);
+    seal(kind, fingerprint, &mut bytes);
     Ok(bytes)
+}
+
+/// The same into `room`, and how many they are: if more than there is room for, what is in it means nothing. Allocates nothing that the value does not.
+///
+/// # Errors
+/// [`SealError::Engine`].
+pub fn encode_into<T: Serialize>(
+    kind: Kind,
+    value: &T,
+    fingerprint: &Fingerprint,
+    room: &mut [u8],
+) -> Result<usize, SealError> {
+    let payload = Fitted { room: room.get_mut(HEAD..).unwrap_or_default(), length: 0 };
+    let length = postcard::serialize_with_flavor(value, payload).map_err(|_| SealError::Engine)?;
+    let whole = HEAD + length + SUM;
+    if let Some(bytes) = room.get_mut(..whole) {
+        seal(kind, fingerprint, bytes);
+    }
+    Ok(whole)
+}
+
+/// Write head and check sum around a payload.
+fn seal(kind: Kind, fingerprint: &Fingerprint, bytes: &mut [u8]) {
+    let length = bytes.len() - HEAD - SUM;
+    bytes[..8].copy_from_slice(kind.magic());
+    bytes[8..12].copy_from_slice(&kind.version().to_le_bytes());
+    bytes[12..12 + SUM].copy_from_slice(fingerprint);
+    bytes[HEAD - 8..HEAD].copy_from_slice(&(length as u64).to_le_bytes());
+    let (body, check) = bytes.split_at_mut(HEAD + length);
+    check.copy_from_slice(&sum(body));
 }
 
 /// A value from its bytes.
@@ -177,6 +250,26 @@ mod tests {
         let numbers = read(&bytes()).unwrap();
         let bits: Vec<u64> = numbers.iter().map(|number| number.to_bits()).collect();
         assert_eq!(bits, [f64::NAN, f64::INFINITY, -0.0, 1e-300].map(f64::to_bits));
+    }
+
+    #[test]
+    fn bytes_in_room_that_is_there_are_the_same_and_too_little_room_is_told() {
+        let value = vec![f64::NAN, f64::INFINITY, -0.0, 1e-300];
+        let whole = bytes();
+        let mut room = [0xa5; 200];
+        for length in [0, 1, HEAD - 1, HEAD, whole.len() - 1, whole.len(), 200] {
+            let needed =
+                encode_into(Kind::State, &value, &fingerprint(&"vessel"), &mut room[..length]).unwrap();
+            assert_eq!(needed, whole.len());
+            assert_eq!(length >= needed, room[..needed] == whole, "room for {length}");
+        }
+        assert_eq!(room[whole.len()..], [0xa5; 200][whole.len()..]);
+    }
+
+    #[test]
+    fn a_fingerprint_is_the_hash_of_the_bytes() {
+        let of = ("vessel", 1.5, vec![7_u64; 9]);
+        assert_eq!(fingerprint(&of), sum(&postcard::to_allocvec(&of).unwrap()));
     }
 
     #[test]

@@ -3,7 +3,9 @@
 //! A run of up to 64 numbers of one width has a byte for width and length before it. Zero takes no byte, a number of single precision four, one of which
 //! single precision has nothing but zeros in its last 16 bits ([`coarse`]) two, any other eight: little endian.
 use alloc::vec::Vec;
+use core::iter::Peekable;
 use serde::de::Error;
+use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 const LONGEST_RUN: usize = 64;
@@ -35,11 +37,15 @@ impl Width {
         [0, 2, 4, 8][self as usize]
     }
 
-    fn write(self, value: f64, to: &mut Vec<u8>) {
-        match self {
-            Self::Double => to.extend(value.to_le_bytes()),
-            _ => to.extend(&(value as f32).to_le_bytes()[4 - self.bytes()..]),
+    /// The bytes of a number are the first ones.
+    fn write(self, value: f64) -> [u8; 8] {
+        if self == Self::Double {
+            return value.to_le_bytes();
         }
+        let mut bytes = [0; 8];
+        let single = (value as f32).to_le_bytes();
+        bytes[..self.bytes()].copy_from_slice(&single[4 - self.bytes()..]);
+        bytes
     }
 
     fn read(self, bytes: &[u8]) -> f64 {
@@ -69,14 +75,50 @@ pub(crate) fn single(value: f64) -> f64 {
 
 /// Write numbers.
 pub(crate) fn serialize<S: Serializer>(values: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut bytes = Vec::with_capacity(8 * values.len());
-    for run in values.chunk_by(|a, b| Width::of(*a) == Width::of(*b)).flat_map(|run| run.chunks(LONGEST_RUN))
-    {
-        let width = Width::of(run[0]);
-        bytes.push((width as u8) << 6 | (run.len() - 1) as u8);
-        run.iter().for_each(|value| width.write(*value, &mut bytes));
+    All(values.iter().copied()).serialize(serializer)
+}
+
+/// The same of numbers wherever they are.
+pub(crate) struct All<I>(pub I);
+
+impl<I: Iterator<Item = f64> + Clone> Serialize for All<I> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let runs = || Runs(self.0.clone().peekable());
+        let bytes = runs().map(|run| 1 + run.length * run.width.bytes()).sum();
+        let mut to = serializer.serialize_seq(Some(bytes))?;
+        for Run { width, length, values } in runs() {
+            to.serialize_element(&((width as u8) << 6 | (length - 1) as u8))?;
+            for value in &values[..length] {
+                let bytes = width.write(*value).into_iter().take(width.bytes());
+                bytes.into_iter().try_for_each(|byte| to.serialize_element(&byte))?;
+            }
+        }
+        to.end()
     }
-    bytes.serialize(serializer)
+}
+
+/// Up to 64 numbers of one width.
+struct Run {
+    width: Width,
+    length: usize,
+    values: [f64; LONGEST_RUN],
+}
+
+struct Runs<I: Iterator<Item = f64>>(Peekable<I>);
+
+impl<I: Iterator<Item = f64>> Iterator for Runs<I> {
+    type Item = Run;
+
+    fn next(&mut self) -> Option<Run> {
+        let width = Width::of(*self.0.peek()?);
+        let mut run = Run { width, length: 0, values: [0.0; LONGEST_RUN] };
+        for to in &mut run.values {
+            let Some(value) = self.0.next_if(|value| Width::of(*value) == width) else { break };
+            *to = value;
+            run.length += 1;
+        }
+        Some(run)
+    }
 }
 
 /// Read numbers.

@@ -1,4 +1,5 @@
-//! After the monitor has been made, no row needs memory that it has not had: for controllers, whose memory is given once.
+//! After the monitor has been made, neither a row nor a state that is saved needs memory that it has not had: for controllers, whose memory is given
+//! once.
 use cylwatch_allocations::allocations;
 use cylwatch_detector::estimator::observer::Commissioning;
 use cylwatch_detector::estimator::sensor::Sensor;
@@ -42,12 +43,12 @@ fn row(contents: &Contents, rng: &mut ChaCha8Rng, time_s: f64, happens: &str) ->
 }
 
 #[test]
-fn whatever_happens_no_row_allocates() {
+fn whatever_happens_no_row_and_no_saved_state_allocates() {
     let vessel = presets::load("nitrogen-20l").unwrap();
     let contents = Contents::of(&vessel);
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
     let filled = Commissioning::filled(200e5, 288.15);
-    let mut verdicts = Vec::new();
+    let (mut verdicts, mut room) = (Vec::new(), vec![0; 32 << 10]);
     for happens in [
         "nothing",
         "leak",
@@ -84,6 +85,12 @@ fn whatever_happens_no_row_allocates() {
             });
             verdict = said.unwrap_or(verdict);
             assert_eq!(counted, 0, "{happens}: at {time_s} s, with {outputs} outputs");
+            if outputs > 0 && (time_s / 60.0) as usize % 60 == 7 {
+                let mut length = 0;
+                let counted = allocations(|| length = monitor.save_into(&mut room).unwrap());
+                assert_eq!(counted, 0, "{happens}: a state at {time_s} s");
+                assert_eq!(room[..length], monitor.save().unwrap(), "{happens}: at {time_s} s");
+            }
         }
         verdicts.push(verdict);
         assert!(monitor.intake().counts().jumps == 1 && monitor.intake().counts().gaps >= 1, "{happens}");

@@ -168,6 +168,11 @@ impl Cylinder {
         self.model.warm_start()
     }
 
+    /// The same where it is.
+    pub(super) fn warm_start_parts(&self) -> ([f64; 2], &[f64]) {
+        self.model.warm_start_parts()
+    }
+
     /// The same, in the memory of another one.
     pub(super) fn write_warm_start(&self, start: &mut WarmStart) {
         self.model.write_warm_start(start);

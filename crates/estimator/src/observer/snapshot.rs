@@ -26,7 +26,8 @@ pub struct SnapshotRef<'a> {
     bank: &'a Bank<Cylinder>,
     onsets: &'a Onsets,
     clock: &'a Clock,
-    warm_start: WarmStart,
+    /// As a [`WarmStart`].
+    warm_start: ([f64; 2], &'a [f64]),
 }
 
 impl Observer {
@@ -36,7 +37,7 @@ impl Observer {
             bank: &self.bank,
             onsets: &self.onsets,
             clock: &self.clock,
-            warm_start: self.cylinder.warm_start(),
+            warm_start: self.cylinder.warm_start_parts(),
         }
     }
 

@@ -211,7 +211,13 @@ impl ReducedModel {
     /// Where the iterative solutions of the next evaluation start. The solutions depend on it in their last digits, so
     /// a computation that must repeat to the last digit starts from the same.
     pub fn warm_start(&self) -> WarmStart {
-        WarmStart { volumes_m3: self.gas.guesses_m3(), skin_k: self.skin_k.clone() }
+        let (volumes_m3, skin_k) = self.warm_start_parts();
+        WarmStart { volumes_m3, skin_k: skin_k.to_vec() }
+    }
+
+    /// The same where it is, to be serialised without a copy.
+    pub fn warm_start_parts(&self) -> ([f64; 2], &[f64]) {
+        (self.gas.guesses_m3(), &self.skin_k)
     }
 
     /// The same, in the memory of another one.

@@ -93,15 +93,26 @@ impl Monitor {
     /// # Errors
     /// [`SealError::Engine`].
     pub fn save(&self) -> Result<Vec<u8>, SealError> {
+        sealed::encode(Kind::State, &self.saving(), &self.fingerprint)
+    }
+
+    /// The same into `room`, and how many bytes it is: if more than there is room for, what is in it means nothing. Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`save`](Self::save).
+    pub fn save_into(&self, room: &mut [u8]) -> Result<usize, SealError> {
+        sealed::encode_into(Kind::State, &self.saving(), &self.fingerprint, room)
+    }
+
+    fn saving(&self) -> Saving<'_> {
         let examined = self.state.examined.is_some();
-        let saved = Saving {
+        Saving {
             commissioning: self.commissioning,
             held_against: held_against(&self.settings),
             state: &self.state,
             observer: self.observer.snapshot_ref(),
             twin: self.twin.as_deref().map(Companion::snapshot),
             shadow: examined.then(|| self.shadow.snapshot()),
-        };
-        sealed::encode(Kind::State, &saved, &self.fingerprint)
+        }
     }
 }

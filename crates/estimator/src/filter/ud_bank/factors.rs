@@ -1,6 +1,7 @@
 //! The factors of a bank as plain data, to be saved; its working memory is made anew.
 use alloc::string::String;
 use alloc::vec::Vec;
+use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::{UdBank, start};
@@ -50,19 +51,18 @@ impl Factors {
     }
 }
 
+/// As its [`Factors`], without their memory.
 impl Serialize for UdBank {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Factors::from(self).serialize(serializer)
-    }
-}
-
-impl From<&UdBank> for Factors {
-    fn from(bank: &UdBank) -> Self {
-        let of_filters = |lanes: &Lanes| lanes.0.into_iter().take(bank.filters);
-        let columns = (0..bank.n).flat_map(|j| &bank.u[start(j)..][..j]);
-        let u = columns.flat_map(of_filters).collect();
-        let d = bank.d.iter().flat_map(of_filters).collect();
-        Self { states: bank.n, leading: bank.leading, filters: bank.filters, u, d }
+        let of_filters = |lanes: &Lanes| lanes.0.into_iter().take(self.filters);
+        let columns = (0..self.n).flat_map(|j| &self.u[start(j)..][..j]);
+        let mut to = serializer.serialize_struct("Factors", 5)?;
+        to.serialize_field("states", &self.n)?;
+        to.serialize_field("leading", &self.leading)?;
+        to.serialize_field("filters", &self.filters)?;
+        to.serialize_field("u", &numbers::All(columns.flat_map(of_filters)))?;
+        to.serialize_field("d", &numbers::All(self.d.iter().flat_map(of_filters)))?;
+        to.end()
     }
 }
 

@@ -1,13 +1,15 @@
 //! A sorted set of fingerprints, saved in Rice's code: of each gap between two of them the quotient by 128 as so many ones and a zero, and seven bits of the rest.
 use alloc::vec::Vec;
-use serde::{Deserialize, Serialize};
+use core::iter;
+use serde::ser::{SerializeSeq, SerializeTuple};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Bits of the rest: 600 fingerprints of 16 bits are 109 apart.
 const REST_BITS: u32 = 7;
 
 /// Fingerprints, sorted, each once.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(into = "(u16, Vec<u8>)", try_from = "(u16, Vec<u8>)")]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(try_from = "(u16, Vec<u8>)")]
 pub(super) struct Generation(Vec<u16>);
 
 impl Generation {
@@ -32,17 +34,42 @@ impl Generation {
     }
 }
 
-impl From<Generation> for (u16, Vec<u8>) {
-    fn from(Generation(sorted): Generation) -> Self {
-        let (mut bits, mut next) = (Vec::new(), 0);
-        for fingerprint in &sorted {
+impl Generation {
+    fn bits(&self) -> impl Iterator<Item = bool> {
+        let nexts = iter::once(0).chain(self.0.iter().map(|before| u32::from(*before) + 1));
+        self.0.iter().zip(nexts).flat_map(|(fingerprint, next)| {
             let gap = u32::from(*fingerprint) - next;
-            next = u32::from(*fingerprint) + 1;
-            bits.extend((0..gap >> REST_BITS).map(|_| true).chain([false]));
-            bits.extend((0..REST_BITS).map(|bit| gap >> bit & 1 == 1));
-        }
-        let byte = |bits: &[bool]| bits.iter().rev().fold(0, |byte, bit| byte << 1 | u8::from(*bit));
-        (sorted.len() as u16, bits.chunks(8).map(byte).collect())
+            let rest = (0..REST_BITS).map(move |bit| gap >> bit & 1 == 1);
+            iter::repeat_n(true, (gap >> REST_BITS) as usize).chain([false]).chain(rest)
+        })
+    }
+
+    fn bytes(&self) -> impl Iterator<Item = u8> {
+        let mut bits = self.bits();
+        iter::from_fn(move || {
+            let first = u8::from(bits.next()?);
+            Some((1..8).fold(first, |byte, bit| byte | u8::from(bits.next().unwrap_or(false)) << bit))
+        })
+    }
+}
+
+/// As `(u16, Vec<u8>)`, without its memory.
+impl Serialize for Generation {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut to = serializer.serialize_tuple(2)?;
+        to.serialize_element(&(self.0.len() as u16))?;
+        to.serialize_element(&Code(self))?;
+        to.end()
+    }
+}
+
+struct Code<'a>(&'a Generation);
+
+impl Serialize for Code<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut to = serializer.serialize_seq(Some(self.0.bytes().count()))?;
+        self.0.bytes().try_for_each(|byte| to.serialize_element(&byte))?;
+        to.end()
     }
 }
 
@@ -79,25 +106,29 @@ mod tests {
         generation
     }
 
+    fn coded(generation: &Generation) -> (u16, Vec<u8>) {
+        postcard::from_bytes(&postcard::to_allocvec(generation).unwrap()).unwrap()
+    }
+
     #[test]
     fn any_set_comes_back() {
         for length in [0, 1, 2, 37, 600] {
-            let coded = <(u16, Vec<u8>)>::from(generation(length));
+            let coded = coded(&generation(length));
             assert_eq!(Generation::try_from(coded), Ok(generation(length)));
         }
         let extremes = Generation(vec![0, 1, 2, u16::MAX - 1, u16::MAX]);
-        assert_eq!(Generation::try_from(<(u16, Vec<u8>)>::from(extremes.clone())), Ok(extremes));
+        assert_eq!(Generation::try_from(coded(&extremes)), Ok(extremes));
     }
 
     #[test]
     fn a_full_one_takes_nine_bits_of_a_fingerprint_at_most() {
-        let (_, bytes) = generation(600).into();
+        let (_, bytes) = coded(&generation(600));
         assert!(8 * bytes.len() < 9 * 600, "{} bytes", bytes.len());
     }
 
     #[test]
     fn a_code_that_ends_early_or_goes_too_far_is_refused() {
-        let (length, bytes) = generation(600).into();
+        let (length, bytes) = coded(&generation(600));
         assert!(Generation::try_from((length, bytes[..bytes.len() - 1].to_vec())).is_err());
         assert!(Generation::try_from((length + 1, bytes)).is_err());
         assert!(Generation::try_from((1, vec![u8::MAX; 1000])).is_err());
