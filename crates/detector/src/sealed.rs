@@ -205,6 +205,44 @@ pub fn decode<T: DeserializeOwned>(
     bytes: &[u8],
     fingerprint: &Fingerprint,
 ) -> Result<T, SealError> {
+    open(kind, bytes, fingerprint)?.part()
+}
+
+/// What bytes hold, part by part in the order in which it was written.
+#[derive(Debug)]
+pub struct Payload<'a> {
+    kind: Kind,
+    left: &'a [u8],
+}
+
+impl Payload<'_> {
+    /// The next part.
+    ///
+    /// # Errors
+    /// [`SealError::Corrupted`].
+    pub fn part<T: DeserializeOwned>(&mut self) -> Result<T, SealError> {
+        let (part, left) =
+            postcard::take_from_bytes(self.left).map_err(|_| SealError::Corrupted(self.kind))?;
+        self.left = left;
+        Ok(part)
+    }
+
+    /// The next part, over another one.
+    ///
+    /// # Errors
+    /// As [`part`](Self::part).
+    #[inline(never)]
+    pub fn read<T: DeserializeOwned>(&mut self, to: &mut T) -> Result<(), SealError> {
+        *to = self.part()?;
+        Ok(())
+    }
+}
+
+/// What bytes hold that are whole, of this kind and of what the fingerprint is of.
+///
+/// # Errors
+/// As [`SealError`] says.
+pub fn open<'a>(kind: Kind, bytes: &'a [u8], fingerprint: &Fingerprint) -> Result<Payload<'a>, SealError> {
     let part = |from: usize, length: usize| bytes.get(from..from + length);
     let known = kind.magic().len().min(bytes.len());
     if bytes.is_empty() || part(0, known) != kind.magic().get(..known) {
@@ -230,7 +268,7 @@ pub fn decode<T: DeserializeOwned>(
     if part(12, SUM) != Some(fingerprint.as_slice()) {
         return Err(SealError::Foreign(kind));
     }
-    postcard::from_bytes(&body[HEAD..]).map_err(|_| corrupted)
+    Ok(Payload { kind, left: &body[HEAD..] })
 }
 
 #[cfg(test)]

@@ -6,39 +6,28 @@ mod output;
 mod rows;
 mod saved;
 mod sensors;
+mod state;
 mod wiring;
 
 use crate::units::QUOTED_K;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-use serde::{Deserialize, Serialize};
 
-use self::disturbance::Undisturbed;
-use self::exchange::{Examined, Exchanged};
 use self::rows::Said;
+use self::state::State;
 use super::alarm::{AlarmEvent, AlarmPanel};
-use super::gas::bounds::GasBounds;
-use super::gas::contents::Tangent;
-use super::gas::filling::FillingCheck;
-use super::gas::gain::GainWatch;
-use super::gas::jump::JumpWatch;
-use super::gas::leak::{Change, LeakState, Look, LostUnheard};
+use super::gas::leak::{Change, Look};
 use super::gas::onset;
 use super::gas::outlook::LimitMasses;
-use super::intake::{Intake, Row, Taken};
-use super::readings::health::SensorWatch;
-use super::readings::lateness::DelayLine;
-use super::readings::parity::Parity;
-use super::readings::thermometers::Pair;
-use super::readings::wiring::WiringCheck;
+use super::intake::{Intake, Row};
 use super::roles::Roles;
 use super::settings::MonitorSettings;
-use super::{Event, EventKind, Health, Outlook, Reason, Verdict};
+use super::{Event, EventKind, Reason};
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Companion, Estimate, Learned, Observer, Quality};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
-use crate::evidence::{Evidence, Statistics, Tails, Thresholds};
+use crate::evidence::{Statistics, Tails, Thresholds};
 use crate::prognosis::Contents;
 use crate::sealed::Fingerprint;
 
@@ -83,69 +72,15 @@ pub struct Monitor {
     said: Box<Said>,
 }
 
-/// All that a row changes, but for the observers.
-#[derive(Debug, Serialize, Deserialize)]
-struct State {
-    intake: Intake,
-    watches: Vec<SensorWatch>,
-    health: Vec<Health>,
-    pair: Pair,
-    parity: Parity,
-    undisturbed: Undisturbed,
-    wiring: WiringCheck,
-    delays: DelayLine,
-    /// Whether the two thermometers are in each other's place.
-    swapped: bool,
-    /// What was known when the observer began.
-    begun_with: Commissioning,
-    filling: FillingCheck,
-    jumps: JumpWatch,
-    bounds: GasBounds,
-    gains: GainWatch,
-    examined: Option<Examined>,
-    leak: LeakState,
-    evidence: Evidence,
-    /// Until the next look.
-    lost_across: Option<LostUnheard>,
-    /// Rows that wait to be told of, and events that wait for a row.
-    ready: Taken,
-    panel: AlarmPanel,
-    verdict: Verdict,
-    start_s: Option<f64>,
-    last_s: f64,
-    /// Until then nothing can be told, and why.
-    look: (f64, Reason),
-    exchanged: Option<Exchanged>,
-    /// When gas flowed for certain last, s.
-    flowed_s: f64,
-    /// When exchanges of gas were announced: from, until, s, as rows are stamped.
-    announced: Vec<(f64, f64)>,
-    outlook: Option<Outlook>,
-    outlook_due_s: f64,
-    p15: Tangent,
-    cold: Tangent,
-    /// When the pressure of the coldest night was below the limit last, s.
-    cold_s: f64,
-}
-
-impl State {
-    /// Memory for all that comes, so that no row needs any.
-    fn make_room(&mut self, observer: &Observer) {
-        self.intake.make_room();
-        self.ready.make_room();
-        self.parity.make_room();
-        self.undisturbed.make_room(observer);
-    }
-
-    /// Whether gas flows, or did a while ago.
-    fn is_flowing(&self, time_s: f64) -> bool {
-        time_s - self.flowed_s < EXCHANGED_S
-    }
-
-    /// Whether gas may be being exchanged, or has been and has not settled.
-    fn is_exchanging(&self, time_s: f64) -> bool {
-        self.examined.is_some() || self.exchanged.is_some_and(|of| time_s - of.at_s < SETTLED_S)
-    }
+/// In a box of its own making: on a controller's stack there is room for one.
+#[inline(never)]
+fn observer_of(
+    vessel: &Vessel,
+    sensors: &[Sensor],
+    commissioning: &Commissioning,
+    settings: &MonitorSettings,
+) -> Result<Box<Observer>, DetectorError> {
+    Ok(Box::new(Observer::new(vessel, sensors, commissioning, &settings.observer)?))
 }
 
 impl Monitor {
@@ -160,49 +95,14 @@ impl Monitor {
         settings: &MonitorSettings,
     ) -> Result<Self, DetectorError> {
         settings.validate()?;
-        let observer = Observer::new(vessel, sensors, commissioning, &settings.observer)?;
+        let observer = observer_of(vessel, sensors, commissioning, settings)?;
         let contents = Contents::of(vessel);
         let roles = Roles::of(sensors);
         let full_kg = commissioning.mass_kg(vessel, QUOTED_K)?;
         let full_pa = contents.pressure_pa(full_kg, QUOTED_K)?;
         let tails = settings.tails.unwrap_or_else(|| Tails::of(vessel, full_pa));
-        let watches: Vec<SensorWatch> = sensors.iter().map(SensorWatch::new).collect();
         let pair = wiring::pair(sensors, &roles, settings);
-        let parity = Parity::new(pair.error_k());
-        let mut state = Box::new(State {
-            intake: Intake::new(settings.intake, sensors.len())?,
-            health: watches.iter().map(SensorWatch::health).collect(),
-            watches,
-            pair,
-            parity,
-            undisturbed: Undisturbed::default(),
-            wiring: WiringCheck::of_all(),
-            delays: DelayLine::default(),
-            swapped: false,
-            begun_with: *commissioning,
-            filling: FillingCheck::default(),
-            jumps: JumpWatch::default(),
-            bounds: GasBounds::default(),
-            gains: GainWatch::default(),
-            examined: None,
-            leak: LeakState::default(),
-            evidence: Evidence::new(&settings.observer),
-            lost_across: None,
-            ready: Taken::default(),
-            panel: AlarmPanel::default(),
-            verdict: Verdict::Unknown(Reason::Learning),
-            start_s: None,
-            last_s: f64::NEG_INFINITY,
-            look: (f64::NEG_INFINITY, Reason::Gap),
-            exchanged: None,
-            flowed_s: f64::NEG_INFINITY,
-            announced: Vec::new(),
-            outlook: None,
-            outlook_due_s: f64::NEG_INFINITY,
-            p15: Tangent::at(QUOTED_K),
-            cold: Tangent::at(settings.limits.coldest_k),
-            cold_s: f64::NEG_INFINITY,
-        });
+        let mut state = State::new(sensors, commissioning, settings, pair)?;
         let compared = wiring::compared(&roles, sensors);
         state.make_room(&observer);
         Ok(Self {
@@ -217,7 +117,7 @@ impl Monitor {
             twin: compared.map(|_| Box::new(wiring::twin(&observer))),
             fingerprint: saved::fingerprint(vessel, sensors, settings),
             shadow: Box::new(observer.companion(usize::MAX)),
-            observer: Box::new(observer),
+            observer,
             commissioning: *commissioning,
             usable: vec![f64::NAN; sensors.len()],
             said: Box::new(Said::with_room(sensors.len())),
@@ -237,7 +137,7 @@ impl Monitor {
     /// Somebody has seen the alarms, looked after the sensors and knows the filling.
     pub fn acknowledge(&mut self, comment: &str) -> Vec<AlarmEvent> {
         self.state.filling.settle();
-        self.state.watches.iter_mut().for_each(SensorWatch::repaired);
+        self.state.watches.iter_mut().for_each(|watch| watch.repaired());
         self.state.panel.acknowledge_all(&self.settings.alarms, self.state.last_s, comment)
     }
 

@@ -1,27 +1,16 @@
 //! A monitor saved, and one that goes on from there.
-use super::{Monitor, State};
+use super::Monitor;
+use super::state::State;
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Companion, Snapshot, SnapshotRef};
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::monitor::MonitorSettings;
-use crate::sealed::{self, Fingerprint, Kind, SealError};
-use alloc::boxed::Box;
+use crate::sealed::{self, Fingerprint, Kind, Payload, SealError};
 use alloc::vec::Vec;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-/// What is saved.
-#[derive(Deserialize)]
-struct Saved {
-    commissioning: Commissioning,
-    held_against: Fingerprint,
-    state: Box<State>,
-    observer: Snapshot,
-    twin: Option<Snapshot>,
-    shadow: Option<Snapshot>,
-}
-
-/// The same, to be written: without copies.
+/// What is saved: without copies.
 #[derive(Serialize)]
 struct Saving<'a> {
     commissioning: Commissioning,
@@ -66,26 +55,35 @@ impl Monitor {
         settings: &MonitorSettings,
         bytes: &[u8],
     ) -> Result<Self, DetectorError> {
-        let saved: Saved = sealed::decode(Kind::State, bytes, &fingerprint(vessel, sensors, settings))?;
-        let mut monitor = Self::new(vessel, sensors, &saved.commissioning, settings)?;
-        monitor.observer.try_restore(&saved.observer)?;
-        match (&mut monitor.twin, &saved.twin) {
-            (Some(twin), Some(saved)) => {
-                monitor.observer.with(twin, |observer| observer.try_restore(saved))?
-            }
-            _ => monitor.twin = None,
-        }
-        if let Some(saved) = &saved.shadow {
-            monitor.observer.with(&mut monitor.shadow, |observer| observer.try_restore(saved))?;
-        }
-        monitor.know_the_filling(saved.state.begun_with);
-        monitor.state = saved.state;
+        let mut saved = sealed::open(Kind::State, bytes, &fingerprint(vessel, sensors, settings))?;
+        let commissioning: Commissioning = saved.part()?;
+        let was_held_against: Fingerprint = saved.part()?;
+        let mut monitor = Self::new(vessel, sensors, &commissioning, settings)?;
+        monitor.state.read(&mut saved)?;
+        monitor.read_observers(&mut saved)?;
+        monitor.know_the_filling(monitor.state.begun_with);
         monitor.state.make_room(&monitor.observer);
         monitor.state.cold.move_to(settings.limits.coldest_k);
-        if saved.held_against != held_against(settings) {
+        if was_held_against != held_against(settings) {
             monitor.state.outlook_due_s = f64::NEG_INFINITY;
         }
         Ok(monitor)
+    }
+
+    /// One after the other: each takes as much memory as a bank.
+    #[inline(never)]
+    fn read_observers(&mut self, saved: &mut Payload<'_>) -> Result<(), DetectorError> {
+        self.observer.try_restore(&saved.part()?)?;
+        let twin: Option<Snapshot> = saved.part()?;
+        match (&mut self.twin, &twin) {
+            (Some(twin), Some(saved)) => self.observer.with(twin, |observer| observer.try_restore(saved))?,
+            _ => self.twin = None,
+        }
+        drop(twin);
+        if let Some(shadow) = saved.part::<Option<Snapshot>>()? {
+            self.observer.with(&mut self.shadow, |observer| observer.try_restore(&shadow))?;
+        }
+        Ok(())
     }
 
     /// Everything that a restart needs.
