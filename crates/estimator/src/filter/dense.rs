@@ -1,4 +1,4 @@
-//! Dense linear algebra on column-major slices, without allocation. Sums run in the same order on every machine: products of
+//! Dense linear algebra on column-major slices, without allocation; what is zero by structure is left out of products. Sums run in the same order on every machine: products of
 //! nalgebra's large matrices do not.
 use super::kernel::{axpy, column, dot};
 use nalgebra::DMatrix;
@@ -17,7 +17,7 @@ pub(crate) fn add_product(c: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows
     }
     let inner = a.len() / rows;
     for (c, b) in c.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
-        for (a, b) in a.chunks_exact(rows).zip(b) {
+        for (a, b) in a.chunks_exact(rows).zip(b).filter(|(_, b)| **b != 0.0) {
             axpy(factor * b, a, c);
         }
     }
@@ -36,7 +36,7 @@ pub(crate) fn add_product_transposed(
         return;
     }
     for (l, (a, b)) in a.chunks_exact(rows).zip(b.chunks_exact(columns)).enumerate() {
-        for (c, b) in c.chunks_exact_mut(rows).zip(b) {
+        for (c, b) in c.chunks_exact_mut(rows).zip(b).filter(|(_, b)| **b != 0.0) {
             axpy(w(l) * b, a, c);
         }
     }

@@ -6,7 +6,7 @@
 //!
 //! `N(2h) = N(h) + Phi(h) N(h) Phi(h)^T`, `Phi(2h) = Phi(h) Phi(h)`.
 //!
-//! A gap of `k` parts then takes some `4 + 2 log2 k` steps.
+//! A gap of `k` parts then takes `2 log2 k` steps.
 //!
 //! Source: doubling, Anderson and Moore, Optimal Filtering (1979), section 6.7.
 use alloc::vec::Vec;
@@ -22,18 +22,23 @@ pub(crate) fn parts(dt_s: f64, longest_part_s: f64) -> (usize, f64) {
     (parts as usize, dt_s / parts)
 }
 
-/// Steps that an interval is divided into, each as often as its length is that of a part doubled. None is longer than half of what has
-/// passed before it, or a part.
+/// Steps that an interval is divided into, each as often as its length is that of a part doubled: four parts, and then no step is longer than
+/// half of what has passed before it.
 #[derive(Clone, Debug)]
 pub(crate) struct Steps {
-    passed: usize,
-    left: usize,
+    /// Length of a part, s.
+    pub part_s: f64,
+    passed: u64,
+    parts: u64,
 }
 
 impl Steps {
-    /// Of so many parts.
-    pub(crate) fn of(parts: usize) -> Self {
-        Self { passed: 0, left: parts }
+    /// Over an interval in parts no longer than this, s: as many as end with a step.
+    pub(crate) fn of(dt_s: f64, longest_part_s: f64) -> Self {
+        let fewest = libm::ceil(dt_s / longest_part_s).max(1.0);
+        let mut steps = Self { part_s: 0.0, passed: 0, parts: u64::MAX };
+        while (steps.passed as f64) < fewest && steps.next().is_some() {}
+        Self { part_s: dt_s / steps.passed as f64, passed: 0, parts: steps.passed }
     }
 }
 
@@ -41,9 +46,9 @@ impl Iterator for Steps {
     type Item = u32;
 
     fn next(&mut self) -> Option<u32> {
-        let doublings = (self.passed / 2).max(1).min(self.left).checked_ilog2()?;
-        self.passed += 1 << doublings;
-        self.left -= 1 << doublings;
+        let doublings = (self.passed / 2).max(1).ilog2();
+        let passed = self.passed.checked_add(1 << doublings).filter(|passed| *passed <= self.parts)?;
+        self.passed = passed;
         Some(doublings)
     }
 }
@@ -120,17 +125,25 @@ mod tests {
 
     #[test]
     fn steps_become_longer_and_fill_the_interval() {
-        assert_eq!(Steps::of(1).collect::<Vec<_>>(), [0]);
-        assert_eq!(Steps::of(13).collect::<Vec<_>>(), [0, 0, 0, 0, 1, 1, 2, 0]);
-        for parts in [2, 7, 60, 1440, 50_400, 1 << 40] {
-            let mut passed = 0;
-            let steps: Vec<usize> = Steps::of(parts).map(|doublings| 1 << doublings).collect();
-            for step in &steps {
-                assert!(*step <= (passed / 2).max(1));
-                passed += step;
+        let of = |dt_s| Steps::of(dt_s, 60.0);
+        assert_eq!(of(1e-3).collect::<Vec<_>>(), [0]);
+        assert_eq!(of(180.0).collect::<Vec<_>>(), [0, 0, 0]);
+        assert_eq!(of(601.0).collect::<Vec<_>>(), [0, 0, 0, 0, 1, 1, 2]);
+        for dt_s in [1.0, 60.0, 61.0, 300.0, 3600.0, 86_400.0, 3.1e7, 1e12, 1e300] {
+            let mut passed_s: f64 = 0.0;
+            let part_s = of(dt_s).part_s;
+            let steps: Vec<f64> = of(dt_s).map(|doublings| part_s * 2.0_f64.powi(doublings as i32)).collect();
+            for step_s in &steps {
+                assert!(*step_s <= (0.5 * passed_s).max(part_s));
+                passed_s += step_s;
             }
-            assert_eq!(passed, parts);
-            assert!(steps.len() <= 4 + 3 * parts.ilog2() as usize, "{} steps", steps.len());
+            assert!((passed_s / dt_s - 1.0).abs() < 1e-14);
+            assert!(part_s <= 60.0 || dt_s > 1e20, "parts of {part_s} s");
+            assert!(
+                (steps.len() as f64) <= 6.0 + 2.0 * (dt_s / 60.0).log2().max(0.0),
+                "{} steps",
+                steps.len()
+            );
         }
     }
 }

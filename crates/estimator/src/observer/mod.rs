@@ -324,7 +324,9 @@ impl Observer {
             self.cylinder.set_interval_s(sensor, (time_s - last_s).max(SHORTEST_S));
         }
         let ObserverSettings { engine, air_step, .. } = *self.cylinder.settings();
-        match air_step.filter(|_| engine == Engine::Extended && dt_s > 0.0) {
+        // Where more than one is expected they explain nothing.
+        let may_step = |step: &AirStep| engine == Engine::Extended && dt_s > 0.0 && step.per_s * dt_s < 1.0;
+        match air_step.filter(may_step) {
             Some(step) => self.explain(step, dt_s, time_s, readings),
             None => {
                 self.move_on(dt_s)?;

@@ -19,7 +19,7 @@
 //! What the explanations disagree on stays in doubt: the spread of their mean gas temperatures about the likeliest one's,
 //! `sum_h L_h (T_h - T)^2 / sum_h L_h`, is considered where gas may flow ([`Flow`](super::Flow)) and fades with the memory of what thermometers did.
 //!
-//! Assumptions: at most one step between two rows; the extended filter.
+//! Assumptions: at most one step between two rows, so that none is tried where more are expected (after a gap of 17 h); the extended filter.
 //!
 //! Source: multiple-model estimation with pruning to one model, Bar-Shalom, Li, Kirubarajan, Estimation with Applications to
 //! Tracking and Navigation (2001), section 11.6.

@@ -16,7 +16,7 @@ use crate::filter::gate::Outcome;
 use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::plant::Plant;
-use crate::filter::step::{DoublingMemory, StepTransition, Steps, parts};
+use crate::filter::step::{DoublingMemory, StepTransition, Steps};
 use crate::filter::ud::UdFactors;
 use crate::filter::ud_bank::{BankTransition, Factors, UdBank, UdMemory, Unrolled};
 
@@ -137,8 +137,9 @@ impl Pack {
         members: &mut [Member<P::Hypothesis>],
         dt_s: f64,
     ) -> Result<(), P::Error> {
-        let (parts, part_s) = parts(dt_s, plant.longest_step_s());
-        Steps::of(parts).try_for_each(|doublings| self.step(plant, memory, members, (part_s, doublings)))
+        let mut steps = Steps::of(dt_s, plant.longest_step_s());
+        let part_s = steps.part_s;
+        steps.try_for_each(|doublings| self.step(plant, memory, members, (part_s, doublings)))
     }
 
     /// Group members that are no farther from their reference than this.
