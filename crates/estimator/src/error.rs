@@ -316,6 +316,9 @@ pub enum EstimatorError {
     /// An observer without a sample.
     #[error("the observer has not taken a sample yet")]
     NoEstimate,
+    /// The filter is not part of this build.
+    #[error("this build has the extended filter alone: build it with the feature `design` for the others")]
+    EngineMissing,
     /// A snapshot of another observer.
     #[error(
         "the snapshot is that of an observer of another cylinder, other sensors or another bank: begin anew"

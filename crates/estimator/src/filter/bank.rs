@@ -26,8 +26,9 @@ mod engine;
 mod member;
 mod outline;
 mod pack;
+#[cfg_attr(not(feature = "design"), path = "bank/single/none.rs")]
 mod single;
-#[cfg_attr(not(feature = "design"), path = "bank/windowed/none.rs")]
+#[cfg(feature = "design")]
 mod windowed;
 mod workspace;
 

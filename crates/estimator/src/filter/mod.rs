@@ -4,6 +4,8 @@
 //! here works on any of them.
 mod bank;
 mod belief;
+// What is left of these is for engines and work that `design` brings.
+#[cfg_attr(not(feature = "design"), expect(dead_code))]
 pub(crate) mod dense;
 mod factor;
 mod failure;
@@ -11,19 +13,25 @@ mod gate;
 #[cfg(feature = "design")]
 pub mod horizon;
 mod kalman;
+#[cfg_attr(not(feature = "design"), expect(dead_code))]
 pub(crate) mod kernel;
 mod lanes;
+#[cfg(feature = "design")]
 mod linear;
 mod plant;
 mod record;
+#[cfg(feature = "design")]
 mod riccati;
 pub(crate) mod simd;
 mod smoother;
 mod state_space;
+#[cfg(feature = "design")]
 mod stationary;
 mod step;
+#[cfg_attr(not(feature = "design"), expect(dead_code))]
 mod ud;
 pub(crate) mod ud_bank;
+#[cfg(feature = "design")]
 mod unscented;
 
 pub(crate) use bank::Outline;
@@ -37,6 +45,7 @@ pub use kalman::ExtendedKalman;
 pub(crate) use linear::LinearSystem;
 pub use plant::{Plant, SlowProcess};
 pub use record::StepRecord;
+#[cfg(feature = "design")]
 pub use riccati::{SteadyState, steady_prediction, steady_state};
 pub(crate) use smoother::Backward;
 pub use smoother::{Smoothed, smooth};
@@ -45,5 +54,5 @@ pub use step::StepTransition;
 pub(crate) use step::parts;
 pub use ud::UdFactors;
 pub use ud_bank::Pattern;
-#[cfg(test)]
+#[cfg(all(test, feature = "design"))]
 pub(crate) use unscented::{SPREAD_SQUARED, SigmaPoints};

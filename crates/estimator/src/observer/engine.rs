@@ -85,7 +85,8 @@ impl Engine {
         match self {
             #[cfg(feature = "design")]
             Self::MovingHorizon(settings) => settings.horizon().validate(),
-            Self::Extended | Self::Unscented | Self::Stationary => Ok(()),
+            _ if cfg!(feature = "design") || *self == Self::Extended => Ok(()),
+            _ => Err(EstimatorError::EngineMissing),
         }
     }
 

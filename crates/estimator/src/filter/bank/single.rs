@@ -5,10 +5,11 @@ use nalgebra::DMatrix;
 use super::engine::BankEngine;
 use super::member::Member;
 use super::windowed::Windowed;
-use super::workspace::{SingleMemory, Workspace};
+use super::workspace::Workspace;
 use crate::EstimatorError;
 use crate::filter::gate::Outcome;
 use crate::filter::plant::Plant;
+use crate::filter::state_space::Linearisation;
 use crate::filter::stationary::Stationary;
 use crate::filter::step::parts;
 use crate::filter::ud::UdFactors;
@@ -26,8 +27,23 @@ pub(super) struct Single<P: Plant> {
 enum Engine<P: Plant> {
     Unscented,
     Stationary(Box<Stationary>),
-    #[cfg_attr(not(feature = "design"), expect(dead_code))]
     MovingHorizon(Box<Windowed<P>>),
+}
+
+/// Memory of members that move one by one.
+#[derive(Debug)]
+pub(super) struct SingleMemory {
+    pub(super) linear: Linearisation,
+    pub(super) points: SigmaPoints,
+}
+
+impl SingleMemory {
+    pub(super) fn new<P: Plant>(plant: &P) -> Self {
+        Self {
+            linear: Linearisation::zeros(plant.states(), plant.leading(), plant.noises()),
+            points: SigmaPoints::new(plant),
+        }
+    }
 }
 
 impl<P: Plant> Single<P> {
@@ -43,7 +59,6 @@ impl<P: Plant> Single<P> {
                 Engine::Unscented
             }
             BankEngine::Stationary => Engine::Stationary(Box::new(Stationary::new(plant, &mut p)?)),
-            #[cfg(feature = "design")]
             BankEngine::MovingHorizon(settings, constraints) => {
                 Engine::MovingHorizon(Box::new(Windowed::new(plant, settings, constraints)))
             }
