@@ -143,8 +143,12 @@ fn run_dry(cylinder: &CompiledCylinder, bytes: &[u8]) -> anyhow::Result<(usize, 
     drop(monitor);
     let restored = begun.restored(&state)?;
     let restore = PeakAlloc.peak_usage();
+    let state_bytes = state.len();
+    drop(state);
+    // One that was restored may hold more.
+    between = between.max(PeakAlloc.current_usage());
     drop(restored);
-    Ok((state.len(), [begin, between, restore].map(added)))
+    Ok((state_bytes, [begin, between, restore].map(added)))
 }
 
 /// Readings of a cylinder that keeps its gas, in swings of a day and, smaller, of an hour and a half.
