@@ -1,10 +1,14 @@
 //! `cylwatch compile`: a cylinder as bytes for a controller, which reads no files.
+mod footprint;
+
+use self::footprint::Footprint;
 use super::fill::FillSource;
+use super::format::Format;
 use super::input::Inputs;
 use super::message::Messages;
 use super::monitor::{CylinderArguments, MonitorArguments, Options, Places, compiled};
 use super::options::{FalseAlarmArguments, HELP_FOOTER, INPUT, LogArguments, OUTPUT, VesselAndLog};
-use super::output::Target;
+use super::output::{Target, check_distinct};
 use crate::detector::compiled::CompiledCylinder;
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
@@ -74,11 +78,14 @@ pub(crate) struct CompileArguments {
     #[command(flatten)]
     pub compiled: CompiledArguments,
     /// File for the bytes; - is stdout.
-    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT)]
-    pub output: PathBuf,
+    #[arg(long, short, value_name = "FILE", help_heading = OUTPUT, required_unless_present = "footprint")]
+    pub output: Option<PathBuf>,
     /// What they are written as [default: c for a file that ends in .c or .h, else bin].
-    #[arg(long, value_enum, help_heading = OUTPUT)]
+    #[arg(long, value_enum, help_heading = OUTPUT, requires = "output")]
     pub format: Option<CompiledFormat>,
+    /// Print what it takes on a controller: code, state, stack, arena, instructions; =csv or =json as data.
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, help_heading = OUTPUT)]
+    pub footprint: Option<Option<Format>>,
 }
 
 const HELP: &str = "\
@@ -88,13 +95,20 @@ file of sensors, in K and in Pa absolute, NaN where one is missing. Its monitor 
 
 Examples:
   cylwatch compile nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 -o cylinder.bin
+  cylwatch compile nitrogen-20l --fill-pressure-bar 200 --fill-temperature-degc 15 --footprint
   cylwatch compile my-cylinder.toml --sensors sensors.toml --fill-mass-kg 4.5 -o cylinder.c";
 
 /// Checks, compiles, writes.
 pub(super) fn run(arguments: CompileArguments, messages: &Messages) -> anyhow::Result<()> {
-    let CompileArguments { compiled, output, format } = arguments;
-    let target = Target::checked(Some(&output), &compiled.paths())?;
-    let format = format.unwrap_or_else(|| match output.extension() {
+    let CompileArguments { compiled, output, format, footprint } = arguments;
+    let target =
+        output.as_ref().map(|output| Target::checked(Some(output), &compiled.paths())).transpose()?;
+    check_distinct(&[
+        ("--output", target.as_ref()),
+        ("--footprint", footprint.is_some().then_some(&Target::Stdout)),
+    ])?;
+    let ending = output.as_deref().and_then(Path::extension);
+    let format = format.unwrap_or(match ending {
         Some(ending) if ending == "c" || ending == "h" => CompiledFormat::C,
         _ => CompiledFormat::Bin,
     });
@@ -107,10 +121,16 @@ pub(super) fn run(arguments: CompileArguments, messages: &Messages) -> anyhow::R
         cylinder.vessel.name,
         cylinder.sensors.iter().map(unit_of).collect::<Vec<_>>().join(", ")
     ));
-    match format {
-        CompiledFormat::Bin => target.write(&bytes),
-        CompiledFormat::C => target.write(in_c(&bytes, &inputs.provenance()).as_bytes()),
+    let taken = footprint
+        .map(|format| Footprint::of(&cylinder, &bytes)?.written(format, &inputs.provenance()))
+        .transpose()?;
+    if let Some(target) = target {
+        match format {
+            CompiledFormat::Bin => target.write(&bytes)?,
+            CompiledFormat::C => target.write(in_c(&bytes, &inputs.provenance()).as_bytes())?,
+        }
     }
+    taken.map_or(Ok(()), |text| Target::Stdout.write(text.as_bytes()))
 }
 
 /// Typical sensors of readings.

@@ -1,5 +1,5 @@
 //! `cylwatch compile`: a controller with its bytes says what `cylwatch monitor` says.
-use crate::support::{refused, run};
+use crate::support::{column, files, refused, rows as csv_rows, run};
 use cylwatch::detector::compiled::CompiledCylinder;
 use cylwatch::detector::evidence::Tails;
 use cylwatch::log::{Cells, MemoryLog};
@@ -100,7 +100,80 @@ fn what_a_controller_could_not_begin_with_is_refused() {
         (compile(&["-o", "x.bin", "--announced", "0..60"]), "leave it out"),
         (compile(&["-o", "x.bin", "--sensors", "none.toml"]), "none.toml"),
         (compile(&["-o", "no/folder/x.bin"]), "there is no folder"),
+        (compile(&["-o", "-", "--footprint"]), "--output and --footprint name the same place"),
+        (compile(&["--footprint=xml"]), "possible values: csv, json"),
+        (compile(&[]), "--output <FILE>"),
     ] {
         refused(folder.path(), &arguments, &[words]);
     }
+}
+
+#[test]
+fn a_footprint_has_the_bytes_of_this_cylinder_and_what_the_targets_take() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &compile(&["--footprint=csv", "--quiet"]));
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""));
+    assert_eq!(files(folder.path()), Vec::<String>::new());
+    let (header, lines) = csv_rows(&outcome.stdout);
+    let value = |target: &str, quantity: &str| -> f64 {
+        let line = lines.iter().find(|line| line[0] == target).unwrap_or_else(|| panic!("no {target}"));
+        let place = header.iter().position(|name| *name == quantity);
+        line[place.unwrap_or_else(|| panic!("no {quantity}"))].parse().unwrap_or(f64::NAN)
+    };
+    let here = |quantity: &str| value("this cylinder", quantity);
+    run(folder.path(), &compile(&["-o", "cylinder.bin", "--quiet"]));
+    let bytes = std::fs::read(folder.path().join("cylinder.bin")).unwrap();
+    assert_eq!(here("cylinder_bytes"), bytes.len() as f64);
+    let fresh = CompiledCylinder::from_bytes(&bytes).unwrap().monitor().unwrap().save().unwrap();
+    assert!(here("state_bytes") >= fresh.len() as f64, "{} below {}", here("state_bytes"), fresh.len());
+    assert!(here("arena_begin_bytes") > here("state_bytes"));
+    assert!(here("arena_row_bytes") >= here("arena_begin_bytes"));
+    // The state lies in the arena beside the monitor.
+    assert!(here("arena_restore_bytes") > here("arena_row_bytes") + here("state_bytes"));
+    // This is the reference cylinder.
+    for quantity in ["arena_begin_bytes", "arena_row_bytes", "arena_restore_bytes"] {
+        let ratio = here(quantity) / value("64 bits", quantity);
+        let old = "assets/footprint.csv is old, run bindings/controller/test";
+        assert!((0.9..1.1).contains(&ratio), "{old}: {quantity} has changed to {ratio} of it");
+    }
+    assert!(here("code_bytes").is_nan(), "the code is that of a target");
+    for target in ["Cortex-M7", "Cortex-M4F"] {
+        for quantity in &header[3..] {
+            assert!(value(target, quantity) > 0.0, "{target}: {quantity}");
+        }
+        // Pointers of half the length.
+        assert!(value(target, "arena_begin_bytes") < value("64 bits", "arena_begin_bytes"));
+    }
+}
+
+#[test]
+fn a_footprint_is_the_same_in_every_run_and_more_with_more_sensors() {
+    let folder = tempdir().unwrap();
+    let footprint = |more: &[&str]| {
+        let outcome = run(folder.path(), &compile(&[&["--footprint=csv", "--quiet"], more].concat()));
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        outcome.stdout
+    };
+    let arena = |text: &str| column(text, "arena_begin_bytes")[0];
+    let three = footprint(&[]);
+    assert_eq!(footprint(&[]), three);
+    let two = footprint(&["--readings", "shoulder,pressure"]);
+    assert!(arena(&two) < arena(&three), "{} and {}", arena(&two), arena(&three));
+}
+
+#[test]
+fn a_footprint_for_people_names_every_quantity_and_the_build_it_is_measured_with() {
+    let folder = tempdir().unwrap();
+    let outcome = run(folder.path(), &compile(&["--footprint", "-o", "cylinder.bin"]));
+    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    assert_eq!(files(folder.path()), ["cylinder.bin"]);
+    let words = "compiled cylinder, saved state, arena to begin, arena between rows, code, constants, stack of a row, row on average, \
+        Cortex-M7, Cortex-M4F, bytes, instructions, `controller`, 64 bits";
+    for word in words.split(", ") {
+        assert!(outcome.stdout.contains(word), "`{word}` is missing in\n{}", outcome.stdout);
+    }
+    let document = run(folder.path(), &compile(&["--footprint=json"])).stdout;
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    assert_eq!(document["columns"]["target"][0], "this cylinder");
+    assert!(document["columns"]["state_bytes"][0].as_u64() > Some(0), "{document}");
 }

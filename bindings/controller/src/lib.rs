@@ -10,6 +10,8 @@ use cylwatch_detector::DetectorError;
 use cylwatch_detector::compiled::CompiledCylinder;
 use cylwatch_detector::monitor::Monitor;
 
+mod row;
+
 /// Most sensors of a cylinder.
 pub const MOST_SENSORS: usize = 8;
 
@@ -102,13 +104,13 @@ pub fn replay(
             length += 1;
         }
         observed.work();
-        let taken = monitor.take(cells[0], &cells[1..length]);
+        let taken = row::take(&mut monitor, cells[0], &cells[1..length]);
         observed.rest();
         taken.map_err(of(number))?;
         rows += put(&mut monitor, number, observed)?;
         observed.done(number);
     }
-    monitor.flush();
+    row::flush(&mut monitor);
     rows += put(&mut monitor, 0, observed)?;
     framed(save(&monitor, 0, room)?, observed);
     Ok(rows)
@@ -124,7 +126,7 @@ fn put(monitor: &mut Monitor, line: usize, observed: &mut impl Observed) -> Resu
     let mut rows = 0;
     loop {
         observed.work();
-        let output = monitor.next_output();
+        let output = row::next_output(monitor);
         observed.rest();
         let Some(output) = output.map_err(|error| ReplayError::Monitor(line, error))? else {
             return Ok(rows);

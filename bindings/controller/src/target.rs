@@ -1,11 +1,10 @@
 //! The same in an emulated Cortex-M: files through semihosting, and what memory was needed.
-use core::alloc::{GlobalAlloc, Layout};
+use crate::counted::{Arena, Counted};
 use core::fmt::Write;
 use core::panic::PanicInfo;
 use core::ptr::addr_of_mut;
-use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
-use cortex_m_rt::entry;
+use cortex_m_rt::{ExceptionFrame, entry, exception};
 use cortex_m_semihosting::{debug, hio, syscall};
 use cylwatch_controller::{LARGEST_STATE, Observed, replay};
 use embedded_alloc::TlsfHeap;
@@ -25,37 +24,20 @@ const GAP_S: f64 = 900.0;
 /// What unused stack is filled with.
 const PAINT: u32 = 0xc5c5_c5c5;
 
-static HEAP: TlsfHeap = TlsfHeap::empty();
-static USED: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-static COUNT: AtomicUsize = AtomicUsize::new(0);
-
-/// The arena, counted.
-struct Arena;
-
-// SAFETY: every call is handed on to the heap as it came.
-unsafe impl GlobalAlloc for Arena {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.fetch_add(1, Relaxed);
-        let used = USED.fetch_add(layout.size(), Relaxed) + layout.size();
-        PEAK.fetch_max(used, Relaxed);
-        // SAFETY: the caller keeps the contract of `GlobalAlloc::alloc`.
-        unsafe { HEAP.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        USED.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: the caller keeps the contract of `GlobalAlloc::dealloc`.
-        unsafe { HEAP.dealloc(pointer, layout) }
-    }
-}
-
 #[global_allocator]
-static ARENA_OF_ALL: Arena = Arena;
+static ARENA_OF_ALL: Counted<TlsfHeap> = Counted(TlsfHeap::empty());
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
     say(format_args!("{info}"));
+    debug::exit(debug::EXIT_FAILURE);
+    loop {}
+}
+
+/// What a panic becomes where it aborts at once (`IMMEDIATE_ABORT=1 bindings/controller/test`).
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    say(format_args!("hard fault at {:#x}", frame.pc()));
     debug::exit(debug::EXIT_FAILURE);
     loop {}
 }
@@ -89,8 +71,9 @@ impl File {
 
 struct Told {
     out: File,
-    /// Clock when the present work began, and its allocations then.
-    begun: (u32, usize),
+    arena: Arena,
+    /// Clock when the present work began.
+    begun: u32,
     /// Ticks of the present row, and of all; rows.
     ticks: (u64, u64, u64),
     /// Ticks of the longest row, and its line: of those that came after a gap, and of all others.
@@ -98,19 +81,14 @@ struct Told {
     /// Time of the last output, s, and whether the present row has one after a gap.
     last_s: f64,
     after_gap: bool,
-    /// Allocations while rows were taken.
-    allocations: usize,
-    /// Allocations, bytes of the arena, and bytes of stack until the first row came.
-    at_start: (usize, usize, usize),
-    /// Most bytes of the arena between rows.
-    held: usize,
-    /// Bytes of stack that the caller of a row has, and that rows before the monitor was saved had below it.
-    caller: usize,
-    stack: usize,
-    /// Bytes of stack that the caller of save and restore has, and allocations and bytes of stack below it that they needed.
-    saver: usize,
-    saving: (usize, usize),
-    restoring: (usize, usize),
+    /// Bytes of stack until the first row came, that the caller of a row has, and that rows before the monitor was saved had below it.
+    stack_begin: usize,
+    stack_caller: usize,
+    stack_row: usize,
+    /// Bytes of stack that the caller of save and restore has, and that they had below it.
+    stack_saver: usize,
+    stack_save: usize,
+    stack_restore: usize,
 }
 
 impl Observed for Told {
@@ -119,39 +97,40 @@ impl Observed for Told {
     }
 
     fn begun(&mut self) {
-        self.at_start = (COUNT.load(Relaxed), PEAK.load(Relaxed), stack_used());
+        self.arena.begun();
+        self.stack_begin = stack_used();
         paint();
     }
 
     fn saving(&mut self) {
         // What a row needs below its caller.
-        self.stack = stack_used().saturating_sub(self.caller);
-        self.saver = here();
-        self.saving.0 = COUNT.load(Relaxed);
+        self.stack_row = stack_used().saturating_sub(self.stack_caller);
+        self.stack_saver = here();
+        self.arena.saving();
         paint();
     }
 
     fn saved(&mut self) {
-        self.saving = (COUNT.load(Relaxed) - self.saving.0, stack_used().saturating_sub(self.saver));
-        self.restoring.0 = COUNT.load(Relaxed);
+        self.arena.saved();
+        self.stack_save = stack_used().saturating_sub(self.stack_saver);
         paint();
     }
 
     fn restored(&mut self) {
-        self.restoring = (COUNT.load(Relaxed) - self.restoring.0, stack_used().saturating_sub(self.saver));
+        self.arena.restored();
+        self.stack_restore = stack_used().saturating_sub(self.stack_saver);
     }
 
     fn work(&mut self) {
-        self.held = self.held.max(USED.load(Relaxed));
-        self.caller = here();
-        self.begun = (SYST::get_current(), COUNT.load(Relaxed));
+        self.arena.work();
+        self.stack_caller = here();
+        self.begun = SYST::get_current();
     }
 
     fn rest(&mut self) {
-        let (begun, count) = self.begun;
         // It counts down.
-        self.ticks.0 += u64::from(begun.wrapping_sub(SYST::get_current()) & TICKS);
-        self.allocations += COUNT.load(Relaxed) - count;
+        self.ticks.0 += u64::from(self.begun.wrapping_sub(SYST::get_current()) & TICKS);
+        self.arena.rest();
     }
 
     fn said(&mut self, time_s: f64) {
@@ -164,6 +143,30 @@ impl Observed for Told {
         self.ticks = (0, all + ticks, rows + 1);
         let longest = &mut self.longest[usize::from(!core::mem::take(&mut self.after_gap))];
         *longest = (*longest).max((ticks, line));
+    }
+}
+
+impl Told {
+    /// Names and values, a line each.
+    fn tell(&self) {
+        let (_, all, rows) = self.ticks;
+        let [(after_gap, _), (longest, line)] = self.longest;
+        let stack = [
+            ("stack_begin_bytes", self.stack_begin),
+            ("stack_row_bytes", self.stack_row),
+            ("stack_save_bytes", self.stack_save),
+            ("stack_restore_bytes", self.stack_restore),
+            ("stack_caller_bytes", self.stack_caller),
+            ("longest_row_line", line),
+        ];
+        for (name, value) in self.arena.measured().into_iter().chain(stack) {
+            say(format_args!("{name} {value}"));
+        }
+        for (name, ticks) in
+            [("row", all / rows.max(1)), ("longest_row", longest), ("row_after_gap", after_gap)]
+        {
+            say(format_args!("instructions_{name} {}", ticks * PER_TICK));
+        }
     }
 }
 
@@ -209,7 +212,7 @@ fn main() -> ! {
     static mut TEXT: [u8; LOG] = [0; LOG];
     static mut STATE: [u8; LARGEST_STATE] = [0; LARGEST_STATE];
     // SAFETY: once, before anything is allocated.
-    unsafe { HEAP.init(MEMORY.as_mut_ptr() as usize, ARENA) };
+    unsafe { ARENA_OF_ALL.0.init(MEMORY.as_mut_ptr() as usize, ARENA) };
     let length = File::open(c"cylinder.bin", 1).read(COMPILED);
     let compiled = &COMPILED[..length];
     let length = File::open(c"log.csv", 1).read(TEXT);
@@ -220,19 +223,18 @@ fn main() -> ! {
     clock.enable_counter();
     let mut told = Told {
         out: File::open(c"out.bin", 5),
-        begun: (0, 0),
+        arena: Arena::empty(),
+        begun: 0,
         ticks: (0, 0, 0),
         longest: [(0, 0); 2],
         last_s: f64::INFINITY,
         after_gap: false,
-        allocations: 0,
-        at_start: (0, 0, 0),
-        held: 0,
-        caller: 0,
-        stack: 0,
-        saver: 0,
-        saving: (0, 0),
-        restoring: (0, 0),
+        stack_begin: 0,
+        stack_caller: 0,
+        stack_row: 0,
+        stack_saver: 0,
+        stack_save: 0,
+        stack_restore: 0,
     };
     paint();
     match core::str::from_utf8(&TEXT[..length]) {
@@ -240,29 +242,8 @@ fn main() -> ! {
         Ok(log) => match replay(compiled, log, STATE, &mut told) {
             Err(error) => say(format_args!("{error}")),
             Ok(rows) => {
-                let (count, bytes, stack) = told.at_start;
                 say(format_args!("rows {rows}"));
-                say(format_args!(
-                    "arena {bytes} bytes when the monitor began, {} between rows, {} at most",
-                    told.held,
-                    PEAK.load(Relaxed)
-                ));
-                say(format_args!(
-                    "allocations {count} before the first row, {} in rows, {} to save, {} to restore",
-                    told.allocations, told.saving.0, told.restoring.0
-                ));
-                let (_, all, rows) = told.ticks;
-                let [(after, gap), (most, line)] = told.longest;
-                say(format_args!(
-                    "instructions of a row {} on average, {} at most, in line {line}, {} after a gap, in line {gap}",
-                    all * PER_TICK / rows.max(1),
-                    most * PER_TICK,
-                    after * PER_TICK
-                ));
-                say(format_args!(
-                    "stack {stack} bytes until the first row, {} for rows, {} to save, {} to restore, below a caller with {}",
-                    told.stack, told.saving.1, told.restoring.1, told.caller
-                ));
+                told.tell();
                 debug::exit(debug::EXIT_SUCCESS);
             }
         },
