@@ -46,6 +46,8 @@ const MIDDLE_K: f64 = 288.15;
 const SWING_K: f64 = 15.0;
 /// Time between rows, s.
 const ROW_S: f64 = 60.0;
+/// Bytes of a state at most.
+const STATE_AT_MOST: usize = 64 << 10;
 /// What a monitor remembers is full after two days.
 const ROWS: usize = 2 * 1440;
 
@@ -124,7 +126,7 @@ fn measured() -> anyhow::Result<Vec<(String, Vec<Option<i64>>)>> {
 
 /// Bytes of the state after two days, and of the arena: to begin, between rows, to save and restore.
 fn run_dry(cylinder: &CompiledCylinder, bytes: &[u8]) -> anyhow::Result<(usize, [Option<usize>; 3])> {
-    let rows = rows(cylinder)?;
+    let (rows, mut room) = (rows(cylinder)?, vec![0; STATE_AT_MOST]);
     let before = PeakAlloc.current_usage();
     let added = |bytes: usize| (before > 0).then(|| bytes.saturating_sub(before));
     PeakAlloc.reset_peak_usage();
@@ -139,13 +141,12 @@ fn run_dry(cylinder: &CompiledCylinder, bytes: &[u8]) -> anyhow::Result<(usize, 
         between = between.max(PeakAlloc.current_usage());
     }
     PeakAlloc.reset_peak_usage();
-    let state = monitor.save()?;
+    let state_bytes = monitor.save_into(&mut room)?;
+    let state = room.get(..state_bytes).context("the state is longer than any")?;
     // An arena need not hold two.
     drop(monitor);
-    let restored = begun.restored(&state)?;
+    let restored = begun.restored(state)?;
     let restore = PeakAlloc.peak_usage();
-    let state_bytes = state.len();
-    drop(state);
     // One that was restored may hold more.
     between = between.max(PeakAlloc.current_usage());
     drop(restored);

@@ -84,6 +84,8 @@ pub(in crate::monitor) struct Look {
 
 impl LeakState {
     /// Take in a sample, and what is known of a leak at it where a look is due.
+    // Its 7 kB of stack are not to lie below the observer's.
+    #[inline(never)]
     pub(crate) fn step(&mut self, look: &Look, posterior: impl FnOnce() -> Option<Posterior>) -> Change {
         let time_s = look.time_s;
         self.largest_odds = (look.false_alarm_s / LEAK_INTERVAL_S).clamp(PRIOR_ODDS, CERTAIN);
