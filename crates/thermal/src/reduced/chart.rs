@@ -26,7 +26,7 @@ const CELLS_PER_DENSEST: f64 = 128.0;
 /// Relative error between the nodes up to which polynomials are used.
 const LARGEST_ERROR: f64 = 1e-9;
 /// Cells kept at a time, along temperature and density.
-const CACHED_CELLS: (i32, i32) = (4, 2);
+const CACHED_CELLS: (i32, i32) = (8, 2);
 
 type Coefficients = SMatrix<f64, ORDER, ORDER>;
 /// Value and derivatives `[f, f_T, f_rho, f_TT, f_Trho, f_rhorho]`.
