@@ -25,6 +25,8 @@ pub(crate) fn at(path: &str, problem: Problem) -> ThermalError {
 }
 
 /// The error of a value at `path` that breaks `bound`.
+// Readers of documents hand it on.
+#[cfg_attr(not(feature = "files"), expect(unreachable_pub))]
 pub fn broken(path: &str, value: impl ToString, bound: &str, remedy: &str) -> ThermalError {
     let (bound, remedy) = (bound.to_owned(), remedy.to_owned());
     at(path, Problem::Value { key: key_of(path), text: value.to_string(), bound, remedy })
